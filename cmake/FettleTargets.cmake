@@ -1,0 +1,39 @@
+# Options that every room shares. A room is one static library; it sees only what it links.
+
+add_library(fettle_options INTERFACE)
+target_compile_features(fettle_options INTERFACE cxx_std_20)
+target_include_directories(fettle_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(fettle_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-float-conversion
+  -Wnon-virtual-dtor -Woverloaded-virtual -Werror
+  # Same bits on every compiler and optimisation level: a fused multiply-add rounds once where
+  # the written code rounds twice, so contraction is never left to the compiler.
+  -ffp-contract=off)
+
+set(FETTLE_SANITIZE "" CACHE STRING "address,undefined or thread; empty for none")
+if(FETTLE_SANITIZE)
+  target_compile_options(fettle_options INTERFACE
+    -fsanitize=${FETTLE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(fettle_options INTERFACE -fsanitize=${FETTLE_SANITIZE})
+endif()
+
+# fettle_room(name LINKS targets...): a room's library; its folders add sources with target_sources.
+function(fettle_room name)
+  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  add_library(fettle_${name} STATIC)
+  target_link_libraries(fettle_${name} PUBLIC fettle_options ${ARG_LINKS})
+endfunction()
+
+# fettle_test(name SOURCES files... LINKS targets... [LABELS labels...]): one test program.
+# Every case is its own CTest entry, so a failure names the sentence that broke.
+function(fettle_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LINKS} fettle_test_support GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE FETTLE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+endfunction()

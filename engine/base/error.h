@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include <tl/expected.hpp>
+
+namespace fettle::engine {
+
+/// What kind of refusal an Error is; it decides the exit status of a command.
+enum class ErrorKind {
+  kInput,      ///< bad usage, bad input file, path that cannot be read or written, full disk: exit 2
+  kFailed,     ///< the machine could not do it (no Vulkan device, out of memory): exit 1
+  kCancelled,  ///< the user asked to stop; nothing was written: exit 1
+};
+
+/// The world's refusal (file, device, GPU, user), as a value. Callers' bugs are asserts, not Errors.
+/// The three texts make the one line a user sees: "fettle: error: what, where, remedy".
+/// No text ends in a full stop or holds a line break.
+struct Error {
+  ErrorKind kind = ErrorKind::kFailed;
+  std::string what;    ///< what went wrong, e.g. "the file ends inside row 37"
+  std::string where;   ///< the file, option or device it went wrong with; may be empty
+  std::string remedy;  ///< what to do about it; may be empty
+
+  /// The three texts joined by ", ", empty ones left out, control characters replaced by spaces.
+  [[nodiscard]] std::string line() const;
+};
+
+template <class T>
+using Result = tl::expected<T, Error>;
+
+using Status = tl::expected<void, Error>;
+
+[[nodiscard]] tl::unexpected<Error> inputError(std::string what, std::string where, std::string remedy = {});
+[[nodiscard]] tl::unexpected<Error> failure(std::string what, std::string where, std::string remedy = {});
+[[nodiscard]] tl::unexpected<Error> cancelled();
+
+}  // namespace fettle::engine

@@ -1,0 +1,161 @@
+#include "engine/field/builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+
+// Level of the smallest root that covers the field: a node of level n spans 8 * 8^n samples.
+int rootLevel(const Grid& grid) noexcept {
+  int level = 2;
+  while ((std::int64_t{kBlockSide} << (3 * level)) < std::max(grid.width, grid.height)) ++level;
+  return level;
+}
+
+}  // namespace
+
+FieldBuilder::FieldBuilder(Grid grid, std::shared_ptr<FieldMemory> memory)
+    : grid_(std::make_shared<const Grid>(std::move(grid))),
+      memory_(std::move(memory)),
+      tile_columns_((grid_->width + kTileSide - 1) / kTileSide),
+      tile_rows_((grid_->height + kTileSide - 1) / kTileSide),
+      infinities_(std::make_unique<std::atomic<std::int64_t>>(0)) {}
+
+Result<FieldBuilder> FieldBuilder::create(Grid grid, const std::string& what) {
+  return create(std::move(grid), std::make_shared<FieldMemory>(), what);
+}
+
+Result<FieldBuilder> FieldBuilder::create(Grid grid, std::shared_ptr<FieldMemory> memory,
+                                          const std::string& what) {
+  if (grid.width < 1 || grid.height < 1 || grid.width > Grid::kMaxSide || grid.height > Grid::kMaxSide)
+    return inputError(fmt::format("a field of {} x {} samples cannot be held", grid.width, grid.height), what,
+                      fmt::format("a side must be 1 to {} samples", Grid::kMaxSide));
+  for (const double spacing : {grid.spacingXMm(), grid.spacingYMm(), grid.height_unit.mm})
+    if (!std::isfinite(spacing) || spacing <= 0.0)
+      return inputError(fmt::format("the spacing {} mm is not a positive length", spacing), what,
+                        "give it with --spacing");
+  FieldBuilder builder(std::move(grid), std::move(memory));
+  const auto tiles = static_cast<std::size_t>(builder.tile_columns_) * builder.tile_rows_;
+  builder.tiles_.reserve(tiles);
+  for (std::size_t i = 0; i < tiles; ++i) {
+    TileRef tile = TileRef::adopt(builder.memory_->tiles.acquire());
+    if (!tile)
+      return failure(fmt::format("memory for {} samples could not be had", builder.grid_->samples()), what);
+    builder.tiles_.push_back(std::move(tile));
+  }
+  for (TileRef& tile : builder.tiles_) {
+    tile->samples.fill(kHole);
+    tile->marks.fill(0);
+  }
+  return builder;
+}
+
+void FieldBuilder::writeHeights(std::int32_t column, std::int32_t row, std::int32_t columns,
+                                std::int32_t rows, const float* heights, std::ptrdiff_t stride) noexcept {
+  assert(column >= 0 && row >= 0 && column + columns <= grid_->width && row + rows <= grid_->height);
+  std::int64_t infinite = 0;
+  for (std::int32_t r = row; r < row + rows; ++r)
+    for (std::int32_t c = column; c < column + columns;) {
+      const std::int32_t end = std::min(column + columns, (c | (kTileSide - 1)) + 1);
+      Tile& tile = *tiles_[static_cast<std::size_t>(r >> kTileShift) * tile_columns_ + (c >> kTileShift)];
+      float* to = tile.samples.data() + (r & (kTileSide - 1)) * kTileSide + (c & (kTileSide - 1));
+      const float* from = heights + (r - row) * stride + (c - column);
+      for (std::int32_t i = 0; i < end - c; ++i) {
+        infinite += std::isinf(from[i]) ? 1 : 0;
+        to[i] = std::isfinite(from[i]) ? from[i] : kHole;
+      }
+      c = end;
+    }
+  if (infinite != 0) infinities_->fetch_add(infinite, std::memory_order_relaxed);
+}
+
+void FieldBuilder::writeMarks(std::int32_t column, std::int32_t row, std::int32_t columns, std::int32_t rows,
+                              const std::uint8_t* marks, std::ptrdiff_t stride) noexcept {
+  assert(column >= 0 && row >= 0 && column + columns <= grid_->width && row + rows <= grid_->height);
+  for (std::int32_t r = row; r < row + rows; ++r)
+    for (std::int32_t c = column; c < column + columns; ++c) {
+      Tile& tile = *tiles_[static_cast<std::size_t>(r >> kTileShift) * tile_columns_ + (c >> kTileShift)];
+      std::uint64_t& bits = tile.marks[static_cast<std::size_t>(r & (kTileSide - 1))];
+      const std::uint64_t bit = std::uint64_t{1} << (c & (kTileSide - 1));
+      bits = marks[(r - row) * stride + (c - column)] != 0 ? bits | bit : bits & ~bit;
+    }
+}
+
+Node* FieldBuilder::buildNode(int level, std::int32_t column, std::int32_t row, bool& marked, bool& holed,
+                              HeightBounds& bounds) {
+  Node* node = memory_->nodes.acquire();
+  // A node is 1/16 of a tile's size for 64 tiles: where the tiles fitted, this failing means that the process
+  // cannot go on in any useful way.
+  if (node == nullptr) std::abort();
+  node->level = level;
+  node->marked_children = 0;
+  node->holed_children = 0;
+  bounds = {kInf, -kInf};
+  const std::int32_t tiles_a_child = 1 << (3 * (level - 2));
+  for (int k = 0; k < kFanOut; ++k) {
+    const std::int32_t tc = column + (k % 8) * tiles_a_child;
+    const std::int32_t tr = row + (k / 8) * tiles_a_child;
+    node->children[k] = nullptr;
+    HeightBounds child{kInf, -kInf};
+    bool child_marked = false;
+    bool child_holed = false;
+    if (tc < tile_columns_ && tr < tile_rows_) {
+      if (level == 2) {
+        TileRef ref = std::move(tiles_[static_cast<std::size_t>(tr) * tile_columns_ + tc]);
+        Tile& tile = *ref;
+        refreshBounds(tile, 0, 0, kTileSide, kTileSide);
+        refreshMarks(tile);
+        tile.nan_samples = static_cast<std::uint32_t>(
+            std::count_if(tile.samples.begin(), tile.samples.end(), [](float v) { return std::isnan(v); }));
+        const int columns = std::min(kTileSide, grid_->width - tc * kTileSide);
+        const int rows = std::min(kTileSide, grid_->height - tr * kTileSide);
+        child = tile.bounds;
+        child_marked = tile.marked_samples != 0;
+        child_holed = tile.nan_samples > static_cast<std::uint32_t>(kTileSamples - columns * rows);
+        node->children[k] = ref.detach();
+      } else {
+        node->children[k] = buildNode(level - 1, tc, tr, child_marked, child_holed, child);
+      }
+    }
+    node->child_min[k] = child.min;
+    node->child_max[k] = child.max;
+    node->marked_children |= std::uint64_t{child_marked} << k;
+    node->holed_children |= std::uint64_t{child_holed} << k;
+    bounds = {std::min(bounds.min, child.min), std::max(bounds.max, child.max)};
+  }
+  marked = node->marked_children != 0;
+  holed = node->holed_children != 0;
+  return node;
+}
+
+Version FieldBuilder::build() && {
+  bool marked = false;
+  bool holed = false;
+  HeightBounds bounds;
+  Node* root = buildNode(rootLevel(*grid_), 0, 0, marked, holed, bounds);
+  tiles_.clear();
+  return {std::move(grid_), std::move(memory_), root, 1.0F};
+}
+
+Version makeField(const Grid& grid, const std::vector<float>& heights,
+                  const std::vector<std::uint8_t>& marks) {
+  assert(heights.size() == static_cast<std::size_t>(grid.samples()));
+  assert(marks.empty() || marks.size() == heights.size());
+  Result<FieldBuilder> builder = FieldBuilder::create(grid, "field");
+  if (!builder) std::abort();  // a caller's bug: sizes are its own choice
+  builder->writeHeights(0, 0, grid.width, grid.height, heights.data(), grid.width);
+  if (!marks.empty()) builder->writeMarks(0, 0, grid.width, grid.height, marks.data(), grid.width);
+  return std::move(*builder).build();
+}
+
+}  // namespace fettle::engine

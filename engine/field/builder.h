@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/field/version.h"
+
+namespace fettle::engine {
+
+/// Makes the first version of a field: starts with every sample a hole and no mark, takes blocks of samples
+/// in any order, and turns into a Version.
+///
+/// Threading: writeHeights and writeMarks may be called from several threads at once as long as no two calls
+/// touch the same tile.
+class FieldBuilder {
+ public:
+  /// Allocates all tiles. Errors: a side outside 1 .. Grid::kMaxSide, a spacing that is not finite and
+  /// positive, memory exhausted. `what` names the field in the error, usually the file.
+  [[nodiscard]] static Result<FieldBuilder> create(Grid grid, const std::string& what);
+
+  /// As create, in the memory of an existing field, so that both share one pool.
+  [[nodiscard]] static Result<FieldBuilder> create(Grid grid, std::shared_ptr<FieldMemory> memory,
+                                                   const std::string& what);
+
+  FieldBuilder(FieldBuilder&&) = default;
+  FieldBuilder& operator=(FieldBuilder&&) = default;
+
+  [[nodiscard]] const Grid& grid() const noexcept { return *grid_; }
+
+  /// Writes samples (row-major, stride in elements, [height_unit]); the rectangle lies in the field. NaN is a
+  /// hole; an infinity becomes one and is counted.
+  void writeHeights(std::int32_t column, std::int32_t row, std::int32_t columns, std::int32_t rows,
+                    const float* heights, std::ptrdiff_t stride) noexcept;
+
+  /// Writes marks: non-zero = marked.
+  void writeMarks(std::int32_t column, std::int32_t row, std::int32_t columns, std::int32_t rows,
+                  const std::uint8_t* marks, std::ptrdiff_t stride) noexcept;
+
+  /// Samples that were infinite and became holes.
+  [[nodiscard]] std::int64_t infinities() const noexcept {
+    return infinities_->load(std::memory_order_relaxed);
+  }
+
+  /// Bounds, counts and the tree; the builder is empty afterwards.
+  [[nodiscard]] Version build() &&;
+
+ private:
+  FieldBuilder(Grid grid, std::shared_ptr<FieldMemory> memory);
+  [[nodiscard]] Node* buildNode(int level, std::int32_t column, std::int32_t row, bool& marked, bool& holed,
+                                HeightBounds& bounds);
+
+  std::shared_ptr<const Grid> grid_;
+  std::shared_ptr<FieldMemory> memory_;
+  std::vector<TileRef> tiles_;  // row-major
+  std::int32_t tile_columns_ = 0;
+  std::int32_t tile_rows_ = 0;
+  std::unique_ptr<std::atomic<std::int64_t>> infinities_;
+};
+
+/// A field from one plain array, for tests and small fields: heights row-major, row 0 lowest, width * height
+/// elements; marks empty or as many bytes. Asserts that the sizes agree.
+[[nodiscard]] Version makeField(const Grid& grid, const std::vector<float>& heights,
+                                const std::vector<std::uint8_t>& marks = {});
+
+}  // namespace fettle::engine

@@ -1,0 +1,106 @@
+#include "engine/field/node_pool.h"
+
+#include <cstdlib>
+#include <new>
+
+namespace fettle::engine {
+
+template <class T, std::size_t kSlabBytes>
+ObjectPool<T, kSlabBytes>::~ObjectPool() {
+  for (std::size_t s = 0; s < slab_count_; ++s) std::free(slabs_[s].load(std::memory_order_relaxed));
+}
+
+template <class T, std::size_t kSlabBytes>
+auto ObjectPool<T, kSlabBytes>::addSlab() noexcept -> Slab* {
+  if (slab_count_ == kMaxSlabs) return nullptr;
+  void* memory = std::aligned_alloc(kSlabBytes, kSlabBytes);
+  if (memory == nullptr) return nullptr;
+  // Only the header and the counters are touched: pages of items come from the system when first written.
+  Slab* slab = static_cast<Slab*>(memory);
+  slab->pool = this;
+  slab->first = static_cast<std::uint32_t>(slab_count_ * kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    new (&slab->refs[i]) std::atomic<std::uint32_t>(0);
+    new (&slab->next[i]) std::atomic<std::uint32_t>(0);
+  }
+  // Release pairs with the acquire in tryAcquire: who finds a number of this slab finds it initialised.
+  slabs_[slab_count_++].store(slab, std::memory_order_release);
+  total_.fetch_add(kCount, std::memory_order_relaxed);
+  for (std::size_t i = kCount; i-- > 0;) push(slab, i);
+  return slab;
+}
+
+template <class T, std::size_t kSlabBytes>
+void ObjectPool<T, kSlabBytes>::push(Slab* slab, std::size_t index) noexcept {
+  // Counted before it is published: the count may be one high for a moment, never below zero.
+  free_.fetch_add(1, std::memory_order_relaxed);
+  const std::uint64_t number = slab->first + index + 1;
+  std::uint64_t head = head_.load(std::memory_order_relaxed);
+  do {
+    slab->next[index].store(static_cast<std::uint32_t>(head), std::memory_order_relaxed);
+    // Release publishes next[index] and everything done to the object before it was given back.
+  } while (!head_.compare_exchange_weak(head, (head & ~std::uint64_t{0xffffffff}) | number,
+                                        std::memory_order_release, std::memory_order_relaxed));
+}
+
+template <class T, std::size_t kSlabBytes>
+T* ObjectPool<T, kSlabBytes>::tryAcquire() noexcept {
+  // Acquire pairs with push's release.
+  std::uint64_t head = head_.load(std::memory_order_acquire);
+  for (;;) {
+    const auto number = static_cast<std::uint32_t>(head);
+    if (number == 0) return nullptr;
+    Slab* slab = slabs_[(number - 1) / kCount].load(std::memory_order_acquire);
+    const std::size_t index = (number - 1) % kCount;
+    // May read the link of an object that another thread has popped meanwhile: the slab is never unmapped,
+    // the value is then stale, and the pop count in the head makes the exchange fail.
+    const std::uint64_t next = slab->next[index].load(std::memory_order_relaxed);
+    const std::uint64_t pops = (head >> 32) + 1;
+    if (head_.compare_exchange_weak(head, pops << 32 | next, std::memory_order_acquire,
+                                    std::memory_order_acquire)) {
+      free_.fetch_sub(1, std::memory_order_relaxed);
+      slab->refs[index].store(1, std::memory_order_relaxed);
+      return &slab->items[index];
+    }
+  }
+}
+
+template <class T, std::size_t kSlabBytes>
+T* ObjectPool<T, kSlabBytes>::acquire() noexcept {
+  for (;;) {
+    if (T* object = tryAcquire()) return object;
+    const std::scoped_lock lock(grow_);
+    if (freeObjects() == 0 && addSlab() == nullptr) return nullptr;
+  }
+}
+
+template <class T, std::size_t kSlabBytes>
+bool ObjectPool<T, kSlabBytes>::reserve(std::size_t objects) noexcept {
+  const std::scoped_lock lock(grow_);
+  while (freeObjects() < objects)
+    if (addSlab() == nullptr) return false;
+  return true;
+}
+
+template <class T, std::size_t kSlabBytes>
+void ObjectPool<T, kSlabBytes>::recycle(T* object) noexcept {
+  Slab* slab = slabOf(object);
+  slab->pool->push(slab, indexOf(slab, object));
+}
+
+template class ObjectPool<Tile, std::size_t{4} << 20>;
+template class ObjectPool<Node, std::size_t{1} << 20>;
+
+void releaseNode(Node* node) noexcept {
+  if (node == nullptr || !InnerPool::dropLast(node)) return;
+  // At most kMaxLevel deep: the recursion is bounded by the height of the tree, not by its size.
+  for (void* child : node->children) {
+    if (node->level == 2)
+      releaseTile(static_cast<Tile*>(child));
+    else
+      releaseNode(static_cast<Node*>(child));
+  }
+  InnerPool::recycle(node);
+}
+
+}  // namespace fettle::engine

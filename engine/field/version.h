@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "engine/field/grid.h"
+#include "engine/field/node_pool.h"
+#include "engine/field/reader.h"
+
+namespace fettle::engine {
+
+class LiveField;
+
+/// An immutable state of a field: samples, marks, bounds, sign. Copying one is O(1) and allocates nothing;
+/// versions share every tile in which they do not differ.
+///
+/// Threading: a Version may be copied and read from any thread. The last copy frees the tiles nobody else
+/// holds, which takes time in proportion to their number: hand the last copy to a thread that may spend it.
+class Version {
+ public:
+  Version() = default;
+  Version(const Version& other) noexcept;
+  Version(Version&& other) noexcept
+      : grid_(std::move(other.grid_)),
+        memory_(std::move(other.memory_)),
+        root_(std::exchange(other.root_, nullptr)),
+        sign_(other.sign_) {}
+  Version& operator=(Version other) noexcept;
+  ~Version() { releaseNode(root_); }
+
+  [[nodiscard]] bool empty() const noexcept { return root_ == nullptr; }
+  [[nodiscard]] const Grid& grid() const noexcept { return *grid_; }
+  [[nodiscard]] FieldReader reader() const noexcept { return {root_, grid_.get(), sign_}; }
+  [[nodiscard]] const std::shared_ptr<FieldMemory>& memory() const noexcept { return memory_; }
+
+  /// The same field upside down (z -> -z): a sign, no sample is touched; inverted().inverted() is the same.
+  [[nodiscard]] Version inverted() const noexcept;
+
+  /// The same samples with other facts about where they lie; width and height must agree.
+  [[nodiscard]] Version withGrid(Grid grid) const;
+
+  /// Whether both are the very same state (same tiles, same sign), not merely equal ones. O(1).
+  friend bool operator==(const Version& a, const Version& b) noexcept {
+    return a.root_ == b.root_ && a.sign_ == b.sign_;
+  }
+
+ private:
+  friend class LiveField;
+  friend class FieldBuilder;
+  /// Takes over one reference to root.
+  Version(std::shared_ptr<const Grid> grid, std::shared_ptr<FieldMemory> memory, Node* root,
+          float sign) noexcept
+      : grid_(std::move(grid)), memory_(std::move(memory)), root_(root), sign_(sign) {}
+
+  std::shared_ptr<const Grid> grid_;
+  std::shared_ptr<FieldMemory> memory_;  // after root_ is gone: members die in reverse, the body first
+  Node* root_ = nullptr;
+  float sign_ = 1.0F;
+};
+
+/// What a field holds, in one pass over its tiles. Sums in double, tile by tile in a fixed order.
+struct FieldSummary {
+  std::int64_t no_data = 0;
+  std::int64_t marked = 0;
+  double min = 0.0, max = 0.0, mean = 0.0;  ///< [height_unit]; NaN when every sample is a hole
+};
+[[nodiscard]] FieldSummary summarize(const Version& version);
+
+/// FNV-1a (Fowler, Noll, Vo), 64 bits, over width, height, every sample's bits and every mark, in row-major
+/// order with the sign applied: the same for equal content, however it is cut into versions. A hole counts as
+/// one fixed pattern. For telling results apart in tests and reports, not against an adversary.
+[[nodiscard]] std::uint64_t contentHash(const Version& version);
+
+}  // namespace fettle::engine
