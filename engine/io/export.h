@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/version.h"
+
+namespace fettle::engine {
+
+struct ExportOptions {
+  /// 16-bit PNG: height of one count [height_unit], finite and > 0. Without it Grid::height_per_count, and
+  /// where that is 0 or the heights do not fit it, the range of the field spread over 1 .. 65535.
+  std::optional<double> height_per_count;
+};
+
+struct Exported {
+  std::string format;                 ///< FormatInfo::name of the writer
+  std::vector<std::string> warnings;  ///< what the format could not keep; one line each, no full stop
+};
+
+/// Writes a field, its sign applied, in the format that the extension of `path` names (any case):
+///
+///   .tif .tiff  GeoTIFF, float32, compressed without loss, geo-reference, CRS, units, holes = NaN, declared
+///   .asc        ESRI ASCII grid, every float with enough digits to come back bit for bit, holes = declared
+///               number (ESRI readers know no NaN); anisotropic spacing as dx, dy
+///   .xyz        text, one "x y z" a sample that is no hole, world coordinates, shortest exact digits
+///   .ply        binary little-endian points, double x and y, float z, world coordinates
+///   .png        16-bit grey, 0 = hole, quantised: the warning says count and largest error
+///
+/// Marks go to their own file (marks.h). The file appears whole or not at all (atomic_file.h). Errors:
+/// kInput for an unknown extension, a path that cannot be written, a full disk; kCancelled.
+/// Thread: any; a long job.
+[[nodiscard]] Result<Exported> exportField(const Version& field, const std::string& path,
+                                           const ExportOptions& options, JobControl& job);
+
+}  // namespace fettle::engine

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/grid.h"
+#include "engine/field/version.h"
+
+namespace fettle::engine {
+
+/// Which height a cell takes when several points of a cloud fall into it.
+enum class CellRule {
+  kMedian,   ///< of an even number of points: the mean of the two middle ones
+  kMean,     ///< sum in double, rounded once
+  kHighest,  ///< as a laser from above would see it
+};
+
+/// What the user says about a file that the file itself cannot. Whatever is given wins over the file, and a
+/// warning says so where the two differ.
+struct ImportOptions {
+  /// One more value that means "hole", in the numbers as stored (before z_scale), compared after both were
+  /// rounded to float32 when the samples are floats, exactly when they are integers. NaN is always a hole.
+  std::optional<double> no_data;
+  /// Distance of neighbouring columns, rows [unit of the import, see `unit`]; finite and > 0.
+  std::optional<std::pair<double, double>> spacing;
+  /// height = stored number * z_scale, in double, rounded once to float; finite, not 0. For integer samples
+  /// it becomes Grid::height_per_count.
+  std::optional<double> z_scale;
+  /// Lateral and height unit. Without it: what the file says, else millimetres. Spacing that a file states in
+  /// a unit of its own (resolution tags: pixels a centimetre) is converted into this one.
+  std::optional<LengthUnit> unit;
+  /// Point clouds: side of a cell in the file's unit, finite and > 0; without it the lattice the points lie
+  /// on, else estimated from their density. Given, no lattice is looked for.
+  std::optional<double> cell_size;
+  CellRule cell_rule = CellRule::kMedian;
+};
+
+/// How a cloud of points became a field.
+struct GriddingReport {
+  std::int64_t points = 0;          ///< points with three finite coordinates; others are in a warning
+  std::int64_t cells = 0;           ///< width * height
+  std::int64_t empty_cells = 0;     ///< cells without a point: holes
+  std::int64_t multiple_cells = 0;  ///< cells with more than one point, where CellRule decided
+  bool lattice = false;             ///< the points lay on a raster (with gaps), whose spacing was taken
+};
+
+struct Imported {
+  Version field;
+  std::string format;                 ///< FormatInfo::name of the reader, e.g. "GTiff", "XYZ"
+  std::vector<std::string> warnings;  ///< what was guessed, converted or lost; one line each, no full stop
+  std::optional<GriddingReport> gridding;  ///< point clouds only
+};
+
+/// Reads a height field from a file of any format of formats() that can be read. The format is recognised by
+/// content; the extension only decides between formats whose files look alike (text).
+///
+/// Rows of top-down formats are flipped so that row 0 has the lowest y; Grid::origin is the centre of the
+/// lower-left sample. Lateral unit: that of the coordinate system; degrees are approximated by the length of
+/// a degree of longitude and latitude at the field's middle (warned about, with the error); none = mm. Height
+/// unit: that of the band or of the vertical coordinate system, else the lateral one.
+///
+/// Errors (all ErrorKind::kInput, one line): a path that cannot be read, an unknown or damaged file, one that
+/// holds no valid height, more samples than memory can hold (told from the header, before anything is
+/// allocated); kCancelled. Memory: the field plus at most 256 MB plus the size of the file.
+///
+/// Thread: any, several at once; a long job: reports progress and looks at cancel() in `job`.
+[[nodiscard]] Result<Imported> importField(const std::string& path, const ImportOptions& options,
+                                           JobControl& job);
+
+/// "mm", "m", "um", "µm", "nm", "cm", "km", "ft", "ftUS", "in" and their English names, any case; nothing for
+/// others. "deg" is no length and not accepted.
+[[nodiscard]] std::optional<LengthUnit> lengthUnitFromName(std::string_view name);
+
+/// One row of the table of formats.
+struct FormatInfo {
+  std::string_view name;                         ///< stable, e.g. "GTiff"; goes into Imported::format
+  std::string_view description;                  ///< for a person, e.g. "GeoTIFF and TIFF"
+  std::span<const std::string_view> extensions;  ///< with the dot, lower case; the first is the usual one
+  bool reads = false;
+  bool writes = false;
+};
+
+/// All formats, in the order in which they are tried. Static, any thread.
+[[nodiscard]] std::span<const FormatInfo> formats();
+
+}  // namespace fettle::engine

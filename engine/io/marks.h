@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/field/version.h"
+
+namespace fettle::engine {
+
+/// The keep mask as a picture: 8-bit grey PNG or TIFF, one pixel a sample, non-zero = marked (keep), the top
+/// row of the picture = the HIGHEST row of the field.
+
+/// The same heights, sign and grid with exactly the marks of the picture; marks that `field` had are gone.
+/// Tiles whose marks do not change stay shared with `field`. Errors (kInput): not such a picture, another
+/// size than the field.
+/// Thread: any.
+[[nodiscard]] Result<Version> importMarks(const Version& field, const std::string& path);
+
+/// Writes the marks as 0 and 255; PNG or TIFF by extension (.png, .tif, .tiff). Whole or not at all.
+/// Errors: kInput. Thread: any.
+[[nodiscard]] Status exportMarks(const Version& field, const std::string& path);
+
+}  // namespace fettle::engine
