@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/version.h"
+
+namespace fettle::engine {
+
+/// The global filters. All use a window of n x n samples around each sample, n odd.
+///
+/// Of a window only the samples that exist count: none beyond the border, no hole. A hole stays a hole; every
+/// other sample becomes
+///   kBox       the mean of the window's samples.
+///   kGaussian  their mean with weights w(dx) * w(dy), renormalised to the samples there are. sigma = 0:
+///              binomial, w(d) = C(n - 1, (n - 1) / 2 + d); sigma > 0: w(d) = exp(-d^2 / (2 sigma^2)), cut at
+///              the window.
+///   kMedian    their median; for an even count the mean of the two middle ones.
+/// Heights are taken with the version's sign, so filtering commutes with inverting.
+///
+/// Accuracy, against the same formula without rounding:
+///   kBox       sums are exact where the field's heights span less than 2^31 counts of their common binary
+///   step
+///              (integers and fixed-point scans do), else heights are read to 2^-62 of the field's largest
+///              magnitude; one division, one rounding. Error <= 0.5 ulp of the float result + 2^-61 of that
+///              magnitude: a constant and a plane come back to the bit.
+///   kGaussian  double throughout, one rounding to float at the end. Error <= 0.5 ulp of the float result
+///              + 3e-13 * the largest magnitude in the window (n roundings in each direction).
+///   kMedian    exact, for an even count rounded once.
+/// Every result lies between the smallest and the largest sample of its window.
+enum class FilterKind { kBox, kGaussian, kMedian };
+
+/// What the marks mean to a filter.
+enum class FilterScope {
+  kKeepMarks,  ///< marked samples keep their exact bits, but count as neighbours of the others
+  kOnlyMarks,  ///< only marked samples are filtered, the others keep their exact bits
+};
+
+struct FilterSpec {
+  static constexpr int kMaxWindow = 1001;
+  static constexpr int kMaxPasses = 1000;
+  static constexpr int kMaxThreads = 1024;
+
+  FilterKind kind = FilterKind::kBox;
+  int window = 3;      ///< side of the window [samples], odd, 1 .. kMaxWindow; 1 changes nothing
+  double sigma = 0.0;  ///< [samples], only for kGaussian: 0 = binomial weights, > 0 = true Gaussian
+  int passes = 1;      ///< times the filter is applied to its own result, 1 .. kMaxPasses
+  FilterScope scope = FilterScope::kKeepMarks;
+  /// After every pass each sample is drawn back to within this distance of the original sample [height_unit,
+  /// >= 0]; never exceeded, not even by a rounding. Nothing is drawn where the original has a hole.
+  std::optional<double> max_change;
+  int threads = 0;  ///< 0 = all cores; the result is the same to the bit for any number
+};
+
+/// What a filter did, against its input, over the samples that are not holes [height_unit].
+struct FilterReport {
+  std::int64_t changed = 0;  ///< samples whose value differs
+  double max_change = 0.0;   ///< largest |after - before|
+  double rms_change = 0.0;   ///< root mean square of after - before; 0 for a field of holes
+};
+
+struct Filtered {
+  Version field;  ///< sign, grid and memory of the input; shares each tile with it in which no bit changed
+  FilterReport report;
+};
+
+/// Whether a spec can be carried out; the error names the value and its range (ErrorKind::kInput).
+[[nodiscard]] Status validate(const FilterSpec& spec);
+
+/// Applies a filter to a whole field. `input` and `original` are untouched and may be in use elsewhere;
+/// `original` has the same width and height (asserted), and only serves spec.max_change: its sign is taken
+/// into account, so it may be inverted or not. `input` itself is a fine original.
+///
+/// Progress counts samples times passes, as stage "filtering". A cancel is seen within about 50 ms a thread.
+/// Errors: an invalid spec (kInput); memory exhausted (kFailed); cancelled (kCancelled): no result then.
+/// Memory: the tiles that change, twice over when several passes run, and a scratch for each thread that
+/// follows the window, never the field.
+/// Threading: any thread; uses spec.threads workers of its own arena. Deterministic to the bit.
+[[nodiscard]] Result<Filtered> applyFilter(const Version& input, const Version& original,
+                                           const FilterSpec& spec, JobControl& job);
+
+/// "box", "gaussian", "median" and back.
+[[nodiscard]] std::optional<FilterKind> filterKindFromName(std::string_view name);
+[[nodiscard]] std::string_view name(FilterKind kind);
+
+}  // namespace fettle::engine
