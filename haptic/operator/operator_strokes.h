@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/field/version.h"
+#include "engine/scanner/scanner.h"
+#include "haptic/strokes.h"
+
+namespace fettle::haptic {
+
+/// How the simulated person works. Every amplitude may be 0.
+struct OperatorSpec {
+  std::uint64_t seed = 1;
+  double rate_hz = 1000.0;   ///< rows a second, 100 .. 10000
+  double speed_mm_s = 20.0;  ///< along an edge, > 0
+  double lift_mm = 3.0;      ///< free height over the highest point of the scan between strokes, > 0
+  double press_mm = 0.3;     ///< depth of the tip below the scan's surface while tracing, >= 0
+  /// Standard deviation of the tip's tremor along each lateral axis [mm]. Physiological tremor of a resting
+  /// forearm with a hand-held stylus is 8 to 12 Hz, some 0.05 mm rms (Riviere, Rader and Khosla 1997; Elble
+  /// and Koller 1990); height takes half of it.
+  double tremor_mm = 0.05;
+  /// Standard deviation of the slow wander off the line that the eye corrects, below 1 Hz [mm].
+  double wander_mm = 0.08;
+  /// Passes along each edge with the smooth tool, then with the mark tool; 0 .. 16 each.
+  int smooth_passes = 1;
+  int mark_passes = 1;
+  /// How far to the high side of a step the smooth passes run [mm], >= 0: a smoothing window that reaches
+  /// over a step would blur it, so a person smooths the land beside the edge, not the edge.
+  double smooth_offset_mm = 0.0;
+  /// Distance between parallel mark passes, spread evenly about the edge [mm], >= 0.
+  double mark_offset_mm = 0.0;
+  /// Edges shorter than this are left out [mm], >= 0.
+  double shortest_mm = 0.0;
+};
+
+/// The strokes of a person tracing the edges of a scan with a stylus: for each edge in turn, the smooth
+/// passes, then the mark passes; each stroke comes down from above, presses to `press_mm`, follows the edge
+/// (closed ones all the way round), lifts, and travels on to the next one through free air.
+///
+/// The tip is never on the exact edge: it wanders and trembles about it. Its height is the scan's bilinear
+/// surface (noise, outliers and all) less the press depth; over holes the last height found holds. While the
+/// tool is in the air its rows say Tool::kFeel. Rows are 1 / rate_hz apart from t = 0 on. Tips stay inside
+/// the field. Deterministic by seed, one thread, no state. Empty without edges. Asserts the ranges above.
+[[nodiscard]] std::vector<StrokeSample> operatorStrokes(const engine::Version& scan,
+                                                        std::span<const engine::Edge> edges,
+                                                        const OperatorSpec& spec);
+
+}  // namespace fettle::haptic
