@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/base/error.h"
+
+namespace fettle::haptic {
+
+/// What the stylus does while it is in contact.
+enum class Tool : std::uint8_t {
+  kFeel,    ///< nothing but forces
+  kSmooth,  ///< local smoothing by force, if the scene lists that effect
+  kMark,    ///< adds samples to the keep mask
+  kUnmark,  ///< takes samples out of the keep mask
+};
+
+inline constexpr int kTools = 4;
+
+/// "feel", "smooth", "mark", "unmark".
+[[nodiscard]] std::string_view toolName(Tool tool) noexcept;
+
+/// One tick of a recorded stylus session.
+struct StrokeSample {
+  double t = 0.0;          ///< [s]; as recorded, the replay does one tick a row whatever it says
+  glm::dvec3 tip_mm{0.0};  ///< endpoint in field coordinates [mm] (see engine::Grid)
+  Tool tool = Tool::kFeel;
+
+  friend bool operator==(const StrokeSample&, const StrokeSample&) = default;
+};
+
+/// What one tick gave back.
+struct ForceSample {
+  double t = 0.0;            ///< [s]
+  glm::dvec3 proxy_mm{0.0};  ///< point on the surface while in contact, else the endpoint [mm]
+  glm::dvec3 force_n{0.0};   ///< force on the hand [N], clamped to the scene's limit
+  bool contact = false;
+
+  friend bool operator==(const ForceSample&, const ForceSample&) = default;
+};
+
+/// Reads a strokes file: CSV, first line exactly `t,x,y,z,tool`, then one row a tick; LF or CRLF; a last line
+/// without line end is fine; blank lines at the end are too. Numbers in any form std::from_chars takes,
+/// "nan" and "inf" included (a recorded dropout: the tick treats it as no input).
+/// Errors (kInput, naming the line, counted from 1 with the header): unreadable path, wrong header, wrong
+/// number of columns, something that is no number, a number outside double's range, an unknown tool.
+/// Memory: the file plus 40 bytes a row. Thread: any.
+[[nodiscard]] engine::Result<std::vector<StrokeSample>> readStrokes(const std::string& path);
+
+/// Writes a strokes file, whole or not at all. Numbers are the shortest that read back to the same double.
+/// Errors (kInput): the path cannot be written, full disk.
+[[nodiscard]] engine::Status writeStrokes(const std::string& path, std::span<const StrokeSample> strokes);
+
+/// Writes a forces file, whole or not at all: CSV `t,proxy_x,proxy_y,proxy_z,fx,fy,fz,contact`; seconds,
+/// millimetres, newtons, contact 0 or 1. Errors as writeStrokes.
+[[nodiscard]] engine::Status writeForces(const std::string& path, std::span<const ForceSample> forces);
+
+}  // namespace fettle::haptic
