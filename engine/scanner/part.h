@@ -1,0 +1,70 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "engine/scanner/outline.h"
+#include "engine/scanner/scanner.h"
+
+namespace fettle::engine {
+
+/// What a feature does inside its outline.
+enum class FeatureKind {
+  kSet,      ///< the height becomes `level` + slope . p + waviness: boss, pocket, rib, freeform pad
+  kThrough,  ///< no surface: a through hole
+  kRoof,     ///< added: a ridge along the outline's u axis, falling by `slope_v` to nothing at its sides
+  kBump,     ///< added: a smooth bump, level * (1 - t^2)^3 with t = 1 at the outline (C2, no edge)
+};
+
+/// How the border of a feature is broken.
+enum class Rim {
+  kSharp,    ///< a vertical wall at the outline
+  kChamfer,  ///< a bevel `rim_mm` wide inside the outline at 45 degrees; a raised feature's from its top
+             ///< down, a sunk feature's from the surroundings down
+  kFillet,  ///< a quarter circle of radius `rim_mm` from the top down (raised features only)
+};
+
+/// One operation on the height of what lies below it. Corner radii are at least rim_mm where there is a rim,
+/// so that bevels meet without mitre lines and the listed edges are all there are.
+struct Feature {
+  FeatureKind kind = FeatureKind::kSet;
+  Outline outline;
+  double level = 0.0;       ///< [mm], kSet and kBump
+  glm::dvec2 slope{0, 0};   ///< tilt of a kSet surface about the outline's centre [mm/mm]
+  double waviness = 0.0;    ///< amplitude of a smooth freeform relief on a kSet surface [mm]
+  double wavelength = 1.0;  ///< of that relief [mm]
+  double slope_v = 0.0;     ///< kRoof: fall per mm away from the u axis; negative = a groove
+  Rim rim = Rim::kSharp;
+  double rim_mm = 0.0;
+  bool sunk = false;     ///< kSet: the rim falls from the surroundings; kThrough: countersink of rim_mm
+  double foot_mm = 0.0;  ///< raised kSet: radius of the concave fillet outside the wall's foot, 0 = none
+};
+
+/// A part: features laid one over the other on a plane at height 0. All in millimetres, origin in the middle.
+struct Part {
+  PartInfo info;
+  std::vector<Feature> features;
+
+  /// Exact height at p [mm], NaN in a through hole. On an outline itself the inside counts.
+  [[nodiscard]] double heightAt(glm::dvec2 p) const noexcept;
+  /// The same over a subset of the features (in order), for a caller that knows which can matter.
+  [[nodiscard]] static double heightAt(glm::dvec2 p, const std::vector<const Feature*>& features) noexcept;
+  /// The features that can reach into a circle.
+  [[nodiscard]] std::vector<const Feature*> near(glm::dvec2 centre, double radius) const;
+};
+
+/// The part of that name, or null. Lives for ever.
+[[nodiscard]] const Part* findPart(std::string_view name) noexcept;
+
+/// Steps lower than this [mm] and slope jumps smaller than this [mm/mm] are not called edges.
+inline constexpr double kLeastEdge = 0.05;
+
+/// The lines of the part where its surface truly jumps or breaks: every outline and bevel line, cut to where
+/// the finished surface is different on its two sides, for later features may have removed it. A through
+/// hole's rim is none: it has no height on one side. Points at most `step` apart [mm], moved by `shift` and
+/// kept to [0, extent] in both axes.
+[[nodiscard]] std::vector<Edge> edgesOf(const Part& part, double step, glm::dvec2 shift, glm::dvec2 extent);
+
+}  // namespace fettle::engine
