@@ -161,11 +161,11 @@ FieldSummary summarize(const Version& version) {
 std::uint64_t contentHash(const Version& version) {
   constexpr std::uint64_t kPrime = 0x100000001b3;
   std::uint64_t hash = 0xcbf29ce484222325;
+  // A word at a time where FNV takes a byte: one multiplication a sample. The shift brings the high half
+  // down, which a multiplication alone would never let reach the low bits.
   const auto mix = [&hash](std::uint32_t word) {
-    for (int byte = 0; byte < 4; ++byte) {
-      hash = (hash ^ (word & 0xffU)) * kPrime;
-      word >>= 8;
-    }
+    hash = (hash ^ word) * kPrime;
+    hash ^= hash >> 32;
   };
   const FieldReader reader = version.reader();
   mix(static_cast<std::uint32_t>(reader.width()));
@@ -175,9 +175,11 @@ std::uint64_t contentHash(const Version& version) {
   for (std::int32_t row = 0; row < reader.height(); ++row) {
     reader.readHeights(0, row, reader.width(), 1, heights.data(), reader.width());
     reader.readMarks(0, row, reader.width(), 1, marks.data(), reader.width());
-    for (std::size_t c = 0; c < heights.size(); ++c) {
-      mix(std::isnan(heights[c]) ? 0x7fc00000U : std::bit_cast<std::uint32_t>(heights[c]));
-      hash = (hash ^ marks[c]) * kPrime;
+    for (const float z : heights) mix(std::isnan(z) ? 0x7fc00000U : std::bit_cast<std::uint32_t>(z));
+    std::uint32_t word = 0;
+    for (std::size_t c = 0; c < marks.size(); ++c) {
+      word = word << 1 | marks[c];
+      if (c % 32 == 31 || c + 1 == marks.size()) mix(std::exchange(word, 0U));
     }
   }
   return hash;

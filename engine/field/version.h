@@ -67,9 +67,10 @@ struct FieldSummary {
 };
 [[nodiscard]] FieldSummary summarize(const Version& version);
 
-/// FNV-1a (Fowler, Noll, Vo), 64 bits, over width, height, every sample's bits and every mark, in row-major
-/// order with the sign applied: the same for equal content, however it is cut into versions. A hole counts as
-/// one fixed pattern. For telling results apart in tests and reports, not against an adversary.
+/// 64-bit hash over width, height, every sample's bits and every mark, row by row with the sign applied: the
+/// same for equal content, however it is cut into versions. A hole counts as one fixed pattern. The mixing is
+/// that of FNV-1a (Fowler, Noll, Vo) a word at a time. For telling results apart in tests and reports, not
+/// against an adversary.
 [[nodiscard]] std::uint64_t contentHash(const Version& version);
 
 }  // namespace fettle::engine

@@ -1,0 +1,50 @@
+#include "app/command.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace fettle::app {
+
+namespace {
+
+std::string text(const Report& value) {
+  if (value.is_null()) return "-";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{:.9g}", value.get<double>());
+  return value.dump();
+}
+
+void printIndented(const Report& report, int indent) {
+  std::size_t widest = 0;
+  for (const auto& [key, value] : report.items()) widest = std::max(widest, key.size());
+  for (const auto& [key, value] : report.items()) {
+    if (value.is_object()) {
+      fmt::print("{:{}}{}\n", "", indent, key);
+      printIndented(value, indent + 2);
+    } else if (!(value.is_array() && value.empty())) {
+      fmt::print("{:{}}{:<{}}  {}\n", "", indent, key, widest, text(value));
+    }
+  }
+}
+
+}  // namespace
+
+void printReport(const Report& report) {
+  printIndented(report, 0);
+}
+
+CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
+                     std::function<engine::Result<Report>(engine::JobControl&)> run,
+                     std::function<void(const Report&)> print) {
+  CLI::App* command = root.add_subcommand(name, description);
+  command->add_flag("--json", chosen.json, "Print one JSON object on stdout instead of text");
+  command->callback([&chosen, run = std::move(run), print = std::move(print)] {
+    chosen.run = run;
+    chosen.print = print;
+  });
+  return command;
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+
+namespace fettle::app {
+
+/// What a command found out: one object with stable keys, in the order in which people read them.
+using Report = nlohmann::ordered_json;
+
+/// The command that the command line chose, ready to run. `run` does the work and returns what --json prints;
+/// `print` shows the same to a person on stdout (printReport by default).
+struct Chosen {
+  std::function<engine::Result<Report>(engine::JobControl&)> run;
+  std::function<void(const Report&)> print;
+  bool json = false;
+};
+
+/// "key  value" lines; nested objects are indented, null prints as "-".
+void printReport(const Report& report);
+
+/// Adds a subcommand with --json. `run` is stored in `chosen` when the command line names it.
+CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
+                     std::function<engine::Result<Report>(engine::JobControl&)> run,
+                     std::function<void(const Report&)> print = printReport);
+
+void addInfo(CLI::App& root, Chosen& chosen);
+void addSynth(CLI::App& root, Chosen& chosen);
+void addFilter(CLI::App& root, Chosen& chosen);
+void addReplay(CLI::App& root, Chosen& chosen);
+void addRender(CLI::App& root, Chosen& chosen);
+void addCompare(CLI::App& root, Chosen& chosen);
+void addConvert(CLI::App& root, Chosen& chosen);
+void addDemo(CLI::App& root, Chosen& chosen);
+
+}  // namespace fettle::app

@@ -1,0 +1,76 @@
+#include <memory>
+
+#include "app/command.h"
+#include "app/scan_options.h"
+#include "engine/compare/compare.h"
+#include "engine/io/marks.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct Options {
+  std::string a;
+  std::string b;
+  std::string truth;
+  std::string edges;
+  ScanOptions reading;
+};
+
+engine::Result<Report> compare(const Options& options, engine::JobControl& job) {
+  if (!options.edges.empty() && options.truth.empty())
+    return engine::inputError("edges say nothing without a truth", "--edges", "give --truth too");
+  const auto a = loadScan(options.a, options.reading, job);
+  if (!a) return tl::unexpected(a.error());
+  const auto b = loadScan(options.b, options.reading, job);
+  if (!b) return tl::unexpected(b.error());
+  const auto deviation = engine::compareFields(a->field, b->field, job);
+  if (!deviation) return tl::unexpected(deviation.error());
+  Report report{{"unit", a->field.grid().height_unit.name},
+                {"samples", deviation->samples},
+                {"rms", deviation->rms},
+                {"mean", deviation->mean},
+                {"max_abs", deviation->max_abs},
+                {"p99", deviation->p99},
+                {"sq", deviation->sq_b},
+                {"sa", deviation->sa_b},
+                {"sq_a", deviation->sq_a},
+                {"sa_a", deviation->sa_a},
+                {"only_a", deviation->only_a},
+                {"only_b", deviation->only_b}};
+  if (options.truth.empty()) return report;
+
+  const auto truth = loadScan(options.truth, options.reading, job);
+  if (!truth) return tl::unexpected(truth.error());
+  engine::Version edges = truth->field;
+  if (!options.edges.empty()) {
+    auto marked = engine::importMarks(truth->field, options.edges);
+    if (!marked) return tl::unexpected(marked.error());
+    edges = *std::move(marked);
+  }
+  const auto figures = engine::compareToTruth(b->field, truth->field, edges, job);
+  if (!figures) return tl::unexpected(figures.error());
+  report["rmse"] = figures->rmse;
+  report["rmse_flat"] = figures->rmse_flat;
+  report["rmse_edge"] = figures->rmse_edge;
+  report["edge_width"] = figures->edge_width;
+  return report;
+}
+
+}  // namespace
+
+void addCompare(CLI::App& root, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      addCommand(root, chosen, "compare", "How B deviates from A; against a truth, how wrong B is and where",
+                 [options](engine::JobControl& job) { return compare(*options, job); });
+  command->add_option("A", options->a, "The scan to compare with")->required();
+  command->add_option("B", options->b, "The scan to judge")->required();
+  command->add_option("--truth", options->truth,
+                      "The true surface: adds RMSE overall, on flats and near edges");
+  command->add_option("--edges", options->edges,
+                      "Picture of the true edges, non-zero = edge: adds the edge width");
+  addScanOptions(command, options->reading);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,40 @@
+#include <memory>
+
+#include "app/command.h"
+#include "app/scan_options.h"
+#include "app/terminal.h"
+#include "engine/io/export.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct Options {
+  std::string in;
+  std::string out;
+  ScanOptions reading;
+};
+
+engine::Result<Report> convert(const Options& options, engine::JobControl& job) {
+  if (auto status = checkOutputs({options.out}); !status) return tl::unexpected(status.error());
+  const auto imported = loadScan(options.in, options.reading, job);
+  if (!imported) return tl::unexpected(imported.error());
+  const auto written = engine::exportField(imported->field, options.out, {}, job);
+  if (!written) return tl::unexpected(written.error());
+  for (const std::string& warning : written->warnings) warn(options.out + ": " + warning);
+  return Report{{"format", written->format}, {"from", imported->format}, {"warnings", written->warnings}};
+}
+
+}  // namespace
+
+void addConvert(CLI::App& root, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      addCommand(root, chosen, "convert", "Write a scan in another format, named by the extension",
+                 [options](engine::JobControl& job) { return convert(*options, job); });
+  command->add_option("IN", options->in, "The scan to read")->required();
+  command->add_option("OUT", options->out, "The file to write")->required();
+  addScanOptions(command, options->reading);
+}
+
+}  // namespace fettle::app

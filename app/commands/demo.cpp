@@ -1,0 +1,96 @@
+#include <cmath>
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/command.h"
+#include "app/demo/demo.h"
+#include "engine/io/atomic_file.h"
+
+namespace fettle::app {
+
+namespace {
+
+std::string csv(const DemoRun& run) {
+  std::string text = "name,rmse_mm,rmse_flat_mm,rmse_edge_mm,edge_width_mm\n";
+  for (const DemoResult& r : run.results)
+    text += fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g}\n", r.name, r.figures.rmse, r.figures.rmse_flat,
+                        r.figures.rmse_edge, r.figures.edge_width);
+  return text;
+}
+
+const engine::TruthFigures& figures(const DemoRun& run, const std::string& name) {
+  for (const DemoResult& r : run.results)
+    if (r.name == name) return r.figures;
+  return run.results.front().figures;
+}
+
+engine::Result<Report> demo(const DemoOptions& options, engine::JobControl& job) {
+  std::error_code error;
+  std::filesystem::create_directories(options.folder, error);
+  if (error) return engine::inputError("the folder cannot be made", options.folder, error.message());
+  const auto run = runDemo(options, job);
+  if (!run) return tl::unexpected(run.error());
+  const std::string table_file = (std::filesystem::path(options.folder) / "table.csv").string();
+  if (auto status = engine::writeFileAtomically(table_file, csv(*run)); !status)
+    return tl::unexpected(status.error());
+  const auto pictures = drawDemo(*run, options, job);
+  if (!pictures) return tl::unexpected(pictures.error());
+
+  Report report{{"folder", options.folder},      {"width", options.side},
+                {"height", options.side},        {"window", options.window},
+                {"passes", options.passes},      {"seed", options.seed},
+                {"ticks", run->strokes.ticks},   {"ticks_per_second", run->strokes.ticks_per_second},
+                {"marked", run->strokes.marked}, {"table", Report::array()},
+                {"edge_gain", Report::object()}, {"pictures", *pictures}};
+  for (const DemoResult& r : run->results)
+    report["table"].push_back({{"name", r.name},
+                               {"title", r.title},
+                               {"rmse", r.figures.rmse},
+                               {"rmse_flat", r.figures.rmse_flat},
+                               {"rmse_edge", r.figures.rmse_edge},
+                               {"edge_width", r.figures.edge_width}});
+  for (const std::string filter : {"box", "gaussian", "median"})
+    report["edge_gain"][filter] = figures(*run, filter).rmse_edge / figures(*run, "heg-" + filter).rmse_edge;
+  return report;
+}
+
+void print(const Report& report) {
+  const auto number = [](const Report& value) {
+    return value.is_null() || std::isnan(value.get<double>()) ? std::string("-")
+                                                              : fmt::format("{:.4f}", value.get<double>());
+  };
+  fmt::print("{:<24}{:>12}{:>12}{:>12}\n", "", "RMSE flat", "RMSE edge", "edge width");
+  fmt::print("{:<24}{:>12}{:>12}{:>12}\n", "", "mm", "mm", "mm");
+  for (const Report& row : report["table"])
+    fmt::print("{:<24}{:>12}{:>12}{:>12}\n", row["title"].get<std::string>(), number(row["rmse_flat"]),
+               number(row["rmse_edge"]), number(row["edge_width"]));
+  for (const auto& [filter, gain] : report["edge_gain"].items())
+    fmt::print("{}: near edges HEG is {:.1f} times nearer the truth than the filter alone\n", filter,
+               gain.get<double>());
+  fmt::print("\nPictures, fields, strokes, scene and marks: {}\n", report["folder"].get<std::string>());
+  for (const Report& picture : report["pictures"]) fmt::print("  {}\n", picture.get<std::string>());
+}
+
+}  // namespace
+
+void addDemo(CLI::App& root, Chosen& chosen) {
+  auto options = std::make_shared<DemoOptions>();
+  CLI::App* command = addCommand(
+      root, chosen, "demo", "The whole process on a simulated scan: pictures, table, session",
+      [options](engine::JobControl& job) { return demo(*options, job); }, print);
+  command->add_option("DIR", options->folder, "Folder for everything it writes; made if need be")->required();
+  command->add_option("--part", options->part, "The part to scan; see fettle synth --help")
+      ->capture_default_str();
+  command->add_option("--side", options->side, "Samples along each side")
+      ->check(CLI::Range(64, 16384))
+      ->capture_default_str();
+  command->add_option("--noise", options->noise, "Scale of the scanner's noise")->capture_default_str();
+  command->add_option("--window", options->window, "Window of the global filters")->capture_default_str();
+  command->add_option("--passes", options->passes, "Passes of the global filters")->capture_default_str();
+  command->add_option("--seed", options->seed, "Same seed, same bits")->capture_default_str();
+}
+
+}  // namespace fettle::app

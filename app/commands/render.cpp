@@ -1,0 +1,162 @@
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/command.h"
+#include "app/scan_options.h"
+#include "app/terminal.h"
+#include "engine/io/marks.h"
+#include "render/picture.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct Options {
+  std::string scan;
+  std::string png;
+  std::string size = "1280x800";
+  render::View view;
+  std::vector<double> centre;
+  std::string compare;
+  std::string deviation;
+  std::string marks;
+  std::string map = "auto";
+  std::string title;
+  std::string compare_title;
+  std::vector<double> range;
+  bool perspective = false;
+  bool contours = false;
+  bool dark = false;
+  bool bare = false;
+  bool invert = false;
+  bool validate = false;
+  ScanOptions reading;
+};
+
+engine::Result<render::PictureSpec> picture(const Options& options, engine::JobControl& job) {
+  render::PictureSpec spec;
+  spec.view = options.view;
+  const auto size = parseSize(options.size, "--size");
+  if (!size) return tl::unexpected(size.error());
+  std::tie(spec.view.width, spec.view.height) = *size;
+  if (!options.centre.empty()) {
+    spec.view.centre_x = options.centre[0];
+    spec.view.centre_y = options.centre[1];
+  }
+  if (options.perspective) spec.view.projection = render::Projection::kPerspective;
+  if (options.contours) spec.contours = render::Contours::kShow;
+  if (options.dark) spec.theme = render::Theme::kDark;
+  if (options.bare) spec.decoration = render::Decoration::kNone;
+  if (!options.range.empty()) spec.range = render::ValueRange{options.range[0], options.range[1]};
+  static const std::map<std::string, render::ColourMap> kMaps{{"auto", render::ColourMap::kAuto},
+                                                              {"viridis", render::ColourMap::kViridis},
+                                                              {"cividis", render::ColourMap::kCividis},
+                                                              {"grey", render::ColourMap::kGrey},
+                                                              {"diverging", render::ColourMap::kDiverging}};
+  spec.map = kMaps.at(options.map);
+
+  const auto scan = loadScan(options.scan, options.reading, job);
+  if (!scan) return tl::unexpected(scan.error());
+  spec.field = scan->field;
+  const auto fileName = [](const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+  };
+  spec.title_left = options.title.empty() ? fileName(options.scan) : options.title;
+  if (!options.marks.empty()) {
+    auto marked = engine::importMarks(spec.field, options.marks);
+    if (!marked) return tl::unexpected(marked.error());
+    spec.field = *std::move(marked);
+    spec.marks = render::MarksOverlay::kShow;
+  }
+  if (!options.compare.empty()) {
+    const auto other = loadScan(options.compare, options.reading, job);
+    if (!other) return tl::unexpected(other.error());
+    spec.compare = other->field;
+    spec.title_right = options.compare_title.empty() ? fileName(options.compare) : options.compare_title;
+  }
+  if (!options.deviation.empty()) {
+    const auto original = loadScan(options.deviation, options.reading, job);
+    if (!original) return tl::unexpected(original.error());
+    spec.deviation_from = original->field;
+  }
+  if (options.invert) {
+    spec.field = spec.field.inverted();
+    if (spec.compare) spec.compare = spec.compare->inverted();
+    if (spec.deviation_from) spec.deviation_from = spec.deviation_from->inverted();
+  }
+  return spec;
+}
+
+engine::Result<Report> render(const Options& options, engine::JobControl& job) {
+  if (auto status = checkOutputs({options.png}); !status) return tl::unexpected(status.error());
+  const auto spec = picture(options, job);
+  if (!spec) return tl::unexpected(spec.error());
+  render::RendererOptions renderer_options;
+  if (options.validate) renderer_options.validation = render::Validation::kOn;
+  const auto renderer = render::Renderer::create(renderer_options);
+  if (!renderer) return tl::unexpected(renderer.error());
+  render::Image image;
+  const auto report = (*renderer)->render(*spec, image, job);
+  if (!report) return tl::unexpected(report.error());
+  for (const std::string& warning : report->warnings) warn(warning);
+  for (const std::string& message : report->validation_messages) warn("validation: " + message);
+  if (auto status = render::writePng(image, options.png); !status) return tl::unexpected(status.error());
+  return Report{{"width", report->width},
+                {"height", report->height},
+                {"frame_ms", report->frame_ms},
+                {"upload_ms", report->upload_ms},
+                {"device", report->device},
+                {"tiles_uploaded", report->tiles_uploaded},
+                {"bytes_uploaded", report->bytes_uploaded},
+                {"vertices", report->vertices},
+                {"range_low", report->range.low},
+                {"range_high", report->range.high},
+                {"vertical_exaggeration", report->vertical_exaggeration}};
+}
+
+}  // namespace
+
+void addRender(CLI::App& root, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = addCommand(root, chosen, "render", "Picture of a scan, without a window",
+                                 [options](engine::JobControl& job) { return render(*options, job); });
+  command->add_option("SCAN", options->scan, "The scan to draw")->required();
+  command->add_option("PNG", options->png, "The picture to write")->required();
+  command->add_option("--size", options->size, "Pixels, WIDTHxHEIGHT")->capture_default_str();
+  command
+      ->add_option("--azimuth", options->view.azimuth_deg, "Turn of the camera in degrees; 0 looks along +y")
+      ->capture_default_str();
+  command
+      ->add_option("--elevation", options->view.elevation_deg,
+                   "Camera above the horizon in degrees; 90 = a map")
+      ->capture_default_str();
+  command->add_option("--zoom", options->view.zoom, "1 shows the whole field")->capture_default_str();
+  command->add_option("--centre", options->centre, "Middle of the picture as fractions X,Y of the field")
+      ->delimiter(',')
+      ->expected(2);
+  command->add_option("--exaggerate", options->view.vertical_exaggeration, "Factor on heights; 0 chooses one")
+      ->capture_default_str();
+  command->add_option("--compare", options->compare, "Second scan, drawn at the right with the same camera");
+  command->add_option("--deviation", options->deviation, "Colours show the deviation from this scan");
+  command->add_option("--marks", options->marks, "Picture of marks to overlay");
+  command->add_option("--map", options->map, "Colour map")
+      ->check(CLI::IsMember({"auto", "viridis", "cividis", "grey", "diverging"}))
+      ->capture_default_str();
+  command->add_option("--range", options->range, "Heights at the ends of the colours, LOW,HIGH")
+      ->delimiter(',')
+      ->expected(2);
+  command->add_option("--title", options->title, "Title; the file's name by default");
+  command->add_option("--compare-title", options->compare_title, "Title of the second scan");
+  command->add_flag("--perspective", options->perspective, "Perspective instead of parallel projection");
+  command->add_flag("--contours", options->contours, "Contour lines at the steps of the colour bar");
+  command->add_flag("--dark", options->dark, "Light text on a dark ground");
+  command->add_flag("--bare", options->bare, "The surface alone: no titles, bars or legend");
+  command->add_flag("--invert", options->invert, "Draw the field upside down");
+  command->add_flag("--validate", options->validate,
+                    "Load the Vulkan validation layers and show what they say");
+  addScanOptions(command, options->reading);
+}
+
+}  // namespace fettle::app

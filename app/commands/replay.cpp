@@ -1,0 +1,102 @@
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/command.h"
+#include "app/scan_options.h"
+#include "engine/io/marks.h"
+#include "haptic/replay.h"
+#include "haptic/scene.h"
+#include "haptic/strokes.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct Options {
+  std::string scan;
+  std::string strokes;
+  std::string out;
+  std::string scene;
+  std::string marks;
+  std::string marks_out;
+  std::string forces;
+  bool certify = false;
+  ScanOptions reading;
+};
+
+engine::Result<Report> replay(const Options& options, engine::JobControl& job) {
+  if (auto status = checkOutputs({options.out, options.marks_out, options.forces}); !status)
+    return tl::unexpected(status.error());
+  haptic::Scene scene = haptic::defaultScene();
+  if (!options.scene.empty()) {
+    auto loaded = haptic::loadScene(options.scene);
+    if (!loaded) return tl::unexpected(loaded.error());
+    scene = *std::move(loaded);
+  }
+  const auto strokes = haptic::readStrokes(options.strokes);
+  if (!strokes) return tl::unexpected(strokes.error());
+  auto imported = loadScan(options.scan, options.reading, job);
+  if (!imported) return tl::unexpected(imported.error());
+  engine::Version field = imported->field;
+  if (!options.marks.empty()) {
+    auto marked = engine::importMarks(field, options.marks);
+    if (!marked) return tl::unexpected(marked.error());
+    field = *std::move(marked);
+  }
+
+  haptic::ReplayOptions replay_options;
+  if (!options.forces.empty()) replay_options.record_forces = haptic::RecordForces::kYes;
+  if (options.certify) replay_options.measure = haptic::MeasureContact::kYes;
+  const auto result = haptic::replay(field, imported->field, *strokes, scene, replay_options, job);
+  if (!result) return tl::unexpected(result.error());
+
+  if (auto status = saveField(result->field, options.out, job); !status)
+    return tl::unexpected(status.error());
+  if (!options.marks_out.empty())
+    if (auto status = engine::exportMarks(result->field, options.marks_out); !status)
+      return tl::unexpected(status.error());
+  if (!options.forces.empty())
+    if (auto status = haptic::writeForces(options.forces, result->forces); !status)
+      return tl::unexpected(status.error());
+
+  const haptic::ReplayReport& r = result->report;
+  Report report{{"ticks", r.ticks},
+                {"contact_ticks", r.contact_ticks},
+                {"max_force_n", r.max_force_n},
+                {"samples_changed", r.samples_changed},
+                {"marked", r.marked},
+                {"seconds", r.seconds},
+                {"ticks_per_second", r.ticks_per_second},
+                {"hash", fmt::format("{:016x}", engine::contentHash(result->field))}};
+  if (options.certify) {
+    report["above_certified"] = r.above_certified;
+    report["worst_excess_mm"] = r.worst_excess_mm;
+  }
+  return report;
+}
+
+}  // namespace
+
+void addReplay(CLI::App& root, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = addCommand(root, chosen, "replay",
+                                 "Apply a recorded stylus session to a scan, the same bits every time",
+                                 [options](engine::JobControl& job) { return replay(*options, job); });
+  command->add_option("SCAN", options->scan, "The scan to touch")->required();
+  command
+      ->add_option("STROKES", options->strokes, "The session: CSV with header t,x,y,z,tool, one row a tick")
+      ->required();
+  command->add_option("OUT", options->out, "The field after it, format by extension")->required();
+  command->add_option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
+  command->add_option("--marks", options->marks, "Picture of marks to start from");
+  command->add_option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");
+  command->add_option("--forces", options->forces, "Write proxy and force of every tick as CSV");
+  command->add_flag(
+      "--certify", options->certify,
+      "Also count the ticks in which the chosen contact level missed the true closest point (slower)");
+  addScanOptions(command, options->reading);
+}
+
+}  // namespace fettle::app

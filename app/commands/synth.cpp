@@ -1,0 +1,70 @@
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/command.h"
+#include "app/scan_options.h"
+#include "engine/io/marks.h"
+#include "engine/scanner/scanner.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct Options {
+  std::string out;
+  std::string size = "1024x1024";
+  std::string truth;
+  std::string edges;
+  engine::ScannerSpec spec;
+};
+
+engine::Result<Report> synth(Options options, engine::JobControl& job) {
+  const auto size = parseSize(options.size, "--size");
+  if (!size) return tl::unexpected(size.error());
+  options.spec.width = size->first;
+  options.spec.height = size->second;
+  if (auto status = checkOutputs({options.out, options.truth, options.edges}); !status)
+    return tl::unexpected(status.error());
+  const auto scan = engine::simulateScan(options.spec, job);
+  if (!scan) return tl::unexpected(scan.error());
+  if (auto status = saveField(scan->scan, options.out, job); !status) return tl::unexpected(status.error());
+  if (!options.truth.empty())
+    if (auto status = saveField(scan->truth, options.truth, job); !status)
+      return tl::unexpected(status.error());
+  if (!options.edges.empty())
+    if (auto status = engine::exportMarks(scan->edges, options.edges); !status)
+      return tl::unexpected(status.error());
+  const engine::FieldSummary summary = engine::summarize(scan->scan);
+  return Report{
+      {"width", options.spec.width}, {"height", options.spec.height},
+      {"part", options.spec.part},   {"noise", options.spec.noise},
+      {"seed", options.spec.seed},   {"sigma_mm", scan->sigma_mm},
+      {"no_data", summary.no_data},  {"hash", fmt::format("{:016x}", engine::contentHash(scan->scan))}};
+}
+
+}  // namespace
+
+void addSynth(CLI::App& root, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = addCommand(
+      root, chosen, "synth", "Simulate a laser scan of a machined part, with its truth and its true edges",
+      [options](engine::JobControl& job) { return synth(*options, job); });
+  std::string names;
+  for (const engine::PartInfo& part : engine::parts())
+    names += fmt::format("\n  {}: {}", part.name, part.description);
+  command->add_option("OUT", options->out, "The scan to write, format by extension")->required();
+  command->add_option("--part", options->spec.part, "The part:" + names)->capture_default_str();
+  command->add_option("--size", options->size, "Samples, WIDTHxHEIGHT")->capture_default_str();
+  command->add_option("--noise", options->spec.noise, "Scale of the scanner's noise; 1 = realistic, 0 = none")
+      ->capture_default_str();
+  command->add_option("--outliers", options->spec.outliers, "Share of samples near edges that are outliers")
+      ->capture_default_str();
+  command->add_option("--dropouts", options->spec.dropouts, "Scale of dropouts by slope and shadow")
+      ->capture_default_str();
+  command->add_option("--seed", options->spec.seed, "Same seed, same bits")->capture_default_str();
+  command->add_option("--truth", options->truth, "Also write the true surface");
+  command->add_option("--edges", options->edges, "Also write the true edges as a picture, non-zero = edge");
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,71 @@
+#include <cstdio>
+
+#include <exception>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "app/command.h"
+#include "app/terminal.h"
+
+namespace {
+
+using fettle::app::Chosen;
+using fettle::app::Report;
+using fettle::engine::Error;
+using fettle::engine::ErrorKind;
+using fettle::engine::JobControl;
+
+int runChosen(const Chosen& chosen) {
+  JobControl job;
+  const fettle::app::InterruptGuard interrupt(job);
+  const auto result = [&] {
+    const fettle::app::ProgressLine progress(job);
+    return chosen.run(job);
+  }();
+  if (!result) return fettle::app::report(result.error());
+  if (chosen.json)
+    // A path may hold bytes that are not UTF-8: they are replaced in the report, never in the file system.
+    fmt::print("{}\n", result->dump(2, ' ', false, Report::error_handler_t::replace));
+  else
+    chosen.print(*result);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    return fettle::app::report({ErrorKind::kInput, "the report could not be written", "standard output", ""});
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App root{"Fettle cleans up large scanned height fields by touch.", "fettle"};
+  root.require_subcommand(1);
+  root.set_version_flag("--version", "fettle " FETTLE_VERSION);
+  Chosen chosen;
+  fettle::app::addInfo(root, chosen);
+  fettle::app::addSynth(root, chosen);
+  fettle::app::addFilter(root, chosen);
+  fettle::app::addReplay(root, chosen);
+  fettle::app::addRender(root, chosen);
+  fettle::app::addCompare(root, chosen);
+  fettle::app::addConvert(root, chosen);
+  fettle::app::addDemo(root, chosen);
+
+  try {
+    root.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return root.exit(error);  // --help and --version
+    std::string command;
+    for (const CLI::App* used : root.get_subcommands()) command = used->get_name() + " ";
+    return fettle::app::report(
+        {ErrorKind::kInput, error.what(), "", fmt::format("see fettle {}--help", command)});
+  }
+  try {
+    return runChosen(chosen);
+  } catch (const std::bad_alloc&) {
+    return fettle::app::report(
+        {ErrorKind::kFailed, "memory ran out", "", "close other programs or take a smaller scan"});
+  } catch (const std::exception& error) {
+    return fettle::app::report(
+        {ErrorKind::kFailed, error.what(), "", "this should not happen, please report it"});
+  }
+}

@@ -1,0 +1,112 @@
+#include "app/scan_options.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "app/terminal.h"
+#include "engine/io/export.h"
+
+namespace fettle::app {
+
+void addScanOptions(CLI::App* command, ScanOptions& options) {
+  const std::string group = "Reading the scan";
+  command
+      ->add_option("--no-data", options.no_data, "Height that means a hole, besides what the file declares")
+      ->group(group);
+  command
+      ->add_option("--spacing", options.spacing,
+                   "Sample spacing X[,Y] in the scan's unit, where the file has none")
+      ->delimiter(',')
+      ->expected(1, 2)
+      ->group(group);
+  command->add_option("--z-scale", options.z_scale, "Height of one count of the file")->group(group);
+  command
+      ->add_option("--unit", options.unit,
+                   "Unit of the file's lengths, where it has none (nm, um, mm, m, in, ft)")
+      ->group(group);
+  command
+      ->add_option("--cell-size", options.cell_size, "Point clouds: side of a grid cell in the scan's unit")
+      ->group(group);
+  command->add_option("--cell-rule", options.cell_rule, "Point clouds: height of a cell with several points")
+      ->check(CLI::IsMember({"median", "mean", "highest"}))
+      ->group(group);
+}
+
+engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
+                                          engine::JobControl& job) {
+  engine::ImportOptions import;
+  import.no_data = options.no_data;
+  if (!options.spacing.empty()) import.spacing = {options.spacing.front(), options.spacing.back()};
+  import.z_scale = options.z_scale;
+  import.cell_size = options.cell_size;
+  if (options.cell_rule == "mean") import.cell_rule = engine::CellRule::kMean;
+  if (options.cell_rule == "highest") import.cell_rule = engine::CellRule::kHighest;
+  if (!options.unit.empty()) {
+    import.unit = engine::lengthUnitFromName(options.unit);
+    if (!import.unit)
+      return engine::inputError(fmt::format("unknown unit {}", options.unit), "--unit",
+                                "take one of nm, um, mm, cm, m, km, in, ft");
+  }
+  auto imported = engine::importField(path, import, job);
+  if (imported)
+    for (const std::string& warning : imported->warnings) warn(fmt::format("{}: {}", path, warning));
+  return imported;
+}
+
+engine::Status saveField(const engine::Version& field, const std::string& path, engine::JobControl& job) {
+  auto written = engine::exportField(field, path, {}, job);
+  if (!written) return tl::unexpected(written.error());
+  for (const std::string& warning : written->warnings) warn(fmt::format("{}: {}", path, warning));
+  return {};
+}
+
+engine::Result<double> parseHeight(const std::string& text, const engine::Grid& grid,
+                                   const std::string& option) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || !std::isfinite(value) || value < 0.0)
+    return engine::inputError(fmt::format("{} is not a length", text), option,
+                              "give a number at or above 0, such as 0.5 or 20um");
+  const std::string suffix(end, text.data() + text.size());
+  if (suffix.empty()) return value;
+  const auto unit = engine::lengthUnitFromName(suffix);
+  if (!unit)
+    return engine::inputError(fmt::format("unknown unit {}", suffix), option,
+                              "take one of nm, um, mm, cm, m, in, ft");
+  return value * unit->mm / grid.height_unit.mm;
+}
+
+engine::Result<std::pair<int, int>> parseSize(const std::string& text, const std::string& option) {
+  int width = 0;
+  int height = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%6dx%6d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
+      width > engine::Grid::kMaxSide || height > engine::Grid::kMaxSide)
+    return engine::inputError(fmt::format("{} is not a size", text), option,
+                              fmt::format("give WIDTHxHEIGHT, each 1 to {}", engine::Grid::kMaxSide));
+  return std::pair{width, height};
+}
+
+engine::Status checkOutputs(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    if (path.empty()) continue;
+    std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    if (folder.empty()) folder = ".";
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error))
+      return engine::inputError("there is no such folder", folder.string(), "make it or name another");
+    if (std::filesystem::is_directory(path, error))
+      return engine::inputError("the output is a folder", path, "name a file in it");
+    if (access(folder.c_str(), W_OK) != 0)
+      return engine::inputError("the folder cannot be written to", folder.string(),
+                                "name another or change its rights");
+  }
+  return {};
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "app/command.h"
+#include "engine/field/version.h"
+#include "engine/io/import.h"
+
+namespace fettle::app {
+
+/// The import options that every command offers for formats that cannot say them.
+struct ScanOptions {
+  std::optional<double> no_data;
+  std::vector<double> spacing;
+  std::optional<double> z_scale;
+  std::string unit;
+  std::optional<double> cell_size;
+  std::string cell_rule;
+};
+void addScanOptions(CLI::App* command, ScanOptions& options);
+
+/// Imports a scan; what the importer warns of goes to stderr, each line naming the file.
+[[nodiscard]] engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
+                                                        engine::JobControl& job);
+
+/// Writes a field; what the format could not keep goes to stderr.
+[[nodiscard]] engine::Status saveField(const engine::Version& field, const std::string& path,
+                                       engine::JobControl& job);
+
+/// A length as the user types it, in height units of the field: "0.5" is in the field's own height unit,
+/// "0.5mm", "20um" in the unit that is named. Errors: not a number, unknown unit, negative, not finite.
+[[nodiscard]] engine::Result<double> parseHeight(const std::string& text, const engine::Grid& grid,
+                                                 const std::string& option);
+
+/// "WIDTHxHEIGHT", both 1 to 262144. Errors name the option.
+[[nodiscard]] engine::Result<std::pair<int, int>> parseSize(const std::string& text,
+                                                            const std::string& option);
+
+/// Refuses an output that lies in no writable folder before the work begins rather than after it.
+[[nodiscard]] engine::Status checkOutputs(const std::vector<std::string>& paths);
+
+}  // namespace fettle::app

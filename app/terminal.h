@@ -1,0 +1,48 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+
+namespace fettle::app {
+
+/// For its lifetime, Ctrl-C (SIGINT) and SIGTERM cancel the job instead of ending the process; a second one
+/// ends it at once, as the system would. One at a time in a process.
+class InterruptGuard {
+ public:
+  explicit InterruptGuard(engine::JobControl& job);
+  ~InterruptGuard();
+  InterruptGuard(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(const InterruptGuard&) = delete;
+};
+
+/// For its lifetime, shows the job's progress as one line on stderr - but only when stderr is a terminal, and
+/// only once the job has taken a second. The line is wiped at the end.
+class ProgressLine {
+ public:
+  explicit ProgressLine(const engine::JobControl& job);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+ private:
+  void show();
+
+  const engine::JobControl& job_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool ended_ = false;  // guarded by mutex_
+  std::thread thread_;
+};
+
+/// Prints "fettle: error: what, where, remedy" on stderr and returns the exit status that belongs to it:
+/// 2 for bad usage or input, 1 for everything else.
+int report(const engine::Error& error);
+
+/// Prints "fettle: warning: ..." on stderr.
+void warn(const std::string& text);
+
+}  // namespace fettle::app

@@ -1,0 +1,123 @@
+// What users do wrong, and what disks do: one clear line, exit status 2, no output file, bounded memory.
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/program.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+void write(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+std::string smallScan(const TempFolder& folder) {
+  write(folder.file("scan.asc"),
+        "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n"
+        "1 2 3 4\n5 6 7 8\n9 10 11 -9999\n");
+  return folder.file("scan.asc");
+}
+
+TEST(BadInput, UsageErrorsNameTheOptionAndTheHelp) {
+  expectRefused(fettle({}), "--help");
+  expectRefused(fettle({"polish"}), "--help");
+  expectRefused(fettle({"filter", "a.tif", "b.tif"}), "--filter");
+  expectRefused(fettle({"filter", "a.tif", "b.tif", "--filter", "sharpen"}), "sharpen");
+  expectRefused(fettle({"filter", "a.tif", "b.tif", "--filter", "box", "--window", "4"}), "odd");
+  expectRefused(fettle({"filter", "a.tif", "b.tif", "--filter", "box", "--window", "1003"}), "1001");
+  expectRefused(fettle({"synth", "a.tif", "--size", "0x5"}), "--size");
+  expectRefused(fettle({"info", "a.tif", "--unit", "parsec"}), "parsec");
+}
+
+TEST(BadInput, FilesThatAreNoScansAreRefused) {
+  const TempFolder folder;
+  write(folder.file("empty.tif"), "");
+  write(folder.file("noise.tif"), std::string("II*\0garbage that is no directory", 32));
+  write(folder.file("words.png"), "this is no picture");
+  write(folder.file("words.xyz"), "once upon a time\nthere was a scan\n");
+  write(folder.file("holes.asc"),
+        "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n-9 -9\n");
+  write(folder.file("huge.asc"),
+        "ncols 2147483647\nnrows 2147483647\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n");
+  for (const char* name :
+       {"empty.tif", "noise.tif", "words.png", "words.xyz", "holes.asc", "huge.asc", "missing.tif", "."}) {
+    const std::string out = folder.file("out.tif");
+    ProcessOptions bounded;
+    bounded.memory_limit = std::size_t{3}
+                           << 30;  // address space: libraries and thread stacks take most of it
+    expectRefused(fettle({"convert", folder.file(name), out}, bounded), name);
+    EXPECT_FALSE(std::filesystem::exists(out)) << name;
+  }
+}
+
+TEST(BadInput, TruncatedScansAreRefusedAtEveryLength) {
+  const TempFolder folder;
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "80x70"}).status, 0);
+  std::ifstream in(folder.file("s.tif"), std::ios::binary);
+  const std::string whole((std::istreambuf_iterator<char>(in)), {});
+  for (const double share : {0.001, 0.1, 0.5, 0.9}) {
+    write(folder.file("cut.tif"),
+          whole.substr(0, static_cast<std::size_t>(share * static_cast<double>(whole.size()))));
+    expectRefused(fettle({"info", folder.file("cut.tif")}), "cut.tif");
+  }
+}
+
+TEST(BadInput, MarksOfAnotherSizeAreRefused) {
+  const TempFolder folder;
+  const std::string scan = smallScan(folder);
+  ASSERT_EQ(
+      fettle({"synth", folder.file("s.tif"), "--size", "80x70", "--edges", folder.file("e.png")}).status, 0);
+  expectRefused(
+      fettle({"filter", scan, folder.file("o.tif"), "--filter", "box", "--keep", folder.file("e.png")}),
+      "e.png");
+}
+
+TEST(BadInput, StrokesAndScenesThatAreWrongNameTheLine) {
+  const TempFolder folder;
+  const std::string scan = smallScan(folder);
+  write(folder.file("s.csv"), "t,x,y,z,tool\n0,1,1,1,feel\n0.001,1,one,1,feel\n");
+  expectRefused(fettle({"replay", scan, folder.file("s.csv"), folder.file("o.tif")}), "line 3");
+  write(folder.file("s.csv"), "t,x,y,z,tool\n0,1,1,1,feel\n");
+  write(folder.file("scene.toml"), "stiffness_n_per_mm = 1\nstifness = 2\n");
+  expectRefused(fettle({"replay", scan, folder.file("s.csv"), folder.file("o.tif"), "--scene",
+                        folder.file("scene.toml")}),
+                "stifness");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("o.tif")));
+}
+
+TEST(BadInput, OutputsThatCannotBeWrittenAreRefusedAndLeaveNothing) {
+  const TempFolder folder;
+  const std::string scan = smallScan(folder);
+  expectRefused(fettle({"convert", scan, folder.file("no/such/folder/o.tif")}), "no/such/folder");
+  expectRefused(fettle({"convert", scan, folder.file("o.docx")}), "docx");
+  std::filesystem::create_directory(folder.path() / "d.tif");
+  expectRefused(fettle({"convert", scan, folder.file("d.tif")}), "d.tif");
+  // A folder in which nothing can be made, even by root.
+  expectRefused(fettle({"convert", scan, "/proc/o.tif"}), "/proc");
+}
+
+TEST(BadInput, AFullDiskLeavesTheOldFileAndNothingElse) {
+  const TempFolder folder;
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "300x300"}).status, 0);
+  write(folder.file("out.tif"), "the old file");
+  ProcessOptions full;
+  full.file_limit = 20000;
+  for (const char* name : {"out.tif", "out.asc", "out.xyz", "out.ply", "out.png"}) {
+    expectRefused(fettle({"convert", folder.file("s.tif"), folder.file(name)}, full), name);
+    if (std::string(name) != "out.tif") {
+      EXPECT_FALSE(std::filesystem::exists(folder.file(name))) << name;
+    }
+  }
+  std::ifstream in(folder.file("out.tif"));
+  EXPECT_EQ(std::string((std::istreambuf_iterator<char>(in)), {}), "the old file");
+  int files = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) ++files;
+  EXPECT_EQ(files, 2);
+}
+
+}  // namespace
+}  // namespace fettle::tests

@@ -1,0 +1,175 @@
+// Each command of the table once, as a user would call it, on a small simulated scan.
+
+#include <cmath>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/program.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+class Commands : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TempFolder>();
+    ASSERT_EQ(fettle({"synth", scan(), "--size", "256x192", "--seed", "5", "--outliers", "0.05", "--dropouts",
+                      "1", "--truth", truth(), "--edges", edges()})
+                  .status,
+              0);
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static std::string scan() { return folder_->file("scan.tif"); }
+  static std::string truth() { return folder_->file("truth.tif"); }
+  static std::string edges() { return folder_->file("edges.png"); }
+  static std::string file(const std::string& name) { return folder_->file(name); }
+
+  static std::unique_ptr<TempFolder> folder_;
+};
+std::unique_ptr<TempFolder> Commands::folder_;
+
+TEST_F(Commands, InfoTellsSizeSpacingHeightsAndHoles) {
+  const auto info = fettleJson({"info", scan()});
+  EXPECT_EQ(info["width"], 256);
+  EXPECT_EQ(info["height"], 192);
+  for (const char* key : {"spacing_x", "spacing_y", "origin_x", "origin_y", "min", "max", "mean"})
+    EXPECT_TRUE(info[key].is_number()) << key;
+  EXPECT_GT(info["no_data"], 0);
+  EXPECT_EQ(info["unit"], "mm");
+  EXPECT_EQ(info["format"], "GTiff");
+}
+
+TEST_F(Commands, SynthIsTheSameForTheSameSeedAndDifferentForAnother) {
+  const auto again = [](const std::string& seed, const std::string& name) {
+    return fettleJson({"synth", file(name), "--size", "256x192", "--seed", seed, "--outliers", "0.05",
+                       "--dropouts", "1"})["hash"];
+  };
+  EXPECT_EQ(again("5", "a.tif"), again("5", "b.tif"));
+  EXPECT_NE(again("5", "a.tif"), again("6", "c.tif"));
+}
+
+TEST_F(Commands, FilterKeepsMarksAndStaysWithinTheMaximumChange) {
+  const auto report = fettleJson({"filter", scan(), file("f.tif"), "--filter", "gaussian", "--window", "5",
+                                  "--keep", edges(), "--max-change", "10um", "--passes", "2"});
+  EXPECT_EQ(report["filter"], "gaussian");
+  EXPECT_GT(report["changed"], 1000);
+  EXPECT_LE(report["max_change"], 0.01);
+  for (const char* key : {"rms_change", "seconds", "samples_per_second"}) EXPECT_GT(report[key], 0) << key;
+  const auto deviation = fettleJson({"compare", scan(), file("f.tif")});
+  EXPECT_EQ(deviation["max_abs"], report["max_change"]);
+  EXPECT_EQ(deviation["only_a"], 0);
+  EXPECT_EQ(deviation["only_b"], 0);
+}
+
+TEST_F(Commands, FilterGivesTheSameBitsForAnyNumberOfThreads) {
+  for (const std::string filter : {"box", "gaussian", "median"}) {
+    const auto hash = [&](const std::string& threads) {
+      return fettleJson({"filter", scan(), file("t.tif"), "--filter", filter, "--window", "9", "--threads",
+                         threads})["hash"];
+    };
+    EXPECT_EQ(hash("1"), hash("3")) << filter;
+  }
+}
+
+TEST_F(Commands, CompareAgainstTheTruthJudgesFlatsAndEdges) {
+  ASSERT_EQ(fettle({"filter", scan(), file("box.tif"), "--filter", "box", "--window", "5"}).status, 0);
+  const auto before = fettleJson({"compare", scan(), scan(), "--truth", truth(), "--edges", edges()});
+  const auto after = fettleJson({"compare", scan(), file("box.tif"), "--truth", truth(), "--edges", edges()});
+  EXPECT_EQ(before["rms"], 0.0);
+  EXPECT_LT(after["rmse_flat"], before["rmse_flat"]);
+  EXPECT_GT(after["edge_width"], before["edge_width"]);
+  for (const char* key : {"mean", "max_abs", "p99", "sq", "sa", "rmse", "rmse_edge"})
+    EXPECT_TRUE(after[key].is_number()) << key;
+}
+
+TEST_F(Commands, ReplaySmoothsMarksAndReportsForces) {
+  // Down onto the middle of the scan, along it with the smooth tool, then a little way with the mark tool.
+  const auto info = fettleJson({"info", truth()});
+  const double x0 = 60 * info["spacing_x_mm"].get<double>();
+  const double y = 96 * info["spacing_y_mm"].get<double>();
+  std::ofstream strokes(file("strokes.csv"));
+  strokes << "t,x,y,z,tool\n";
+  const double top = info["max"].get<double>() + 1.0;
+  const double bottom = info["min"].get<double>() - 0.5;
+  for (int i = 0; i < 400; ++i)
+    strokes << i * 0.001 << ',' << x0 + i * 0.02 << ',' << y << ',' << (i < 5 ? top : bottom) << ','
+            << (i < 300 ? "smooth" : "mark") << '\n';
+  strokes.close();
+  const auto run = [&](const std::string& out) {
+    return fettleJson({"replay", scan(), file("strokes.csv"), file(out), "--marks-out", file("m.png"),
+                       "--forces", file("forces.csv"), "--certify"});
+  };
+  const auto report = run("r.tif");
+  EXPECT_EQ(report["ticks"], 400);
+  EXPECT_GT(report["contact_ticks"], 300);
+  EXPECT_GT(report["max_force_n"], 0.0);
+  EXPECT_GT(report["samples_changed"], 10);
+  EXPECT_GT(report["marked"], 2);
+  EXPECT_GT(report["ticks_per_second"], 0.0);
+  EXPECT_EQ(run("r2.tif")["hash"], report["hash"]);
+
+  std::ifstream forces(file("forces.csv"));
+  std::string line;
+  std::getline(forces, line);
+  EXPECT_EQ(line, "t,proxy_x,proxy_y,proxy_z,fx,fy,fz,contact");
+  int rows = 0;
+  while (std::getline(forces, line)) ++rows;
+  EXPECT_EQ(rows, 400);
+
+  // The marks written are the marks a filter reads: filtered around them, they keep their bits.
+  ASSERT_EQ(
+      fettle({"filter", file("r.tif"), file("rf.tif"), "--filter", "box", "--keep", file("m.png")}).status,
+      0);
+  const auto only =
+      fettleJson({"filter", file("r.tif"), file("ro.tif"), "--filter", "box", "--only", file("m.png")});
+  EXPECT_LE(only["changed"], report["marked"]);
+}
+
+TEST_F(Commands, RenderDrawsAPictureOfTheSizeAsked) {
+  const auto report = fettleJson(
+      {"render", scan(), file("p.png"), "--size", "320x200", "--marks", edges(), "--compare", truth()});
+  EXPECT_EQ(report["width"], 320);
+  EXPECT_EQ(report["height"], 200);
+  EXPECT_GT(report["tiles_uploaded"], 0);
+  EXPECT_GT(report["frame_ms"], 0.0);
+  EXPECT_FALSE(report["device"].get<std::string>().empty());
+  EXPECT_GT(std::filesystem::file_size(file("p.png")), 2000U);
+  EXPECT_EQ(
+      fettle({"render", scan(), file("d.png"), "--size", "320x200", "--deviation", truth(), "--validate"})
+          .err,
+      "");
+}
+
+TEST_F(Commands, ConvertThereAndBackKeepsEveryHeight) {
+  for (const char* name : {"c.asc", "c.xyz", "c.ply"}) {
+    const auto report = fettleJson({"convert", truth(), file(name)});
+    EXPECT_FALSE(report["format"].get<std::string>().empty());
+    ASSERT_EQ(fettle({"convert", file(name), file("back.tif")}).status, 0) << name;
+    const auto deviation = fettleJson({"compare", truth(), file("back.tif")});
+    EXPECT_EQ(deviation["max_abs"], 0.0) << name;
+    EXPECT_EQ(deviation["only_b"], 0) << name;
+    EXPECT_EQ(deviation["only_a"], 0) << name;
+  }
+}
+
+TEST(Program, EveryCommandHasHelp) {
+  for (const char* command : {"info", "synth", "filter", "replay", "render", "compare", "convert", "demo"}) {
+    const Outcome outcome = fettle({command, "--help"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.out.find("--json"), std::string::npos) << command;
+  }
+  EXPECT_EQ(fettle({"--version"}).status, 0);
+}
+
+TEST(Program, ProgressIsSilentWhereStderrIsNoTerminal) {
+  const TempFolder folder;
+  EXPECT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "1024x1024"}).err, "");
+}
+
+}  // namespace
+}  // namespace fettle::tests

@@ -1,0 +1,52 @@
+#include <filesystem>
+
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/program.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+// The claim of Potter, Johnson and Cohen (2004), in figures: marking edges by hand and filtering around them
+// keeps edges that the filter alone destroys, while flats become as smooth. The scan is the README's.
+TEST(Demo, HegBeatsTheFilterAloneAtEdgesAndMatchesItOnFlats) {
+  const TempFolder folder;
+  const auto report = fettleJson({"demo", folder.file("demo")});
+  ASSERT_EQ(report["table"].size(), 8U);
+  const auto row = [&](const std::string& name) {
+    for (const auto& r : report["table"])
+      if (r["name"] == name) return r;
+    return nlohmann::json();
+  };
+  const double noisy_flat = row("noisy")["rmse_flat"];
+  for (const std::string filter : {"box", "gaussian", "median"}) {
+    const auto alone = row(filter);
+    const auto heg = row("heg-" + filter);
+    EXPECT_GE(report["edge_gain"][filter], 2.0) << filter;
+    EXPECT_LT(heg["edge_width"], alone["edge_width"]) << filter;
+    EXPECT_LT(heg["rmse_flat"], 0.5 * noisy_flat) << filter;
+    EXPECT_LT(heg["rmse_flat"], 1.1 * alone["rmse_flat"].get<double>()) << filter;
+  }
+  for (const auto& picture : report["pictures"])
+    EXPECT_GT(std::filesystem::file_size(folder.path() / "demo" / picture.get<std::string>()), 10000U)
+        << picture;
+  for (const char* name : {"scan.tif", "truth.tif", "edges.png", "marks.png", "strokes.csv", "scene.toml",
+                           "touched.tif", "heg-median.tif", "table.csv"})
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "demo" / name)) << name;
+}
+
+// What the folder holds is enough to do it again: the recorded session on the scan gives the touched field.
+TEST(Demo, TheSessionItLeavesReplaysToTheSameField) {
+  const TempFolder folder;
+  ASSERT_EQ(fettle({"demo", folder.file("demo"), "--side", "256"}).status, 0);
+  const std::string demo = folder.file("demo/");
+  const auto replayed =
+      fettleJson({"replay", demo + "scan.tif", demo + "strokes.csv", folder.file("again.tif"), "--scene",
+                  demo + "scene.toml", "--marks-out", folder.file("again.png")});
+  EXPECT_GT(replayed["samples_changed"], 0);
+  EXPECT_EQ(fettleJson({"compare", demo + "touched.tif", folder.file("again.tif")})["max_abs"], 0.0);
+}
+
+}  // namespace
+}  // namespace fettle::tests

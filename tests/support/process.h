@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fettle::tests {
+
+/// What a finished program left behind.
+struct Outcome {
+  int status = -1;  ///< exit status; 128 + signal when a signal ended it
+  std::string out;
+  std::string err;
+  std::chrono::duration<double> seconds{};
+};
+
+struct ProcessOptions {
+  std::string folder;                       ///< working folder; empty = the test's own
+  std::optional<std::size_t> file_limit;    ///< largest file it may write [bytes] (RLIMIT_FSIZE)
+  std::optional<std::size_t> memory_limit;  ///< address space [bytes] (RLIMIT_AS)
+  /// Called again and again with the process id while the program runs, until it returns true.
+  std::function<bool(int pid)> while_running;
+};
+
+/// Runs a program to its end and collects what it printed.
+[[nodiscard]] Outcome runProcess(const std::vector<std::string>& arguments,
+                                 const ProcessOptions& options = {});
+
+}  // namespace fettle::tests
