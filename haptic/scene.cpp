@@ -1,0 +1,226 @@
+#include "haptic/scene.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+namespace fettle::haptic {
+
+namespace {
+
+// Ranges, in one place: sceneProblem and loadScene both use them.
+constexpr int kMaxCertifiedRadius = 64;
+constexpr double kMaxStiffness = 1000.0;
+constexpr double kMaxForce = 1000.0;
+constexpr double kMaxBrushRadius = 64.0;
+
+constexpr std::array<std::string_view, 2> kEffectNames = {"spring", "smoothing"};
+constexpr std::array<std::string_view, 2> kLevelNames = {"paper", "certified"};
+
+bool positiveUpTo(double value, double limit) noexcept {
+  return value > 0.0 && value <= limit;
+}
+bool radiusInRange(double value) noexcept {
+  return value >= 0.0 && value <= kMaxBrushRadius;
+}
+
+// Reads the tables of one scene file; the first problem stops it.
+class SceneReader {
+ public:
+  SceneReader(Scene& scene, const toml::table& file) : scene_(scene) { top(file); }
+  [[nodiscard]] const std::optional<std::string>& problem() const noexcept { return problem_; }
+
+ private:
+  void complain(const toml::node& at, std::string text) {
+    if (!problem_) problem_ = fmt::format("line {}: {}", at.source().begin.line, std::move(text));
+  }
+
+  // Calls f(key, value) for every entry; f returns false for a key it does not know.
+  template <class F>
+  void entries(const toml::table& table, std::string_view where, F&& f) {
+    for (const auto& [key, value] : table)
+      if (!f(key.str(), value))
+        complain(value, fmt::format("unknown key \"{}\"{}{}", key.str(), where.empty() ? "" : " in ", where));
+  }
+
+  void number(const toml::node& value, std::string_view key, double& out) {
+    // An integer is a fine number; a string that holds one is not.
+    if (value.is_number())
+      out = *value.value<double>();
+    else
+      complain(value, fmt::format("{} must be a number", key));
+  }
+
+  const toml::table* table(const toml::node& value, std::string_view key) {
+    if (value.is_table()) return value.as_table();
+    complain(value, fmt::format("{} must be a table, as [{}]", key, key));
+    return nullptr;
+  }
+
+  void require(const toml::node& value, bool holds, const char* text) {
+    if (!holds) complain(value, text);
+  }
+
+  template <std::size_t N>
+  std::optional<std::size_t> word(const toml::node& value, std::string_view key,
+                                  const std::array<std::string_view, N>& known) {
+    if (const auto text = value.value<std::string_view>())
+      for (std::size_t i = 0; i < N; ++i)
+        if (*text == known[i]) return i;
+    complain(value, fmt::format("{} must be one of \"{}\"", key, fmt::join(known, "\", \"")));
+    return std::nullopt;
+  }
+
+  void top(const toml::table& file) {
+    entries(file, "", [&](std::string_view key, const toml::node& value) {
+      if (key == "tip") {
+        if (const auto i = word(value, key, std::array<std::string_view, 1>{"point"}))
+          scene_.tip = static_cast<TipShape>(*i);
+      } else if (key == "invert") {
+        if (value.is_boolean())
+          scene_.invert = *value.value<bool>();
+        else
+          complain(value, "invert must be true or false");
+      } else if (key == "effects") {
+        effects(value);
+      } else if (key == "contact") {
+        if (const toml::table* t = table(value, key)) contact(*t);
+      } else if (key == "force") {
+        if (const toml::table* t = table(value, key)) force(*t);
+      } else if (key == "brush") {
+        if (const toml::table* t = table(value, key)) brush(*t);
+      } else {
+        return false;
+      }
+      return true;
+    });
+  }
+
+  void effects(const toml::node& value) {
+    const toml::array* list = value.as_array();
+    if (list == nullptr) return complain(value, "effects must be a list of names");
+    scene_.effects.clear();
+    for (const toml::node& entry : *list) {
+      const auto i = word(entry, "an effect", kEffectNames);
+      if (!i) return;
+      const auto effect = static_cast<EffectKind>(*i);
+      if (std::find(scene_.effects.begin(), scene_.effects.end(), effect) != scene_.effects.end())
+        return complain(entry, fmt::format("the effect \"{}\" is listed twice", kEffectNames[*i]));
+      scene_.effects.push_back(effect);
+    }
+  }
+
+  void contact(const toml::table& table) {
+    entries(table, "[contact]", [&](std::string_view key, const toml::node& value) {
+      if (key == "level") {
+        if (const auto i = word(value, key, kLevelNames)) scene_.level = static_cast<ContactLevel>(*i);
+      } else if (key == "certified_radius_cells") {
+        const auto radius = value.is_integer() ? *value.value<std::int64_t>() : 0;
+        require(value, radius >= 1 && radius <= kMaxCertifiedRadius,
+                "certified_radius_cells must be a whole number from 1 to 64");
+        if (!problem_) scene_.certified_radius_cells = static_cast<int>(radius);
+      } else {
+        return false;
+      }
+      return true;
+    });
+  }
+
+  void force(const toml::table& table) {
+    entries(table, "[force]", [&](std::string_view key, const toml::node& value) {
+      if (key == "stiffness_n_per_mm") {
+        number(value, key, scene_.stiffness_n_per_mm);
+        require(value, positiveUpTo(scene_.stiffness_n_per_mm, kMaxStiffness),
+                "stiffness_n_per_mm must be above 0 and at most 1000");
+      } else if (key == "limit_n") {
+        number(value, key, scene_.force_limit_n);
+        require(value, positiveUpTo(scene_.force_limit_n, kMaxForce),
+                "limit_n must be above 0 and at most 1000");
+      } else {
+        return false;
+      }
+      return true;
+    });
+  }
+
+  void brush(const toml::table& table) {
+    entries(table, "[brush]", [&](std::string_view key, const toml::node& value) {
+      if (key == "radius_samples") {
+        number(value, key, scene_.brush_radius_samples);
+        require(value, radiusInRange(scene_.brush_radius_samples), "radius_samples must be 0 to 64");
+      } else if (key == "mark_radius_samples") {
+        number(value, key, scene_.mark_radius_samples);
+        require(value, radiusInRange(scene_.mark_radius_samples), "mark_radius_samples must be 0 to 64");
+      } else if (key == "max_change") {
+        double limit = -1.0;
+        number(value, key, limit);
+        require(value, limit >= 0.0 && std::isfinite(limit), "max_change must be 0 or more");
+        scene_.max_change = limit;
+      } else {
+        return false;
+      }
+      return true;
+    });
+  }
+
+  Scene& scene_;
+  std::optional<std::string> problem_;
+};
+
+}  // namespace
+
+std::string_view effectName(EffectKind effect) noexcept {
+  return kEffectNames[static_cast<std::size_t>(effect)];
+}
+
+std::string_view levelName(ContactLevel level) noexcept {
+  return kLevelNames[static_cast<std::size_t>(level)];
+}
+
+Scene defaultScene() {
+  return {};
+}
+
+std::optional<std::string> sceneProblem(const Scene& scene) {
+  if (scene.certified_radius_cells < 1 || scene.certified_radius_cells > kMaxCertifiedRadius)
+    return fmt::format("the certified radius must be 1 to {} cells", kMaxCertifiedRadius);
+  if (!positiveUpTo(scene.stiffness_n_per_mm, kMaxStiffness))
+    return fmt::format("the stiffness must be above 0 and at most {} N/mm", kMaxStiffness);
+  if (!positiveUpTo(scene.force_limit_n, kMaxForce))
+    return fmt::format("the force limit must be above 0 and at most {} N", kMaxForce);
+  if (!radiusInRange(scene.brush_radius_samples) || !radiusInRange(scene.mark_radius_samples))
+    return fmt::format("a brush radius must be 0 to {} samples", kMaxBrushRadius);
+  if (scene.max_change && !(*scene.max_change >= 0.0 && std::isfinite(*scene.max_change)))
+    return "the largest change must be 0 or more";
+  for (auto it = scene.effects.begin(); it != scene.effects.end(); ++it)
+    if (std::find(scene.effects.begin(), it, *it) != it)
+      return fmt::format("the effect {} is listed twice", effectName(*it));
+  return std::nullopt;
+}
+
+engine::Result<Scene> loadScene(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  // A folder opens and then fails to read.
+  if (!in || !(text << in.rdbuf()).good() || in.bad())
+    return engine::inputError("the scene cannot be read or is empty", path, "give a readable scene file");
+  Scene scene = defaultScene();
+  try {
+    const toml::table file = toml::parse(text.str(), path);
+    const SceneReader reader(scene, file);
+    if (reader.problem())
+      return engine::inputError(*reader.problem(), path, "assets/scenes/default.toml documents every key");
+  } catch (const toml::parse_error& error) {
+    return engine::inputError(fmt::format("line {}: {}", error.source().begin.line, error.description()),
+                              path, "correct the line");
+  }
+  return scene;
+}
+
+}  // namespace fettle::haptic
