@@ -22,15 +22,13 @@ namespace fettle::engine {
 /// Heights are taken with the version's sign, so filtering commutes with inverting.
 ///
 /// Accuracy, against the same formula without rounding:
-///   kBox       sums are exact where the field's heights span less than 2^31 counts of their common binary
-///   step
-///              (integers and fixed-point scans do), else heights are read to 2^-62 of the field's largest
-///              magnitude; one division, one rounding. Error <= 0.5 ulp of the float result + 2^-61 of that
-///              magnitude: a constant and a plane come back to the bit.
-///   kGaussian  double throughout, one rounding to float at the end. Error <= 0.5 ulp of the float result
-///              + 3e-13 * the largest magnitude in the window (n roundings in each direction).
+///   kBox       the sum is exact, whatever the heights; then two roundings in double and one to float. Error
+///              <= 0.5 ulp of the result + 2^-52 of it: a constant and a plane come back to the bit.
+///   kGaussian  double throughout, one rounding to float at the end. Error <= 0.5 ulp of the result
+///              + (n + 4) * 2^-51 of the largest magnitude in the window.
 ///   kMedian    exact, for an even count rounded once.
-/// Every result lies between the smallest and the largest sample of its window.
+/// Every result of kBox and kMedian lies between the smallest and the largest sample of its window, every one
+/// of kGaussian does but for that error. A result equal to the sample keeps its very bits (-0 stays -0).
 enum class FilterKind { kBox, kGaussian, kMedian };
 
 /// What the marks mean to a filter.
@@ -45,12 +43,13 @@ struct FilterSpec {
   static constexpr int kMaxThreads = 1024;
 
   FilterKind kind = FilterKind::kBox;
-  int window = 3;      ///< side of the window [samples], odd, 1 .. kMaxWindow; 1 changes nothing
+  int window = 3;      ///< side of the window [samples], odd, 1 .. kMaxWindow; with 1 only max_change acts
   double sigma = 0.0;  ///< [samples], only for kGaussian: 0 = binomial weights, > 0 = true Gaussian
   int passes = 1;      ///< times the filter is applied to its own result, 1 .. kMaxPasses
   FilterScope scope = FilterScope::kKeepMarks;
-  /// After every pass each sample is drawn back to within this distance of the original sample [height_unit,
-  /// >= 0]; never exceeded, not even by a rounding. Nothing is drawn where the original has a hole.
+  /// After every pass each filtered sample is drawn back to within this distance of the original sample
+  /// [height_unit, finite, >= 0]; never exceeded, not even by a rounding. Nothing is drawn where the original
+  /// has a hole.
   std::optional<double> max_change;
   int threads = 0;  ///< 0 = all cores; the result is the same to the bit for any number
 };

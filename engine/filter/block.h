@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "engine/base/job.h"
+#include "engine/filter/filter.h"
+
+// The hot loops are compiled once for each kind of processor and chosen when the program starts. The bits are
+// the same for all: every kernel fixes its order of operations, and contraction to fused multiply-adds is
+// off. Sanitizers start before the loader can choose, so they get the plain version.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define FETTLE_EACH_CPU __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
+#else
+#define FETTLE_EACH_CPU
+#endif
+
+namespace fettle::engine {
+
+/// One rectangle of outputs and all samples of the field that their windows can reach.
+///
+///        first_column
+///       |<--------->|                   heights: rows x columns, row-major, NaN = hole. It is cut at the
+///   +---------------------------+       border of the field and nowhere else: where a window leaves it, the
+///   |   heights                 |       window leaves the field. So a kernel needs no knowledge of the
+///   field, |            +----------+   |       and a window is the same samples whatever block it is
+///   computed in. |            |   out    |   | |            +----------+   |
+///   +---------------------------+
+struct Block {
+  const float* heights = nullptr;
+  std::ptrdiff_t stride = 0;  ///< of heights [elements]
+  int columns = 0;            ///< of heights
+  int rows = 0;
+  int first_column = 0;  ///< of the outputs, counted in heights
+  int first_row = 0;
+  int out_columns = 0;
+  int out_rows = 0;
+  float* out = nullptr;  ///< out_rows x out_columns, row-major; unspecified where heights has a hole
+  std::ptrdiff_t out_stride = 0;
+  bool holes = false;  ///< whether heights holds a NaN
+
+  [[nodiscard]] const float* row(int r) const noexcept { return heights + r * stride; }
+};
+
+/// A filter at work on one block after the other, with scratch of its own that follows the block's size.
+/// Threading: one thread at a time; every thread makes its own.
+class BlockFilter {
+ public:
+  BlockFilter() = default;
+  BlockFilter(const BlockFilter&) = delete;
+  BlockFilter& operator=(const BlockFilter&) = delete;
+  virtual ~BlockFilter() = default;
+
+  /// Fills block.out. False when the job was cancelled, looked at often enough to return within 50 ms. What
+  /// each output comes to depends on the samples of its window alone. Throws std::bad_alloc.
+  [[nodiscard]] virtual bool run(const Block& block, const JobControl& job) = 0;
+};
+
+[[nodiscard]] std::unique_ptr<BlockFilter> makeBoxFilter(const FilterSpec& spec);
+[[nodiscard]] std::unique_ptr<BlockFilter> makeGaussianFilter(const FilterSpec& spec);
+[[nodiscard]] std::unique_ptr<BlockFilter> makeMedianFilter(const FilterSpec& spec);
+
+}  // namespace fettle::engine

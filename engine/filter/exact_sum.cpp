@@ -1,0 +1,116 @@
+#include "engine/filter/exact_sum.h"
+
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <tuple>
+
+#include "engine/filter/block.h"
+
+namespace fettle::engine {
+
+namespace {
+
+FETTLE_EACH_CPU std::uint32_t largestMagnitude(const float* row, int n, std::uint32_t so_far) noexcept {
+  // Magnitudes of floats order as their bits do; NaN lies above the infinity.
+  constexpr std::uint32_t kInfinity = 0x7f800000U;
+  std::uint32_t largest = so_far;
+  for (int i = 0; i < n; ++i) {
+    std::uint32_t bits = std::bit_cast<std::uint32_t>(row[i]) & 0x7fffffffU;
+    bits = bits > kInfinity ? 0U : bits;
+    largest = bits > largest ? bits : largest;
+  }
+  return largest;
+}
+
+// How many samples one lane (or two) cannot hold.
+FETTLE_EACH_CPU int misfits(const float* row, int n, double cut0, double cut1, int lanes) noexcept {
+  int wrong = 0;
+  if (lanes == 1) {
+    for (int i = 0; i < n; ++i) {
+      const double x = row[i] == row[i] ? static_cast<double>(row[i]) : 0.0;
+      wrong += (x + cut0) - cut0 != x ? 1 : 0;
+    }
+  } else {
+    for (int i = 0; i < n; ++i) {
+      const double x = row[i] == row[i] ? static_cast<double>(row[i]) : 0.0;
+      const double rest = x - ((x + cut0) - cut0);
+      wrong += (rest + cut1) - cut1 != rest ? 1 : 0;
+    }
+  }
+  return wrong;
+}
+
+}  // namespace
+
+SumLanes chooseLanes(const float* heights, std::ptrdiff_t stride, int columns, int rows,
+                     std::int64_t count) noexcept {
+  assert(count >= 1 && count <= (std::int64_t{1} << 20));
+  SumLanes result;
+  std::uint32_t largest = 0;
+  for (int r = 0; r < rows; ++r) largest = largestMagnitude(heights + r * stride, columns, largest);
+  if (largest == 0) return result;
+
+  // All magnitudes are below 2^top, sums and differences of two sums below 2^(top + bits).
+  int top = 0;
+  std::ignore = std::frexp(std::bit_cast<float>(largest), &top);
+  const int bits = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(count))) + 1;  // 2 .. 22
+  for (double& cut : result.cut) {
+    // The lane's last bit is 2^(top + bits - 53); 1.5 * 2^52 times that rounds to it, for either sign.
+    cut = std::ldexp(1.5, top + bits - 1);
+    // What is left is at most half that last bit. With 22 bits a lane takes 32 binary places, so nine reach
+    // from 2^128 to below 2^-149.
+    top += bits - 54;
+  }
+  for (const int lanes : {1, 2}) {
+    result.lanes = lanes;
+    int wrong = 0;
+    for (int r = 0; r < rows && wrong == 0; ++r)
+      wrong = misfits(heights + r * stride, columns, result.cut[0], result.cut[1], lanes);
+    if (wrong == 0) return result;
+  }
+  result.lanes = SumLanes::kMaxLanes;
+  return result;
+}
+
+double roundedSum(const double* lanes, int count, std::ptrdiff_t stride) noexcept {
+  assert(count <= SumLanes::kMaxLanes);
+  // Non-overlapping partial sums, smallest first (J. R. Shewchuk, Adaptive precision floating-point
+  // arithmetic, 1997, section 2.4); their sum is exact throughout.
+  double partial[SumLanes::kMaxLanes + 1];
+  int n = 0;
+  for (int l = 0; l < count; ++l) {
+    double x = lanes[l * stride];
+    int kept = 0;
+    for (int i = 0; i < n; ++i) {
+      const double y = partial[i];
+      const double sum = x + y;
+      const double virtual_y = sum - x;
+      const double error = (x - (sum - virtual_y)) + (y - virtual_y);
+      if (error != 0.0) partial[kept++] = error;
+      x = sum;
+    }
+    partial[kept++] = x;
+    n = kept;
+  }
+  if (n == 0) return 0.0;
+  double high = partial[--n];
+  double low = 0.0;
+  while (n > 0) {
+    const double x = high;
+    const double y = partial[--n];
+    high = x + y;
+    low = y - (high - x);
+    if (low != 0.0) break;
+  }
+  // `high` is the nearest double unless the rest below `low` breaks a tie that rounding decided the other
+  // way.
+  if (n > 0 && ((low < 0.0 && partial[n - 1] < 0.0) || (low > 0.0 && partial[n - 1] > 0.0))) {
+    const double twice = low * 2.0;
+    const double nudged = high + twice;
+    if (twice == nudged - high) high = nudged;
+  }
+  return high;
+}
+
+}  // namespace fettle::engine

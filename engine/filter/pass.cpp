@@ -1,0 +1,285 @@
+#include "engine/filter/pass.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include "engine/field/live_field.h"
+#include "engine/filter/block.h"
+#include "engine/filter/limit_change.h"
+
+namespace fettle::engine {
+
+namespace {
+
+/// Tiles [column0, column1) x [row0, row1).
+struct TileRect {
+  std::int32_t column0, row0, column1, row1;
+};
+
+struct Scratch {
+  std::unique_ptr<BlockFilter> filter;
+  std::vector<float> heights, out;
+  std::ptrdiff_t out_stride = 0;
+};
+
+struct NewTile {
+  std::int32_t column, row;
+  TileRef tile;
+};
+
+std::unique_ptr<BlockFilter> makeFilter(const FilterSpec& spec) {
+  switch (spec.kind) {
+    case FilterKind::kBox:
+      return makeBoxFilter(spec);
+    case FilterKind::kGaussian:
+      return makeGaussianFilter(spec);
+    case FilterKind::kMedian:
+      return makeMedianFilter(spec);
+  }
+  return nullptr;
+}
+
+class Pass {
+ public:
+  Pass(const Version& input, const Version& original, const FilterSpec& spec)
+      : memory_(*input.memory()),
+        reader_(input.reader()),
+        original_(original.reader()),
+        spec_(spec),
+        radius_(spec.window / 2),
+        same_field_(&reader_.root() == &original_.root()) {}
+
+  // Filters one rectangle of tiles; appends the tiles that changed. False when cancelled or out of memory.
+  bool run(TileRect rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
+    shrink(rect);
+    if (rect.column0 == rect.column1) return true;
+    if (!gatherAndFilter(rect, scratch, job)) return false;
+    for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
+      for (std::int32_t tc = rect.column0; tc < rect.column1; ++tc) {
+        if (!mayChange(tc, tr)) continue;
+        const float* results = scratch.out.data() + (tr - rect.row0) * kTileSide * scratch.out_stride +
+                               (tc - rect.column0) * kTileSide;
+        if (!merge(tc, tr, results, scratch.out_stride, made)) return false;
+      }
+    return true;
+  }
+
+  [[nodiscard]] bool outOfMemory() const noexcept { return out_of_memory_.load(std::memory_order_relaxed); }
+
+ private:
+  // Whether any sample of the tile can come out different.
+  [[nodiscard]] bool mayChange(std::int32_t tc, std::int32_t tr) const noexcept {
+    const Tile& tile = reader_.tile(tc, tr);
+    if (tile.nan_samples == kTileSamples) return false;
+    const auto [columns, rows] = extent(tc, tr);
+    if (spec_.scope == FilterScope::kOnlyMarks && tile.marked_samples == 0) return false;
+    if (spec_.scope == FilterScope::kKeepMarks &&
+        tile.marked_samples == static_cast<std::uint32_t>(columns * rows))
+      return false;
+    const bool limit_may_act =
+        spec_.max_change.has_value() && !same_field_ && &original_.tile(tc, tr) != &tile;
+    if (limit_may_act) return true;
+    if (radius_ == 0) return false;
+    // A window in which all samples are equal has them for its mean and its median.
+    return !(tile.bounds.min == tile.bounds.max && flatAround(tc, tr, tile.bounds.min));
+  }
+
+  [[nodiscard]] bool flatAround(std::int32_t tc, std::int32_t tr, float height) const noexcept {
+    const std::int32_t reach = (radius_ + kTileSide - 1) / kTileSide;
+    for (std::int32_t y = std::max(tr - reach, 0); y <= std::min(tr + reach, reader_.tileRows() - 1); ++y)
+      for (std::int32_t x = std::max(tc - reach, 0); x <= std::min(tc + reach, reader_.tileColumns() - 1);
+           ++x) {
+        const HeightBounds& b = reader_.tile(x, y).bounds;
+        if (!b.empty() && !(b.min == height && b.max == height)) return false;
+      }
+    return true;
+  }
+
+  [[nodiscard]] std::pair<int, int> extent(std::int32_t tc, std::int32_t tr) const noexcept {
+    return {std::min(kTileSide, reader_.width() - tc * kTileSide),
+            std::min(kTileSide, reader_.height() - tr * kTileSide)};
+  }
+
+  // Leaves out what lies outside the smallest rectangle of tiles that may change.
+  void shrink(TileRect& rect) const noexcept {
+    TileRect kept{rect.column1, rect.row1, rect.column0, rect.row0};
+    for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
+      for (std::int32_t tc = rect.column0; tc < rect.column1; ++tc)
+        if (mayChange(tc, tr))
+          kept = {std::min(kept.column0, tc), std::min(kept.row0, tr), std::max(kept.column1, tc + 1),
+                  std::max(kept.row1, tr + 1)};
+    rect = kept.column0 < kept.column1 ? kept : TileRect{0, 0, 0, 0};
+  }
+
+  bool gatherAndFilter(const TileRect& rect, Scratch& scratch, const JobControl& job) {
+    const std::int32_t c0 = rect.column0 * kTileSide;
+    const std::int32_t r0 = rect.row0 * kTileSide;
+    const std::int32_t c1 = std::min(rect.column1 * kTileSide, reader_.width());
+    const std::int32_t r1 = std::min(rect.row1 * kTileSide, reader_.height());
+    const std::int32_t left = std::max(c0 - radius_, 0);
+    const std::int32_t low = std::max(r0 - radius_, 0);
+    Block block;
+    block.columns = std::min(c1 + radius_, reader_.width()) - left;
+    block.rows = std::min(r1 + radius_, reader_.height()) - low;
+    block.stride = block.columns;
+    block.first_column = c0 - left;
+    block.first_row = r0 - low;
+    block.out_columns = c1 - c0;
+    block.out_rows = r1 - r0;
+    block.out_stride = block.out_columns;
+    scratch.out_stride = block.out_stride;
+    scratch.heights.resize(static_cast<std::size_t>(block.columns) * static_cast<std::size_t>(block.rows));
+    scratch.out.resize(static_cast<std::size_t>(block.out_columns) *
+                       static_cast<std::size_t>(block.out_rows));
+    reader_.readHeights(left, low, block.columns, block.rows, scratch.heights.data(), block.stride);
+    block.heights = scratch.heights.data();
+    block.out = scratch.out.data();
+    block.holes = holesIn(left, low, block.columns, block.rows);
+    if (radius_ == 0) {
+      std::copy(scratch.heights.begin(), scratch.heights.end(), scratch.out.begin());
+      return true;
+    }
+    if (!scratch.filter) scratch.filter = makeFilter(spec_);
+    return scratch.filter->run(block, job);
+  }
+
+  [[nodiscard]] bool holesIn(std::int32_t column, std::int32_t row, std::int32_t columns,
+                             std::int32_t rows) const noexcept {
+    for (std::int32_t tr = row / kTileSide; tr * kTileSide < row + rows; ++tr)
+      for (std::int32_t tc = column / kTileSide; tc * kTileSide < column + columns; ++tc) {
+        const auto [c, r] = extent(tc, tr);
+        if (reader_.tile(tc, tr).nan_samples > static_cast<std::uint32_t>(kTileSamples - c * r)) return true;
+      }
+    return false;
+  }
+
+  // Puts the results of one tile together with what must stay, and makes a tile of it if any bit changed.
+  bool merge(std::int32_t tc, std::int32_t tr, const float* results, std::ptrdiff_t stride,
+             std::vector<NewTile>& made) {
+    const Tile& before = reader_.tile(tc, tr);
+    const auto [columns, rows] = extent(tc, tr);
+    const float sign = reader_.sign();
+    alignas(64) float after[kTileSide];
+    TileRef copy;
+    for (int r = 0; r < rows; ++r) {
+      const float* old = before.samples.data() + r * kTileSide;
+      const float* result = results + r * stride;
+      if (spec_.max_change.has_value()) {
+        const float* origin = original_.tile(tc, tr).samples.data() + r * kTileSide;
+        for (int c = 0; c < columns; ++c)
+          after[c] =
+              old[c] == old[c] ? limitedChange(sign * result[c], origin[c], *spec_.max_change) : old[c];
+      } else {
+        for (int c = 0; c < columns; ++c) after[c] = sign * result[c];
+      }
+      // Holes and equal samples keep their bits; a new zero is the positive one.
+      int changed = 0;
+      for (int c = 0; c < columns; ++c) {
+        const bool differs = after[c] != old[c] && old[c] == old[c];
+        after[c] = differs ? after[c] + 0.0F : old[c];
+        changed += differs ? 1 : 0;
+      }
+      const std::uint64_t marks = before.marks[static_cast<std::size_t>(r)];
+      const std::uint64_t kept = spec_.scope == FilterScope::kKeepMarks ? marks : ~marks;
+      if (kept != 0 && changed != 0)
+        for (int c = 0; c < columns; ++c)
+          if (((kept >> c) & 1U) != 0 && old[c] == old[c] && after[c] != old[c]) {
+            after[c] = old[c];
+            --changed;
+          }
+      if (changed == 0) continue;
+      if (!copy) {
+        copy = TileRef::adopt(memory_.tiles.acquire());
+        if (!copy) {
+          // Relaxed: read after the join of the parallel loop, which orders everything.
+          out_of_memory_.store(true, std::memory_order_relaxed);
+          return false;
+        }
+        *copy = before;
+      }
+      std::copy_n(after, columns, copy->samples.data() + r * kTileSide);
+    }
+    if (copy) {
+      refreshBounds(*copy, 0, 0, kTileSide, kTileSide);
+      made.push_back({tc, tr, std::move(copy)});
+    }
+    return true;
+  }
+
+  FieldMemory& memory_;
+  FieldReader reader_;
+  FieldReader original_;
+  const FilterSpec& spec_;
+  int radius_;
+  bool same_field_;
+  std::atomic<bool> out_of_memory_{false};
+};
+
+// Large enough that the halo does not dominate, small enough that the scratch stays near the core and every
+// core has several blocks to do.
+int suitableSide(const FilterSpec& spec, const Grid& grid) noexcept {
+  const bool ranks = spec.kind == FilterKind::kMedian;
+  const int wanted = (2 * spec.window + kTileSide - 1) / kTileSide * kTileSide;
+  int side = ranks ? std::clamp(wanted, 128, 512) : std::clamp(wanted, 256, 1024);
+  const std::int64_t cores = tbb::this_task_arena::max_concurrency();
+  const auto blocks = [&] {
+    return std::int64_t{(grid.width + side - 1) / side} * ((grid.height + side - 1) / side);
+  };
+  while (cores > 1 && side > kTileSide && blocks() < 4 * cores)
+    side = std::max(side / 2 / kTileSide, 1) * kTileSide;
+  return side;
+}
+
+}  // namespace
+
+Result<Version> filterOnce(const Version& input, const Version& original, const FilterSpec& spec,
+                           int block_side, JobControl& job) {
+  const Grid& grid = input.grid();
+  const FieldReader reader = input.reader();
+  const std::int32_t tiles_a_side = (block_side > 0 ? block_side : suitableSide(spec, grid)) / kTileSide;
+  assert(tiles_a_side > 0);
+  const std::int32_t across = (reader.tileColumns() + tiles_a_side - 1) / tiles_a_side;
+  const std::int32_t up = (reader.tileRows() + tiles_a_side - 1) / tiles_a_side;
+
+  Pass pass(input, original, spec);
+  tbb::enumerable_thread_specific<Scratch> scratches;
+  tbb::enumerable_thread_specific<std::vector<NewTile>> made;
+  tbb::parallel_for(
+      tbb::blocked_range<std::int64_t>(0, std::int64_t{across} * up, 1),
+      [&](const tbb::blocked_range<std::int64_t>& range) {
+        for (std::int64_t i = range.begin(); i != range.end(); ++i) {
+          if (job.cancelled() || pass.outOfMemory()) return;
+          const auto bc = static_cast<std::int32_t>(i % across);
+          const auto br = static_cast<std::int32_t>(i / across);
+          const TileRect rect{bc * tiles_a_side, br * tiles_a_side,
+                              std::min((bc + 1) * tiles_a_side, reader.tileColumns()),
+                              std::min((br + 1) * tiles_a_side, reader.tileRows())};
+          if (!pass.run(rect, scratches.local(), job, made.local())) return;
+          const std::int64_t columns =
+              std::min(rect.column1 * kTileSide, grid.width) - rect.column0 * kTileSide;
+          const std::int64_t rows = std::min(rect.row1 * kTileSide, grid.height) - rect.row0 * kTileSide;
+          job.advance(static_cast<std::uint64_t>(columns * rows));
+        }
+      },
+      tbb::simple_partitioner());
+  if (job.cancelled()) return cancelled();
+
+  LiveField live(input, Growth::kAllowed);
+  bool room = !pass.outOfMemory();
+  for (std::vector<NewTile>& tiles : made)
+    for (NewTile& t : tiles) room = room && live.replaceTile(t.column, t.row, std::move(t.tile));
+  if (!room) return failure("memory for the filtered samples could not be had", "filter");
+  return live.snapshot();
+}
+
+}  // namespace fettle::engine

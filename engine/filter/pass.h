@@ -1,0 +1,26 @@
+#pragma once
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/version.h"
+#include "engine/filter/filter.h"
+
+namespace fettle::engine {
+
+/// What decides how the work is cut up, and never what comes out.
+struct FilterTuning {
+  /// Side of the blocks [samples], a multiple of kTileSide; 0 = what suits the filter and its window.
+  int block_side = 0;
+};
+
+/// applyFilter with the work cut as told: for tests that the cut does not show, and for benchmarks.
+[[nodiscard]] Result<Filtered> applyFilter(const Version& input, const Version& original,
+                                           const FilterSpec& spec, const FilterTuning& tuning,
+                                           JobControl& job);
+
+/// The spec applied once. As applyFilter, on the calling thread's task arena; the spec is valid. Progress is
+/// advanced by the field's samples. Throws std::bad_alloc.
+[[nodiscard]] Result<Version> filterOnce(const Version& input, const Version& original,
+                                         const FilterSpec& spec, int block_side, JobControl& job);
+
+}  // namespace fettle::engine
