@@ -67,10 +67,9 @@ struct TruthFigures {
 
 /// Deviation of a field from the truth, overall, on flats and near edges, and the width of its edges. `edges`
 /// counts by its marks alone (heights not read): the samples where the truth has an edge, step or crease; the
-/// profiles find by themselves which are steps, and leave out corners, ribs and whatever has another edge in
-/// reach. See edge_width.h for the method.
-/// Threading and determinism as compareFields. Errors: sizes differ or options out of range (kInput),
-/// cancelled.
+/// profiles find by themselves which are steps, and leave out corners, ribs, whatever has another edge in
+/// reach and where the field has too many holes. See edge_width.h for the method. Threading and determinism
+/// as compareFields. Errors: sizes differ or options out of range (kInput), cancelled.
 [[nodiscard]] Result<TruthFigures> compareToTruth(const Version& field, const Version& truth,
                                                   const Version& edges, JobControl& job,
                                                   const TruthOptions& options = {});

@@ -7,9 +7,9 @@ namespace fettle::engine {
 
 namespace {
 
-// How far from the line its two sides are looked at [mm]: a thousand times the rounding of a height, and
-// small enough that a slope of 10 is no step.
-constexpr double kAside = 1e-4;
+// How far from the line its two sides are looked at [mm]: far above the rounding of a place, and so small
+// that even a fillet, upright where it meets its wall, adds less than 0.01 mm to a step.
+constexpr double kAside = 1e-6;
 
 // What a line is at one of its points.
 struct Crossing {

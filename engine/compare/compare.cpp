@@ -1,0 +1,231 @@
+#include "engine/compare/compare.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "engine/compare/plane.h"
+#include "engine/compare/tile_sums.h"
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// Two fields sample by sample, the second in the height unit of the first.
+struct Pair {
+  FieldReader a;
+  FieldReader b;
+  double b_in_a = 1.0;
+
+  // Calls f(column, row, height of a, height of b); NaN for a hole.
+  template <class F>
+  void forEach(const TileRect& rect, F&& f) const {
+    float za[kTileSamples];
+    float zb[kTileSamples];
+    a.readHeights(rect.column, rect.row, rect.columns, rect.rows, za, kTileSide);
+    b.readHeights(rect.column, rect.row, rect.columns, rect.rows, zb, kTileSide);
+    for (int r = 0; r < rect.rows; ++r)
+      for (int c = 0; c < rect.columns; ++c) {
+        const int i = r * kTileSide + c;
+        f(rect.column + c, rect.row + r, static_cast<double>(za[i]), static_cast<double>(zb[i]) * b_in_a);
+      }
+  }
+};
+
+struct First {
+  std::int64_t samples = 0;
+  std::int64_t only_a = 0;
+  std::int64_t only_b = 0;
+  double max_abs = 0.0;
+  CompensatedSum difference;
+  CompensatedSum square;
+  PlaneMeans a;
+  PlaneMeans b;
+};
+
+First firstPass(const Pair& pair, JobControl& job) {
+  const std::vector<First> parts = forEachTile<First>(pair.a, job, [&](const TileRect& rect, First& part) {
+    pair.forEach(rect, [&](std::int32_t c, std::int32_t r, double za, double zb) {
+      const bool in_a = !std::isnan(za);
+      const bool in_b = !std::isnan(zb);
+      if (in_a) part.a.add(c, r, za);
+      if (in_b) part.b.add(c, r, zb);
+      if (in_a != in_b) ++(in_a ? part.only_a : part.only_b);
+      if (!in_a || !in_b) return;
+      const double d = zb - za;
+      ++part.samples;
+      part.max_abs = std::max(part.max_abs, std::abs(d));
+      part.difference.add(d);
+      part.square.add(d * d);
+    });
+  });
+  First all;
+  for (const First& part : parts) {
+    all.samples += part.samples;
+    all.only_a += part.only_a;
+    all.only_b += part.only_b;
+    all.max_abs = std::max(all.max_abs, part.max_abs);
+    all.difference.add(part.difference);
+    all.square.add(part.square);
+    all.a.add(part.a);
+    all.b.add(part.b);
+  }
+  return all;
+}
+
+struct Second {
+  PlaneMoments a;
+  PlaneMoments b;
+};
+
+Second secondPass(const Pair& pair, const Centre& a, const Centre& b, JobControl& job) {
+  const std::vector<Second> parts = forEachTile<Second>(pair.a, job, [&](const TileRect& rect, Second& part) {
+    pair.forEach(rect, [&](std::int32_t c, std::int32_t r, double za, double zb) {
+      if (!std::isnan(za)) part.a.add(c - a.column, r - a.row, za - a.height);
+      if (!std::isnan(zb)) part.b.add(c - b.column, r - b.row, zb - b.height);
+    });
+  });
+  Second all;
+  for (const Second& part : parts) {
+    all.a.add(part.a);
+    all.b.add(part.b);
+  }
+  return all;
+}
+
+struct Roughness {
+  CompensatedSum square;
+  CompensatedSum absolute;
+
+  void add(double residual) noexcept {
+    square.add(residual * residual);
+    absolute.add(std::abs(residual));
+  }
+};
+
+struct Third {
+  Roughness a;
+  Roughness b;
+};
+
+Third thirdPass(const Pair& pair, const Plane& a, const Plane& b, JobControl& job) {
+  const std::vector<Third> parts = forEachTile<Third>(pair.a, job, [&](const TileRect& rect, Third& part) {
+    pair.forEach(rect, [&](std::int32_t c, std::int32_t r, double za, double zb) {
+      if (!std::isnan(za)) part.a.add(a.residual(c, r, za));
+      if (!std::isnan(zb)) part.b.add(b.residual(c, r, zb));
+    });
+  });
+  Third all;
+  for (const Third& part : parts) {
+    all.a.square.add(part.a.square);
+    all.a.absolute.add(part.a.absolute);
+    all.b.square.add(part.b.square);
+    all.b.absolute.add(part.b.absolute);
+  }
+  return all;
+}
+
+// The rank-th smallest |b - a| (from 0), exactly, without a copy of the field: the bits of doubles >= 0 are
+// ordered as the numbers are, so four passes settle 16 bits each by counting (radix selection; Knuth, The Art
+// of Computer Programming 3, section 5.2.5). Counts are integers: their sum knows no order.
+constexpr int kSelectPasses = 4;
+
+double selectDifference(const Pair& pair, std::int64_t rank, JobControl& job) {
+  constexpr int kBits = 16;
+  // One table of counts for each strip of tile rows, few and large, so that memory stays bounded.
+  constexpr std::int64_t kStrips = 16;
+  std::uint64_t prefix = 0;
+  for (int shift = 64 - kBits; shift >= 0; shift -= kBits) {
+    std::vector<std::vector<std::int64_t>> counts(kStrips);
+    const std::int64_t tiles = static_cast<std::int64_t>(tileCount(pair.a));
+    tbb::parallel_for(std::int64_t{0}, kStrips, [&](std::int64_t strip) {
+      std::vector<std::int64_t>& count = counts[static_cast<std::size_t>(strip)];
+      count.assign(std::size_t{1} << kBits, 0);
+      for (std::int64_t i = tiles * strip / kStrips; i < tiles * (strip + 1) / kStrips; ++i) {
+        if (job.cancelled()) return;
+        TileRect rect;
+        rect.column = static_cast<std::int32_t>(i % pair.a.tileColumns()) * kTileSide;
+        rect.row = static_cast<std::int32_t>(i / pair.a.tileColumns()) * kTileSide;
+        rect.columns = std::min(kTileSide, pair.a.width() - rect.column);
+        rect.rows = std::min(kTileSide, pair.a.height() - rect.row);
+        pair.forEach(rect, [&](std::int32_t, std::int32_t, double za, double zb) {
+          const double d = std::abs(zb - za);
+          if (std::isnan(d)) return;
+          const auto bits = std::bit_cast<std::uint64_t>(d);
+          // What lies above the present digit must be the prefix found so far.
+          if (shift + kBits < 64 && (bits >> (shift + kBits)) != (prefix >> (shift + kBits))) return;
+          ++count[static_cast<std::size_t>((bits >> shift) & ((1U << kBits) - 1))];
+        });
+        job.advance();
+      }
+    });
+    if (job.cancelled()) return kNone;
+    for (std::size_t digit = 0; digit < (std::size_t{1} << kBits); ++digit) {
+      std::int64_t here = 0;
+      for (const std::vector<std::int64_t>& count : counts) here += count[digit];
+      if (rank < here) {
+        prefix |= static_cast<std::uint64_t>(digit) << shift;
+        break;
+      }
+      rank -= here;
+    }
+  }
+  return std::bit_cast<double>(prefix);
+}
+
+double ratio(double sum, std::int64_t samples) noexcept {
+  return samples > 0 ? sum / static_cast<double>(samples) : kNone;
+}
+
+}  // namespace
+
+Result<Deviation> compareFields(const Version& a, const Version& b, JobControl& job) try {
+  const Grid& ga = a.grid();
+  const Grid& gb = b.grid();
+  if (ga.width != gb.width || ga.height != gb.height)
+    return inputError(fmt::format("a field of {} x {} samples cannot be compared with one of {} x {}",
+                                  ga.width, ga.height, gb.width, gb.height),
+                      {}, "give two fields of one size");
+  const Pair pair{a.reader(), b.reader(), gb.height_unit.mm / ga.height_unit.mm};
+  job.begin("comparing", (3 + kSelectPasses) * tileCount(pair.a));
+
+  const First first = firstPass(pair, job);
+  if (job.cancelled()) return cancelled();
+  const Centre centre_a = Centre::of(first.a);
+  const Centre centre_b = Centre::of(first.b);
+  const Second second = secondPass(pair, centre_a, centre_b, job);
+  if (job.cancelled()) return cancelled();
+  const Third third = thirdPass(pair, Plane::fit(centre_a, second.a), Plane::fit(centre_b, second.b), job);
+  if (job.cancelled()) return cancelled();
+
+  Deviation result;
+  result.samples = first.samples;
+  result.only_a = first.only_a;
+  result.only_b = first.only_b;
+  result.mean = ratio(first.difference.value(), first.samples);
+  result.rms = std::sqrt(ratio(first.square.value(), first.samples));
+  result.max_abs = first.samples > 0 ? first.max_abs : kNone;
+  result.sq_a = std::sqrt(ratio(third.a.square.value(), first.a.samples));
+  result.sa_a = ratio(third.a.absolute.value(), first.a.samples);
+  result.sq_b = std::sqrt(ratio(third.b.square.value(), first.b.samples));
+  result.sa_b = ratio(third.b.absolute.value(), first.b.samples);
+  result.p99 = kNone;
+  if (first.samples > 0) {
+    // Nearest rank ceil(0.99 n), in integers: 0.99 is no double.
+    const std::int64_t rank = (99 * first.samples + 99) / 100;
+    result.p99 = selectDifference(pair, rank - 1, job);
+    if (job.cancelled()) return cancelled();
+  }
+  return result;
+} catch (const std::bad_alloc&) {
+  return failure("memory is exhausted", "comparing", "compare smaller fields");
+}
+
+}  // namespace fettle::engine

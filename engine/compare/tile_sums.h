@@ -1,0 +1,72 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "engine/base/job.h"
+#include "engine/field/reader.h"
+
+namespace fettle::engine {
+
+/// A sum that carries what each addition rounded away; its error is one rounding of the result plus a term of
+/// second order in the number of addends. Neumaier, Rundungsfehleranalyse einiger Verfahren zur Summation
+/// endlicher Summen (1974), algorithm IV.
+class CompensatedSum {
+ public:
+  void add(double x) noexcept {
+    const double t = sum_ + x;
+    lost_ += std::abs(sum_) >= std::abs(x) ? (sum_ - t) + x : (x - t) + sum_;
+    sum_ = t;
+  }
+  void add(const CompensatedSum& other) noexcept {
+    add(other.sum_);
+    add(other.lost_);
+  }
+  [[nodiscard]] double value() const noexcept { return sum_ + lost_; }
+
+ private:
+  double sum_ = 0.0;
+  double lost_ = 0.0;
+};
+
+/// A rectangle of samples that one tile holds.
+struct TileRect {
+  std::int32_t column = 0;
+  std::int32_t row = 0;
+  int columns = 0;
+  int rows = 0;
+};
+
+/// Calls f(rect, part) for every tile on all workers of the arena, each with a part of its own, and gives the
+/// parts back in tile order (row-major), so that folding them is the same for any thread count. Parts of
+/// tiles after a cancel are as constructed: look at job.cancelled(). Advances the job by one a tile.
+template <class Part, class F>
+[[nodiscard]] std::vector<Part> forEachTile(const FieldReader& field, JobControl& job, const F& f) {
+  const std::int64_t across = field.tileColumns();
+  const std::int64_t tiles = across * field.tileRows();
+  std::vector<Part> parts(static_cast<std::size_t>(tiles));
+  tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, tiles), [&](const auto& range) {
+    for (std::int64_t i = range.begin(); i < range.end() && !job.cancelled(); ++i) {
+      TileRect rect;
+      rect.column = static_cast<std::int32_t>(i % across) * kTileSide;
+      rect.row = static_cast<std::int32_t>(i / across) * kTileSide;
+      rect.columns = std::min(kTileSide, field.width() - rect.column);
+      rect.rows = std::min(kTileSide, field.height() - rect.row);
+      f(rect, parts[static_cast<std::size_t>(i)]);
+      job.advance();
+    }
+  });
+  return parts;
+}
+
+/// Number of tiles, the steps that forEachTile advances a job by.
+[[nodiscard]] inline std::uint64_t tileCount(const FieldReader& field) noexcept {
+  return static_cast<std::uint64_t>(field.tileColumns()) * static_cast<std::uint64_t>(field.tileRows());
+}
+
+}  // namespace fettle::engine
