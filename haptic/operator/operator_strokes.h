@@ -17,12 +17,13 @@ struct OperatorSpec {
   double speed_mm_s = 20.0;  ///< along an edge, > 0
   double lift_mm = 3.0;      ///< free height over the highest point of the scan between strokes, > 0
   double press_mm = 0.3;     ///< depth of the tip below the scan's surface while tracing, >= 0
-  /// Standard deviation of the tip's tremor along each lateral axis [mm]. Physiological tremor of a resting
-  /// forearm with a hand-held stylus is 8 to 12 Hz, some 0.05 mm rms (Riviere, Rader and Khosla 1997; Elble
-  /// and Koller 1990); height takes half of it.
-  double tremor_mm = 0.05;
-  /// Standard deviation of the slow wander off the line that the eye corrects, below 1 Hz [mm].
-  double wander_mm = 0.08;
+  /// Standard deviation of the tip's tremor along each axis of the plane, 8 to 12 Hz [mm]; height takes half
+  /// of it. 0.049 mm is what eye surgeons' hands did holding an instrument still: Riviere, Rader and Khosla,
+  /// Characteristics of hand motion of eye surgeons (1997).
+  double tremor_mm = 0.049;
+  /// Standard deviation of the slow wander off the line that the eye corrects, 0.1 to 1.5 Hz [mm]. With the
+  /// tremor it makes the 0.133 mm that the same hands were off in repeated movements (same source).
+  double wander_mm = 0.124;
   /// Passes along each edge with the smooth tool, then with the mark tool; 0 .. 16 each.
   int smooth_passes = 1;
   int mark_passes = 1;

@@ -1,0 +1,207 @@
+#include "haptic/operator/operator_strokes.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "haptic/operator/hand_motion.h"
+
+namespace fettle::haptic {
+
+namespace {
+
+constexpr double kAirSpeed = 80.0;  // [mm/s] mean speed of free moves
+constexpr double kOverlapMm = 1.0;  // a closed edge is followed so far past its start
+constexpr double kTremorLow = 8.0;  // [Hz]
+constexpr double kTremorHigh = 12.0;
+constexpr double kWanderLow = 0.1;  // [Hz]
+constexpr double kWanderHigh = 1.5;
+
+double length(glm::dvec2 v) noexcept {
+  return std::hypot(v.x, v.y);
+}
+
+// The scan as a person feels it: bilinear, and over a hole as high as it was last.
+class FeltSurface {
+ public:
+  explicit FeltSurface(const engine::Version& scan)
+      : reader_(scan.reader()),
+        sx_(scan.grid().spacingXMm()),
+        sy_(scan.grid().spacingYMm()),
+        sz_(scan.grid().height_unit.mm) {
+    const engine::HeightBounds bounds = reader_.bounds();
+    if (!bounds.empty()) {
+      last_ = static_cast<double>(bounds.min) * sz_;
+      highest_ = static_cast<double>(bounds.max) * sz_;
+    }
+  }
+
+  [[nodiscard]] glm::dvec2 inside(glm::dvec2 p) const noexcept {
+    return {std::clamp(p.x, 0.0, (reader_.width() - 1) * sx_),
+            std::clamp(p.y, 0.0, (reader_.height() - 1) * sy_)};
+  }
+  [[nodiscard]] double highest() const noexcept { return highest_; }
+
+  // p inside the field.
+  [[nodiscard]] double at(glm::dvec2 p) noexcept {
+    const double x = p.x / sx_;
+    const double y = p.y / sy_;
+    const auto c = std::clamp(static_cast<std::int32_t>(x), 0, std::max(reader_.width() - 2, 0));
+    const auto r = std::clamp(static_cast<std::int32_t>(y), 0, std::max(reader_.height() - 2, 0));
+    const double u = x - c;
+    const double v = y - r;
+    const auto height = [&](std::int32_t column, std::int32_t row) {
+      return static_cast<double>(
+          reader_.heightAt(std::min(column, reader_.width() - 1), std::min(row, reader_.height() - 1)));
+    };
+    const double z = (1.0 - v) * ((1.0 - u) * height(c, r) + u * height(c + 1, r)) +
+                     v * ((1.0 - u) * height(c, r + 1) + u * height(c + 1, r + 1));
+    if (!std::isnan(z)) last_ = z * sz_;
+    return last_;
+  }
+
+ private:
+  engine::FieldReader reader_;
+  double sx_;
+  double sy_;
+  double sz_;
+  double last_ = 0.0;
+  double highest_ = 0.0;
+};
+
+// A line to follow at even speed: an edge, or its parallel at some distance to the left.
+class Path {
+ public:
+  Path(const engine::Edge& edge, double left_mm) {
+    points_ = edge.points_mm;
+    if (edge.closed) points_.push_back(points_.front());
+    const std::size_t n = points_.size();
+    std::vector<glm::dvec2> shifted(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      const bool ring = edge.closed;
+      const glm::dvec2 before = i > 0 ? points_[i - 1] : (ring ? points_[n - 2] : points_[0]);
+      const glm::dvec2 after = i + 1 < n ? points_[i + 1] : (ring ? points_[1] : points_[n - 1]);
+      const glm::dvec2 run = after - before;
+      const double l = length(run);
+      const glm::dvec2 left = l > 0.0 ? glm::dvec2{-run.y / l, run.x / l} : glm::dvec2{0.0, 0.0};
+      shifted[i] = points_[i] + left * left_mm;
+    }
+    points_ = std::move(shifted);
+    at_.push_back(0.0);
+    for (std::size_t i = 1; i < n; ++i) at_.push_back(at_.back() + length(points_[i] - points_[i - 1]));
+    end_ = at_.back() + (edge.closed ? std::min(kOverlapMm, at_.back()) : 0.0);
+  }
+
+  [[nodiscard]] double end() const noexcept { return end_; }
+
+  // The place so far along [mm], 0 .. end().
+  [[nodiscard]] glm::dvec2 place(double s) const noexcept {
+    const double round = at_.back();
+    if (s > round) s -= round;
+    const auto next = std::upper_bound(at_.begin(), at_.end(), s);
+    if (next == at_.end()) return points_.back();
+    const auto i = static_cast<std::size_t>(next - at_.begin());
+    const double t = (s - at_[i - 1]) / (at_[i] - at_[i - 1]);
+    return points_[i - 1] + (points_[i] - points_[i - 1]) * t;
+  }
+
+ private:
+  std::vector<glm::dvec2> points_;
+  std::vector<double> at_;  // distance along the line of each point
+  double end_ = 0.0;
+};
+
+double edgeLength(const engine::Edge& edge) noexcept {
+  double sum = edge.closed ? length(edge.points_mm.front() - edge.points_mm.back()) : 0.0;
+  for (std::size_t i = 1; i < edge.points_mm.size(); ++i)
+    sum += length(edge.points_mm[i] - edge.points_mm[i - 1]);
+  return sum;
+}
+
+class Hand {
+ public:
+  Hand(const engine::Version& scan, const OperatorSpec& spec)
+      : spec_(spec), surface_(scan), tip_(0.0, 0.0, surface_.highest() + spec.lift_mm) {}
+
+  void trace(const Path& path, Tool tool) {
+    ++stroke_;
+    const auto motion = [&](double sigma, double low, double high, int axis) {
+      return HandMotion(sigma, low, high, spec_.seed, 8 * stroke_ + static_cast<std::uint64_t>(axis));
+    };
+    const HandMotion tremor_x = motion(spec_.tremor_mm, kTremorLow, kTremorHigh, 0);
+    const HandMotion tremor_y = motion(spec_.tremor_mm, kTremorLow, kTremorHigh, 1);
+    const HandMotion tremor_z = motion(0.5 * spec_.tremor_mm, kTremorLow, kTremorHigh, 2);
+    const HandMotion wander_x = motion(spec_.wander_mm, kWanderLow, kWanderHigh, 3);
+    const HandMotion wander_y = motion(spec_.wander_mm, kWanderLow, kWanderHigh, 4);
+    const auto tipAt = [&](double s, double seconds) {
+      const glm::dvec2 about{tremor_x.at(seconds) + wander_x.at(seconds),
+                             tremor_y.at(seconds) + wander_y.at(seconds)};
+      const glm::dvec2 p = surface_.inside(path.place(s) + about);
+      return glm::dvec3{p.x, p.y, surface_.at(p) - spec_.press_mm + tremor_z.at(seconds)};
+    };
+    const double free_height = surface_.highest() + spec_.lift_mm;
+    const glm::dvec3 first = tipAt(0.0, 0.0);
+    moveTo({first.x, first.y, free_height});
+    moveTo(first);
+    const double step = spec_.speed_mm_s / spec_.rate_hz;
+    double s = 0.0;
+    for (std::int64_t i = 1; s < path.end(); ++i) {
+      s = std::min(static_cast<double>(i) * step, path.end());
+      // The hand's own time starts with the stroke, so that it comes down where the trembling begins.
+      add(tipAt(s, static_cast<double>(i) / spec_.rate_hz), tool);
+    }
+    moveTo({tip_.x, tip_.y, free_height});
+  }
+
+  [[nodiscard]] std::vector<StrokeSample> rows() && { return std::move(rows_); }
+
+ private:
+  [[nodiscard]] double now() const noexcept { return static_cast<double>(rows_.size()) / spec_.rate_hz; }
+
+  void add(glm::dvec3 tip, Tool tool) {
+    rows_.push_back({now(), tip, tool});
+    tip_ = tip;
+  }
+
+  // A free move with the profile of least jerk: Flash and Hogan, The coordination of arm movements (1985).
+  void moveTo(glm::dvec3 end) {
+    const glm::dvec3 from = tip_;
+    const glm::dvec3 way = end - from;
+    const double distance = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z);
+    const auto ticks =
+        std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(distance / kAirSpeed * spec_.rate_hz)));
+    for (std::int64_t i = 1; i <= ticks; ++i) {
+      const double t = static_cast<double>(i) / static_cast<double>(ticks);
+      // The last row is the end itself, not its rounded sum.
+      add(i == ticks ? end : from + way * (t * t * t * (10.0 + t * (6.0 * t - 15.0))), Tool::kFeel);
+    }
+  }
+
+  const OperatorSpec& spec_;
+  FeltSurface surface_;
+  glm::dvec3 tip_;
+  std::uint64_t stroke_ = 0;
+  std::vector<StrokeSample> rows_;
+};
+
+}  // namespace
+
+std::vector<StrokeSample> operatorStrokes(const engine::Version& scan, std::span<const engine::Edge> edges,
+                                          const OperatorSpec& spec) {
+  assert(spec.rate_hz >= 100.0 && spec.rate_hz <= 10000.0 && spec.speed_mm_s > 0.0 && spec.lift_mm > 0.0);
+  assert(spec.press_mm >= 0.0 && spec.tremor_mm >= 0.0 && spec.wander_mm >= 0.0);
+  assert(spec.smooth_passes >= 0 && spec.smooth_passes <= 16 && spec.mark_passes >= 0 &&
+         spec.mark_passes <= 16);
+  Hand hand(scan, spec);
+  for (const engine::Edge& edge : edges) {
+    if (edge.points_mm.size() < 2 || edgeLength(edge) < spec.shortest_mm) continue;
+    const double to_high = edge.high_side_left ? 1.0 : -1.0;
+    const double beside = edge.kind == engine::EdgeKind::kStep ? to_high * spec.smooth_offset_mm : 0.0;
+    for (int k = 0; k < spec.smooth_passes; ++k) hand.trace(Path(edge, beside), Tool::kSmooth);
+    for (int k = 0; k < spec.mark_passes; ++k)
+      hand.trace(Path(edge, spec.mark_offset_mm * (k - 0.5 * (spec.mark_passes - 1))), Tool::kMark);
+  }
+  return std::move(hand).rows();
+}
+
+}  // namespace fettle::haptic
