@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <glm/vec3.hpp>
+
+#include "engine/base/error.h"
+#include "haptic/strokes.h"
+
+namespace fettle::haptic {
+
+/// Frame of a device's positions and forces, right-handed, millimetres and newtons.
+enum class DeviceSpace : std::uint8_t {
+  /// x to the user's right, y away from the user, z up; 0 in the middle of the workspace. A Workspace turns
+  /// it into field coordinates.
+  kDesk,
+  /// Field coordinates already (mouse, replayed strokes, simulated hand): nothing to map.
+  kField,
+};
+
+/// What a device can do and what it must never be asked for. The limits hold in the device's own millimetres.
+/// The defaults are those of an unknown device: low enough for any of the known ones.
+struct DeviceProfile {
+  std::string name = "unknown device";
+  DeviceSpace space = DeviceSpace::kDesk;
+  double workspace_radius_mm = 50.0;      ///< > 0; of the ball about the origin that is reached everywhere
+  double max_force_n = 3.0;               ///< >= 0
+  double max_stiffness_n_per_mm = 0.4;    ///< >= 0; as felt, see Workspace
+  double max_damping_n_s_per_mm = 0.004;  ///< >= 0
+  double resolution_mm = 0.0;             ///< of the position at the origin, coarsest axis; 0 = not stated
+  double rate_hz = 1000.0;                ///< inputs a second at best
+  bool gives_force = false;               ///< false: write() is a no-op
+};
+
+enum class LinkState : std::uint8_t {
+  kDisconnected,  ///< not plugged in, or unplugged; the driver looks for it in the background
+  kUncalibrated,  ///< reports come, but where the stylus is, is not known: the position means nothing, and
+                  ///< the driver itself sends zero force whatever is written
+  kConnected,
+};
+
+/// Buttons of DeviceInput::buttons.
+inline constexpr std::uint32_t kPrimaryButton = 1U << 0U;
+inline constexpr std::uint32_t kSecondaryButton = 1U << 1U;
+
+/// The newest a device has said.
+struct DeviceInput {
+  /// In the frame of the profile. Finite from the drivers of hardware; a replayed stroke hands on the NaN of
+  /// a recorded dropout. Held while disconnected.
+  glm::dvec3 position_mm{0.0};
+  std::uint32_t buttons = 0;  ///< bit mask of the buttons held
+  /// One more for each input; never goes back. The same as last time: nothing new arrived. A change of `link`
+  /// alone does not count as an input.
+  std::uint64_t sequence = 0;
+  std::int64_t arrival_ns = 0;  ///< std::chrono::steady_clock, when it arrived at this machine
+  LinkState link = LinkState::kDisconnected;
+  std::optional<Tool> tool{};  ///< set by devices that choose the tool themselves (a replayed stroke)
+
+  friend bool operator==(const DeviceInput&, const DeviceInput&) = default;
+};
+
+/// Rare and not so rare events since start(), for the user's panel and for tests.
+struct DeviceCounters {
+  std::uint64_t inputs = 0;            ///< good reports, those skipped for a newer one included
+  std::uint64_t skipped = 0;           ///< good reports that a newer one overtook before they were published
+  std::uint64_t bad_inputs = 0;        ///< reports of a wrong length or form, left out
+  std::uint64_t outputs = 0;           ///< reports the device took
+  std::uint64_t forced_zeros = 0;      ///< outputs that were zero because no fresh force was there in time
+  std::uint64_t failed_outputs = 0;    ///< writes the system refused (stalled, unplugged)
+  std::uint64_t scaled_forces = 0;     ///< forces made smaller, direction kept, to spare a motor
+  std::uint64_t connects = 0;          ///< times the device was opened
+  std::uint64_t disconnects = 0;       ///< times it was lost
+  std::int64_t longest_output_ns = 0;  ///< longest single write; 5 s when the device stops taking reports
+};
+
+/// One haptic or input device.
+///
+/// Life: construct, start(), any number of read()/write(), stop(); start() may follow again. The destructor
+/// stops.
+/// Threading: one loop thread calls read() and write(); one other thread owns start(), stop() and calibrate()
+/// (the loop thread must not be running yet at start() nor still at stop()); counters() from any thread;
+/// profile() from any thread, constant between start() and stop().
+class Device {
+ public:
+  Device() = default;
+  virtual ~Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  [[nodiscard]] virtual const DeviceProfile& profile() const noexcept = 0;
+
+  /// The newest input. Wait-free: no lock, no allocation, no I/O, however the hardware behaves.
+  [[nodiscard]] virtual DeviceInput read() noexcept = 0;
+
+  /// The force to give from now on [N], in the frame of the profile; the newest wins, older ones that were
+  /// not sent yet are dropped. Wait-free like read(): at most one futex wake of the writer thread. A
+  /// non-finite force counts as zero. The driver keeps motors within their limits by scaling all of them
+  /// alike, but the clamp to max_force_n is the caller's: the safety stage is the one place that clamps.
+  /// A force that is not renewed for 10 ms is taken back (zero is sent).
+  virtual void write(const glm::dvec3& force_n) noexcept = 0;
+
+  /// Allocates, starts threads. A device that is not plugged in is no error: its link stays kDisconnected and
+  /// it is picked up when it comes. Errors: kFailed when threads or system libraries cannot be had.
+  [[nodiscard]] virtual engine::Status start() = 0;
+
+  /// Sends an explicit zero force to a device that gives force, then ends the threads. Takes some
+  /// milliseconds; up to 5 s (the kernel's limit of one write) when the device has stopped taking reports.
+  virtual void stop() noexcept = 0;
+
+  /// The user holds the stylus in its home pose now. Takes effect within some reports, seen as kConnected.
+  /// No effect on devices that need no calibration.
+  virtual void calibrate() noexcept {}
+
+  [[nodiscard]] virtual DeviceCounters counters() const noexcept { return {}; }
+};
+
+}  // namespace fettle::haptic
