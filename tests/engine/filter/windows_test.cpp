@@ -1,0 +1,169 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/filter/reference.h"
+
+namespace fettle::engine::tests {
+namespace {
+
+constexpr FilterKind kKinds[] = {FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian};
+
+class HardFields : public testing::TestWithParam<std::string> {};
+
+TEST_P(HardFields, AreFilteredAsTheReferenceSaysForEveryKindAndWindow) {
+  const PlainField plain = hardField(GetParam());
+  const Version version = toVersion(plain);
+  for (const FilterKind kind : kKinds)
+    for (const int window : {3, 5, 7, 9, 15}) {
+      SCOPED_TRACE(std::string(name(kind)) + " " + std::to_string(window));
+      const FilterSpec spec = makeSpec(kind, window);
+      EXPECT_EQ(checkPass(plain, toPlain(filtered(version, spec).field), spec, window < 9 ? 0 : 3000), "");
+    }
+}
+
+TEST_P(HardFields, AreFilteredAsTheReferenceSaysWithAWindowLargerThanTheField) {
+  const PlainField plain = hardField(GetParam());
+  const Version version = toVersion(plain);
+  for (const FilterKind kind : kKinds)
+    for (const int window : {101, 401, 1001}) {
+      SCOPED_TRACE(std::string(name(kind)) + " " + std::to_string(window));
+      const FilterSpec spec = makeSpec(kind, window);
+      EXPECT_EQ(checkPass(plain, toPlain(filtered(version, spec).field), spec, 60), "");
+    }
+}
+
+TEST_P(HardFields, TakeATrueGaussianOfAnySigma) {
+  const PlainField plain = hardField(GetParam());
+  const Version version = toVersion(plain);
+  for (const double sigma : {1e-3, 0.4, 1.0, 2.7, 40.0, 1e6})
+    for (const int window : {3, 11}) {
+      SCOPED_TRACE(std::to_string(sigma) + " " + std::to_string(window));
+      const FilterSpec spec = makeSpec(FilterKind::kGaussian, window, sigma);
+      EXPECT_EQ(checkPass(plain, toPlain(filtered(version, spec).field), spec, 500), "");
+    }
+}
+
+TEST_P(HardFields, KeepBoxAndMedianBetweenTheWindowsExtremes) {
+  const PlainField plain = hardField(GetParam());
+  const Version version = toVersion(plain);
+  for (const FilterKind kind : {FilterKind::kBox, FilterKind::kMedian})
+    for (const int window : {3, 9}) {
+      const PlainField after = toPlain(filtered(version, makeSpec(kind, window)).field);
+      int outside = 0;
+      for (int r = 0; r < plain.height; ++r)
+        for (int c = 0; c < plain.width; ++c) {
+          float low = std::numeric_limits<float>::infinity();
+          float high = -low;
+          for (int y = std::max(r - window / 2, 0); y <= std::min(r + window / 2, plain.height - 1); ++y)
+            for (int x = std::max(c - window / 2, 0); x <= std::min(c + window / 2, plain.width - 1); ++x) {
+              low = std::fmin(low, plain.at(x, y));
+              high = std::fmax(high, plain.at(x, y));
+            }
+          if (!std::isnan(plain.at(c, r))) outside += after.at(c, r) < low || after.at(c, r) > high;
+        }
+      EXPECT_EQ(outside, 0) << name(kind) << " " << window;
+    }
+}
+
+TEST_P(HardFields, ComeOutTurnedOverWhenTurnedOver) {
+  const Version version = toVersion(hardField(GetParam()));
+  for (const FilterKind kind : kKinds)
+    for (const int window : {3, 9}) {
+      const FilterSpec spec = makeSpec(kind, window);
+      const PlainField up = toPlain(filtered(version, spec).field);
+      const Version turned = filtered(version.inverted(), spec).field;
+      EXPECT_EQ(turned.reader().sign(), -1.0F);
+      const PlainField down = toPlain(turned.inverted());
+      int different = 0;
+      for (std::size_t i = 0; i < up.z.size(); ++i)
+        different += !(up.z[i] == down.z[i] || (std::isnan(up.z[i]) && std::isnan(down.z[i])));
+      EXPECT_EQ(different, 0) << name(kind) << " " << window;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Filters, HardFields, testing::ValuesIn(hardFieldNames()), [](const auto& test) {
+  std::string text = test.param;
+  for (char& c : text) c = c == ' ' ? '_' : c;
+  return text;
+});
+
+TEST(Windows, OfOneSampleChangeNothing) {
+  const Version version = toVersion(hardField("scattered holes"));
+  for (const FilterKind kind : kKinds) EXPECT_TRUE(filtered(version, makeSpec(kind, 1)).field == version);
+}
+
+TEST(Windows, OverAConstantGiveItBackToTheBitWithHolesAndBorders) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const float z : {0.1F, -1e6F, 1.1e-40F, 3.4e38F, -0.0F}) {
+    // The one other sample keeps the field from being flat as a whole; windows that see it are left out.
+    const PlainField plain = formed(200, 80, [&](int c, int r) {
+      return c == 199 && r == 79 ? 7.0F : (c * r) % 11 == 10 ? nan : z;
+    });
+    for (const FilterKind kind : kKinds)
+      for (const int window : {3, 7, 21}) {
+        const PlainField after = toPlain(filtered(toVersion(plain), makeSpec(kind, window)).field);
+        int different = 0;
+        for (int r = 0; r < 80; ++r)
+          for (int c = 0; c < 200 - 11; ++c) different += !sameBits(after.at(c, r), plain.at(c, r));
+        EXPECT_EQ(different, 0) << name(kind) << " " << window << " " << z;
+      }
+  }
+}
+
+TEST(Windows, OverAPlaneGiveItBackToTheBitAwayFromTheBorder) {
+  // Heights of 13 bits: every window's mean is the centre, and a float.
+  const PlainField plain =
+      formed(170, 150, [](int c, int r) { return 0.125F * static_cast<float>(3 * c - 2 * r); });
+  for (const FilterKind kind : kKinds)
+    for (const int window : {3, 7, 21, 41}) {
+      const PlainField after = toPlain(filtered(toVersion(plain), makeSpec(kind, window)).field);
+      const int h = window / 2;
+      int different = 0;
+      for (int r = h; r < 150 - h; ++r)
+        for (int c = h; c < 170 - h; ++c) different += after.at(c, r) != plain.at(c, r);
+      EXPECT_EQ(different, 0) << name(kind) << " " << window;
+    }
+}
+
+TEST(Windows, OfABoxAndAGaussianPreserveTheSumOfABumpAwayFromTheBorder) {
+  const PlainField plain = formed(120, 120, [](int c, int r) {
+    return c >= 50 && c < 70 && r >= 50 && r < 70 ? static_cast<float>((c * 37 + r * 101) % 97) * 0.01F
+                                                  : 0.0F;
+  });
+  for (const FilterKind kind : {FilterKind::kBox, FilterKind::kGaussian})
+    for (const int window : {3, 9, 31}) {
+      const PlainField after = toPlain(filtered(toVersion(plain), makeSpec(kind, window)).field);
+      long double sum_before = 0.0L, sum_after = 0.0L, tolerance = 0.0L;
+      for (std::size_t i = 0; i < plain.z.size(); ++i) {
+        sum_before += plain.z[i];
+        sum_after += after.z[i];
+        // Each output is off by at most half an ulp, but for parts in 2^40 of it.
+        tolerance += after.z[i] == 0.0F ? 0.0L : 0.51L * ulp(after.z[i]);
+      }
+      EXPECT_LE(std::fabs(sum_after - sum_before), tolerance) << name(kind) << " " << window;
+      EXPECT_GT(sum_before, 100.0L);
+    }
+}
+
+TEST(Windows, OfABinomialGaussianHaveThePapersWeights) {
+  // A single sample of 16 comes out as the 3 x 3 mask itself: 1 2 1, 2 4 2, 1 2 1.
+  PlainField plain = formed(9, 9, [](int, int) { return 0.0F; });
+  plain.at(4, 4) = 16.0F;
+  const PlainField after = toPlain(filtered(toVersion(plain), makeSpec(FilterKind::kGaussian, 3)).field);
+  const float mask[3][3] = {{1, 2, 1}, {2, 4, 2}, {1, 2, 1}};
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(after.at(3 + c, 3 + r), mask[r][c]);
+  EXPECT_EQ(after.at(2, 4), 0.0F);
+}
+
+TEST(Windows, OfAMedianOverAnEvenCountTakeTheMeanOfTheMiddleTwo) {
+  // A corner's 3 x 3 window holds four samples: 1 2 4 8 there.
+  const PlainField plain = formed(2, 2, [](int c, int r) { return std::ldexp(1.0F, 2 * r + c); });
+  const PlainField after = toPlain(filtered(toVersion(plain), makeSpec(FilterKind::kMedian, 3)).field);
+  for (const float z : after.z) EXPECT_EQ(z, 3.0F);
+}
+
+}  // namespace
+}  // namespace fettle::engine::tests
