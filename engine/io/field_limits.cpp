@@ -1,0 +1,96 @@
+#include "engine/io/field_limits.h"
+
+#include <fstream>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace fettle::engine {
+
+namespace {
+
+std::optional<std::uint64_t> numberIn(const char* path) {
+  std::ifstream file(path);
+  std::uint64_t number = 0;
+  if (file >> number) return number;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::uint64_t availableMemory() {
+  std::uint64_t available = 0;
+  std::ifstream info("/proc/meminfo");
+  std::string key;
+  std::uint64_t kilobytes = 0;
+  while (info >> key >> kilobytes) {
+    if (key == "MemAvailable:") {
+      available = kilobytes * 1024;
+      break;
+    }
+    info.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  const auto limit = numberIn("/sys/fs/cgroup/memory.max");
+  const auto used = numberIn("/sys/fs/cgroup/memory.current");
+  if (limit && used) {
+    const std::uint64_t left = *limit > *used ? *limit - *used : 0;
+    available = available == 0 ? left : std::min(available, left);
+  }
+  return available;
+}
+
+Status checkFieldSize(std::uint64_t width, std::uint64_t height, std::uint64_t extra_bytes,
+                      const std::string& path) {
+  constexpr std::uint64_t kMaxSide = Grid::kMaxSide;
+  if (width == 0 || height == 0)
+    return inputError(fmt::format("the header promises {} x {} samples", width, height), path,
+                      "the file is damaged or empty");
+  if (width > kMaxSide || height > kMaxSide)
+    return inputError(fmt::format("{} x {} samples are too many", width, height), path,
+                      fmt::format("a side may have {} at most: cut the scan into parts", kMaxSide));
+  // Tiles are full at the borders too, and carry marks and bounds: 1.06 of the samples' own 4 bytes.
+  const std::uint64_t samples = (width + kTileSide - 1) / kTileSide * ((height + kTileSide - 1) / kTileSide);
+  const std::uint64_t bytes = samples * (sizeof(Tile) + 32) + extra_bytes;
+  const std::uint64_t available = availableMemory();
+  if (available != 0 && bytes > available)
+    return inputError(fmt::format("{} x {} samples need {} MB of memory, {} MB are free", width, height,
+                                  bytes >> 20, available >> 20),
+                      path, "cut the scan into parts or close other programs");
+  return {};
+}
+
+Status checkPromise(std::uint64_t raw_bytes, std::uint64_t stored_bytes, double ratio,
+                    const std::string& path) {
+  constexpr double kBenefitOfDoubt = 64 << 20;
+  if (static_cast<double>(raw_bytes) <= kBenefitOfDoubt + ratio * static_cast<double>(stored_bytes))
+    return {};
+  return inputError(fmt::format("the header promises {} MB of samples, the file holds {} bytes of them",
+                                raw_bytes >> 20, stored_bytes),
+                    path, "the file is cut short or damaged");
+}
+
+void describeTally(const HeightTally& tally, const std::string& unit, std::vector<std::string>& warnings) {
+  if (tally.infinite > 0)
+    warnings.push_back(
+        fmt::format("{} heights are infinite or past the range of a float, taken as holes", tally.infinite));
+  if (tally.rounding > 0.0)
+    warnings.push_back(
+        fmt::format("heights have more digits than a float holds, the largest rounding is {:.2g} {}",
+                    tally.rounding, unit));
+}
+
+Result<Imported> finishImport(FieldBuilder&& builder, const HeightTally& tally, std::string format,
+                              std::vector<std::string> warnings, const std::string& path) {
+  describeTally(tally, builder.grid().height_unit.name, warnings);
+  Imported imported;
+  imported.field = std::move(builder).build();
+  if (imported.field.reader().bounds().empty())
+    return inputError("the file holds no valid height, every sample is no-data", path,
+                      "check the file and --no-data");
+  imported.format = std::move(format);
+  imported.warnings = std::move(warnings);
+  return imported;
+}
+
+}  // namespace fettle::engine

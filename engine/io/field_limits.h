@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/field/builder.h"
+#include "engine/io/height_rule.h"
+
+namespace fettle::engine {
+
+/// Memory that a process may still take [bytes]: what the system calls available, or what is left of the
+/// control group's limit if that is less. 0 if neither is known.
+[[nodiscard]] std::uint64_t availableMemory();
+
+/// Refuses a field that a header promises but that cannot be: sides of 0 or past Grid::kMaxSide, more than
+/// `availableMemory` holds beside `extra_bytes`. Call before anything is allocated.
+[[nodiscard]] Status checkFieldSize(std::uint64_t width, std::uint64_t height, std::uint64_t extra_bytes,
+                                    const std::string& path);
+
+/// Refuses a header that promises more samples than its file can hold: `raw_bytes` of samples when unpacked,
+/// from `stored_bytes` in the file by a compression that shrinks at most `ratio` times. Up to 64 MB pass: a
+/// sparse or very flat file may be small, and the reader will find out.
+[[nodiscard]] Status checkPromise(std::uint64_t raw_bytes, std::uint64_t stored_bytes, double ratio,
+                                  const std::string& path);
+
+/// Builds the field, refuses one without any height, and puts the tally's warnings in place.
+[[nodiscard]] Result<Imported> finishImport(FieldBuilder&& builder, const HeightTally& tally,
+                                            std::string format, std::vector<std::string> warnings,
+                                            const std::string& path);
+
+}  // namespace fettle::engine

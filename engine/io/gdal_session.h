@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gdal.h>
+
+namespace fettle::engine {
+
+/// While one lives, what GDAL says on this thread is kept here instead of going to stderr. Creating the first
+/// one sets GDAL up: only the drivers Fettle needs, no plugins, no .aux.xml files, a bounded block cache.
+/// Threading: one thread; scopes nest.
+class GdalSession {
+ public:
+  GdalSession();
+  ~GdalSession();
+  GdalSession(const GdalSession&) = delete;
+  GdalSession& operator=(const GdalSession&) = delete;
+
+  /// Whether GDAL reported a failure since the last clear().
+  [[nodiscard]] bool failed() const noexcept { return failed_; }
+  void clear() noexcept { failed_ = false; }
+  /// GDAL's first failure (later ones are its consequences) in words for a person: no paths, no full stop;
+  /// `otherwise` if there was none.
+  [[nodiscard]] std::string reason(const std::string& otherwise) const;
+  /// Warnings so far, each once.
+  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
+ private:
+  static void hear(CPLErr severity, CPLErrorNum number, const char* message);
+
+  bool failed_ = false;
+  std::string first_;
+  std::vector<std::string> warnings_;
+};
+
+struct CloseDataset {
+  void operator()(GDALDatasetH dataset) const noexcept { GDALClose(dataset); }
+};
+using DatasetPtr = std::unique_ptr<void, CloseDataset>;
+
+}  // namespace fettle::engine

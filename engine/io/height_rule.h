@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "engine/io/import.h"
+
+namespace fettle::engine {
+
+/// What was met while numbers became heights; tallies of strips are merged, in any order.
+struct HeightTally {
+  std::int64_t holes = 0;     ///< by no-data value or NaN
+  std::int64_t infinite = 0;  ///< infinities, also those that only the float made so
+  double rounding = 0.0;      ///< largest |float height - double height|
+
+  void merge(const HeightTally& other) noexcept {
+    holes += other.holes;
+    infinite += other.infinite;
+    rounding = std::fmax(rounding, other.rounding);
+  }
+};
+
+/// From the numbers of a file to heights: height = number * scale + offset in double, rounded once.
+struct HeightRule {
+  double scale = 1.0;
+  double offset = 0.0;
+  std::optional<double> declared_no_data;  ///< the file's
+  std::optional<double> user_no_data;      ///< ImportOptions::no_data
+
+  /// Whether a stored number means "hole".
+  template <class T>
+  [[nodiscard]] bool hole(T number) const noexcept {
+    if constexpr (std::is_floating_point_v<T>)
+      if (std::isnan(number)) return true;
+    return (declared_no_data && same(number, *declared_no_data)) ||
+           (user_no_data && same(number, *user_no_data));
+  }
+
+  /// Converts `count` numbers; holes and infinities come out as NaN.
+  template <class T>
+  void convert(const T* numbers, float* heights, std::size_t count, HeightTally& tally) const noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (hole(numbers[i])) {
+        heights[i] = std::numeric_limits<float>::quiet_NaN();
+        ++tally.holes;
+        continue;
+      }
+      const double height = scale == 1.0 && offset == 0.0 ? static_cast<double>(numbers[i])
+                                                          : static_cast<double>(numbers[i]) * scale + offset;
+      const float rounded = toFloat(height);
+      if (std::isfinite(rounded)) {
+        if constexpr (sizeof(T) > 2 && !std::is_same_v<T, float>)
+          tally.rounding = std::fmax(tally.rounding, std::abs(static_cast<double>(rounded) - height));
+        heights[i] = rounded;
+      } else {
+        heights[i] = std::numeric_limits<float>::quiet_NaN();
+        ++tally.infinite;
+      }
+    }
+  }
+
+  /// double to float, infinity where the float's range ends (the plain cast is undefined there).
+  [[nodiscard]] static float toFloat(double value) noexcept {
+    constexpr double kLimit =
+        3.4028235677973366e38;  // FLT_MAX + half an ulp: from here on rounds to infinity
+    if (std::abs(value) >= kLimit)
+      return std::copysign(std::numeric_limits<float>::infinity(),
+                           static_cast<float>(std::copysign(1.0, value)));
+    return static_cast<float>(value);
+  }
+
+ private:
+  template <class T>
+  [[nodiscard]] static bool same(T number, double value) noexcept {
+    if constexpr (std::is_floating_point_v<T>) {
+      if (static_cast<double>(number) == value) return true;
+      // Writers print the lowest float as -3.402823e+38, which is 2 ulp off it as a float: whatever lies that
+      // far out, with the same sign, is the mark and no height.
+      constexpr double kHuge = 3.4028e38;
+      if (std::abs(value) >= kHuge && std::abs(static_cast<double>(number)) >= kHuge)
+        return std::signbit(value) == std::signbit(static_cast<double>(number));
+      return toFloat(static_cast<double>(number)) == toFloat(value);
+    } else {
+      // An integer equals a double only if the double is integral; both directions are exact up to 2^53 and a
+      // comparison in long double (64 bits of fraction) is exact for all 64-bit integers.
+      return static_cast<long double>(number) == static_cast<long double>(value);
+    }
+  }
+};
+
+/// The warnings a tally gives. `unit` is the height unit's name.
+void describeTally(const HeightTally& tally, const std::string& unit, std::vector<std::string>& warnings);
+
+}  // namespace fettle::engine

@@ -1,0 +1,222 @@
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "engine/io/format.h"
+#include "engine/io/gridding.h"
+#include "engine/io/ply_header.h"
+#include "engine/io/text_reader.h"
+
+namespace fettle::engine {
+
+namespace {
+
+class PlyBody {
+ public:
+  PlyBody(const InputFile& file, const PlyHeader& header, JobControl& job)
+      : file_(file), header_(header), text_(file, header.body), job_(job) {}
+
+  Status read(PointCloud& cloud) {
+    for (const PlyElement& element : header_.elements) {
+      if (element.name == "vertex") return readVertices(element, cloud);
+      if (Status status = skipElement(element); !status) return status;
+    }
+    return inputError("the file holds no vertices", file_.path(), "is this a file of points?");
+  }
+
+ private:
+  [[nodiscard]] bool ascii() const { return header_.encoding == PlyEncoding::kAscii; }
+  [[nodiscard]] std::uint64_t left() const { return file_.size() - text_.offset(); }
+
+  Status endsEarly() const {
+    if (!text_.status()) return text_.status();
+    return inputError("the file ends before all that its header promises", file_.path(),
+                      "the file is cut short");
+  }
+
+  // Least bytes an item takes in the file, to tell a lying count before memory is taken for it.
+  [[nodiscard]] std::uint64_t leastBytes(const PlyElement& element) const {
+    std::uint64_t bytes = 0;
+    for (const PlyProperty& p : element.properties)
+      bytes += ascii() ? 2 : bytesOf(p.count_type ? *p.count_type : p.type);
+    return bytes;
+  }
+  [[nodiscard]] bool promisesTooMuch(const PlyElement& element) const {
+    const std::uint64_t least = leastBytes(element);
+    // The last line of a text needs no end; an item without properties takes nothing.
+    return least != 0 && element.count > (left() + 1) / least;
+  }
+
+  Status skipElement(const PlyElement& element) {
+    if (promisesTooMuch(element)) return endsEarly();
+    if (ascii()) {
+      std::string_view line;
+      for (std::uint64_t i = 0; i < element.count; ++i) {
+        if (!nextLine(line)) return endsEarly();
+        if (Status s = step(i); !s) return s;
+      }
+      return {};
+    }
+    if (const auto stride = element.stride()) {
+      text_.skip(element.count * *stride);
+      return {};
+    }
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (const PlyProperty& p : element.properties)
+        if (!skipBinary(p)) return endsEarly();
+      if (Status s = step(i); !s) return s;
+    }
+    return {};
+  }
+
+  bool skipBinary(const PlyProperty& property) {
+    std::uint64_t bytes = bytesOf(property.type);
+    if (property.count_type) {
+      const char* count = text_.bytes(bytesOf(*property.count_type));
+      if (count == nullptr) return false;
+      const double items = decodePly(count, *property.count_type, header_.encoding);
+      if (items < 0.0) return false;
+      bytes *= static_cast<std::uint64_t>(items);
+    }
+    if (bytes > left()) return false;
+    text_.skip(bytes);
+    return true;
+  }
+
+  // Lines of a text body; empty ones are no items.
+  bool nextLine(std::string_view& line) {
+    while (text_.line(line))
+      if (line.find_first_not_of(" \t") != std::string_view::npos) return true;
+    return false;
+  }
+
+  Status readVertices(const PlyElement& element, PointCloud& cloud) {
+    std::array<std::size_t, 3> axes{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto index = element.indexOf(std::string(1, "xyz"[k]));
+      if (!index)
+        return inputError(fmt::format("the vertices have no property \"{}\"", "xyz"[k]), file_.path(),
+                          "is this a file of points?");
+      axes[k] = *index;
+    }
+    if (promisesTooMuch(element)) return endsEarly();
+    for (auto* axis : {&cloud.x, &cloud.y, &cloud.z}) axis->reserve(element.count);
+    if (ascii()) return readAsciiVertices(element, axes, cloud);
+    return element.stride() ? readPlainVertices(element, axes, cloud)
+                            : readListVertices(element, axes, cloud);
+  }
+
+  Status readPlainVertices(const PlyElement& element, const std::array<std::size_t, 3>& axes,
+                           PointCloud& cloud) {
+    const std::size_t stride = *element.stride();
+    std::array<std::size_t, 3> at{};
+    std::array<PlyType, 3> type{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < axes[k]; ++i) at[k] += bytesOf(element.properties[i].type);
+      type[k] = element.properties[axes[k]].type;
+    }
+    if (stride > TextReader::kLongest)
+      return inputError(fmt::format("a vertex of {} bytes cannot be", stride), file_.path());
+    const PlyEncoding e = header_.encoding;
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      const char* item = text_.bytes(stride);
+      if (item == nullptr) return endsEarly();
+      cloud.add(decodePly(item + at[0], type[0], e), decodePly(item + at[1], type[1], e),
+                decodePly(item + at[2], type[2], e));
+      if (Status s = step(i); !s) return s;
+    }
+    return {};
+  }
+
+  Status readListVertices(const PlyElement& element, const std::array<std::size_t, 3>& axes,
+                          PointCloud& cloud) {
+    std::array<double, 3> point{};
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      for (std::size_t p = 0; p < element.properties.size(); ++p) {
+        const PlyProperty& property = element.properties[p];
+        std::size_t k = 0;
+        while (k < 3 && axes[k] != p) ++k;
+        if (k == 3) {
+          if (!skipBinary(property)) return endsEarly();
+          continue;
+        }
+        const char* raw = text_.bytes(bytesOf(property.type));
+        if (raw == nullptr) return endsEarly();
+        point[k] = decodePly(raw, property.type, header_.encoding);
+      }
+      cloud.add(point[0], point[1], point[2]);
+      if (Status s = step(i); !s) return s;
+    }
+    return {};
+  }
+
+  Status readAsciiVertices(const PlyElement& element, const std::array<std::size_t, 3>& axes,
+                           PointCloud& cloud) {
+    std::string_view line;
+    std::array<double, 3> point{};
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      if (!nextLine(line)) return endsEarly();
+      if (!readAsciiVertex(line, element, axes, point))
+        return inputError(fmt::format("vertex {} does not hold the numbers that the header says", i + 1),
+                          file_.path(), "the file is damaged");
+      cloud.add(point[0], point[1], point[2]);
+      if (Status s = step(i); !s) return s;
+    }
+    return {};
+  }
+
+  static bool readAsciiVertex(std::string_view line, const PlyElement& element,
+                              const std::array<std::size_t, 3>& axes, std::array<double, 3>& point) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    const auto next = [&](double& value) {
+      while (at < end && (*at == ' ' || *at == '\t')) ++at;
+      return parseNumber(at, end, value) && (at == end || *at == ' ' || *at == '\t');
+    };
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      double value = 0.0;
+      if (!next(value)) return false;
+      if (element.properties[p].count_type) {
+        double ignored = 0.0;
+        for (double items = value; items >= 1.0; items -= 1.0)
+          if (!next(ignored)) return false;
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k)
+        if (axes[k] == p) point[k] = value;
+    }
+    return true;
+  }
+
+  Status step(std::uint64_t item) {
+    if (item % 65536 != 65535) return {};
+    job_.advance(text_.offset() - std::exchange(reported_, text_.offset()));
+    return job_.cancelled() ? Status(cancelled()) : Status{};
+  }
+
+  const InputFile& file_;
+  const PlyHeader& header_;
+  TextReader text_;
+  JobControl& job_;
+  std::uint64_t reported_ = 0;
+};
+
+}  // namespace
+
+bool looksLikePly(std::string_view head, std::string_view) {
+  return head.starts_with("ply\n") || head.starts_with("ply\r\n") || head.starts_with("ply ");
+}
+
+Result<Imported> readPly(const InputFile& file, const ImportOptions& options, JobControl& job) {
+  const Result<PlyHeader> header = readPlyHeader(file);
+  if (!header) return tl::unexpected(header.error());
+  job.begin("reading", file.size());
+  PointCloud cloud;
+  cloud.unit = header->unit;
+  if (Status status = PlyBody(file, *header, job).read(cloud); !status) return tl::unexpected(status.error());
+  return gridPoints(std::move(cloud), options, "PLY", file.path(), job);
+}
+
+}  // namespace fettle::engine

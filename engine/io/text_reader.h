@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "engine/io/input_file.h"
+
+namespace fettle::engine {
+
+/// Reads a file front to back through a buffer of a few MB, as lines, as words or as raw bytes.
+/// After any method gave nothing, status() tells the end of the file from an error.
+class TextReader {
+ public:
+  explicit TextReader(const InputFile& file, std::uint64_t offset = 0);
+
+  /// The next line without its end (LF or CR LF). False at the end. An error when a line is longer than
+  /// kLongest. Valid until the next call.
+  [[nodiscard]] bool line(std::string_view& text);
+
+  /// The next run of characters other than space, tab, CR, LF. As line().
+  [[nodiscard]] bool word(std::string_view& text);
+
+  /// The next `count` bytes (<= kLongest), null if the file has no more that many. As line().
+  [[nodiscard]] const char* bytes(std::size_t count);
+
+  /// Skips bytes; the caller has made sure that they are there.
+  void skip(std::uint64_t count);
+
+  /// Offset in the file of what comes next.
+  [[nodiscard]] std::uint64_t offset() const noexcept { return file_offset_ - (end_ - begin_); }
+  [[nodiscard]] const Status& status() const noexcept { return status_; }
+
+  static constexpr std::size_t kLongest = std::size_t{1} << 20;
+
+ private:
+  [[nodiscard]] bool refill();
+
+  static constexpr std::size_t kBuffer = std::size_t{4} << 20;
+  const InputFile& file_;
+  std::uint64_t file_offset_ = 0;  // of the first byte not in the buffer
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0;  // of what was not given out yet
+  std::size_t end_ = 0;
+  Status status_;
+};
+
+/// Reads one decimal number (optional sign, exponent, nan, inf; never the locale's comma) from the front of
+/// [begin, end) and moves `begin` behind it. Out of range gives infinity or zero, as the exact value would
+/// round. False, and `begin` unmoved, if there is no number.
+template <class Float>
+[[nodiscard]] bool parseNumber(const char*& begin, const char* end, Float& number) noexcept;
+extern template bool parseNumber<float>(const char*&, const char*, float&) noexcept;
+extern template bool parseNumber<double>(const char*&, const char*, double&) noexcept;
+
+/// Whether bytes look like text: no control characters but white space.
+[[nodiscard]] bool looksLikeText(std::string_view head) noexcept;
+
+}  // namespace fettle::engine

@@ -1,0 +1,116 @@
+// GeoTIFF float32: Deflate with the floating-point predictor, which every reader knows and keeps every bit.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <cpl_string.h>
+#include <fmt/format.h>
+#include <gdal.h>
+#include <ogr_srs_api.h>
+
+#include "engine/io/atomic_file.h"
+#include "engine/io/format.h"
+#include "engine/io/gdal_session.h"
+#include "engine/io/geo_reference.h"
+#include "engine/io/tiff_metadata.h"
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr int kBlock = 256;
+
+struct FreeList {
+  void operator()(char** list) const noexcept { CSLDestroy(list); }
+};
+
+// Whether the file will say the lateral unit by itself.
+bool crsStatesUnit(const Grid& grid) {
+  if (grid.crs_wkt.empty()) return false;
+  StatedUnits units;
+  std::vector<std::string> ignored;
+  unitsOfCrs(grid.crs_wkt, grid.origin_y, units, ignored);
+  return units.lateral && (units.lateral->name == "deg" ? grid.lateral_unit.name == "deg"
+                                                        : *units.lateral == grid.lateral_unit);
+}
+
+tl::unexpected<Error> cannotWrite(const GdalSession& gdal, const std::string& path) {
+  return inputError("the file cannot be written: " + gdal.reason("the disk may be full"), path,
+                    "make room on the disk or choose another folder");
+}
+
+Status describe(GDALDatasetH dataset, const Grid& grid, const GdalSession& gdal, const std::string& path) {
+  GeoTransform gt = geoTransformOf(grid);
+  GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
+  bool done = GDALSetGeoTransform(dataset, gt.data()) == CE_None;
+  if (done && !grid.crs_wkt.empty()) {
+    OGRSpatialReferenceH crs = OSRNewSpatialReference(grid.crs_wkt.c_str());
+    if (crs != nullptr) {
+      OSRSetAxisMappingStrategy(crs, OAMS_TRADITIONAL_GIS_ORDER);
+      done = GDALSetSpatialRef(dataset, crs) == CE_None;
+      OSRDestroySpatialReference(crs);
+    }
+  }
+  done = done && GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN()) == CE_None &&
+         GDALSetRasterUnitType(band, grid.height_unit.name.c_str()) == CE_None;
+  if (done) writeOwnMetadata(dataset, grid, crsStatesUnit(grid));
+  if (!done || gdal.failed()) return cannotWrite(gdal, path);
+  return {};
+}
+
+}  // namespace
+
+Result<Exported> writeTiff(const Version& field, const std::string& path, const ExportOptions&,
+                           JobControl& job) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  const FieldReader reader = field.reader();
+  const Grid& grid = field.grid();
+
+  GdalSession gdal;
+  // Threads compress blocks; the blocks are written in order, so the bytes do not depend on their number.
+  const std::string block = fmt::format("{}", kBlock);
+  std::unique_ptr<char*, FreeList> creation;
+  const bool tiled = grid.width > kBlock && grid.height > kBlock;
+  for (const auto& [key, value] : {std::pair{"COMPRESS", "DEFLATE"},
+                                   {"PREDICTOR", "3"},
+                                   {"ZLEVEL", "6"},
+                                   {"BIGTIFF", "IF_SAFER"},
+                                   {"NUM_THREADS", "ALL_CPUS"},
+                                   {"TILED", tiled ? "YES" : "NO"},
+                                   {"BLOCKYSIZE", block.c_str()}})
+    creation.reset(CSLSetNameValue(creation.release(), key, value));
+  if (tiled) creation.reset(CSLSetNameValue(creation.release(), "BLOCKXSIZE", block.c_str()));
+  DatasetPtr dataset(GDALCreate(GDALGetDriverByName("GTiff"), file->temporaryPath().c_str(), grid.width,
+                                grid.height, 1, GDT_Float32, creation.get()));
+  if (!dataset) return cannotWrite(gdal, path);
+  if (Status status = describe(dataset.get(), grid, gdal, path); !status)
+    return tl::unexpected(status.error());
+
+  GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
+  std::vector<float> strip(static_cast<std::size_t>(grid.width) * kBlock);
+  job.begin("writing", static_cast<std::uint64_t>(grid.height));
+  for (std::int32_t top = 0; top < grid.height; top += kBlock) {
+    const std::int32_t rows = std::min(kBlock, grid.height - top);
+    // Read upside down: the first row of the file is the highest one of the field.
+    reader.readHeights(0, grid.height - top - rows, grid.width, rows,
+                       strip.data() + static_cast<std::ptrdiff_t>(rows - 1) * grid.width, -grid.width);
+    const CPLErr error = GDALRasterIO(band, GF_Write, 0, top, grid.width, rows, strip.data(), grid.width,
+                                      rows, GDT_Float32, 0, 0);
+    if (error != CE_None || gdal.failed()) return cannotWrite(gdal, path);
+    if (job.cancelled()) return cancelled();
+    job.advance(static_cast<std::uint64_t>(rows));
+  }
+  GDALFlushCache(dataset.get());
+  dataset.reset();
+  if (gdal.failed()) return cannotWrite(gdal, path);
+  if (job.cancelled()) return cancelled();
+  if (Status status = file->commit(); !status) return tl::unexpected(status.error());
+  return Exported{"GTiff", {}};
+}
+
+}  // namespace fettle::engine

@@ -1,0 +1,106 @@
+#include "engine/io/units.h"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace fettle::engine {
+
+namespace {
+
+struct KnownUnit {
+  const char* name;
+  double mm;
+  std::array<std::string_view, 8> spellings;  // lower case
+};
+
+// The US survey foot is 1200 / 3937 m exactly; the division rounds once.
+const std::array<KnownUnit, 9> kUnits{{
+    {"mm", 1.0, {"mm", "millimetre", "millimeter", "millimetres", "millimeters"}},
+    {"m", 1000.0, {"m", "metre", "meter", "metres", "meters"}},
+    {"um",
+     1e-3,
+     {"um", "\xc2\xb5m", "\xce\xbcm", "micrometre", "micrometer", "micrometres", "micrometers", "micron"}},
+    {"nm", 1e-6, {"nm", "nanometre", "nanometer", "nanometres", "nanometers"}},
+    {"cm", 10.0, {"cm", "centimetre", "centimeter", "centimetres", "centimeters"}},
+    {"km", 1e6, {"km", "kilometre", "kilometer", "kilometres", "kilometers"}},
+    {"ft", 304.8, {"ft", "foot", "feet", "international foot", "foot (international)"}},
+    {"ftUS",
+     1200000.0 / 3937.0,
+     {"ftus", "us survey foot", "us-ft", "foot_us", "us survey feet", "us foot", "ft us"}},
+    {"in", 25.4, {"in", "inch", "inches"}},
+}};
+
+std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower)
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  return lower;
+}
+
+}  // namespace
+
+std::optional<LengthUnit> lengthUnitFromName(std::string_view name) {
+  if (name.empty()) return std::nullopt;
+  const std::string lower = lowerCase(name);
+  for (const KnownUnit& unit : kUnits)
+    for (const std::string_view spelling : unit.spellings)
+      if (spelling == lower) return LengthUnit{unit.name, unit.mm};
+  return std::nullopt;
+}
+
+LengthUnit lengthUnitFromMetres(double metres, std::string_view name) {
+  // Files write the survey foot with 10 to 16 digits; it and the foot differ by 2e-6.
+  for (const KnownUnit& unit : kUnits)
+    if (std::abs(metres * 1000.0 / unit.mm - 1.0) < 1e-8) return {unit.name, unit.mm};
+  return {std::string(name.empty() ? "unit" : name), metres * 1000.0};
+}
+
+std::optional<LengthUnit> lengthUnitFromComment(std::string_view comment) {
+  const std::string lower = lowerCase(comment);
+  for (std::size_t at = lower.find("unit"); at != std::string::npos; at = lower.find("unit", at + 1)) {
+    std::size_t begin = at + 4;
+    if (begin < lower.size() && lower[begin] == 's') ++begin;
+    const std::size_t word = lower.find_first_not_of(" \t:=", begin);
+    if (word == std::string::npos || word == begin) continue;
+    const std::size_t end = lower.find_first_of(" \t,;)]\r\n", word);
+    if (auto unit = lengthUnitFromName(lower.substr(word, end == std::string::npos ? end : end - word)))
+      return unit;
+  }
+  return std::nullopt;
+}
+
+void settleUnits(Grid& grid, const StatedUnits& file, const ImportOptions& options,
+                 std::vector<std::string>& warnings) {
+  grid.lateral_unit = options.unit ? *options.unit : file.lateral.value_or(LengthUnit{});
+  if (options.unit)
+    grid.height_unit = *options.unit;
+  else if (file.height)
+    grid.height_unit = *file.height;
+  else
+    grid.height_unit = grid.lateral_unit.name == "deg" ? LengthUnit{"m", 1000.0} : grid.lateral_unit;
+  if (options.unit &&
+      ((file.lateral && *file.lateral != *options.unit) || (file.height && *file.height != *options.unit)))
+    warnings.push_back(fmt::format("the file says {}, taken as {} as asked",
+                                   (file.lateral ? file.lateral : file.height)->name, options.unit->name));
+
+  std::optional<std::pair<double, double>> stated = file.spacing;
+  if (!stated && file.spacing_mm)
+    stated = std::pair{file.spacing_mm->first / grid.lateral_unit.mm,
+                       file.spacing_mm->second / grid.lateral_unit.mm};
+  if (options.spacing) {
+    if (stated && *stated != *options.spacing)
+      warnings.push_back(fmt::format("the file says spacing {} x {}, taken as {} x {} as asked",
+                                     stated->first, stated->second, options.spacing->first,
+                                     options.spacing->second));
+    stated = options.spacing;
+  }
+  if (!stated)
+    warnings.push_back(fmt::format("the file states no spacing, 1 {} taken: give it with --spacing",
+                                   grid.lateral_unit.name));
+  grid.spacing_x = stated ? stated->first : 1.0;
+  grid.spacing_y = stated ? stated->second : 1.0;
+}
+
+}  // namespace fettle::engine

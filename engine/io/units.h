@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/field/grid.h"
+#include "engine/io/import.h"
+
+namespace fettle::engine {
+
+/// What a file says about units and spacing; what it does not say is empty.
+struct StatedUnits {
+  std::optional<LengthUnit> lateral;
+  std::optional<LengthUnit> height;
+  std::optional<std::pair<double, double>> spacing;     ///< [lateral]
+  std::optional<std::pair<double, double>> spacing_mm;  ///< as resolution tags give it; second choice
+};
+
+/// Settles units and spacing of `grid` from the user's options, then the file, then the defaults of
+/// importField; appends what was assumed or overruled to `warnings`.
+void settleUnits(Grid& grid, const StatedUnits& file, const ImportOptions& options,
+                 std::vector<std::string>& warnings);
+
+/// A unit by its size in metres: the usual name where there is one, else the file's own.
+[[nodiscard]] LengthUnit lengthUnitFromMetres(double metres, std::string_view name);
+
+/// Finds "unit NAME" or "units NAME" (or "units: NAME", "units=NAME") in a comment line of a text format.
+[[nodiscard]] std::optional<LengthUnit> lengthUnitFromComment(std::string_view comment);
+
+}  // namespace fettle::engine
