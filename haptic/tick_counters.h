@@ -16,7 +16,7 @@ struct TickCounters {
   std::int64_t force_clamped = 0;
   /// Ended contact because the cell of the previous proxy became a hole. Expected: only after adopting.
   std::int64_t lost_cell = 0;
-  /// Entered the material through the field's side or a hole's wall, not through the surface.
+  /// Contact that began straight from beside the field or from over a hole: mostly through the side wall.
   std::int64_t side_entries = 0;
   /// Closest-point search stopped by its bound instead of by itself. Expected: never below 100 cells a tick.
   std::int64_t search_bound_hits = 0;

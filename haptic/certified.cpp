@@ -1,0 +1,347 @@
+// The closest points of a bilinear patch, all of them.
+//
+// With everything relative to the endpoint e, S(u, v) - e = (sx u - ex, sy v - ey, z), z = w + p u, where
+//   p(v) = b + d v,   q(u) = c + d u,   w(v) = a - ez + c v.
+// For a fixed v the distance is quadratic in u, with its one minimum at
+//   U(v) = N / Q,   Q = sx^2 + p^2,   N = sx ex - w p.
+// Put into the other derivative, sy (sy v - ey) + z q = 0, with z = sx M / Q, M = sx w + ex p, that is
+//   h(v) = sy (sy v - ey) Q^2 + sx M (c Q + d N) = 0,
+// a quintic. Its roots in [0, 1] are isolated in Bernstein form: the number of sign changes of the
+// coefficients bounds the number of roots and is exact when 0 or 1 (Descartes' rule; Lane and Riesenfeld
+// 1981, "Bounds on a polynomial"), and halving by de Casteljau ends the count. A coefficient too small to
+// trust counts as whichever sign makes more changes, so rounding may add a candidate but never lose one that
+// matters.
+
+#include "haptic/certified.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "haptic/closest_point.h"
+
+namespace fettle::haptic {
+
+namespace {
+
+// Bernstein coefficients of a polynomial of degree N on [0, 1].
+template <int N>
+using Bernstein = std::array<double, N + 1>;
+
+constexpr double binomial(int n, int k) noexcept {
+  double c = 1.0;
+  for (int i = 1; i <= k; ++i) c = c * (n - k + i) / i;
+  return c;
+}
+
+template <int N, int M>
+Bernstein<N + M> product(const Bernstein<N>& a, const Bernstein<M>& b) noexcept {
+  Bernstein<N + M> out{};
+  for (int i = 0; i <= N; ++i)
+    for (int j = 0; j <= M; ++j) out[i + j] += binomial(N, i) * binomial(M, j) * a[i] * b[j];
+  for (int k = 0; k <= N + M; ++k) out[k] /= binomial(N + M, k);
+  return out;
+}
+
+using Quintic = Bernstein<5>;
+
+// The parts of h, for evaluating it where rounding is smallest.
+struct Reduced {
+  double sx, sy, ex, ey;
+  double b, c, d, w0;  // w(v) = w0 + c v
+
+  [[nodiscard]] double h(double v) const noexcept {
+    const double p = b + d * v;
+    const double w = w0 + c * v;
+    const double big_q = sx * sx + p * p;
+    const double n = sx * ex - w * p;
+    return sy * (sy * v - ey) * big_q * big_q + sx * (sx * w + ex * p) * (c * big_q + d * n);
+  }
+  [[nodiscard]] double u(double v) const noexcept {
+    const double p = b + d * v;
+    return (sx * ex - (w0 + c * v) * p) / (sx * sx + p * p);
+  }
+};
+
+double largest(const double* a, int n) noexcept {
+  double m = 0.0;
+  for (int i = 0; i < n; ++i) m = std::max(m, std::abs(a[i]));
+  return m;
+}
+
+// h in Bernstein form, and how large rounding may have made the error of a coefficient.
+Quintic quintic(const Reduced& r, double& noise) noexcept {
+  const Bernstein<1> p = {r.b, r.b + r.d};
+  const Bernstein<1> w = {r.w0, r.w0 + r.c};
+  const Bernstein<1> l = {-r.sy * r.ey, r.sy * (r.sy - r.ey)};
+  const Bernstein<1> m = {r.sx * w[0] * r.sx + r.sx * r.ex * p[0], r.sx * w[1] * r.sx + r.sx * r.ex * p[1]};
+  Bernstein<2> big_q = product<1, 1>(p, p);
+  Bernstein<2> n = product<1, 1>(w, p);
+  const double n_size = largest(n.data(), 3) + std::abs(r.sx * r.ex);
+  Bernstein<2> k{};
+  for (int i = 0; i < 3; ++i) {
+    big_q[i] += r.sx * r.sx;
+    n[i] = r.sx * r.ex - n[i];
+    k[i] = r.c * big_q[i] + r.d * n[i];
+  }
+  const Quintic first = product<1, 4>(l, product<2, 2>(big_q, big_q));
+  const Bernstein<3> second = product<1, 2>(m, k);
+  const Quintic second5 = product<3, 2>(second, {1.0, 1.0, 1.0});
+  Quintic h{};
+  for (int i = 0; i <= 5; ++i) h[i] = first[i] + second5[i];
+  const double q_size = largest(big_q.data(), 3);
+  const double l_size = r.sy * (r.sy + std::abs(r.ey));
+  const double m_size =
+      r.sx * (r.sx * (std::abs(w[0]) + std::abs(w[1])) + std::abs(r.ex) * (std::abs(p[0]) + std::abs(p[1])));
+  // About thirty roundings of 1.1e-16 each, on the sizes of what is summed.
+  noise = 4e-15 * (l_size * q_size * q_size + m_size * (std::abs(r.c) * q_size + std::abs(r.d) * n_size));
+  return h;
+}
+
+enum class Changes { kNone, kOneUp, kOneDown, kPerhaps };
+
+// What the signs of the coefficients say about roots inside the interval.
+Changes signChanges(const Quintic& h, double noise) noexcept {
+  int changes = 0;
+  int first = 0;
+  int last = 0;
+  for (const double c : h) {
+    const int sign = c > noise ? 1 : (c < -noise ? -1 : 0);
+    if (sign == 0) return Changes::kPerhaps;
+    if (first == 0) first = sign;
+    if (last != 0 && sign != last) ++changes;
+    last = sign;
+  }
+  if (changes == 0) return Changes::kNone;
+  if (changes > 1) return Changes::kPerhaps;
+  return first < 0 ? Changes::kOneUp : Changes::kOneDown;
+}
+
+// Calls f(v) near every root in [0, 1] at which h goes from below to above zero: the minima along v. May call
+// it elsewhere too. kNodes bounds the halvings: five roots need far fewer unless they coincide to rounding,
+// and then every point near them is as good.
+template <class F>
+void forEachMinimum(const Reduced& r, F&& f) noexcept {
+  struct Interval {
+    Quintic h;
+    double low, size;
+    int depth;
+  };
+  constexpr int kDepth = 24;
+  constexpr int kNodes = 96;
+  std::array<Interval, kDepth + 2> stack;
+  double noise = 0.0;
+  stack[0] = {quintic(r, noise), 0.0, 1.0, 0};
+  int top = 1;
+  for (int node = 0; top > 0; ++node) {
+    const Interval at = stack[--top];
+    switch (signChanges(at.h, noise)) {
+      case Changes::kNone:
+      case Changes::kOneDown:
+        continue;
+      case Changes::kOneUp: {
+        double low = at.low;
+        double high = at.low + at.size;
+        for (int i = 0; i < 12; ++i) {
+          const double middle = 0.5 * (low + high);
+          (r.h(middle) < 0.0 ? low : high) = middle;
+        }
+        f(0.5 * (low + high));
+        continue;
+      }
+      case Changes::kPerhaps:
+        break;
+    }
+    const bool lost = largest(at.h.data(), 6) <= noise;
+    if (at.depth == kDepth || node >= kNodes || (lost && at.depth >= 3)) {
+      f(at.low + 0.5 * at.size);
+      continue;
+    }
+    Interval left{{}, at.low, 0.5 * at.size, at.depth + 1};
+    Interval right{at.h, at.low + 0.5 * at.size, 0.5 * at.size, at.depth + 1};
+    // de Casteljau: `right` turns in place into the right half, its first entries are the left half's.
+    for (int k = 0; k <= 5; ++k) {
+      left.h[k] = right.h[0];
+      for (int j = 0; j < 5 - k; ++j) right.h[j] = 0.5 * (right.h[j] + right.h[j + 1]);
+    }
+    stack[top++] = right;
+    stack[top++] = left;
+  }
+}
+
+// Whether the squared distance is convex over the whole patch, so that it has one minimum there. With halves
+// of the second derivatives, det = sx^2 sy^2 + sx^2 q^2 + sy^2 p^2 - z d (2 p q + z d).
+bool convexDistance(const Patch& s, double ez) noexcept {
+  if (s.d == 0.0) return true;
+  const double p0 = s.b;
+  const double p1 = s.b + s.d;
+  const double q0 = s.c;
+  const double q1 = s.c + s.d;
+  const auto least = [](double a, double b) {
+    return (a > 0.0) == (b > 0.0) ? std::min(std::abs(a), std::abs(b)) : 0.0;
+  };
+  const double p_low = least(p0, p1);
+  const double q_low = least(q0, q1);
+  const double zd = std::abs(s.d) * std::max(std::abs(s.highest() - ez), std::abs(s.lowest() - ez));
+  const double pq = std::max(std::abs(p0), std::abs(p1)) * std::max(std::abs(q0), std::abs(q1));
+  const double sum = s.sx * s.sx * s.sy * s.sy + s.sx * s.sx * q_low * q_low + s.sy * s.sy * p_low * p_low;
+  return sum > zd * (2.0 * pq + zd) * (1.0 + 1e-12);
+}
+
+double unit(double x) noexcept {
+  return std::clamp(x, 0.0, 1.0);
+}
+
+void keepNearer(PatchPoint& best, const PatchPoint& point) noexcept {
+  if (point.distance2_mm2 < best.distance2_mm2) best = point;
+}
+
+// The closest point of the straight edge at v (or u) = 0 or 1, exact.
+PatchPoint closestOnEdgeV(const Patch& s, const glm::dvec3& e, double v) noexcept {
+  const double p = s.b + s.d * v;
+  const double w = s.a - e.z + s.c * v;
+  const double ex = e.x - s.x0;
+  const double u = unit((s.sx * ex - w * p) / (s.sx * s.sx + p * p));
+  const double px = s.sx * u - ex;
+  const double py = s.sy * v - (e.y - s.y0);
+  const double z = w + p * u;
+  return {u, v, px * px + py * py + z * z};
+}
+
+PatchPoint closestOnEdgeU(const Patch& s, const glm::dvec3& e, double u) noexcept {
+  const Patch turned{s.y0, s.x0, s.sy, s.sx, s.a, s.c, s.b, s.d};
+  const PatchPoint point = closestOnEdgeV(turned, {e.y, e.x, e.z}, u);
+  return {point.v, point.u, point.distance2_mm2};
+}
+
+}  // namespace
+
+PatchPoint closestOnWholePatch(const Patch& s, const glm::dvec3& endpoint) noexcept {
+  const double u0 = unit((endpoint.x - s.x0) / s.sx);
+  const double v0 = unit((endpoint.y - s.y0) / s.sy);
+  PatchPoint best = closestOnPatch(s, endpoint, u0, v0);
+  if (convexDistance(s, endpoint.z)) return best;
+  for (const double side : {0.0, 1.0}) {
+    keepNearer(best, closestOnEdgeV(s, endpoint, side));
+    keepNearer(best, closestOnEdgeU(s, endpoint, side));
+  }
+  const Reduced r{s.sx, s.sy, endpoint.x - s.x0, endpoint.y - s.y0, s.b, s.c, s.d, s.a - endpoint.z};
+  forEachMinimum(r, [&](double v) { keepNearer(best, closestOnPatch(s, endpoint, unit(r.u(v)), unit(v))); });
+  return best;
+}
+
+namespace {
+
+double beyond(double x, double low, double high) noexcept {
+  return std::max({low - x, x - high, 0.0});
+}
+
+// The search over cells; lives on the stack of one call.
+class CellSearch {
+ public:
+  CellSearch(Surface& surface, const glm::dvec3& endpoint, double radius_mm) noexcept
+      : surface_(surface), e_(endpoint), radius2_(radius_mm * radius_mm) {
+    const auto index = [](double x, std::int32_t cells) {
+      return static_cast<std::int32_t>(std::clamp(std::floor(x), -1.0, static_cast<double>(cells)));
+    };
+    const std::int32_t columns = surface.cellColumns();
+    const std::int32_t rows = surface.cellRows();
+    // One cell more on each side: which cells belong is decided by their distance, not by this rounding.
+    c0_ = std::max(index((e_.x - radius_mm) / surface.spacingX(), columns) - 1, 0);
+    c1_ = std::min(index((e_.x + radius_mm) / surface.spacingX(), columns) + 1, columns - 1);
+    r0_ = std::max(index((e_.y - radius_mm) / surface.spacingY(), rows) - 1, 0);
+    r1_ = std::min(index((e_.y + radius_mm) / surface.spacingY(), rows) + 1, rows - 1);
+  }
+
+  void seed() noexcept {
+    CellIndex own;
+    if (!surface_.cellUnder(e_, own)) return;
+    const SearchResult local = searchClosest(surface_, e_, own, 0.5, 0.5);
+    if (local.end == SearchEnd::kHole || horizontal2(local.point.cell, 1) > radius2_) return;
+    best_ = local.point;
+  }
+
+  void run() noexcept {
+    constexpr int kWindowWithoutPyramid = 12;
+    if (c1_ - c0_ < kWindowWithoutPyramid && r1_ - r0_ < kWindowWithoutPyramid)
+      cells(c0_, r0_, c1_, r1_);
+    else
+      squares(1, c0_, r0_, c1_, r1_);
+  }
+
+  [[nodiscard]] const SurfacePoint& best() const noexcept { return best_; }
+
+ private:
+  // Squared horizontal distance to the square of `side` cells from `cell` up.
+  [[nodiscard]] double horizontal2(CellIndex cell, int side) const noexcept {
+    const double dx =
+        beyond(e_.x, cell.column * surface_.spacingX(), (cell.column + side) * surface_.spacingX());
+    const double dy = beyond(e_.y, cell.row * surface_.spacingY(), (cell.row + side) * surface_.spacingY());
+    return dx * dx + dy * dy;
+  }
+
+  // All squares of a pyramid level that the cells [c0, c1] x [r0, r1] touch.
+  void squares(int level, std::int32_t c0, std::int32_t r0, std::int32_t c1, std::int32_t r1) noexcept {
+    const int shift = 3 * (level + 1);
+    for (std::int32_t y = r0 >> shift; y <= r1 >> shift; ++y)
+      for (std::int32_t x = c0 >> shift; x <= c1 >> shift; ++x) {
+        const CellIndex corner{x << shift, y << shift};
+        double low = std::numeric_limits<double>::infinity();
+        double high = -low;
+        // Cells at the square's upper edges use samples of the next squares.
+        for (int k = 0; k < 4; ++k) {
+          const engine::HeightBounds b = surface_.reader().bounds(level, x + (k & 1), y + (k >> 1));
+          if (b.empty()) continue;
+          low = std::min(low, static_cast<double>(b.min) * surface_.heightUnit());
+          high = std::max(high, static_cast<double>(b.max) * surface_.heightUnit());
+        }
+        if (!(low <= high)) continue;
+        const double flat2 = horizontal2(corner, 1 << shift);
+        const double dz = beyond(e_.z, low, high);
+        if (flat2 > radius2_ || flat2 + dz * dz >= best_.distance2_mm2) continue;
+        const std::int32_t from_c = std::max(c0, corner.column);
+        const std::int32_t from_r = std::max(r0, corner.row);
+        const std::int32_t to_c = std::min(c1, corner.column + (1 << shift) - 1);
+        const std::int32_t to_r = std::min(r1, corner.row + (1 << shift) - 1);
+        if (level == 0)
+          cells(from_c, from_r, to_c, to_r);
+        else
+          squares(level - 1, from_c, from_r, to_c, to_r);
+      }
+  }
+
+  void cells(std::int32_t c0, std::int32_t r0, std::int32_t c1, std::int32_t r1) noexcept {
+    Patch patch;
+    for (std::int32_t row = r0; row <= r1; ++row)
+      for (std::int32_t column = c0; column <= c1; ++column) {
+        const double flat2 = horizontal2({column, row}, 1);
+        if (flat2 > radius2_ || flat2 >= best_.distance2_mm2) continue;
+        if (!surface_.patch({column, row}, patch)) continue;
+        const double dz = beyond(e_.z, patch.lowest(), patch.highest());
+        if (flat2 + dz * dz >= best_.distance2_mm2) continue;
+        const PatchPoint point = closestOnWholePatch(patch, e_);
+        if (point.distance2_mm2 < best_.distance2_mm2)
+          best_ = {{column, row}, point.u, point.v, patch.at(point.u, point.v), point.distance2_mm2};
+      }
+  }
+
+  Surface& surface_;
+  glm::dvec3 e_;
+  double radius2_;
+  std::int32_t c0_, c1_, r0_, r1_;
+  SurfacePoint best_{{}, 0.0, 0.0, {}, std::numeric_limits<double>::infinity()};
+};
+
+}  // namespace
+
+bool certifiedClosest(Surface& surface, const glm::dvec3& endpoint, double radius_mm,
+                      SurfacePoint& out) noexcept {
+  CellSearch search(surface, endpoint, radius_mm);
+  search.seed();
+  search.run();
+  out = search.best();
+  return std::isfinite(out.distance2_mm2);
+}
+
+}  // namespace fettle::haptic

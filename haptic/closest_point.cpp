@@ -1,0 +1,44 @@
+#include "haptic/closest_point.h"
+
+#include "haptic/patch.h"
+#include "haptic/sharing.h"
+
+namespace fettle::haptic {
+
+SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u,
+                           double v) noexcept {
+  SearchResult result;
+  Patch patch;
+  if (!surface.patch(start, patch)) return result;
+  CellIndex cell = start;
+  PatchPoint best = closestOnPatch(patch, endpoint, u, v);
+  result.end = SearchEnd::kBound;
+  for (result.cells = 1; result.cells < kMaxCellsVisited; ++result.cells) {
+    CellIndex nearest_cell = cell;
+    Patch nearest_patch = patch;
+    PatchPoint nearest = best;
+    // Going down from the shared point, each neighbour offers a point at least as near; only a strictly
+    // nearer one counts, so that rounding cannot send the search in circles.
+    forEachSharing(surface, cell, best.u, best.v, [&](const SharingCell& other) {
+      Patch other_patch;
+      if (!surface.patch(other.cell, other_patch)) return;
+      const PatchPoint point = closestOnPatch(other_patch, endpoint, other.u, other.v);
+      if (point.distance2_mm2 < nearest.distance2_mm2) {
+        nearest = point;
+        nearest_cell = other.cell;
+        nearest_patch = other_patch;
+      }
+    });
+    if (nearest_cell == cell) {
+      result.end = SearchEnd::kAtRest;
+      break;
+    }
+    cell = nearest_cell;
+    patch = nearest_patch;
+    best = nearest;
+  }
+  result.point = {cell, best.u, best.v, patch.at(best.u, best.v), best.distance2_mm2};
+  return result;
+}
+
+}  // namespace fettle::haptic

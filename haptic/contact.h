@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+
+#include "haptic/normal.h"
+#include "haptic/scene.h"
+#include "haptic/surface.h"
+#include "haptic/tick_counters.h"
+
+namespace fettle::haptic {
+
+/// The outcome of one tick's contact.
+struct Contact {
+  bool touching = false;
+  // The rest means something only while touching.
+  SurfacePoint proxy;
+  glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit length, z > 0
+  glm::dvec3 penetration_mm{0.0};    ///< proxy minus endpoint
+};
+
+/// The two modes of the seed paper, as a state machine over ticks.
+///
+///                   search found, test positive
+///        +------+  ----------------------------->  +------------+
+///        | free |                                  | in contact |  keeps the proxy's cell and parameters
+///        +------+  <-----------------------------  +------------+
+///                   test not positive and none on the ray; endpoint beside the field or over a hole;
+///                   bad input
+///
+/// Test: dot(proxy - endpoint, normal) > 0. Exactly zero, an endpoint on the surface for one, is no contact;
+/// its force would be zero.
+///
+/// Level paper. In contact, the search for the local closest point starts at the previous proxy. Free, or
+/// when that comes to nothing, it starts from the cells under the haptic ray (previous to current endpoint),
+/// one after the other until the test is positive. All below the surface is material: an endpoint that is
+/// below the surface of its own cell is found whatever the ray was, because its own cell is the ray's last.
+/// When it is not, only a ray that comes down through a patch counts (it went through a wall within one
+/// tick), so that a tip that clears a ridge is not held by it. So a fast hand can not fall through, and one
+/// that is pushed out of the far side of a wall stays with the near side until its proxy slides off.
+///
+/// Level certified. Has no memory but the endpoint: the tip touches when it is below the surface of its own
+/// cell, and the proxy is the true closest point within the radius.
+///
+/// At both levels the tip touches only over a cell without holes: beside the field and over holes there is
+/// nothing to feel (counted). The side of the field and the walls of holes are no surface; who enters the
+/// material through them is in contact at once (counted).
+///
+/// At a vertex the mean normal can point to the wrong side: with slopes of 1 and 1000 around a pit it does.
+/// At a point that is a local minimum of the distance over all four cells the side is known without it, by
+/// the sign of proxy.z - endpoint.z (the penetration vector is then a combination of the four normals, all of
+/// which have z > 0); where the two disagree the sign decides (counted).
+///
+/// Threading: one thread; wait-free, noexcept, allocates nothing.
+class ContactTracker {
+ public:
+  ContactTracker(ContactLevel level, int certified_radius_cells) noexcept
+      : level_(level), radius_cells_(certified_radius_cells) {}
+
+  /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt.
+  [[nodiscard]] Contact update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters) noexcept;
+
+  /// Forgets contact and previous endpoint, as before the first tick: the next ray is a point.
+  void reset() noexcept {
+    touching_ = false;
+    has_previous_ = false;
+  }
+
+ private:
+  [[nodiscard]] bool track(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters,
+                           Contact& out) noexcept;
+  [[nodiscard]] bool collide(Surface& surface, const glm::dvec3& endpoint, bool below, CellIndex own,
+                             TickCounters& counters, Contact& out) noexcept;
+
+  ContactLevel level_;
+  int radius_cells_;
+  bool touching_ = false;
+  bool has_previous_ = false;
+  bool previous_over_cell_ = false;
+  glm::dvec3 previous_{0.0};
+  CellIndex cell_;  // of the previous proxy, while touching
+  double u_ = 0.0, v_ = 0.0;
+};
+
+/// The contact test at a surface point (see ContactTracker); fills normal and penetration.
+[[nodiscard]] bool contactTest(Surface& surface, const SurfacePoint& proxy, const glm::dvec3& endpoint,
+                               TickCounters& counters, Contact& out) noexcept;
+
+}  // namespace fettle::haptic

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace fettle::haptic {
+
+/// A force [N] cut to the limit [N] along its own direction.
+struct ClampedForce {
+  glm::dvec3 force_n{0.0};
+  double strength = 0.0;  ///< |force| / limit, 0 .. 1
+  bool clamped = false;
+};
+
+/// What the hand may get of a force. One that is not finite becomes zero, and counts as clamped: it is the
+/// last stop before the hand. `limit_n` > 0.
+[[nodiscard]] inline ClampedForce clampForce(const glm::dvec3& force_n, double limit_n) noexcept {
+  // Scaled by the largest component, so that squares neither overflow nor vanish.
+  const double largest = std::fmax(std::abs(force_n.x), std::fmax(std::abs(force_n.y), std::abs(force_n.z)));
+  if (!std::isfinite(force_n.x + force_n.y + force_n.z)) return {glm::dvec3(0.0), 0.0, true};
+  if (!(largest > 0.0)) return {};
+  const glm::dvec3 scaled = force_n / largest;
+  const double size = glm::length(scaled);  // 1 .. sqrt(3)
+  if (largest * size > limit_n) return {scaled * (limit_n / size), 1.0, true};
+  return {force_n, largest * size / limit_n, false};
+}
+
+}  // namespace fettle::haptic
