@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "render/picture.h"
+
+namespace fettle::render {
+
+/// Part of a picture [pixels], (0, 0) = top left corner.
+struct Rectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// A box in scene coordinates [mm], exaggeration in z.
+struct Box {
+  glm::dvec3 low{0.0};
+  glm::dvec3 high{0.0};
+};
+
+/// A half line in scene coordinates.
+struct Ray {
+  glm::dvec3 from;
+  glm::dvec3 along;  ///< unit, away from the viewer
+};
+
+/// Turns scene coordinates into pixels and back, in double precision. Scene coordinates are right-handed: x
+/// and y as in the field, z up. Clip space is Vulkan's: y down, depth 0 (near) .. 1 (far).
+class Camera {
+ public:
+  Camera() = default;
+
+  /// The camera of `view` that shows all of `shown` in `plot` at zoom 1, and whose depth range takes in all
+  /// of `drawn` as well. A box without extent is shown as if it were one millimetre wide. view.width and
+  /// view.height play no part.
+  [[nodiscard]] static Camera fit(const View& view, const Box& shown, const Box& drawn,
+                                  const Rectangle& plot);
+
+  [[nodiscard]] const glm::dmat4& clipFromScene() const noexcept { return clip_from_scene_; }
+  /// Unit vectors in the scene: to the picture's right, to its top, to the viewer.
+  [[nodiscard]] const glm::dvec3& right() const noexcept { return right_; }
+  [[nodiscard]] const glm::dvec3& up() const noexcept { return up_; }
+  [[nodiscard]] const glm::dvec3& toViewer() const noexcept { return to_viewer_; }
+
+  /// Pixels that a millimetre parallel to the picture takes, at the middle of what is shown.
+  [[nodiscard]] double pixelsPerMm() const noexcept { return pixels_per_mm_; }
+
+  /// Where a point of the scene lies in the picture; pixel (i, j) covers [i, i + 1) x [j, j + 1).
+  [[nodiscard]] glm::dvec2 pixelOf(const glm::dvec3& point) const noexcept;
+
+  /// What lies under a place in the picture.
+  [[nodiscard]] Ray rayAt(const glm::dvec2& pixel) const noexcept;
+
+  /// Whether no part of the box can be in the plot. Conservative: false when in doubt.
+  [[nodiscard]] bool misses(const Box& box) const noexcept;
+
+ private:
+  glm::dmat4 clip_from_scene_{1.0};
+  glm::dmat4 scene_from_clip_{1.0};
+  glm::dvec3 right_{1.0, 0.0, 0.0}, up_{0.0, 1.0, 0.0}, to_viewer_{0.0, 0.0, 1.0};
+  double pixels_per_mm_ = 1.0;
+  Rectangle plot_;
+};
+
+/// The eight corners of a box.
+[[nodiscard]] std::array<glm::dvec3, 8> corners(const Box& box);
+
+}  // namespace fettle::render

@@ -1,0 +1,33 @@
+#include "render/capture.h"
+
+#include <cstring>
+
+namespace fettle::render {
+
+Image capture(Context& context, const PictureTarget& target) {
+  const vk::Extent2D extent = target.colour.extent();
+  Image image;
+  image.width = static_cast<int>(extent.width);
+  image.height = static_cast<int>(extent.height);
+  image.rgba.resize(std::size_t{4} * extent.width * extent.height);
+  const Buffer out(context, image.rgba.size(), vk::BufferUsageFlagBits::eTransferDst);
+  context.run([&](const vk::raii::CommandBuffer& commands) {
+    vk::BufferImageCopy copy;
+    copy.setImageSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
+        .setImageExtent({extent.width, extent.height, 1});
+    commands.copyImageToBuffer(target.colour.image(), vk::ImageLayout::eTransferSrcOptimal, *out.handle(),
+                               copy);
+    vk::MemoryBarrier2 to_host;
+    to_host.setSrcStageMask(vk::PipelineStageFlagBits2::eCopy)
+        .setSrcAccessMask(vk::AccessFlagBits2::eTransferWrite)
+        .setDstStageMask(vk::PipelineStageFlagBits2::eHost)
+        .setDstAccessMask(vk::AccessFlagBits2::eHostRead);
+    vk::DependencyInfo dependency;
+    dependency.setMemoryBarriers(to_host);
+    commands.pipelineBarrier2(dependency);
+  });
+  std::memcpy(image.rgba.data(), out.data(), image.rgba.size());
+  return image;
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "render/picture.h"
+#include "render/vulkan.h"
+
+namespace fettle::render {
+
+/// What the validation layers say, collected from whatever thread they say it on.
+class DebugMessages {
+ public:
+  void add(std::string message) {
+    const std::lock_guard lock(mutex_);
+    // A message a draw would fill the memory; the first ones tell the story.
+    if (messages_.size() < 200) messages_.push_back(std::move(message));
+  }
+  [[nodiscard]] std::vector<std::string> all() const {
+    const std::lock_guard lock(mutex_);
+    return messages_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::string> messages_;
+};
+
+/// The way to one Vulkan device: instance, device, one queue that draws and copies, one command pool.
+/// Promises Vulkan 1.3 with dynamic rendering and synchronization2, and sampling of 32-bit and 8-bit unsigned
+/// images. Leaves out: windows, several queues, memory management beyond one allocation a resource.
+///
+/// Threading: one thread at a time. Functions other than create() throw vk::SystemError; the room's door
+/// (renderer.cpp) turns that into an Error.
+class Context {
+ public:
+  /// Errors as Renderer::create states.
+  [[nodiscard]] static engine::Result<std::unique_ptr<Context>> create(const RendererOptions& options);
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+  ~Context();
+
+  [[nodiscard]] const vk::raii::Device& device() const noexcept { return device_; }
+  [[nodiscard]] const vk::raii::PhysicalDevice& physical() const noexcept { return physical_; }
+  [[nodiscard]] const vk::PhysicalDeviceLimits& limits() const noexcept { return limits_; }
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  [[nodiscard]] const DebugMessages& messages() const noexcept { return *messages_; }
+
+  /// Records commands by `record`, runs them and waits until they are done.
+  void run(const std::function<void(const vk::raii::CommandBuffer&)>& record);
+
+  /// Index of a memory type that is in `allowed_bits` and has all of `wanted`; throws when there is none.
+  [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_bits, vk::MemoryPropertyFlags wanted) const;
+
+ private:
+  Context() = default;
+
+  // Destroyed in reverse: device before messenger before instance, and what the messenger writes to last.
+  std::unique_ptr<DebugMessages> messages_ = std::make_unique<DebugMessages>();
+  vk::raii::Context loader_;
+  vk::raii::Instance instance_ = nullptr;
+  vk::raii::DebugUtilsMessengerEXT messenger_ = nullptr;
+  vk::raii::PhysicalDevice physical_ = nullptr;
+  vk::PhysicalDeviceLimits limits_;
+  vk::PhysicalDeviceMemoryProperties memory_;
+  std::string name_;
+  vk::raii::Device device_ = nullptr;
+  vk::raii::Queue queue_ = nullptr;
+  vk::raii::CommandPool pool_ = nullptr;
+};
+
+/// Why a device will not do; empty when it will. `queue_family` is set to the family to use when it will.
+[[nodiscard]] std::string rejection(const vk::raii::PhysicalDevice& device, std::uint32_t& queue_family);
+
+}  // namespace fettle::render

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace fettle::render {
+
+/// DejaVu Sans and DejaVu Sans Bold 2.37 (Bitstream Vera licence, free to embed) as TrueType files, taken
+/// from fonts-dejavu-core when the program was built: nothing has to be found at run time.
+[[nodiscard]] std::span<const std::uint8_t> regularFont() noexcept;
+[[nodiscard]] std::span<const std::uint8_t> boldFont() noexcept;
+
+}  // namespace fettle::render

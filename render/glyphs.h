@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+
+namespace fettle::render {
+
+/// Letters of DejaVu Sans (embedded at build time), rasterised by FreeType into one grey image as they are
+/// asked for: light hinting keeps horizontal stems on pixel rows, so that small text is crisp.
+///
+/// Threading: one thread at a time.
+class Glyphs {
+ public:
+  struct Glyph {
+    int x = 0, y = 0;           ///< place in the image [texels]
+    int width = 0, height = 0;  ///< size [texels = pixels]
+    int left = 0, top = 0;      ///< from the pen to the left edge, from the baseline up to the top edge [px]
+    double advance = 0.0;       ///< pen to pen [px]
+  };
+  enum class Weight { kRegular, kBold };
+
+  [[nodiscard]] static engine::Result<Glyphs> create();
+  Glyphs(Glyphs&&) noexcept;
+  Glyphs& operator=(Glyphs&&) noexcept;
+  ~Glyphs();
+
+  static constexpr int kSide = 1024;  ///< the image is kSide x kSide, one byte of coverage each
+
+  /// One character at a font size [px]; a box for one the font lacks, empty when the image is full (counted
+  /// by lost()).
+  [[nodiscard]] const Glyph& glyph(char32_t character, int size_px, Weight weight);
+
+  /// Distance the pen goes [px]. Malformed UTF-8 shows as U+FFFD.
+  [[nodiscard]] double width(const std::string& text, int size_px, Weight weight);
+
+  [[nodiscard]] const std::vector<std::uint8_t>& image() const noexcept { return image_; }
+  /// Grows whenever the image changes.
+  [[nodiscard]] std::uint64_t generation() const noexcept { return generation_; }
+  [[nodiscard]] std::int64_t lost() const noexcept { return lost_; }
+  /// Forgets every glyph: sizes no longer in use would fill the image in the end.
+  void clear();
+  /// Rows of the image in use.
+  [[nodiscard]] int used() const noexcept { return row_y_ + row_height_; }
+
+ private:
+  struct Library;
+  Glyphs();
+  std::unique_ptr<Library> library_;
+  std::map<std::uint64_t, Glyph> known_;
+  std::vector<std::uint8_t> image_;
+  int row_x_ = 0, row_y_ = 0, row_height_ = 0;  // shelf being filled
+  std::uint64_t generation_ = 1;
+  std::int64_t lost_ = 0;
+};
+
+/// The characters of a UTF-8 text; bytes that are no UTF-8 become U+FFFD, control characters spaces.
+[[nodiscard]] std::u32string charactersOf(const std::string& text);
+
+}  // namespace fettle::render

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "render/context.h"
+
+namespace fettle::render {
+
+/// A buffer that the CPU writes or reads directly, mapped for its whole life. Move-only.
+class Buffer {
+ public:
+  Buffer() = default;
+  /// Throws vk::SystemError. `bytes` > 0.
+  Buffer(const Context& context, vk::DeviceSize bytes, vk::BufferUsageFlags usage);
+  [[nodiscard]] const vk::raii::Buffer& handle() const noexcept { return buffer_; }
+  [[nodiscard]] vk::DeviceSize bytes() const noexcept { return bytes_; }
+  [[nodiscard]] std::byte* data() const noexcept { return data_; }
+
+ private:
+  vk::raii::DeviceMemory memory_ = nullptr;
+  vk::raii::Buffer buffer_ = nullptr;
+  vk::DeviceSize bytes_ = 0;
+  std::byte* data_ = nullptr;
+};
+
+/// Writes `items` into a buffer of exactly their size, or of one item when there are none (a buffer of no
+/// bytes is not allowed).
+template <class T>
+[[nodiscard]] Buffer bufferOf(const Context& context, std::span<const T> items, vk::BufferUsageFlags usage);
+
+/// An image on the device with a view of all of it. Move-only.
+class GpuImage {
+ public:
+  GpuImage() = default;
+  /// One mip level; a 2D image, or an array of `layers` of them when `array` asks for a view as such. Throws.
+  enum class Kind { kPlane, kArray };
+  GpuImage(const Context& context, vk::Format format, vk::Extent2D extent, std::uint32_t layers, Kind kind,
+           vk::ImageUsageFlags usage, vk::ImageAspectFlags aspect);
+  [[nodiscard]] vk::Image image() const noexcept { return *image_; }
+  [[nodiscard]] vk::ImageView view() const noexcept { return *view_; }
+  [[nodiscard]] vk::Extent2D extent() const noexcept { return extent_; }
+  [[nodiscard]] vk::ImageSubresourceRange range() const noexcept { return {aspect_, 0, 1, 0, layers_}; }
+
+ private:
+  vk::raii::DeviceMemory memory_ = nullptr;
+  vk::raii::Image image_ = nullptr;
+  vk::raii::ImageView view_ = nullptr;
+  vk::Extent2D extent_;
+  std::uint32_t layers_ = 1;
+  vk::ImageAspectFlags aspect_;
+};
+
+/// A barrier on all of an image: what came before has written, what comes after may read or write.
+void change(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::ImageLayout from,
+            vk::ImageLayout to, vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access,
+            vk::PipelineStageFlags2 after, vk::AccessFlags2 after_access);
+
+template <class T>
+Buffer bufferOf(const Context& context, std::span<const T> items, vk::BufferUsageFlags usage) {
+  Buffer buffer(context, std::max<std::size_t>(items.size_bytes(), sizeof(T)), usage);
+  std::memcpy(buffer.data(), items.data(), items.size_bytes());
+  return buffer;
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/field/grid.h"
+
+namespace fettle::render {
+
+/// 1, 2 or 5 times a power of ten, the largest not above `value` (> 0, finite).
+[[nodiscard]] double roundDown125(double value);
+
+/// A length unit to show numbers in: its name in UTF-8 ("µm") and how many of it make one of the field's
+/// unit.
+struct ShownUnit {
+  std::string name;
+  double per_unit = 1.0;
+};
+
+/// The unit in which a length of `size` (in `unit`, > 0) reads well: `unit` itself when the number lies in
+/// [smallest, largest), else the metric unit that brings it into [1, 1000). Units that are not metric stay.
+[[nodiscard]] ShownUnit shownUnit(const engine::LengthUnit& unit, double size, double smallest,
+                                  double largest);
+
+/// Round numbers within [low, high], about `wanted` of them, with just the decimals they need.
+struct Tick {
+  double value = 0.0;
+  std::string text;
+};
+[[nodiscard]] std::vector<Tick> ticks(double low, double high, int wanted);
+
+/// A number with three significant digits, no exponent between 1e-4 and 1e6; a true minus sign.
+[[nodiscard]] std::string shortNumber(double value);
+
+}  // namespace fettle::render

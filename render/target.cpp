@@ -1,0 +1,85 @@
+#include "render/target.h"
+
+namespace fettle::render {
+namespace {
+
+using Usage = vk::ImageUsageFlagBits;
+using Layout = vk::ImageLayout;
+using Stage = vk::PipelineStageFlagBits2;
+using Access = vk::AccessFlagBits2;
+
+vk::RenderingAttachmentInfo attachment(const GpuImage& image, Layout layout, vk::ClearValue clear,
+                                       vk::AttachmentStoreOp store) {
+  vk::RenderingAttachmentInfo info;
+  info.setImageView(image.view())
+      .setImageLayout(layout)
+      .setLoadOp(vk::AttachmentLoadOp::eClear)
+      .setStoreOp(store)
+      .setClearValue(clear);
+  return info;
+}
+
+void beginRendering(const vk::raii::CommandBuffer& commands, vk::Extent2D extent,
+                    const vk::RenderingAttachmentInfo& colour, const vk::RenderingAttachmentInfo* depth) {
+  vk::RenderingInfo info;
+  info.setRenderArea({{0, 0}, extent})
+      .setLayerCount(1)
+      .setColorAttachments(colour)
+      .setPDepthAttachment(depth);
+  commands.beginRendering(info);
+  commands.setViewport(0, vk::Viewport{0.0F, 0.0F, static_cast<float>(extent.width),
+                                       static_cast<float>(extent.height), 0.0F, 1.0F});
+  commands.setScissor(0, vk::Rect2D{{0, 0}, extent});
+}
+
+}  // namespace
+
+SceneTarget::SceneTarget(const Context& context, vk::Extent2D extent)
+    : colour(context, kColourFormat, extent, 1, GpuImage::Kind::kPlane,
+             Usage::eColorAttachment | Usage::eSampled, vk::ImageAspectFlagBits::eColor),
+      depth(context, kDepthFormat, extent, 1, GpuImage::Kind::kPlane, Usage::eDepthStencilAttachment,
+            vk::ImageAspectFlagBits::eDepth) {}
+
+void SceneTarget::begin(const vk::raii::CommandBuffer& commands) const {
+  change(commands, colour, Layout::eUndefined, Layout::eColorAttachmentOptimal, Stage::eFragmentShader,
+         Access::eShaderRead, Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite);
+  change(commands, depth, Layout::eUndefined, Layout::eDepthAttachmentOptimal, Stage::eLateFragmentTests,
+         Access::eDepthStencilAttachmentWrite, Stage::eEarlyFragmentTests,
+         Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite);
+  const vk::RenderingAttachmentInfo colours =
+      attachment(colour, Layout::eColorAttachmentOptimal, vk::ClearColorValue(std::array<float, 4>{}),
+                 vk::AttachmentStoreOp::eStore);
+  const vk::RenderingAttachmentInfo depths =
+      attachment(depth, Layout::eDepthAttachmentOptimal, vk::ClearDepthStencilValue{1.0F, 0},
+                 vk::AttachmentStoreOp::eDontCare);
+  beginRendering(commands, colour.extent(), colours, &depths);
+}
+
+void SceneTarget::end(const vk::raii::CommandBuffer& commands) const {
+  commands.endRendering();
+  change(commands, colour, Layout::eColorAttachmentOptimal, Layout::eShaderReadOnlyOptimal,
+         Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eFragmentShader,
+         Access::eShaderRead);
+}
+
+PictureTarget::PictureTarget(const Context& context, vk::Extent2D extent)
+    : colour(context, kColourFormat, extent, 1, GpuImage::Kind::kPlane,
+             Usage::eColorAttachment | Usage::eTransferSrc, vk::ImageAspectFlagBits::eColor) {}
+
+void PictureTarget::begin(const vk::raii::CommandBuffer& commands, const std::array<float, 3>& ground) const {
+  change(commands, colour, Layout::eUndefined, Layout::eColorAttachmentOptimal, Stage::eCopy,
+         Access::eTransferRead, Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite);
+  const vk::RenderingAttachmentInfo colours =
+      attachment(colour, Layout::eColorAttachmentOptimal,
+                 vk::ClearColorValue(std::array<float, 4>{ground[0], ground[1], ground[2], 1.0F}),
+                 vk::AttachmentStoreOp::eStore);
+  beginRendering(commands, colour.extent(), colours, nullptr);
+}
+
+void PictureTarget::end(const vk::raii::CommandBuffer& commands) const {
+  commands.endRendering();
+  change(commands, colour, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal,
+         Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eCopy, Access::eTransferRead);
+}
+
+}  // namespace fettle::render

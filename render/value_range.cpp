@@ -1,0 +1,117 @@
+#include "render/value_range.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <vector>
+
+namespace fettle::render {
+namespace {
+
+constexpr std::int64_t kSampleTarget = std::int64_t{1} << 20;
+
+template <class T>
+T percentile(std::vector<T>& values, double share) {
+  const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + k, values.end());
+  return values[static_cast<std::size_t>(k)];
+}
+
+// Each tile's share of the sample, scattered by a golden-ratio step so that it falls in no row or column
+// pattern.
+template <class Visit>
+void forSomeOf(std::int64_t tiles, std::int64_t tile_number, const Visit& visit) {
+  const std::int64_t n = std::clamp<std::int64_t>(kSampleTarget / tiles, 4, engine::kTileSamples);
+  constexpr std::int64_t kStep = 2531;  // odd: visits every sample of a tile before repeating one
+  for (std::int64_t k = 0; k < n; ++k)
+    visit(static_cast<std::size_t>((tile_number * 977 + k * kStep) & (engine::kTileSamples - 1)));
+}
+
+}  // namespace
+
+ValueSpan heightSpan(const engine::Version& field) {
+  const engine::FieldReader reader = field.reader();
+  const engine::HeightBounds bounds = reader.bounds();
+  if (bounds.empty()) return {};
+  const std::int64_t tiles = std::int64_t{reader.tileColumns()} * reader.tileRows();
+  std::vector<float> values;
+  values.reserve(static_cast<std::size_t>(std::min(tiles * engine::kTileSamples, 2 * kSampleTarget)));
+  std::int64_t number = 0;
+  for (std::int32_t tr = 0; tr < reader.tileRows(); ++tr)
+    for (std::int32_t tc = 0; tc < reader.tileColumns(); ++tc, ++number) {
+      const engine::Tile& tile = reader.tile(tc, tr);
+      forSomeOf(tiles, number, [&](std::size_t i) {
+        if (!std::isnan(tile.samples[i])) values.push_back(reader.sign() * tile.samples[i]);
+      });
+    }
+  ValueSpan span;
+  span.empty = false;
+  span.extreme = {bounds.min, bounds.max};
+  span.robust = span.extreme;
+  if (values.size() < 64) return span;  // too few to speak of percentiles
+  const double low = percentile(values, 0.002), high = percentile(values, 0.998);
+  const double air = 0.1 * (high - low);
+  // All of the middle equal, and something else at the ends: the ends are all there is to see.
+  if (!(high > low)) return span;
+  span.robust = {std::max(span.extreme.low, low - air), std::min(span.extreme.high, high + air)};
+  return span;
+}
+
+ValueSpan deviationSpan(const engine::Version& field, const engine::Version& original) {
+  const engine::FieldReader a = field.reader(), b = original.reader();
+  assert(a.width() == b.width() && a.height() == b.height());
+  const std::int64_t tiles = std::int64_t{a.tileColumns()} * a.tileRows();
+  ValueSpan span;
+  std::vector<double> changes;
+  std::int64_t number = 0;
+  for (std::int32_t tr = 0; tr < a.tileRows(); ++tr)
+    for (std::int32_t tc = 0; tc < a.tileColumns(); ++tc, ++number) {
+      const engine::Tile& ta = a.tile(tc, tr);
+      const engine::Tile& tb = b.tile(tc, tr);
+      double low = 0.0, high = 0.0;
+      bool any = false;
+      if (&ta == &tb && a.sign() == b.sign()) {
+        any = !ta.bounds.empty();
+      } else {
+        const auto deviation = [&](std::size_t i) {
+          return double{a.sign()} * ta.samples[i] - double{b.sign()} * tb.samples[i];
+        };
+        bool first = true;
+        for (std::size_t i = 0; i < ta.samples.size(); ++i) {
+          const double d = deviation(i);
+          if (std::isnan(d)) continue;
+          low = first ? d : std::min(low, d);
+          high = first ? d : std::max(high, d);
+          first = false;
+        }
+        any = !first;
+        forSomeOf(tiles, number, [&](std::size_t i) {
+          const double d = std::abs(deviation(i));
+          if (d > 0.0) changes.push_back(d);
+        });
+      }
+      if (!any) continue;
+      span.extreme = span.empty
+                         ? ValueRange{low, high}
+                         : ValueRange{std::min(span.extreme.low, low), std::max(span.extreme.high, high)};
+      span.empty = false;
+    }
+  const double largest = std::max(-span.extreme.low, span.extreme.high);
+  double limit = largest;
+  if (changes.size() >= 64) {
+    const double usual = percentile(changes, 0.995);
+    if (largest > 1.25 * usual) limit = usual;
+  }
+  span.robust = {-limit, limit};
+  return span;
+}
+
+ValueSpan join(const ValueSpan& a, const ValueSpan& b) noexcept {
+  if (a.empty) return b;
+  if (b.empty) return a;
+  return {{std::min(a.robust.low, b.robust.low), std::max(a.robust.high, b.robust.high)},
+          {std::min(a.extreme.low, b.extreme.low), std::max(a.extreme.high, b.extreme.high)},
+          false};
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,102 @@
+// Read by C++ and by every shader, so that the two sides cannot drift apart. Only types whose std140, std430 and
+// C++ layouts agree are used: 4-component vectors, matrices of them and arrays of them.
+#ifndef FETTLE_SHADERS_LAYOUT_H
+#define FETTLE_SHADERS_LAYOUT_H
+
+#ifdef __cplusplus
+#include <array>
+#include <cstdint>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec4.hpp>
+
+namespace fettle::render::gpu {
+using glm::ivec4;
+using glm::mat4;
+using glm::vec4;
+#define FETTLE_CONST inline constexpr int
+#else
+#define FETTLE_CONST const int
+#endif
+
+// Cells along one side of a patch, the unit in which the surface is drawn. 32: a patch is one instance of
+// kPatchVertices vertices, enough that the cost of an instance does not show, and small enough to cull by.
+FETTLE_CONST kPatchCells = 32;
+// One strip row: left and right vertex of every column, first and last doubled to jump to the next row.
+FETTLE_CONST kStripVertices = 2 * (kPatchCells + 1) + 2;
+FETTLE_CONST kPatchVertices = kStripVertices * kPatchCells;
+// A wall: top and bottom vertex of every column of a patch along one edge of the field.
+FETTLE_CONST kWallVertices = 2 * (kPatchCells + 1);
+
+FETTLE_CONST kColours = 256;
+
+// Bindings of descriptor set 0 of the surface.
+FETTLE_CONST kBindPanel = 0;     // uniform PanelUniforms
+FETTLE_CONST kBindHeights = 1;   // utexture2DArray, bits of a float; a hole is any NaN
+FETTLE_CONST kBindMarks = 2;     // utexture2DArray, non-zero = marked
+FETTLE_CONST kBindOriginal = 3;  // utexture2DArray, heights that the deviation is counted from
+FETTLE_CONST kBindPatches = 4;   // buffer of Patch
+
+// Bindings of descriptor set 0 of the picture.
+FETTLE_CONST kBindScene = 0;   // texture2D, one panel at several rays a pixel, premultiplied
+FETTLE_CONST kBindGlyphs = 1;  // texture2D, coverage
+FETTLE_CONST kBindQuads = 2;   // buffer of Quad
+FETTLE_CONST kBindMap = 3;     // uniform PanelUniforms, for its colours
+
+// Specialisation constants of the surface: what a picture leaves out is not in its code.
+FETTLE_CONST kSpecPaged = 0;
+FETTLE_CONST kSpecMarks = 1;
+FETTLE_CONST kSpecDeviation = 2;
+FETTLE_CONST kSpecContours = 3;
+FETTLE_CONST kSpecSmooth = 4;  // normals interpolated inside a cell: only worth it where cells are larger than rays
+
+// What a Quad is filled with.
+FETTLE_CONST kFillSolid = 0;
+FETTLE_CONST kFillGlyph = 1;   // uv: texel of the glyph image
+FETTLE_CONST kFillColours = 2; // uv.y: place in the colour map, 0 .. 1
+FETTLE_CONST kFillScene = 3;   // uv: ray of the scene image
+FETTLE_CONST kFillUp = 4;      // triangle standing on the quad's lower edge, colour as kFillColours
+FETTLE_CONST kFillDown = 5;    // triangle hanging from the quad's upper edge
+
+// Scene coordinates: millimetres from the middle of what is shown, x and y as in the field, z up with the
+// exaggeration in it. "Virtual" samples: a field of one row or column is drawn as two equal ones.
+struct PanelUniforms {
+  mat4 clip_from_scene;  // bytes   0 ..  63
+  vec4 placing;          //  64: x, y of virtual sample (0, 0) [scene mm]; spacing x, y [mm]
+  vec4 relief;           //  80: sign of heights; height at scene z 0; scene mm a height unit; floor's scene z
+  vec4 limits;           //  96: lowest and highest height drawn; steeper ones are cut; sign of the original; -
+  vec4 colouring;        // 112: value of the first colour; 1 / range; contour step (value); rays a cell
+  vec4 light;            // 128: unit vector to the light; share of light without direction
+  vec4 marks_tint;       // 144: linear red, green, blue; opacity
+  vec4 no_data;          // 160: linear red, green, blue
+  vec4 wall;             // 176: linear red, green, blue
+  ivec4 size;            // 192: virtual columns, rows; true columns, rows
+  ivec4 paging;          // 208: log2 of a page's columns, rows; pages across; step of differences [samples]
+  vec4 colours[kColours];  // 224: linear red, green, blue
+};
+
+struct Patch {
+  ivec4 place;  // first column, first row; log2 of the stride in columns, in rows
+};
+
+// A filled rectangle of the finished picture.
+struct Quad {
+  vec4 pixels;  // left, top, right, bottom
+  vec4 uv;      // the same corners in what fills it
+  vec4 colour;  // linear red, green, blue; opacity (kFillScene, kFillColours: opacity only)
+  ivec4 fill;   // one of kFill..; rays a pixel along one side
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(PanelUniforms) == 224 + 16 * kColours);
+static_assert(offsetof(PanelUniforms, placing) == 64);
+static_assert(offsetof(PanelUniforms, limits) == 96);
+static_assert(offsetof(PanelUniforms, size) == 192);
+static_assert(offsetof(PanelUniforms, colours) == 224);
+static_assert(sizeof(Patch) == 16);
+static_assert(sizeof(Quad) == 64);
+}  // namespace fettle::render::gpu
+#endif
+#undef FETTLE_CONST
+
+#endif

@@ -1,0 +1,43 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "layout.h"
+
+layout(set = 0, binding = kBindScene) uniform texture2D scene_image;
+layout(set = 0, binding = kBindGlyphs) uniform texture2D glyphs_image;
+layout(set = 0, binding = kBindQuads, std430) readonly buffer Quads { Quad quads[]; };
+layout(set = 0, binding = kBindMap, std140) uniform PanelBlock { PanelUniforms panel; };
+
+layout(location = 0) flat in int index;
+layout(location = 1) in vec2 uv;
+layout(location = 0) out vec4 colour;  // premultiplied
+
+vec3 mapped(float t) {
+  t = clamp(t, 0.0, 1.0) * float(kColours - 1);
+  const int i = min(int(t), kColours - 2);
+  return mix(panel.colours[i].rgb, panel.colours[i + 1].rgb, t - float(i));
+}
+
+void main() {
+  const Quad q = quads[index];
+  if (q.fill.x == kFillScene) {
+    // The mean of a pixel's rays, in linear light: the image decodes sRGB when it is read.
+    const ivec2 first = ivec2(floor(uv / float(q.fill.y))) * q.fill.y;
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < q.fill.y; ++y)
+      for (int x = 0; x < q.fill.y; ++x) sum += texelFetch(scene_image, first + ivec2(x, y), 0);
+    colour = sum / float(q.fill.y * q.fill.y);
+    return;
+  }
+  vec3 rgb = q.colour.rgb;
+  float opacity = q.colour.a;
+  if (q.fill.x == kFillGlyph) opacity *= texelFetch(glyphs_image, ivec2(uv), 0).x;
+  if (q.fill.x == kFillColours) rgb = mapped(uv.y);
+  if (q.fill.x == kFillUp || q.fill.x == kFillDown) {
+    rgb = mapped(q.fill.x == kFillUp ? 1.0 : 0.0);
+    // uv runs -1 .. 1 across and 0 (tip) .. 1 (base); the edge is softened over a pixel.
+    const float inside = uv.y - abs(uv.x);
+    opacity *= clamp(inside / fwidth(uv.y) + 0.5, 0.0, 1.0);
+  }
+  colour = vec4(rgb, 1.0) * opacity;
+}

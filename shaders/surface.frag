@@ -1,0 +1,92 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// Colour of the surface, from the exact samples whatever the geometry's stride.
+#include "field.glsl"
+
+layout(constant_id = kSpecMarks) const bool kMarks = false;
+layout(constant_id = kSpecDeviation) const bool kDeviation = false;
+layout(constant_id = kSpecContours) const bool kContours = false;
+layout(constant_id = kSpecSmooth) const bool kSmooth = false;
+
+layout(set = 0, binding = kBindMarks) uniform utexture2DArray marks_image;
+layout(set = 0, binding = kBindOriginal) uniform utexture2DArray original_image;
+
+layout(location = 0) flat in ivec2 base;
+layout(location = 1) in vec2 local;
+layout(location = 0) out vec4 colour;
+
+// Half the difference between the neighbours of `s` along `d`, or what one neighbour and the sample itself can
+// say; height units a step. `h` is the height at s.
+float slope(ivec2 s, ivec2 d, float h) {
+  const uint after = rawHeight(s + d);
+  const uint before = rawHeight(s - d);
+  const ivec2 last = panel.size.xy - 1;
+  const bool has_after = !isHole(after) && all(lessThanEqual(s + d, last));
+  const bool has_before = !isHole(before) && all(greaterThanEqual(s - d, ivec2(0)));
+  const float a = has_after ? heightOf(after) : h;
+  const float b = has_before ? heightOf(before) : h;
+  return (a - b) / (has_after && has_before ? 2.0 : 1.0);
+}
+
+vec2 slopes(ivec2 s, float h, int step) {
+  return vec2(slope(s, ivec2(step, 0), h), slope(s, ivec2(0, step), h)) / float(step);
+}
+
+vec3 mapped(float value) {
+  const float t = clamp((value - panel.colouring.x) * panel.colouring.y, 0.0, 1.0) * float(kColours - 1);
+  const int i = min(int(t), kColours - 2);
+  return mix(panel.colours[i].rgb, panel.colours[i + 1].rgb, t - float(i));
+}
+
+void main() {
+  const ivec2 cell = clamp(base + ivec2(floor(local)), ivec2(0), panel.size.xy - 2);
+  const vec2 f = clamp(local - vec2(cell - base), 0.0, 1.0);
+  const uvec4 raw = uvec4(rawHeight(cell), rawHeight(cell + ivec2(1, 0)), rawHeight(cell + ivec2(0, 1)),
+                          rawHeight(cell + ivec2(1, 1)));
+  const bool hole = isHole(raw.x) || isHole(raw.y) || isHole(raw.z) || isHole(raw.w);
+  const vec4 h = panel.relief.x * uintBitsToFloat(raw);
+  const float height = mix(mix(h.x, h.y, f.x), mix(h.z, h.w, f.x), f.y);
+  float value = height;
+  bool compared = true;
+  if (kDeviation) {
+    uvec4 before;
+    before.x = texelFetch(original_image, texelOf(cell), 0).x;
+    before.y = texelFetch(original_image, texelOf(cell + ivec2(1, 0)), 0).x;
+    before.z = texelFetch(original_image, texelOf(cell + ivec2(0, 1)), 0).x;
+    before.w = texelFetch(original_image, texelOf(cell + ivec2(1, 1)), 0).x;
+    compared = !(isHole(before.x) || isHole(before.y) || isHole(before.z) || isHole(before.w));
+    // Corner by corner, so that equal samples give exactly zero.
+    const vec4 d = h - panel.limits.z * uintBitsToFloat(before);
+    value = mix(mix(d.x, d.y, f.x), mix(d.z, d.w, f.x), f.y);
+  }
+  // Before the discard: differences between fragments are defined only while all of a quad take part.
+  const float contour = kContours ? value / panel.colouring.z : 0.0;
+  const float contour_width = kContours ? fwidth(contour) : 1.0;
+  if (hole) discard;
+
+  const ivec2 nearest = cell + ivec2(round(f));
+  vec2 g;
+  if (kSmooth) {
+    const vec2 g00 = slopes(cell, h.x, 1), g10 = slopes(cell + ivec2(1, 0), h.y, 1);
+    const vec2 g01 = slopes(cell + ivec2(0, 1), h.z, 1), g11 = slopes(cell + ivec2(1, 1), h.w, 1);
+    g = mix(mix(g00, g10, f.x), mix(g01, g11, f.x), f.y);
+  } else {
+    const float at = f.y < 0.5 ? (f.x < 0.5 ? h.x : h.y) : (f.x < 0.5 ? h.z : h.w);
+    g = slopes(nearest, at, panel.paging.w);
+  }
+  const vec3 normal = normalize(vec3(-g * panel.relief.z / panel.placing.zw, 1.0));
+
+  vec3 c = compared ? mapped(value) : panel.no_data.rgb;
+  if (kMarks && texelFetch(marks_image, texelOf(nearest), 0).x != 0u)
+    c = mix(c, panel.marks_tint.rgb, panel.marks_tint.a);
+  // A level surface shows exactly its colour on the bar; slopes are lighter towards the light, darker away from it.
+  c *= panel.light.w + (1.0 - panel.light.w) * max(dot(normal, panel.light.xyz), 0.0) / panel.light.z;
+  if (kContours && compared) {
+    const float off = abs(fract(contour - 0.5) - 0.5) / max(contour_width, 1e-12);
+    // Lines closer than four rays would fill the surface: they fade out.
+    const float ink = (1.0 - smoothstep(0.6, 1.4, off)) * (1.0 - smoothstep(0.15, 0.3, contour_width));
+    c = mix(c, vec3(0.01), 0.7 * ink);
+  }
+  colour = vec4(min(c, vec3(1.0)), 1.0);
+}
