@@ -1,0 +1,83 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "engine/base/error.h"
+#include "haptic/loop/loop_tick.h"
+#include "haptic/loop/pool_keeper.h"
+#include "haptic/loop/rt_thread.h"
+#include "haptic/loop/timing.h"
+
+namespace fettle::haptic {
+
+/// The live loop: a thread of its own that owns the live version and runs one LoopTick a period.
+///
+/// Life: construct, start(), any number of send() and poll(), stop(); once only.
+/// Threading: one main thread calls everything; timing() may be read by any. send(), poll() and state() never
+/// wait.
+class HapticLoop {
+ public:
+  struct Settings {
+    LoopOptions options;
+    double rate_hz = 1000.0;  ///< 1000 .. 10000
+    RealTimeWish wish;
+    PoolKeeper::Levels pool;
+  };
+
+  /// Works on `start` (the right way up) as `scene` says; `original` is what Scene::max_change is measured
+  /// against, often `start` itself. The device is started and stopped by the caller, and outlives the loop.
+  /// Errors (kInput): a scene, limits, a rate or ring capacities out of range, grids that differ.
+  [[nodiscard]] static engine::Result<std::unique_ptr<HapticLoop>> create(const engine::Version& start,
+                                                                          const engine::Version& original,
+                                                                          const Scene& scene, Device& device,
+                                                                          const Settings& settings);
+  ~HapticLoop();
+  HapticLoop(const HapticLoop&) = delete;
+  HapticLoop& operator=(const HapticLoop&) = delete;
+
+  /// Fills the pools, starts the thread and returns when it is about to tick. Errors: kFailed when no thread
+  /// can be had. What the thread did not get of the system is no error: see realTime().
+  [[nodiscard]] engine::Status start();
+
+  /// Ends the thread after a last tick with zero force. The field as it was left, the sign as felt; events
+  /// still in the ring can be polled afterwards.
+  engine::Version stop();
+
+  /// False when the ring of commands is full; `command` is then untouched.
+  [[nodiscard]] bool send(LoopCommand&& command) noexcept {
+    return channels_.commands.push(std::move(command));
+  }
+  /// The oldest event that was not seen yet; false when there is none.
+  [[nodiscard]] bool poll(LoopEvent& event) noexcept { return channels_.events.pop(event); }
+  /// The newest tick.
+  [[nodiscard]] const LoopState& state() noexcept {
+    channels_.state.take();
+    return channels_.state.latest();
+  }
+
+  [[nodiscard]] const LoopTiming& timing() const noexcept { return timing_; }
+  /// What the thread got of the system; empty before start().
+  [[nodiscard]] const RealTimeReport& realTime() const noexcept { return real_time_; }
+  [[nodiscard]] const PoolKeeper* pools() const noexcept { return keeper_ ? &*keeper_ : nullptr; }
+
+ private:
+  HapticLoop(const engine::Version& start, std::unique_ptr<PreparedScene> scene, Device& device,
+             const Settings& settings);
+  void main() noexcept;
+
+  Settings settings_;
+  std::shared_ptr<engine::FieldMemory> memory_;
+  LoopChannels channels_;
+  LoopTick tick_;
+  LoopTiming timing_;
+  RealTimeReport real_time_;
+  std::optional<PoolKeeper> keeper_;
+  std::atomic<bool> ready_{false};
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace fettle::haptic

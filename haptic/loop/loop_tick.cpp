@@ -1,0 +1,359 @@
+#include "haptic/loop/loop_tick.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "haptic/safety/last_resort.h"
+
+namespace fettle::haptic {
+
+namespace {
+
+// Inputs that arrive in a burst are not so many millimetres in so few microseconds.
+constexpr double kShortestInput_s = 0.0005;
+
+bool hasAnswer(CommandKind kind) noexcept {
+  return kind == CommandKind::kScene || kind == CommandKind::kSnapshot || kind == CommandKind::kAdopt ||
+         kind == CommandKind::kRestore;
+}
+
+bool edits(const Scene& scene, Tool tool) noexcept {
+  if (tool == Tool::kSmooth)
+    return std::find(scene.effects.begin(), scene.effects.end(), EffectKind::kSmoothing) !=
+           scene.effects.end();
+  return tool == Tool::kMark || tool == Tool::kUnmark;
+}
+
+}  // namespace
+
+SampleRect SampleRect::joined(const SampleRect& other) const noexcept {
+  if (empty()) return other;
+  if (other.empty()) return *this;
+  const std::int32_t c0 = std::min(column, other.column);
+  const std::int32_t r0 = std::min(row, other.row);
+  const std::int32_t c1 = std::max(column + columns, other.column + other.columns);
+  const std::int32_t r1 = std::max(row + rows, other.row + other.rows);
+  return {c0, r0, c1 - c0, r1 - r0};
+}
+
+LoopTick::LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, Device& device,
+                   LoopChannels& channels, const LoopOptions& options)
+    : scene_(std::move(scene)),
+      device_(device),
+      channels_(channels),
+      options_(options),
+      guard_(options.limits),
+      tool_(options.tool) {
+  static_cast<void>(scene_->field.adopt(scene_->scene.invert ? start.inverted() : std::move(start)));
+  scene_->tick.fieldChanged();
+  published_ = scene_->field.snapshot();
+}
+
+SampleRect LoopTick::wholeField() const noexcept {
+  const engine::Grid& grid = scene_->field.grid();
+  return {0, 0, grid.width, grid.height};
+}
+
+LoopEvent LoopTick::eventNow(EventKind kind, std::uint64_t id) noexcept {
+  LoopEvent event;
+  event.kind = kind;
+  event.id = id;
+  event.tick = state_.tick;
+  event.stroke = state_.stroke;
+  event.merged = std::exchange(merged_, 0);
+  event.rect = std::exchange(dirty_, {});
+  event.before = std::move(published_);
+  event.version = scene_->field.snapshot();
+  published_ = event.version;
+  since_publish_ = 0;
+  return event;
+}
+
+// Only called when the ring is known to have a place.
+void LoopTick::send(LoopEvent&& event) noexcept {
+  const bool sent = channels_.events.push(std::move(event));
+  assert(sent);
+  static_cast<void>(sent);
+}
+
+void LoopTick::takeCommands() noexcept {
+  for (int i = 0; i < kMostCommands; ++i) {
+    if (!has_waiting_ && !channels_.commands.pop(waiting_)) return;
+    has_waiting_ = hasAnswer(waiting_.kind) && channels_.events.freePlaces() == 0;
+    if (has_waiting_) return;
+    take(waiting_);
+    // One swap of versions a tick: its cost is bounded, that of eight would be eight times as much.
+    if (hasAnswer(waiting_.kind)) return;
+  }
+}
+
+void LoopTick::take(LoopCommand& command) noexcept {
+  switch (command.kind) {
+    case CommandKind::kTool:
+      tool_ = command.tool;
+      break;
+    case CommandKind::kMapping:
+      mapping_ = command.mapping;
+      disturbance_ = Disturbance::kSurfaceReplaced;
+      break;
+    case CommandKind::kArm:
+      guard_.arm();
+      break;
+    case CommandKind::kDisarm:
+      guard_.disarm();
+      break;
+    case CommandKind::kScene:
+      swapScene(command);
+      break;
+    case CommandKind::kSnapshot: {
+      LoopEvent event = eventNow(EventKind::kSnapshot, command.id);
+      event.retired_base = std::move(job_base_);
+      job_base_ = event.version;
+      job_id_ = command.id;
+      job_valid_ = true;
+      edited_count_ = 0;
+      send(std::move(event));
+      break;
+    }
+    case CommandKind::kAdopt:
+      adopt(command);
+      break;
+    case CommandKind::kRestore:
+      restore(command);
+      break;
+  }
+}
+
+void LoopTick::swapScene(LoopCommand& command) noexcept {
+  PreparedScene& next = *command.scene;
+  const bool turn = next.scene.invert != scene_->scene.invert;
+  // The live state moves over; each side ends up with what the other held. The local copy of the live state
+  // is not the last one, so its end frees nothing.
+  {
+    engine::Version stand_in = next.field.adopt(scene_->field.snapshot());
+    const engine::Version live = scene_->field.adopt(std::move(stand_in));
+  }
+  refused_before_ += static_cast<std::uint64_t>(scene_->tick.counters().refused_edits);
+  if (turn) next.field.invert();
+  next.tick.fieldChanged();
+  std::swap(scene_, command.scene);
+  disturbance_ = Disturbance::kSurfaceReplaced;
+  LoopEvent event = eventNow(EventKind::kSceneChanged, command.id);
+  event.retired_scene = std::move(command.scene);
+  if (turn) event.rect = wholeField();
+  send(std::move(event));
+}
+
+bool LoopTick::carryOver(const engine::Version& live) noexcept {
+  const engine::FieldReader now = live.reader();
+  const engine::FieldReader base = job_base_.reader();
+  for (int i = 0; i < edited_count_; ++i) {
+    const TileIndex t = edited_[static_cast<std::size_t>(i)];
+    const engine::Tile* tile = &now.tile(t.column, t.row);
+    // The base holds its tiles, so the same address is the same tile, untouched.
+    if (tile == &base.tile(t.column, t.row)) continue;
+    if (!scene_->field.replaceTile(t.column, t.row, engine::TileRef::share(tile))) return false;
+    ++state_.carried;
+  }
+  return true;
+}
+
+void LoopTick::adopt(LoopCommand& command) noexcept {
+  engine::LiveField& field = scene_->field;
+  const float sign = field.reader().sign();
+  bool done = false;
+  if (job_valid_ && command.id == job_id_) {
+    const std::uint64_t carried_before = state_.carried;
+    engine::Version live = field.adopt(std::move(command.version));
+    done = carryOver(live);
+    if (done) {
+      if (field.reader().sign() != sign) field.invert();
+      command.version = std::move(live);
+      ++state_.adopted;
+    } else {
+      state_.carried = carried_before;
+      command.version = field.adopt(std::move(live));
+    }
+    scene_->tick.fieldChanged();
+  }
+  LoopEvent event = eventNow(done ? EventKind::kAdopted : EventKind::kAdoptRefused, command.id);
+  event.retired = std::move(command.version);
+  if (done) {
+    event.rect = wholeField();
+    event.retired_base = std::move(job_base_);
+    job_valid_ = false;
+    disturbance_ = Disturbance::kSurfaceReplaced;
+  }
+  send(std::move(event));
+}
+
+void LoopTick::restore(LoopCommand& command) noexcept {
+  engine::LiveField& field = scene_->field;
+  const float sign = field.reader().sign();
+  command.version = field.adopt(std::move(command.version));
+  if (field.reader().sign() != sign) field.invert();
+  scene_->tick.fieldChanged();
+  disturbance_ = Disturbance::kSurfaceReplaced;
+  job_valid_ = false;
+  in_stroke_ = stroke_ended_ = false;
+  stroke_rect_ = {};
+  LoopEvent event = eventNow(EventKind::kRestored, command.id);
+  event.retired = std::move(command.version);
+  event.rect = wholeField();
+  send(std::move(event));
+}
+
+Tool LoopTick::toolInEffect(const DeviceInput& input, double age_s) const noexcept {
+  // No editing by a hand that is not heard of.
+  if (input.link != LinkState::kConnected || age_s >= options_.limits.silence_s) return Tool::kFeel;
+  if (input.tool) return *input.tool;
+  const bool on = options_.tool_switch == ToolSwitch::kAlways || (input.buttons & kPrimaryButton) != 0;
+  return on ? tool_ : Tool::kFeel;
+}
+
+void LoopTick::noteVelocity(const DeviceInput& input) noexcept {
+  if (has_input_ && input.sequence == last_input_.sequence) return;
+  if (has_input_ && input.link == LinkState::kConnected && last_input_.link == LinkState::kConnected) {
+    const double dt_s =
+        std::max(1e-9 * static_cast<double>(input.arrival_ns - last_input_.arrival_ns), kShortestInput_s);
+    velocity_ = (input.position_mm - last_input_.position_mm) / dt_s;
+  } else {
+    velocity_ = glm::dvec3(0.0);
+  }
+  last_input_ = input;
+  has_input_ = true;
+}
+
+void LoopTick::noteTiles(const SampleRect& rect) noexcept {
+  using engine::kTileShift;
+  for (std::int32_t r = rect.row >> kTileShift; r <= (rect.row + rect.rows - 1) >> kTileShift; ++r)
+    for (std::int32_t c = rect.column >> kTileShift; c <= (rect.column + rect.columns - 1) >> kTileShift;
+         ++c) {
+      // From the newest on: a hand stays where it is.
+      int i = edited_count_ - 1;
+      while (i >= 0 && !(edited_[static_cast<std::size_t>(i)].column == c &&
+                         edited_[static_cast<std::size_t>(i)].row == r))
+        --i;
+      if (i >= 0) continue;
+      if (edited_count_ == kMostCarried) {
+        job_valid_ = false;
+        return;
+      }
+      edited_[static_cast<std::size_t>(edited_count_++)] = {c, r};
+    }
+}
+
+void LoopTick::noteEdit(const ForceSample& force, Tool tool) noexcept {
+  const Scene& scene = scene_->scene;
+  const bool editing = force.contact && edits(scene, tool);
+  if (editing) {
+    const double radius = tool == Tool::kSmooth ? scene.brush_radius_samples : scene.mark_radius_samples;
+    const auto reach = static_cast<std::int32_t>(std::floor(radius));
+    const CellIndex centre = scene_->tick.contact().proxy.cell;
+    const engine::Grid& grid = scene_->field.grid();
+    const std::int32_t c0 = std::max(centre.column - reach, 0);
+    const std::int32_t r0 = std::max(centre.row - reach, 0);
+    const SampleRect rect{c0, r0, std::min(centre.column + reach + 1, grid.width) - c0,
+                          std::min(centre.row + reach + 1, grid.height) - r0};
+    dirty_ = dirty_.joined(rect);
+    stroke_rect_ = stroke_rect_.joined(rect);
+    if (job_valid_) noteTiles(rect);
+  }
+  noteStroke(editing);
+  if (in_stroke_ && !editing && (tool == Tool::kFeel || ticks_without_edit_ >= options_.stroke_gap_ticks)) {
+    in_stroke_ = false;
+    stroke_ended_ = true;
+  }
+}
+
+void LoopTick::noteStroke(bool editing) noexcept {
+  if (!editing) {
+    ++ticks_without_edit_;
+    return;
+  }
+  ticks_without_edit_ = 0;
+  if (in_stroke_) return;
+  in_stroke_ = true;
+  ++state_.stroke;
+}
+
+void LoopTick::publish() noexcept {
+  ++since_publish_;
+  const bool due = since_publish_ >= options_.publish_ticks && !dirty_.empty();
+  if (!due && !stroke_ended_) return;
+  if (!stroke_ended_ && published_ == scene_->field.snapshot()) {
+    // The root is shared with what was published, so nothing was written since: the tool changed no bit.
+    dirty_ = {};
+    since_publish_ = 0;
+    return;
+  }
+  if (channels_.events.freePlaces() <= kAnswerPlaces) {
+    if (since_publish_ < options_.publish_ticks) return;
+    since_publish_ = 0;
+    ++merged_;
+    ++state_.merged;
+    return;
+  }
+  LoopEvent event = eventNow(stroke_ended_ ? EventKind::kStrokeEnded : EventKind::kEdited, 0);
+  if (stroke_ended_) {
+    event.rect = event.rect.joined(std::exchange(stroke_rect_, {}));
+    stroke_ended_ = false;
+  }
+  send(std::move(event));
+}
+
+void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
+  disturbance_ = Disturbance::kNone;
+  takeCommands();
+  if (LastResort::fired()) guard_.lastResort();
+
+  const DeviceInput input = device_.read();
+  const double age_s = 1e-9 * static_cast<double>(std::max<std::int64_t>(now_ns - input.arrival_ns, 0));
+  noteVelocity(input);
+  const bool in_field = device_.profile().space == DeviceSpace::kField;
+  const glm::dvec3 tip_mm = in_field ? input.position_mm : mapping_.toField(input.position_mm);
+  const Tool tool = toolInEffect(input, age_s);
+
+  StrokeSample sample{1e-9 * static_cast<double>(now_ns), tip_mm, tool};
+  if (input.link != LinkState::kConnected) sample.tip_mm.x = std::numeric_limits<double>::quiet_NaN();
+  const ForceSample force = scene_->tick.run(sample);
+
+  const glm::dvec3 command = in_field ? force.force_n : mapping_.toDevice(force.force_n);
+  const glm::dvec3 given = guard_.step(
+      {1e-9 * static_cast<double>(since_ns), age_s, input.link, command, velocity_, disturbance_});
+  device_.write(given);
+
+  noteEdit(force, tool);
+  publish();
+
+  ++state_.tick;
+  state_.time_ns = now_ns;
+  state_.endpoint_mm = tip_mm;
+  state_.proxy_mm = force.contact ? force.proxy_mm : tip_mm;
+  state_.force_n = force.force_n;
+  state_.given_n = given;
+  state_.contact = force.contact;
+  state_.tool = tool;
+  state_.link = input.link;
+  state_.safety = guard_.state();
+  state_.cause = guard_.cause();
+  state_.refused_edits = refused_before_ + static_cast<std::uint64_t>(scene_->tick.counters().refused_edits);
+  state_.counters = scene_->tick.counters();
+  state_.safety_counters = guard_.counters();
+  channels_.state.publish(state_);
+}
+
+void LoopTick::stop() noexcept {
+  guard_.disarm();
+  device_.write(glm::dvec3(0.0));
+  if (in_stroke_) {
+    in_stroke_ = false;
+    stroke_ended_ = true;
+  }
+  since_publish_ = options_.publish_ticks;
+  publish();
+}
+
+}  // namespace fettle::haptic

@@ -1,0 +1,155 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "haptic/devices/device.h"
+#include "haptic/devices/latest_slot.h"
+#include "haptic/loop/messages.h"
+#include "haptic/loop/rings.h"
+#include "haptic/safety/safety.h"
+
+namespace fettle::haptic {
+
+/// When an editing tool acts.
+enum class ToolSwitch : std::uint8_t {
+  kButton,  ///< while the primary button is held
+  kAlways,  ///< whenever in contact: devices without a button
+};
+
+struct LoopOptions {
+  Tool tool = Tool::kFeel;
+  ToolSwitch tool_switch = ToolSwitch::kButton;
+  SafetyLimits limits;
+  /// Ticks between two publications of edits. At 1 kHz 8 is a little faster than a display's frame.
+  std::uint32_t publish_ticks = 8;
+  /// Ticks without contact that end a stroke although the tool is still switched on.
+  std::uint32_t stroke_gap_ticks = 100;
+  std::size_t command_capacity = 256;  ///< power of two
+  std::size_t event_capacity = 256;    ///< power of two, >= 8
+};
+
+/// The two rings and the slot between the loop and the main side. The loop never waits on any of them.
+struct LoopChannels {
+  explicit LoopChannels(const LoopOptions& options)
+      : commands(options.command_capacity), events(options.event_capacity) {}
+  SpscRing<LoopCommand> commands;
+  SpscRing<LoopEvent> events;
+  LatestSlot<LoopState> state;
+};
+
+/// All that happens in one tick of the live loop, without the thread and the clock, so that tests and benches
+/// run the very code:
+///
+///   commands --> device.read --> mapping --> Tick::run (the tick of replay) --> ForceGuard --> device.write
+///            --> dirty rectangle --> publish (every n ticks) --> state slot
+///
+/// Edits. The loop keeps one dirty rectangle. Every publish_ticks ticks it sends {rectangle, snapshot} if the
+/// field's root really changed since. A snapshot is O(1); what it costs is one tile copy (17 KB, about 1 us)
+/// for each tile written again after it: sending the samples themselves would cost as much and would make the
+/// receiver assemble tiles that exist already. A full ring loses nothing: the rectangle grows until there is
+/// room, counted, and writes go on in place, so that a stalled reader holds at most the ring's versions.
+///
+/// Adoption of a job's result while a stroke goes on, in a bounded tick:
+///   1. main asks for a snapshot S and gets it within a tick; the loop starts a list of tiles edited since;
+///   2. a worker makes the version M that is to be felt: S with the result's tiles put in, O(changed tiles),
+///      off the loop (mergeResult in adoption.h);
+///   3. the loop takes over M's root, O(1), and puts back the tiles of its list whose memory is no longer
+///      S's: at most kMostCarried, 1 us each. Nothing else can differ, so nothing is lost.
+/// Because S is asked for right before step 2 and not when the filter starts, the list holds what a hand
+/// edits in milliseconds (a few tiles), however long the filter took. It says kAdoptRefused, changing
+/// nothing, when S is not the newest snapshot, the list overflowed, or the pool is dry; asking again is
+/// always right. Which tiles were carried shows in changedTiles(M, event.version): the worker filters these
+/// again.
+///
+/// Restoring (undo) takes exactly the version asked for and hands back the state it leaves, the edits of the
+/// running stroke included; the stroke goes on as a new one.
+///
+/// A command that has an answer is left in its ring until the answer has a place.
+///
+/// Threading: constructed on the main side (allocates); run() and stop() on one thread. run(): noexcept,
+/// wait-free, bounded (kMostCommands commands, of which one that swaps versions), no allocation, no lock, no
+/// system call but the device's wake.
+class LoopTick {
+ public:
+  static constexpr int kMostCarried = 64;
+  static constexpr int kMostCommands = 8;
+
+  /// Starts from `start`, the right way up (the scene's inversion is applied here). `device` and `channels`
+  /// outlive this; `options.limits` in range.
+  LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, Device& device,
+           LoopChannels& channels, const LoopOptions& options);
+
+  /// One tick. `now_ns`: monotonicNow() at wake-up; `since_ns`: since the previous tick's.
+  void run(std::int64_t now_ns, std::int64_t since_ns) noexcept;
+
+  /// The last tick: zero force, the rest of the edits published if the ring has room.
+  void stop() noexcept;
+
+  /// What the tick is bound to; for tests on the loop's own thread.
+  [[nodiscard]] PreparedScene& scene() noexcept { return *scene_; }
+  [[nodiscard]] const ForceGuard& guard() const noexcept { return guard_; }
+  [[nodiscard]] const LoopState& state() const noexcept { return state_; }
+
+ private:
+  struct TileIndex {
+    std::int32_t column, row;
+  };
+
+  void takeCommands() noexcept;
+  void take(LoopCommand& command) noexcept;
+  void swapScene(LoopCommand& command) noexcept;
+  void adopt(LoopCommand& command) noexcept;
+  void restore(LoopCommand& command) noexcept;
+  [[nodiscard]] bool carryOver(const engine::Version& live) noexcept;
+  [[nodiscard]] LoopEvent eventNow(EventKind kind, std::uint64_t id) noexcept;
+  void send(LoopEvent&& event) noexcept;
+  [[nodiscard]] SampleRect wholeField() const noexcept;
+
+  void noteEdit(const ForceSample& force, Tool tool) noexcept;
+  void noteTiles(const SampleRect& rect) noexcept;
+  void noteStroke(bool editing) noexcept;
+  void publish() noexcept;
+
+  [[nodiscard]] Tool toolInEffect(const DeviceInput& input, double age_s) const noexcept;
+  void noteVelocity(const DeviceInput& input) noexcept;
+
+  // Places of the event ring that edits leave free for answers.
+  static constexpr std::size_t kAnswerPlaces = 2;
+
+  std::unique_ptr<PreparedScene> scene_;
+  Device& device_;
+  LoopChannels& channels_;
+  LoopOptions options_;
+  ForceGuard guard_;
+  TipMapping mapping_;
+  Tool tool_;
+  LoopCommand waiting_;  // popped, but its answer has no place yet
+  bool has_waiting_ = false;
+  Disturbance disturbance_ = Disturbance::kNone;
+
+  engine::Version published_;  // of the newest event; the next one carries it away
+  SampleRect dirty_;
+  std::uint32_t since_publish_ = 0;
+  std::uint32_t merged_ = 0;
+
+  SampleRect stroke_rect_;
+  bool in_stroke_ = false;
+  bool stroke_ended_ = false;  // to be told
+  std::uint32_t ticks_without_edit_ = 0;
+
+  engine::Version job_base_;  // S
+  std::uint64_t job_id_ = 0;
+  bool job_valid_ = false;
+  std::array<TileIndex, kMostCarried> edited_{};
+  int edited_count_ = 0;
+
+  std::uint64_t refused_before_ = 0;  // by the scenes that were left
+  DeviceInput last_input_;
+  bool has_input_ = false;
+  glm::dvec3 velocity_{0.0};
+  LoopState state_;
+};
+
+}  // namespace fettle::haptic

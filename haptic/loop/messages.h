@@ -1,0 +1,118 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include <glm/vec3.hpp>
+
+#include "engine/field/live_field.h"
+#include "engine/field/version.h"
+#include "haptic/devices/device.h"
+#include "haptic/loop/tip_mapping.h"
+#include "haptic/safety/safety.h"
+#include "haptic/scene.h"
+#include "haptic/strokes.h"
+#include "haptic/tick.h"
+
+namespace fettle::haptic {
+
+/// A scene made ready for the loop: its tick, composed, and the live field that the tick is bound to. Until
+/// the loop takes it, the field holds `stand_in`; then the live state moves over, O(1), and the scene that it
+/// leaves travels back to be destroyed.
+///
+/// Threading: constructed (allocates) and destroyed on the main side, used by the loop in between.
+struct PreparedScene {
+  /// `scene` in range (sceneProblem). `original`, the right way up, is what Scene::max_change is measured
+  /// against; it also stands in, so nothing is held beyond what is held anyway.
+  PreparedScene(const Scene& scene_to_run, const engine::Version& original)
+      : scene(scene_to_run),
+        field(scene_to_run.invert ? original.inverted() : original, engine::Growth::kNever),
+        tick(scene, field, scene_to_run.invert ? original.inverted() : original) {}
+
+  Scene scene;
+  engine::LiveField field;
+  Tick tick;
+};
+
+/// A rectangle of samples; empty while columns is 0.
+struct SampleRect {
+  std::int32_t column = 0, row = 0;
+  std::int32_t columns = 0, rows = 0;
+
+  [[nodiscard]] bool empty() const noexcept { return columns == 0; }
+  /// The smallest rectangle that holds both.
+  [[nodiscard]] SampleRect joined(const SampleRect& other) const noexcept;
+  friend bool operator==(const SampleRect&, const SampleRect&) = default;
+};
+
+enum class CommandKind : std::uint8_t {
+  kTool,      ///< `tool` from now on
+  kScene,     ///< `scene` from now on: parameters, effects, inversion
+  kMapping,   ///< `mapping` from now on: scale and place; while a clutch is held, tick by tick
+  kSnapshot,  ///< answers kSnapshot: the base of a job that will be adopted
+  kAdopt,     ///< go on from `version`, made from the newest kSnapshot; see LoopTick
+  kRestore,   ///< go on from exactly `version` (undo, redo); answers kRestored
+  kArm,
+  kDisarm,
+};
+
+/// main -> loop. Every field but those its kind names is ignored.
+struct LoopCommand {
+  CommandKind kind = CommandKind::kTool;
+  Tool tool = Tool::kFeel;
+  std::uint64_t id = 0;  ///< comes back in the answer
+  TipMapping mapping;
+  engine::Version version;
+  std::unique_ptr<PreparedScene> scene;  // not null with kScene
+};
+
+enum class EventKind : std::uint8_t {
+  kEdited,        ///< the field changed within `rect`
+  kStrokeEnded,   ///< tool up: `version` is committed; undo goes back to the version before the stroke
+  kSnapshot,      ///< answer, with the present `version`
+  kAdopted,       ///< answer: `version` is the adopted one with the tiles edited meanwhile carried over
+  kAdoptRefused,  ///< answer: nothing changed; take a new snapshot and try again
+  kRestored,      ///< answer; `retired` is the state left, the running stroke included: redo goes there
+  kSceneChanged,  ///< answer
+};
+
+/// loop -> main. Events with a version form a chain: `before` is the very version of the event before, so the
+/// tiles in which the two differ (engine::changedTiles) are all that changed, and within them only `rect`.
+/// Everything an event holds is dropped by whoever pops it: that is how memory gets off the loop.
+struct LoopEvent {
+  EventKind kind = EventKind::kEdited;
+  std::uint64_t id = 0;      ///< of the command it answers
+  std::uint64_t tick = 0;    ///< ticks run before it took effect
+  std::uint64_t stroke = 0;  ///< strokes begun so far
+  std::uint32_t merged = 0;  ///< earlier publications that found the ring full and are part of this one
+  SampleRect rect;  ///< kEdited, kSnapshot: since the event before; kStrokeEnded: of the stroke as well
+  engine::Version before;
+  engine::Version version;
+  engine::Version retired;       ///< the state left (kAdopted, kRestored) or the version refused
+  engine::Version retired_base;  ///< an earlier kSnapshot's
+  std::unique_ptr<PreparedScene> retired_scene;
+};
+
+/// The newest tick, for the display; the main side reads it from a LatestSlot.
+struct LoopState {
+  std::uint64_t tick = 0;
+  std::int64_t time_ns = 0;     ///< steady_clock at wake-up
+  glm::dvec3 endpoint_mm{0.0};  ///< field coordinates
+  glm::dvec3 proxy_mm{0.0};     ///< on the surface while in contact, else the endpoint
+  glm::dvec3 force_n{0.0};      ///< the scene's, field frame
+  glm::dvec3 given_n{0.0};      ///< what the guard let through, device frame
+  bool contact = false;
+  Tool tool = Tool::kFeel;  ///< in effect
+  LinkState link = LinkState::kDisconnected;
+  SafetyState safety = SafetyState::kDisconnected;
+  FaultCause cause = FaultCause::kNone;
+  std::uint64_t stroke = 0;
+  std::uint64_t merged = 0;         ///< publications that found the ring full, so far
+  std::uint64_t refused_edits = 0;  ///< writes that found the tile pool dry, so far
+  std::uint64_t adopted = 0;        ///< versions adopted so far
+  std::uint64_t carried = 0;        ///< tiles carried over adoptions so far
+  TickCounters counters;
+  SafetyCounters safety_counters;
+};
+
+}  // namespace fettle::haptic
