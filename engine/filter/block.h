@@ -38,7 +38,8 @@ struct Block {
   int out_rows = 0;
   float* out = nullptr;  ///< out_rows x out_columns, row-major; unspecified where heights has a hole
   std::ptrdiff_t out_stride = 0;
-  bool holes = false;  ///< whether heights holds a NaN
+  bool holes = false;      ///< whether heights holds a NaN; true is legal without
+  float magnitude = 0.0F;  ///< no |height| is larger; may be more than the largest
 
   [[nodiscard]] const float* row(int r) const noexcept { return heights + r * stride; }
 };

@@ -167,7 +167,8 @@ class BoxFilter final : public BlockFilter {
     const int n = block.out_columns;
     const int width = n + 2 * radius_;
     const std::int64_t side = 2 * radius_ + 1;
-    const SumLanes lanes = chooseLanes(block.heights, block.stride, block.columns, block.rows, side * side);
+    const SumLanes lanes =
+        chooseLanes(block.heights, block.stride, block.columns, block.rows, block.magnitude, side * side);
 
     sums_.assign(static_cast<std::size_t>(SumLanes::kMaxLanes + 1) * width, 0.0);
     window_.resize(sums_.size());

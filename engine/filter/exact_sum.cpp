@@ -11,18 +11,6 @@ namespace fettle::engine {
 
 namespace {
 
-FETTLE_EACH_CPU std::uint32_t largestMagnitude(const float* row, int n, std::uint32_t so_far) noexcept {
-  // Magnitudes of floats order as their bits do; NaN lies above the infinity.
-  constexpr std::uint32_t kInfinity = 0x7f800000U;
-  std::uint32_t largest = so_far;
-  for (int i = 0; i < n; ++i) {
-    std::uint32_t bits = std::bit_cast<std::uint32_t>(row[i]) & 0x7fffffffU;
-    bits = bits > kInfinity ? 0U : bits;
-    largest = bits > largest ? bits : largest;
-  }
-  return largest;
-}
-
 // How many samples one lane (or two) cannot hold.
 FETTLE_EACH_CPU int misfits(const float* row, int n, double cut0, double cut1, int lanes) noexcept {
   int wrong = 0;
@@ -43,17 +31,15 @@ FETTLE_EACH_CPU int misfits(const float* row, int n, double cut0, double cut1, i
 
 }  // namespace
 
-SumLanes chooseLanes(const float* heights, std::ptrdiff_t stride, int columns, int rows,
+SumLanes chooseLanes(const float* heights, std::ptrdiff_t stride, int columns, int rows, float magnitude,
                      std::int64_t count) noexcept {
   assert(count >= 1 && count <= (std::int64_t{1} << 20));
   SumLanes result;
-  std::uint32_t largest = 0;
-  for (int r = 0; r < rows; ++r) largest = largestMagnitude(heights + r * stride, columns, largest);
-  if (largest == 0) return result;
+  if (magnitude == 0.0F) return result;
 
   // All magnitudes are below 2^top, sums and differences of two sums below 2^(top + bits).
   int top = 0;
-  std::ignore = std::frexp(std::bit_cast<float>(largest), &top);
+  std::ignore = std::frexp(magnitude, &top);
   const int bits = static_cast<int>(std::bit_width(static_cast<std::uint64_t>(count))) + 1;  // 2 .. 22
   for (double& cut : result.cut) {
     // The lane's last bit is 2^(top + bits - 53); 1.5 * 2^52 times that rounds to it, for either sign.

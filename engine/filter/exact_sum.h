@@ -25,10 +25,10 @@ struct SumLanes {
 };
 
 /// The lanes in which sums of up to `count` (1 .. 2^20) of the given samples, and the difference of two such
-/// sums, are exact. rows x columns, row-major, stride in elements; NaN is left out, no infinity. `lanes`
-/// comes out as 1, 2 or kMaxLanes.
+/// sums, are exact. rows x columns, row-major, stride in elements; NaN is left out, no infinity; no magnitude
+/// is above `magnitude`. `lanes` comes out as 1, 2 or kMaxLanes.
 [[nodiscard]] SumLanes chooseLanes(const float* heights, std::ptrdiff_t stride, int columns, int rows,
-                                   std::int64_t count) noexcept;
+                                   float magnitude, std::int64_t count) noexcept;
 
 /// The double nearest to the exact sum of the lanes, ties to even: the same for the same exact sum, however
 /// it is spread over lanes. No intermediate overflow as long as the lanes come from floats.

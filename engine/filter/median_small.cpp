@@ -12,102 +12,39 @@ namespace fettle::engine {
 namespace {
 
 constexpr int kAbreast = 16;
-// One register with AVX-512, two with AVX, four with SSE: the compiler cuts it to what there is.
-using Heights = float __attribute__((vector_size(kAbreast * sizeof(float))));
 
-inline void load(Heights& to, const float* from) noexcept {
-  std::memcpy(&to, from, sizeof to);
-}
+using Run = void (*)(const float* corner, std::ptrdiff_t stride, float* out, int chunks);
 
-inline void exchange(Heights& a, Heights& b) noexcept {
-  const Heights low = a < b ? a : b;
-  const Heights high = a < b ? b : a;
-  a = low;
-  b = high;
+// Explicit vectors are cut to the machine's before functions are cloned for machines, so that FETTLE_EACH_CPU
+// would come too late for them.
+namespace plain {
+#include "engine/filter/median_small-inl.h"
 }
-
-// Moves the smallest of a[0 .. n) to a[0] and the largest to a[n - 1].
-template <int n>
-inline void extremesOutward(Heights* a) noexcept {
-#pragma GCC unroll 32
-  for (int i = 0; i < n / 2; ++i) exchange(a[i], a[n - 1 - i]);
-#pragma GCC unroll 32
-  for (int i = 1; i < (n + 1) / 2; ++i) exchange(a[0], a[i]);
-#pragma GCC unroll 32
-  for (int i = n / 2; i < n - 1; ++i) exchange(a[i], a[n - 1]);
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
+#define FETTLE_SMALL_MEDIAN_TARGETS
+#pragma GCC push_options
+#pragma GCC target("arch=haswell")
+namespace avx2 {
+#include "engine/filter/median_small-inl.h"
 }
-
-// The median of an odd number of samples, 2 p + 1, while seeing p + 2 at a time: the largest and the smallest
-// of p + 2 cannot be the median, so both are forgotten and one more sample is looked at ("forgetful
-// selection"; N. Devillard, Fast median search: an ANSI C implementation, 1998, cites it for 3 x 3 and 5 x
-// 5).
-// Leaves it in a[1].
-template <int n, class Next>
-inline void forgetExtremes(Heights* a, Next&& next) noexcept {
-  extremesOutward<n>(a);
-  if constexpr (n > 3) {
-    next(a[0]);
-    forgetExtremes<n - 1>(a, next);
-  }
+#pragma GCC pop_options
+#pragma GCC push_options
+#pragma GCC target("arch=skylake-avx512")
+namespace avx512 {
+#include "engine/filter/median_small-inl.h"
 }
+#pragma GCC pop_options
+#endif
 
 template <int kSide>
-inline void medianRow(const float* corner, std::ptrdiff_t stride, float* out) noexcept {
-  constexpr int kCount = kSide * kSide;
-  constexpr int kSeen = kCount / 2 + 2;
-  Heights a[kSeen];
-#pragma GCC unroll 32
-  for (int i = 0; i < kSeen; ++i) load(a[i], corner + i / kSide * stride + i % kSide);
-  int i = kSeen;
-  forgetExtremes<kSeen>(a, [&](Heights& next) noexcept {
-    load(next, corner + i / kSide * stride + i % kSide);
-    ++i;
-  });
-  std::memcpy(out, &a[1], sizeof a[1]);
-}
-
-// 3 x 3: sort each column; the median of nine is the median of the largest low, the middle middle and the
-// smallest high (J. L. Smith, Implementing median filters in XC4000E FPGAs, 1996).
-template <>
-inline void medianRow<3>(const float* corner, std::ptrdiff_t stride, float* out) noexcept {
-  Heights low[3], middle[3], high[3];
-  for (int i = 0; i < 3; ++i) {
-    load(low[i], corner + i);
-    load(middle[i], corner + stride + i);
-    load(high[i], corner + 2 * stride + i);
-    exchange(low[i], middle[i]);
-    exchange(middle[i], high[i]);
-    exchange(low[i], middle[i]);
-  }
-  exchange(low[0], low[1]);
-  exchange(low[1], low[2]);
-  exchange(high[0], high[1]);
-  exchange(high[0], high[2]);
-  exchange(middle[0], middle[1]);
-  exchange(middle[1], middle[2]);
-  exchange(middle[0], middle[1]);
-  Heights a = low[2];
-  Heights b = middle[1];
-  Heights c = high[0];
-  exchange(a, b);
-  exchange(b, c);
-  exchange(a, b);
-  std::memcpy(out, &b, sizeof b);
-}
-
-template <int kSide>
-inline void medianRun(const float* corner, std::ptrdiff_t stride, float* out, int chunks) noexcept {
-  for (int i = 0; i < chunks; ++i) medianRow<kSide>(corner + i * kAbreast, stride, out + i * kAbreast);
-}
-
-FETTLE_EACH_CPU void medianRun3(const float* corner, std::ptrdiff_t stride, float* out, int chunks) {
-  medianRun<3>(corner, stride, out, chunks);
-}
-FETTLE_EACH_CPU void medianRun5(const float* corner, std::ptrdiff_t stride, float* out, int chunks) {
-  medianRun<5>(corner, stride, out, chunks);
-}
-FETTLE_EACH_CPU void medianRun7(const float* corner, std::ptrdiff_t stride, float* out, int chunks) {
-  medianRun<7>(corner, stride, out, chunks);
+Run chooseRun() noexcept {
+#ifdef FETTLE_SMALL_MEDIAN_TARGETS
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    return avx512::medianRun<kSide>;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) return avx2::medianRun<kSide>;
+#endif
+  return plain::medianRun<kSide>;
 }
 
 FETTLE_EACH_CPU bool anyHole(const float* corner, std::ptrdiff_t stride, int columns, int rows) {
@@ -124,9 +61,9 @@ class SmallMedian final : public BlockFilter {
  public:
   explicit SmallMedian(int window)
       : radius_(window / 2),
-        run_(window == 3   ? medianRun3
-             : window == 5 ? medianRun5
-                           : medianRun7) {}
+        run_(window == 3   ? chooseRun<3>()
+             : window == 5 ? chooseRun<5>()
+                           : chooseRun<7>()) {}
 
   bool run(const Block& block, const JobControl& job) override {
     const int side = 2 * radius_ + 1;
@@ -177,7 +114,7 @@ class SmallMedian final : public BlockFilter {
   }
 
   int radius_;
-  void (*run_)(const float*, std::ptrdiff_t, float*, int);
+  Run run_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -47,6 +48,26 @@ std::unique_ptr<BlockFilter> makeFilter(const FilterSpec& spec) {
       return makeMedianFilter(spec);
   }
   return nullptr;
+}
+
+// after = result where it differs from `old`, which keeps its bits where it does not, and where it is a hole;
+// a new zero is the positive one. The number of samples that differ.
+FETTLE_EACH_CPU int takeChanged(const float* __restrict old, const float* __restrict result, int n,
+                                float* __restrict after) noexcept {
+  int changed = 0;
+  for (int c = 0; c < n; ++c) {
+    // Both sides of every choice are worked out, and no `&&`: so the loop has no branch.
+    const float fresh = result[c] + 0.0F;
+    const bool differs = static_cast<bool>((result[c] != old[c]) & (old[c] == old[c]));
+    after[c] = differs ? fresh : old[c];
+    changed += differs ? 1 : 0;
+  }
+  return changed;
+}
+
+FETTLE_EACH_CPU void applySign(const float* __restrict result, float sign, int n,
+                               float* __restrict signed_result) noexcept {
+  for (int c = 0; c < n; ++c) signed_result[c] = sign * result[c];
 }
 
 class Pass {
@@ -144,7 +165,7 @@ class Pass {
     reader_.readHeights(left, low, block.columns, block.rows, scratch.heights.data(), block.stride);
     block.heights = scratch.heights.data();
     block.out = scratch.out.data();
-    block.holes = holesIn(left, low, block.columns, block.rows);
+    surveyTiles(left, low, block);
     if (radius_ == 0) {
       std::copy(scratch.heights.begin(), scratch.heights.end(), scratch.out.begin());
       return true;
@@ -153,14 +174,17 @@ class Pass {
     return scratch.filter->run(block, job);
   }
 
-  [[nodiscard]] bool holesIn(std::int32_t column, std::int32_t row, std::int32_t columns,
-                             std::int32_t rows) const noexcept {
-    for (std::int32_t tr = row / kTileSide; tr * kTileSide < row + rows; ++tr)
-      for (std::int32_t tc = column / kTileSide; tc * kTileSide < column + columns; ++tc) {
+  // What the tiles under a block's samples know about them: whether there are holes, and the magnitudes.
+  void surveyTiles(std::int32_t column, std::int32_t row, Block& block) const noexcept {
+    for (std::int32_t tr = row / kTileSide; tr * kTileSide < row + block.rows; ++tr)
+      for (std::int32_t tc = column / kTileSide; tc * kTileSide < column + block.columns; ++tc) {
+        const Tile& tile = reader_.tile(tc, tr);
         const auto [c, r] = extent(tc, tr);
-        if (reader_.tile(tc, tr).nan_samples > static_cast<std::uint32_t>(kTileSamples - c * r)) return true;
+        block.holes |= tile.nan_samples > static_cast<std::uint32_t>(kTileSamples - c * r);
+        if (!tile.bounds.empty())
+          block.magnitude =
+              std::max({block.magnitude, std::fabs(tile.bounds.min), std::fabs(tile.bounds.max)});
       }
-    return false;
   }
 
   // Puts the results of one tile together with what must stay, and makes a tile of it if any bit changed.
@@ -169,26 +193,18 @@ class Pass {
     const Tile& before = reader_.tile(tc, tr);
     const auto [columns, rows] = extent(tc, tr);
     const float sign = reader_.sign();
+    alignas(64) float stored[kTileSide];  // results as a tile holds them
     alignas(64) float after[kTileSide];
     TileRef copy;
     for (int r = 0; r < rows; ++r) {
       const float* old = before.samples.data() + r * kTileSide;
-      const float* result = results + r * stride;
+      applySign(results + r * stride, sign, columns, stored);
       if (spec_.max_change.has_value()) {
         const float* origin = original_.tile(tc, tr).samples.data() + r * kTileSide;
         for (int c = 0; c < columns; ++c)
-          after[c] =
-              old[c] == old[c] ? limitedChange(sign * result[c], origin[c], *spec_.max_change) : old[c];
-      } else {
-        for (int c = 0; c < columns; ++c) after[c] = sign * result[c];
+          if (old[c] == old[c]) stored[c] = limitedChange(stored[c], origin[c], *spec_.max_change);
       }
-      // Holes and equal samples keep their bits; a new zero is the positive one.
-      int changed = 0;
-      for (int c = 0; c < columns; ++c) {
-        const bool differs = after[c] != old[c] && old[c] == old[c];
-        after[c] = differs ? after[c] + 0.0F : old[c];
-        changed += differs ? 1 : 0;
-      }
+      int changed = takeChanged(old, stored, columns, after);
       const std::uint64_t marks = before.marks[static_cast<std::size_t>(r)];
       const std::uint64_t kept = spec_.scope == FilterScope::kKeepMarks ? marks : ~marks;
       if (kept != 0 && changed != 0)

@@ -27,11 +27,15 @@ float anyFloat(std::mt19937& random) {
   }
 }
 
+SumLanes lanesFor(const std::vector<float>& z, std::int64_t count) {
+  float magnitude = 0.0F;
+  for (const float v : z) magnitude = std::fmax(magnitude, std::fabs(v));
+  const auto n = static_cast<int>(z.size());
+  return chooseLanes(z.data(), n, n, 1, magnitude, count);
+}
+
 TEST(ExactSums, NeedOneLaneForFixedPointHeightsTwoForMostFloatsAndNineForAll) {
-  const auto lanes = [](const std::vector<float>& z, std::int64_t count) {
-    return chooseLanes(z.data(), static_cast<std::ptrdiff_t>(z.size()), static_cast<int>(z.size()), 1, count)
-        .lanes;
-  };
+  const auto lanes = [](const std::vector<float>& z, std::int64_t count) { return lanesFor(z, count).lanes; };
   EXPECT_EQ(lanes({0.0F, 65535.0F, 1.0F, -3.0F}, 1001 * 1001), 1);
   EXPECT_EQ(lanes({0.1F, 0.2F, -0.3F}, 1001 * 1001), 1);
   EXPECT_EQ(lanes({1e6F, 0.1F}, 9), 1);
@@ -47,7 +51,7 @@ TEST(ExactSums, CutEveryFloatWithoutLoss) {
   for (int round = 0; round < 2000; ++round) {
     std::vector<float> z;
     for (int i = 0; i < 8; ++i) z.push_back(anyFloat(random));
-    const SumLanes s = chooseLanes(z.data(), 8, 8, 1, 1001 * 1001);
+    const SumLanes s = lanesFor(z, 1001 * 1001);
     for (const float v : z) {
       double rest = static_cast<double>(v);
       double parts[SumLanes::kMaxLanes];
