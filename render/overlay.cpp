@@ -88,7 +88,7 @@ void colourBar(Pen& pen, const Layout& layout, const View& view, const Furniture
   pen.text(left, y + line, pen.fitted("[" + unit.name + "]", room, layout.text_px, kRegular), layout.text_px,
            kRegular, palette.ink);
   const double top = std::round(y + 1.8 * line + tip);
-  const double notes = f.note.empty() ? 0.0 : 2.6 * line;
+  const double notes = f.note.empty() ? 0.0 : 3.4 * line;
   const double bottom = std::round(plot.y + plot.height - tip - notes - 0.4 * line);
   if (bottom - top < 2 * line) {
     warnings.emplace_back("no room for the colour bar, make the picture higher");

@@ -62,9 +62,9 @@ engine::Status check(const PictureSpec& spec) {
 }
 
 // A range with an inside, for colours: what is flat gets the middle colour.
-ValueRange opened(ValueRange r) {
+ValueRange opened(ValueRange r, double half) {
   if (r.low < r.high) return r;
-  const double half = std::max(std::abs(r.low) * 1e-6, 1e-9);
+  half = std::max({half, std::abs(r.low) * 1e-6, 1e-9});
   return {r.low - half, r.high + half};
 }
 
@@ -126,7 +126,10 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
   const Quantity quantity = spec.deviation_from ? Quantity::kDeviation : Quantity::kHeight;
   plan.map = resolve(spec.map, quantity);
   plan.palette = paletteOf(spec.theme, plan.map);
-  plan.range = opened(spec.range ? *spec.range : colours.robust);
+  // Nothing varies: a bar of about the size of the relief, or of a hundredth of the field's width.
+  const double flat_half =
+      relief > 0.0 ? roundDown125(0.01 * relief) : roundDown125(0.01 * std::max(widest, 1e-6) / unit.mm);
+  plan.range = opened(spec.range ? *spec.range : colours.robust, flat_half);
   if (quantity == Quantity::kDeviation) {
     const double limit = std::max(std::abs(plan.range.low), std::abs(plan.range.high));
     plan.range = {-limit, limit};
@@ -214,7 +217,10 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
     const ShownUnit shown = shownUnit(unit, size, 0.05, 5e4);
     f.note = fmt::format("lowest {}\nhighest {}", shortNumber(colours.extreme.low * shown.per_unit),
                          shortNumber(colours.extreme.high * shown.per_unit));
+    if (quantity == Quantity::kDeviation && !spec.range) f.note += "\nbar: 99.5 %";
   }
+  if (quantity == Quantity::kDeviation && !colours.empty && colours.extreme == ValueRange{})
+    f.note = "no deviation";
   f.titles = {spec.title_left};
   if (spec.compare) f.titles.push_back(spec.title_right);
   return plan;

@@ -29,8 +29,22 @@ float slope(ivec2 s, ivec2 d, float h) {
   return (a - b) / (has_after && has_before ? 2.0 : 1.0);
 }
 
-vec2 slopes(ivec2 s, float h, int step) {
-  return vec2(slope(s, ivec2(step, 0), h), slope(s, ivec2(0, step), h)) / float(step);
+// Slope at a corner of the cell, of which `inward` is the slope along the cell's own edge: the mean of that and of the
+// slope to the sample outside, when there is one. `sign` is +1 when the outer sample lies after the corner.
+float cornerSlope(ivec2 outer, float at, float inward, float sign) {
+  const uint raw = rawHeight(outer);
+  const bool inside = all(greaterThanEqual(outer, ivec2(0))) && all(lessThan(outer, panel.size.xy));
+  return isHole(raw) || !inside ? inward : 0.5 * (inward + sign * (heightOf(raw) - at));
+}
+
+// Slopes interpolated between the cell's corners from the samples around it: shading without facets.
+vec2 smoothSlopes(ivec2 c, vec2 f, vec4 h) {
+  const vec2 low = vec2(h.y - h.x, h.z - h.x), high = vec2(h.w - h.z, h.w - h.y);  // edges: (x at y0, y at x0), ...
+  const float x0 = mix(cornerSlope(c + ivec2(-1, 0), h.x, low.x, -1.0), cornerSlope(c + ivec2(2, 0), h.y, low.x, 1.0), f.x);
+  const float x1 = mix(cornerSlope(c + ivec2(-1, 1), h.z, high.x, -1.0), cornerSlope(c + ivec2(2, 1), h.w, high.x, 1.0), f.x);
+  const float y0 = mix(cornerSlope(c + ivec2(0, -1), h.x, low.y, -1.0), cornerSlope(c + ivec2(0, 2), h.z, low.y, 1.0), f.y);
+  const float y1 = mix(cornerSlope(c + ivec2(1, -1), h.y, high.y, -1.0), cornerSlope(c + ivec2(1, 2), h.w, high.y, 1.0), f.y);
+  return vec2(mix(x0, x1, f.y), mix(y0, y1, f.x));
 }
 
 vec3 mapped(float value) {
@@ -68,12 +82,11 @@ void main() {
   const ivec2 nearest = cell + ivec2(round(f));
   vec2 g;
   if (kSmooth) {
-    const vec2 g00 = slopes(cell, h.x, 1), g10 = slopes(cell + ivec2(1, 0), h.y, 1);
-    const vec2 g01 = slopes(cell + ivec2(0, 1), h.z, 1), g11 = slopes(cell + ivec2(1, 1), h.w, 1);
-    g = mix(mix(g00, g10, f.x), mix(g01, g11, f.x), f.y);
+    g = smoothSlopes(cell, f, h);
   } else {
     const float at = f.y < 0.5 ? (f.x < 0.5 ? h.x : h.y) : (f.x < 0.5 ? h.z : h.w);
-    g = slopes(nearest, at, panel.paging.w);
+    const int step = panel.paging.w;
+    g = vec2(slope(nearest, ivec2(step, 0), at), slope(nearest, ivec2(0, step), at)) / float(step);
   }
   const vec3 normal = normalize(vec3(-g * panel.relief.z / panel.placing.zw, 1.0));
 
