@@ -15,6 +15,8 @@
 #else
 #define FETTLE_EACH_CPU
 #endif
+// For what such a loop calls: a call that is not inlined would leave for the plain version.
+#define FETTLE_INTO_EACH_CPU inline __attribute__((always_inline))
 
 namespace fettle::engine {
 

@@ -24,7 +24,7 @@ struct Columns {
 };
 
 template <int kLanes>
-inline void cutUp(double x, const double* cut, double* parts) noexcept {
+FETTLE_INTO_EACH_CPU void cutUp(double x, const double* cut, double* parts) noexcept {
   for (int l = 0; l + 1 < kLanes; ++l) {
     parts[l] = (x + cut[l]) - cut[l];
     x -= parts[l];
@@ -34,8 +34,9 @@ inline void cutUp(double x, const double* cut, double* parts) noexcept {
 
 // Adds the row `enter` (0 if null) and takes away the row `leave` (likewise), n samples each.
 template <int kLanes, bool kHoles, bool kEnter, bool kLeave>
-inline void moveRow(const float* __restrict enter, const float* __restrict leave, int n,
-                    double* __restrict sums, std::ptrdiff_t lane_stride, const double* cut) noexcept {
+FETTLE_INTO_EACH_CPU void moveRow(const float* __restrict enter, const float* __restrict leave, int n,
+                                  double* __restrict sums, std::ptrdiff_t lane_stride,
+                                  const double* cut) noexcept {
   for (int i = 0; i < n; ++i) {
     double in[kLanes] = {};
     double out[kLanes] = {};
@@ -58,7 +59,8 @@ inline void moveRow(const float* __restrict enter, const float* __restrict leave
 }
 
 template <int kLanes, bool kHoles>
-inline void moveRows(const float* enter, const float* leave, const Columns& at, const double* cut) noexcept {
+FETTLE_INTO_EACH_CPU void moveRows(const float* enter, const float* leave, const Columns& at,
+                                   const double* cut) noexcept {
   double* sums = at.sums + at.begin;
   const int n = at.end - at.begin;
   if (enter != nullptr && leave != nullptr)
@@ -70,7 +72,8 @@ inline void moveRows(const float* enter, const float* leave, const Columns& at, 
 }
 
 // window[c] = sum of columns[c .. c + 2 radius].
-inline void slide(const double* __restrict columns, int radius, double* __restrict window, int n) noexcept {
+FETTLE_INTO_EACH_CPU void slide(const double* __restrict columns, int radius, double* __restrict window,
+                                int n) noexcept {
   double sum = 0.0;
   for (int j = 0; j <= 2 * radius; ++j) sum += columns[j];
   window[0] = sum;
@@ -95,8 +98,9 @@ inline void slide(const double* __restrict columns, int radius, double* __restri
 
 // out = sum / count, in double, then one rounding to float.
 template <int kLanes>
-inline void divide(const double* __restrict window, std::ptrdiff_t lane_stride,
-                   const double* __restrict count, double rows, float* __restrict out, int n) noexcept {
+FETTLE_INTO_EACH_CPU void divide(const double* __restrict window, std::ptrdiff_t lane_stride,
+                                 const double* __restrict count, double rows, float* __restrict out,
+                                 int n) noexcept {
   for (int c = 0; c < n; ++c) {
     double sum = window[c];
     if constexpr (kLanes == 2) sum += window[lane_stride + c];
@@ -118,7 +122,7 @@ struct RowWork {
 };
 
 template <int kLanes, bool kHoles>
-inline void doRow(const Columns& at, const RowWork& w) noexcept {
+FETTLE_INTO_EACH_CPU void doRow(const Columns& at, const RowWork& w) noexcept {
   moveRows<kLanes, kHoles>(w.enter, w.leave, at, w.cut);
   for (int l = 0; l < kLanes + (kHoles ? 1 : 0); ++l)
     slide(at.sums + l * at.lane_stride, w.radius, w.window + l * at.lane_stride, w.n);

@@ -54,7 +54,8 @@ struct Rows {
 };
 
 template <bool kHoles>
-inline void load(const float* row, int at, int n, double* __restrict value, double* __restrict there) {
+FETTLE_INTO_EACH_CPU void load(const float* row, int at, int n, double* __restrict value,
+                               double* __restrict there) {
   for (int i = 0; i < n; ++i) {
     const float v = row[at + i];
     const bool is = !kHoles || v == v;
@@ -65,8 +66,8 @@ inline void load(const float* row, int at, int n, double* __restrict value, doub
 
 // value[c] = sum over the column of w * height; with holes there[c] = sum of w over the samples there are.
 template <bool kHoles>
-inline void down(const Rows& rows, const double* weights, int radius, int n, double* __restrict value,
-                 double* __restrict there) {
+FETTLE_INTO_EACH_CPU void down(const Rows& rows, const double* weights, int radius, int n,
+                               double* __restrict value, double* __restrict there) {
   for (int c = 0; c < n; c += kChunk) {
     const int m = std::min(kChunk, n - c);
     double sum[kChunk] = {};
@@ -98,8 +99,8 @@ inline void down(const Rows& rows, const double* weights, int radius, int n, dou
 }
 
 // out[c] = sum over k of w * in[c + radius +- k].
-inline void along(const double* __restrict in, const double* weights, int radius, int n,
-                  double* __restrict out) {
+FETTLE_INTO_EACH_CPU void along(const double* __restrict in, const double* weights, int radius, int n,
+                                double* __restrict out) {
   const double* centre = in + radius;
   int c = 0;
   for (; c + kChunk <= n; c += kChunk) {

@@ -25,7 +25,7 @@ struct Window {
 
 // Flips n samples, `stride` apart, into the window (kSign = 1) or out of it (-1).
 template <int kSign>
-inline void flip(Window& w, const std::uint32_t* ranks, int n, std::ptrdiff_t stride) noexcept {
+FETTLE_INTO_EACH_CPU void flip(Window& w, const std::uint32_t* ranks, int n, std::ptrdiff_t stride) noexcept {
   const std::uint32_t pivot = w.word * 64;
   std::int32_t below = 0;
   std::int32_t samples = 0;
@@ -40,7 +40,7 @@ inline void flip(Window& w, const std::uint32_t* ranks, int n, std::ptrdiff_t st
 }
 
 // Moves the pivot to the word that holds the k-th smallest of the set, k from 0.
-inline void seek(Window& w, std::int32_t k) noexcept {
+FETTLE_INTO_EACH_CPU void seek(Window& w, std::int32_t k) noexcept {
   while (w.below > k) w.below -= std::popcount(w.words[--w.word]);
   for (;;) {
     const std::int32_t here = std::popcount(w.words[w.word]);
@@ -51,7 +51,7 @@ inline void seek(Window& w, std::int32_t k) noexcept {
 }
 
 // Median of a set that is not empty.
-inline float median(Window& w, const float* heights) noexcept {
+FETTLE_INTO_EACH_CPU float median(Window& w, const float* heights) noexcept {
   const std::int32_t k = (w.size - 1) / 2;
   seek(w, k);
   std::uint64_t bits = w.words[w.word];

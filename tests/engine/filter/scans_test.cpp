@@ -24,8 +24,8 @@ TEST_P(Scans, AreFilteredWithinOneUlpOfTheReferenceAndTheMedianExactly) {
       SCOPED_TRACE(std::string(name(kind)) + " " + std::to_string(window));
       const FilterSpec spec = makeSpec(kind, window);
       const Filtered result = filtered(imported->field, spec);
-      // Holes and their neighbours everywhere, windows at about 2000 places.
-      EXPECT_EQ(checkPass(plain, toPlain(result.field), spec, 2000), "");
+      // Holes and their neighbours everywhere, windows at about 1000 places.
+      EXPECT_EQ(checkPass(plain, toPlain(result.field), spec, 1000), "");
       EXPECT_GT(result.report.changed, 0);
     }
 }
