@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <unordered_map>
 
 #include "haptic/operator/hand_motion.h"
 
@@ -111,6 +112,40 @@ class Path {
   double end_ = 0.0;
 };
 
+// Tells whether a place keeps a distance from every edge; cells as large as the distance hold the edges'
+// points.
+class Clearance {
+ public:
+  Clearance(std::span<const engine::Edge> edges, double distance) : distance_(distance) {
+    if (distance_ <= 0.0) return;
+    for (const engine::Edge& edge : edges)
+      for (const glm::dvec2& p : edge.points_mm) cells_[key(cell(p.x), cell(p.y))].push_back(p);
+  }
+
+  [[nodiscard]] bool keeps(glm::dvec2 p) const {
+    if (distance_ <= 0.0) return true;
+    for (std::int32_t dy = -1; dy <= 1; ++dy)
+      for (std::int32_t dx = -1; dx <= 1; ++dx) {
+        const auto found = cells_.find(key(cell(p.x) + dx, cell(p.y) + dy));
+        if (found == cells_.end()) continue;
+        for (const glm::dvec2& q : found->second)
+          if (length(q - p) < distance_) return false;
+      }
+    return true;
+  }
+
+ private:
+  [[nodiscard]] std::int32_t cell(double x) const noexcept {
+    return static_cast<std::int32_t>(std::floor(x / distance_));
+  }
+  static std::uint64_t key(std::int32_t x, std::int32_t y) noexcept {
+    return (std::uint64_t{static_cast<std::uint32_t>(y)} << 32) | static_cast<std::uint32_t>(x);
+  }
+
+  double distance_;
+  std::unordered_map<std::uint64_t, std::vector<glm::dvec2>> cells_;
+};
+
 double edgeLength(const engine::Edge& edge) noexcept {
   double sum = edge.closed ? length(edge.points_mm.front() - edge.points_mm.back()) : 0.0;
   for (std::size_t i = 1; i < edge.points_mm.size(); ++i)
@@ -120,8 +155,11 @@ double edgeLength(const engine::Edge& edge) noexcept {
 
 class Hand {
  public:
-  Hand(const engine::Version& scan, const OperatorSpec& spec)
-      : spec_(spec), surface_(scan), tip_(0.0, 0.0, surface_.highest() + spec.lift_mm) {}
+  Hand(const engine::Version& scan, std::span<const engine::Edge> edges, const OperatorSpec& spec)
+      : spec_(spec),
+        surface_(scan),
+        clearance_(edges, spec.smooth_clear_mm),
+        tip_(0.0, 0.0, surface_.highest() + spec.lift_mm) {}
 
   void trace(const Path& path, Tool tool) {
     ++stroke_;
@@ -148,7 +186,8 @@ class Hand {
     for (std::int64_t i = 1; s < path.end(); ++i) {
       s = std::min(static_cast<double>(i) * step, path.end());
       // The hand's own time starts with the stroke, so that it comes down where the trembling begins.
-      add(tipAt(s, static_cast<double>(i) / spec_.rate_hz), tool);
+      const bool only_feel = tool == Tool::kSmooth && !clearance_.keeps(path.place(s));
+      add(tipAt(s, static_cast<double>(i) / spec_.rate_hz), only_feel ? Tool::kFeel : tool);
     }
     moveTo({tip_.x, tip_.y, free_height});
   }
@@ -179,6 +218,7 @@ class Hand {
 
   const OperatorSpec& spec_;
   FeltSurface surface_;
+  Clearance clearance_;
   glm::dvec3 tip_;
   std::uint64_t stroke_ = 0;
   std::vector<StrokeSample> rows_;
@@ -190,14 +230,15 @@ std::vector<StrokeSample> operatorStrokes(const engine::Version& scan, std::span
                                           const OperatorSpec& spec) {
   assert(spec.rate_hz >= 100.0 && spec.rate_hz <= 10000.0 && spec.speed_mm_s > 0.0 && spec.lift_mm > 0.0);
   assert(spec.press_mm >= 0.0 && spec.tremor_mm >= 0.0 && spec.wander_mm >= 0.0);
+  assert(spec.smooth_offset_mm >= 0.0 && spec.smooth_clear_mm <= spec.smooth_offset_mm);
   assert(spec.smooth_passes >= 0 && spec.smooth_passes <= 16 && spec.mark_passes >= 0 &&
          spec.mark_passes <= 16);
-  Hand hand(scan, spec);
+  Hand hand(scan, edges, spec);
   for (const engine::Edge& edge : edges) {
     if (edge.points_mm.size() < 2 || edgeLength(edge) < spec.shortest_mm) continue;
     const double to_high = edge.high_side_left ? 1.0 : -1.0;
-    const double beside = edge.kind == engine::EdgeKind::kStep ? to_high * spec.smooth_offset_mm : 0.0;
-    for (int k = 0; k < spec.smooth_passes; ++k) hand.trace(Path(edge, beside), Tool::kSmooth);
+    for (int k = 0; k < spec.smooth_passes; ++k)
+      hand.trace(Path(edge, to_high * spec.smooth_offset_mm), Tool::kSmooth);
     for (int k = 0; k < spec.mark_passes; ++k)
       hand.trace(Path(edge, spec.mark_offset_mm * (k - 0.5 * (spec.mark_passes - 1))), Tool::kMark);
   }

@@ -27,9 +27,13 @@ struct OperatorSpec {
   /// Passes along each edge with the smooth tool, then with the mark tool; 0 .. 16 each.
   int smooth_passes = 1;
   int mark_passes = 1;
-  /// How far to the high side of a step the smooth passes run [mm], >= 0: a smoothing window that reaches
-  /// over a step would blur it, so a person smooths the land beside the edge, not the edge.
-  double smooth_offset_mm = 0.0;
+  /// How far to the high side of a step (the flatter one of a crease) the smooth passes run [mm], >= 0: a
+  /// smoothing window that reaches over an edge blurs it, so a person smooths the land beside it. More than
+  /// three times the hand's own error keeps off it almost always.
+  double smooth_offset_mm = 0.5;
+  /// The smooth passes only feel where any edge lies nearer than this to the way of the tool (narrow ribs,
+  /// corners) [mm], 0 .. smooth_offset_mm; 0 = smooth everywhere.
+  double smooth_clear_mm = 0.45;
   /// Distance between parallel mark passes, spread evenly about the edge [mm], >= 0.
   double mark_offset_mm = 0.0;
   /// Edges shorter than this are left out [mm], >= 0.

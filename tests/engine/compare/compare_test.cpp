@@ -95,8 +95,7 @@ TEST(Compare, EqualsALongDoubleReferenceAtAnyOffsetAndSize) {
       const Deviation d = compared(makeField(gridOf(w, h), a), makeField(gridOf(w, h), b));
       const Reference ref = reference(a, b, w);
       // Compensated sums leave two roundings of the largest addend; means, squares and the root a few more,
-      // of the largest height: 32 of them are ample. Squares of 1e-41 are denormal doubles' business no
-      // longer.
+      // of the largest height: 32 of them are ample.
       const double eps = 32 * std::numeric_limits<double>::epsilon() * (std::abs(offset) + 5.0 * size);
       EXPECT_NEAR(d.rms, static_cast<double>(ref.rms), eps);
       EXPECT_NEAR(d.mean, static_cast<double>(ref.mean), eps);
