@@ -18,6 +18,7 @@ namespace fettle::engine {
 namespace {
 
 constexpr double kLeastLatticeFill = 0.15;  // below, the "lattice" is the rounding of irregular coordinates
+constexpr double kMostPointsACell = 4.0;    // of a lattice, on average
 constexpr double kMostCellsAPoint = 100.0;
 constexpr double kSmallGrid = 1e6;  // cells that are always granted
 
@@ -45,6 +46,22 @@ AxisLattice cellsOver(const Extent& extent, double size) {
   return {extent.low, size, steps < 1e15 ? static_cast<std::int64_t>(steps) + 1 : std::int64_t{1} << 52};
 }
 
+// Whether two axes that fit make a raster of the points: filled well enough, and without a heap of different
+// points in one cell. A dense cloud with one stray point far away "lies" on two positions an axis.
+bool isLatticeOf(const PointCloud& cloud, const AxisLattice& x, const AxisLattice& y) {
+  const auto points = static_cast<double>(cloud.x.size());
+  if (static_cast<double>(x.count) * static_cast<double>(y.count) * kLeastLatticeFill > points) return false;
+  if (x.one_value_each && y.one_value_each) return true;  // points of one cell are the same point
+  std::vector<bool> taken(static_cast<std::size_t>(x.count * y.count));
+  std::size_t cells = 0;
+  for (std::size_t i = 0; i < cloud.x.size(); ++i) {
+    const auto k = static_cast<std::size_t>(y.indexOf(cloud.y[i]) * x.count + x.indexOf(cloud.x[i]));
+    cells += taken[k] ? 0 : 1;
+    taken[k] = true;
+  }
+  return static_cast<double>(cells) * kMostPointsACell >= points;
+}
+
 // How many cells of a size hold a point.
 double occupiedCells(const PointCloud& cloud, const Extent& ex, const Extent& ey, double size) {
   std::vector<std::uint64_t> keys(cloud.x.size());
@@ -68,7 +85,7 @@ double estimatedCellSize(const PointCloud& cloud, const Extent& ex, const Extent
   const double longest = std::max(ex.range(), ey.range());
   if (longest == 0.0) return 1.0;
   // Along a line the length takes the place of the area.
-  double size = std::max(std::sqrt(ex.range() * ey.range() / points), longest / points);
+  double size = std::max(std::sqrt(ex.range() / points) * std::sqrt(ey.range()), longest / points);
   for (int round = 0; round < 8; ++round) {
     if (longest / size > 4e9) break;  // keys take 32 bits a side; far past what a field can hold anyway
     // Points at random, one a cell on average, leave 1/e of the cells empty (Poisson).
@@ -99,7 +116,7 @@ Result<Cells> chooseCells(const PointCloud& cloud, const ImportOptions& options,
   }
   auto x = findAxisLattice(cloud.x);
   auto y = x ? findAxisLattice(cloud.y) : std::nullopt;
-  if (x && y && static_cast<double>(x->count) * static_cast<double>(y->count) * kLeastLatticeFill <= points) {
+  if (x && y && isLatticeOf(cloud, *x, *y)) {
     // A single row or column has no spacing across: that along it serves, so that its cells are square.
     if (x->spacing == 0.0) x->spacing = y->spacing;
     if (y->spacing == 0.0) y->spacing = x->spacing;

@@ -158,6 +158,7 @@ std::optional<AxisLattice> fit(const std::vector<double>& values, double guess) 
   lattice.spacing = fewestDigits(static_cast<double>(slope), slope_error);
   lattice.origin = fewestDigits(static_cast<double>(start + values.front()), start_error);
   lattice.count = static_cast<std::int64_t>(last) + 1;
+  lattice.one_value_each = taken == values.size();
   return lattice;
 }
 

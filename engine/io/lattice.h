@@ -11,6 +11,7 @@ struct AxisLattice {
   double origin = 0.0;
   double spacing = 0.0;  ///< 0 when all values are one
   std::int64_t count = 0;
+  bool one_value_each = true;  ///< no position is hit by two different values
 
   /// Index of the position nearest to a value within the lattice.
   [[nodiscard]] std::int64_t indexOf(double value) const noexcept;

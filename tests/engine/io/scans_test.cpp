@@ -1,0 +1,239 @@
+// The real scans, against the figures that their README took from them with another reader.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/io/io_support.h"
+#include "tests/support/shared_data.h"
+
+namespace fettle::engine {
+namespace {
+
+// A check value as the README prints it: equal to as many digits as it has.
+#define EXPECT_STORED(field, row, column, value) \
+  EXPECT_EQ(stored(field, row, column), static_cast<float>(value))
+
+TEST(Scans, LidarModelWithNanHolesAndCompoundSystem) {
+  FETTLE_SCAN_OR_SKIP(path, "dsm_ahn_buildings.tif");
+  FETTLE_LOAD(scan, path);
+  const Grid& grid = scan.field.grid();
+  EXPECT_EQ(scan.format, "GTiff");
+  EXPECT_EQ(grid.width, 963);
+  EXPECT_EQ(grid.height, 840);
+  EXPECT_EQ(grid.spacing_x, 0.5);
+  EXPECT_EQ(grid.spacing_y, 0.5);
+  EXPECT_EQ(grid.origin_x, 73410.25);
+  EXPECT_EQ(grid.origin_y, 451653.5 - 839.5 * 0.5);
+  EXPECT_EQ(grid.lateral_unit, (LengthUnit{"m", 1000.0}));
+  EXPECT_EQ(grid.height_unit, (LengthUnit{"m", 1000.0}));
+  EXPECT_NE(grid.crs_wkt.find("Amersfoort / RD New + NAP height"), std::string::npos);
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 42475);
+  EXPECT_EQ(static_cast<float>(s.min), -0.436F);
+  EXPECT_EQ(static_cast<float>(s.max), 43.305F);
+  EXPECT_NEAR(s.mean, 6.338, 5e-4);
+  EXPECT_STORED(scan.field, 210, 321, 9.792);
+  EXPECT_STORED(scan.field, 420, 481, 7.861);
+  EXPECT_STORED(scan.field, 630, 642, 10.955);
+}
+
+TEST(Scans, NegativeCoordinatesAndAnOverlongNoDataValue) {
+  FETTLE_SCAN_OR_SKIP(path, "dsm_village_sjtsk.tif");
+  FETTLE_LOAD(scan, path);
+  const Grid& grid = scan.field.grid();
+  EXPECT_EQ(grid.width, 223);
+  EXPECT_EQ(grid.height, 175);
+  EXPECT_EQ(grid.spacing_x, 1.0);
+  EXPECT_EQ(grid.origin_x, -336531.6453 + 0.5);
+  EXPECT_EQ(grid.origin_y, -1189032.1189 - 174.5);
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 1035);
+  EXPECT_NEAR(s.min, 987.2667, 5e-5);
+  EXPECT_NEAR(s.max, 1026.1981, 5e-5);
+  EXPECT_NEAR(s.mean, 1000.487, 5e-4);
+  EXPECT_STORED(scan.field, 43, 74, 1011.068);
+  EXPECT_STORED(scan.field, 87, 111, 1000.1425);
+  EXPECT_STORED(scan.field, 131, 148, 1004.4005);
+}
+
+TEST(Scans, SixteenBitPngWithZeroAsHole) {
+  FETTLE_SCAN_OR_SKIP(path, "shapes_plate_u16.png");
+  ImportOptions raw;
+  raw.no_data = 0.0;
+  FETTLE_LOAD(counts, path, raw);
+  EXPECT_EQ(counts.format, "PNG");
+  EXPECT_EQ(counts.field.grid().width, 744);
+  EXPECT_EQ(counts.field.grid().height, 770);
+  const FieldSummary s = summarize(counts.field);
+  EXPECT_EQ(s.no_data, 108094);
+  EXPECT_EQ(s.min, 9732.0);
+  EXPECT_EQ(s.max, 11192.0);
+  EXPECT_NEAR(s.mean, 10187.54, 5e-3);
+  EXPECT_STORED(counts.field, 192, 248, 10292);
+  EXPECT_STORED(counts.field, 385, 372, 10298);
+  EXPECT_STORED(counts.field, 577, 496, 10044);
+
+  ImportOptions scaled = raw;
+  scaled.z_scale = 0.02;
+  scaled.spacing = std::pair{0.21585083, 0.20881914};
+  scaled.unit = lengthUnitFromName("mm");
+  FETTLE_LOAD(scan, path, scaled);
+  EXPECT_EQ(scan.field.grid().height_per_count, 0.02);
+  EXPECT_EQ(scan.field.grid().spacing_x, 0.21585083);
+  EXPECT_EQ(scan.field.grid().spacing_y, 0.20881914);
+  EXPECT_EQ(stored(scan.field, 192, 248), static_cast<float>(10292 * 0.02));
+  EXPECT_TRUE(scan.warnings.empty()) << scan.warnings.front();
+}
+
+TEST(Scans, AnisotropicSpacingFromResolutionTags) {
+  FETTLE_SCAN_OR_SKIP(path, "tray_bags_aniso_u16.tif");
+  ImportOptions options;
+  options.no_data = 0.0;
+  FETTLE_LOAD(scan, path, options);
+  const Grid& grid = scan.field.grid();
+  EXPECT_EQ(grid.width, 1248);
+  EXPECT_EQ(grid.height, 673);
+  // The tag is 12174243 / 262144 pixels a centimetre, which is 0.215326741 mm to 8 digits.
+  EXPECT_EQ(grid.spacing_x, 10.0 / (12174243.0 / 262144.0));
+  EXPECT_NEAR(grid.spacing_x, 0.215326741, 1e-8);
+  EXPECT_EQ(grid.spacing_y, 0.5);
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 394063);
+  EXPECT_EQ(s.min, 1265.0);
+  EXPECT_EQ(s.max, 9398.0);
+  EXPECT_NEAR(s.mean, 4587.37, 5e-3);
+  EXPECT_STORED(scan.field, 168, 416, 4868);
+  EXPECT_STORED(scan.field, 336, 624, 3320);
+  EXPECT_STORED(scan.field, 504, 832, 2804);
+}
+
+TEST(Scans, DepthCameraTiffInPackBits) {
+  FETTLE_SCAN_OR_SKIP(path, "kinect_boxes_depth_u16.tif");
+  ImportOptions options;
+  options.no_data = 0.0;
+  FETTLE_LOAD(scan, path, options);
+  EXPECT_EQ(scan.field.grid().width, 640);
+  EXPECT_EQ(scan.field.grid().height, 480);
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 35625);
+  EXPECT_EQ(s.min, 671.0);
+  EXPECT_EQ(s.max, 1713.0);
+  EXPECT_NEAR(s.mean, 991.52, 5e-3);
+  EXPECT_STORED(scan.field, 120, 213, 1241);
+  EXPECT_STORED(scan.field, 240, 320, 854);
+  EXPECT_STORED(scan.field, 360, 426, 829);
+}
+
+TEST(Scans, AsciiGridWithUpperCaseKeysAndPositiveNoData) {
+  FETTLE_SCAN_OR_SKIP(path, "tidal_marsh.asc");
+  ImportOptions options;
+  options.unit = lengthUnitFromName("m");
+  FETTLE_LOAD(scan, path, options);
+  const Grid& grid = scan.field.grid();
+  EXPECT_EQ(scan.format, "AAIGrid");
+  EXPECT_EQ(grid.width, 300);
+  EXPECT_EQ(grid.height, 452);
+  EXPECT_EQ(grid.spacing_x, 2.0);
+  EXPECT_EQ(grid.origin_x, 1.0);
+  EXPECT_EQ(grid.origin_y, 1.0);
+  EXPECT_EQ(grid.lateral_unit.mm, 1000.0);
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 35152);
+  EXPECT_EQ(static_cast<float>(s.min), -2.609347F);
+  EXPECT_EQ(static_cast<float>(s.max), 8.461376F);
+  EXPECT_NEAR(s.mean, 1.33909, 5e-6);
+  EXPECT_NEAR(stored(scan.field, 113, 100), 1.0982, 5e-6);  // printed with 5 decimals
+  EXPECT_NEAR(stored(scan.field, 226, 150), 0.72391, 5e-6);
+  EXPECT_NEAR(stored(scan.field, 339, 200), -1.19105, 5e-6);
+}
+
+TEST(Scans, FloatTiffWithoutReference) {
+  FETTLE_SCAN_OR_SKIP(path, "afm_line_noise_f32.tif");
+  ImportOptions options;
+  options.unit = lengthUnitFromName("nm");
+  options.spacing = std::pair{0.9765625, 0.9765625};
+  FETTLE_LOAD(scan, path, options);
+  EXPECT_EQ(scan.field.grid().width, 512);
+  EXPECT_EQ(scan.field.grid().height, 512);
+  EXPECT_DOUBLE_EQ(scan.field.grid().spacingXMm(), 0.9765625e-6);
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 0);
+  EXPECT_NEAR(s.min, -30.306376, 5e-7);
+  EXPECT_NEAR(s.max, 28.892195, 5e-7);
+  EXPECT_NEAR(s.mean, -0.0545, 5e-5);
+  double squares = 0.0;
+  for (const float z : heightsOf(scan.field)) squares += (z - s.mean) * (z - s.mean);
+  EXPECT_NEAR(std::sqrt(squares / 512 / 512), 9.94599, 5e-6);
+  EXPECT_NEAR(stored(scan.field, 128, 170), -0.7981933, 5e-8);
+  EXPECT_NEAR(stored(scan.field, 256, 256), -18.9161644, 1e-6);
+  EXPECT_NEAR(stored(scan.field, 384, 341), 6.8369007, 3e-7);
+}
+
+TEST(Scans, TextPointsFallOnTheirRasterWithoutCollision) {
+  FETTLE_SCAN_OR_SKIP(path, "chip_confocal_points.xyz");
+  FETTLE_LOAD(scan, path);
+  const Grid& grid = scan.field.grid();
+  EXPECT_EQ(scan.format, "XYZ");
+  EXPECT_EQ(grid.width, 500);
+  EXPECT_EQ(grid.height, 472);  // y ends at 11.304 mm, the last 28 rows of the raster hold no point
+  EXPECT_EQ(grid.spacing_x, 0.024);
+  EXPECT_EQ(grid.spacing_y, 0.024);
+  EXPECT_EQ(grid.origin_x, 0.0);
+  EXPECT_EQ(grid.origin_y, 0.0);
+  ASSERT_TRUE(scan.gridding.has_value());
+  EXPECT_TRUE(scan.gridding->lattice);
+  EXPECT_EQ(scan.gridding->points, 173544);
+  EXPECT_EQ(scan.gridding->multiple_cells, 0);
+  EXPECT_EQ(scan.gridding->empty_cells, 500 * 472 - 173544);
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 500 * 472 - 173544);
+  EXPECT_EQ(s.min, 0.0);
+  EXPECT_EQ(static_cast<float>(s.max), 0.3052144F);
+  for (int c = 0; c < 500; ++c) EXPECT_EQ(scan.field.reader().heightAt(c, 0), 0.0F);
+}
+
+TEST(Scans, BinaryPointsFallOnTheirAnisotropicRaster) {
+  FETTLE_SCAN_OR_SKIP(path, "cylinders_cloud_le.ply");
+  FETTLE_LOAD(scan, path);
+  const Grid& grid = scan.field.grid();
+  EXPECT_EQ(scan.format, "PLY");
+  EXPECT_EQ(grid.width, 482);  // the first 14 columns of the raster of 496 hold no point
+  EXPECT_EQ(grid.height, 750);
+  EXPECT_EQ(grid.spacing_x, 0.2020202);
+  EXPECT_EQ(grid.spacing_y, 0.2);
+  EXPECT_NEAR(grid.origin_x, -47.1717, 5e-5);
+  EXPECT_EQ(grid.origin_y, 0.0);
+  EXPECT_NEAR(grid.origin_x + 481 * grid.spacing_x, 50.0, 5e-6);
+  ASSERT_TRUE(scan.gridding.has_value());
+  EXPECT_TRUE(scan.gridding->lattice);
+  EXPECT_EQ(scan.gridding->points, 212380);
+  EXPECT_EQ(scan.gridding->multiple_cells, 0);
+  EXPECT_EQ(grid.lateral_unit.name, "mm");
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(static_cast<float>(s.min), 6.454545F);
+  EXPECT_EQ(static_cast<float>(s.max), 31.322727F);
+}
+
+TEST(Scans, EveryScanSurvivesTheWayThroughGeoTiffBitForBit) {
+  for (const char* name :
+       {"dsm_ahn_buildings.tif", "dsm_village_sjtsk.tif", "shapes_plate_u16.png", "tray_bags_aniso_u16.tif",
+        "tidal_marsh.asc", "chip_confocal_points.xyz", "cylinders_cloud_le.ply", "afm_line_noise_f32.tif"}) {
+    FETTLE_SCAN_OR_SKIP(path, name);
+    FETTLE_LOAD(scan, path);
+    const std::string copy = ::testing::TempDir() + "fettle_scan_copy.tif";
+    const auto written = save(scan.field, copy);
+    ASSERT_TRUE(written) << written.error().line();
+    FETTLE_LOAD(again, copy);
+    EXPECT_EQ(contentHash(again.field), contentHash(scan.field)) << name;
+    Grid expected = scan.field.grid();
+    Grid got = again.field.grid();
+    EXPECT_EQ(expected.crs_wkt.empty(), got.crs_wkt.empty()) << name;
+    expected.crs_wkt = got.crs_wkt = "";  // the same system may come back in other words
+    EXPECT_EQ(expected, got) << name;
+    std::remove(copy.c_str());
+  }
+}
+
+}  // namespace
+}  // namespace fettle::engine
