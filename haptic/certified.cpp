@@ -8,7 +8,7 @@
 //   h(v) = sy (sy v - ey) Q^2 + sx M (c Q + d N) = 0,
 // a quintic. Its roots in [0, 1] are isolated in Bernstein form: the number of sign changes of the
 // coefficients bounds the number of roots and is exact when 0 or 1 (Descartes' rule; Lane and Riesenfeld
-// 1981, "Bounds on a polynomial"), and halving by de Casteljau ends the count. A coefficient too small to
+// 1981, "Bounds on a polynomial"), and halving the interval ends the count. A coefficient too small to
 // trust counts as whichever sign makes more changes, so rounding may add a candidate but never lose one that
 // matters.
 
@@ -70,15 +70,25 @@ double largest(const double* a, int n) noexcept {
   return m;
 }
 
-// h in Bernstein form, and how large rounding may have made the error of a coefficient.
-Quintic quintic(const Reduced& r, double& noise) noexcept {
-  const Bernstein<1> p = {r.b, r.b + r.d};
-  const Bernstein<1> w = {r.w0, r.w0 + r.c};
-  const Bernstein<1> l = {-r.sy * r.ey, r.sy * (r.sy - r.ey)};
-  const Bernstein<1> m = {r.sx * w[0] * r.sx + r.sx * r.ex * p[0], r.sx * w[1] * r.sx + r.sx * r.ex * p[1]};
+// h on [low, low + size] in Bernstein form, and how large rounding may have made the error of a coefficient.
+// Made afresh from the linear parts for each interval rather than halved by de Casteljau: beside a spike Q
+// spans 24 decades, and what happens where it is small would be lost in the rounding of where it is large.
+Quintic quintic(const Reduced& r, double low, double size, double& noise) noexcept {
+  // One rounding, doubled for the sums of a few.
+  constexpr double kEps = 4.5e-16;
+  const double v[2] = {low, low + size};
+  Bernstein<1> p;
+  Bernstein<1> w;
+  Bernstein<1> l;
+  Bernstein<1> m;
+  for (int i = 0; i < 2; ++i) {
+    p[i] = r.b + r.d * v[i];
+    w[i] = r.w0 + r.c * v[i];
+    l[i] = r.sy * (r.sy * v[i] - r.ey);
+    m[i] = r.sx * (r.sx * w[i] + r.ex * p[i]);
+  }
   Bernstein<2> big_q = product<1, 1>(p, p);
   Bernstein<2> n = product<1, 1>(w, p);
-  const double n_size = largest(n.data(), 3) + std::abs(r.sx * r.ex);
   Bernstein<2> k{};
   for (int i = 0; i < 3; ++i) {
     big_q[i] += r.sx * r.sx;
@@ -86,16 +96,30 @@ Quintic quintic(const Reduced& r, double& noise) noexcept {
     k[i] = r.c * big_q[i] + r.d * n[i];
   }
   const Quintic first = product<1, 4>(l, product<2, 2>(big_q, big_q));
-  const Bernstein<3> second = product<1, 2>(m, k);
-  const Quintic second5 = product<3, 2>(second, {1.0, 1.0, 1.0});
+  const Quintic second = product<3, 2>(product<1, 2>(m, k), {1.0, 1.0, 1.0});
   Quintic h{};
-  for (int i = 0; i <= 5; ++i) h[i] = first[i] + second5[i];
-  const double q_size = largest(big_q.data(), 3);
-  const double l_size = r.sy * (r.sy + std::abs(r.ey));
-  const double m_size =
-      r.sx * (r.sx * (std::abs(w[0]) + std::abs(w[1])) + std::abs(r.ex) * (std::abs(p[0]) + std::abs(p[1])));
-  // About thirty roundings of 1.1e-16 each, on the sizes of what is summed.
-  noise = 4e-15 * (l_size * q_size * q_size + m_size * (std::abs(r.c) * q_size + std::abs(r.d) * n_size));
+  for (int i = 0; i <= 5; ++i) h[i] = first[i] + second[i];
+
+  // Sizes on the interval, then errors: of the linear parts relative to what was summed, which may cancel, of
+  // the rest by the product rule.
+  const double p_size = largest(p.data(), 2);
+  const double w_size = largest(w.data(), 2);
+  const double l_size = largest(l.data(), 2);
+  const double m_size = largest(m.data(), 2);
+  const double q_size = r.sx * r.sx + p_size * p_size;
+  const double n_size = std::abs(r.sx * r.ex) + w_size * p_size;
+  const double dp = kEps * (std::abs(r.b) + std::abs(r.d) * v[1]);
+  const double dw = kEps * (std::abs(r.w0) + std::abs(r.c) * v[1]);
+  const double dl = kEps * r.sy * (r.sy * v[1] + std::abs(r.ey));
+  const double dm =
+      r.sx * (r.sx * dw + std::abs(r.ex) * dp) + kEps * r.sx * (r.sx * w_size + std::abs(r.ex) * p_size);
+  const double dq = 2.0 * p_size * dp + 2.0 * kEps * q_size;
+  const double dn = p_size * dw + w_size * dp + 2.0 * kEps * n_size;
+  const double k_size = largest(k.data(), 3);
+  const double dk =
+      std::abs(r.c) * dq + std::abs(r.d) * dn + kEps * (std::abs(r.c) * q_size + std::abs(r.d) * n_size);
+  noise = q_size * q_size * dl + 2.0 * l_size * q_size * dq + m_size * dk + k_size * dm +
+          8.0 * kEps * (l_size * q_size * q_size + m_size * k_size);
   return h;
 }
 
@@ -124,55 +148,49 @@ Changes signChanges(const Quintic& h, double noise) noexcept {
 template <class F>
 void forEachMinimum(const Reduced& r, F&& f) noexcept {
   struct Interval {
-    Quintic h;
     double low, size;
     int depth;
   };
-  constexpr int kDepth = 24;
-  constexpr int kNodes = 96;
+  constexpr int kDepth = 48;
+  constexpr int kNodes = 256;
   std::array<Interval, kDepth + 2> stack;
-  double noise = 0.0;
-  stack[0] = {quintic(r, noise), 0.0, 1.0, 0};
+  stack[0] = {0.0, 1.0, 0};
   int top = 1;
   for (int node = 0; top > 0; ++node) {
     const Interval at = stack[--top];
-    switch (signChanges(at.h, noise)) {
-      case Changes::kNone:
-      case Changes::kOneDown:
-        continue;
-      case Changes::kOneUp: {
-        double low = at.low;
-        double high = at.low + at.size;
-        for (int i = 0; i < 12; ++i) {
-          const double middle = 0.5 * (low + high);
-          (r.h(middle) < 0.0 ? low : high) = middle;
-        }
-        f(0.5 * (low + high));
-        continue;
+    double noise = 0.0;
+    const Quintic h = quintic(r, at.low, at.size, noise);
+    const Changes changes = signChanges(h, noise);
+    if (changes == Changes::kNone || changes == Changes::kOneDown) continue;
+    if (changes == Changes::kOneUp) {
+      double low = at.low;
+      double high = at.low + at.size;
+      // To the last bit: next to a spike a patch is a valley along which nothing else converges.
+      for (int i = 0; i < 54; ++i) {
+        const double middle = 0.5 * (low + high);
+        (r.h(middle) < 0.0 ? low : high) = middle;
       }
-      case Changes::kPerhaps:
-        break;
+      f(0.5 * (low + high));
+      continue;
     }
-    const bool lost = largest(at.h.data(), 6) <= noise;
-    if (at.depth == kDepth || node >= kNodes || (lost && at.depth >= 3)) {
+    const bool lost = at.depth >= 20 && largest(h.data(), 6) <= noise;
+    if (at.depth == kDepth || node >= kNodes || lost) {
       f(at.low + 0.5 * at.size);
       continue;
     }
-    Interval left{{}, at.low, 0.5 * at.size, at.depth + 1};
-    Interval right{at.h, at.low + 0.5 * at.size, 0.5 * at.size, at.depth + 1};
-    // de Casteljau: `right` turns in place into the right half, its first entries are the left half's.
-    for (int k = 0; k <= 5; ++k) {
-      left.h[k] = right.h[0];
-      for (int j = 0; j < 5 - k; ++j) right.h[j] = 0.5 * (right.h[j] + right.h[j + 1]);
-    }
-    stack[top++] = right;
-    stack[top++] = left;
+    stack[top++] = {at.low + 0.5 * at.size, 0.5 * at.size, at.depth + 1};
+    stack[top++] = {at.low, 0.5 * at.size, at.depth + 1};
   }
 }
 
-// Whether the squared distance is convex over the whole patch, so that it has one minimum there. With halves
+// Whether the squared distance is convex over the whole patch, so that going down from anywhere finds its one
+// minimum. With halves
 // of the second derivatives, det = sx^2 sy^2 + sx^2 q^2 + sy^2 p^2 - z d (2 p q + z d).
 bool convexDistance(const Patch& s, double ez) noexcept {
+  // Beside a spike, slope 100 and more, the descent may not come to rest in its rounds: trust it less there.
+  const double climb =
+      std::max(std::abs(s.b), std::abs(s.b + s.d)) + std::max(std::abs(s.c), std::abs(s.c + s.d));
+  if (climb > 100.0 * std::min(s.sx, s.sy)) return false;
   if (s.d == 0.0) return true;
   const double p0 = s.b;
   const double p1 = s.b + s.d;
@@ -197,7 +215,7 @@ void keepNearer(PatchPoint& best, const PatchPoint& point) noexcept {
   if (point.distance2_mm2 < best.distance2_mm2) best = point;
 }
 
-// The closest point of the straight edge at v (or u) = 0 or 1, exact.
+// The closest point of the straight line at one v (or u), exact; at 0 and 1 that is an edge.
 PatchPoint closestOnEdgeV(const Patch& s, const glm::dvec3& e, double v) noexcept {
   const double p = s.b + s.d * v;
   const double w = s.a - e.z + s.c * v;
@@ -227,7 +245,10 @@ PatchPoint closestOnWholePatch(const Patch& s, const glm::dvec3& endpoint) noexc
     keepNearer(best, closestOnEdgeU(s, endpoint, side));
   }
   const Reduced r{s.sx, s.sy, endpoint.x - s.x0, endpoint.y - s.y0, s.b, s.c, s.d, s.a - endpoint.z};
-  forEachMinimum(r, [&](double v) { keepNearer(best, closestOnPatch(s, endpoint, unit(r.u(v)), unit(v))); });
+  forEachMinimum(r, [&](double v) {
+    keepNearer(best, closestOnEdgeV(s, endpoint, unit(v)));  // exact along u at any v
+    keepNearer(best, closestOnPatch(s, endpoint, unit(r.u(v)), unit(v)));
+  });
   return best;
 }
 
