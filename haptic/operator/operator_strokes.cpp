@@ -61,6 +61,17 @@ class FeltSurface {
     return last_;
   }
 
+  // The lowest height within `radius` of p, looked for in eight directions.
+  [[nodiscard]] double lowest(glm::dvec2 p, double radius) noexcept {
+    double z = at(p);
+    if (radius <= 0.0) return z;
+    constexpr double kDiagonal = 0.70710678118654752;
+    constexpr glm::dvec2 kAround[] = {{1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
+                                      {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
+    for (const glm::dvec2& d : kAround) z = std::min(z, at(inside(p + d * radius)));
+    return z;
+  }
+
  private:
   engine::FieldReader reader_;
   double sx_;
@@ -161,7 +172,9 @@ class Hand {
         clearance_(edges, spec.smooth_clear_mm),
         tip_(0.0, 0.0, surface_.highest() + spec.lift_mm) {}
 
-  void trace(const Path& path, Tool tool) {
+  // Follows `path`; beside a step the tip keeps to the lowest height within `guide` and comes down `approach`
+  // away from the path's start.
+  void trace(const Path& path, Tool tool, double guide, glm::dvec2 approach) {
     ++stroke_;
     const auto motion = [&](double sigma, double low, double high, int axis) {
       return HandMotion(sigma, low, high, spec_.seed, 8 * stroke_ + static_cast<std::uint64_t>(axis));
@@ -175,12 +188,14 @@ class Hand {
       const glm::dvec2 about{tremor_x.at(seconds) + wander_x.at(seconds),
                              tremor_y.at(seconds) + wander_y.at(seconds)};
       const glm::dvec2 p = surface_.inside(path.place(s) + about);
-      return glm::dvec3{p.x, p.y, surface_.at(p) - spec_.press_mm + tremor_z.at(seconds)};
+      return glm::dvec3{p.x, p.y, surface_.lowest(p, guide) - spec_.press_mm + tremor_z.at(seconds)};
     };
     const double free_height = surface_.highest() + spec_.lift_mm;
     const glm::dvec3 first = tipAt(0.0, 0.0);
-    moveTo({first.x, first.y, free_height});
-    moveTo(first);
+    const glm::dvec2 down = surface_.inside(glm::dvec2{first.x, first.y} + approach);
+    moveTo({down.x, down.y, free_height});
+    moveTo({down.x, down.y, first.z});
+    if (down.x != first.x || down.y != first.y) moveTo(first);
     const double step = spec_.speed_mm_s / spec_.rate_hz;
     double s = 0.0;
     for (std::int64_t i = 1; s < path.end(); ++i) {
@@ -230,17 +245,24 @@ std::vector<StrokeSample> operatorStrokes(const engine::Version& scan, std::span
                                           const OperatorSpec& spec) {
   assert(spec.rate_hz >= 100.0 && spec.rate_hz <= 10000.0 && spec.speed_mm_s > 0.0 && spec.lift_mm > 0.0);
   assert(spec.press_mm >= 0.0 && spec.tremor_mm >= 0.0 && spec.wander_mm >= 0.0);
-  assert(spec.smooth_offset_mm >= 0.0 && spec.smooth_clear_mm <= spec.smooth_offset_mm);
+  assert(spec.guide_mm >= 0.0 && spec.smooth_offset_mm >= 0.0 &&
+         spec.smooth_clear_mm <= spec.smooth_offset_mm);
   assert(spec.smooth_passes >= 0 && spec.smooth_passes <= 16 && spec.mark_passes >= 0 &&
          spec.mark_passes <= 16);
   Hand hand(scan, edges, spec);
   for (const engine::Edge& edge : edges) {
     if (edge.points_mm.size() < 2 || edgeLength(edge) < spec.shortest_mm) continue;
+    const bool step = edge.kind == engine::EdgeKind::kStep;
     const double to_high = edge.high_side_left ? 1.0 : -1.0;
     for (int k = 0; k < spec.smooth_passes; ++k)
-      hand.trace(Path(edge, to_high * spec.smooth_offset_mm), Tool::kSmooth);
-    for (int k = 0; k < spec.mark_passes; ++k)
-      hand.trace(Path(edge, spec.mark_offset_mm * (k - 0.5 * (spec.mark_passes - 1))), Tool::kMark);
+      hand.trace(Path(edge, to_high * spec.smooth_offset_mm), Tool::kSmooth, 0.0, {0.0, 0.0});
+    for (int k = 0; k < spec.mark_passes; ++k) {
+      const double aside = spec.mark_offset_mm * (k - 0.5 * (spec.mark_passes - 1));
+      const double guide = step ? spec.guide_mm : 0.0;
+      const glm::dvec2 start = Path(edge, aside).place(0.0);
+      const glm::dvec2 low = Path(edge, aside - to_high * guide).place(0.0);
+      hand.trace(Path(edge, aside), Tool::kMark, guide, low - start);
+    }
   }
   return std::move(hand).rows();
 }

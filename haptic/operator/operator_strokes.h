@@ -30,10 +30,15 @@ struct OperatorSpec {
   /// How far to the high side of a step (the flatter one of a crease) the smooth passes run [mm], >= 0: a
   /// smoothing window that reaches over an edge blurs it, so a person smooths the land beside it. More than
   /// three times the hand's own error keeps off it almost always.
-  double smooth_offset_mm = 0.5;
+  double smooth_offset_mm = 0.6;
+  /// Along a step the mark passes keep the tip down at the lower land that lies within this distance [mm],
+  /// >= 0, so that the wall guides it, as the paper's users are guided by a concave corner; they come down on
+  /// the low side. 0 = the tip's height follows the surface right under it, also up and down the wall, which
+  /// no hand can do in a millisecond and which leaves the proxy behind.
+  double guide_mm = 0.5;
   /// The smooth passes only feel where any edge lies nearer than this to the way of the tool (narrow ribs,
   /// corners) [mm], 0 .. smooth_offset_mm; 0 = smooth everywhere.
-  double smooth_clear_mm = 0.45;
+  double smooth_clear_mm = 0.55;
   /// Distance between parallel mark passes, spread evenly about the edge [mm], >= 0.
   double mark_offset_mm = 0.0;
   /// Edges shorter than this are left out [mm], >= 0.
@@ -45,9 +50,10 @@ struct OperatorSpec {
 /// (closed ones all the way round), lifts, and travels on to the next one through free air.
 ///
 /// The tip is never on the exact edge: it wanders and trembles about it. Its height is the scan's bilinear
-/// surface (noise, outliers and all) less the press depth; over holes the last height found holds. While the
-/// tool is in the air its rows say Tool::kFeel. Rows are 1 / rate_hz apart from t = 0 on. Tips stay inside
-/// the field. Deterministic by seed, one thread, no state. Empty without edges. Asserts the ranges above.
+/// surface (noise, outliers and all) less the press depth, beside a step the lowest within guide_mm; over
+/// holes the last height found holds. While the tool is in the air its rows say Tool::kFeel. Rows are 1 /
+/// rate_hz apart from t = 0 on. Tips stay inside the field. Deterministic by seed, one thread, no state.
+/// Empty without edges. Asserts the ranges above.
 [[nodiscard]] std::vector<StrokeSample> operatorStrokes(const engine::Version& scan,
                                                         std::span<const engine::Edge> edges,
                                                         const OperatorSpec& spec);

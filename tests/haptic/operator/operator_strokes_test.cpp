@@ -111,6 +111,7 @@ TEST(OperatorStrokes, ASteadyHandIsOnTheEdgeAtThePressDepth) {
   const Edge edge = straight({5, 5}, {30, 20});
   OperatorSpec spec = steady();
   spec.press_mm = 0.25;
+  spec.guide_mm = 0.0;
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
   for (const StrokeSample& row : stroked({edge}, spec)) {
@@ -123,6 +124,30 @@ TEST(OperatorStrokes, ASteadyHandIsOnTheEdgeAtThePressDepth) {
   }
   EXPECT_LT(first, 5.0 + 0.05);
   EXPECT_EQ(last, 30.0);
+}
+
+TEST(OperatorStrokes, MarkingAStepTheTipStaysAtItsFootAndComesDownOnTheLowSide) {
+  engine::Grid grid;
+  grid.width = grid.height = 201;
+  grid.spacing_x = grid.spacing_y = 0.1;
+  std::vector<float> z;
+  for (int r = 0; r < 201; ++r)
+    for (int c = 0; c < 201; ++c) z.push_back(r > 100 ? 7.0F : 1.0F);
+  const engine::Version step = engine::makeField(grid, z);
+  const std::vector<Edge> edges{straight({3, 10.05}, {17, 10.05})};  // the high side is on the left
+  OperatorSpec spec;
+  spec.smooth_passes = 0;
+  spec.tremor_mm = 0.02;
+  spec.wander_mm = 0.05;  // never 0.28 mm off, so the foot is within reach of the guide
+  bool above_low_land = false;
+  for (const StrokeSample& row : operatorStrokes(step, edges, spec)) {
+    if (row.tool == Tool::kMark) {
+      EXPECT_NEAR(row.tip_mm.z, 1.0 - spec.press_mm, HandMotion::kBound * 0.5 * spec.tremor_mm + 1e-6);
+      EXPECT_TRUE(above_low_land);
+    } else if (row.tip_mm.z < 7.0 && row.tip_mm.z > 1.2) {
+      above_low_land = above_low_land || row.tip_mm.y < 10.0;
+    }
+  }
 }
 
 TEST(OperatorStrokes, SmoothPassesRunBesideTheEdgeOnItsHighSide) {
@@ -212,7 +237,10 @@ TEST(OperatorStrokes, MoveWithoutJumps) {
 }
 
 TEST(OperatorStrokes, KeepTheLastHeightOverAHole) {
-  for (const StrokeSample& row : stroked({straight({5, 5}, {30, 5})}, steady(), true)) {
+  OperatorSpec spec = steady();
+  spec.press_mm = 0.3;
+  spec.guide_mm = 0.0;
+  for (const StrokeSample& row : stroked({straight({5, 5}, {30, 5})}, spec, true)) {
     ASSERT_TRUE(std::isfinite(row.tip_mm.z));
     if (row.tool != Tool::kMark || row.tip_mm.x < 15.11 || row.tip_mm.x > 24.89) continue;
     // The last height before the hole is that of the last whole cell, up to x = 15.0.
