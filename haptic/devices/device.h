@@ -63,15 +63,17 @@ struct DeviceInput {
 
 /// Rare and not so rare events since start(), for the user's panel and for tests.
 struct DeviceCounters {
-  std::uint64_t inputs = 0;            ///< good reports, those skipped for a newer one included
-  std::uint64_t skipped = 0;           ///< good reports that a newer one overtook before they were published
-  std::uint64_t bad_inputs = 0;        ///< reports of a wrong length or form, left out
-  std::uint64_t outputs = 0;           ///< reports the device took
-  std::uint64_t forced_zeros = 0;      ///< outputs that were zero because no fresh force was there in time
-  std::uint64_t failed_outputs = 0;    ///< writes the system refused (stalled, unplugged)
-  std::uint64_t scaled_forces = 0;     ///< forces made smaller, direction kept, to spare a motor
-  std::uint64_t connects = 0;          ///< times the device was opened
-  std::uint64_t disconnects = 0;       ///< times it was lost
+  std::uint64_t inputs = 0;          ///< good reports, those skipped for a newer one included
+  std::uint64_t skipped = 0;         ///< good reports that a newer one overtook before they were published
+  std::uint64_t bad_inputs = 0;      ///< reports of a wrong length or form, left out
+  std::uint64_t outputs = 0;         ///< reports the device took
+  std::uint64_t forced_zeros = 0;    ///< outputs that were zero because no fresh force was there in time
+  std::uint64_t failed_outputs = 0;  ///< writes the system refused (stalled, unplugged)
+  std::uint64_t scaled_forces = 0;   ///< forces made smaller, direction kept, to spare a motor
+  std::uint64_t faults = 0;          ///< inputs in which the device itself reported a fault
+  std::uint64_t lost_inputs = 0;  ///< gaps in the device's own numbering of its reports, if it numbers them
+  std::uint64_t connects = 0;     ///< times the device was opened
+  std::uint64_t disconnects = 0;  ///< times it was lost
   std::int64_t longest_output_ns = 0;  ///< longest single write; 5 s when the device stops taking reports
 };
 

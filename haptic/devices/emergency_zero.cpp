@@ -1,0 +1,72 @@
+#include "haptic/devices/emergency_zero.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+
+namespace fettle::haptic {
+
+namespace {
+
+enum State : int { kEmpty, kBusy, kArmed };
+
+struct Entry {
+  std::atomic<int> state{kEmpty};
+  int file = -1;
+  std::size_t size = 0;
+  std::array<std::uint8_t, 96> report{};
+};
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not lock");
+
+std::array<Entry, 8> entries;
+
+}  // namespace
+
+int armEmergencyZero(const char* path, std::span<const std::uint8_t> report) noexcept {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    Entry& e = entries[i];
+    int expected = kEmpty;
+    // Acquire: the last disarm of this entry is over. From here until it is armed it is this thread's own.
+    if (report.size() > e.report.size() ||
+        !e.state.compare_exchange_strong(expected, kBusy, std::memory_order_acquire))
+      continue;
+    // Not blocking: should the path be no device but a pipe nobody reads, this must not hang.
+    e.file = ::open(path, O_WRONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
+    if (e.file < 0) {
+      e.state.store(kEmpty, std::memory_order_release);
+      return -1;
+    }
+    std::copy(report.begin(), report.end(), e.report.begin());
+    e.size = report.size();
+    e.state.store(kArmed, std::memory_order_release);  // publishes the entry to a signal handler
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+void disarmEmergencyZero(int number) noexcept {
+  if (number < 0) return;
+  Entry& e = entries[static_cast<std::size_t>(number)];
+  e.state.store(kBusy, std::memory_order_relaxed);
+  // A handler that runs on another thread just now may still write to the file; closing it then costs that
+  // write, on a device whose driver has sent its own zero before it came here.
+  ::close(e.file);
+  e.state.store(kEmpty, std::memory_order_release);
+}
+
+int zeroAllDevices() noexcept {
+  const int kept = errno;
+  int taken = 0;
+  for (Entry& e : entries) {
+    if (e.state.load(std::memory_order_acquire) != kArmed) continue;
+    if (::write(e.file, e.report.data(), e.size) == static_cast<ssize_t>(e.size)) ++taken;
+  }
+  errno = kept;
+  return taken;
+}
+
+}  // namespace fettle::haptic

@@ -1,0 +1,156 @@
+#include "haptic/devices/enumerate.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "haptic/devices/hid_port.h"
+#include "haptic/devices/mouse_stylus.h"
+#include "haptic/devices/replay_device.h"
+#include "haptic/devices/serial_port.h"
+#include "haptic/devices/simulated_hand.h"
+#include "haptic/devices/space_mouse.h"
+#include "haptic/devices/wooden_haptics.h"
+
+namespace fettle::haptic {
+
+namespace {
+
+// The user's file where there is one: a broken one is an error, not a reason to drive motors by other
+// numbers.
+engine::Result<WoodenConfig> userConfig() {
+  const std::string path = defaultWoodenConfigPath();
+  std::error_code error;
+  if (!path.empty() && std::filesystem::exists(path, error)) return readWoodenConfig(path);
+  return wooden("woody_v2015");
+}
+
+DeviceProfile profileOf(DeviceKind kind) {
+  if (kind == DeviceKind::kSpaceMouse)
+    return SpaceMouse(std::make_unique<HidSource>(HidKind::kSpaceMouse)).profile();
+  if (kind == DeviceKind::kOther) return {};
+  const engine::Result<WoodenConfig> config = userConfig();
+  return config ? woodenProfile(*config) : DeviceProfile{};
+}
+
+DeviceInfo describe(const HidInterface& i) {
+  DeviceInfo d;
+  switch (hidKind(i)) {
+    case HidKind::kWoodenHaptics:
+      d.kind = DeviceKind::kWoodenHaptics;
+      break;
+    case HidKind::kSpaceMouse:
+      d.kind = DeviceKind::kSpaceMouse;
+      break;
+    case HidKind::kNone:
+      break;
+  }
+  d.path = i.path;
+  if (i.manufacturer.empty() && i.product_name.empty())
+    d.name = fmt::format("{:04x}:{:04x}", i.vendor, i.product);
+  else if (i.manufacturer.empty() || i.product_name.empty())
+    d.name = i.manufacturer.empty() ? i.product_name : i.manufacturer;
+  else
+    d.name = fmt::format("{} {}", i.manufacturer, i.product_name);
+  d.serial = i.serial;
+  d.vendor = i.vendor;
+  d.product = i.product;
+  d.usage_page = i.usage_page;
+  d.usage = i.usage;
+  d.input_bytes = i.input_bytes;
+  d.output_bytes = i.output_bytes;
+  d.gives_position = d.kind != DeviceKind::kOther;
+  d.gives_force = d.kind == DeviceKind::kWoodenHaptics;
+  if (d.gives_force) {
+    if (const auto form = woodenFormOfSize(i.input_bytes)) d.form = *form == WoodenForm::kW8 ? "W8" : "P14";
+  }
+  d.profile = profileOf(d.kind);
+  return d;
+}
+
+engine::Result<std::unique_ptr<Device>> openWooden(std::unique_ptr<ReportSource> source,
+                                                   std::optional<WoodenForm> form) {
+  const engine::Result<WoodenConfig> config = userConfig();
+  if (!config) return tl::unexpected(config.error());
+  return std::make_unique<WoodenHaptics>(*config, std::move(source), form);
+}
+
+engine::Result<std::unique_ptr<Device>> openKind(DeviceKind kind, const std::string& which) {
+  switch (kind) {
+    case DeviceKind::kWoodenHaptics:
+      return openWooden(std::make_unique<HidSource>(HidKind::kWoodenHaptics, which), std::nullopt);
+    case DeviceKind::kWoodenSerial:
+      return openWooden(std::make_unique<SerialSource>(which), WoodenForm::kS);
+    case DeviceKind::kSpaceMouse:
+      return std::make_unique<SpaceMouse>(std::make_unique<HidSource>(HidKind::kSpaceMouse, which));
+    case DeviceKind::kOther:
+      break;
+  }
+  return engine::inputError("there is no driver for this device", which, "see fettle devices");
+}
+
+}  // namespace
+
+std::string_view deviceKindName(DeviceKind kind) noexcept {
+  switch (kind) {
+    case DeviceKind::kOther:
+      return "other";
+    case DeviceKind::kWoodenHaptics:
+      return "woodenhaptics";
+    case DeviceKind::kWoodenSerial:
+      return "woodenhaptics-serial";
+    case DeviceKind::kSpaceMouse:
+      return "spacemouse";
+  }
+  return "other";
+}
+
+std::vector<DeviceInfo> listDevices() {
+  std::vector<DeviceInfo> devices;
+  for (const HidInterface& i : hidInterfaces()) devices.push_back(describe(i));
+  for (const SerialBoard& board : serialBoards()) {
+    DeviceInfo d;
+    d.kind = DeviceKind::kWoodenSerial;
+    d.path = board.path;
+    d.name = board.name;
+    d.gives_position = true;
+    d.gives_force = true;
+    d.form = "S";
+    d.profile = profileOf(d.kind);
+    devices.push_back(std::move(d));
+  }
+  for (DeviceInfo& d : devices) d.readable = ::access(d.path.c_str(), R_OK | W_OK) == 0;
+  std::stable_partition(devices.begin(), devices.end(),
+                        [](const DeviceInfo& d) { return d.kind != DeviceKind::kOther; });
+  return devices;
+}
+
+engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word) {
+  const std::size_t colon = word.find(':');
+  const std::string_view head = std::string_view(word).substr(0, colon);
+  const std::string rest = colon == std::string::npos ? std::string() : word.substr(colon + 1);
+  if (head == "woodenhaptics") return openKind(DeviceKind::kWoodenHaptics, rest);
+  if (head == "serial") return openKind(DeviceKind::kWoodenSerial, rest);
+  if (head == "spacemouse") return openKind(DeviceKind::kSpaceMouse, rest);
+  if (word == "mouse") return std::make_unique<MouseStylus>();
+  if (word == "hand")
+    return std::make_unique<SimulatedHand>(std::vector<HandTarget>{HandTarget{}}, HandSpec{});
+  if (head == "replay" && !rest.empty()) {
+    auto strokes = readStrokes(rest);
+    if (!strokes) return tl::unexpected(strokes.error());
+    return std::make_unique<ReplayDevice>(std::move(*strokes));
+  }
+  for (const DeviceInfo& d : listDevices())
+    if (d.path == word) return openKind(d.kind, word);
+  return engine::inputError("there is no such device", word,
+                            "use woodenhaptics, serial, spacemouse, mouse, hand, replay:FILE or a path that "
+                            "fettle devices shows");
+}
+
+}  // namespace fettle::haptic

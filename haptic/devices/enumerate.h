@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "haptic/devices/device.h"
+
+namespace fettle::haptic {
+
+enum class DeviceKind : std::uint8_t {
+  kOther,          ///< a HID device that Fettle has no driver for
+  kWoodenHaptics,  ///< over HID
+  kWoodenSerial,   ///< a serial board that may be one
+  kSpaceMouse,
+};
+
+/// "other", "woodenhaptics", "woodenhaptics-serial", "spacemouse".
+[[nodiscard]] std::string_view deviceKindName(DeviceKind kind) noexcept;
+
+/// One thing that is plugged in, as `fettle devices` shows it.
+struct DeviceInfo {
+  DeviceKind kind = DeviceKind::kOther;
+  std::string path;  ///< what openDevice() takes: /dev/hidraw3, /dev/serial/by-id/...
+  std::string name;  ///< maker and product, or the id when it tells neither
+  std::string serial;
+  std::uint16_t vendor = 0;  ///< 0 for serial boards, here and below: not known
+  std::uint16_t product = 0;
+  std::uint16_t usage_page = 0;
+  std::uint16_t usage = 0;
+  std::size_t input_bytes = 0;  ///< longest report; 0 = not known
+  std::size_t output_bytes = 0;
+  bool readable = false;        ///< this user may open it; if not, the udev rules are missing
+  bool gives_position = false;  ///< 3 axes at least
+  bool gives_force = false;
+  std::string_view form;  ///< "W8", "P14", "S" where known; else empty
+  DeviceProfile profile;  ///< limits Fettle would hold it to; of kinds other than kOther
+};
+
+/// Everything plugged in that speaks HID, and serial boards that may be force devices; those that Fettle can
+/// use first. Nothing is left out for lacking bus, interface or maker. Takes some milliseconds.
+[[nodiscard]] std::vector<DeviceInfo> listDevices();
+
+/// A device by the word a user gives, not started yet:
+///   woodenhaptics[:WHICH]   WHICH = path or serial number; configuration from ~/woodenhaptics.json if it is
+///                           there, else woody_v2015
+///   serial[:PATH]           WoodenHaptics on a serial board
+///   spacemouse[:WHICH]
+///   mouse                   MouseStylus
+///   hand                    SimulatedHand resting at (0, 0, 0)
+///   replay:FILE             ReplayDevice in real time
+///   a path of listDevices() the device there
+/// A device that is not plugged in is no error, it may come; a path that is not there is.
+/// Errors (kInput): an unknown word, a bad configuration or strokes file.
+[[nodiscard]] engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word);
+
+}  // namespace fettle::haptic

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+
+namespace fettle::haptic {
+
+/// When a device wants output.
+enum class Pacing : std::uint8_t {
+  kNone,      ///< never: no output
+  kFree,      ///< whenever there is a new force
+  kLockStep,  ///< once for each input; the device waits for it
+};
+
+/// Times of OutputRule [ns].
+struct OutputTimes {
+  /// Lock-step: so long the reply to an input waits for the loop to answer it; two periods of a 1 kHz loop,
+  /// since the loop's ticks and the device's inputs are not in step.
+  std::int64_t reply_wait = 2'000'000;
+  /// A force older than this is taken back: the loop that computed it hangs, sits in a debugger or is gone.
+  std::int64_t stale_after = 10'000'000;
+  /// Lock-step: after so long without input a zero is sent, since the device may be waiting for a reply that
+  /// got lost.
+  std::int64_t silence = 10'000'000;
+  /// Free: zeros are repeated at this pace, well inside the firmware's watchdog of 500 ms.
+  std::int64_t keep_alive = 100'000'000;
+};
+
+/// Decides what the writer thread sends and when; knows no clock, no thread and no device, so that tests can
+/// walk it through hours in virtual time. One idea: the newest force, or zero when there is no fresh one.
+/// Not thread-safe: the writer thread's own.
+class OutputRule {
+ public:
+  enum class Send : std::uint8_t { kNothing, kForce, kZero };
+
+  OutputRule(Pacing pacing, const OutputTimes& times) noexcept : pacing_(pacing), times_(times) {}
+
+  /// The device was opened (again); `inputs` is the count of inputs so far.
+  void open(std::int64_t now, std::uint64_t inputs) noexcept {
+    answered_ = inputs;
+    seen_ = inputs;
+    waiting_since_ = now;
+    last_exchange_ = now;
+    last_was_force_ = false;
+    fresh_ = false;
+    force_at_ = now - times_.stale_after;
+  }
+
+  /// The loop wrote a force at `written` (its own clock reading).
+  void force(std::int64_t written) noexcept {
+    fresh_ = true;
+    force_at_ = written;
+  }
+
+  /// What to send now, if anything; `inputs` = inputs received so far. The answer counts as sent, whether or
+  /// not the write then succeeds: a lost reply is made up for by the rule of silence.
+  [[nodiscard]] Send decide(std::int64_t now, std::uint64_t inputs) noexcept {
+    if (pacing_ == Pacing::kNone) return Send::kNothing;
+    if (inputs != seen_) {
+      if (answered_ == seen_) waiting_since_ = now;
+      seen_ = inputs;
+      last_exchange_ = now;
+    }
+    const bool usable = now - force_at_ < times_.stale_after;
+    return pacing_ == Pacing::kFree ? decideFree(now, usable) : decideLockStep(now, usable);
+  }
+
+  /// The latest moment at which decide() must be asked again though neither input nor force came.
+  [[nodiscard]] std::int64_t deadline(std::int64_t now) const noexcept {
+    if (pacing_ == Pacing::kLockStep)
+      return answered_ != seen_ ? waiting_since_ + times_.reply_wait : last_exchange_ + times_.silence;
+    if (pacing_ == Pacing::kFree)
+      return last_was_force_ ? force_at_ + times_.stale_after : last_exchange_ + times_.keep_alive;
+    return now + times_.keep_alive;
+  }
+
+ private:
+  Send decideFree(std::int64_t now, bool usable) noexcept {
+    if (fresh_ && usable) return sent(now, Send::kForce);
+    if (last_was_force_ && !usable) return sent(now, Send::kZero);
+    if (now - last_exchange_ >= times_.keep_alive) return sent(now, Send::kZero);
+    return Send::kNothing;
+  }
+
+  Send decideLockStep(std::int64_t now, bool usable) noexcept {
+    if (answered_ != seen_) {
+      // A fresh force answers at once; without one the loop gets a moment, then the last one is repeated
+      // while it is young, and zero after that.
+      if (!fresh_ && now - waiting_since_ < times_.reply_wait) return Send::kNothing;
+      ++answered_;
+      waiting_since_ = now;
+      return sent(now, usable ? Send::kForce : Send::kZero);
+    }
+    if (now - last_exchange_ >= times_.silence) return sent(now, Send::kZero);
+    return Send::kNothing;
+  }
+
+  Send sent(std::int64_t now, Send what) noexcept {
+    fresh_ = false;
+    last_exchange_ = now;
+    last_was_force_ = what == Send::kForce;
+    return what;
+  }
+
+  Pacing pacing_;
+  OutputTimes times_;
+  std::uint64_t answered_ = 0;  // inputs that got their reply
+  std::uint64_t seen_ = 0;      // inputs as of the last decide()
+  std::int64_t waiting_since_ = 0;
+  std::int64_t last_exchange_ = 0;  // last input (lock-step) or output
+  std::int64_t force_at_ = 0;
+  bool fresh_ = false;
+  bool last_was_force_ = false;
+};
+
+}  // namespace fettle::haptic

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace fettle::haptic {
+
+enum class PortRead : std::uint8_t {
+  kReport,   ///< one whole report came
+  kTimeout,  ///< none in time
+  kGone,     ///< the device is unplugged; the port is of no more use
+};
+
+struct ReadOutcome {
+  PortRead kind = PortRead::kTimeout;
+  std::size_t size = 0;  ///< bytes of the report; a longer one than the buffer is cut
+};
+
+enum class PortWrite : std::uint8_t {
+  kDone,
+  kFailed,  ///< this report did not get through (a stalled device); a later one may
+  kGone,    ///< unplugged
+};
+
+/// One end of a wire that carries whole reports (HID reports without report id, or text lines).
+/// Threading: one thread at a time; both calls may wait.
+class ReportPort {
+ public:
+  ReportPort() = default;
+  virtual ~ReportPort() = default;
+  ReportPort(const ReportPort&) = delete;
+  ReportPort& operator=(const ReportPort&) = delete;
+
+  /// Waits for one report up to `timeout`; 0 = only what is there already.
+  [[nodiscard]] virtual ReadOutcome read(std::span<std::uint8_t> buffer,
+                                         std::chrono::milliseconds timeout) noexcept = 0;
+  /// May block for 5 s on a device that stopped taking reports.
+  [[nodiscard]] virtual PortWrite write(std::span<const std::uint8_t> report) noexcept = 0;
+};
+
+/// A device as opened: two ports, since its reader and its writer are two threads and neither may wait for
+/// the other.
+struct OpenedPorts {
+  std::unique_ptr<ReportPort> reading;
+  std::unique_ptr<ReportPort> writing;  ///< null for devices without output
+  std::size_t input_bytes = 0;          ///< of an input report as the device describes itself; 0 = not known
+};
+
+/// Finds and opens a device, again and again: hot plug is a source that had nothing and now has.
+class ReportSource {
+ public:
+  ReportSource() = default;
+  virtual ~ReportSource() = default;
+  ReportSource(const ReportSource&) = delete;
+  ReportSource& operator=(const ReportSource&) = delete;
+
+  /// Nothing when no such device is plugged in or it cannot be opened. Takes some milliseconds. One thread.
+  [[nodiscard]] virtual std::optional<OpenedPorts> open() noexcept = 0;
+};
+
+}  // namespace fettle::haptic

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace fettle::haptic {
+
+/// State of a SpaceMouse as its reports tell it: deflections of the cap, not positions.
+struct SpaceMouseState {
+  /// x right, y towards the user, z down; then turns about them; -350 .. 350 at full deflection.
+  std::array<std::int16_t, 6> axes{};
+  std::uint32_t buttons = 0;  ///< bit 0 left, bit 1 right on the two-button ones
+};
+
+/// Takes one report into `state`. Both forms, told apart by length and not by product: 7 bytes (id 1 =
+/// translation, id 2 = rotation, three int16 each) and 13 bytes (id 1 = all six). Id 3: button bits. False
+/// when it is none of these: `state` stays as it was. Sources: FreeSpacenav/spacenavd src/dev.c, PySpaceMouse
+/// devices.toml.
+[[nodiscard]] bool takeSpaceMouse(std::span<const std::uint8_t> report, SpaceMouseState& state) noexcept;
+
+}  // namespace fettle::haptic

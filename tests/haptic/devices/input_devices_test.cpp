@@ -1,0 +1,280 @@
+// Devices without hardware behind them: mouse, replay, SpaceMouse's pure part, workspace, known limits.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include "haptic/devices/enumerate.h"
+#include "haptic/devices/hid_port.h"
+#include "haptic/devices/known_devices.h"
+#include "haptic/devices/mouse_stylus.h"
+#include "haptic/devices/replay_device.h"
+#include "haptic/devices/space_mouse.h"
+#include "haptic/devices/workspace.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::haptic {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+TEST(SpaceMouseCodec, BothFormsAreToldApartByLength) {
+  SpaceMouseState s;
+  EXPECT_TRUE(takeSpaceMouse(std::array<std::uint8_t, 7>{1, 0x5E, 0x01, 0xA2, 0xFE, 10, 0}, s));
+  EXPECT_TRUE(takeSpaceMouse(std::array<std::uint8_t, 7>{2, 1, 0, 2, 0, 0xFD, 0xFF}, s));
+  EXPECT_EQ(s.axes, (std::array<std::int16_t, 6>{350, -350, 10, 1, 2, -3}));
+  EXPECT_TRUE(takeSpaceMouse(std::array<std::uint8_t, 13>{1, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 6, 0}, s));
+  EXPECT_EQ(s.axes, (std::array<std::int16_t, 6>{1, 2, 3, 4, 5, 6}));
+}
+
+TEST(SpaceMouseCodec, ButtonsAreABitMaskFromByteOneAndLeaveTheAxes) {
+  SpaceMouseState s;
+  s.axes = {1, 2, 3, 4, 5, 6};
+  EXPECT_TRUE(takeSpaceMouse(std::array<std::uint8_t, 3>{3, 2, 0}, s));
+  EXPECT_EQ(s.buttons, kSecondaryButton);
+  EXPECT_TRUE(takeSpaceMouse(std::array<std::uint8_t, 5>{3, 1, 0, 0, 0x80}, s));
+  EXPECT_EQ(s.buttons, 0x80000001U);
+  EXPECT_EQ(s.axes[5], 6);
+}
+
+TEST(SpaceMouseCodec, OtherReportsAndLengthsChangeNothing) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 100000; ++i) {
+    std::vector<std::uint8_t> report(random() % 20);
+    for (auto& b : report) b = static_cast<std::uint8_t>(random());
+    if (!report.empty() && i % 2 == 0) report[0] %= 5;
+    SpaceMouseState s;
+    s.axes.fill(42);
+    s.buttons = 42;
+    if (!takeSpaceMouse(report, s)) {
+      EXPECT_EQ(s.axes[0] + s.axes[5], 84);
+      EXPECT_EQ(s.buttons, 42U);
+    }
+    for (const std::int16_t a : s.axes) EXPECT_LE(std::abs(a), 350);
+  }
+}
+
+TEST(SpaceMouse, RateIsOddMonotonicAndZeroAtRest) {
+  const RateControl control;
+  EXPECT_EQ(rateOf(0, control), 0.0);
+  EXPECT_EQ(rateOf(14, control), 0.0);  // 4 % of 350
+  EXPECT_DOUBLE_EQ(rateOf(350, control), 1.0);
+  for (std::int16_t d = 1; d <= 350; ++d) {
+    EXPECT_GE(rateOf(d, control), rateOf(static_cast<std::int16_t>(d - 1), control));
+    EXPECT_EQ(rateOf(static_cast<std::int16_t>(-d), control), -rateOf(d, control));
+  }
+}
+
+TEST(ReportDescriptor, WoodenHapticsDescriptorsTellTheirSizes) {
+  for (const std::uint8_t n : {std::uint8_t{8}, std::uint8_t{14}}) {
+    const std::vector<std::uint8_t> d{0x06, 0xAB, 0xFF, 0x0A, 0x00, 0x02, 0xA1, 0x01, 0x75, 0x08,
+                                      0x15, 0x00, 0x26, 0xFF, 0x00, 0x95, n,    0x09, 0x01, 0x81,
+                                      0x02, 0x95, n,    0x09, 0x02, 0x91, 0x02, 0xC0};
+    const ReportSizes s = reportSizes(d);
+    EXPECT_EQ(s.input_bytes, n);
+    EXPECT_EQ(s.output_bytes, n);
+    EXPECT_FALSE(s.numbered);
+  }
+}
+
+TEST(ReportDescriptor, NumberedReportsCountTheLongestWithItsId) {
+  // Report 1: 3 x 16 bit, report 2: 6 x 16 bit input; report 4: 5 bit output.
+  const std::vector<std::uint8_t> d{0x85, 1,    0x75, 16,   0x95, 3,    0x81, 2,    0x85, 2,    0x95,
+                                    6,    0x81, 2,    0x85, 4,    0x75, 1,    0x95, 5,    0x91, 2};
+  const ReportSizes s = reportSizes(d);
+  EXPECT_EQ(s.input_bytes, 13U);
+  EXPECT_EQ(s.output_bytes, 2U);
+  EXPECT_TRUE(s.numbered);
+}
+
+TEST(ReportDescriptor, AnyBytesGiveSomeSizeWithinBounds) {
+  std::mt19937 random(6);
+  for (int i = 0; i < 100000; ++i) {
+    std::vector<std::uint8_t> d(random() % 64);
+    for (auto& b : d) b = static_cast<std::uint8_t>(random());
+    EXPECT_LE(reportSizes(d).input_bytes, 65537U);
+  }
+}
+
+HidInterface interfaceOf(std::uint16_t vendor, std::uint16_t product) {
+  HidInterface i;
+  i.path = "/dev/hidraw9";
+  i.vendor = vendor;
+  i.product = product;
+  return i;
+}
+
+TEST(HidKind, GenericIdNeedsTheUsageAndTheSizesWhereTheyAreKnown) {
+  HidInterface i = interfaceOf(0x1234, 0x0006);
+  EXPECT_EQ(hidKind(i), HidKind::kWoodenHaptics);  // nothing known against it
+  i.usage_page = 0xFFAB;
+  i.usage = 0x0200;
+  i.input_bytes = 14;
+  EXPECT_EQ(hidKind(i), HidKind::kWoodenHaptics);
+  i.input_bytes = 64;
+  EXPECT_EQ(hidKind(i), HidKind::kNone);
+  i.input_bytes = 8;
+  i.usage_page = 0xFF00;
+  EXPECT_EQ(hidKind(i), HidKind::kNone);
+}
+
+TEST(HidKind, SpaceMiceAreKnownByIdAndTheirKeyboardInterfaceIsNotTaken) {
+  EXPECT_EQ(hidKind(interfaceOf(0x046d, 0xc626)), HidKind::kSpaceMouse);
+  EXPECT_EQ(hidKind(interfaceOf(0x256f, 0xc635)), HidKind::kSpaceMouse);
+  EXPECT_EQ(hidKind(interfaceOf(0x046d, 0xc635)), HidKind::kNone);
+  HidInterface keyboard = interfaceOf(0x256f, 0xc633);
+  keyboard.usage_page = 1;
+  keyboard.usage = 6;
+  EXPECT_EQ(hidKind(keyboard), HidKind::kNone);
+}
+
+TEST(MouseStylus, TipHoversPressesAndLiftsWithItsTimeConstant) {
+  MouseStylus mouse;
+  EXPECT_EQ(mouse.readAt(0).link, LinkState::kDisconnected);
+  mouse.setCursor({10.0, 20.0, 5.0});
+  DeviceInput in = mouse.readAt(1 * kMs);
+  EXPECT_EQ(in.link, LinkState::kConnected);
+  EXPECT_EQ(in.position_mm, (glm::dvec3{10.0, 20.0, 6.0}));
+  mouse.setButton(MouseStylus::Button::kHeld);
+  in = mouse.readAt(21 * kMs);
+  // One time constant: 1 - 1/e of the way from hover (+1) to press (-0.3).
+  EXPECT_NEAR(in.position_mm.z, 6.0 - 1.3 * (1.0 - std::exp(-1.0)), 1e-12);
+  EXPECT_EQ(in.buttons, kPrimaryButton);
+  in = mouse.readAt(2000 * kMs);
+  EXPECT_NEAR(in.position_mm.z, 4.7, 1e-9);
+  mouse.leave();
+  in = mouse.readAt(4000 * kMs);
+  EXPECT_NEAR(in.position_mm.z, 6.0, 1e-9);
+  EXPECT_EQ(in.buttons, 0U);
+  EXPECT_EQ(in.sequence, 4U);
+}
+
+TEST(MouseStylus, WheelSetsTheDepthWithinItsBounds) {
+  MouseStylus mouse;
+  mouse.wheel(-4);
+  EXPECT_NEAR(mouse.pressMm(), 0.5, 1e-12);
+  mouse.wheel(-1e9);
+  EXPECT_EQ(mouse.pressMm(), 3.0);
+  mouse.wheel(1e9);
+  EXPECT_EQ(mouse.pressMm(), 0.0);
+  mouse.wheel(std::nan(""));
+  EXPECT_EQ(mouse.pressMm(), 0.0);
+}
+
+TEST(MouseStylus, NonFiniteCursorIsNoPlace) {
+  MouseStylus mouse;
+  mouse.setCursor({std::nan(""), 0, 0});
+  EXPECT_EQ(mouse.readAt(0).link, LinkState::kDisconnected);
+  mouse.setCursor({1, 2, 3});
+  static_cast<void>(mouse.readAt(1 * kMs));
+  mouse.setCursor({0, std::numeric_limits<double>::infinity(), 0});
+  const glm::dvec3 p = mouse.readAt(100 * kMs).position_mm;
+  EXPECT_TRUE(std::isfinite(p.x + p.y + p.z));
+}
+
+std::vector<StrokeSample> threeRows() {
+  return {
+      {1.000, {0, 0, 5}, Tool::kFeel}, {1.001, {1, 0, 4}, Tool::kSmooth}, {1.003, {2, 0, 3}, Tool::kMark}};
+}
+
+TEST(ReplayDevice, RowsComeWhenTheirTimeHasCome) {
+  ReplayDevice replay(threeRows());
+  EXPECT_EQ(replay.readAt(500 * kMs).position_mm.x, 0.0);
+  EXPECT_EQ(replay.readAt(500 * kMs + 999'999).position_mm.x, 0.0);
+  DeviceInput in = replay.readAt(501 * kMs);
+  EXPECT_EQ(in.position_mm.x, 1.0);
+  EXPECT_EQ(in.tool, Tool::kSmooth);
+  EXPECT_EQ(replay.readAt(502 * kMs).position_mm.x, 1.0);
+  EXPECT_FALSE(replay.finished());
+  in = replay.readAt(900 * kMs);  // late: the last row holds
+  EXPECT_EQ(in.position_mm.x, 2.0);
+  EXPECT_TRUE(replay.finished());
+  EXPECT_EQ(in.sequence, 5U);
+}
+
+TEST(ReplayDevice, EachReadPaceGivesEveryRowOnce) {
+  ReplayDevice replay(threeRows(), ReplayPace::kEachRead);
+  for (int run = 0; run < 2; ++run) {
+    ASSERT_TRUE(replay.start());
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(replay.readAt(0).position_mm.x, i);
+    EXPECT_TRUE(replay.finished());
+  }
+}
+
+TEST(ReplayDevice, WithoutRowsThereIsNoDevice) {
+  ReplayDevice replay({});
+  EXPECT_EQ(replay.readAt(0).link, LinkState::kDisconnected);
+  EXPECT_TRUE(replay.finished());
+}
+
+TEST(Workspace, TurnAndScaleMapBothWaysWithWorkKeptUpToTheScale) {
+  const Workspace w(0.25, {100, 200, 30}, 0.7);
+  EXPECT_EQ(w.toField({0, 0, 0}), (glm::dvec3{100, 200, 30}));
+  const glm::dvec3 step_device{3, -4, 12};
+  const glm::dvec3 step_field = w.toField(step_device) - w.toField({0, 0, 0});
+  EXPECT_NEAR(glm::length(step_field), 0.25 * 13.0, 1e-12);
+  const glm::dvec3 f{1.0, 2.0, -3.0};
+  // F_field . dx_field = s F_device . dx_device
+  EXPECT_NEAR(glm::dot(f, step_field), 0.25 * glm::dot(w.forceToDevice(f), step_device), 1e-12);
+}
+
+TEST(Workspace, StiffnessIsFeltAsTheScaleSays) {
+  const Workspace w(0.25, {0, 0, 0});
+  constexpr double k = 2.0;  // N/mm in the field
+  const double depth_device = 0.4;
+  const double force = k * -w.toField({0, 0, -depth_device}).z;
+  EXPECT_NEAR(w.forceToDevice({0, 0, force}).z / depth_device, w.feltStiffness(k), 1e-12);
+  EXPECT_DOUBLE_EQ(w.fieldStiffness(w.feltStiffness(k)), k);
+}
+
+TEST(Workspace, ClutchHoldsTheTipAndGoesOnFromThere) {
+  Workspace w(2.0, {0, 0, 0});
+  w.setClutch(Workspace::Clutch::kHeld, {10, 0, 0});
+  EXPECT_EQ(w.toField({-30, 5, 5}), (glm::dvec3{20, 0, 0}));
+  EXPECT_EQ(w.forceToDevice({1, 1, 1}), glm::dvec3{0.0});
+  w.setClutch(Workspace::Clutch::kReleased, {-30, 5, 5});
+  EXPECT_EQ(w.toField({-30, 5, 5}), (glm::dvec3{20, 0, 0}));
+  EXPECT_EQ(w.toField({-29, 5, 5}), (glm::dvec3{22, 0, 0}));
+}
+
+TEST(Workspace, ChangeOfViewDoesNotMoveTheTip) {
+  Workspace w(2.0, {7, 8, 9});
+  const glm::dvec3 device{10, -20, 5};
+  const glm::dvec3 tip = w.toField(device);
+  w.setView(0.1, 2.5, device);
+  EXPECT_LT(glm::length(w.toField(device) - tip), 1e-12);
+  EXPECT_DOUBLE_EQ(w.scale(), 0.1);
+}
+
+TEST(KnownDevices, UnknownDeviceGetsTheLowestLimitsOfAll) {
+  const DeviceProfile unknown;
+  EXPECT_FALSE(knownProfile("no such thing"));
+  for (const KnownDevice& d : knownDevices()) {
+    EXPECT_LE(unknown.max_force_n, d.max_force_n) << d.name;
+    EXPECT_LE(unknown.max_stiffness_n_per_mm, d.max_stiffness_n_per_mm) << d.name;
+    EXPECT_LE(unknown.max_damping_n_s_per_mm, d.max_damping_n_s_per_mm) << d.name;
+  }
+  EXPECT_EQ(knownProfile("falcon")->max_force_n, 8.0);
+}
+
+TEST(OpenDevice, WordsNameDevicesAndWrongOnesAreRefused) {
+  const tests::TempFolder folder;
+  const std::string strokes = folder.file("s.csv");
+  ASSERT_TRUE(writeStrokes(strokes, threeRows()));
+  EXPECT_EQ((*openDevice("mouse"))->profile().name, "mouse");
+  EXPECT_EQ((*openDevice("hand"))->profile().name, "simulated hand");
+  EXPECT_EQ((*openDevice("replay:" + strokes))->read().position_mm.z, 5.0);
+  EXPECT_EQ((*openDevice("spacemouse"))->profile().gives_force, false);
+  EXPECT_FALSE(openDevice("replay:/nowhere.csv"));
+  EXPECT_FALSE(openDevice("replay"));
+  EXPECT_FALSE(openDevice("/dev/null"));
+  EXPECT_FALSE(openDevice(""));
+}
+
+}  // namespace
+}  // namespace fettle::haptic
