@@ -45,6 +45,45 @@ struct HeightRule {
   /// Converts `count` numbers; holes and infinities come out as NaN.
   template <class T>
   void convert(const T* numbers, float* heights, std::size_t count, HeightTally& tally) const noexcept {
+    if constexpr (std::is_same_v<T, float>) {
+      if (scale == 1.0 && offset == 0.0) {
+        convertPlain(numbers, heights, count, tally);
+        return;
+      }
+    }
+    convertEach(numbers, heights, count, tally);
+  }
+
+ private:
+  // Floats that stay as they are: runs in which nothing can be a hole are copied, the loop has no branch and
+  // so takes vector instructions.
+  void convertPlain(const float* numbers, float* heights, std::size_t count,
+                    HeightTally& tally) const noexcept {
+    constexpr std::size_t kRun = 1024;
+    constexpr float kHuge = 3.4028e38F;  // see same()
+    // NaN equals nothing, as it should: NaN samples are found by the comparison with kHuge.
+    const auto mark = [](const std::optional<double>& value) {
+      return value ? toFloat(*value) : std::numeric_limits<float>::quiet_NaN();
+    };
+    const float declared = mark(declared_no_data);
+    const float user = mark(user_no_data);
+    for (std::size_t begin = 0; begin < count; begin += kRun) {
+      const std::size_t run = count - begin < kRun ? count - begin : kRun;
+      const float* from = numbers + begin;
+      float* to = heights + begin;
+      int suspects = 0;
+      for (std::size_t i = 0; i < run; ++i) {
+        const float v = from[i];
+        to[i] = v;
+        suspects += static_cast<int>(!(std::abs(v) < kHuge)) | static_cast<int>(v == declared) |
+                    static_cast<int>(v == user);
+      }
+      if (suspects != 0) convertEach(from, to, run, tally);
+    }
+  }
+
+  template <class T>
+  void convertEach(const T* numbers, float* heights, std::size_t count, HeightTally& tally) const noexcept {
     for (std::size_t i = 0; i < count; ++i) {
       if (hole(numbers[i])) {
         heights[i] = std::numeric_limits<float>::quiet_NaN();
@@ -65,6 +104,7 @@ struct HeightRule {
     }
   }
 
+ public:
   /// double to float, infinity where the float's range ends (the plain cast is undefined there).
   [[nodiscard]] static float toFloat(double value) noexcept {
     constexpr double kLimit =

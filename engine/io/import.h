@@ -68,7 +68,8 @@ struct Imported {
 ///
 /// Errors (all ErrorKind::kInput, one line): a path that cannot be read, an unknown or damaged file, one that
 /// holds no valid height, more samples than memory can hold (told from the header, before anything is
-/// allocated); kCancelled. Memory: the field plus at most 256 MB plus the size of the file.
+/// allocated); kCancelled. Memory: the field plus at most 256 MB plus the size of the file; clouds take
+/// 40 bytes a point and 8 a cell more while they are gridded.
 ///
 /// Thread: any, several at once; a long job: reports progress and looks at cancel() in `job`.
 [[nodiscard]] Result<Imported> importField(const std::string& path, const ImportOptions& options,
