@@ -85,7 +85,7 @@ double chooseExaggeration(double relief_mm, double extent_mm) {
   if (!(relief_mm > 0.0) || !(extent_mm > 0.0)) return 1.0;
   const double ratio = relief_mm / extent_mm;
   if (ratio >= 0.04 && ratio <= 0.4) return 1.0;
-  return std::clamp(roundDown125(0.18 / ratio), 1e-9, 1e9);
+  return std::clamp(roundDown125(0.18 / ratio), 1e-36, 1e36);
 }
 
 engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {

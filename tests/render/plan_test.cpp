@@ -1,0 +1,117 @@
+#include "render/plan.h"
+
+#include <gtest/gtest.h>
+
+#include "render/colour_map.h"
+#include "render/number_text.h"
+#include "tests/render/fields.h"
+
+namespace fettle::render {
+namespace {
+
+TEST(ValueRange, OneSpikeDoesNotEatTheColours) {
+  const ValueSpan span =
+      heightSpan(fieldOf(gridOf(200, 200), [](int c, int r) { return c == 7 && r == 9 ? 1e6 : c * 0.01; }));
+  EXPECT_EQ(span.extreme.high, 1e6F);
+  EXPECT_LT(span.robust.high, 2.3);
+  EXPECT_GE(span.robust.high, 1.98);
+}
+
+TEST(ValueRange, TheTrueExtremesAreKeptWhenNothingIsWild) {
+  const ValueSpan span = heightSpan(fieldOf(gridOf(100, 30), [](int c, int r) { return c - r; }));
+  EXPECT_EQ(span.robust, (ValueRange{-29, 99}));
+}
+
+TEST(ValueRange, AllHolesIsEmptyAndAConstantIsAPoint) {
+  EXPECT_TRUE(heightSpan(fieldOf(gridOf(5, 5), [](int, int) { return kNan; })).empty);
+  EXPECT_EQ(heightSpan(fieldOf(gridOf(90, 90), [](int, int) { return 4; })).robust, (ValueRange{4, 4}));
+}
+
+TEST(ValueRange, DeviationIsSymmetricAboutZeroAndIgnoresUntouchedSamples) {
+  const auto base = [](int c, int r) { return c * 0.5 + r; };
+  const engine::Version a = fieldOf(gridOf(300, 300), base);
+  const engine::Version b = fieldOf(gridOf(300, 300), [&](int c, int r) {
+    return base(c, r) + (c < 40 && r < 40 ? -0.25 : 0.0) + (c == 200 && r == 200 ? 50.0 : 0.0);
+  });
+  const ValueSpan span = deviationSpan(b, a);
+  EXPECT_EQ(span.extreme, (ValueRange{-0.25, 50}));
+  EXPECT_EQ(span.robust, (ValueRange{-0.25, 0.25}));
+  EXPECT_EQ(deviationSpan(a, a).robust, (ValueRange{0, 0}));
+}
+
+TEST(Plan, ExaggerationIsOneForReadableReliefAndRoundOtherwise) {
+  EXPECT_EQ(chooseExaggeration(10, 100), 1.0);
+  EXPECT_EQ(chooseExaggeration(0, 100), 1.0);
+  EXPECT_EQ(chooseExaggeration(0.01, 100), 1000.0);  // 0.18 / 1e-4 = 1800
+  EXPECT_EQ(chooseExaggeration(1000, 640), 0.1);     // 0.18 / 1.56 = 0.115
+}
+
+TEST(Plan, RefusesWhatIsOutsideTheStatedRanges) {
+  const PictureSpec good = mapOf(fieldOf(gridOf(8, 8), [](int c, int) { return c; }), 100, 100);
+  ASSERT_TRUE(planPicture(good));
+  const auto refused = [&](auto change) {
+    PictureSpec spec = good;
+    change(spec);
+    const engine::Result<PicturePlan> plan = planPicture(spec);
+    return !plan && plan.error().kind == engine::ErrorKind::kInput;
+  };
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.width = 0; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.height = 20000; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.elevation_deg = 0; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.azimuth_deg = std::nan(""); }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.zoom = 0; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.samples_per_side = 9; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.range = ValueRange{1, 1}; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.field = {}; }));
+  EXPECT_TRUE(refused(
+      [](PictureSpec& s) { s.deviation_from = fieldOf(gridOf(8, 9), [](int c, int) { return c; }); }));
+}
+
+TEST(Plan, APatchOfHolesIsNotDrawnAndZoomingInDrawsFewer) {
+  const engine::Version field =
+      fieldOf(gridOf(256, 256), [](int c, int r) { return c >= 128 && r < 128 ? kNan : c * 0.1; });
+  PictureSpec spec = mapOf(field, 600, 600);
+  const std::size_t all = planPicture(spec)->panels[0].detail.patches.size();
+  // Of the 16 patches without a height of their own, 4 reach up to row 128, where the heights begin.
+  EXPECT_EQ(all, 64U - 12U);
+  spec.view.zoom = 4;
+  EXPECT_LT(planPicture(spec)->panels[0].detail.patches.size(), all / 2);
+}
+
+TEST(NumberText, TicksAreRoundAndInside) {
+  const std::vector<Tick> t = ticks(-2.96, 2.96, 6);
+  ASSERT_EQ(t.size(), 5U);
+  EXPECT_EQ(t.front().text, "\u22122");
+  EXPECT_EQ(t[2].text, "0");
+  EXPECT_EQ(ticks(0, 0.5, 6).back().text, "0.5");
+  EXPECT_TRUE(ticks(1, 1, 5).empty());
+  for (const double size : {1e-9, 0.003, 7.0, 1e6})
+    EXPECT_TRUE(ticks(-size, size, 7).size() >= 3 && ticks(-size, size, 7).size() <= 9) << size;
+}
+
+TEST(NumberText, UnitsChangeOnlyWhenNumbersReadBadly) {
+  EXPECT_EQ(shownUnit({"m", 1000}, 43.0, 0.05, 5e4).name, "m");
+  const ShownUnit u = shownUnit({"m", 1000}, 1.3e-4, 0.05, 5e4);
+  EXPECT_EQ(u.name, "\u00b5m");
+  EXPECT_DOUBLE_EQ(u.per_unit, 1e6);
+  EXPECT_EQ(shownUnit({"ft", 304.8}, 1e-6, 0.05, 5e4).name, "ft");
+  EXPECT_EQ(roundDown125(7.3), 5.0);
+  EXPECT_EQ(roundDown125(1.0), 1.0);
+  EXPECT_DOUBLE_EQ(roundDown125(0.0021), 0.002);
+}
+
+TEST(ColourMaps, EndsAndMiddleAreTheSourcesOwn) {
+  // First and last line of the published tables, 8-bit.
+  const auto code = [](const glm::vec3& c) {
+    return glm::ivec3(
+        glm::round(glm::dvec3(srgbFromLinear(c.x), srgbFromLinear(c.y), srgbFromLinear(c.z)) * 255.0));
+  };
+  EXPECT_EQ(code(colourTable(ColourMap::kViridis).front()), glm::ivec3(68, 1, 84));
+  EXPECT_EQ(code(colourTable(ColourMap::kViridis).back()), glm::ivec3(253, 231, 37));
+  EXPECT_EQ(code(colourTable(ColourMap::kCividis).front()), glm::ivec3(0, 34, 78));
+  const glm::vec3 zero = mapped(colourTable(ColourMap::kDiverging), 0.0, {-3, 3});
+  EXPECT_GT(std::min({zero.x, zero.y, zero.z}), 0.97F);
+}
+
+}  // namespace
+}  // namespace fettle::render
