@@ -32,10 +32,11 @@ struct OperatorSpec {
   /// three times the hand's own error keeps off it almost always.
   double smooth_offset_mm = 0.6;
   /// Along a step the mark passes keep the tip down at the lower land that lies within this distance [mm],
-  /// >= 0, so that the wall guides it, as the paper's users are guided by a concave corner; they come down on
-  /// the low side. 0 = the tip's height follows the surface right under it, also up and down the wall, which
-  /// no hand can do in a millisecond and which leaves the proxy behind.
-  double guide_mm = 0.5;
+  /// >= 0, and come down on the low side: the wall guides the tip, as a concave corner guides the paper's
+  /// users. 0 = the tip's height follows the surface right under it, also up and down the wall within a
+  /// millisecond. ContactLevel::kCertified follows either; the local search of kPaper is left behind in the
+  /// noise's own minima after such a jump, and where the tip lies deep inside a wall.
+  double guide_mm = 0.0;
   /// The smooth passes only feel where any edge lies nearer than this to the way of the tool (narrow ribs,
   /// corners) [mm], 0 .. smooth_offset_mm; 0 = smooth everywhere.
   double smooth_clear_mm = 0.55;

@@ -111,7 +111,6 @@ TEST(OperatorStrokes, ASteadyHandIsOnTheEdgeAtThePressDepth) {
   const Edge edge = straight({5, 5}, {30, 20});
   OperatorSpec spec = steady();
   spec.press_mm = 0.25;
-  spec.guide_mm = 0.0;
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
   for (const StrokeSample& row : stroked({edge}, spec)) {
@@ -136,6 +135,7 @@ TEST(OperatorStrokes, MarkingAStepTheTipStaysAtItsFootAndComesDownOnTheLowSide) 
   const engine::Version step = engine::makeField(grid, z);
   const std::vector<Edge> edges{straight({3, 10.05}, {17, 10.05})};  // the high side is on the left
   OperatorSpec spec;
+  spec.guide_mm = 0.5;
   spec.smooth_passes = 0;
   spec.tremor_mm = 0.02;
   spec.wander_mm = 0.05;  // never 0.28 mm off, so the foot is within reach of the guide
@@ -239,7 +239,6 @@ TEST(OperatorStrokes, MoveWithoutJumps) {
 TEST(OperatorStrokes, KeepTheLastHeightOverAHole) {
   OperatorSpec spec = steady();
   spec.press_mm = 0.3;
-  spec.guide_mm = 0.0;
   for (const StrokeSample& row : stroked({straight({5, 5}, {30, 5})}, spec, true)) {
     ASSERT_TRUE(std::isfinite(row.tip_mm.z));
     if (row.tool != Tool::kMark || row.tip_mm.x < 15.11 || row.tip_mm.x > 24.89) continue;
