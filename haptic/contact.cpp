@@ -74,7 +74,14 @@ bool ContactTracker::collide(Surface& surface, const glm::dvec3& endpoint, bool 
     if (searchFrom(candidate.cell, from + candidate.leave * (endpoint - from))) return true;
   }
   counters.search_bound_hits += walk.stoppedByBound() ? 1 : 0;
-  return below && searchFrom(own, endpoint);
+  if (!below) return false;
+  if (searchFrom(own, endpoint)) return true;
+  // Below the surface, and yet every local search came to rest on a sheet that faces away: the closest point
+  // of the cells next to it can not. Rare (spikes), so its cost does not matter.
+  SurfacePoint closest;
+  const double cell = std::max(surface.spacingX(), surface.spacingY());
+  return certifiedClosest(surface, endpoint, cell, closest) &&
+         contactTest(surface, closest, endpoint, counters, out);
 }
 
 Contact ContactTracker::update(Surface& surface, const glm::dvec3& endpoint,
@@ -97,8 +104,9 @@ Contact ContactTracker::update(Surface& surface, const glm::dvec3& endpoint,
       SurfacePoint closest;
       if (below) {
         const double radius = radius_cells_ * std::max(surface.spacingX(), surface.spacingY());
-        contact.touching = certifiedClosest(surface, endpoint, radius, closest) &&
-                           contactTest(surface, closest, endpoint, counters, contact);
+        contact.touching = certifiedClosest(surface, endpoint, radius, closest);
+        if (contact.touching && !contactTest(surface, closest, endpoint, counters, contact))
+          ++counters.mean_normal_overruled;
       }
     } else {
       contact.touching = (was_touching && track(surface, endpoint, counters, contact)) ||

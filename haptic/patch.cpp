@@ -15,6 +15,9 @@ constexpr double kLastCoordinateStep = 1e-14;
 // Distances this close are the same but for rounding.
 constexpr double kSame = 1.0 + 1e-15;
 
+// Largest fuv^2 / (fuu fvv) that counts as safely convex.
+constexpr double kLargestCoupling = 0.998;
+
 double unit(double x) noexcept {
   return std::clamp(x, 0.0, 1.0);
 }
@@ -32,6 +35,7 @@ PatchPoint closestOnPatch(const Patch& s, const glm::dvec3& endpoint, double u0,
   double last_v = v0;
   double last_f = HUGE_VAL;
   bool newton_failed = false;
+  int shrinks = 0;
 
   for (int round = 0; round < kNewtonSteps; ++round) {
     const double p = s.b + s.d * v;
@@ -41,8 +45,14 @@ PatchPoint closestOnPatch(const Patch& s, const glm::dvec3& endpoint, double u0,
     const double py = s.sy * v - ey;
     const double f = px * px + py * py + z * z;
     if (f > last_f * kSame) {
-      // Either Newton overshot, and the next round takes the slow way from where it was, or the slow way has
-      // come down to rounding.
+      // Newton overshot: take less of its step, which starts downhill; when even a sliver is no better, the
+      // slow way; when that is not either, rounding is all there is.
+      if (shrinks < 8) {
+        ++shrinks;
+        u = last_u + 0.25 * (u - last_u);
+        v = last_v + 0.25 * (v - last_v);
+        continue;
+      }
       u = last_u;
       v = last_v;
       if (newton_failed) return {u, v, last_f};
@@ -50,6 +60,7 @@ PatchPoint closestOnPatch(const Patch& s, const glm::dvec3& endpoint, double u0,
       last_f = HUGE_VAL;
       continue;
     }
+    shrinks = 0;
     last_u = u;
     last_v = v;
     last_f = f;
@@ -71,9 +82,14 @@ PatchPoint closestOnPatch(const Patch& s, const glm::dvec3& endpoint, double u0,
       newton_failed = false;
       continue;
     }
-    const double fuv = p * q + z * s.d;
+    double fuv = p * q + z * s.d;
+    if (fuv * fuv > kLargestCoupling * fuu * fvv) {
+      // Not convex here: with less coupling the step is still downhill, and far better than one parameter at
+      // a time, which crawls along valleys.
+      fuv = std::copysign(std::sqrt(kLargestCoupling * fuu * fvv), fuv);
+    }
     const double det = fuu * fvv - fuv * fuv;
-    if (!newton_failed && det > 1e-12 * fuu * fvv) {
+    if (!newton_failed) {
       const double du = (fuv * gv - fvv * gu) / det;
       const double dv = (fuv * gu - fuu * gv) / det;
       // Cut at the first side it meets: downhill all the way, since the Hessian is positive definite.

@@ -23,6 +23,6 @@ struct PatchPoint {
 [[nodiscard]] PatchPoint closestOnPatch(const Patch& patch, const glm::dvec3& endpoint, double u0,
                                         double v0) noexcept;
 
-inline constexpr int kNewtonSteps = 40;
+inline constexpr int kNewtonSteps = 60;
 
 }  // namespace fettle::haptic
