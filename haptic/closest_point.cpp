@@ -5,6 +5,22 @@
 
 namespace fettle::haptic {
 
+namespace {
+
+// Whether distance only grows from a shared point into this patch. On an edge the point is already the
+// nearest along it, so only the way across is looked at; at a vertex both ways are. Most neighbours end here.
+bool restsHere(const Patch& s, const glm::dvec3& e, double u, double v) noexcept {
+  const double p = s.b + s.d * v;
+  const double q = s.c + s.d * u;
+  const double z = s.a + s.b * u + q * v - e.z;
+  const double gu = s.sx * (s.x0 + s.sx * u - e.x) + z * p;
+  const double gv = s.sy * (s.y0 + s.sy * v - e.y) + z * q;
+  const auto held = [](double x, double g) { return x == 0.0 ? g >= 0.0 : (x == 1.0 ? g <= 0.0 : true); };
+  return held(u, gu) && held(v, gv);
+}
+
+}  // namespace
+
 SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u,
                            double v) noexcept {
   SearchResult result;
@@ -21,7 +37,8 @@ SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellInd
     // nearer one counts, so that rounding cannot send the search in circles.
     forEachSharing(surface, cell, best.u, best.v, [&](const SharingCell& other) {
       Patch other_patch;
-      if (!surface.patch(other.cell, other_patch)) return;
+      if (!surface.patch(other.cell, other_patch) || restsHere(other_patch, endpoint, other.u, other.v))
+        return;
       const PatchPoint point = closestOnPatch(other_patch, endpoint, other.u, other.v);
       if (point.distance2_mm2 < nearest.distance2_mm2) {
         nearest = point;
