@@ -45,6 +45,7 @@ LoopTick::LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, 
       channels_(channels),
       options_(options),
       guard_(options.limits),
+      workspace_(options.workspace),
       tool_(options.tool) {
   static_cast<void>(scene_->field.adopt(scene_->scene.invert ? start.inverted() : std::move(start)));
   scene_->tick.fieldChanged();
@@ -94,8 +95,12 @@ void LoopTick::take(LoopCommand& command) noexcept {
     case CommandKind::kTool:
       tool_ = command.tool;
       break;
-    case CommandKind::kMapping:
-      mapping_ = command.mapping;
+    case CommandKind::kWorkspace:
+      workspace_ = command.workspace;
+      disturbance_ = Disturbance::kSurfaceReplaced;
+      break;
+    case CommandKind::kView:
+      workspace_.setView(command.scale, command.turn_rad, last_input_.position_mm);
       disturbance_ = Disturbance::kSurfaceReplaced;
       break;
     case CommandKind::kArm:
@@ -313,22 +318,26 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   const double age_s = 1e-9 * static_cast<double>(std::max<std::int64_t>(now_ns - input.arrival_ns, 0));
   noteVelocity(input);
   const bool in_field = device_.profile().space == DeviceSpace::kField;
-  const glm::dvec3 tip_mm = in_field ? input.position_mm : mapping_.toField(input.position_mm);
-  const Tool tool = toolInEffect(input, age_s);
+  const bool clutched = !in_field && (input.buttons & options_.clutch_buttons) != 0;
+  if (clutched != clutched_) disturbance_ = Disturbance::kSurfaceReplaced;
+  clutched_ = clutched;
+  workspace_.setClutch(clutched ? Workspace::Clutch::kHeld : Workspace::Clutch::kReleased, input.position_mm);
+  const glm::dvec3 tip_mm = in_field ? input.position_mm : workspace_.toField(input.position_mm);
+  const Tool tool = clutched ? Tool::kFeel : toolInEffect(input, age_s);
 
   StrokeSample sample{1e-9 * static_cast<double>(now_ns), tip_mm, tool};
   if (input.link != LinkState::kConnected) sample.tip_mm.x = std::numeric_limits<double>::quiet_NaN();
   const ForceSample force = scene_->tick.run(sample);
 
-  const glm::dvec3 command = in_field ? force.force_n : mapping_.toDevice(force.force_n);
+  const glm::dvec3 command = in_field ? force.force_n : workspace_.forceToDevice(force.force_n);
   const glm::dvec3 given = guard_.step(
       {1e-9 * static_cast<double>(since_ns), age_s, input.link, command, velocity_, disturbance_});
   device_.write(given);
 
+  ++state_.tick;
   noteEdit(force, tool);
   publish();
 
-  ++state_.tick;
   state_.time_ns = now_ns;
   state_.endpoint_mm = tip_mm;
   state_.proxy_mm = force.contact ? force.proxy_mm : tip_mm;

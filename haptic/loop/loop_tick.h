@@ -21,6 +21,9 @@ enum class ToolSwitch : std::uint8_t {
 struct LoopOptions {
   Tool tool = Tool::kFeel;
   ToolSwitch tool_switch = ToolSwitch::kButton;
+  /// Buttons that hold the clutch (see Workspace); 0 = none.
+  std::uint32_t clutch_buttons = kSecondaryButton;
+  Workspace workspace;  ///< ignored by devices whose positions are in the field already
   SafetyLimits limits;
   /// Ticks between two publications of edits. At 1 kHz 8 is a little faster than a display's frame.
   std::uint32_t publish_ticks = 8;
@@ -42,7 +45,8 @@ struct LoopChannels {
 /// All that happens in one tick of the live loop, without the thread and the clock, so that tests and benches
 /// run the very code:
 ///
-///   commands --> device.read --> mapping --> Tick::run (the tick of replay) --> ForceGuard --> device.write
+///   commands --> device.read --> workspace --> Tick::run (the tick of replay) --> ForceGuard -->
+///   device.write
 ///            --> dirty rectangle --> publish (every n ticks) --> state slot
 ///
 /// Edits. The loop keeps one dirty rectangle. Every publish_ticks ticks it sends {rectangle, snapshot} if the
@@ -123,7 +127,7 @@ class LoopTick {
   LoopChannels& channels_;
   LoopOptions options_;
   ForceGuard guard_;
-  TipMapping mapping_;
+  Workspace workspace_;
   Tool tool_;
   LoopCommand waiting_;  // popped, but its answer has no place yet
   bool has_waiting_ = false;
@@ -148,6 +152,7 @@ class LoopTick {
   std::uint64_t refused_before_ = 0;  // by the scenes that were left
   DeviceInput last_input_;
   bool has_input_ = false;
+  bool clutched_ = false;
   glm::dvec3 velocity_{0.0};
   LoopState state_;
 };

@@ -8,7 +8,7 @@
 #include "engine/field/live_field.h"
 #include "engine/field/version.h"
 #include "haptic/devices/device.h"
-#include "haptic/loop/tip_mapping.h"
+#include "haptic/devices/workspace.h"
 #include "haptic/safety/safety.h"
 #include "haptic/scene.h"
 #include "haptic/strokes.h"
@@ -46,12 +46,13 @@ struct SampleRect {
 };
 
 enum class CommandKind : std::uint8_t {
-  kTool,      ///< `tool` from now on
-  kScene,     ///< `scene` from now on: parameters, effects, inversion
-  kMapping,   ///< `mapping` from now on: scale and place; while a clutch is held, tick by tick
-  kSnapshot,  ///< answers kSnapshot: the base of a job that will be adopted
-  kAdopt,     ///< go on from `version`, made from the newest kSnapshot; see LoopTick
-  kRestore,   ///< go on from exactly `version` (undo, redo); answers kRestored
+  kTool,       ///< `tool` from now on
+  kScene,      ///< `scene` from now on: parameters, effects, inversion
+  kWorkspace,  ///< `workspace` from now on: where the device lies in the field
+  kView,       ///< its `scale` and `turn_rad` from now on, without moving the tip
+  kSnapshot,   ///< answers kSnapshot: the base of a job that will be adopted
+  kAdopt,      ///< go on from `version`, made from the newest kSnapshot; see LoopTick
+  kRestore,    ///< go on from exactly `version` (undo, redo); answers kRestored
   kArm,
   kDisarm,
 };
@@ -61,7 +62,9 @@ struct LoopCommand {
   CommandKind kind = CommandKind::kTool;
   Tool tool = Tool::kFeel;
   std::uint64_t id = 0;  ///< comes back in the answer
-  TipMapping mapping;
+  Workspace workspace;
+  double scale = 1.0;     ///< see Workspace::setView
+  double turn_rad = 0.0;  ///< see Workspace::setView
   engine::Version version;
   std::unique_ptr<PreparedScene> scene;  // not null with kScene
 };
@@ -82,7 +85,7 @@ enum class EventKind : std::uint8_t {
 struct LoopEvent {
   EventKind kind = EventKind::kEdited;
   std::uint64_t id = 0;      ///< of the command it answers
-  std::uint64_t tick = 0;    ///< ticks run before it took effect
+  std::uint64_t tick = 0;    ///< ticks whose edits `version` holds
   std::uint64_t stroke = 0;  ///< strokes begun so far
   std::uint32_t merged = 0;  ///< earlier publications that found the ring full and are part of this one
   SampleRect rect;  ///< kEdited, kSnapshot: since the event before; kStrokeEnded: of the stroke as well

@@ -199,7 +199,7 @@ glm::dvec3 ForceGuard::step(const SafetyInput& input) noexcept {
 
   advanceState(input, dt_s, std::max(good_time ? input.input_age_s : 0.0, bad_for_s_));
   if (good) rampUnexpectedRise(input, dt_s);
-  if (input.link == LinkState::kDisconnected) return output_ = glm::dvec3(0.0);
+  if (input.link == LinkState::kDisconnected) return output_ = slewed_ = glm::dvec3(0.0);
 
   const bool giving = (state_ == SafetyState::kRamping || state_ == SafetyState::kActive) && good && !silent_;
   const bool ramping = state_ == SafetyState::kRamping;
@@ -213,9 +213,10 @@ glm::dvec3 ForceGuard::step(const SafetyInput& input) noexcept {
   // Rises get two periods at most; a fade to zero the whole time that passed.
   const double step_n = 1000.0 * limits_.slew_n_per_ms * (giving ? std::min(dt_s, kLongestRise_s) : dt_s);
   bool held = false;
-  glm::dvec3 force = approach(output_, target, step_n, held);
+  slewed_ = approach(slewed_, target, step_n, held);
   counters_.slewed += held ? 1 : 0;
 
+  glm::dvec3 force = slewed_;
   if (giving && limit_n > 0.0) force = limitSpeed(force, input.velocity_mm_per_s);
   force *= motorFactor(force);
   const double thermal_n = thermalLimit();

@@ -150,6 +150,7 @@ class ForceGuard {
   FaultCause cause_ = FaultCause::kNone;
   SafetyCounters counters_;
   glm::dvec3 output_{0.0};
+  glm::dvec3 slewed_{0.0};  // before the brake and the motors' factors, which must not add up over ticks
   double ceiling_n_ = 0.0;  // of the ramp; the peak when there is none
   double warmth_n2_ = 0.0;  // q
   double bad_for_s_ = 0.0;  // since the last good number

@@ -1,0 +1,327 @@
+#include "haptic/safety/safety.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/haptic/safety/guard_witness.h"
+
+namespace fettle::haptic {
+namespace {
+
+using tests::GuardWitness;
+
+constexpr double kDt = 0.001;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+SafetyInput pressing(double newtons) {
+  SafetyInput in;
+  in.dt_s = kDt;
+  in.link = LinkState::kConnected;
+  in.command_n = {0.0, 0.0, newtons};
+  return in;
+}
+
+SafetyLimits woody() {
+  SafetyLimits limits;
+  limits.peak_force_n = 5.0;
+  limits.continuous_force_n = 2.0;
+  limits.slew_n_per_ms = 1.0;
+  return limits;
+}
+
+void run(GuardWitness& w, const SafetyInput& in, int ticks) {
+  for (int i = 0; i < ticks; ++i) static_cast<void>(w.step(in));
+}
+
+// Armed, touched nothing, ramp over.
+GuardWitness active(const SafetyLimits& limits = woody()) {
+  GuardWitness w(limits);
+  run(w, pressing(0.0), 3);
+  w.arm();
+  run(w, pressing(0.0), 1100);
+  EXPECT_EQ(w.guard().state(), SafetyState::kActive);
+  w.forgetPeaks();
+  return w;
+}
+
+TEST(ForceGuard, NothingIsGivenBeforeItIsArmed) {
+  GuardWitness w(woody());
+  EXPECT_EQ(w.guard().state(), SafetyState::kDisconnected);
+  run(w, pressing(3.0), 100);
+  EXPECT_EQ(w.guard().state(), SafetyState::kUncalibrated);
+  EXPECT_EQ(w.peakForce(), 0.0);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, UncalibratedDeviceCanNotBeArmed) {
+  GuardWitness w(woody());
+  SafetyInput in = pressing(0.0);
+  in.link = LinkState::kUncalibrated;
+  run(w, in, 3);
+  w.arm();
+  run(w, in, 3);
+  EXPECT_EQ(w.guard().state(), SafetyState::kUncalibrated);
+  EXPECT_EQ(w.guard().counters().arms_refused, 1);
+}
+
+TEST(ForceGuard, WhoArmsDeepInsideMustFirstComeOut) {
+  GuardWitness w(woody());
+  run(w, pressing(4.0), 3);
+  w.arm();
+  run(w, pressing(4.0), 2000);
+  EXPECT_EQ(w.guard().state(), SafetyState::kArmed);
+  EXPECT_EQ(w.peakForce(), 0.0);
+  run(w, pressing(0.05), 1);  // small
+  EXPECT_EQ(w.guard().state(), SafetyState::kRamping);
+  // Half of the ramp later, half of the peak is the most there is.
+  run(w, pressing(4.0), 249);
+  EXPECT_NEAR(w.peakForce(), 2.5, 0.02);
+  run(w, pressing(4.0), 400);
+  EXPECT_EQ(w.guard().state(), SafetyState::kActive);
+  EXPECT_NEAR(w.peakForce(), 4.0, 1e-12);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, ForceAbovethePeakIsCutAlongItsDirection) {
+  GuardWitness w = active();
+  SafetyInput in = pressing(0.0);
+  in.command_n = {30.0, 0.0, 40.0};
+  glm::dvec3 f(0.0);
+  for (int i = 0; i < 20; ++i) f = w.step(in);
+  EXPECT_NEAR(f.x, 3.0, 1e-9);
+  EXPECT_NEAR(f.z, 4.0, 1e-9);
+  EXPECT_GT(w.guard().counters().clamped, 0);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, HugeAndDenormalCommandsKeepDirectionOrVanish) {
+  GuardWitness w = active();
+  SafetyInput in = pressing(0.0);
+  in.command_n = {1e308, -1e308, 1e308};
+  glm::dvec3 f(0.0);
+  for (int i = 0; i < 20; ++i) f = w.step(in);
+  EXPECT_NEAR(f.x, 5.0 / std::sqrt(3.0), 1e-9);
+  EXPECT_NEAR(f.y, -5.0 / std::sqrt(3.0), 1e-9);
+  in.command_n = {5e-324, 0.0, 0.0};
+  for (int i = 0; i < 20; ++i) f = w.step(in);
+  EXPECT_LE(f.x, 5e-324);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, NaNForSomeTicksFadesAndComesBackForFiftyMillisecondsFaults) {
+  GuardWitness w = active();
+  run(w, pressing(3.0), 20);
+  SafetyInput bad = pressing(kNaN);
+  run(w, bad, 3);
+  EXPECT_NEAR(w.guard().force().z, 0.0, 1e-12);  // slew 1 N/ms
+  run(w, pressing(3.0), 10);
+  EXPECT_NEAR(w.guard().force().z, 3.0, 1e-12);
+  EXPECT_EQ(w.guard().counters().not_finite, 3);
+  run(w, bad, 51);
+  EXPECT_EQ(w.guard().state(), SafetyState::kFault);
+  EXPECT_EQ(w.guard().cause(), FaultCause::kInputLost);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, GapOfTenMillisecondsIsZeroForceAndARampAfterIt) {
+  GuardWitness w = active();
+  run(w, pressing(4.0), 20);
+  SafetyInput silent = pressing(4.0);
+  for (int ms = 1; ms <= 20; ++ms) {
+    silent.input_age_s = 0.001 * ms;
+    const glm::dvec3 f = w.step(silent);
+    if (ms < 10) {
+      EXPECT_NEAR(f.z, 4.0, 1e-12);
+    }
+    // 4 N at 1 N/ms
+    if (ms >= 14) {
+      EXPECT_EQ(f.z, 0.0);
+    }
+  }
+  EXPECT_EQ(w.guard().counters().silences, 1);
+  w.forgetPeaks();
+  run(w, pressing(4.0), 100);
+  EXPECT_EQ(w.guard().state(), SafetyState::kRamping);
+  EXPECT_NEAR(w.peakForce(), 1.0, 1e-9);  // 100 ms of 500 ms to 5 N
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, GapOfFiftyMillisecondsIsAFaultUntilReArmed) {
+  GuardWitness w = active();
+  run(w, pressing(4.0), 20);
+  SafetyInput silent = pressing(4.0);
+  for (int ms = 1; ms <= 60; ++ms) {
+    silent.input_age_s = 0.001 * ms;
+    static_cast<void>(w.step(silent));
+  }
+  EXPECT_EQ(w.guard().state(), SafetyState::kFault);
+  run(w, pressing(0.0), 5000);
+  EXPECT_EQ(w.guard().state(), SafetyState::kFault);
+  w.guard().disarm();
+  run(w, pressing(0.0), 10);
+  EXPECT_EQ(w.guard().state(), SafetyState::kFault);
+  w.arm();
+  run(w, pressing(0.0), 1);
+  EXPECT_NE(w.guard().state(), SafetyState::kFault);
+  EXPECT_EQ(w.guard().cause(), FaultCause::kNone);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, DebuggerStopIsAFaultAtTheFirstTickAfterIt) {
+  GuardWitness w = active();
+  run(w, pressing(4.0), 20);
+  SafetyInput late = pressing(4.0);
+  late.dt_s = 7.0;
+  EXPECT_EQ(w.step(late), glm::dvec3(0.0));
+  EXPECT_EQ(w.guard().state(), SafetyState::kFault);
+  EXPECT_EQ(w.guard().cause(), FaultCause::kLoopStopped);
+}
+
+TEST(ForceGuard, UnplugIsZeroAtOnceAndNeedsReArmingAfterRePlug) {
+  GuardWitness w = active();
+  run(w, pressing(4.0), 20);
+  SafetyInput gone = pressing(4.0);
+  gone.link = LinkState::kDisconnected;
+  EXPECT_EQ(w.step(gone), glm::dvec3(0.0));
+  EXPECT_EQ(w.guard().cause(), FaultCause::kUnplugged);
+  run(w, pressing(0.0), 100);
+  EXPECT_EQ(w.guard().state(), SafetyState::kFault);
+  w.arm();
+  run(w, pressing(0.0), 2);
+  EXPECT_EQ(w.guard().state(), SafetyState::kRamping);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, SurfaceThatRisesUnderARestingTipRampsAndAStrokeOfTheHandDoesNot) {
+  GuardWitness w = active();
+  run(w, pressing(1.0), 50);
+  w.forgetPeaks();
+  SafetyInput lifted = pressing(11.0);
+  lifted.disturbance = Disturbance::kSurfaceReplaced;
+  static_cast<void>(w.step(lifted));
+  EXPECT_LE(w.guard().force().z, 1.0 + 0.1 + 0.01 + 1e-9);  // as before + small + one tick of ramp
+  run(w, pressing(11.0), 99);
+  EXPECT_NEAR(w.guard().force().z, 1.1 + 1.0, 0.02);
+  EXPECT_LE(w.peakRise(), 0.1 + 0.01 + 1e-9);
+  EXPECT_EQ(w.guard().counters().disturbances_ramped, 1);
+
+  // The same rise by a hand is passed on, at the slew limit.
+  GuardWitness hand = active();
+  run(hand, pressing(1.0), 50);
+  run(hand, pressing(11.0), 10);
+  EXPECT_NEAR(hand.guard().force().z, 5.0, 1e-9);
+}
+
+TEST(ForceGuard, DisturbanceThatLowersTheForceRampsNothing) {
+  GuardWitness w = active();
+  run(w, pressing(3.0), 50);
+  SafetyInput lower = pressing(1.0);
+  lower.disturbance = Disturbance::kSurfaceReplaced;
+  run(w, lower, 5);
+  EXPECT_EQ(w.guard().state(), SafetyState::kActive);
+  EXPECT_NEAR(w.guard().force().z, 1.0, 1e-12);
+}
+
+TEST(ForceGuard, PoseThatJumpsRamps) {
+  GuardWitness w = active();
+  SafetyInput jump = pressing(5.0);
+  jump.velocity_mm_per_s = {0.0, 0.0, -20000.0};  // 20 mm in one tick
+  static_cast<void>(w.step(jump));
+  run(w, pressing(5.0), 49);
+  EXPECT_LT(w.peakForce(), 0.1 + 0.5 + 1e-9);  // 50 ms of 10 N/s
+  EXPECT_EQ(w.guard().counters().jumps, 1);
+}
+
+TEST(ForceGuard, TipAboveTheSpeedLimitIsBrakedAndNotDriven) {
+  GuardWitness w = active();
+  SafetyInput fast = pressing(2.0);
+  fast.velocity_mm_per_s = {0.0, 0.0, 3000.0};  // twice the limit, along the force
+  run(w, fast, 200);
+  // All of the drive gone, 0.004 N s/mm of the excess against the motion.
+  EXPECT_NEAR(w.guard().force().z, -5.0, 1.1);
+  EXPECT_LT(w.guard().force().z, 0.0);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, MotorsScaleKeepsDirectionAndNonsenseFromItIsZero) {
+  static double factor;
+  SafetyLimits limits = woody();
+  limits.motors.factor = [](const void*, const glm::dvec3&) noexcept { return factor; };
+  factor = 0.5;
+  GuardWitness w = active(limits);
+  SafetyInput in = pressing(0.0);
+  in.command_n = {1.2, 0.0, 1.6};
+  run(w, in, 20);
+  EXPECT_NEAR(w.guard().force().x, 0.6, 1e-9);
+  EXPECT_NEAR(w.guard().force().z, 0.8, 1e-9);
+  for (const double nonsense : {kNaN, -1.0, 2.0}) {
+    factor = nonsense;
+    run(w, in, 20);
+    EXPECT_EQ(glm::length(w.guard().force()), 0.0);
+  }
+  EXPECT_EQ(w.guard().counters().bad_motor_scale, 60);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, MotorsAreNeverWarmerThanTheyMayBe) {
+  SafetyLimits limits = woody();
+  limits.thermal_tau_s = 2.0;
+  GuardWitness w = active(limits);
+  double warmest = 0.0;
+  for (int i = 0; i < 30000; ++i) {
+    static_cast<void>(w.step(pressing(5.0)));
+    warmest = std::max(warmest, w.guard().warmth());
+  }
+  EXPECT_LE(warmest, 1.0 + 1e-9);
+  EXPECT_GT(warmest, 0.9);
+  EXPECT_NEAR(w.guard().force().z, limits.continuous_force_n, 0.15);
+  EXPECT_GT(w.guard().counters().thermal, 0);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+  run(w, pressing(0.0), 10000);  // five time constants: e^-5
+  EXPECT_LT(w.guard().warmth(), 0.01);
+}
+
+TEST(ForceGuard, LastResortIsAFaultThatCanNotBeArmedAway) {
+  GuardWitness w = active();
+  run(w, pressing(2.0), 20);
+  w.guard().lastResort();
+  run(w, pressing(2.0), 10);
+  EXPECT_EQ(w.guard().cause(), FaultCause::kLastResort);
+  EXPECT_EQ(glm::length(w.guard().force()), 0.0);
+  w.arm();
+  run(w, pressing(0.0), 2);
+  EXPECT_EQ(w.guard().state(), SafetyState::kFault);
+}
+
+TEST(SafetyLimits, OfADeviceWithoutForceGiveNone) {
+  DeviceProfile mouse;
+  mouse.max_force_n = 0.0;
+  const SafetyLimits limits = limitsFor(mouse);
+  EXPECT_FALSE(limitsProblem(limits));
+  GuardWitness w(limits);
+  run(w, pressing(0.0), 3);
+  w.arm();
+  run(w, pressing(0.0), 3);
+  run(w, pressing(5.0), 1000);
+  EXPECT_EQ(w.peakForce(), 0.0);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(SafetyLimits, OfAProfileFullOfNonsenseGiveNone) {
+  DeviceProfile profile;
+  for (const double nonsense : {kNaN, -3.0, 1e9, std::numeric_limits<double>::infinity()}) {
+    profile.max_force_n = nonsense;
+    profile.max_damping_n_s_per_mm = nonsense;
+    const SafetyLimits limits = limitsFor(profile);
+    EXPECT_FALSE(limitsProblem(limits));
+    EXPECT_EQ(limits.peak_force_n, 0.0);
+  }
+  SafetyLimits bad;
+  bad.ramp_s = 0.01;
+  EXPECT_TRUE(limitsProblem(bad));
+}
+
+}  // namespace
+}  // namespace fettle::haptic
