@@ -81,11 +81,7 @@ void HapticLoop::main() noexcept {
     tick_.run(tick.woke_ns, tick.since_ns);
     timing_.lateness.add(tick.lateness_ns);
     timing_.compute.add(monotonicNow() - tick.woke_ns);
-    if (tick.skipped > 0)
-      // Relaxed, one writer.
-      timing_.missed.store(
-          timing_.missed.load(std::memory_order_relaxed) + static_cast<std::uint64_t>(tick.skipped),
-          std::memory_order_relaxed);
+    if (tick.skipped > 0) timing_.addMissed(tick.skipped);
   }
   tick_.stop();
 }

@@ -44,6 +44,15 @@ class TimingHistogram {
     if (v > worst_.load(std::memory_order_relaxed)) worst_.store(v, std::memory_order_relaxed);
   }
 
+  /// Adds all times of another histogram; called by this one's writer.
+  void add(const TimingHistogram& other) noexcept {
+    for (std::size_t i = 0; i < kClasses; ++i)
+      bump(classes_[i], other.classes_[i].load(std::memory_order_relaxed));
+    bump(sum_, other.sum_.load(std::memory_order_relaxed));
+    const std::uint64_t worst = other.worst_.load(std::memory_order_relaxed);
+    if (worst > worst_.load(std::memory_order_relaxed)) worst_.store(worst, std::memory_order_relaxed);
+  }
+
   [[nodiscard]] TimingFigures figures() const noexcept {
     TimingFigures f;
     std::array<std::uint64_t, kClasses> counts;
@@ -109,6 +118,12 @@ struct LoopTiming {
   TimingHistogram lateness;              ///< wake-up after the scheduled time
   TimingHistogram compute;               ///< from wake-up to the force written
   std::atomic<std::uint64_t> missed{0};  ///< periods without a tick of their own, skipped
+
+  /// Called by the one writer, as add() of the histograms.
+  void addMissed(std::int64_t periods) noexcept {
+    missed.store(missed.load(std::memory_order_relaxed) + static_cast<std::uint64_t>(periods),
+                 std::memory_order_relaxed);
+  }
 };
 
 }  // namespace fettle::haptic

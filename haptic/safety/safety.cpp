@@ -213,7 +213,8 @@ glm::dvec3 ForceGuard::step(const SafetyInput& input) noexcept {
   // Rises get two periods at most; a fade to zero the whole time that passed.
   const double step_n = 1000.0 * limits_.slew_n_per_ms * (giving ? std::min(dt_s, kLongestRise_s) : dt_s);
   bool held = false;
-  slewed_ = approach(slewed_, target, step_n, held);
+  // A fade starts from what the hand has, which the brake or the motors may have made smaller.
+  slewed_ = approach(giving ? slewed_ : output_, target, step_n, held);
   counters_.slewed += held ? 1 : 0;
 
   glm::dvec3 force = slewed_;

@@ -245,6 +245,20 @@ TEST(ForceGuard, TipAboveTheSpeedLimitIsBrakedAndNotDriven) {
   EXPECT_FALSE(w.problem()) << *w.problem();
 }
 
+TEST(ForceGuard, FaultWhileBrakingFadesFromWhatTheHandHas) {
+  GuardWitness w = active();
+  SafetyInput fast = pressing(4.0);
+  fast.velocity_mm_per_s = {0.0, 0.0, 2000.0};  // a third of the drive is gone, 2 N of brake: less than asked
+  run(w, fast, 50);
+  const double braked = glm::length(w.guard().force());
+  ASSERT_LT(braked, 1.0);
+  w.guard().lastResort();
+  w.forgetPeaks();
+  run(w, pressing(4.0), 20);
+  EXPECT_LE(w.peakForce(), braked);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
 TEST(ForceGuard, MotorsScaleKeepsDirectionAndNonsenseFromItIsZero) {
   static double factor;
   SafetyLimits limits = woody();

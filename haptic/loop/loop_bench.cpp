@@ -1,0 +1,279 @@
+#include "haptic/loop/loop_bench.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <new>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include <sched.h>
+
+#include "engine/field/builder.h"
+#include "haptic/loop/haptic_loop.h"
+#include "haptic/loop/pacer.h"
+
+namespace fettle::haptic {
+
+namespace {
+
+constexpr std::int32_t kSide = 1024;
+constexpr double kSpacing_mm = 0.1;
+
+// A noisy plate: smoothing never runs out of work.
+engine::Version benchField() {
+  engine::Grid grid;
+  grid.width = grid.height = kSide;
+  grid.spacing_x = grid.spacing_y = kSpacing_mm;
+  std::vector<float> heights(static_cast<std::size_t>(kSide) * kSide);
+  std::uint32_t state = 1;
+  for (float& z : heights) {
+    state = state * 1664525U + 1013904223U;  // Numerical Recipes' generator: the same field everywhere
+    z = 0.05F * static_cast<float>(state >> 8U) / 16777216.0F;
+  }
+  return engine::makeField(grid, heights);
+}
+
+// A hand that presses and sweeps, one input a tick.
+class SimulatedPress : public Device {
+ public:
+  SimulatedPress() {
+    profile_.name = "simulated press";
+    profile_.space = DeviceSpace::kField;
+    profile_.gives_force = true;
+    input_.link = LinkState::kConnected;
+    input_.buttons = kPrimaryButton;
+  }
+  [[nodiscard]] const DeviceProfile& profile() const noexcept override { return profile_; }
+  [[nodiscard]] DeviceInput read() noexcept override {
+    const std::int64_t now = monotonicNow();
+    const double t = 1e-9 * static_cast<double>(now);
+    constexpr double kMiddle = 0.5 * kSide * kSpacing_mm;
+    input_.position_mm = {kMiddle + 0.9 * kMiddle * std::sin(0.7 * t),
+                          kMiddle + 0.9 * kMiddle * std::sin(0.9 * t), -0.3 + 0.4 * std::sin(5.0 * t)};
+    input_.arrival_ns = now;
+    ++input_.sequence;
+    return input_;
+  }
+  void write(const glm::dvec3& force_n) noexcept override { force_ = force_n; }
+  engine::Status start() override { return {}; }
+  void stop() noexcept override {}
+
+ private:
+  DeviceProfile profile_;
+  DeviceInput input_;
+  glm::dvec3 force_{0.0};
+};
+
+// What cyclictest measures: how late an absolute sleep ends.
+class PlainThread {
+ public:
+  PlainThread(double rate_hz, const RealTimeWish& wish, LoopTiming& timing)
+      : thread_([this, rate_hz, wish, &timing] {
+          const RealTimeScope real_time(wish);
+          report_ = real_time.report();
+          Pacer pacer(rate_hz);
+          while (!stop_.load(std::memory_order_relaxed)) {
+            const Pacer::Tick tick = pacer.wait();
+            timing.lateness.add(tick.lateness_ns);
+            if (tick.skipped > 0) timing.addMissed(tick.skipped);
+          }
+        }) {}
+  ~PlainThread() { static_cast<void>(stop()); }
+  PlainThread(const PlainThread&) = delete;
+  PlainThread& operator=(const PlainThread&) = delete;
+
+  RealTimeReport stop() {
+    // Relaxed: seen within a tick; the join orders the report.
+    stop_.store(true, std::memory_order_relaxed);
+    if (thread_.joinable()) thread_.join();
+    return report_;
+  }
+
+ private:
+  std::atomic<bool> stop_{false};
+  RealTimeReport report_;
+  std::thread thread_;
+};
+
+// One busy thread a core, at normal priority, through more memory than the caches hold.
+class Load {
+ public:
+  explicit Load(unsigned threads) {
+    for (unsigned i = 0; i < threads; ++i)
+      threads_.emplace_back([this] {
+        std::vector<std::uint64_t> memory(std::size_t{4} << 20, 1);
+        while (!stop_.load(std::memory_order_relaxed)) {
+          std::uint64_t sum = 0;
+          for (std::uint64_t& word : memory) word = (sum += word * 0x9e3779b97f4a7c15U);
+        }
+      });
+  }
+  ~Load() {
+    stop_.store(true, std::memory_order_relaxed);
+    for (std::thread& thread : threads_) thread.join();
+  }
+  Load(const Load&) = delete;
+  Load& operator=(const Load&) = delete;
+
+ private:
+  std::atomic<bool> stop_{false};
+  std::vector<std::thread> threads_;
+};
+
+std::vector<int> usableCores() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  std::vector<int> cores;
+  if (sched_getaffinity(0, sizeof set, &set) == 0)
+    for (int core = 0; core < CPU_SETSIZE; ++core)
+      if (CPU_ISSET(core, &set)) cores.push_back(core);
+  return cores;
+}
+
+std::string machineName() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string processor = "unknown processor";
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name") && line.find(": ") != std::string::npos) {
+      processor = line.substr(line.find(": ") + 2);
+      break;
+    }
+  return processor + ", " + std::to_string(usableCores().size()) + " cores";
+}
+
+class Measurement {
+ public:
+  Measurement(const LoopBenchOptions& options, engine::JobControl& job) : options_(options), job_(job) {}
+
+  engine::Result<LoopBenchReport> run() {
+    const std::vector<int> cores = usableCores();
+    const bool together = cores.size() > 1;
+    const int first = cores.empty() ? -1 : cores.front();
+    const int last = cores.empty() ? -1 : cores.back();
+    const auto begin = std::chrono::steady_clock::now();
+    job_.begin("measuring", static_cast<std::uint64_t>(1000.0 * options_.seconds));
+    std::unique_ptr<Load> load;
+    if (options_.load == BenchLoad::kBusy)
+      load = std::make_unique<Load>(std::max(1U, static_cast<unsigned>(cores.size())));
+    for (int half = 0; half < 2; ++half) {
+      const int loop_core = half == 0 ? last : first;
+      const int plain_core = half == 0 ? first : last;
+      const engine::Status done =
+          together ? measure(loop_core, plain_core, Which::kBoth, 0.5 * options_.seconds)
+                   : measure(first, first, half == 0 ? Which::kLoop : Which::kPlain, 0.5 * options_.seconds);
+      if (!done) return tl::unexpected(done.error());
+    }
+    report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report_.rate_hz = options_.rate_hz;
+    report_.load = options_.load;
+    report_.machine = machineName();
+    fill(report_.loop, "haptic loop", loop_timing_);
+    fill(report_.plain, "plain thread", plain_timing_);
+    report_.p99_ratio = ratio(report_.loop.lateness.p99_ns, report_.plain.lateness.p99_ns);
+    report_.p999_ratio = ratio(report_.loop.lateness.p999_ns, report_.plain.lateness.p999_ns);
+    return report_;
+  }
+
+ private:
+  enum class Which : std::uint8_t { kBoth, kLoop, kPlain };
+
+  RealTimeWish wishFor(int core) const {
+    RealTimeWish wish;
+    wish.core = core;
+    wish.priority = options_.priority;
+    return wish;
+  }
+
+  engine::Status measure(int loop_core, int plain_core, Which which, double seconds) {
+    std::unique_ptr<PlainThread> plain;
+    if (which != Which::kLoop)
+      plain = std::make_unique<PlainThread>(options_.rate_hz, wishFor(plain_core), plain_timing_);
+    const engine::Status done =
+        which == Which::kPlain ? wait(seconds, nullptr) : withLoop(loop_core, seconds);
+    if (plain) report_.plain.missing = plain->stop().missing;
+    return done;
+  }
+
+  engine::Status withLoop(int core, double seconds) {
+    const engine::Version field = benchField();
+    SimulatedPress device;
+    HapticLoop::Settings settings;
+    settings.options.tool = Tool::kSmooth;
+    settings.options.limits = limitsFor(device.profile());
+    settings.rate_hz = options_.rate_hz;
+    settings.wish = wishFor(core);
+    Scene scene = defaultScene();
+    scene.brush_radius_samples = 2.0;
+    auto created = HapticLoop::create(field, field, scene, device, settings);
+    if (!created) return tl::unexpected(created.error());
+    HapticLoop& loop = **created;
+    if (engine::Status started = loop.start(); !started) return started;
+    LoopCommand arm;
+    arm.kind = CommandKind::kArm;
+    static_cast<void>(loop.send(std::move(arm)));
+    const engine::Status done = wait(seconds, &loop);
+    static_cast<void>(loop.stop());
+    report_.loop.missing = loop.realTime().missing;
+    report_.refused_edits += loop.state().refused_edits;
+    loop_timing_.lateness.add(loop.timing().lateness);
+    loop_timing_.compute.add(loop.timing().compute);
+    loop_timing_.addMissed(static_cast<std::int64_t>(loop.timing().missed.load(std::memory_order_relaxed)));
+    return done;
+  }
+
+  // The main side's part: takes events and looks at the state as a display would.
+  engine::Status wait(double seconds, HapticLoop* loop) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> span(seconds);
+    while (std::chrono::steady_clock::now() - begin < span) {
+      if (job_.cancelled()) return engine::cancelled();
+      std::this_thread::sleep_for(std::chrono::milliseconds(8));
+      job_.advance(8);
+      if (loop == nullptr) continue;
+      for (LoopEvent event; loop->poll(event);) ++report_.events;
+    }
+    return {};
+  }
+
+  static void fill(LoopBenchRow& row, const char* name, const LoopTiming& timing) {
+    row.name = name;
+    row.lateness = timing.lateness.figures();
+    row.compute = timing.compute.figures();
+    row.missed = timing.missed.load(std::memory_order_relaxed);
+    row.over_1_ms = timing.lateness.countAbove(1'000'000);
+  }
+  static double ratio(std::int64_t mine, std::int64_t plain) {
+    return plain > 0 ? static_cast<double>(mine) / static_cast<double>(plain) : 0.0;
+  }
+
+  LoopBenchOptions options_;
+  engine::JobControl& job_;
+  LoopBenchReport report_;
+  LoopTiming loop_timing_, plain_timing_;
+};
+
+}  // namespace
+
+engine::Result<LoopBenchReport> benchLoop(const LoopBenchOptions& options, engine::JobControl& job) {
+  if (!(options.seconds > 0.0 && options.seconds <= 3600.0))
+    return engine::inputError("the time to measure is not within 0 and 3600 s", "seconds");
+  if (!(options.rate_hz >= Pacer::kLowestRate_hz && options.rate_hz <= Pacer::kHighestRate_hz))
+    return engine::inputError("a loop runs at 1000 to 10000 ticks a second", "rate");
+  if (options.priority < 0 || options.priority > 99)
+    return engine::inputError("a priority is within 0 and 99", "priority");
+  try {
+    return Measurement(options, job).run();
+  } catch (const std::bad_alloc&) {
+    return engine::failure("memory for the measurement could not be had", "bench loop");
+  } catch (const std::system_error& e) {
+    return engine::failure(e.what(), "bench loop");
+  }
+}
+
+}  // namespace fettle::haptic

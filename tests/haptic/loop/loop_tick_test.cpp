@@ -1,0 +1,320 @@
+#include "haptic/loop/loop_tick.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/field/difference.h"
+#include "haptic/loop/adoption.h"
+#include "haptic/replay.h"
+#include "tests/haptic/loop/hand_device.h"
+#include "tests/haptic/support/fields.h"
+
+namespace fettle::haptic {
+namespace {
+
+using tests::LoopBench;
+using tests::Mirror;
+using tests::sweep;
+using tests::testOptions;
+
+constexpr int kSide = 300;
+
+engine::Version bumpy() {
+  return fettle::tests::fieldOf(kSide, kSide,
+                                [](int c, int r) { return 0.3 * std::sin(0.9 * c) * std::cos(0.7 * r); });
+}
+
+Scene sceneWithBrush(double radius) {
+  Scene scene = defaultScene();
+  scene.brush_radius_samples = radius;
+  scene.mark_radius_samples = radius;
+  return scene;
+}
+
+void reserve(const engine::Version& version) {
+  ASSERT_TRUE(version.memory()->tiles.reserve(3000));
+  ASSERT_TRUE(version.memory()->nodes.reserve(300));
+}
+
+TEST(LoopTick, LiveSessionEqualsTheReplayOfItsStrokes) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  for (const bool invert : {false, true}) {
+    Scene scene = sceneWithBrush(2.0);
+    scene.invert = invert;
+    LoopBench bench(start, start, scene, testOptions(Tool::kFeel));
+    std::vector<StrokeSample> strokes;
+    for (std::uint64_t i = 0; i < 20000; ++i) {
+      const Tool tool = static_cast<Tool>(i / 500 % kTools);
+      const glm::dvec3 tip = sweep(i, kSide - 1.0, 0.1, 0.8);
+      bench.device.input.tool = tool;
+      bench.tickAt(tip);
+      static_cast<void>(bench.poll());
+      strokes.push_back({1e-3 * static_cast<double>(i), tip, tool});
+    }
+    engine::JobControl job;
+    const auto replayed = replay(start, start, strokes, scene, {}, job);
+    ASSERT_TRUE(replayed);
+    const engine::Version live = invert ? bench.field().inverted() : bench.field();
+    EXPECT_EQ(engine::contentHash(live), engine::contentHash(replayed->field));
+    EXPECT_GT(replayed->report.samples_changed, 1000);
+    EXPECT_EQ(bench.loop.state().refused_edits, 0U);
+  }
+}
+
+TEST(LoopTick, EditsThatCameThroughTheRingMakeTheSameFieldEvenWhenTheReaderStalls) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  LoopOptions options = testOptions(Tool::kFeel);
+  options.event_capacity = 8;
+  LoopBench bench(start, start, sceneWithBrush(1.5), options);
+  Mirror mirror(start);
+  engine::Version newest = start;
+  std::uint64_t events = 0;
+  for (std::uint64_t i = 0; i < 40000; ++i) {
+    bench.device.input.tool = static_cast<Tool>(i / 700 % kTools);
+    bench.tickAt(sweep(i, kSide - 1.0, 0.1, 0.8));
+    // Stalls for 3,000 ticks, then is quick for as many.
+    if (i % 6000 < 3000 && i % 3000 != 0) continue;
+    for (LoopEvent& event : bench.poll()) {
+      EXPECT_TRUE(event.before == newest) << "a state was left out";
+      mirror.take(event.version, event.rect);
+      newest = event.version;
+      ++events;
+    }
+  }
+  bench.loop.stop();
+  for (LoopEvent& event : bench.poll()) mirror.take(event.version, event.rect);
+  EXPECT_EQ(mirror.differences(bench.field()), 0U);
+  EXPECT_GT(bench.loop.state().merged, 1000U);
+  EXPECT_GT(events, 500U);
+}
+
+TEST(LoopTick, ToolThatChangesNothingPublishesNothing) {
+  const engine::Version flat = fettle::tests::fieldOf(kSide, kSide, [](int, int) { return 0.0; });
+  reserve(flat);
+  LoopBench bench(flat, flat, sceneWithBrush(3.0), testOptions(Tool::kSmooth));
+  for (int i = 0; i < 500; ++i) bench.tickAt({100.3, 100.4, -0.5});
+  EXPECT_TRUE(bench.poll().empty());
+  EXPECT_TRUE(bench.field() == flat);
+}
+
+TEST(LoopTick, StrokeEndsWithTheButtonAndTellsTheCommittedVersion) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  LoopOptions options = testOptions(Tool::kMark);
+  options.tool_switch = ToolSwitch::kButton;
+  LoopBench bench(start, start, sceneWithBrush(0.0), options);
+  for (int i = 0; i < 50; ++i) bench.tickAt({20.0 + i, 30.0, -1.0});
+  bench.device.input.buttons = 0;
+  for (int i = 0; i < 5; ++i) bench.tickAt({70.0 + i, 30.0, -1.0});
+  const LoopEvent event = bench.newest(EventKind::kStrokeEnded);
+  EXPECT_EQ(event.stroke, 1U);
+  EXPECT_TRUE(event.version == bench.field());
+  EXPECT_GT(engine::summarize(event.version).marked, 40);
+  // No button, no tool.
+  EXPECT_FALSE(event.version.reader().markedAt(73, 30));
+}
+
+TEST(LoopTick, UnplugMidStrokeKeepsTheStrokeAndGivesNoForce) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  LoopBench bench(start, start, sceneWithBrush(0.0), testOptions(Tool::kMark));
+  ASSERT_TRUE(bench.send(CommandKind::kArm));
+  for (int i = 0; i < 1200; ++i) bench.tickAt({20.0, 30.0, 5.0});
+  for (int i = 0; i < 50; ++i) bench.tickAt({20.0 + i, 30.0, -1.0});
+  EXPECT_GT(bench.device.force.z, 0.5);
+  bench.device.input.link = LinkState::kDisconnected;
+  for (int i = 0; i < 20; ++i) bench.tick();
+  EXPECT_EQ(glm::length(bench.device.force), 0.0);
+  EXPECT_EQ(bench.loop.guard().state(), SafetyState::kFault);
+  EXPECT_GT(engine::summarize(bench.newest(EventKind::kStrokeEnded).version).marked, 40);
+  // Plugged in again: nothing until armed, and then not a jolt.
+  bench.device.input.link = LinkState::kConnected;
+  for (int i = 0; i < 100; ++i) bench.tick();
+  EXPECT_EQ(glm::length(bench.device.force), 0.0);
+  ASSERT_TRUE(bench.send(CommandKind::kArm));
+  for (int i = 0; i < 100; ++i) bench.tick();
+  EXPECT_EQ(bench.loop.guard().state(), SafetyState::kArmed);
+  EXPECT_EQ(glm::length(bench.device.force), 0.0);
+}
+
+// A "filter" whose result is known: every sample raised by one.
+engine::Version raised(const engine::Version& base) {
+  engine::LiveField field(base, engine::Growth::kAllowed);
+  std::vector<float> row(kSide);
+  for (int r = 0; r < kSide; ++r) {
+    base.reader().readHeights(0, r, kSide, 1, row.data(), kSide);
+    for (float& z : row) z += 1.0F;
+    EXPECT_TRUE(field.writeHeights(0, r, kSide, 1, row.data(), kSide));
+  }
+  return field.snapshot();
+}
+
+TEST(LoopTick, AdoptionKeepsWhatTheHandDidMeanwhileAndTellsWhere) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  LoopBench bench(start, start, sceneWithBrush(1.0), testOptions(Tool::kSmooth));
+  // The filter began here ...
+  const engine::Version result = raised(start);
+  // ... the hand went on in tile (0, 0) ...
+  for (int i = 0; i < 60; ++i) bench.tickAt({3.0 + 0.5 * i, 30.0, -0.8});
+  ASSERT_TRUE(bench.send(CommandKind::kSnapshot, [](LoopCommand& c) { c.id = 9; }));
+  for (int i = 0; i < 3; ++i) bench.tickAt({33.0, 30.0, 2.0});
+  const engine::Version snapshot = bench.newest(EventKind::kSnapshot).version;
+  const auto merged = mergeResult(snapshot, start, result);
+  ASSERT_TRUE(merged);
+  ASSERT_EQ(merged->conflicts.size(), 1U);
+  // ... and while the worker merged, in tile (2, 2).
+  for (int i = 0; i < 30; ++i) bench.tickAt({150.0 + 0.5 * i, 150.0, -0.8});
+  const engine::Version before = bench.field();
+  ASSERT_TRUE(bench.send(CommandKind::kAdopt, [&](LoopCommand& c) {
+    c.id = 9;
+    c.version = merged->version;
+  }));
+  bench.tickAt({200.0, 200.0, 9.0});
+  const LoopEvent event = bench.newest(EventKind::kAdopted);
+  EXPECT_TRUE(event.retired == before);
+  const auto carried = engine::changedTiles(merged->version, event.version);
+  ASSERT_EQ(carried.size(), 1U);
+  EXPECT_EQ(carried[0].tile_column, 2);
+  EXPECT_EQ(carried[0].tile_row, 2);
+  const engine::FieldReader now = event.version.reader();
+  for (int r = 0; r < kSide; ++r)
+    for (int c = 0; c < kSide; ++c) {
+      const bool mine = (c < 64 && r < 64) || (c / 64 == 2 && r / 64 == 2);
+      const float want = mine ? before.reader().heightAt(c, r) : result.reader().heightAt(c, r);
+      ASSERT_EQ(now.heightAt(c, r), want) << c << " " << r;
+    }
+  EXPECT_EQ(bench.loop.state().adopted, 1U);
+  EXPECT_EQ(bench.loop.state().carried, 1U);
+}
+
+TEST(LoopTick, AdoptionIsRefusedUnchangedWhenItsBaseIsOldTheHandWentTooFarOrThePoolIsDry) {
+  const engine::Version start =
+      fettle::tests::fieldOf(1200, 300, [](int c, int r) { return 0.3 * std::sin(1.0 * c * r); });
+  reserve(start);
+  LoopBench bench(start, start, sceneWithBrush(30.0), testOptions(Tool::kSmooth));
+  const auto refused = [&](std::uint64_t id) {
+    const engine::Version before = bench.field();
+    EXPECT_TRUE(bench.send(CommandKind::kAdopt, [&](LoopCommand& c) {
+      c.id = id;
+      c.version = start;
+    }));
+    bench.tickAt({-5.0, 0.0, 0.0});
+    const LoopEvent event = bench.newest(EventKind::kAdoptRefused);
+    EXPECT_EQ(event.id, id);
+    EXPECT_TRUE(event.retired == start);  // comes back to be freed
+    EXPECT_TRUE(bench.field() == before);
+    EXPECT_EQ(bench.loop.state().adopted, 0U);
+  };
+  const auto snapshot = [&](std::uint64_t id) {
+    EXPECT_TRUE(bench.send(CommandKind::kSnapshot, [&](LoopCommand& c) { c.id = id; }));
+    bench.tickAt({-5.0, 0.0, 0.0});
+    return bench.newest(EventKind::kSnapshot);
+  };
+  refused(1);  // no snapshot at all
+  static_cast<void>(snapshot(2));
+  static_cast<void>(snapshot(3));
+  refused(2);  // not the newest
+  static_cast<void>(snapshot(4));
+  for (int i = 0; i < 400; ++i) bench.tickAt({3.0 * i, 150.0 + 100.0 * std::sin(0.05 * i), -1.0});
+  refused(4);  // over 64 tiles
+  static_cast<void>(snapshot(5));
+  for (int i = 0; i < 10; ++i) bench.tickAt({100.0 + i, 150.0, -1.0});
+  static_cast<void>(bench.poll());
+  std::vector<engine::Node*> nodes;
+  while (engine::Node* node = start.memory()->nodes.tryAcquire()) nodes.push_back(node);
+  refused(5);  // no node for the carried tiles
+  for (engine::Node* node : nodes)
+    if (engine::InnerPool::dropLast(node)) engine::InnerPool::recycle(node);
+}
+
+TEST(LoopTick, UndoWhileTouchingIsExactAndRedoHasTheRunningStroke) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  LoopBench bench(start, start, sceneWithBrush(1.0), testOptions(Tool::kSmooth));
+  for (int i = 0; i < 200; ++i) bench.tickAt({3.0 + 0.5 * i, 30.0, -0.8});
+  const engine::Version touched = bench.field();
+  static_cast<void>(bench.poll());
+  ASSERT_TRUE(bench.send(CommandKind::kRestore, [&](LoopCommand& c) { c.version = start; }));
+  bench.device.input.tool = Tool::kFeel;
+  bench.tickAt({103.5, 30.0, -0.8});
+  LoopEvent event = bench.newest(EventKind::kRestored);
+  EXPECT_TRUE(event.version == start);
+  EXPECT_TRUE(bench.field() == start);
+  EXPECT_TRUE(event.retired == touched);
+  EXPECT_TRUE(bench.loop.state().contact);  // still touching, the restored surface
+  // Redo.
+  ASSERT_TRUE(bench.send(CommandKind::kRestore, [&](LoopCommand& c) { c.version = event.retired; }));
+  bench.tick();
+  EXPECT_TRUE(bench.field() == touched);
+}
+
+TEST(LoopTick, DryPoolRefusesEditsCountsThemAndLeavesTheFieldWhole) {
+  const engine::Version start = bumpy();
+  // The field's own slab may have tiles left: take them all.
+  std::vector<engine::TileRef> taken;
+  while (engine::Tile* tile = start.memory()->tiles.tryAcquire())
+    taken.push_back(engine::TileRef::adopt(tile));
+  LoopBench bench(start, start, sceneWithBrush(1.0), testOptions(Tool::kSmooth));
+  for (int i = 0; i < 100; ++i) bench.tickAt({50.0, 50.0, -0.8});
+  EXPECT_GT(bench.loop.state().refused_edits, 50U);
+  EXPECT_EQ(engine::contentHash(bench.field()), engine::contentHash(start));
+  taken.clear();
+  for (int i = 0; i < 100; ++i) bench.tickAt({50.0, 50.0, -0.8});
+  EXPECT_NE(engine::contentHash(bench.field()), engine::contentHash(start));
+}
+
+TEST(LoopTick, SceneIsSwappedUnderTheTipWithTheFieldAsItIs) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  LoopBench bench(start, start, sceneWithBrush(1.0), testOptions(Tool::kSmooth));
+  for (int i = 0; i < 100; ++i) bench.tickAt({50.0 + 0.1 * i, 50.0, -0.8});
+  const engine::Version before = bench.field();
+  Scene stiff = sceneWithBrush(0.0);
+  stiff.stiffness_n_per_mm = 3.0;
+  stiff.invert = true;
+  ASSERT_TRUE(bench.send(CommandKind::kScene,
+                         [&](LoopCommand& c) { c.scene = std::make_unique<PreparedScene>(stiff, start); }));
+  bench.device.input.tool = Tool::kFeel;
+  bench.tickAt({60.0, 50.0, -0.8});
+  const LoopEvent event = bench.newest(EventKind::kSceneChanged);
+  ASSERT_NE(event.retired_scene, nullptr);
+  EXPECT_EQ(bench.field().reader().heightAt(50, 50), -before.reader().heightAt(50, 50));
+  EXPECT_EQ(bench.loop.scene().scene, stiff);
+}
+
+TEST(LoopTick, ClutchHoldsTheTipAndGivesNoForce) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  class DeskDevice : public tests::HandDevice {
+   public:
+    DeskDevice() { profile_.space = DeviceSpace::kDesk; }
+  };
+  DeskDevice device;
+  LoopOptions options = testOptions(Tool::kFeel);
+  options.workspace = Workspace(0.5, {100.0, 100.0, 0.0});
+  LoopChannels channels(options);
+  LoopTick loop(std::make_unique<PreparedScene>(defaultScene(), start), start, device, channels, options);
+  const auto tick = [&](glm::dvec3 at, std::uint32_t buttons) {
+    device.input.position_mm = at;
+    device.input.buttons = buttons;
+    device.now_ns += 1'000'000;
+    loop.run(device.now_ns, 1'000'000);
+  };
+  tick({10.0, 0.0, 4.0}, 0);
+  EXPECT_EQ(loop.state().endpoint_mm, glm::dvec3(105.0, 100.0, 2.0));
+  tick({10.0, 0.0, 4.0}, kSecondaryButton);
+  tick({-30.0, 7.0, 1.0}, kSecondaryButton);
+  EXPECT_EQ(loop.state().endpoint_mm, glm::dvec3(105.0, 100.0, 2.0));
+  tick({-30.0, 7.0, 1.0}, 0);
+  EXPECT_EQ(loop.state().endpoint_mm, glm::dvec3(105.0, 100.0, 2.0));
+  tick({-29.0, 7.0, 1.0}, 0);
+  EXPECT_EQ(loop.state().endpoint_mm, glm::dvec3(105.5, 100.0, 2.0));
+}
+
+}  // namespace
+}  // namespace fettle::haptic
