@@ -58,7 +58,7 @@ class OutputRule {
     if (inputs != seen_) {
       if (answered_ == seen_) waiting_since_ = now;
       seen_ = inputs;
-      last_exchange_ = now;
+      if (pacing_ == Pacing::kLockStep) last_exchange_ = now;
     }
     const bool usable = now - force_at_ < times_.stale_after;
     return pacing_ == Pacing::kFree ? decideFree(now, usable) : decideLockStep(now, usable);

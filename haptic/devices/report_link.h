@@ -28,8 +28,8 @@ class ReportHandler {
   ReportHandler(const ReportHandler&) = delete;
   ReportHandler& operator=(const ReportHandler&) = delete;
 
-  /// Reader thread: the device was opened; `input_bytes` as in OpenedPorts. Returns how it wants output, or
-  /// kNone while that is not known yet (see onReport).
+  /// Reader thread: the device was opened; `input_bytes` as in OpenedPorts. Returns how it wants output, as
+  /// far as that is known yet (see onCaughtUp).
   virtual Pacing onOpen(std::size_t input_bytes) noexcept = 0;
   /// Reader thread: one report. False when it is none of this device's: it is counted and left out.
   virtual bool onReport(std::span<const std::uint8_t> report, std::int64_t arrival_ns) noexcept = 0;

@@ -67,8 +67,9 @@ void WoodenHaptics::setForm(std::optional<WoodenForm> form) noexcept {
 }
 
 Pacing WoodenHaptics::pacing() const noexcept {
-  if (!form_) return Pacing::kNone;
-  return *form_ == WoodenForm::kW8 ? Pacing::kFree : Pacing::kLockStep;
+  // Not known yet: a W8 will show itself within a millisecond, a P14 may be waiting for a reply that the host
+  // before us never sent, and is woken by the zeros that lock-step sends into silence.
+  return form_ == WoodenForm::kW8 ? Pacing::kFree : Pacing::kLockStep;
 }
 
 Pacing WoodenHaptics::onOpen(std::size_t input_bytes) noexcept {
@@ -125,8 +126,9 @@ void WoodenHaptics::onLost() noexcept {
 
 std::size_t WoodenHaptics::encode(const glm::dvec3& currents_ma, std::span<std::uint8_t> report) noexcept {
   const int form = form_seen_.load(std::memory_order_relaxed);
-  if (form < 0 || report.size() < kWoodenLongest) return 0;
+  if (report.size() < kWoodenLongest) return 0;
   WoodenCommand command;
+  if (form < 0) return encodeWooden(WoodenForm::kP14, command, report.first<kWoodenLongest>());
   // Currents of a pose from before an unplug must not reach a device that does not know its pose.
   if (may_give_force_.load(std::memory_order_relaxed)) command.ma = currents_ma;
   if (preset_wanted_.load(std::memory_order_relaxed)) {

@@ -123,7 +123,9 @@ TEST(WoodenCodec, AnyBytesDecodeOrAreRefusedWithoutReadingPastTheEnd) {
                : static_cast<std::uint8_t>(random());
     for (const WoodenForm form : {WoodenForm::kW8, WoodenForm::kP14, WoodenForm::kS}) {
       const auto r = decodeWooden(form, report);
-      if (r && form != WoodenForm::kS) EXPECT_EQ(woodenFormOfSize(report.size()), form);
+      if (r && form != WoodenForm::kS) {
+        EXPECT_EQ(woodenFormOfSize(report.size()), form);
+      }
     }
   }
 }
