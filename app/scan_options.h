@@ -13,6 +13,10 @@
 
 namespace fettle::app {
 
+/// Smallest cell drawn in a still picture [ray spacings]: finer than a window's, because nobody waits for the
+/// next frame, and steps that are skipped over show as teeth on steep walls.
+inline constexpr double kStillCellPx = 0.5;
+
 /// The import options that every command offers for formats that cannot say them.
 struct ScanOptions {
   std::optional<double> no_data;

@@ -15,6 +15,8 @@ namespace {
 using engine::inputError;
 
 constexpr double kAmbient = 0.30;
+// Colours that mean a deviation are read as numbers: relief may hint at the shape, but not darken them.
+constexpr double kDeviationAmbient = 0.80;
 // The light stands 45 degrees above the field, over the viewer's left shoulder: lit from the upper left,
 // hills look like hills (Imhof 1965, "Kartographische Gelaendedarstellung").
 constexpr double kLightUp = 0.70710678118654752;
@@ -184,7 +186,8 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
     const glm::dvec3 right = panel.camera.right();
     const glm::dvec3 away{-right.y, right.x, 0.0};  // level, from the viewer into the picture
     const double level = std::sqrt(0.5) * std::sqrt(1.0 - kLightUp * kLightUp);
-    u.light = glm::vec4(glm::dvec4(level * (away - right) + glm::dvec3(0.0, 0.0, kLightUp), kAmbient));
+    u.light = glm::vec4(glm::dvec4(level * (away - right) + glm::dvec3(0.0, 0.0, kLightUp),
+                                   spec.deviation_from ? kDeviationAmbient : kAmbient));
     u.marks_tint = vec4Of(plan.palette.marks, spec.marks_opacity);
     u.no_data = vec4Of(plan.palette.no_data, 1.0);
     u.wall = vec4Of(plan.palette.wall, 1.0);

@@ -88,8 +88,15 @@ void addDemo(CLI::App& root, Chosen& chosen) {
       ->check(CLI::Range(64, 16384))
       ->capture_default_str();
   command->add_option("--noise", options->noise, "Scale of the scanner's noise")->capture_default_str();
+  command->add_option("--outliers", options->outliers, "Share of mixed pixels beside steps")
+      ->capture_default_str();
+  command->add_option("--dropouts", options->dropouts, "Scale of lost samples")->capture_default_str();
   command->add_option("--window", options->window, "Window of the global filters")->capture_default_str();
   command->add_option("--passes", options->passes, "Passes of the global filters")->capture_default_str();
+  command
+      ->add_option("--look-at", options->look_at, "Where the close-ups look, as fractions X,Y of the field")
+      ->delimiter(',')
+      ->expected(2);
   command->add_option("--seed", options->seed, "Same seed, same bits")->capture_default_str();
 }
 

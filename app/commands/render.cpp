@@ -38,6 +38,7 @@ struct Options {
 engine::Result<render::PictureSpec> picture(const Options& options, engine::JobControl& job) {
   render::PictureSpec spec;
   spec.view = options.view;
+  spec.cell_px = kStillCellPx;
   const auto size = parseSize(options.size, "--size");
   if (!size) return tl::unexpected(size.error());
   std::tie(spec.view.width, spec.view.height) = *size;

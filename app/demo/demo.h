@@ -16,11 +16,15 @@ namespace fettle::app {
 struct DemoOptions {
   std::string folder;
   std::string part = "bracket";
-  int side = 2048;     ///< samples along each side
-  double noise = 1.0;  ///< scale of the simulated scanner's noise
-  int window = 7;      ///< of the global filters
-  int passes = 3;      ///< of the global filters
+  int side = 2048;        ///< samples along each side
+  double noise = 1.0;     ///< scale of the simulated scanner's noise
+  double outliers = 0.0;  ///< share of mixed pixels beside steps
+  double dropouts = 0.0;  ///< scale of lost samples
+  int window = 7;         ///< of the global filters
+  int passes = 3;         ///< of the global filters
   std::uint64_t seed = 1;
+  /// Where the close-up pictures look, as fractions of the field: the ribs of the bracket by default.
+  std::vector<double> look_at = {0.38, 0.68};
 };
 
 /// One way of cleaning the scan, and how far its result is from the truth.

@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "app/demo/demo.h"
+#include "app/scan_options.h"
 #include "app/terminal.h"
 #include "render/picture.h"
 
@@ -14,32 +15,18 @@ const DemoResult& result(const DemoRun& run, const std::string& name) {
                        [&](const DemoResult& r) { return r.name == name; });
 }
 
-// The middle of the longest step edge: a place where sharp and blurred differ.
-void lookAtAnEdge(const DemoRun& run, render::View& view) {
-  const engine::Edge* longest = nullptr;
-  for (const engine::Edge& edge : run.scan.edge_lines)
-    if (edge.kind == engine::EdgeKind::kStep &&
-        (longest == nullptr || edge.points_mm.size() > longest->points_mm.size()))
-      longest = &edge;
-  if (longest == nullptr) return;
-  const glm::dvec2 p = longest->points_mm[longest->points_mm.size() / 8];
-  const engine::Grid& grid = run.scan.truth.grid();
-  view.centre_x = p.x / (grid.spacingXMm() * (grid.width - 1));
-  view.centre_y = p.y / (grid.spacingYMm() * (grid.height - 1));
-  view.zoom = 12.0;
-}
-
 struct Page {
   std::string file;
   render::PictureSpec spec;
 };
 
-std::vector<Page> pages(const DemoRun& run) {
+std::vector<Page> pages(const DemoRun& run, const DemoOptions& options) {
   std::vector<Page> all;
   const auto add = [&](std::string file) -> render::PictureSpec& {
     all.push_back({std::move(file), {}});
     all.back().spec.view.width = 1600;
     all.back().spec.view.height = 900;
+    all.back().spec.cell_px = kStillCellPx;
     return all.back().spec;
   };
   {
@@ -53,32 +40,42 @@ std::vector<Page> pages(const DemoRun& run) {
     render::PictureSpec& p = add("2_marks.png");
     p.field = run.touched;
     p.marks = render::MarksOverlay::kShow;
-    p.title_left = "After the strokes: edges smoothed and marked";
+    p.title_left = "After the strokes: edges marked, the land beside them smoothed";
     p.view.elevation_deg = 60.0;
   }
   {
     render::PictureSpec& p = add("3_inverted.png");
-    p.field = run.scan.scan.inverted();
-    p.title_left = "Inverted: convex edges become grooves that guide the stylus";
+    p.field = run.scan.scan;
+    p.compare = run.scan.scan.inverted();
+    p.title_left = "Scan";
+    p.title_right = "Inverted: convex edges become grooves that guide the stylus";
   }
+  const auto closeUp = [&](const std::string& file) -> render::PictureSpec& {
+    render::PictureSpec& p = add(file);
+    p.view.centre_x = options.look_at[0];
+    p.view.centre_y = options.look_at[1];
+    p.view.zoom = 3.5;
+    return p;
+  };
   for (const std::string filter : {"box", "gaussian", "median"}) {
     const DemoResult& alone = result(run, filter);
     const DemoResult& heg = result(run, "heg-" + filter);
-    render::PictureSpec& near = add("4_" + filter + "_alone_and_heg.png");
+    render::PictureSpec& near = closeUp("4_" + filter + "_alone_and_heg.png");
     near.field = alone.field;
     near.compare = heg.field;
     near.title_left = alone.title;
     near.title_right = heg.title;
-    lookAtAnEdge(run, near.view);
-    render::PictureSpec& error = add("5_" + filter + "_error_alone_and_heg.png");
+    near.view.azimuth_deg = 335.0;
+    near.view.elevation_deg = 50.0;
+    render::PictureSpec& error = closeUp("5_" + filter + "_error_alone_and_heg.png");
     error.field = alone.field;
     error.compare = heg.field;
     error.deviation_from = run.scan.truth;
-    error.title_left = alone.title + ": error";
-    error.title_right = heg.title + ": error";
+    error.title_left = alone.title + ": error against the truth";
+    error.title_right = heg.title + ": error against the truth";
     error.view.azimuth_deg = 0.0;
     error.view.elevation_deg = 90.0;
-    error.range = render::ValueRange{-0.5, 0.5};
+    error.range = render::ValueRange{-0.2, 0.2};
   }
   return all;
 }
@@ -90,7 +87,7 @@ engine::Result<std::vector<std::string>> drawDemo(const DemoRun& run, const Demo
   const auto renderer = render::Renderer::create();
   if (!renderer) return tl::unexpected(renderer.error());
   std::vector<std::string> files;
-  for (const Page& page : pages(run)) {
+  for (const Page& page : pages(run, options)) {
     render::Image image;
     const auto report = (*renderer)->render(page.spec, image, job);
     if (!report) return tl::unexpected(report.error());
