@@ -60,7 +60,8 @@ struct LoopChannels {
 ///   2. a worker makes the version M that is to be felt: S with the result's tiles put in, O(changed tiles),
 ///      off the loop (mergeResult in adoption.h);
 ///   3. the loop takes over M's root, O(1), and puts back the tiles of its list whose memory is no longer
-///      S's: at most kMostCarried, 1 us each. Nothing else can differ, so nothing is lost.
+///      S's: at most kMostCarried, half a microsecond each (measured: 29 us for 64). Nothing else can differ,
+///      so nothing is lost.
 /// Because S is asked for right before step 2 and not when the filter starts, the list holds what a hand
 /// edits in milliseconds (a few tiles), however long the filter took. It says kAdoptRefused, changing
 /// nothing, when S is not the newest snapshot, the list overflowed, or the pool is dry; asking again is

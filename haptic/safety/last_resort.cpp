@@ -10,6 +10,8 @@
 
 #include <sched.h>
 
+#include "haptic/devices/emergency_zero.h"
+
 namespace fettle::haptic {
 
 namespace {
@@ -111,6 +113,8 @@ void LastResort::fire() noexcept {
     // Release: the destructor that sees kReady again may free the device.
     slot.state.store(SlotState::kReady, std::memory_order_release);
   }
+  // The drivers' own: last, since a device that takes no reports can hold it for seconds.
+  zeroAllDevices();
 }
 
 ZeroOnLastResort::ZeroOnLastResort(LastResort::ZeroReport report, void* device) noexcept {

@@ -7,8 +7,9 @@
 
 namespace fettle::haptic {
 
-/// The last words of a program that is being ended: every device that gives force registers a way to say
-/// "zero" that works in a signal handler.
+/// The last words of a program that is being ended: zero to every device that gives force. The drivers of
+/// this room are covered by zeroAllDevices() (devices/emergency_zero.h); whoever gives force by another way
+/// registers a function that works in a signal handler.
 ///
 /// Covered: SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT (the program's own fault), SIGTERM, SIGINT, SIGHUP,
 /// SIGQUIT (asked to end), and exit(). After the zeros the signal takes the way it had before install(): the
