@@ -82,7 +82,7 @@ TEST(BadInput, StrokesAndScenesThatAreWrongNameTheLine) {
   write(folder.file("s.csv"), "t,x,y,z,tool\n0,1,1,1,feel\n0.001,1,one,1,feel\n");
   expectRefused(fettle({"replay", scan, folder.file("s.csv"), folder.file("o.tif")}), "line 3");
   write(folder.file("s.csv"), "t,x,y,z,tool\n0,1,1,1,feel\n");
-  write(folder.file("scene.toml"), "stiffness_n_per_mm = 1\nstifness = 2\n");
+  write(folder.file("scene.toml"), "[force]\nstiffness_n_per_mm = 1\nstifness = 2\n");
   expectRefused(fettle({"replay", scan, folder.file("s.csv"), folder.file("o.tif"), "--scene",
                         folder.file("scene.toml")}),
                 "stifness");

@@ -88,17 +88,23 @@ TEST_F(Commands, CompareAgainstTheTruthJudgesFlatsAndEdges) {
 }
 
 TEST_F(Commands, ReplaySmoothsMarksAndReportsForces) {
-  // Down onto the middle of the scan, along it with the smooth tool, then a little way with the mark tool.
-  const auto info = fettleJson({"info", truth()});
-  const double x0 = 60 * info["spacing_x_mm"].get<double>();
-  const double y = 96 * info["spacing_y_mm"].get<double>();
+  // Down onto the middle row, along 40 columns a tenth of a millimetre deep with the smooth tool, then a
+  // little way with the mark tool. Files count rows from the top: row 95 of 192 is row 96 of the field.
+  std::vector<std::string> ask{"info", truth()};
+  for (int column = 100; column <= 140; ++column) {
+    ask.emplace_back("--at");
+    ask.push_back("95," + std::to_string(column));
+  }
+  const auto info = fettleJson(ask);
   std::ofstream strokes(file("strokes.csv"));
   strokes << "t,x,y,z,tool\n";
-  const double top = info["max"].get<double>() + 1.0;
-  const double bottom = info["min"].get<double>() - 0.5;
-  for (int i = 0; i < 400; ++i)
-    strokes << i * 0.001 << ',' << x0 + i * 0.02 << ',' << y << ',' << (i < 5 ? top : bottom) << ','
-            << (i < 300 ? "smooth" : "mark") << '\n';
+  for (int i = 0; i < 400; ++i) {
+    const auto& under = info["at"][static_cast<std::size_t>(i / 10)];
+    const double z = i < 5 ? info["max"].get<double>() + 1.0 : under["height"].get<double>() - 0.1;
+    strokes << i * 0.001 << ',' << under["column"].get<int>() * info["spacing_x_mm"].get<double>() << ','
+            << 96 * info["spacing_y_mm"].get<double>() << ',' << z << ',' << (i < 300 ? "smooth" : "mark")
+            << '\n';
+  }
   strokes.close();
   const auto run = [&](const std::string& out) {
     return fettleJson({"replay", scan(), file("strokes.csv"), file(out), "--marks-out", file("m.png"),
