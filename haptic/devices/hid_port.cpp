@@ -49,7 +49,7 @@ using HidHandle = std::unique_ptr<hid_device, CloseHid>;
 std::string utf8(const wchar_t* wide) {
   std::string out;
   for (; wide != nullptr && *wide != L'\0'; ++wide) {
-    const auto c = static_cast<std::uint32_t>(*wide);
+    const auto c = static_cast<char32_t>(*wide);
     const auto tail = [&](unsigned shift) { out += static_cast<char>(0x80U | ((c >> shift) & 0x3FU)); };
     if (c < 0x80) {
       out += static_cast<char>(c);
@@ -102,11 +102,11 @@ class HidPort final : public ReportPort {
     if (report.size() + 1 > bytes.size()) return PortWrite::kFailed;
     bytes[0] = 0;  // hidapi wants the report id first; 0 = the device has none, and it is not sent
     std::copy(report.begin(), report.end(), bytes.begin() + 1);
-    if (!emergency_tried_) {
-      emergency_tried_ = true;
-      // All zero is "no current" in every form; the length is known from the first output on.
-      const std::array<std::uint8_t, kWoodenLongest + 1> zero{};
-      emergency_ = armEmergencyZero(path_.c_str(), {zero.data(), report.size() + 1});
+    if (emergency_bytes_ != report.size() + 1) {  // the first output, or the form has become known
+      emergency_bytes_ = report.size() + 1;
+      const std::array<std::uint8_t, kWoodenLongest + 1> zero{};  // no current, in every HID form
+      disarmEmergencyZero(emergency_);
+      emergency_ = armEmergencyZero(path_.c_str(), {zero.data(), emergency_bytes_});
     }
     errno = 0;
     if (hid_write(handle_.get(), bytes.data(), report.size() + 1) >= 0) return PortWrite::kDone;
@@ -118,7 +118,7 @@ class HidPort final : public ReportPort {
   HidHandle handle_;
   std::string path_;
   int emergency_ = -1;
-  bool emergency_tried_ = false;
+  std::size_t emergency_bytes_ = 0;
 };
 
 template <std::size_t N>
