@@ -51,7 +51,7 @@ class FakeBoard {
     ::close(slave_);
   }
   [[nodiscard]] const std::string& path() const { return path_; }
-  void send(std::string text) {
+  void send(const std::string& text) {
     const std::lock_guard lock(mutex_);
     extra_ += text;
   }
