@@ -37,6 +37,7 @@ void addReplay(CLI::App& root, Chosen& chosen);
 void addRender(CLI::App& root, Chosen& chosen);
 void addCompare(CLI::App& root, Chosen& chosen);
 void addConvert(CLI::App& root, Chosen& chosen);
+void addBench(CLI::App& root, Chosen& chosen);
 void addDemo(CLI::App& root, Chosen& chosen);
 
 }  // namespace fettle::app

@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
   fettle::app::addCompare(root, chosen);
   fettle::app::addConvert(root, chosen);
   fettle::app::addDemo(root, chosen);
+  fettle::app::addBench(root, chosen);
 
   try {
     root.parse(argc, argv);

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdio>
 
 #include <memory>
 
@@ -17,6 +18,22 @@ struct Options {
   std::vector<std::string> at;
 };
 
+// The shortest decimal that reads back to the same float: 9.792, where its exact value is 9.79199981689453.
+double shortest(double height) {
+  const auto stored = static_cast<float>(height);
+  return std::isnan(height) ? height : std::stod(fmt::format("{}", stored));
+}
+
+// A coordinate system's text runs to pages; people want its name.
+void print(Report report) {
+  if (report["crs"].is_string()) {
+    const std::string wkt = report["crs"];
+    const std::size_t open = wkt.find('"');
+    if (open != std::string::npos) report["crs"] = wkt.substr(open + 1, wkt.find('"', open + 1) - open - 1);
+  }
+  printReport(report);
+}
+
 engine::Result<Report> samplesAt(const engine::FieldReader& field, const std::vector<std::string>& places) {
   Report samples = Report::array();
   for (const std::string& place : places) {
@@ -30,8 +47,9 @@ engine::Result<Report> samplesAt(const engine::FieldReader& field, const std::ve
           "--at", "give ROW,COLUMN counted from 0");
     // Files count rows from the top, where y is highest.
     const float height = field.heightAt(column, field.height() - 1 - row);
-    samples.push_back(
-        {{"row", row}, {"column", column}, {"height", std::isnan(height) ? Report() : Report(height)}});
+    samples.push_back({{"row", row},
+                       {"column", column},
+                       {"height", std::isnan(height) ? Report() : Report(shortest(height))}});
   }
   return samples;
 }
@@ -53,8 +71,8 @@ engine::Result<Report> info(const Options& options, engine::JobControl& job) {
       {"unit", grid.height_unit.name},
       {"origin_x", grid.origin_x},
       {"origin_y", grid.origin_y},
-      {"min", summary.min},
-      {"max", summary.max},
+      {"min", shortest(summary.min)},
+      {"max", shortest(summary.max)},
       {"mean", summary.mean},
       {"no_data", summary.no_data},
       {"no_data_share", static_cast<double>(summary.no_data) / static_cast<double>(grid.samples())},
@@ -79,9 +97,9 @@ engine::Result<Report> info(const Options& options, engine::JobControl& job) {
 
 void addInfo(CLI::App& root, Chosen& chosen) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      addCommand(root, chosen, "info", "What a scan holds: size, spacing, units, heights, holes",
-                 [options](engine::JobControl& job) { return info(*options, job); });
+  CLI::App* command = addCommand(
+      root, chosen, "info", "What a scan holds: size, spacing, units, heights, holes",
+      [options](engine::JobControl& job) { return info(*options, job); }, print);
   command->add_option("SCAN", options->scan, "The scan")->required();
   command
       ->add_option("--at", options->at,

@@ -5,7 +5,7 @@
 #include "haptic/effect.h"
 #include "haptic/replay.h"
 #include "tests/haptic/support/fields.h"
-#include "tests/haptic/support/hand_stroke.h"
+#include "bench/hand_stroke.h"
 
 namespace fettle::haptic {
 namespace {
@@ -96,14 +96,14 @@ ReplayResult mustReplay(const engine::Version& start, const std::vector<StrokeSa
 }
 
 std::vector<StrokeSample> shortStroke(const engine::Version& field, Tool tool) {
-  tests::HandMotion motion;
+  bench::HandMotion motion;
   motion.ticks = 20000;
   motion.tool = tool;
-  return tests::handStroke(field, motion);
+  return bench::handStroke(field, motion);
 }
 
 TEST(Replay, SameStrokesGiveTheSameBits) {
-  const engine::Version field = tests::workpiece(300, 0.05);
+  const engine::Version field = bench::workpiece(300, 0.05);
   const std::vector<StrokeSample> strokes = shortStroke(field, Tool::kSmooth);
   const ReplayResult a = mustReplay(field, strokes, defaultScene());
   const ReplayResult b = mustReplay(field, strokes, defaultScene());
@@ -116,7 +116,7 @@ TEST(Replay, SameStrokesGiveTheSameBits) {
 }
 
 TEST(Replay, InvertedSceneEqualsAPhysicallyNegatedFieldBitForBit) {
-  const engine::Version field = tests::workpiece(200, 0.05);
+  const engine::Version field = bench::workpiece(200, 0.05);
   std::vector<float> z(200 * 200);
   field.reader().readHeights(0, 0, 200, 200, z.data(), 200);
   for (float& h : z) h = -h;
@@ -150,7 +150,7 @@ TEST(Replay, MarksWhereTheTipIsAndUnmarksThemAgain) {
 }
 
 TEST(Replay, CountsWherePaperStopsAboveCertifiedAndNeverAtCertified) {
-  const engine::Version field = tests::workpiece(200, 0.05);
+  const engine::Version field = bench::workpiece(200, 0.05);
   const std::vector<StrokeSample> strokes = shortStroke(field, Tool::kFeel);
   Scene scene;
   scene.certified_radius_cells = 4;
@@ -163,7 +163,7 @@ TEST(Replay, CountsWherePaperStopsAboveCertifiedAndNeverAtCertified) {
 }
 
 TEST(Replay, WhatASceneDoesNotListDoesNothing) {
-  const engine::Version field = tests::workpiece(100, 0.05);
+  const engine::Version field = bench::workpiece(100, 0.05);
   Scene scene;
   scene.effects = {};
   const ReplayResult result = mustReplay(field, shortStroke(field, Tool::kSmooth), scene);

@@ -7,7 +7,7 @@
 
 #include "engine/field/live_field.h"
 #include "haptic/tick.h"
-#include "tests/haptic/support/hand_stroke.h"
+#include "bench/hand_stroke.h"
 
 namespace {
 // Relaxed: one thread counts and reads.
@@ -42,12 +42,12 @@ namespace fettle::haptic {
 namespace {
 
 TEST(NeverAllocate, ATickDoesNotWithAnyToolOrLevel) {
-  const engine::Version field = tests::workpiece(300, 0.05);
+  const engine::Version field = bench::workpiece(300, 0.05);
   ASSERT_TRUE(field.memory()->tiles.reserve(200));
   ASSERT_TRUE(field.memory()->nodes.reserve(50));
-  tests::HandMotion motion;
+  bench::HandMotion motion;
   motion.ticks = 60000;
-  std::vector<StrokeSample> strokes = tests::handStroke(field, motion);
+  std::vector<StrokeSample> strokes = bench::handStroke(field, motion);
   for (std::size_t i = 0; i < strokes.size(); ++i) strokes[i].tool = static_cast<Tool>(i / 500 % kTools);
   for (const ContactLevel level : {ContactLevel::kPaper, ContactLevel::kCertified}) {
     Scene scene;

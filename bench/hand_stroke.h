@@ -6,7 +6,7 @@
 #include "engine/field/version.h"
 #include "haptic/strokes.h"
 
-namespace fettle::tests {
+namespace fettle::bench {
 
 /// A hand that wanders over a whole field for a long time, for speed and end-to-end tests: sweeps along
 /// Lissajous curves, presses and lifts a few times a second, trembles at 9 Hz. Not a user with a purpose.
@@ -28,4 +28,4 @@ struct HandMotion {
 /// square.
 [[nodiscard]] engine::Version workpiece(std::int32_t side, double spacing_mm);
 
-}  // namespace fettle::tests
+}  // namespace fettle::bench

@@ -1,4 +1,4 @@
-#include "tests/haptic/support/hand_stroke.h"
+#include "bench/hand_stroke.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "engine/field/builder.h"
 #include "haptic/surface.h"
 
-namespace fettle::tests {
+namespace fettle::bench {
 
 std::vector<haptic::StrokeSample> handStroke(const engine::Version& field, const HandMotion& motion) {
   haptic::Surface surface(field.reader());
@@ -63,4 +63,4 @@ engine::Version workpiece(std::int32_t side, double spacing_mm) {
   return engine::makeField(grid, z);
 }
 
-}  // namespace fettle::tests
+}  // namespace fettle::bench

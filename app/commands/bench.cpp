@@ -1,0 +1,128 @@
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/command.h"
+#include "bench/haptic_bench.h"
+#include "bench/machine.h"
+#include "haptic/loop/loop_bench.h"
+
+namespace fettle::app {
+
+namespace {
+
+engine::Result<Report> haptic(const bench::HapticBenchOptions& options, engine::JobControl& job) {
+  const auto measured = bench::benchHaptic(options, job);
+  if (!measured) return tl::unexpected(measured.error());
+  Report report{{"machine", measured->machine},
+                {"copy_bytes_per_second", measured->copy_bytes_per_s},
+                {"side", options.side},
+                {"repeats", options.repeats},
+                {"rows", Report::array()}};
+  for (const bench::HapticBenchRow& row : measured->rows)
+    report["rows"].push_back({{"name", row.name},
+                              {"ticks", row.ticks},
+                              {"contact_ticks", row.contact_ticks},
+                              {"ticks_per_second", row.median},
+                              {"slowest", row.slowest},
+                              {"fastest", row.fastest},
+                              {"hash", fmt::format("{:016x}", row.hash)}});
+  return report;
+}
+
+void printHaptic(const Report& report) {
+  fmt::print("{}\n{} x {} samples, median of {} runs; one thread copies {:.1f} GB/s\n\n",
+             report["machine"].get<std::string>(), report["side"].get<int>(), report["side"].get<int>(),
+             report["repeats"].get<int>(), report["copy_bytes_per_second"].get<double>() * 1e-9);
+  fmt::print("{:<28}{:>12}{:>14}{:>12}{:>12}  hash\n", "", "ticks", "M ticks/s", "slowest", "fastest");
+  for (const Report& row : report["rows"])
+    fmt::print("{:<28}{:>12}{:>14.3f}{:>12.3f}{:>12.3f}  {}\n", row["name"].get<std::string>(),
+               row["ticks"].get<std::int64_t>(), row["ticks_per_second"].get<double>() * 1e-6,
+               row["slowest"].get<double>() * 1e-6, row["fastest"].get<double>() * 1e-6,
+               row["hash"].get<std::string>());
+}
+
+double us(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-3;
+}
+
+Report rowOf(const haptic::LoopBenchRow& row) {
+  return {{"name", row.name},
+          {"lateness_p50_us", us(row.lateness.p50_ns)},
+          {"lateness_p99_us", us(row.lateness.p99_ns)},
+          {"lateness_p999_us", us(row.lateness.p999_ns)},
+          {"lateness_p9999_us", us(row.lateness.p9999_ns)},
+          {"lateness_worst_us", us(row.lateness.worst_ns)},
+          {"compute_p50_us", us(row.compute.p50_ns)},
+          {"compute_p999_us", us(row.compute.p999_ns)},
+          {"compute_worst_us", us(row.compute.worst_ns)},
+          {"missed", row.missed},
+          {"over_1_ms", row.over_1_ms},
+          {"not_granted", row.missing}};
+}
+
+engine::Result<Report> loop(const haptic::LoopBenchOptions& options, engine::JobControl& job) {
+  const auto measured = haptic::benchLoop(options, job);
+  if (!measured) return tl::unexpected(measured.error());
+  return Report{{"machine", measured->machine},
+                {"seconds", measured->seconds},
+                {"rate_hz", measured->rate_hz},
+                {"load", measured->load == haptic::BenchLoad::kBusy ? "busy" : "idle"},
+                {"p99_ratio", measured->p99_ratio},
+                {"p999_ratio", measured->p999_ratio},
+                {"refused_edits", measured->refused_edits},
+                {"rows", {rowOf(measured->loop), rowOf(measured->plain)}}};
+}
+
+void printLoop(const Report& report) {
+  fmt::print("{}\n{:.0f} s at {:.0f} Hz, {}\n\n", report["machine"].get<std::string>(),
+             report["seconds"].get<double>(), report["rate_hz"].get<double>(),
+             report["load"].get<std::string>());
+  fmt::print("{:<16}{:>10}{:>10}{:>10}{:>10}{:>10}{:>9}{:>11}\n", "lateness, us", "p50", "p99", "p99.9",
+             "p99.99", "worst", "missed", "over 1 ms");
+  for (const Report& row : report["rows"])
+    fmt::print("{:<16}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>10.1f}{:>9}{:>11}\n",
+               row["name"].get<std::string>(), row["lateness_p50_us"].get<double>(),
+               row["lateness_p99_us"].get<double>(), row["lateness_p999_us"].get<double>(),
+               row["lateness_p9999_us"].get<double>(), row["lateness_worst_us"].get<double>(),
+               row["missed"].get<std::uint64_t>(), row["over_1_ms"].get<std::uint64_t>());
+  for (const Report& row : report["rows"])
+    for (const Report& missing : row["not_granted"])
+      fmt::print("{}: {}\n", row["name"].get<std::string>(), missing.get<std::string>());
+  fmt::print("\nloop over plain thread: p99 {:.2f}, p99.9 {:.2f}\n", report["p99_ratio"].get<double>(),
+             report["p999_ratio"].get<double>());
+}
+
+}  // namespace
+
+void addBench(CLI::App& root, Chosen& chosen) {
+  CLI::App* bench =
+      root.add_subcommand("bench", "Benchmarks: median, spread, worst, machine, hash of the result");
+  bench->require_subcommand(1);
+
+  auto haptic_options = std::make_shared<bench::HapticBenchOptions>();
+  CLI::App* ticks = addCommand(
+      *bench, chosen, "haptic", "Ticks a second of contact, force and local smoothing",
+      [haptic_options](engine::JobControl& job) { return haptic(*haptic_options, job); }, printHaptic);
+  ticks->add_option("--side", haptic_options->side, "Samples along each side of the field")
+      ->capture_default_str();
+  ticks->add_option("--ticks", haptic_options->ticks, "Ticks of each run")->capture_default_str();
+  ticks->add_option("--repeats", haptic_options->repeats, "Runs of each row")->capture_default_str();
+  ticks->add_option("--speed", haptic_options->speed_mm_s, "Speed of the hand, mm/s")->capture_default_str();
+
+  auto loop_options = std::make_shared<haptic::LoopBenchOptions>();
+  auto busy = std::make_shared<bool>(false);
+  CLI::App* lateness = addCommand(
+      *bench, chosen, "loop", "Lateness of the live loop beside a plain real-time thread in the same run",
+      [loop_options, busy](engine::JobControl& job) {
+        haptic::LoopBenchOptions options = *loop_options;
+        options.load = *busy ? haptic::BenchLoad::kBusy : haptic::BenchLoad::kIdle;
+        return loop(options, job);
+      },
+      printLoop);
+  lateness->add_option("--seconds", loop_options->seconds, "How long to measure")->capture_default_str();
+  lateness->add_option("--rate", loop_options->rate_hz, "Ticks a second")->capture_default_str();
+  lateness->add_flag("--busy", *busy, "Keep every core busy with other work meanwhile");
+}
+
+}  // namespace fettle::app

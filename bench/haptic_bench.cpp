@@ -1,0 +1,84 @@
+#include "bench/haptic_bench.h"
+
+#include <algorithm>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "bench/hand_stroke.h"
+#include "bench/machine.h"
+#include "haptic/replay.h"
+#include "haptic/scene.h"
+
+namespace fettle::bench {
+
+namespace {
+
+constexpr double kSpacingMm = 0.05;
+
+struct Way {
+  const char* name;
+  haptic::Tool tool;
+  haptic::ContactLevel level;
+  std::int64_t share;  // runs ticks / share
+};
+
+constexpr Way kWays[] = {
+    {"paper, feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 1},
+    {"paper, 3x3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 1},
+    {"certified radius 2, feel", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 10},
+};
+
+engine::Result<HapticBenchRow> run(const Way& way, const engine::Version& field,
+                                   std::vector<haptic::StrokeSample>& strokes,
+                                   const HapticBenchOptions& options, engine::JobControl& job) {
+  for (haptic::StrokeSample& s : strokes) s.tool = way.tool;
+  haptic::Scene scene = haptic::defaultScene();
+  scene.level = way.level;
+  const auto part = std::span<const haptic::StrokeSample>(strokes).first(
+      std::max<std::size_t>(1, strokes.size() / static_cast<std::size_t>(way.share)));
+  HapticBenchRow row;
+  row.name = way.name;
+  std::vector<double> rates;
+  for (int i = 0; i < options.repeats; ++i) {
+    const auto result = haptic::replay(field, field, part, scene, {}, job);
+    if (!result) return tl::unexpected(result.error());
+    const std::uint64_t hash = engine::contentHash(result->field);
+    if (i > 0 && hash != row.hash)
+      return engine::failure("two runs of the same strokes differ", way.name, "please report this");
+    row.hash = hash;
+    row.ticks = result->report.ticks;
+    row.contact_ticks = result->report.contact_ticks;
+    rates.push_back(result->report.ticks_per_second);
+  }
+  std::sort(rates.begin(), rates.end());
+  row.slowest = rates.front();
+  row.median = rates[rates.size() / 2];
+  row.fastest = rates.back();
+  return row;
+}
+
+}  // namespace
+
+engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options, engine::JobControl& job) {
+  if (options.side < 64 || options.side > 32768 || options.ticks < 10 || options.ticks > 100'000'000 ||
+      options.repeats < 1 || options.repeats > 100 || !(options.speed_mm_s > 0.0))
+    return engine::inputError("an option of the benchmark is out of range", "bench haptic",
+                              "side 64 to 32768, ticks 10 to 1e8, repeats 1 to 100, speed above 0");
+  HapticBenchReport report;
+  report.machine = machine();
+  report.copy_bytes_per_s = copyBytesPerSecond();
+  const engine::Version field = workpiece(options.side, kSpacingMm);
+  HandMotion motion;
+  motion.ticks = options.ticks;
+  motion.speed_mm_s = options.speed_mm_s;
+  std::vector<haptic::StrokeSample> strokes = handStroke(field, motion);
+  for (const Way& way : kWays) {
+    auto row = run(way, field, strokes, options, job);
+    if (!row) return tl::unexpected(row.error());
+    report.rows.push_back(*std::move(row));
+  }
+  return report;
+}
+
+}  // namespace fettle::bench

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+
+namespace fettle::bench {
+
+struct HapticBenchOptions {
+  std::int32_t side = 4096;        ///< samples along each side of the field, 64 .. 32768
+  std::int64_t ticks = 1'000'000;  ///< of each run; certified contact takes a tenth of them
+  int repeats = 5;                 ///< 1 .. 100
+  double speed_mm_s = 50.0;        ///< of the hand over the field
+};
+
+/// One way of touching, run `repeats` times from the same start. Ticks a second.
+struct HapticBenchRow {
+  std::string name;
+  std::int64_t ticks = 0;
+  std::int64_t contact_ticks = 0;
+  double median = 0.0;
+  double slowest = 0.0;
+  double fastest = 0.0;
+  std::uint64_t hash = 0;  ///< of the field after it; the same in every repeat, else an error
+};
+
+struct HapticBenchReport {
+  std::string machine;
+  double copy_bytes_per_s = 0.0;  ///< yardstick, one thread
+  std::vector<HapticBenchRow> rows;
+};
+
+/// Replays a hand that wanders over a milled, noisy workpiece, as fast as the machine can: the whole tick
+/// with collision, contact, force and, where named, 3 x 3 local smoothing. Errors: kInput for options out of
+/// range, kCancelled, kFailed when two repeats differ in a bit. Thread: any; blocks.
+[[nodiscard]] engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options,
+                                                            engine::JobControl& job);
+
+}  // namespace fettle::bench

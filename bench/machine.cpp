@@ -1,0 +1,44 @@
+#include "bench/machine.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace fettle::bench {
+
+std::string machine() {
+  std::string processor = "unknown processor";
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.rfind("model name", 0) == 0) {
+      processor = line.substr(std::min(line.find(':') + 2, line.size()));
+      break;
+    }
+#ifdef NDEBUG
+  const char* build = "release";
+#else
+  const char* build = "with assertions";
+#endif
+  return fmt::format("{} x {}, {}, {}", processor, std::thread::hardware_concurrency(), __VERSION__, build);
+}
+
+double copyBytesPerSecond() {
+  constexpr std::size_t kBytes = std::size_t{64} << 20;
+  const std::vector<char> from(kBytes, 1);
+  std::vector<char> to(kBytes, 0);
+  double best = 0.0;
+  for (int i = 0; i < 5; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    std::memcpy(to.data(), from.data(), kBytes);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    best = std::max(best, static_cast<double>(kBytes) / seconds);
+  }
+  return best;
+}
+
+}  // namespace fettle::bench
