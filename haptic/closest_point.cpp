@@ -1,6 +1,7 @@
 #include "haptic/closest_point.h"
 
-#include "haptic/patch.h"
+#include "haptic/pair.h"
+#include "haptic/patch_inl.h"
 #include "haptic/sharing.h"
 
 namespace fettle::haptic {
@@ -9,14 +10,17 @@ namespace {
 
 // Whether distance only grows from a shared point into this patch. On an edge the point is already the
 // nearest along it, so only the way across is looked at; at a vertex both ways are. Most neighbours end here.
-bool restsHere(const Patch& s, const glm::dvec3& e, double u, double v) noexcept {
-  const double p = s.b + s.d * v;
-  const double q = s.c + s.d * u;
-  const double z = s.a + s.b * u + q * v - e.z;
-  const double gu = s.sx * (s.x0 + s.sx * u - e.x) + z * p;
-  const double gv = s.sy * (s.y0 + s.sy * v - e.y) + z * q;
-  const auto held = [](double x, double g) { return x == 0.0 ? g >= 0.0 : (x == 1.0 ? g <= 0.0 : true); };
-  return held(u, gu) && held(v, gv);
+[[gnu::always_inline]] inline bool restsHere(const Patch& s, const glm::dvec3& e, double u,
+                                             double v) noexcept {
+  const Pair at{u, v};
+  const Pair spacing{s.sx, s.sy};
+  const Pair pq = Pair{s.b, s.c} + Pair{s.d, s.d} * swapped(at);
+  const double z = s.a + s.b * u + pq[1] * v - e.z;
+  const Pair g = spacing * (Pair{s.x0, s.y0} + spacing * at - Pair{e.x, e.y}) + Pair{z, z} * pq;
+  const Pair zero{0.0, 0.0};
+  const Pair one{1.0, 1.0};
+  return lanes(either(butNot(equal(at, zero), atMost(zero, g)), butNot(equal(at, one), atMost(g, zero)))) ==
+         0;
 }
 
 }  // namespace
@@ -27,7 +31,7 @@ SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellInd
   Patch patch;
   if (!surface.patch(start, patch)) return result;
   CellIndex cell = start;
-  PatchPoint best = closestOnPatch(patch, endpoint, u, v);
+  PatchPoint best = detail::descendPatch(patch, endpoint, u, v);
   result.end = SearchEnd::kBound;
   for (result.cells = 1; result.cells < kMaxCellsVisited; ++result.cells) {
     CellIndex nearest_cell = cell;
@@ -39,7 +43,7 @@ SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellInd
       Patch other_patch;
       if (!surface.patch(other.cell, other_patch) || restsHere(other_patch, endpoint, other.u, other.v))
         return;
-      const PatchPoint point = closestOnPatch(other_patch, endpoint, other.u, other.v);
+      const PatchPoint point = detail::descendPatch(other_patch, endpoint, other.u, other.v);
       if (point.distance2_mm2 < nearest.distance2_mm2) {
         nearest = point;
         nearest_cell = other.cell;

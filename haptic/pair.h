@@ -1,0 +1,69 @@
+#pragma once
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace fettle::haptic {
+
+/// Two doubles side by side, mostly what belongs to u and to v: one operation works on both, each rounded as
+/// it would be alone. A vector type of GCC and Clang; p[0], p[1] are the two.
+using Pair = double __attribute__((vector_size(16)));
+
+[[nodiscard]] inline Pair swapped(Pair p) noexcept {
+  return Pair{p[1], p[0]};
+}
+
+/// What comparing two pairs gives, lane by lane; comparisons with NaN are false. Intrinsics, because from the
+/// compilers' own comparison operators GCC 12 makes a detour through two general registers.
+#if defined(__SSE2__)
+using PairMask = __m128d;
+[[nodiscard]] inline PairMask equal(Pair a, Pair b) noexcept {
+  return _mm_cmpeq_pd(a, b);
+}
+[[nodiscard]] inline PairMask less(Pair a, Pair b) noexcept {
+  return _mm_cmplt_pd(a, b);
+}
+[[nodiscard]] inline PairMask atMost(Pair a, Pair b) noexcept {
+  return _mm_cmple_pd(a, b);
+}
+[[nodiscard]] inline PairMask both(PairMask a, PairMask b) noexcept {
+  return _mm_and_pd(a, b);
+}
+[[nodiscard]] inline PairMask either(PairMask a, PairMask b) noexcept {
+  return _mm_or_pd(a, b);
+}
+/// a where b is false.
+[[nodiscard]] inline PairMask butNot(PairMask a, PairMask b) noexcept {
+  return _mm_andnot_pd(b, a);
+}
+/// Bit 0: first lane true, bit 1: second lane true.
+[[nodiscard]] inline int lanes(PairMask mask) noexcept {
+  return _mm_movemask_pd(mask);
+}
+#else
+using PairMask = int;  // as lanes() gives it
+[[nodiscard]] inline PairMask equal(Pair a, Pair b) noexcept {
+  return (a[0] == b[0] ? 1 : 0) | (a[1] == b[1] ? 2 : 0);
+}
+[[nodiscard]] inline PairMask less(Pair a, Pair b) noexcept {
+  return (a[0] < b[0] ? 1 : 0) | (a[1] < b[1] ? 2 : 0);
+}
+[[nodiscard]] inline PairMask atMost(Pair a, Pair b) noexcept {
+  return (a[0] <= b[0] ? 1 : 0) | (a[1] <= b[1] ? 2 : 0);
+}
+[[nodiscard]] inline PairMask both(PairMask a, PairMask b) noexcept {
+  return a & b;
+}
+[[nodiscard]] inline PairMask either(PairMask a, PairMask b) noexcept {
+  return a | b;
+}
+[[nodiscard]] inline PairMask butNot(PairMask a, PairMask b) noexcept {
+  return a & ~b;
+}
+[[nodiscard]] inline int lanes(PairMask mask) noexcept {
+  return mask;
+}
+#endif
+
+}  // namespace fettle::haptic
