@@ -171,6 +171,30 @@ bool LiveField::writeHeights(std::int32_t column, std::int32_t row, std::int32_t
   return true;
 }
 
+// What a stylus does a thousand times a second: writeHeights of one sample, which touches one tile and rarely
+// a bound.
+bool LiveField::setHeight(std::int32_t column, std::int32_t row, float height) noexcept {
+  assert(grid().contains(column, row));
+  const std::int32_t tc = column >> kTileShift;
+  const std::int32_t tr = row >> kTileShift;
+  const int c = column & (kTileSide - 1);
+  const int r = row & (kTileSide - 1);
+  const auto at = static_cast<std::size_t>(r * kTileSide + c);
+  const float z = stored(height, state_.sign_);
+  const float old = state_.reader().tile(tc, tr).samples[at];
+  if (std::bit_cast<std::uint32_t>(z) == std::bit_cast<std::uint32_t>(old) ||
+      (std::isnan(z) && std::isnan(old)))
+    return true;
+  Path path;
+  if (!ownTile(tc, tr, path)) return false;
+  Tile& tile = *path.tile;
+  tile.samples[at] = z;
+  const int nan_change = static_cast<int>(std::isnan(z)) - static_cast<int>(std::isnan(old));
+  tile.nan_samples += static_cast<std::uint32_t>(nan_change);
+  if (refreshSampleBounds(tile, c, r, old) || nan_change != 0) publish(path, tc, tr, tileHoled(tile, tc, tr));
+  return true;
+}
+
 bool LiveField::setMark(std::int32_t column, std::int32_t row, bool marked) noexcept {
   assert(grid().contains(column, row));
   const std::int32_t tc = column >> kTileShift;

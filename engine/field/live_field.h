@@ -46,9 +46,8 @@ class LiveField {
   [[nodiscard]] bool writeHeights(std::int32_t column, std::int32_t row, std::int32_t columns,
                                   std::int32_t rows, const float* heights, std::ptrdiff_t stride) noexcept;
 
-  [[nodiscard]] bool setHeight(std::int32_t column, std::int32_t row, float height) noexcept {
-    return writeHeights(column, row, 1, 1, &height, 1);
-  }
+  /// The same for one sample.
+  [[nodiscard]] bool setHeight(std::int32_t column, std::int32_t row, float height) noexcept;
 
   /// Marks (or unmarks) one sample. False, and nothing changed, as for writeHeights.
   [[nodiscard]] bool setMark(std::int32_t column, std::int32_t row, bool marked) noexcept;

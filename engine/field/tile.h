@@ -71,6 +71,10 @@ static_assert(std::is_trivially_copyable_v<Node>);
 /// then the tile's own. O(blocks touched). Exact, never merely conservative.
 void refreshBounds(Tile& tile, int column0, int row0, int column1, int row1) noexcept;
 
+/// The same after one sample changed, `old` being what it was and all bounds having been right. Whether the
+/// tile's own bounds changed.
+[[nodiscard]] bool refreshSampleBounds(Tile& tile, int column, int row, float old) noexcept;
+
 /// Recomputes the tile's count of marks.
 void refreshMarks(Tile& tile) noexcept;
 
