@@ -11,27 +11,43 @@ namespace fettle::haptic {
 
 namespace {
 
-// The blend over one 3 x 3 window around `centre` (stride in elements); the centre is no hole.
-double blend(const float* centre, std::ptrdiff_t stride, double strength) noexcept {
-  static constexpr double kBinomial[3][3] = {{1, 2, 1}, {2, 4, 2}, {1, 2, 1}};
-  double gauss = 0.0;
-  double gauss_weight = 0.0;
-  double box = 0.0;
-  double box_weight = 0.0;
+constexpr double kBinomial[3][3] = {{1, 2, 1}, {2, 4, 2}, {1, 2, 1}};
+
+// The sums of blend() where the window has holes: no weight, the rest is renormalised.
+struct WindowSums {
+  double gauss = 0.0, gauss_weight = 0.0;
+  double box = 0.0, box_weight = 0.0;
+};
+
+WindowSums sumsAroundHoles(const float* centre, std::ptrdiff_t stride) noexcept {
+  WindowSums sums;
   for (int r = -1; r <= 1; ++r)
     for (int c = -1; c <= 1; ++c) {
       const auto z = static_cast<double>(centre[r * stride + c]);
-      const bool hole = std::isnan(z);
-      const double w = hole ? 0.0 : kBinomial[r + 1][c + 1];
-      const double one = hole ? 0.0 : 1.0;
-      const double value = hole ? 0.0 : z;
-      gauss += w * value;
-      gauss_weight += w;
-      box += value;
-      box_weight += one;
+      if (std::isnan(z)) continue;
+      const double w = kBinomial[r + 1][c + 1];
+      sums.gauss += w * z;
+      sums.gauss_weight += w;
+      sums.box += z;
+      sums.box_weight += 1.0;
     }
-  gauss /= gauss_weight;
-  box /= box_weight;
+  return sums;
+}
+
+// The blend over one 3 x 3 window around `centre` (stride in elements); the centre is no hole.
+double blend(const float* centre, std::ptrdiff_t stride, double strength) noexcept {
+  WindowSums sums{0.0, 16.0, 0.0, 9.0};
+  for (int r = -1; r <= 1; ++r)
+    for (int c = -1; c <= 1; ++c) {
+      const auto z = static_cast<double>(centre[r * stride + c]);
+      sums.gauss += kBinomial[r + 1][c + 1] * z;
+      sums.box += z;
+    }
+  // Nine floats cannot overflow a double: a NaN among them, and nothing else, makes the sum NaN.
+  if (std::isnan(sums.box)) [[unlikely]]
+    sums = sumsAroundHoles(centre, stride);
+  const double gauss = sums.gauss / sums.gauss_weight;
+  const double box = sums.box / sums.box_weight;
   // In this form a flat window stays flat to the bit.
   return gauss + strength * (box - gauss);
 }
@@ -61,7 +77,31 @@ float Brush::limited(double height, float old, std::int32_t column, std::int32_t
   return z;
 }
 
+// The paper's brush of one sample, whose window is mostly within one tile: read where it lies.
+bool Brush::applyToOne(engine::LiveField& field, std::int32_t column, std::int32_t row,
+                       double strength) noexcept {
+  using engine::kTileShift;
+  using engine::kTileSide;
+  const engine::FieldReader reader = field.reader();
+  const int c = column & (kTileSide - 1);
+  const int r = row & (kTileSide - 1);
+  const engine::Tile& tile = reader.tile(column >> kTileShift, row >> kTileShift);
+  if (tile.marked(c, r)) return true;
+  const float* centre = tile.samples.data() + r * kTileSide + c;
+  std::ptrdiff_t stride = kTileSide;
+  const bool within = c > 0 && c < kTileSide - 1 && r > 0 && r < kTileSide - 1;
+  if (!within || reader.sign() < 0.0F) {
+    stride = 3;
+    reader.readHeights(column - 1, row - 1, 3, 3, before_.data(), stride);
+    centre = before_.data() + stride + 1;
+  }
+  const float old = *centre;
+  if (std::isnan(old)) return true;
+  return field.setHeight(column, row, limited(blend(centre, stride, strength), old, column, row));
+}
+
 bool Brush::apply(engine::LiveField& field, std::int32_t column, std::int32_t row, double strength) noexcept {
+  if (disc_.reach == 0 && field.grid().contains(column, row)) return applyToOne(field, column, row, strength);
   const engine::FieldReader reader = field.reader();
   const std::int32_t reach = disc_.reach;
   const std::int32_t side = 2 * reach + 1;

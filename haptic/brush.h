@@ -34,6 +34,8 @@ class Brush {
                            double strength) noexcept;
 
  private:
+  [[nodiscard]] bool applyToOne(engine::LiveField& field, std::int32_t column, std::int32_t row,
+                                double strength) noexcept;
   [[nodiscard]] float limited(double height, float old, std::int32_t column, std::int32_t row) const noexcept;
 
   Disc disc_;
