@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -18,8 +19,8 @@ struct ClampedForce {
 /// last stop before the hand. `limit_n` > 0.
 [[nodiscard]] inline ClampedForce clampForce(const glm::dvec3& force_n, double limit_n) noexcept {
   // Scaled by the largest component, so that squares neither overflow nor vanish.
-  const double largest = std::fmax(std::abs(force_n.x), std::fmax(std::abs(force_n.y), std::abs(force_n.z)));
   if (!std::isfinite(force_n.x + force_n.y + force_n.z)) return {glm::dvec3(0.0), 0.0, true};
+  const double largest = std::max({std::abs(force_n.x), std::abs(force_n.y), std::abs(force_n.z)});
   if (!(largest > 0.0)) return {};
   const glm::dvec3 scaled = force_n / largest;
   const double size = glm::length(scaled);  // 1 .. sqrt(3)

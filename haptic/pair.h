@@ -2,6 +2,9 @@
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
+#else
+#include <algorithm>
+#include <cmath>
 #endif
 
 namespace fettle::haptic {
@@ -37,6 +40,17 @@ using PairMask = __m128d;
 [[nodiscard]] inline PairMask butNot(PairMask a, PairMask b) noexcept {
   return _mm_andnot_pd(b, a);
 }
+/// Lane by lane a where the mask is true, else b.
+[[nodiscard]] inline Pair chosen(PairMask mask, Pair a, Pair b) noexcept {
+  return _mm_or_pd(_mm_and_pd(mask, a), _mm_andnot_pd(mask, b));
+}
+/// std::clamp(x, 0.0, 1.0) in both lanes, NaN and -0 included, and no branch.
+[[nodiscard]] inline Pair unit(Pair x) noexcept {
+  return _mm_min_pd(_mm_set1_pd(1.0), _mm_max_pd(_mm_setzero_pd(), x));
+}
+[[nodiscard]] inline Pair absolute(Pair x) noexcept {
+  return _mm_andnot_pd(_mm_set1_pd(-0.0), x);
+}
 /// Bit 0: first lane true, bit 1: second lane true.
 [[nodiscard]] inline int lanes(PairMask mask) noexcept {
   return _mm_movemask_pd(mask);
@@ -60,6 +74,15 @@ using PairMask = int;  // as lanes() gives it
 }
 [[nodiscard]] inline PairMask butNot(PairMask a, PairMask b) noexcept {
   return a & ~b;
+}
+[[nodiscard]] inline Pair chosen(PairMask mask, Pair a, Pair b) noexcept {
+  return Pair{(mask & 1) != 0 ? a[0] : b[0], (mask & 2) != 0 ? a[1] : b[1]};
+}
+[[nodiscard]] inline Pair unit(Pair x) noexcept {
+  return Pair{std::clamp(x[0], 0.0, 1.0), std::clamp(x[1], 0.0, 1.0)};
+}
+[[nodiscard]] inline Pair absolute(Pair x) noexcept {
+  return Pair{std::abs(x[0]), std::abs(x[1])};
 }
 [[nodiscard]] inline int lanes(PairMask mask) noexcept {
   return mask;

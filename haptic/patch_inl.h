@@ -20,10 +20,6 @@ inline constexpr double kSame = 1.0 + 1e-15;
 // Largest fuv^2 / (fuu fvv) that counts as safely convex.
 inline constexpr double kLargestCoupling = 0.998;
 
-inline double unit(double x) noexcept {
-  return std::clamp(x, 0.0, 1.0);
-}
-
 /// closestOnPatch, to be inlined where ticks are spent: u and v go through it as one pair, which is what the
 /// machine adds, multiplies and compares in one instruction.
 [[gnu::always_inline]] inline PatchPoint descendPatch(const Patch& s, const glm::dvec3& endpoint, double u0,
@@ -70,18 +66,19 @@ inline double unit(double x) noexcept {
 
     const Pair g = spacing * away + Pair{z, z} * pq;
     const Pair h = spacing2 + pq * pq;  // fuu, fvv
-    const int held =
-        lanes(either(both(equal(at, zero), atMost(zero, g)), both(equal(at, one), atMost(g, zero))));
-    if (held != 0) {
-      if (held == 3) return {at[0], at[1], f};
-      // On an edge the distance is quadratic: one exact step, and the next round sees whether it holds.
-      const Pair to = at - g / h;
-      const int i = held == 1 ? 1 : 0;
-      const double from = i == 1 ? at[1] : at[0];
-      const double step = unit(i == 1 ? to[1] : to[0]) - from;
-      const double next = unit(from + step);
-      at = i == 1 ? Pair{at[0], next} : Pair{next, at[1]};
-      if (std::abs(step) <= kLastCoordinateStep) break;
+    const PairMask held =
+        either(both(equal(at, zero), atMost(zero, g)), both(equal(at, one), atMost(g, zero)));
+    if (const int sides = lanes(held); sides != 0) {
+      if (sides == 3) return {at[0], at[1], f};
+      // On an edge the distance is quadratic: one exact step, and the next round sees whether it holds. Both
+      // lanes are stepped and one is thrown away, because which one is anybody's guess to a branch predictor.
+      const Pair step = unit(at - g / h) - at;
+      const Pair to = chosen(held, at, unit(at + step));
+      const bool rests =
+          lanes(either(held, atMost(absolute(step), Pair{kLastCoordinateStep, kLastCoordinateStep}))) == 3;
+      if (lanes(equal(at, to)) == 3 && rests) return {to[0], to[1], f};
+      at = to;
+      if (rests) break;
       newton_failed = false;
       continue;
     }
@@ -115,17 +112,18 @@ inline double unit(double x) noexcept {
         met = 2;
       }
       if (cut > 0.0) {
-        const Pair cut_to = at + Pair{cut, cut} * step;
-        at = Pair{met == 1 ? side[0] : unit(cut_to[0]), met == 2 ? side[1] : unit(cut_to[1])};
+        const Pair cut_to = unit(at + Pair{cut, cut} * step);
+        at = Pair{met == 1 ? side[0] : cut_to[0], met == 2 ? side[1] : cut_to[1]};
         if (met == 0 && std::abs(step[0]) + std::abs(step[1]) <= kLastStep) break;
         continue;
       }
     }
     // The exact minimum along u, then along v.
-    const double next_u = unit(at[0] - g[0] / h[0]);
+    const double next_u = unit(at - g / h)[0];
     const double q_next = s.c + s.d * next_u;
     const double z_next = s.b * next_u + q_next * at[1] - ez;
-    const double next_v = unit(at[1] - (s.sy * away[1] + z_next * q_next) / (s.sy * s.sy + q_next * q_next));
+    const double next_v =
+        std::clamp(at[1] - (s.sy * away[1] + z_next * q_next) / (s.sy * s.sy + q_next * q_next), 0.0, 1.0);
     const double moved = std::abs(next_u - at[0]) + std::abs(next_v - at[1]);
     at = Pair{next_u, next_v};
     if (moved <= kLastCoordinateStep) break;
