@@ -49,33 +49,30 @@ RayWalk::RayWalk(Surface& surface, const glm::dvec3& from, const glm::dvec3& to)
   done_ = false;
 }
 
-// Where the ray leaves the square of 2^shift cells that holds the present cell.
-double RayWalk::leaveSquare(int shift) const noexcept {
-  double leave = end_;
+// Where the ray meets the sides of the square of 2^shift cells that holds the present cell, uncut.
+RayWalk::Exit RayWalk::exitOf(int shift) const noexcept {
   const double side = static_cast<double>(std::int64_t{1} << shift);
+  Exit exit;
   if (dx_ != 0.0) {
     const double low = static_cast<double>((cell_.column >> shift) << shift);
-    leave = std::min(leave, ((dx_ > 0.0 ? low + side : low) - gx_) / dx_);
+    exit.x = ((dx_ > 0.0 ? low + side : low) - gx_) / dx_;
   }
   if (dy_ != 0.0) {
     const double low = static_cast<double>((cell_.row >> shift) << shift);
-    leave = std::min(leave, ((dy_ > 0.0 ? low + side : low) - gy_) / dy_);
+    exit.y = ((dy_ > 0.0 ? low + side : low) - gy_) / dy_;
   }
-  return std::max(leave, at_);
+  return exit;
+}
+
+double RayWalk::leaveAt(const Exit& exit) const noexcept {
+  return std::max(std::min(end_, std::min(exit.x, exit.y)), at_);
 }
 
 // Moves to the first cell beyond the square. The side that is crossed moves by whole numbers; the other
 // coordinate is computed, kept within the square and never moved backwards, so rounding cannot stall the
 // walk.
-void RayWalk::step(int shift, double leave) noexcept {
-  const auto exit = [&](double g, double d, std::int32_t index) {
-    if (d == 0.0) return HUGE_VAL;
-    const std::int64_t low = (std::int64_t{index} >> shift) << shift;
-    return (static_cast<double>(d > 0.0 ? low + (std::int64_t{1} << shift) : low) - g) / d;
-  };
-  const double exit_x = exit(gx_, dx_, cell_.column);
-  const double exit_y = exit(gy_, dy_, cell_.row);
-  if (std::min(exit_x, exit_y) >= end_) {
+void RayWalk::step(int shift, const Exit& exit, double leave) noexcept {
+  if (std::min(exit.x, exit.y) >= end_) {
     done_ = true;
     return;
   }
@@ -90,7 +87,7 @@ void RayWalk::step(int shift, double leave) noexcept {
     const auto next = static_cast<std::int32_t>(here);
     return d > 0.0 ? std::max(next, index) : (d < 0.0 ? std::min(next, index) : index);
   };
-  if (exit_x <= exit_y)
+  if (exit.x <= exit.y)
     cell_ = {cross(cell_.column, dx_), follow(cell_.row, gy_, dy_)};
   else
     cell_ = {follow(cell_.column, gx_, dx_), cross(cell_.row, dy_)};
@@ -122,20 +119,22 @@ bool RayWalk::next(RayCell& out) noexcept {
     // Squares first while the ray leaves the smaller one: a short ray never looks at the pyramid.
     if (level_ >= 0) {
       const int shift = 3 * (level_ + 1);
-      const double leave = leaveSquare(shift);
+      const Exit exit = exitOf(shift);
+      const double leave = leaveAt(exit);
       if (clears(level_, lowest(at_, leave))) {
-        step(shift, leave);
+        step(shift, exit, leave);
         level_ = std::min(level_ + 1, surface_.reader().topLevel());
       } else {
         --level_;
       }
       continue;
     }
-    const double leave = leaveSquare(0);
+    const Exit exit = exitOf(0);
+    const double leave = leaveAt(exit);
     const RayCell here{cell_, at_, leave};
     Patch patch;
     const bool touched = surface_.patch(cell_, patch) && !(patch.highest() < lowest(at_, leave));
-    step(0, leave);
+    step(0, exit, leave);
     if (touched) {
       out = here;
       return true;

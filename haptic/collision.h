@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <glm/vec3.hpp>
 
 #include "haptic/surface.h"
@@ -34,8 +36,12 @@ class RayWalk {
   [[nodiscard]] bool stoppedByBound() const noexcept { return steps_ >= kMaxSteps; }
 
  private:
-  [[nodiscard]] double leaveSquare(int shift) const noexcept;
-  void step(int shift, double leave) noexcept;
+  struct Exit {
+    double x = HUGE_VAL, y = HUGE_VAL;  // t at the square's sides; HUGE_VAL where the ray runs along them
+  };
+  [[nodiscard]] Exit exitOf(int shift) const noexcept;
+  [[nodiscard]] double leaveAt(const Exit& exit) const noexcept;
+  void step(int shift, const Exit& exit, double leave) noexcept;
   [[nodiscard]] double lowest(double enter, double leave) const noexcept;
   [[nodiscard]] bool clears(int level, double ray_low) const noexcept;
 
