@@ -4,6 +4,8 @@
 #include "haptic/patch_inl.h"
 #include "haptic/sharing.h"
 
+#include <utility>
+
 namespace fettle::haptic {
 
 namespace {
@@ -28,26 +30,33 @@ namespace {
 SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u,
                            double v) noexcept {
   SearchResult result;
-  Patch patch;
-  if (!surface.patch(start, patch)) return result;
+  // Three places for patches that change roles by their addresses: where the search is, the best neighbour so
+  // far, the one looked at.
+  Patch patches[3];
+  Patch* here = &patches[0];
+  Patch* nearest_patch = &patches[1];
+  Patch* looked_at = &patches[2];
+  if (!surface.patch(start, *here)) return result;
   CellIndex cell = start;
-  PatchPoint best = detail::descendPatch(patch, endpoint, u, v);
+  PatchPoint best = detail::descendPatch(*here, endpoint, u, v);
   result.end = SearchEnd::kBound;
   for (result.cells = 1; result.cells < kMaxCellsVisited; ++result.cells) {
+    const Pair at{best.u, best.v};
+    if (lanes(either(equal(at, Pair{0.0, 0.0}), equal(at, Pair{1.0, 1.0}))) == 0) {
+      result.end = SearchEnd::kAtRest;  // inside the cell, shared with none
+      break;
+    }
     CellIndex nearest_cell = cell;
-    Patch nearest_patch = patch;
     PatchPoint nearest = best;
     // Going down from the shared point, each neighbour offers a point at least as near; only a strictly
     // nearer one counts, so that rounding cannot send the search in circles.
     forEachSharing(surface, cell, best.u, best.v, [&](const SharingCell& other) {
-      Patch other_patch;
-      if (!surface.patch(other.cell, other_patch) || restsHere(other_patch, endpoint, other.u, other.v))
-        return;
-      const PatchPoint point = detail::descendPatch(other_patch, endpoint, other.u, other.v);
+      if (!surface.patch(other.cell, *looked_at) || restsHere(*looked_at, endpoint, other.u, other.v)) return;
+      const PatchPoint point = detail::descendPatch(*looked_at, endpoint, other.u, other.v);
       if (point.distance2_mm2 < nearest.distance2_mm2) {
         nearest = point;
         nearest_cell = other.cell;
-        nearest_patch = other_patch;
+        std::swap(nearest_patch, looked_at);
       }
     });
     if (nearest_cell == cell) {
@@ -55,10 +64,10 @@ SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellInd
       break;
     }
     cell = nearest_cell;
-    patch = nearest_patch;
+    std::swap(here, nearest_patch);
     best = nearest;
   }
-  result.point = {cell, best.u, best.v, patch.at(best.u, best.v), best.distance2_mm2};
+  result.point = {cell, best.u, best.v, here->at(best.u, best.v), best.distance2_mm2};
   return result;
 }
 
