@@ -284,7 +284,6 @@ class CellSearch {
   }
 
   void run() noexcept {
-    constexpr int kWindowWithoutPyramid = 12;
     if (c1_ - c0_ < kWindowWithoutPyramid && r1_ - r0_ < kWindowWithoutPyramid)
       cells(c0_, r0_, c1_, r1_);
     else
@@ -294,6 +293,9 @@ class CellSearch {
   [[nodiscard]] const SurfacePoint& best() const noexcept { return best_; }
 
  private:
+  // A window narrower than this (a block of 8 is) is looked at cell by cell.
+  static constexpr int kWindowWithoutPyramid = 12;
+
   // Squared horizontal distance to the square of `side` cells from `cell` up.
   [[nodiscard]] double horizontal2(CellIndex cell, int side) const noexcept {
     const double dx =
@@ -332,11 +334,22 @@ class CellSearch {
       }
   }
 
+  // At most kWindowWithoutPyramid columns.
   void cells(std::int32_t c0, std::int32_t r0, std::int32_t c1, std::int32_t r1) noexcept {
+    // The horizontal distance of a cell is a part along x and a part along y: as many of each as the window
+    // has columns and rows, instead of one of both a cell.
+    std::array<double, kWindowWithoutPyramid> dx2;
+    for (std::int32_t column = c0; column <= c1; ++column) {
+      const double dx = beyond(e_.x, column * surface_.spacingX(), (column + 1) * surface_.spacingX());
+      dx2[static_cast<std::size_t>(column - c0)] = dx * dx;
+    }
     Patch patch;
-    for (std::int32_t row = r0; row <= r1; ++row)
+    for (std::int32_t row = r0; row <= r1; ++row) {
+      const double dy = beyond(e_.y, row * surface_.spacingY(), (row + 1) * surface_.spacingY());
+      const double dy2 = dy * dy;
+      if (dy2 > radius2_ || dy2 >= best_.distance2_mm2) continue;
       for (std::int32_t column = c0; column <= c1; ++column) {
-        const double flat2 = horizontal2({column, row}, 1);
+        const double flat2 = dx2[static_cast<std::size_t>(column - c0)] + dy2;
         if (flat2 > radius2_ || flat2 >= best_.distance2_mm2) continue;
         if (!surface_.patch({column, row}, patch)) continue;
         const double dz = beyond(e_.z, patch.lowest(), patch.highest());
@@ -345,6 +358,7 @@ class CellSearch {
         if (point.distance2_mm2 < best_.distance2_mm2)
           best_ = {{column, row}, point.u, point.v, patch.at(point.u, point.v), point.distance2_mm2};
       }
+    }
   }
 
   Surface& surface_;
