@@ -1,11 +1,14 @@
 #include "app/scan_options.h"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include "app/terminal.h"
@@ -81,6 +84,14 @@ engine::Result<double> parseHeight(const std::string& text, const engine::Grid& 
   return value * unit->mm / grid.height_unit.mm;
 }
 
+std::string seedProblem(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  return error == std::errc{} && end == text.data() + text.size()
+             ? ""
+             : "give a whole number from 0 to 18446744073709551615";
+}
+
 engine::Result<std::pair<int, int>> parseSize(const std::string& text, const std::string& option) {
   int width = 0;
   int height = 0;
@@ -92,19 +103,73 @@ engine::Result<std::pair<int, int>> parseSize(const std::string& text, const std
   return std::pair{width, height};
 }
 
-engine::Status checkOutputs(const std::vector<std::string>& paths) {
-  for (const std::string& path : paths) {
-    if (path.empty()) continue;
-    std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    if (folder.empty()) folder = ".";
-    std::error_code error;
-    if (!std::filesystem::is_directory(folder, error))
-      return engine::inputError("there is no such folder", folder.string(), "make it or name another");
-    if (std::filesystem::is_directory(path, error))
-      return engine::inputError("the output is a folder", path, "name a file in it");
-    if (access(folder.c_str(), W_OK) != 0)
-      return engine::inputError("the folder cannot be written to", folder.string(),
-                                "name another or change its rights");
+namespace {
+
+std::string extensionOf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+std::vector<std::string> extensionsFor(OutputKind kind) {
+  if (kind == OutputKind::kMarks) return {".png", ".tif", ".tiff"};
+  if (kind == OutputKind::kPicture) return {".png"};
+  std::vector<std::string> extensions;
+  if (kind == OutputKind::kField)
+    for (const engine::FormatInfo& format : engine::formats())
+      if (format.writes)
+        extensions.insert(extensions.end(), format.extensions.begin(), format.extensions.end());
+  return extensions;
+}
+
+// One spelling for one place, links and dots resolved as far as the path exists.
+std::filesystem::path placeOf(const std::string& path) {
+  std::error_code error;
+  std::filesystem::path place = std::filesystem::weakly_canonical(path, error);
+  return error ? std::filesystem::path(path) : place;
+}
+
+engine::Status checkOutput(const Output& output) {
+  const std::vector<std::string> extensions = extensionsFor(output.kind);
+  if (!extensions.empty() &&
+      std::find(extensions.begin(), extensions.end(), extensionOf(output.path)) == extensions.end())
+    return engine::inputError("no format to write has this extension", output.path,
+                              fmt::format("take one of {}", fmt::join(extensions, " ")));
+  std::filesystem::path folder = std::filesystem::path(output.path).parent_path();
+  if (folder.empty()) folder = ".";
+  std::error_code error;
+  if (!std::filesystem::is_directory(folder, error))
+    return engine::inputError("there is no such folder", folder.string(), "make it or name another");
+  if (std::filesystem::is_directory(output.path, error))
+    return engine::inputError("the output is a folder", output.path, "name a file in it");
+  if (std::filesystem::exists(output.path, error) && !std::filesystem::is_regular_file(output.path, error))
+    return engine::inputError("the output is no regular file", output.path,
+                              "outputs are put in place whole, by renaming: name a file");
+  if (access(folder.c_str(), W_OK) != 0)
+    return engine::inputError("the folder cannot be written to", folder.string(),
+                              "name another or change its rights");
+  return {};
+}
+
+}  // namespace
+
+engine::Status checkOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
+  std::vector<std::filesystem::path> taken;
+  for (const std::string& input : inputs)
+    if (!input.empty()) taken.push_back(placeOf(input));
+  const std::size_t first_output = taken.size();
+  for (const Output& output : outputs) {
+    if (output.path.empty()) continue;
+    if (auto status = checkOutput(output); !status) return status;
+    const std::filesystem::path place = placeOf(output.path);
+    const auto same = std::find(taken.begin(), taken.end(), place);
+    if (same != taken.end())
+      return engine::inputError(static_cast<std::size_t>(same - taken.begin()) < first_output
+                                    ? "the output would replace an input"
+                                    : "two outputs are in the same place",
+                                output.path, "name another file");
+    taken.push_back(place);
   }
   return {};
 }

@@ -45,7 +45,25 @@ void addScanOptions(CLI::App* command, ScanOptions& options);
 [[nodiscard]] engine::Result<std::pair<int, int>> parseSize(const std::string& text,
                                                             const std::string& option);
 
-/// Refuses an output that lies in no writable folder before the work begins rather than after it.
-[[nodiscard]] engine::Status checkOutputs(const std::vector<std::string>& paths);
+/// What is wrong with a seed as typed; empty when nothing is. For CLI::Option::check.
+[[nodiscard]] std::string seedProblem(const std::string& text);
+
+/// What a command writes, for the checks that need no scan.
+enum class OutputKind {
+  kField,    ///< extension of a format that can be written
+  kMarks,    ///< .png, .tif, .tiff
+  kPicture,  ///< .png
+  kText,     ///< any
+};
+struct Output {
+  std::string path;  ///< empty = not asked for
+  OutputKind kind = OutputKind::kText;
+};
+
+/// Refuses, before anything is read or computed, what would fail or destroy something at the end: an
+/// extension nobody writes, a folder that is not there or not writable, a target that is no regular file, two
+/// outputs in one place, an output in the place of an input.
+[[nodiscard]] engine::Status checkOutputs(const std::vector<Output>& outputs,
+                                          const std::vector<std::string>& inputs);
 
 }  // namespace fettle::app

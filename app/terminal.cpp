@@ -24,17 +24,24 @@ void onSignal(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+// A terminal that is gone or full must not end the work: what cannot be said is left unsaid.
+void toStderr(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+}
+
 }  // namespace
 
 InterruptGuard::InterruptGuard(engine::JobControl& job) {
   interrupted_job.store(&job);
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
+  std::signal(SIGHUP, onSignal);
 }
 
 InterruptGuard::~InterruptGuard() {
   std::signal(SIGINT, SIG_DFL);
   std::signal(SIGTERM, SIG_DFL);
+  std::signal(SIGHUP, SIG_DFL);
   interrupted_job.store(nullptr);
 }
 
@@ -62,21 +69,21 @@ void ProgressLine::show() {
     const int percent = total == 0 ? 0 : static_cast<int>(100 * done / total);
     constexpr int kWidth = 30;
     const int filled = percent * kWidth / 100;
-    fmt::print(stderr, "\r\x1b[K{} [{}{}] {:3d} %{}", job_.stage(), std::string(filled, '#'),
-               std::string(kWidth - filled, '.'), percent, job_.cancelled() ? "  stopping" : "");
+    toStderr(fmt::format("\r\x1b[K{} [{}{}] {:3d} %{}", job_.stage(), std::string(filled, '#'),
+                         std::string(kWidth - filled, '.'), percent, job_.cancelled() ? "  stopping" : ""));
     std::fflush(stderr);
   } while (!wake_.wait_for(lock, 100ms, [this] { return ended_; }));
-  fmt::print(stderr, "\r\x1b[K");
+  toStderr("\r\x1b[K");
   std::fflush(stderr);
 }
 
 int report(const engine::Error& error) {
-  fmt::print(stderr, "fettle: error: {}\n", error.line());
+  toStderr(fmt::format("fettle: error: {}\n", error.line()));
   return error.kind == engine::ErrorKind::kInput ? 2 : 1;
 }
 
 void warn(const std::string& text) {
-  fmt::print(stderr, "fettle: warning: {}\n", text);
+  toStderr(fmt::format("fettle: warning: {}\n", text));
 }
 
 }  // namespace fettle::app

@@ -9,8 +9,8 @@
 
 namespace fettle::app {
 
-/// For its lifetime, Ctrl-C (SIGINT) and SIGTERM cancel the job instead of ending the process; a second one
-/// ends it at once, as the system would. One at a time in a process.
+/// For its lifetime, Ctrl-C (SIGINT), SIGTERM and SIGHUP cancel the job instead of ending the process; a
+/// second one ends it at once, as the system would. One at a time in a process.
 class InterruptGuard {
  public:
   explicit InterruptGuard(engine::JobControl& job);

@@ -150,7 +150,7 @@ engine::Result<std::vector<StrokeSample>> readStrokes(const std::string& path) {
   std::string_view text = *whole;
   if (const std::string_view header = takeLine(text); header != kStrokesHeader)
     return inputError(fmt::format("line 1 is not the header {}", kStrokesHeader), path,
-                      "give a strokes file as docs/file-formats.md describes it");
+                      "give a strokes file as docs/formats.md describes it");
   std::vector<StrokeSample> strokes;
   strokes.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1);
   for (std::int64_t line_number = 2; !text.empty(); ++line_number) {

@@ -1,7 +1,10 @@
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "app/command.h"
 #include "app/scan_options.h"
+#include "app/terminal.h"
 #include "engine/compare/compare.h"
 #include "engine/io/marks.h"
 
@@ -17,6 +20,21 @@ struct Options {
   ScanOptions reading;
 };
 
+// Fields are compared sample by sample; whoever compares two that lie elsewhere or mean something else is
+// told.
+void warnOfDifferentGrids(const Options& options, const engine::Grid& a, const engine::Grid& b) {
+  const std::string both = options.a + " and " + options.b;
+  if (a.spacingXMm() != b.spacingXMm() || a.spacingYMm() != b.spacingYMm())
+    warn(both + " have different spacings and are compared sample by sample");
+  if (a.origin_x * a.lateral_unit.mm != b.origin_x * b.lateral_unit.mm ||
+      a.origin_y * a.lateral_unit.mm != b.origin_y * b.lateral_unit.mm)
+    warn(both + " lie at different places and are compared sample by sample");
+  if (!(a.height_unit == b.height_unit))
+    warn(
+        fmt::format("heights are in {} and {}: the second are converted, say --unit where a file states none",
+                    a.height_unit.name, b.height_unit.name));
+}
+
 engine::Result<Report> compare(const Options& options, engine::JobControl& job) {
   if (!options.edges.empty() && options.truth.empty())
     return engine::inputError("edges say nothing without a truth", "--edges", "give --truth too");
@@ -26,6 +44,8 @@ engine::Result<Report> compare(const Options& options, engine::JobControl& job) 
   if (!b) return tl::unexpected(b.error());
   const auto deviation = engine::compareFields(a->field, b->field, job);
   if (!deviation) return tl::unexpected(deviation.error());
+  warnOfDifferentGrids(options, a->field.grid(), b->field.grid());
+  if (deviation->samples == 0) warn("the two fields have no sample in common");
   Report report{{"unit", a->field.grid().height_unit.name},
                 {"samples", deviation->samples},
                 {"rms", deviation->rms},

@@ -16,7 +16,8 @@ struct Options {
 };
 
 engine::Result<Report> convert(const Options& options, engine::JobControl& job) {
-  if (auto status = checkOutputs({options.out}); !status) return tl::unexpected(status.error());
+  if (auto status = checkOutputs({{options.out, OutputKind::kField}}, {options.in}); !status)
+    return tl::unexpected(status.error());
   const auto imported = loadScan(options.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const auto written = engine::exportField(imported->field, options.out, {}, job);

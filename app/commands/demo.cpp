@@ -28,6 +28,12 @@ const engine::TruthFigures& figures(const DemoRun& run, const std::string& name)
 }
 
 engine::Result<Report> demo(const DemoOptions& options, engine::JobControl& job) {
+  if (auto status = engine::validate(demoFilter(engine::FilterKind::kBox, options)); !status)
+    return tl::unexpected(status.error());
+  for (const double at : options.look_at)
+    if (!(at >= 0.0 && at <= 1.0))
+      return engine::inputError(fmt::format("{} is no place in the field", at), "--look-at",
+                                "give fractions from 0 to 1");
   std::error_code error;
   std::filesystem::create_directories(options.folder, error);
   if (error) return engine::inputError("the folder cannot be made", options.folder, error.message());
@@ -97,7 +103,9 @@ void addDemo(CLI::App& root, Chosen& chosen) {
       ->add_option("--look-at", options->look_at, "Where the close-ups look, as fractions X,Y of the field")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("--seed", options->seed, "Same seed, same bits")->capture_default_str();
+  command->add_option("--seed", options->seed, "Same seed, same bits")
+      ->check(seedProblem)
+      ->capture_default_str();
 }
 
 }  // namespace fettle::app

@@ -35,7 +35,10 @@ engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
   spec.threads = options.threads;
   spec.scope = options.only.empty() ? engine::FilterScope::kKeepMarks : engine::FilterScope::kOnlyMarks;
   if (auto status = engine::validate(spec); !status) return tl::unexpected(status.error());
-  if (auto status = checkOutputs({options.out}); !status) return tl::unexpected(status.error());
+  if (auto status =
+          checkOutputs({{options.out, OutputKind::kField}}, {options.in, options.keep, options.only});
+      !status)
+    return tl::unexpected(status.error());
 
   auto imported = loadScan(options.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());

@@ -91,7 +91,10 @@ engine::Result<render::PictureSpec> picture(const Options& options, engine::JobC
 }
 
 engine::Result<Report> render(const Options& options, engine::JobControl& job) {
-  if (auto status = checkOutputs({options.png}); !status) return tl::unexpected(status.error());
+  if (auto status = checkOutputs({{options.png, OutputKind::kPicture}},
+                                 {options.scan, options.compare, options.deviation, options.marks});
+      !status)
+    return tl::unexpected(status.error());
   const auto spec = picture(options, job);
   if (!spec) return tl::unexpected(spec.error());
   render::RendererOptions renderer_options;
@@ -101,6 +104,7 @@ engine::Result<Report> render(const Options& options, engine::JobControl& job) {
   render::Image image;
   const auto report = (*renderer)->render(*spec, image, job);
   if (!report) return tl::unexpected(report.error());
+  if (job.cancelled()) return engine::cancelled();
   for (const std::string& warning : report->warnings) warn(warning);
   for (const std::string& message : report->validation_messages) warn("validation: " + message);
   if (auto status = render::writePng(image, options.png); !status) return tl::unexpected(status.error());

@@ -5,6 +5,7 @@
 
 #include "app/command.h"
 #include "app/scan_options.h"
+#include "app/terminal.h"
 #include "engine/io/marks.h"
 #include "haptic/replay.h"
 #include "haptic/scene.h"
@@ -27,7 +28,11 @@ struct Options {
 };
 
 engine::Result<Report> replay(const Options& options, engine::JobControl& job) {
-  if (auto status = checkOutputs({options.out, options.marks_out, options.forces}); !status)
+  if (auto status = checkOutputs({{options.out, OutputKind::kField},
+                                  {options.marks_out, OutputKind::kMarks},
+                                  {options.forces, OutputKind::kText}},
+                                 {options.scan, options.strokes, options.scene, options.marks});
+      !status)
     return tl::unexpected(status.error());
   haptic::Scene scene = haptic::defaultScene();
   if (!options.scene.empty()) {
@@ -62,9 +67,13 @@ engine::Result<Report> replay(const Options& options, engine::JobControl& job) {
       return tl::unexpected(status.error());
 
   const haptic::ReplayReport& r = result->report;
+  if (r.counters.bad_input > 0)
+    warn(fmt::format("{}: {} rows hold no usable position and were felt as no input", options.strokes,
+                     r.counters.bad_input));
   Report report{{"ticks", r.ticks},
                 {"contact_ticks", r.contact_ticks},
                 {"max_force_n", r.max_force_n},
+                {"bad_input_ticks", r.counters.bad_input},
                 {"samples_changed", r.samples_changed},
                 {"marked", r.marked},
                 {"seconds", r.seconds},

@@ -24,7 +24,11 @@ engine::Result<Report> synth(Options options, engine::JobControl& job) {
   if (!size) return tl::unexpected(size.error());
   options.spec.width = size->first;
   options.spec.height = size->second;
-  if (auto status = checkOutputs({options.out, options.truth, options.edges}); !status)
+  if (auto status = checkOutputs({{options.out, OutputKind::kField},
+                                  {options.truth, OutputKind::kField},
+                                  {options.edges, OutputKind::kMarks}},
+                                 {});
+      !status)
     return tl::unexpected(status.error());
   const auto scan = engine::simulateScan(options.spec, job);
   if (!scan) return tl::unexpected(scan.error());
@@ -62,7 +66,9 @@ void addSynth(CLI::App& root, Chosen& chosen) {
       ->capture_default_str();
   command->add_option("--dropouts", options->spec.dropouts, "Scale of dropouts by slope and shadow")
       ->capture_default_str();
-  command->add_option("--seed", options->spec.seed, "Same seed, same bits")->capture_default_str();
+  command->add_option("--seed", options->spec.seed, "Same seed, same bits")
+      ->check(seedProblem)
+      ->capture_default_str();
   command->add_option("--truth", options->truth, "Also write the true surface");
   command->add_option("--edges", options->edges, "Also write the true edges as a picture, non-zero = edge");
 }

@@ -43,6 +43,9 @@ struct DemoRun {
   std::vector<DemoResult> results;  ///< noisy, touched, then filter alone and HEG for each filter
 };
 
+/// The demonstration's filter of one kind.
+[[nodiscard]] engine::FilterSpec demoFilter(engine::FilterKind kind, const DemoOptions& options);
+
 /// The whole process of Potter, Johnson and Cohen (2004) on a simulated scan: operator strokes, local
 /// smoothing, marking, global filters; and the same filters without a hand, for comparison. Writes scan,
 /// truth, edges, strokes, scene, marks and every result into the folder.

@@ -45,15 +45,15 @@ haptic::OperatorSpec operatorSpec(const DemoOptions& options) {
   return spec;
 }
 
-engine::FilterSpec filterSpec(engine::FilterKind kind, const DemoOptions& options) {
+}  // namespace
+
+engine::FilterSpec demoFilter(engine::FilterKind kind, const DemoOptions& options) {
   engine::FilterSpec spec;
   spec.kind = kind;
   spec.window = options.window;
   spec.passes = options.passes;
   return spec;
 }
-
-}  // namespace
 
 engine::Result<DemoRun> runDemo(const DemoOptions& options, engine::JobControl& job) {
   const std::filesystem::path folder(options.folder);
@@ -102,7 +102,7 @@ engine::Result<DemoRun> runDemo(const DemoOptions& options, engine::JobControl& 
     } ways[] = {{filter, filter + " filter alone", run.scan.scan},
                 {"heg-" + filter, "HEG with " + filter, run.touched}};
     for (const auto& way : ways) {
-      const auto filtered = engine::applyFilter(way.input, run.scan.scan, filterSpec(kind, options), job);
+      const auto filtered = engine::applyFilter(way.input, run.scan.scan, demoFilter(kind, options), job);
       if (!filtered) return tl::unexpected(filtered.error());
       if (auto s = saveField(filtered->field, file(way.name + ".tif"), job); !s)
         return tl::unexpected(s.error());

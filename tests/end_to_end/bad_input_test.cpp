@@ -100,6 +100,52 @@ TEST(BadInput, OutputsThatCannotBeWrittenAreRefusedAndLeaveNothing) {
   expectRefused(fettle({"convert", scan, "/proc/o.tif"}), "/proc");
 }
 
+TEST(BadInput, WhatWouldDestroyAFileIsRefusedBeforeAnyWork) {
+  const TempFolder folder;
+  const std::string scan = smallScan(folder);
+  write(folder.file("s.csv"), "t,x,y,z,tool\n0,1,1,1,feel\n");
+  std::filesystem::create_symlink(scan, folder.path() / "link.asc");
+  expectRefused(fettle({"filter", scan, scan, "--filter", "box"}), "replace an input");
+  expectRefused(fettle({"filter", scan, folder.file("link.asc"), "--filter", "box"}), "replace an input");
+  expectRefused(
+      fettle({"replay", scan, folder.file("s.csv"), folder.file("o.tif"), "--forces", folder.file("s.csv")}),
+      "replace an input");
+  expectRefused(fettle({"replay", scan, folder.file("s.csv"), folder.file("o.png"), "--marks-out",
+                        folder.file("o.png")}),
+                "same place");
+  expectRefused(fettle({"replay", scan, folder.file("s.csv"), folder.file("o.tif"), "--marks-out",
+                        folder.file("m.jpg")}),
+                "m.jpg");
+  expectRefused(fettle({"synth", folder.file("o.tif"), "--edges", folder.file("e.xyz")}), "e.xyz");
+  expectRefused(fettle({"render", scan, folder.file("o.jpg")}), "o.jpg");
+  expectRefused(fettle({"convert", scan, "/dev/full"}), "/dev/full");
+  for (const char* name : {"o.tif", "o.png", "o.jpg"})
+    EXPECT_FALSE(std::filesystem::exists(folder.file(name))) << name;
+}
+
+TEST(BadInput, AnEmptyArgumentIsNotTakenForNoArgument) {
+  const TempFolder folder;
+  const std::string scan = smallScan(folder);
+  for (const char* option : {"--keep", "--only", "--max-change"})
+    expectRefused(fettle({"filter", scan, folder.file("o.tif"), "--filter", "box", option, ""}), option);
+}
+
+TEST(BadInput, SeedsThatAreNoWholeNumbersAreRefused) {
+  const TempFolder folder;
+  for (const char* seed : {"-1", "99999999999999999999", "1.5", "x"})
+    expectRefused(fettle({"synth", folder.file("o.tif"), "--seed", seed}), "--seed");
+}
+
+TEST(BadInput, AStandardErrorThatIsFullEndsNothing) {
+  const TempFolder folder;
+  const std::string scan = smallScan(folder);
+  const std::string run =
+      std::string(FETTLE_PROGRAM) + " convert " + scan + " " + folder.file("o.png") + " 2>/dev/full";
+  EXPECT_EQ(runProcess({"sh", "-c", run}).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("o.png")));
+  EXPECT_EQ(runProcess({"sh", "-c", std::string(FETTLE_PROGRAM) + " info nofile 2>/dev/full"}).status, 2);
+}
+
 TEST(BadInput, AFullDiskLeavesTheOldFileAndNothingElse) {
   const TempFolder folder;
   ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "300x300"}).status, 0);
