@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cstring>
 
+#include "render/pieces.h"
+
 namespace fettle::render {
 namespace {
 
@@ -65,9 +67,10 @@ void Frame::bringGlyphs(const Glyphs& glyphs) {
   glyph_generation_ = glyphs.generation();
 }
 
-double Frame::draw(const PicturePlan& plan, std::span<const PanelDraw> panels,
-                   const std::vector<gpu::Quad>& furniture, const FrameOptions& options, const Glyphs& glyphs,
-                   const PictureTarget& target) {
+engine::Result<double> Frame::draw(const PicturePlan& plan, std::span<const PanelDraw> panels,
+                                   const std::vector<gpu::Quad>& furniture, const FrameOptions& options,
+                                   const Glyphs& glyphs, const PictureTarget& target,
+                                   engine::JobControl& job) {
   bringGlyphs(glyphs);
   const auto start = std::chrono::steady_clock::now();
   const vk::raii::Device& device = context_.device();
@@ -143,44 +146,72 @@ double Frame::draw(const PicturePlan& plan, std::span<const PanelDraw> panels,
     resources.push_back(std::move(r));
   }
 
-  context_.run([&](const vk::raii::CommandBuffer& commands) {
-    constexpr auto kGraphics = vk::PipelineBindPoint::eGraphics;
-    for (std::size_t i = 0; i < panels.size(); ++i) {
-      const PanelDraw& draw = panels[i];
-      const Detail& detail = draw.panel->detail;
-      const bool paged = draw.field->paging().paged();
-      scenes_[i].begin(commands);
-      commands.bindDescriptorSets(kGraphics, pipelines_.sceneLayout(), 0, *resources[i].surface_set, {});
-      if (!detail.patches.empty()) {
-        const SurfaceVariant variant{paged, options.marks == MarksOverlay::kShow, draw.original != nullptr,
-                                     options.contours == Contours::kShow, draw.panel->smooth};
-        commands.bindPipeline(kGraphics, pipelines_.surface(variant));
-        commands.draw(gpu::kPatchVertices, static_cast<std::uint32_t>(detail.patches.size()), 0, 0);
-      }
-      // Last: nearly all of it lies behind the surface, and the depth test spares its fragments.
-      commands.bindPipeline(kGraphics, pipelines_.floor());
-      commands.draw(4, 1, 0, 0);
-      if (!detail.walls.empty()) {
-        commands.bindDescriptorSets(kGraphics, pipelines_.sceneLayout(), 0, *resources[i].wall_set, {});
-        commands.bindPipeline(kGraphics,
-                              pipelines_.wall(paged ? Pipelines::Paged::kYes : Pipelines::Paged::kNo));
-        commands.draw(gpu::kWallVertices, static_cast<std::uint32_t>(detail.walls.size()), 0, 0);
-      }
-      scenes_[i].end(commands);
+  PieceRunner runner(context_, options.piece_ms, job);
+  std::uint64_t steps = picturePieces(target.colour.extent(), samples).size();
+  for (const PanelDraw& draw : panels)
+    steps += kPieceSteps * (draw.panel->detail.patches.size() + 1 + draw.panel->detail.walls.size());
+  job.begin("drawing", steps);
+
+  constexpr auto kGraphics = vk::PipelineBindPoint::eGraphics;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const PanelDraw& draw = panels[i];
+    const Detail& detail = draw.panel->detail;
+    const bool paged = draw.field->paging().paged();
+    const SceneTarget& scene = scenes_[i];
+    Pass pass = Pass::kFirst;
+    // Instances of one kind, in their order; pieces change nothing about what is drawn over what.
+    const auto instances = [&](std::size_t count, vk::DescriptorSet set, vk::Pipeline pipeline,
+                               std::uint32_t vertices) {
+      return runner.instances(count, scene.colour.extent(),
+                              [&](const vk::raii::CommandBuffer& commands, const Piece& piece) {
+                                scene.begin(commands, pass);
+                                pass = Pass::kNext;
+                                commands.setScissor(0, piece.scissor);
+                                commands.bindDescriptorSets(kGraphics, pipelines_.sceneLayout(), 0, set, {});
+                                commands.bindPipeline(kGraphics, pipeline);
+                                commands.draw(vertices, piece.count, 0, piece.first);
+                                scene.end(commands);
+                              });
+    };
+    if (!detail.patches.empty()) {
+      const SurfaceVariant variant{paged, options.marks == MarksOverlay::kShow, draw.original != nullptr,
+                                   options.contours == Contours::kShow, draw.panel->smooth};
+      if (!instances(detail.patches.size(), *resources[i].surface_set, pipelines_.surface(variant),
+                     gpu::kPatchVertices))
+        return engine::cancelled();
     }
-    const vk::Extent2D extent = target.colour.extent();
-    const glm::vec3& ground = plan.palette.ground;
-    target.begin(commands, {ground.x, ground.y, ground.z});
-    commands.bindPipeline(kGraphics, pipelines_.quads());
-    const gpu::vec4 size{extent.width, extent.height, 0, 0};
-    commands.pushConstants<gpu::vec4>(pipelines_.pictureLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
-    for (std::size_t i = 0; i < panels.size(); ++i) {
-      commands.bindDescriptorSets(kGraphics, pipelines_.pictureLayout(), 0, *resources[i].picture_set, {});
-      commands.draw(4, 1, 0, static_cast<std::uint32_t>(i));
-    }
-    if (!furniture.empty()) commands.draw(4, static_cast<std::uint32_t>(furniture.size()), 0, panel_count);
-    target.end(commands);
-  });
+    // After the surface: nearly all of it lies behind, and the depth test spares its fragments.
+    if (!instances(1, *resources[i].surface_set, pipelines_.floor(), 4)) return engine::cancelled();
+    if (!detail.walls.empty() &&
+        !instances(detail.walls.size(), *resources[i].wall_set,
+                   pipelines_.wall(paged ? Pipelines::Paged::kYes : Pipelines::Paged::kNo),
+                   gpu::kWallVertices))
+      return engine::cancelled();
+    context_.run([&](const vk::raii::CommandBuffer& commands) { scene.finish(commands); });
+  }
+
+  const vk::Extent2D extent = target.colour.extent();
+  const glm::vec3& ground = plan.palette.ground;
+  Pass pass = Pass::kFirst;
+  for (const vk::Rect2D& band : picturePieces(extent, samples)) {
+    const bool drawn = runner.one([&](const vk::raii::CommandBuffer& commands) {
+      target.begin(commands, {ground.x, ground.y, ground.z}, pass);
+      pass = Pass::kNext;
+      commands.setScissor(0, band);
+      commands.bindPipeline(kGraphics, pipelines_.quads());
+      const gpu::vec4 size{extent.width, extent.height, 0, 0};
+      commands.pushConstants<gpu::vec4>(pipelines_.pictureLayout(), vk::ShaderStageFlagBits::eVertex, 0,
+                                        size);
+      for (std::size_t i = 0; i < panels.size(); ++i) {
+        commands.bindDescriptorSets(kGraphics, pipelines_.pictureLayout(), 0, *resources[i].picture_set, {});
+        commands.draw(4, 1, 0, static_cast<std::uint32_t>(i));
+      }
+      if (!furniture.empty()) commands.draw(4, static_cast<std::uint32_t>(furniture.size()), 0, panel_count);
+      target.end(commands);
+    });
+    if (!drawn) return engine::cancelled();
+  }
+  context_.run([&](const vk::raii::CommandBuffer& commands) { target.finish(commands); });
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 

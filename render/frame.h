@@ -2,6 +2,8 @@
 
 #include <span>
 
+#include "engine/base/error.h"
+#include "engine/base/job.h"
 #include "render/field_texture.h"
 #include "render/glyphs.h"
 #include "render/pipelines.h"
@@ -21,6 +23,7 @@ struct FrameOptions {
   int samples_per_side = 1;
   MarksOverlay marks = MarksOverlay::kHide;
   Contours contours = Contours::kHide;
+  double piece_ms = 50.0;  ///< as RendererOptions::piece_ms
 };
 
 /// Draws one picture: every panel into a scene target, then all of it into the picture. Keeps what the next
@@ -31,10 +34,12 @@ class Frame {
  public:
   explicit Frame(Context& context) : context_(context), pipelines_(context) {}
 
-  /// Returns when the picture is in `target`. Milliseconds of recording, drawing and waiting.
-  double draw(const PicturePlan& plan, std::span<const PanelDraw> panels,
-              const std::vector<gpu::Quad>& furniture, const FrameOptions& options, const Glyphs& glyphs,
-              const PictureTarget& target);
+  /// Returns when the picture is in `target`. Milliseconds of recording, drawing and waiting. Draws in
+  /// pieces (render/pieces.h), each a submission that is waited for; `job` advances with every one.
+  /// Errors: kCancelled, between two pieces; nothing is under way then.
+  engine::Result<double> draw(const PicturePlan& plan, std::span<const PanelDraw> panels,
+                              const std::vector<gpu::Quad>& furniture, const FrameOptions& options,
+                              const Glyphs& glyphs, const PictureTarget& target, engine::JobControl& job);
 
   [[nodiscard]] const Pipelines& pipelines() const noexcept { return pipelines_; }
 

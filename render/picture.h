@@ -142,6 +142,10 @@ struct RendererOptions {
   /// Longest side of one image in samples, rounded up to a tile; 0: what the device offers. Fields past it
   /// are spread over the layers of an image array. For tests of exactly that.
   int max_image_side = 0;
+  /// How long one piece of drawing should take [ms], > 0: cancelling is seen, and progress told, between two
+  /// of them. Pieces adapt to it and may take a few times as long; infinity draws each kind of thing at once.
+  /// The pixels do not depend on it.
+  double piece_ms = 50.0;
 };
 
 /// Draws height fields off-screen. Keeps the fields it drew on the device, so that the next picture of a
@@ -158,8 +162,9 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Draws `spec` into `out` (resized). Progress counts tiles uploaded, then frames. On an error `out` is
-  /// unchanged. Errors: kInput for a spec outside the ranges stated above or grids that do not fit each
+  /// Draws `spec` into `out` (resized). Progress counts tiles uploaded, then pieces of drawing. On an error
+  /// `out` is unchanged. Cancelling stops a drawing under way after the piece at work (RendererOptions).
+  /// Errors: kInput for a spec outside the ranges stated above or grids that do not fit each
   /// other; kFailed for a field larger than the device can hold, memory exhausted, a lost device; kCancelled.
   [[nodiscard]] engine::Result<PictureReport> render(const PictureSpec& spec, Image& out,
                                                      engine::JobControl& job);

@@ -28,6 +28,7 @@ struct Renderer::Impl {
   // What the device holds: left, right, and what deviations are counted from.
   std::array<FieldTexture, 3> textures;
   std::uint32_t max_side = 0;
+  double piece_ms = 50.0;
 
   Impl(std::unique_ptr<Context> c, Glyphs g)
       : context(std::move(c)), glyphs(std::move(g)), frame(std::make_unique<Frame>(*context)) {}
@@ -74,6 +75,7 @@ engine::Result<std::unique_ptr<Renderer>> Renderer::create(const RendererOptions
     if (options.max_image_side > 0)
       impl->max_side =
           std::min(impl->max_side, static_cast<std::uint32_t>(std::max(64, options.max_image_side)));
+    impl->piece_ms = options.piece_ms;
     return std::unique_ptr<Renderer>(new Renderer(std::move(impl)));
   } catch (const std::exception& error) {
     return tl::unexpected(errorOf(name, error.what()));
@@ -132,21 +134,24 @@ engine::Result<PictureReport> Renderer::Impl::render(const PictureSpec& spec, Im
   }
 
   if (job.cancelled()) return engine::cancelled();
-  job.begin("drawing", 1);
   if (glyphs.used() > Glyphs::kSide / 2) glyphs.clear();
   const std::vector<gpu::Quad> furniture =
       furnish(plan->layout, spec.view, plan->furniture, plan->palette, glyphs, report.warnings);
   const vk::Extent2D extent{static_cast<std::uint32_t>(spec.view.width),
                             static_cast<std::uint32_t>(spec.view.height)};
   if (target.colour.extent() != extent) target = PictureTarget(*context, extent);
-  const FrameOptions options{spec.samples_per_side, spec.marks, spec.contours};
-  report.frame_ms = frame->draw(*plan, panels, furniture, options, glyphs, target);
+  const FrameOptions options{spec.samples_per_side, spec.marks, spec.contours, piece_ms};
+  const engine::Result<double> frame_ms = frame->draw(*plan, panels, furniture, options, glyphs, target, job);
+  if (!frame_ms) return tl::unexpected(frame_ms.error());
+  report.frame_ms = *frame_ms;
+  if (job.cancelled()) return engine::cancelled();
   const auto read_start = std::chrono::steady_clock::now();
-  out = capture(*context, target);
+  Image picture = capture(*context, target);
+  if (job.cancelled()) return engine::cancelled();
+  out = std::move(picture);
   report.read_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - read_start).count();
   report.validation_messages = context->messages().all();
-  job.advance();
   return report;
 }
 

@@ -9,12 +9,12 @@ using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 
 vk::RenderingAttachmentInfo attachment(const GpuImage& image, Layout layout, vk::ClearValue clear,
-                                       vk::AttachmentStoreOp store) {
+                                       Pass pass) {
   vk::RenderingAttachmentInfo info;
   info.setImageView(image.view())
       .setImageLayout(layout)
-      .setLoadOp(vk::AttachmentLoadOp::eClear)
-      .setStoreOp(store)
+      .setLoadOp(pass == Pass::kFirst ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad)
+      .setStoreOp(vk::AttachmentStoreOp::eStore)
       .setClearValue(clear);
   return info;
 }
@@ -32,6 +32,16 @@ void beginRendering(const vk::raii::CommandBuffer& commands, vk::Extent2D extent
   commands.setScissor(0, vk::Rect2D{{0, 0}, extent});
 }
 
+// Colour ready to be drawn to: the first time its old content, last read as `reader` says, is let go.
+void beginColour(const vk::raii::CommandBuffer& commands, const GpuImage& colour, Pass pass,
+                 vk::PipelineStageFlags2 reader, vk::AccessFlags2 reading) {
+  const bool first = pass == Pass::kFirst;
+  change(commands, colour, first ? Layout::eUndefined : Layout::eColorAttachmentOptimal,
+         Layout::eColorAttachmentOptimal, first ? reader : Stage::eColorAttachmentOutput,
+         first ? reading : Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput,
+         Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
+}
+
 }  // namespace
 
 SceneTarget::SceneTarget(const Context& context, vk::Extent2D extent)
@@ -40,23 +50,24 @@ SceneTarget::SceneTarget(const Context& context, vk::Extent2D extent)
       depth(context, kDepthFormat, extent, 1, GpuImage::Kind::kPlane, Usage::eDepthStencilAttachment,
             vk::ImageAspectFlagBits::eDepth) {}
 
-void SceneTarget::begin(const vk::raii::CommandBuffer& commands) const {
-  change(commands, colour, Layout::eUndefined, Layout::eColorAttachmentOptimal, Stage::eFragmentShader,
-         Access::eShaderRead, Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite);
-  change(commands, depth, Layout::eUndefined, Layout::eDepthAttachmentOptimal, Stage::eLateFragmentTests,
-         Access::eDepthStencilAttachmentWrite, Stage::eEarlyFragmentTests,
+void SceneTarget::begin(const vk::raii::CommandBuffer& commands, Pass pass) const {
+  beginColour(commands, colour, pass, Stage::eFragmentShader, Access::eShaderRead);
+  change(commands, depth, pass == Pass::kFirst ? Layout::eUndefined : Layout::eDepthAttachmentOptimal,
+         Layout::eDepthAttachmentOptimal, Stage::eEarlyFragmentTests | Stage::eLateFragmentTests,
+         Access::eDepthStencilAttachmentWrite, Stage::eEarlyFragmentTests | Stage::eLateFragmentTests,
          Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite);
   const vk::RenderingAttachmentInfo colours =
-      attachment(colour, Layout::eColorAttachmentOptimal, vk::ClearColorValue(std::array<float, 4>{}),
-                 vk::AttachmentStoreOp::eStore);
+      attachment(colour, Layout::eColorAttachmentOptimal, vk::ClearColorValue(std::array<float, 4>{}), pass);
   const vk::RenderingAttachmentInfo depths =
-      attachment(depth, Layout::eDepthAttachmentOptimal, vk::ClearDepthStencilValue{1.0F, 0},
-                 vk::AttachmentStoreOp::eDontCare);
+      attachment(depth, Layout::eDepthAttachmentOptimal, vk::ClearDepthStencilValue{1.0F, 0}, pass);
   beginRendering(commands, colour.extent(), colours, &depths);
 }
 
 void SceneTarget::end(const vk::raii::CommandBuffer& commands) const {
   commands.endRendering();
+}
+
+void SceneTarget::finish(const vk::raii::CommandBuffer& commands) const {
   change(commands, colour, Layout::eColorAttachmentOptimal, Layout::eShaderReadOnlyOptimal,
          Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eFragmentShader,
          Access::eShaderRead);
@@ -66,18 +77,20 @@ PictureTarget::PictureTarget(const Context& context, vk::Extent2D extent)
     : colour(context, kColourFormat, extent, 1, GpuImage::Kind::kPlane,
              Usage::eColorAttachment | Usage::eTransferSrc, vk::ImageAspectFlagBits::eColor) {}
 
-void PictureTarget::begin(const vk::raii::CommandBuffer& commands, const std::array<float, 3>& ground) const {
-  change(commands, colour, Layout::eUndefined, Layout::eColorAttachmentOptimal, Stage::eCopy,
-         Access::eTransferRead, Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite);
+void PictureTarget::begin(const vk::raii::CommandBuffer& commands, const std::array<float, 3>& ground,
+                          Pass pass) const {
+  beginColour(commands, colour, pass, Stage::eCopy, Access::eTransferRead);
   const vk::RenderingAttachmentInfo colours =
       attachment(colour, Layout::eColorAttachmentOptimal,
-                 vk::ClearColorValue(std::array<float, 4>{ground[0], ground[1], ground[2], 1.0F}),
-                 vk::AttachmentStoreOp::eStore);
+                 vk::ClearColorValue(std::array<float, 4>{ground[0], ground[1], ground[2], 1.0F}), pass);
   beginRendering(commands, colour.extent(), colours, nullptr);
 }
 
 void PictureTarget::end(const vk::raii::CommandBuffer& commands) const {
   commands.endRendering();
+}
+
+void PictureTarget::finish(const vk::raii::CommandBuffer& commands) const {
   change(commands, colour, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal,
          Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eCopy, Access::eTransferRead);
 }

@@ -1,6 +1,9 @@
 #include "render/picture.h"
 
+#include <chrono>
 #include <cstdlib>
+#include <string_view>
+#include <thread>
 
 #include "engine/field/live_field.h"
 #include "tests/render/fields.h"
@@ -192,6 +195,60 @@ TEST(Picture, CancelledBeforeItBeginsLeavesTheImageAloneAndTheNextOneIsRight) {
   EXPECT_EQ(result.error().kind, engine::ErrorKind::kCancelled);
   EXPECT_EQ(image.width, 3);
   EXPECT_EQ(shoot(**renderer, spec).image.rgba, shoot(*sharedRenderer(), spec).image.rgba);
+}
+
+TEST(Picture, PixelsDoNotDependOnThePiecesTheyAreDrawnIn) {
+  PictureSpec spec = oblique(fieldOf(
+      gridOf(300, 200), [](int c, int r) { return c > 90 && c < 120 && r < 50 ? kNan : hills(c, r); }));
+  spec.compare = fieldOf(gridOf(150, 220), hills);
+  spec.decoration = Decoration::kFull;
+  spec.samples_per_side = 2;
+  RendererOptions options{Validation::kOn, "", 0};
+  options.piece_ms = std::numeric_limits<double>::infinity();
+  auto at_once = Renderer::create(options);
+  options.piece_ms = 1e-9;  // bands of single patches throughout
+  auto bit_by_bit = Renderer::create(options);
+  ASSERT_TRUE(at_once && bit_by_bit);
+  for (const double zoom : {1.0, 9.0}) {
+    spec.view.zoom = zoom;
+    EXPECT_EQ(shoot(**at_once, spec).image.rgba, shoot(**bit_by_bit, spec).image.rgba) << zoom;
+  }
+}
+
+TEST(Picture, CancelledWhileDrawingStopsSoonLeavesTheImageAloneAndTheNextOneIsRight) {
+  auto renderer = Renderer::create();
+  ASSERT_TRUE(renderer);
+  PictureSpec spec = oblique(fieldOf(gridOf(1500, 1500), hills));
+  spec.view.width = 1280;
+  spec.view.height = 800;
+  spec.samples_per_side = 2;
+  spec.cell_px = 1.0;
+  Image image{3, 3, std::vector<std::uint8_t>(36, 9)};
+  engine::JobControl job;
+  std::chrono::steady_clock::time_point asked;
+  std::thread canceller([&] {
+    while (std::string_view(job.stage()) != "drawing" || job.done() == 0)
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    asked = std::chrono::steady_clock::now();
+    job.cancel();
+  });
+  const auto result = (*renderer)->render(spec, image, job);
+  const auto returned = std::chrono::steady_clock::now();
+  canceller.join();
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().kind, engine::ErrorKind::kCancelled);
+  EXPECT_LT(job.done(), job.total());
+  // A piece is meant to take 50 ms; the rest is for machines that do other work as well.
+  EXPECT_LT(std::chrono::duration<double>(returned - asked).count(), 0.5);
+  EXPECT_EQ(image.width, 3);
+  EXPECT_EQ(image.rgba, std::vector<std::uint8_t>(36, 9));
+
+  engine::JobControl again;
+  const auto report = (*renderer)->render(spec, image, again);
+  ASSERT_TRUE(report) << report.error().line();
+  EXPECT_EQ(report->tiles_uploaded, 0);
+  EXPECT_EQ(again.done(), again.total());
+  EXPECT_EQ(image.rgba, shoot(*sharedRenderer(), spec).image.rgba);
 }
 
 TEST(Picture, FurnitureFitsFromSmallToLargePicturesAndSaysWhatDoesNot) {
