@@ -46,7 +46,17 @@ class Pen {
     quads_.push_back(
         {glm::vec4(pixels), glm::vec4(uv), glm::vec4(colour, opacity), glm::ivec4(fill, 1, 0, 0)});
   }
-  // `what`, cut with an ellipsis until it is at most `room` wide.
+  // The largest font size, `px` at most, in which every line is at most `room` wide; 0 when none is legible.
+  // What has a figure in it is fitted so and never cut: a cut number is another number.
+  int sizeFor(const std::vector<std::string>& lines, double room, int px, Glyphs::Weight weight) {
+    const auto fits = [&](int size) {
+      return std::all_of(lines.begin(), lines.end(),
+                         [&](const std::string& line) { return glyphs_.width(line, size, weight) <= room; });
+    };
+    while (px >= kSmallestPx && !fits(px)) --px;
+    return px >= kSmallestPx ? px : 0;
+  }
+  // Words of the user's own or without figures, cut with an ellipsis until at most `room` wide.
   std::string fitted(const std::string& what, double room, int px, Glyphs::Weight weight) {
     if (glyphs_.width(what, px, weight) <= room) return what;
     std::string cut = what;
@@ -61,12 +71,38 @@ class Pen {
   [[nodiscard]] Glyphs& glyphs() noexcept { return glyphs_; }
 
  private:
+  static constexpr int kSmallestPx = 8;
   std::vector<gpu::Quad>& quads_;
   Glyphs& glyphs_;
 };
 
 constexpr auto kRegular = Glyphs::Weight::kRegular;
 constexpr auto kBold = Glyphs::Weight::kBold;
+
+// The lines of the note under the colour bar at the size that shows them whole.
+struct NoteLines {
+  std::vector<std::string> lines;
+  int px = 0;
+};
+
+// First as they are, then smaller, then a word and its figure one below the other; empty: no way.
+NoteLines noteLines(Pen& pen, const std::string& note, double room, int px) {
+  NoteLines whole, split;
+  for (std::size_t from = 0; from <= note.size();) {
+    const std::size_t to = std::min(note.find('\n', from), note.size());
+    const std::string line = note.substr(from, to - from);
+    whole.lines.push_back(line);
+    const std::size_t space = line.find(' ');
+    split.lines.push_back(line.substr(0, space));
+    if (space != std::string::npos) split.lines.push_back(line.substr(space + 1));
+    from = to + 1;
+  }
+  for (NoteLines* way : {&whole, &split}) {
+    way->px = pen.sizeFor(way->lines, room, px, kRegular);
+    if (way->px > 0) return *way;
+  }
+  return {};
+}
 
 void colourBar(Pen& pen, const Layout& layout, const View& view, const Furniture& f, const Palette& palette,
                std::vector<std::string>& warnings) {
@@ -81,15 +117,33 @@ void colourBar(Pen& pen, const Layout& layout, const View& view, const Furniture
   const double size =
       std::max(f.range.high - f.range.low, std::max(std::abs(f.range.low), std::abs(f.range.high)) * 1e-3);
   const ShownUnit unit = shownUnit(f.height_unit, size, 0.05, 5e4);
+  const std::string unit_text = "[" + unit.name + "]";
   const double low = f.range.low * unit.per_unit, high = f.range.high * unit.per_unit;
 
   double y = plot.y + line * 0.9;
-  pen.text(left, y, pen.fitted(f.quantity, room, layout.text_px, kBold), layout.text_px, kBold, palette.ink);
-  pen.text(left, y + line, pen.fitted("[" + unit.name + "]", room, layout.text_px, kRegular), layout.text_px,
-           kRegular, palette.ink);
+  const int name_px = pen.sizeFor({f.quantity}, room, layout.text_px, kBold);
+  pen.text(left, y, name_px > 0 ? f.quantity : pen.fitted(f.quantity, room, layout.text_px, kBold),
+           name_px > 0 ? name_px : layout.text_px, kBold, palette.ink);
+  if (const int px = pen.sizeFor({unit_text}, room, layout.text_px, kRegular); px > 0)
+    pen.text(left, y + line, unit_text, px, kRegular, palette.ink);
+  else
+    warnings.emplace_back("no room for the unit of the colours, make the picture larger");
   const double top = std::round(y + 1.8 * line + tip);
-  const double notes = f.note.empty() ? 0.0 : 3.4 * line;
-  const double bottom = std::round(plot.y + plot.height - tip - notes - 0.4 * line);
+  const int small = std::max(9, static_cast<int>(std::lround(layout.text_px * 0.8)));
+  NoteLines note;
+  const auto bottomAbove = [&] {
+    // Three lines of the usual size fit what is kept for a note; one of more lines gets what they need.
+    const double notes =
+        note.lines.empty()
+            ? 0.0
+            : std::max(3.4 * line, 1.1 * line + static_cast<double>(note.lines.size()) * note.px * 1.35);
+    return std::round(plot.y + plot.height - tip - notes - 0.4 * line);
+  };
+  if (!f.note.empty()) note = noteLines(pen, f.note, room, small);
+  if (bottomAbove() - top < 2 * line) note = {};
+  if (note.lines.empty() && !f.note.empty())
+    warnings.emplace_back("no room for the note under the colour bar, make the picture larger");
+  const double bottom = bottomAbove();
   if (bottom - top < 2 * line) {
     warnings.emplace_back("no room for the colour bar, make the picture higher");
     return;
@@ -99,26 +153,24 @@ void colourBar(Pen& pen, const Layout& layout, const View& view, const Furniture
   if (f.below)
     pen.put({left, bottom, left + width, bottom + tip}, {-1, 1, 1, 0}, palette.ink, 1.0F, gpu::kFillDown);
   const int wanted = std::clamp(static_cast<int>((bottom - top) / (3.2 * line)), 2, 9);
-  for (const Tick& tick : ticks(low, high, wanted)) {
+  const std::vector<Tick> steps = ticks(low, high, wanted);
+  std::vector<std::string> figures;
+  for (const Tick& tick : steps) figures.push_back(tick.text);
+  const double text_left = left + width + 9 * s;
+  const int figures_px = pen.sizeFor(figures, view.width - text_left - 2 * s, layout.text_px, kRegular);
+  if (figures_px == 0)
+    warnings.emplace_back("no room for the figures of the colour bar, make the picture larger");
+  for (const Tick& tick : steps) {
     const double at = std::round(bottom - (tick.value - low) / (high - low) * (bottom - top));
     pen.box(left + width, at - std::round(0.5 * s), std::round(5 * s), std::max(1.0, std::round(s)),
             palette.ink);
-    const double text_left = left + width + 9 * s;
-    pen.text(text_left, at + layout.text_px * 0.36,
-             pen.fitted(tick.text, view.width - text_left - 2 * s, layout.text_px, kRegular), layout.text_px,
-             kRegular, palette.ink);
+    if (figures_px > 0)
+      pen.text(text_left, at + figures_px * 0.36, tick.text, figures_px, kRegular, palette.ink);
   }
-  if (!f.note.empty()) {
-    const int small = std::max(9, static_cast<int>(std::lround(layout.text_px * 0.8)));
-    double note_y = bottom + tip + 1.1 * line;
-    std::size_t from = 0;
-    while (from <= f.note.size()) {
-      const std::size_t to = std::min(f.note.find('\n', from), f.note.size());
-      pen.text(left, note_y, pen.fitted(f.note.substr(from, to - from), room, small, kRegular), small,
-               kRegular, palette.faint_ink);
-      note_y += small * 1.35;
-      from = to + 1;
-    }
+  double note_y = bottom + tip + 1.1 * line;
+  for (const std::string& words : note.lines) {
+    pen.text(left, note_y, words, note.px, kRegular, palette.faint_ink);
+    note_y += note.px * 1.35;
   }
 }
 

@@ -216,7 +216,9 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
   }
   f.marks_opacity = static_cast<float>(spec.marks_opacity);
   if (f.below || f.above) {
-    const double size = plan.range.high - plan.range.low;
+    // As the colour bar chooses, whose unit stands over both.
+    const double size = std::max(plan.range.high - plan.range.low,
+                                 std::max(std::abs(plan.range.low), std::abs(plan.range.high)) * 1e-3);
     const ShownUnit shown = shownUnit(unit, size, 0.05, 5e4);
     f.note = fmt::format("lowest {}\nhighest {}", shortNumber(colours.extreme.low * shown.per_unit),
                          shortNumber(colours.extreme.high * shown.per_unit));

@@ -1,5 +1,8 @@
 #include "render/plan.h"
 
+#include <algorithm>
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "render/colour_map.h"
@@ -98,6 +101,84 @@ TEST(NumberText, UnitsChangeOnlyWhenNumbersReadBadly) {
   EXPECT_EQ(roundDown125(7.3), 5.0);
   EXPECT_EQ(roundDown125(1.0), 1.0);
   EXPECT_DOUBLE_EQ(roundDown125(0.0021), 0.002);
+}
+
+// What the furniture of a picture says, letter by letter in drawing order; spaces draw nothing.
+std::u32string saying(const std::vector<gpu::Quad>& quads, Glyphs& glyphs) {
+  std::map<std::pair<int, int>, char32_t> letters;
+  for (const char32_t c :
+       std::u32string(U"0123456789.,+e\u2212\u2026\u00d7\u2248[]%:\u00b5abcdfghijklmnopqrstuvwxyz"))
+    for (int px = 6; px <= 40; ++px)
+      for (const auto weight : {Glyphs::Weight::kRegular, Glyphs::Weight::kBold}) {
+        const Glyphs::Glyph& g = glyphs.glyph(c, px, weight);
+        letters[{g.x, g.y}] = c;
+      }
+  std::u32string out;
+  for (const gpu::Quad& quad : quads)
+    if (quad.fill.x == gpu::kFillGlyph) {
+      const auto found = letters.find({static_cast<int>(quad.uv.x), static_cast<int>(quad.uv.y)});
+      out += found == letters.end() ? U'?' : found->second;
+    }
+  return out;
+}
+
+TEST(Furniture, AFigureIsShownWholeOrLeftOutWithAWarningButNeverCut) {
+  struct Case {
+    ValueRange range;
+    std::string note;
+    std::u32string lowest, highest;
+  };
+  const std::vector<Case> cases{
+      {{-20, 40}, "lowest \u221230.0\nhighest 1713\nbar: 99.5 %", U"lowest\u221230.0", U"highest1713"},
+      {{-0.1, 0.1}, "lowest \u22120.118\nhighest 0.123", U"lowest\u22120.118", U"highest0.123"},
+      {{123456.25, 123456.75},
+       "lowest \u22121.23e+08\nhighest 1.23e+08",
+       U"lowest\u22121.23e+08",
+       U"highest1.23e+08"},
+      // Inches have no other unit to go to.
+      {{4123456.25, 4123456.75}, "lowest 0\nhighest \u22121.23e+08", U"lowest0", U"highest\u22121.23e+08"}};
+  int whole = 0, left_out = 0;
+  for (const auto& [w, h] :
+       {std::pair{800, 500}, {3000, 200}, {200, 140}, {200, 3000}, {480, 300}, {1280, 800}})
+    for (const int panels : {1, 2})
+      for (const Case& c : cases) {
+        View view;
+        view.width = w;
+        view.height = h;
+        const Layout layout = layOut(view, Decoration::kFull, panels, Titles::kNone);
+        Furniture f;
+        f.range = c.range;
+        f.above = f.below = true;
+        f.quantity = "deviation";
+        f.note = c.note;
+        f.height_unit = {"in", 25.4};
+        f.lateral_unit = {"mm", 1.0};
+        f.exaggeration = 1000;
+        engine::Result<Glyphs> glyphs = Glyphs::create();
+        ASSERT_TRUE(glyphs);
+        std::vector<std::string> warnings;
+        const std::vector<gpu::Quad> quads =
+            furnish(layout, view, f, paletteOf(Theme::kLight, ColourMap::kViridis), *glyphs, warnings);
+        const std::u32string said = saying(quads, *glyphs);
+        ASSERT_FALSE(said.empty());
+        EXPECT_EQ(said.find(U'\u2026'), said.npos) << w << " x " << h << ' ' << c.note;
+        EXPECT_EQ(said.find(U'?'), said.npos) << w << " x " << h << ' ' << c.note;
+        for (const gpu::Quad& quad : quads)
+          EXPECT_LE(quad.pixels.z, static_cast<float>(w + 1)) << w << " x " << h;
+        const bool noted = said.find(c.lowest) != said.npos && said.find(c.highest) != said.npos;
+        const bool warned = std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+          return warning.find("note") != std::string::npos;
+        });
+        EXPECT_NE(noted, warned) << w << " x " << h << ' ' << c.note;
+        whole += noted;
+        left_out += warned;
+        // The two pictures the rule comes from have room for the figures.
+        if (w == 800 || w == 1280) {
+          EXPECT_TRUE(noted) << w << " x " << h << ' ' << c.note;
+        }
+      }
+  EXPECT_GT(whole, 0);
+  EXPECT_GT(left_out, 0);
 }
 
 TEST(ColourMaps, EndsAndMiddleAreTheSourcesOwn) {
