@@ -63,8 +63,9 @@ struct Imported {
 ///
 /// Rows of top-down formats are flipped so that row 0 has the lowest y; Grid::origin is the centre of the
 /// lower-left sample. Lateral unit: that of the coordinate system; degrees are approximated by the length of
-/// a degree of longitude and latitude at the field's middle (warned about, with the error); none = mm. Height
-/// unit: that of the band or of the vertical coordinate system, else the lateral one.
+/// a degree of longitude and latitude at the field's middle (warned about, with the error); none = mm (warned
+/// about). Height unit: that of the band or of the vertical coordinate system, else the lateral one. Rows
+/// that run upwards and columns that run leftwards in the file are warned about too.
 ///
 /// Errors (all ErrorKind::kInput, one line): a path that cannot be read, an unknown or damaged file, one that
 /// holds no valid height, more samples than memory can hold (told from the header, before anything is

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace fettle::engine {
 
 namespace {
@@ -32,6 +34,38 @@ struct Entry {
   std::uint64_t at = 0;  // offset of its values in the file
 };
 
+// Bytes of one value of a type; 0 for types the specifications do not know, which readers must skip.
+std::size_t bytesOf(std::uint64_t type) {
+  switch (type) {
+    case 1:  // BYTE
+    case 2:  // ASCII
+    case 6:  // SBYTE
+    case 7:  // UNDEFINED
+      return 1;
+    case 3:  // SHORT
+    case 8:  // SSHORT
+      return 2;
+    case 4:   // LONG
+    case 9:   // SLONG
+    case 11:  // FLOAT
+    case 13:  // IFD
+      return 4;
+    case 5:   // RATIONAL
+    case 10:  // SRATIONAL
+    case 12:  // DOUBLE
+    case 16:  // LONG8
+    case 17:  // SLONG8
+    case 18:  // IFD8
+      return 8;
+    default:
+      return 0;
+  }
+}
+
+bool isUnsignedInteger(std::uint64_t type) {
+  return type == 1 || type == 3 || type == 4 || type == 16;
+}
+
 class Reader {
  public:
   Reader(const InputFile& file, bool little, bool big_tiff)
@@ -49,9 +83,8 @@ class Reader {
   // Values of SHORT, LONG, LONG8 or BYTE entries, in pieces so that a lying count takes no memory.
   template <class Visit>
   bool visit(const Entry& entry, Visit&& each) const {
-    const std::size_t bytes = sizeOf(entry.type);
-    if (bytes == 0 || entry.at > file_.size() || entry.count > (file_.size() - entry.at) / bytes)
-      return false;
+    if (!isUnsignedInteger(entry.type) || reachesPastTheEnd(entry)) return false;
+    const std::size_t bytes = bytesOf(entry.type);
     std::vector<char> piece;
     for (std::uint64_t done = 0; done < entry.count;) {
       const auto now = static_cast<std::size_t>(std::min<std::uint64_t>(entry.count - done, 8192));
@@ -71,13 +104,19 @@ class Reader {
     const auto count = number(offset + 4, word);
     if (!tag || !type || !count) return std::nullopt;
     Entry e{*tag, *type, *count, offset + 4 + word};
-    const std::size_t bytes = e.type == 5 ? 8 : sizeOf(e.type);
-    if (bytes == 0 || e.count > word / bytes) {
+    const std::size_t bytes = bytesOf(e.type);
+    if (bytes != 0 && e.count > word / bytes) {
       const auto at = number(e.at, word);
       if (!at) return std::nullopt;
       e.at = *at;
     }
     return e;
+  }
+
+  bool reachesPastTheEnd(const Entry& e) const {
+    const std::size_t bytes = bytesOf(e.type);
+    if (bytes == 0 || e.count == 0) return false;
+    return e.at > file_.size() || e.count > (file_.size() - e.at) / bytes;
   }
 
   std::optional<double> rational(const Entry& e) const {
@@ -89,20 +128,6 @@ class Reader {
   }
 
  private:
-  static std::size_t sizeOf(std::uint64_t type) {
-    switch (type) {
-      case 1:
-        return 1;
-      case 3:
-        return 2;
-      case 4:
-        return 4;
-      case 16:
-        return 8;
-      default:
-        return 0;
-    }
-  }
   std::uint64_t decode(const char* raw, std::size_t bytes) const {
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < bytes; ++i)
@@ -167,6 +192,10 @@ Result<TiffDirectory> readTiffDirectory(const InputFile& file) {
   for (std::uint64_t i = 0; i < *count; ++i) {
     const auto entry = reader.entry(first + i * entry_bytes);
     if (!entry) return damaged();
+    // The library reads on without such a tag, be it the value of holes or the coordinate system.
+    if (reader.reachesPastTheEnd(*entry))
+      return inputError(fmt::format("the values of tag {} reach past the end of the file", entry->tag),
+                        file.path(), "the file is cut short");
     const auto scalar = [&](std::uint64_t& into) {
       Entry one = *entry;
       one.count = std::min<std::uint64_t>(one.count, 1);
@@ -209,6 +238,11 @@ Result<TiffDirectory> readTiffDirectory(const InputFile& file) {
         break;
     }
   }
+  // The next directory may hold the mask of the samples; 0 says that there is none.
+  const auto next = reader.number(first + *count * entry_bytes, big_tiff ? 8 : 4);
+  if (!next || *next >= file.size())
+    return inputError("the next directory lies past the end of the file", file.path(),
+                      "the file is cut short");
   if (offsets && sizes) {
     std::vector<std::uint64_t> at;
     if (!reader.visit(*offsets, [&](std::uint64_t, std::uint64_t value) { at.push_back(value); }))

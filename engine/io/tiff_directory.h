@@ -29,7 +29,8 @@ struct TiffDirectory {
   [[nodiscard]] double largestRatio() const noexcept;
 };
 
-/// Reads the first directory. Errors (kInput): not a TIFF, the directory lies outside the file.
+/// Reads the first directory. Errors (kInput): not a TIFF; the directory, the values of any of its tags or
+/// the start of the next directory lie outside the file.
 [[nodiscard]] Result<TiffDirectory> readTiffDirectory(const InputFile& file);
 
 }  // namespace fettle::engine

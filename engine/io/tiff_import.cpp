@@ -252,6 +252,12 @@ Result<Imported> readTiff(const InputFile& file, const ImportOptions& options, J
     grid.origin_y = placement->origin_y;
     plan.top_down = placement->top_down;
     plan.right_to_left = placement->right_to_left;
+    if (!plan.top_down)
+      warnings.emplace_back(
+          "the file's rows run upwards: rows are counted from the highest y here, in marks too");
+    if (plan.right_to_left)
+      warnings.emplace_back(
+          "the file's columns run leftwards: columns are counted from the lowest x here, in marks too");
   }
   if (const char* name = GDALGetRasterUnitType(*band); name != nullptr && name[0] != '\0') {
     units.height = lengthUnitFromName(name);

@@ -39,6 +39,22 @@ std::string lowerCase(std::string_view text) {
   return lower;
 }
 
+// What neither the file nor the user says. Heights share the lateral unit unless the file says otherwise;
+// resolution tags state lengths without a unit.
+void warnOfGuesses(const StatedUnits& file, const ImportOptions& options, bool spacing_known,
+                   const std::string& taken, std::vector<std::string>& warnings) {
+  const bool no_unit = !options.unit && !file.lateral;
+  const char* missing = file.height ? "lateral unit" : file.spacing_mm ? "height unit" : "unit";
+  if (no_unit && !spacing_known)
+    warnings.push_back(fmt::format(
+        "the file states no {} and no spacing, {} and 1 {} taken: give them with --unit and --spacing",
+        missing, taken, taken));
+  else if (no_unit && !(file.height && file.spacing_mm))
+    warnings.push_back(fmt::format("the file states no {}, {} taken: give it with --unit", missing, taken));
+  else if (!spacing_known)
+    warnings.push_back(fmt::format("the file states no spacing, 1 {} taken: give it with --spacing", taken));
+}
+
 }  // namespace
 
 std::optional<LengthUnit> lengthUnitFromName(std::string_view name) {
@@ -85,22 +101,23 @@ void settleUnits(Grid& grid, const StatedUnits& file, const ImportOptions& optio
     warnings.push_back(fmt::format("the file says {}, taken as {} as asked",
                                    (file.lateral ? file.lateral : file.height)->name, options.unit->name));
 
-  std::optional<std::pair<double, double>> stated = file.spacing;
-  if (!stated && file.spacing_mm)
-    stated = std::pair{file.spacing_mm->first / grid.lateral_unit.mm,
-                       file.spacing_mm->second / grid.lateral_unit.mm};
+  bool known = file.spacing || file.spacing_mm;
+  std::pair<double, double> spacing{1.0, 1.0};
+  if (file.spacing)
+    spacing = *file.spacing;
+  else if (file.spacing_mm)
+    spacing = {file.spacing_mm->first / grid.lateral_unit.mm, file.spacing_mm->second / grid.lateral_unit.mm};
   if (options.spacing) {
-    if (stated && *stated != *options.spacing)
+    if (known && spacing != *options.spacing)
       warnings.push_back(fmt::format("the file says spacing {} x {}, taken as {} x {} as asked",
-                                     stated->first, stated->second, options.spacing->first,
+                                     spacing.first, spacing.second, options.spacing->first,
                                      options.spacing->second));
-    stated = options.spacing;
+    spacing = *options.spacing;
+    known = true;
   }
-  if (!stated)
-    warnings.push_back(fmt::format("the file states no spacing, 1 {} taken: give it with --spacing",
-                                   grid.lateral_unit.name));
-  grid.spacing_x = stated ? stated->first : 1.0;
-  grid.spacing_y = stated ? stated->second : 1.0;
+  warnOfGuesses(file, options, known, grid.lateral_unit.name, warnings);
+  grid.spacing_x = spacing.first;
+  grid.spacing_y = spacing.second;
 }
 
 }  // namespace fettle::engine

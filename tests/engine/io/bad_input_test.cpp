@@ -190,6 +190,55 @@ TEST(BadInput, NoBeginningOfAFileIsTakenForTheWhole) {
   expectNoPrefixReadsWrongly("a.ply", someField(), 613);
 }
 
+// The tiff() above with a tag more, ASCII, its value at the end of the file unless it fits the entry.
+std::string tiffWithText(std::uint32_t tag, const std::string& value) {
+  const std::size_t directory = 2 + 10 * 12 + 4;
+  std::string bytes = tiff(2, 2, 4, "\x01\x02\x03\x04");
+  const std::string entry =
+      number(tag, 2) + number(2, 2) + number(value.size(), 4) +
+      (value.size() <= 4 ? value + std::string(4 - value.size(), '\0') : number(8 + directory + 4, 4));
+  bytes[8] = 10;
+  bytes.insert(10 + 9 * 12, entry);
+  bytes.replace(10 + 5 * 12 + 8, 4, number(8 + directory, 4));  // the strip has moved
+  return value.size() <= 4 ? bytes : bytes + value;
+}
+
+TEST(BadInput, ATiffWhoseTagValuesAreCutIsRefused) {
+  const TempFolder folder;
+  for (const std::uint32_t tag : {42113U, 34737U, 65000U}) {  // hole value, names of the CRS, private
+    const std::string whole = tiffWithText(tag, std::string("2.0000000", 10));
+    writeBytes(folder.file("t.tif"), whole);
+    FETTLE_LOAD(scan, folder.file("t.tif"));
+    EXPECT_EQ(summarize(scan.field).no_data, tag == 42113 ? 1 : 0);
+    for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) {
+      const Error error = refusalOf(folder, "t.tif", whole.substr(0, bytes));
+      if (bytes + 10 >= whole.size()) {
+        EXPECT_EQ(error.remedy, "the file is cut short");
+      }
+    }
+    std::string lying = whole;
+    lying.replace(10 + 9 * 12 + 4, 4, "\xff\xff\xff\xff");
+    refusalOf(folder, "t.tif", lying);
+  }
+  // Four characters lie within the entry: their bytes are no place in the file.
+  writeBytes(folder.file("t.tif"), tiffWithText(42113, std::string("2.0", 4)));
+  FETTLE_LOAD(inside, folder.file("t.tif"));
+  EXPECT_EQ(summarize(inside.field).no_data, 1);
+  // A type that no specification knows: its size cannot be told, readers skip it.
+  std::string unknown = tiffWithText(65000, std::string("2.0000000", 10));
+  unknown.replace(10 + 9 * 12 + 2, 2, number(99, 2));
+  writeBytes(folder.file("t.tif"), unknown);
+  FETTLE_LOAD(skipped, folder.file("t.tif"));
+  EXPECT_EQ(summarize(skipped.field).no_data, 0);
+}
+
+TEST(BadInput, ATiffWhoseNextDirectoryIsCutOffIsRefused) {
+  const TempFolder folder;
+  std::string bytes = tiff(2, 2, 4, "\x01\x02\x03\x04");
+  bytes.replace(10 + 9 * 12, 4, number(bytes.size(), 4));
+  EXPECT_EQ(refusalOf(folder, "t.tif", bytes).remedy, "the file is cut short");
+}
+
 TEST(BadInput, DamagedBytesNeverCrashAReader) {
   const TempFolder folder;
   std::uint32_t state = 5;

@@ -55,6 +55,25 @@ TEST(Xyz, TheUnitOfACommentIsTaken) {
   EXPECT_EQ(scan.field.grid().height_unit, (LengthUnit{"um", 1e-3}));
 }
 
+TEST(Xyz, PointsWithoutAUnitSayWhatWasTaken) {
+  const std::string line = "the file states no unit, mm taken: give it with --unit";
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string points = "0 0 1\n1 0 2\n";
+  ImportOptions metres;
+  metres.unit = lengthUnitFromName("m");
+  FETTLE_LOAD_TEXT(bare, points);
+  EXPECT_TRUE(warned(bare.warnings, line));
+  FETTLE_LOAD_TEXT(bare_ply, ply + "end_header\n" + points, "a.ply");
+  EXPECT_TRUE(warned(bare_ply.warnings, line));
+  FETTLE_LOAD_TEXT(stated, "# units m\n" + points);
+  EXPECT_FALSE(warned(stated.warnings, "unit"));
+  FETTLE_LOAD_TEXT(stated_ply, ply + "comment units m\nend_header\n" + points, "a.ply");
+  EXPECT_FALSE(warned(stated_ply.warnings, "unit"));
+  FETTLE_LOAD_TEXT(asked, points, "a.xyz", metres);
+  EXPECT_FALSE(warned(asked.warnings, "unit"));
+}
+
 TEST(Xyz, NumbersPastTheRangeOfAFloatAreHoles) {
   FETTLE_LOAD_TEXT(scan, "0 0 1e39\n1 0 2\n2 0 1e-60\n3 0 1e999\n");
   EXPECT_TRUE(std::isnan(scan.field.reader().heightAt(0, 0)));

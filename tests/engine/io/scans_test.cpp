@@ -57,6 +57,21 @@ TEST(Scans, NegativeCoordinatesAndAnOverlongNoDataValue) {
   EXPECT_STORED(scan.field, 131, 148, 1004.4005);
 }
 
+TEST(Scans, AScanThatLostItsLastBytesIsRefused) {
+  FETTLE_SCAN_OR_SKIP(path, "dsm_village_sjtsk.tif");
+  const std::string whole = readBytes(path);
+  const std::string copy = ::testing::TempDir() + "fettle_scan_cut.tif";
+  // The hole value lies last, the names of the coordinate system before it.
+  for (const std::size_t lost : {1U, 3U, 20U, 77U, 500U}) {
+    writeBytes(copy, whole.substr(0, whole.size() - lost));
+    const auto scan = load(copy);
+    ASSERT_FALSE(scan) << lost;
+    EXPECT_EQ(scan.error().kind, ErrorKind::kInput);
+    EXPECT_TRUE(scan.error().remedy.starts_with("the file is cut short")) << scan.error().line();
+  }
+  std::remove(copy.c_str());
+}
+
 TEST(Scans, SixteenBitPngWithZeroAsHole) {
   FETTLE_SCAN_OR_SKIP(path, "shapes_plate_u16.png");
   ImportOptions raw;

@@ -40,6 +40,18 @@ TEST(AsciiGrid, WithoutAKeyMinus9999IsTheHole) {
   EXPECT_TRUE(warned(scan.warnings, "-9999"));
 }
 
+TEST(AsciiGrid, TheUnitTakenIsSaidUnlessItIsGiven) {
+  const TempFolder folder;
+  writeBytes(folder.file("a.asc"), "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n2 3");
+  FETTLE_LOAD(scan, folder.file("a.asc"));
+  EXPECT_EQ(scan.warnings,
+            std::vector<std::string>{"the file states no unit, mm taken: give it with --unit"});
+  ImportOptions options;
+  options.unit = lengthUnitFromName("m");
+  FETTLE_LOAD(metres, folder.file("a.asc"), options);
+  EXPECT_TRUE(metres.warnings.empty());
+}
+
 TEST(AsciiGrid, NumbersAreRoundedOnceStraightToFloat) {
   const TempFolder folder;
   // 1 + 2^-24 + a little: as a double it lies on the middle between two floats and would round down to 1.
