@@ -92,17 +92,24 @@ Result<Exported> writeTiff(const Version& field, const std::string& path, const 
     return tl::unexpected(status.error());
 
   GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
-  std::vector<float> strip(static_cast<std::size_t>(grid.width) * kBlock);
+  // A few blocks at a time, flushed at once: left in the cache, all blocks would be compressed in one last
+  // step that cannot be cancelled. Strips are as wide as the field and must be whole when they are flushed.
+  const std::int32_t piece = tiled ? std::min(8 * kBlock, grid.width) : grid.width;
+  std::vector<float> heights(static_cast<std::size_t>(piece) * kBlock);
   job.begin("writing", static_cast<std::uint64_t>(grid.height));
   for (std::int32_t top = 0; top < grid.height; top += kBlock) {
     const std::int32_t rows = std::min(kBlock, grid.height - top);
-    // Read upside down: the first row of the file is the highest one of the field.
-    reader.readHeights(0, grid.height - top - rows, grid.width, rows,
-                       strip.data() + static_cast<std::ptrdiff_t>(rows - 1) * grid.width, -grid.width);
-    const CPLErr error = GDALRasterIO(band, GF_Write, 0, top, grid.width, rows, strip.data(), grid.width,
-                                      rows, GDT_Float32, 0, 0);
-    if (error != CE_None || gdal.failed()) return cannotWrite(gdal, path);
-    if (job.cancelled()) return cancelled();
+    for (std::int32_t left = 0; left < grid.width; left += piece) {
+      const std::int32_t columns = std::min(piece, grid.width - left);
+      // Read upside down: the first row of the file is the highest one of the field.
+      reader.readHeights(left, grid.height - top - rows, columns, rows,
+                         heights.data() + static_cast<std::ptrdiff_t>(rows - 1) * columns, -columns);
+      CPLErr error = GDALRasterIO(band, GF_Write, left, top, columns, rows, heights.data(), columns, rows,
+                                  GDT_Float32, 0, 0);
+      if (error == CE_None) error = GDALFlushRasterCache(band);
+      if (error != CE_None || gdal.failed()) return cannotWrite(gdal, path);
+      if (job.cancelled()) return cancelled();
+    }
     job.advance(static_cast<std::uint64_t>(rows));
   }
   GDALFlushCache(dataset.get());

@@ -1,9 +1,11 @@
 // TIFFs of every kind, made with GDAL or byte by byte.
 
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <thread>
 
 #include <cpl_string.h>
 #include <gdal.h>
@@ -175,15 +177,20 @@ TEST(Tiff, BottomUpAndRightToLeftRastersLieWhereTheyShould) {
   EXPECT_EQ(heightsOf(usual.field), (std::vector<float>{4, 5, 6, 1, 2, 3}));
   EXPECT_EQ(usual.field.grid().origin_x, 101.0);
   EXPECT_EQ(usual.field.grid().origin_y, 194.0);
+  EXPECT_FALSE(warned(usual.warnings, "run upwards") || warned(usual.warnings, "run leftwards"));
   makeTiff(folder.file("t.tif"), GDT_Byte, 3, 2, {1, 2, 3, 4, 5, 6}, {}, place(2, 4));
   FETTLE_LOAD(up, folder.file("t.tif"));
   EXPECT_EQ(heightsOf(up.field), (std::vector<float>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(up.field.grid().origin_y, 202.0);
   EXPECT_EQ(up.field.grid().spacing_y, 4.0);
+  EXPECT_TRUE(warned(up.warnings, "rows run upwards: rows are counted from the highest y"));
+  EXPECT_FALSE(warned(up.warnings, "run leftwards"));
   makeTiff(folder.file("t.tif"), GDT_Byte, 3, 2, {1, 2, 3, 4, 5, 6}, {}, place(-2, -4));
   FETTLE_LOAD(left, folder.file("t.tif"));
   EXPECT_EQ(heightsOf(left.field), (std::vector<float>{6, 5, 4, 3, 2, 1}));
   EXPECT_EQ(left.field.grid().origin_x, 100.0 - 2.5 * 2);
+  EXPECT_TRUE(warned(left.warnings, "columns run leftwards: columns are counted from the lowest x"));
+  EXPECT_FALSE(warned(left.warnings, "run upwards"));
 }
 
 TEST(Tiff, RotatedRastersAreRefused) {
@@ -269,6 +276,78 @@ TEST(Tiff, ResolutionTagsGiveSpacingUnlessTheyAreThoseOfAPrinter) {
   FETTLE_LOAD(printed, folder.file("t.tif"));
   EXPECT_EQ(printed.field.grid().spacing_x, 1.0);
   EXPECT_TRUE(warned(printed.warnings, "print resolution"));
+}
+
+TEST(Tiff, TagsRewrittenAtTheEndAreNotLostWithIt) {
+  const TempFolder folder;
+  for (const char* endian : {"ENDIANNESS=LITTLE", "ENDIANNESS=BIG"})
+    for (const char* big : {"BIGTIFF=NO", "BIGTIFF=YES"}) {
+      makeTiff(folder.file("t.tif"), GDT_Float32, 2, 2, {1, 2, 3, -3.5e37}, {endian, big});
+      GDALDatasetH dataset = GDALOpen(folder.file("t.tif").c_str(), GA_Update);
+      ASSERT_NE(dataset, nullptr);
+      setCrs(dataset, 32632);
+      GDALSetRasterNoDataValue(GDALGetRasterBand(dataset, 1), -3.5e37);
+      GDALClose(dataset);
+      const std::string whole = readBytes(folder.file("t.tif"));
+      FETTLE_LOAD(scan, folder.file("t.tif"));
+      EXPECT_EQ(summarize(scan.field).no_data, 1);
+      for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) {
+        writeBytes(folder.file("cut.tif"), whole.substr(0, bytes));
+        EXPECT_FALSE(load(folder.file("cut.tif"))) << endian << ' ' << big << ' ' << bytes;
+      }
+    }
+}
+
+TEST(Tiff, UnitsThatNobodyStatesAreWarnedAbout) {
+  const TempFolder folder;
+  const auto warnings = [&](bool placed, const char* height_unit, const ImportOptions& options = {}) {
+    makeTiff(folder.file("t.tif"), GDT_Byte, 2, 1, {1, 2}, {}, [&](GDALDatasetH d) {
+      std::array<double, 6> gt{0, 2, 0, 0, 0, -2};
+      if (placed) GDALSetGeoTransform(d, gt.data());
+      if (height_unit != nullptr) GDALSetRasterUnitType(GDALGetRasterBand(d, 1), height_unit);
+    });
+    const auto scan = load(folder.file("t.tif"), options);
+    return scan ? scan->warnings : std::vector<std::string>{scan.error().line()};
+  };
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(warnings(true, nullptr), Lines{"the file states no unit, mm taken: give it with --unit"});
+  EXPECT_EQ(warnings(true, "m"), Lines{"the file states no lateral unit, mm taken: give it with --unit"});
+  EXPECT_EQ(warnings(false, nullptr), Lines{"the file states no unit and no spacing, mm and 1 mm taken: give "
+                                            "them with --unit and --spacing"});
+  ImportOptions metres;
+  metres.unit = lengthUnitFromName("m");
+  EXPECT_EQ(warnings(true, nullptr, metres), Lines{});
+  EXPECT_EQ(warnings(false, nullptr, metres),
+            Lines{"the file states no spacing, 1 m taken: give it with --spacing"});
+}
+
+TEST(Tiff, ACancelledExportDoesNotCompressWhatIsLeft) {
+  const TempFolder folder;
+  // Noise, so that compression takes nearly all of the time.
+  std::vector<float> z(std::size_t{2048} * 2048);
+  std::uint32_t state = 7;
+  for (float& height : z) {
+    state = state * 1664525U + 1013904223U;
+    height = static_cast<float>(state >> 8) * 1e-3F;
+  }
+  const Version field = makeField(gridOf(2048, 2048), z);
+  using Clock = std::chrono::steady_clock;
+  JobControl job;
+  const Clock::time_point begin = Clock::now();
+  Clock::time_point cancelled_at{};
+  std::thread user([&] {
+    while (job.total() == 0 || job.done() < job.total()) std::this_thread::yield();
+    cancelled_at = Clock::now();
+    job.cancel();
+  });
+  const auto written = exportField(field, folder.file("t.tif"), {}, job);
+  const Clock::time_point end = Clock::now();
+  user.join();
+  if (!written) {
+    EXPECT_EQ(written.error().kind, ErrorKind::kCancelled);
+  }
+  // One of 8 strips may be under way, and a block a thread; with all left to the end it would be all but 1 %.
+  EXPECT_LT(end - cancelled_at, (end - begin) / 2);
 }
 
 TEST(Tiff, PicturesAreRefusedGreyWithAlphaIsTaken) {
