@@ -13,26 +13,28 @@ vk::Rect2D rows(vk::Extent2D extent, std::uint32_t from, std::uint32_t to) {
 
 }  // namespace
 
-PieceSizes::PieceSizes(double wanted_ms) : wanted_ms_(wanted_ms) {
-  if (std::isinf(wanted_ms)) {
-    instances_ = UINT32_MAX;
-    bands_ = 1;
-  }
+std::uint32_t PieceSizes::instances(std::uint32_t count) const noexcept {
+  if (std::isinf(wanted_ms_)) return count;
+  return std::min(instances_, (count + kPieceSteps - 1) / kPieceSteps);
 }
 
-void PieceSizes::learn(double took_ms) {
-  if (std::isinf(wanted_ms_)) return;
+std::uint32_t PieceSizes::bands(std::uint32_t count) const noexcept {
+  if (std::isinf(wanted_ms_)) return 1;
+  return std::max(bands_, (kPieceSteps + count - 1) / count);
+}
+
+void PieceSizes::learn(double took_ms, std::uint32_t taken) {
   if (took_ms > wanted_ms_) {
     // Back to half the time at once: what made one piece slow is likely to make the next one so too.
     const double share = std::max(1.0 / 64.0, 0.5 * wanted_ms_ / took_ms);
-    if (instances_ > 1)
-      instances_ = std::max(1U, static_cast<std::uint32_t>(instances_ * share));
+    if (taken > 1)
+      instances_ = std::max(1U, static_cast<std::uint32_t>(taken * share));
     else
       bands_ = std::min(kPieceSteps, 2 * bands_);
   } else if (took_ms < 0.5 * wanted_ms_) {
     if (bands_ > 1)
       bands_ /= 2;
-    else
+    else if (taken >= instances_)
       instances_ = std::min(1U << 20U, 2 * instances_);
   }
 }
@@ -41,9 +43,9 @@ bool PieceRunner::instances(std::size_t count, vk::Extent2D extent,
                             const std::function<void(const vk::raii::CommandBuffer&, const Piece&)>& draw) {
   const auto end = static_cast<std::uint32_t>(count);
   for (std::uint32_t first = 0; first < end;) {
-    const std::uint32_t taken = std::min(sizes_.instances(), end - first);
+    const std::uint32_t taken = std::min(sizes_.instances(end), end - first);
     // A band has a row at least. All bands of an instance before the next one, or it would be drawn twice.
-    const std::uint32_t bands = std::min(sizes_.bands(), std::max(1U, extent.height));
+    const std::uint32_t bands = std::min(sizes_.bands(end), std::max(1U, extent.height));
     std::uint64_t told = 0;
     double slowest = 0.0;
     for (std::uint32_t band = 0; band < bands; ++band) {
@@ -61,7 +63,7 @@ bool PieceRunner::instances(std::size_t count, vk::Extent2D extent,
       job_.advance(done - told);
       told = done;
     }
-    sizes_.learn(slowest);
+    sizes_.learn(slowest, taken);
     first += taken;
   }
   return true;

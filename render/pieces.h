@@ -9,7 +9,7 @@
 
 namespace fettle::render {
 
-/// Bands an image is cut into at most for one piece; an instance counts as so many steps of progress.
+/// Bands an image is cut into at most; an instance counts as so many steps of progress.
 inline constexpr std::uint32_t kPieceSteps = 16;
 
 /// What one submission draws: some instances, within some rows of the image.
@@ -25,11 +25,13 @@ struct Piece {
 class PieceSizes {
  public:
   /// `wanted_ms` > 0; infinity never cuts.
-  explicit PieceSizes(double wanted_ms);
-  [[nodiscard]] std::uint32_t instances() const noexcept { return instances_; }
-  [[nodiscard]] std::uint32_t bands() const noexcept { return bands_; }
-  /// How long the last piece took [ms].
-  void learn(double took_ms);
+  explicit PieceSizes(double wanted_ms) : wanted_ms_(wanted_ms) {}
+  /// Instances and bands of the next piece when `count` are to be drawn altogether: at least kPieceSteps
+  /// pieces, because the time of quick instances tells little of one that fills the picture.
+  [[nodiscard]] std::uint32_t instances(std::uint32_t count) const noexcept;
+  [[nodiscard]] std::uint32_t bands(std::uint32_t count) const noexcept;
+  /// How long the last piece took [ms], and how many instances it had.
+  void learn(double took_ms, std::uint32_t taken);
 
  private:
   double wanted_ms_;
