@@ -93,7 +93,8 @@ Result<Exported> writeTiff(const Version& field, const std::string& path, const 
 
   GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
   // A few blocks at a time, flushed at once: left in the cache, all blocks would be compressed in one last
-  // step that cannot be cancelled. Strips are as wide as the field and must be whole when they are flushed.
+  // step that cannot be cancelled; it takes as long either way. Strips are as wide as the field and must be
+  // whole when they are flushed.
   const std::int32_t piece = tiled ? std::min(8 * kBlock, grid.width) : grid.width;
   std::vector<float> heights(static_cast<std::size_t>(piece) * kBlock);
   job.begin("writing", static_cast<std::uint64_t>(grid.height));
