@@ -11,6 +11,7 @@
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
 #include "haptic/certified.h"
+#include "haptic/loop/rt_thread.h"
 #include "haptic/tick.h"
 
 namespace fettle::haptic {
@@ -79,19 +80,23 @@ engine::Result<ReplayResult> run(const engine::Version& start, const engine::Ver
   double max_force2 = 0.0;
   job.begin("replaying", strokes.size());
   const auto begin = std::chrono::steady_clock::now();
-  for (std::size_t i = 0; i < strokes.size(); i += kTicksAStep) {
-    if (job.cancelled()) return engine::cancelled();
-    const std::span<const StrokeSample> part = strokes.subspan(i, std::min(kTicksAStep, strokes.size() - i));
-    for (const StrokeSample& sample : part) {
-      // The surface before the tick's own edit: a version is O(1) to take.
-      const engine::Version before = measured ? field.snapshot() : engine::Version();
-      const ForceSample force = tick.run(sample);
-      report.contact_ticks += force.contact ? 1 : 0;
-      max_force2 = std::max(max_force2, glm::dot(force.force_n, force.force_n));
-      if (measured && force.contact) measure.add(before, tick.contact(), sample.tip_mm, report);
-      if (options.record_forces == RecordForces::kYes) result.forces.push_back(force);
+  {
+    const DenormalScope as_in_the_loop;  // the same bits there and here
+    for (std::size_t i = 0; i < strokes.size(); i += kTicksAStep) {
+      if (job.cancelled()) return engine::cancelled();
+      const std::span<const StrokeSample> part =
+          strokes.subspan(i, std::min(kTicksAStep, strokes.size() - i));
+      for (const StrokeSample& sample : part) {
+        // The surface before the tick's own edit: a version is O(1) to take.
+        const engine::Version before = measured ? field.snapshot() : engine::Version();
+        const ForceSample force = tick.run(sample);
+        report.contact_ticks += force.contact ? 1 : 0;
+        max_force2 = std::max(max_force2, glm::dot(force.force_n, force.force_n));
+        if (measured && force.contact) measure.add(before, tick.contact(), sample.tip_mm, report);
+        if (options.record_forces == RecordForces::kYes) result.forces.push_back(force);
+      }
+      job.advance(part.size());
     }
-    job.advance(part.size());
   }
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
   report.ticks = static_cast<std::int64_t>(strokes.size());

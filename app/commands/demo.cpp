@@ -7,6 +7,7 @@
 
 #include "app/command.h"
 #include "app/demo/demo.h"
+#include "app/scan_options.h"
 #include "engine/io/atomic_file.h"
 
 namespace fettle::app {
