@@ -59,7 +59,8 @@ void change(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::
 template <class T>
 Buffer bufferOf(const Context& context, std::span<const T> items, vk::BufferUsageFlags usage) {
   Buffer buffer(context, std::max<std::size_t>(items.size_bytes(), sizeof(T)), usage);
-  std::memcpy(buffer.data(), items.data(), items.size_bytes());
+  // An empty span may point nowhere, and memcpy must not be given that even for no bytes.
+  if (!items.empty()) std::memcpy(buffer.data(), items.data(), items.size_bytes());
   return buffer;
 }
 
