@@ -48,10 +48,9 @@ TEST(BadInput, FilesThatAreNoScansAreRefused) {
     const std::string out = folder.file("out.tif");
     ProcessOptions bounded;
 #ifndef __SANITIZE_ADDRESS__  // which maps terabytes of shadow
-    bounded.memory_limit = std::size_t{3}
-                           << 30;  // address space: libraries and thread stacks take most of it
+    // Address space, of which libraries and thread stacks take most.
+    bounded.memory_limit = std::size_t{3} << 30;
 #endif
-    << 30;  // address space: libraries and thread stacks take most of it
     expectRefused(fettle({"convert", folder.file(name), out}, bounded), name);
     EXPECT_FALSE(std::filesystem::exists(out)) << name;
   }
