@@ -23,7 +23,7 @@ enum class Rim {
   kSharp,    ///< a vertical wall at the outline
   kChamfer,  ///< a bevel `rim_mm` wide inside the outline at 45 degrees; a raised feature's from its top
              ///< down, a sunk feature's from the surroundings down
-  kFillet,  ///< a quarter circle of radius `rim_mm` from the top down (raised features only)
+  kFillet,   ///< a quarter circle of radius `rim_mm` from the top down (raised features only)
 };
 
 /// One operation on the height of what lies below it. Corner radii are at least rim_mm where there is a rim,
