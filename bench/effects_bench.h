@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/instructions.h"
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+
+namespace fettle::bench {
+
+struct EffectsBenchOptions {
+  std::int32_t side = 1024;      ///< samples along each side of the field, 64 .. 32768
+  std::int64_t ticks = 100'000;  ///< of each run, 1000 .. 1e8
+  int repeats = 9;               ///< 1 .. 100
+};
+
+/// What one scene costs a tick. Times over the repeats, which go round all rows, so that a change of the
+/// machine's speed meets all of them alike.
+struct EffectsBenchRow {
+  std::string name;  ///< "none", an effect's name, "all", "sphere tip", ...
+  double median_ns = 0.0;
+  double fastest_ns = 0.0;
+  double worst_ns = 0.0;
+  std::optional<double> instructions;  ///< a tick, in user space; none where they cannot be counted
+  std::int64_t bytes = 0;              ///< held by the effect (the tip); for "all" by all of them
+  std::int64_t contact_ticks = 0;
+  std::uint64_t hash = 0;  ///< of all forces and of the field after it; the same in every repeat
+};
+
+struct EffectsBenchReport {
+  std::string machine;
+  CountedBy counted_by = CountedBy::kNothing;
+  std::vector<EffectsBenchRow> rows;
+};
+
+/// The same hand, first without any effect (contact only), then with each effect of EffectKind alone, then
+/// with all of them, then with a ball for a tip. Errors: kInput for options out of range, kCancelled, kFailed
+/// when two repeats differ in a bit. Thread: any; blocks.
+[[nodiscard]] engine::Result<EffectsBenchReport> benchEffects(const EffectsBenchOptions& options,
+                                                              engine::JobControl& job);
+
+}  // namespace fettle::bench
