@@ -140,9 +140,10 @@ void runSmoothing(void* data, TickState& state) noexcept {
 }  // namespace
 
 void addSmoothing(EffectList& list, const Scene& scene, const engine::Version& original) {
-  auto brush = std::make_shared<Brush>(scene.brush_radius_samples, scene.max_change, original);
-  list.tools[static_cast<std::size_t>(Tool::kSmooth)] = {&runSmoothing, brush.get()};
-  list.data.push_back(std::move(brush));
+  auto made = std::make_shared<Brush>(scene.brush_radius_samples, scene.max_change, original);
+  const std::size_t held = made->bytesHeld();
+  Brush& brush = addData(list, EffectKind::kSmoothing, std::move(made), held);
+  list.tools[static_cast<std::size_t>(Tool::kSmooth)] = {&runSmoothing, &brush};
 }
 
 }  // namespace fettle::haptic

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -32,6 +33,12 @@ class Brush {
   /// Smooths around sample (column, row) of the field. False when the pool is dry: nothing changed.
   [[nodiscard]] bool apply(engine::LiveField& field, std::int32_t column, std::int32_t row,
                            double strength) noexcept;
+
+  /// Memory beside the object itself; the tiles of `original`, shared with others, do not count.
+  [[nodiscard]] std::size_t bytesHeld() const noexcept {
+    return (before_.capacity() + after_.capacity()) * sizeof(float) + marked_.capacity() +
+           disc_.half_width.capacity() * sizeof(std::int32_t);
+  }
 
  private:
   [[nodiscard]] bool applyToOne(engine::LiveField& field, std::int32_t column, std::int32_t row,

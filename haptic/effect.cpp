@@ -1,26 +1,31 @@
 #include "haptic/effect.h"
 
+#include "haptic/effects/coupling.h"
+#include "haptic/effects/friction.h"
+#include "haptic/effects/gravity.h"
+#include "haptic/effects/spring.h"
+#include "haptic/effects/viscosity.h"
+
 namespace fettle::haptic {
 
-namespace {
-
-struct Spring {
-  double stiffness_n_per_mm;
-
-  static void run(void* data, TickState& state) noexcept {
-    state.force_n += static_cast<const Spring*>(data)->stiffness_n_per_mm * state.contact.penetration_mm;
-  }
-};
-
-}  // namespace
-
-void addSpring(EffectList& list, const Scene& scene) {
-  auto spring = std::make_shared<Spring>(Spring{scene.stiffness_n_per_mm});
-  list.forces.push_back({&Spring::run, spring.get()});
-  list.data.push_back(std::move(spring));
+std::size_t EffectList::bytesOf(EffectKind kind) const noexcept {
+  std::size_t sum = 0;
+  for (const EffectData& entry : data) sum += entry.kind == kind ? entry.bytes : 0;
+  return sum;
 }
 
-EffectList composeEffects(const Scene& scene, const engine::Version& original) {
+std::size_t EffectList::bytes() const noexcept {
+  std::size_t sum = 0;
+  for (const EffectData& entry : data) sum += entry.bytes;
+  return sum;
+}
+
+void needMotion(EffectList& list, const Scene& scene) {
+  if (!list.motion) list.motion.emplace(1e-3 * scene.params.velocity.filter_ms);
+}
+
+EffectList composeEffects(const Scene& scene, const engine::Version& original, const engine::Version& now) {
+  static_cast<void>(now);
   EffectList list;
   for (const EffectKind kind : scene.effects) {
     switch (kind) {
@@ -29,6 +34,20 @@ EffectList composeEffects(const Scene& scene, const engine::Version& original) {
         break;
       case EffectKind::kSmoothing:
         addSmoothing(list, scene, original);
+        break;
+      case EffectKind::kFriction:
+        addFriction(list, scene);
+        break;
+      case EffectKind::kViscosity:
+        addViscosity(list, scene);
+        break;
+      case EffectKind::kGravity:
+        addGravity(list, scene);
+        break;
+      case EffectKind::kCoupling:
+        addCoupling(list, scene);
+        break;
+      default:
         break;
     }
   }

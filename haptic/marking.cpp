@@ -27,6 +27,8 @@ void runMarking(void* data, TickState& state) noexcept {
       if (!state.field.setMark(column, row, kMarked)) ++state.counters.refused_edits;
     }
   }
+  state.marked = {centre.column - disc.reach, centre.row - disc.reach, 2 * disc.reach + 1,
+                  2 * disc.reach + 1};
   state.surface.refresh(state.field.reader());
 }
 
@@ -36,7 +38,7 @@ void addMarking(EffectList& list, const Scene& scene) {
   auto disc = std::make_shared<Disc>(scene.mark_radius_samples);
   list.tools[static_cast<std::size_t>(Tool::kMark)] = {&runMarking<true>, disc.get()};
   list.tools[static_cast<std::size_t>(Tool::kUnmark)] = {&runMarking<false>, disc.get()};
-  list.data.push_back(std::move(disc));
+  list.marking = std::move(disc);
 }
 
 }  // namespace fettle::haptic

@@ -20,8 +20,74 @@ constexpr double kMaxStiffness = 1000.0;
 constexpr double kMaxForce = 1000.0;
 constexpr double kMaxBrushRadius = 64.0;
 
-constexpr std::array<std::string_view, 2> kEffectNames = {"spring", "smoothing"};
+constexpr std::array<std::string_view, kEffectKinds> kEffectNames = {"spring",    "smoothing", "friction",
+                                                                     "viscosity", "edge_snap", "texture",
+                                                                     "gravity",   "coupling",  "passivity"};
+constexpr std::array<std::string_view, 2> kMediumNames = {"contact", "everywhere"};
+constexpr std::array<std::string_view, 2> kPatternNames = {"noise", "grating"};
+
+// Whether the lower end of a range belongs to it.
+enum class LowEnd : std::uint8_t { kIncluded, kExcluded };
+
+// One number of an effect's table.
+struct EffectNumber {
+  std::string_view table, key;
+  double& (*of)(EffectParams&) noexcept;
+  double low, high;
+  LowEnd low_end = LowEnd::kIncluded;
+
+  [[nodiscard]] bool holds(double value) const noexcept {
+    return (low_end == LowEnd::kExcluded ? value > low : value >= low) && value <= high;
+  }
+  [[nodiscard]] std::string range() const {
+    return fmt::format("{} in [{}] must be {} {} and at most {}", key, table,
+                       low_end == LowEnd::kExcluded ? "above" : "at least", low, high);
+  }
+};
+
+using P = EffectParams;
+constexpr std::array kEffectNumbers = {
+    EffectNumber{"friction", "static", [](P& p) noexcept -> double& { return p.friction.static_coefficient; },
+                 0, 2},
+    EffectNumber{"friction", "dynamic",
+                 [](P& p) noexcept -> double& { return p.friction.dynamic_coefficient; }, 0, 2},
+    EffectNumber{"friction", "stiffness_n_per_mm",
+                 [](P& p) noexcept -> double& { return p.friction.stiffness_n_per_mm; }, 0, 1000,
+                 LowEnd::kExcluded},
+    EffectNumber{"viscosity", "damping_n_s_per_mm",
+                 [](P& p) noexcept -> double& { return p.viscosity.damping_n_s_per_mm; }, 0, 1},
+    EffectNumber{"edge_snap", "force_n", [](P& p) noexcept -> double& { return p.edge_snap.force_n; }, 0, 20},
+    EffectNumber{"edge_snap", "reach_mm", [](P& p) noexcept -> double& { return p.edge_snap.reach_mm; }, 0,
+                 50, LowEnd::kExcluded},
+    EffectNumber{"texture", "amplitude_mm", [](P& p) noexcept -> double& { return p.texture.amplitude_mm; },
+                 0, 1},
+    EffectNumber{"texture", "wavelength_mm", [](P& p) noexcept -> double& { return p.texture.wavelength_mm; },
+                 0, 100, LowEnd::kExcluded},
+    EffectNumber{"gravity", "stylus_kg", [](P& p) noexcept -> double& { return p.gravity.stylus_kg; }, 0, 2},
+    EffectNumber{"coupling", "damping_n_s_per_mm",
+                 [](P& p) noexcept -> double& { return p.coupling.damping_n_s_per_mm; }, 0, 1},
+    EffectNumber{"passivity", "max_damping_n_s_per_mm",
+                 [](P& p) noexcept -> double& { return p.passivity.max_damping_n_s_per_mm; }, 0, 1},
+    EffectNumber{"velocity", "filter_ms", [](P& p) noexcept -> double& { return p.velocity.filter_ms; }, 0,
+                 50},
+};
 constexpr std::array<std::string_view, 2> kLevelNames = {"paper", "certified"};
+
+constexpr const char* kDynamicAboveStatic = "the dynamic friction must not be above the static one";
+
+// Friction, texture and coupling stand on the force with which the spring presses.
+bool needsSpring(EffectKind kind) noexcept {
+  return kind == EffectKind::kFriction || kind == EffectKind::kTexture || kind == EffectKind::kCoupling;
+}
+
+// A listed effect that comes before the spring it needs, or has none.
+std::optional<std::string> springProblem(const std::vector<EffectKind>& effects) {
+  const auto spring = std::find(effects.begin(), effects.end(), EffectKind::kSpring);
+  const auto early = std::find_if(effects.begin(), effects.end(), needsSpring);
+  if (early == effects.end() || (spring != effects.end() && spring < early)) return std::nullopt;
+  return fmt::format("the effect \"{}\" needs \"spring\" listed before it",
+                     kEffectNames[static_cast<std::size_t>(*early)]);
+}
 
 bool positiveUpTo(double value, double limit) noexcept {
   return value > 0.0 && value <= limit;
@@ -95,11 +161,16 @@ class SceneReader {
         if (const toml::table* t = table(value, key)) force(*t);
       } else if (key == "brush") {
         if (const toml::table* t = table(value, key)) brush(*t);
+      } else if (std::any_of(kEffectNumbers.begin(), kEffectNumbers.end(),
+                             [&](const EffectNumber& number) { return number.table == key; })) {
+        if (const toml::table* t = table(value, key)) effectTable(key, *t);
       } else {
         return false;
       }
       return true;
     });
+    if (scene_.params.friction.dynamic_coefficient > scene_.params.friction.static_coefficient)
+      complain(file, kDynamicAboveStatic);
   }
 
   void effects(const toml::node& value) {
@@ -114,6 +185,7 @@ class SceneReader {
         return complain(entry, fmt::format("the effect \"{}\" is listed twice", kEffectNames[*i]));
       scene_.effects.push_back(effect);
     }
+    if (auto problem = springProblem(scene_.effects)) complain(value, std::move(*problem));
   }
 
   void contact(const toml::table& table) {
@@ -169,6 +241,29 @@ class SceneReader {
     });
   }
 
+  // A table of an effect: its numbers, and the words of the two that have one.
+  void effectTable(std::string_view name, const toml::table& table) {
+    entries(table, fmt::format("[{}]", name), [&](std::string_view key, const toml::node& value) {
+      for (const EffectNumber& known : kEffectNumbers) {
+        if (known.table != name || known.key != key) continue;
+        double& out = known.of(scene_.params);
+        number(value, key, out);
+        if (!known.holds(out)) complain(value, known.range());
+        return true;
+      }
+      if (name == "viscosity" && key == "in") {
+        if (const auto i = word(value, key, kMediumNames))
+          scene_.params.viscosity.medium = static_cast<ViscousMedium>(*i);
+      } else if (name == "texture" && key == "pattern") {
+        if (const auto i = word(value, key, kPatternNames))
+          scene_.params.texture.pattern = static_cast<TexturePattern>(*i);
+      } else {
+        return false;
+      }
+      return true;
+    });
+  }
+
   Scene& scene_;
   std::optional<std::string> problem_;
 };
@@ -198,6 +293,11 @@ std::optional<std::string> sceneProblem(const Scene& scene) {
     return fmt::format("a brush radius must be 0 to {} samples", kMaxBrushRadius);
   if (scene.max_change && !(*scene.max_change >= 0.0 && std::isfinite(*scene.max_change)))
     return "the largest change must be 0 or more";
+  EffectParams params = scene.params;
+  for (const EffectNumber& number : kEffectNumbers)
+    if (!number.holds(number.of(params))) return number.range();
+  if (params.friction.dynamic_coefficient > params.friction.static_coefficient) return kDynamicAboveStatic;
+  if (auto problem = springProblem(scene.effects)) return problem;
   for (auto it = scene.effects.begin(); it != scene.effects.end(); ++it)
     if (std::find(scene.effects.begin(), it, *it) != it)
       return fmt::format("the effect {} is listed twice", effectName(*it));

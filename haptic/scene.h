@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "haptic/effects/parameters.h"
 
 namespace fettle::haptic {
 
@@ -25,9 +26,19 @@ enum class ContactLevel : std::uint8_t {
 enum class EffectKind : std::uint8_t {
   kSpring,     ///< force along the penetration vector and proportional to it
   kSmoothing,  ///< local smoothing of the field by force, with Tool::kSmooth
+  kFriction,   ///< Coulomb friction with stick-slip; needs the spring
+  kViscosity,  ///< against the endpoint's velocity
+  kEdgeSnap,   ///< pull towards marked samples, for tracing
+  kTexture,    ///< relief finer than the grid; needs the spring
+  kGravity,    ///< holds up the stylus, in free space too
+  kCoupling,   ///< damping between proxy and endpoint; needs the spring
+  kPassivity,  ///< no more energy comes out than was put in
 };
 
-/// "spring", "smoothing".
+inline constexpr int kEffectKinds = 9;
+
+/// "spring", "smoothing", "friction", "viscosity", "edge_snap", "texture", "gravity", "coupling",
+/// "passivity".
 [[nodiscard]] std::string_view effectName(EffectKind effect) noexcept;
 /// "paper", "certified".
 [[nodiscard]] std::string_view levelName(ContactLevel level) noexcept;
@@ -60,7 +71,11 @@ struct Scene {
   /// Feel and edit the field upside down (z -> -z); the result comes out the right way up again.
   bool invert = false;
 
-  /// In the order in which they act within a tick; each kind at most once.
+  /// Parameters of the other effects. Those of an effect that is not listed mean nothing.
+  EffectParams params;
+
+  /// Which effects there are; each kind at most once. Forces act in this order, the spring before those that
+  /// need it.
   std::vector<EffectKind> effects = {EffectKind::kSpring, EffectKind::kSmoothing};
 
   friend bool operator==(const Scene&, const Scene&) = default;

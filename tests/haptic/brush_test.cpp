@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "bench/hand_stroke.h"
 #include "haptic/effect.h"
 #include "haptic/replay.h"
 #include "tests/haptic/support/fields.h"
-#include "bench/hand_stroke.h"
 
 namespace fettle::haptic {
 namespace {
@@ -170,7 +170,7 @@ TEST(Replay, WhatASceneDoesNotListDoesNothing) {
   EXPECT_TRUE(result.field == field);
   EXPECT_EQ(result.report.max_force_n, 0.0);
   EXPECT_GT(result.report.contact_ticks, 0);
-  EXPECT_TRUE(composeEffects(scene, field).forces.empty());
+  EXPECT_TRUE(composeEffects(scene, field, field).in_contact.empty());
 }
 
 TEST(Replay, RefusesAScenesOutOfRangeAndAnotherFieldsOriginal) {

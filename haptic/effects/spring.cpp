@@ -1,0 +1,26 @@
+#include "haptic/effects/spring.h"
+
+namespace fettle::haptic {
+
+namespace {
+
+struct Spring {
+  double stiffness_n_per_mm;
+
+  static void run(void* data, TickState& state) noexcept {
+    const glm::dvec3 press =
+        static_cast<const Spring*>(data)->stiffness_n_per_mm * state.contact.penetration_mm;
+    state.press_n += press;
+    state.force_n += press;
+  }
+};
+
+}  // namespace
+
+void addSpring(EffectList& list, const Scene& scene) {
+  Spring& spring =
+      addData(list, EffectKind::kSpring, std::make_shared<Spring>(Spring{scene.stiffness_n_per_mm}));
+  list.in_contact.push_back({&Spring::run, &spring});
+}
+
+}  // namespace fettle::haptic
