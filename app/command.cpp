@@ -37,12 +37,13 @@ void printReport(const Report& report) {
 
 CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
                      std::function<engine::Result<Report>(engine::JobControl&)> run,
-                     std::function<void(const Report&)> print) {
+                     std::function<void(const Report&)> print, Progress progress) {
   CLI::App* command = root.add_subcommand(name, description);
   command->add_flag("--json", chosen.json, "Print one JSON object on stdout instead of text");
-  command->callback([&chosen, run = std::move(run), print = std::move(print)] {
+  command->callback([&chosen, run = std::move(run), print = std::move(print), progress] {
     chosen.run = run;
     chosen.print = print;
+    chosen.progress = progress;
   });
   return command;
 }

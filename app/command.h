@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -14,11 +15,18 @@ namespace fettle::app {
 /// What a command found out: one object with stable keys, in the order in which people read them.
 using Report = nlohmann::ordered_json;
 
+/// Who shows how far a command is.
+enum class Progress : std::uint8_t {
+  kLine,  ///< the progress line that all commands share
+  kOwn,   ///< the command itself
+};
+
 /// The command that the command line chose, ready to run. `run` does the work and returns what --json prints;
 /// `print` shows the same to a person on stdout (printReport by default).
 struct Chosen {
   std::function<engine::Result<Report>(engine::JobControl&)> run;
   std::function<void(const Report&)> print;
+  Progress progress = Progress::kLine;
   bool json = false;
 };
 
@@ -28,15 +36,18 @@ void printReport(const Report& report);
 /// Adds a subcommand with --json. `run` is stored in `chosen` when the command line names it.
 CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
                      std::function<engine::Result<Report>(engine::JobControl&)> run,
-                     std::function<void(const Report&)> print = printReport);
+                     std::function<void(const Report&)> print = printReport,
+                     Progress progress = Progress::kLine);
 
 void addInfo(CLI::App& root, Chosen& chosen);
 void addSynth(CLI::App& root, Chosen& chosen);
 void addFilter(CLI::App& root, Chosen& chosen);
 void addReplay(CLI::App& root, Chosen& chosen);
+void addRecord(CLI::App& root, Chosen& chosen);
 void addRender(CLI::App& root, Chosen& chosen);
 void addCompare(CLI::App& root, Chosen& chosen);
 void addConvert(CLI::App& root, Chosen& chosen);
+void addDevices(CLI::App& root, Chosen& chosen);
 void addBench(CLI::App& root, Chosen& chosen);
 void addDemo(CLI::App& root, Chosen& chosen);
 

@@ -1,103 +1,18 @@
-#include <csignal>
-#include <cstdio>
-
-#include <exception>
-#include <new>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <system_error>
-
-#include <fmt/format.h>
-
-#include "app/command.h"
-#include "app/terminal.h"
-
-namespace {
-
-using fettle::app::Chosen;
-using fettle::app::Report;
-using fettle::engine::Error;
-using fettle::engine::ErrorKind;
-using fettle::engine::JobControl;
-
-// A report that did not reach standard output is a failure, whatever else went well.
-int finish(int status) {
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
-    return fettle::app::report({ErrorKind::kInput, "the report could not be written", "standard output", ""});
-  return status;
-}
-
-int runChosen(const Chosen& chosen) {
-  JobControl job;
-  const fettle::app::InterruptGuard interrupt(job);
-  const auto result = [&] {
-    const fettle::app::ProgressLine progress(job);
-    return chosen.run(job);
-  }();
-  if (!result) return fettle::app::report(result.error());
-  // Printing throws when standard output is full or closed; the work is done then, and says so by its files.
-  if (chosen.json)
-    // A path may hold bytes that are not UTF-8: they are replaced in the report, never in the file system.
-    fmt::print("{}\n", result->dump(2, ' ', false, Report::error_handler_t::replace));
-  else
-    chosen.print(*result);
-  return finish(0);
-}
-
-// `--keep "$MARKS"` with MARKS unset would mean "no marks": the protection that was asked for, silently gone.
-// Only a title may be empty.
-std::optional<Error> emptyArgument(int argc, char** argv) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view before = argv[i - 1];
-    if (*argv[i] == '\0' && !before.ends_with("title"))
-      return Error{ErrorKind::kInput, fmt::format("argument {} is empty", i), std::string(before),
-                   "is a shell variable unset?"};
-  }
-  return std::nullopt;
-}
-
-}  // namespace
+#include "app/program.h"
 
 int main(int argc, char** argv) {
-  // A limit on file sizes then fails the write, as a full disk does, instead of ending the program between a
-  // temporary file and its removal.
-  std::signal(SIGXFSZ, SIG_IGN);
-  std::signal(SIGPIPE, SIG_IGN);
-  if (const auto error = emptyArgument(argc, argv)) return fettle::app::report(*error);
-  CLI::App root{"Fettle cleans up large scanned height fields by touch.", "fettle"};
-  root.require_subcommand(1);
-  root.set_version_flag("--version", "fettle " FETTLE_VERSION);
-  Chosen chosen;
-  fettle::app::addInfo(root, chosen);
-  fettle::app::addSynth(root, chosen);
-  fettle::app::addFilter(root, chosen);
-  fettle::app::addReplay(root, chosen);
-  fettle::app::addRender(root, chosen);
-  fettle::app::addCompare(root, chosen);
-  fettle::app::addConvert(root, chosen);
-  fettle::app::addDemo(root, chosen);
-  fettle::app::addBench(root, chosen);
-
-  try {
-    root.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return finish(root.exit(error));  // --help and --version
-    std::string command;
-    for (const CLI::App* used : root.get_subcommands()) command = used->get_name() + " ";
-    return fettle::app::report(
-        {ErrorKind::kInput, error.what(), "", fmt::format("see fettle {}--help", command)});
-  }
-  try {
-    return runChosen(chosen);
-  } catch (const std::system_error& error) {
-    return fettle::app::report(
-        {ErrorKind::kInput, "the report could not be written", "standard output", error.what()});
-  } catch (const std::bad_alloc&) {
-    return fettle::app::report(
-        {ErrorKind::kFailed, "memory ran out", "", "close other programs or take a smaller scan"});
-  } catch (const std::exception& error) {
-    return fettle::app::report(
-        {ErrorKind::kFailed, error.what(), "", "this should not happen, please report it"});
-  }
+  using namespace fettle::app;
+  return runProgram(argc, argv, [](CLI::App& root, Chosen& chosen) {
+    addInfo(root, chosen);
+    addSynth(root, chosen);
+    addFilter(root, chosen);
+    addReplay(root, chosen);
+    addRecord(root, chosen);
+    addRender(root, chosen);
+    addCompare(root, chosen);
+    addConvert(root, chosen);
+    addDevices(root, chosen);
+    addDemo(root, chosen);
+    addBench(root, chosen);
+  });
 }

@@ -121,16 +121,16 @@ class RowWriter {
     if (engine::Status status = flush(); !status) return status;
     return file_.commit();
   }
+  [[nodiscard]] engine::Status flush() {
+    const std::string_view rows(buffer_.data(), static_cast<std::size_t>(end_ - buffer_.data()));
+    end_ = buffer_.data();
+    return file_.write(rows);
+  }
 
  private:
   RowWriter(engine::AtomicFile file, std::string_view header)
       : file_(std::move(file)), buffer_(kWriteBytes + kLongestRow), end_(buffer_.data()) {
     word(header);
-  }
-  [[nodiscard]] engine::Status flush() {
-    const std::string_view rows(buffer_.data(), static_cast<std::size_t>(end_ - buffer_.data()));
-    end_ = buffer_.data();
-    return file_.write(rows);
   }
 
   engine::AtomicFile file_;
@@ -165,14 +165,48 @@ engine::Result<std::vector<StrokeSample>> readStrokes(const std::string& path) {
   return strokes;
 }
 
-engine::Status writeStrokes(const std::string& path, std::span<const StrokeSample> strokes) {
+class StrokesWriter::Rows {
+ public:
+  explicit Rows(RowWriter out) : out_(std::move(out)) {}
+  [[nodiscard]] engine::Status append(const StrokeSample& s) {
+    for (const double value : {s.t, s.tip_mm.x, s.tip_mm.y, s.tip_mm.z}) out_.number(value);
+    out_.word(toolName(s.tool));
+    return out_.spill();
+  }
+  [[nodiscard]] RowWriter& out() noexcept { return out_; }
+
+ private:
+  RowWriter out_;
+};
+
+StrokesWriter::StrokesWriter(std::unique_ptr<Rows> rows) noexcept : rows_(std::move(rows)) {}
+StrokesWriter::StrokesWriter(StrokesWriter&&) noexcept = default;
+StrokesWriter& StrokesWriter::operator=(StrokesWriter&&) noexcept = default;
+StrokesWriter::~StrokesWriter() = default;
+
+engine::Result<StrokesWriter> StrokesWriter::create(const std::string& path) {
   engine::Result<RowWriter> out = RowWriter::create(path, kStrokesHeader);
   if (!out) return tl::unexpected(out.error());
-  for (const StrokeSample& s : strokes) {
-    for (const double value : {s.t, s.tip_mm.x, s.tip_mm.y, s.tip_mm.z}) out->number(value);
-    out->word(toolName(s.tool));
-    if (engine::Status status = out->spill(); !status) return status;
-  }
+  return StrokesWriter(std::make_unique<Rows>(std::move(*out)));
+}
+
+engine::Status StrokesWriter::append(const StrokeSample& row) {
+  return rows_->append(row);
+}
+
+engine::Status StrokesWriter::flush() {
+  return rows_->out().flush();
+}
+
+engine::Status StrokesWriter::commit() {
+  return rows_->out().commit();
+}
+
+engine::Status writeStrokes(const std::string& path, std::span<const StrokeSample> strokes) {
+  engine::Result<StrokesWriter> out = StrokesWriter::create(path);
+  if (!out) return tl::unexpected(out.error());
+  for (const StrokeSample& s : strokes)
+    if (engine::Status status = out->append(s); !status) return status;
   return out->commit();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -55,6 +56,28 @@ struct ForceSample {
 /// Writes a strokes file, whole or not at all. Numbers are the shortest that read back to the same double.
 /// Errors (kInput): the path cannot be written, full disk.
 [[nodiscard]] engine::Status writeStrokes(const std::string& path, std::span<const StrokeSample> strokes);
+
+/// A strokes file written while the session goes on: whole or not at all, as writeStrokes. A program that is
+/// killed leaves the temporary file beside the final path: a strokes file with all that was flushed.
+/// Threading: one thread at a time; writes to the disk, so not the loop's. Errors as writeStrokes.
+class StrokesWriter {
+ public:
+  [[nodiscard]] static engine::Result<StrokesWriter> create(const std::string& path);
+  StrokesWriter(StrokesWriter&&) noexcept;
+  StrokesWriter& operator=(StrokesWriter&&) noexcept;
+  ~StrokesWriter();  ///< without commit(): nothing is left
+
+  [[nodiscard]] engine::Status append(const StrokeSample& row);
+  /// All rows so far go to the system.
+  [[nodiscard]] engine::Status flush();
+  /// Puts the file in its place; at most once, last.
+  [[nodiscard]] engine::Status commit();
+
+ private:
+  class Rows;
+  explicit StrokesWriter(std::unique_ptr<Rows> rows) noexcept;
+  std::unique_ptr<Rows> rows_;
+};
 
 /// Writes a forces file, whole or not at all: CSV `t,proxy_x,proxy_y,proxy_z,fx,fy,fz,contact`; seconds,
 /// millimetres, newtons, contact 0 or 1. Errors as writeStrokes.

@@ -23,6 +23,8 @@ struct Entry {
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may not lock");
 
 std::array<Entry, 8> entries;
+std::atomic<bool> held_at_zero{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may not lock");
 
 }  // namespace
 
@@ -56,6 +58,16 @@ void disarmEmergencyZero(int number) noexcept {
   // write, on a device whose driver has sent its own zero before it came here.
   ::close(e.file);
   e.state.store(kEmpty, std::memory_order_release);
+}
+
+// Relaxed both: a report that was encoded before the flag is seen is what the second round of zeros in
+// LastResort::fire is for.
+void holdDevicesAtZero(HeldAtZero held) noexcept {
+  held_at_zero.store(held == HeldAtZero::kYes, std::memory_order_relaxed);
+}
+
+bool devicesHeldAtZero() noexcept {
+  return held_at_zero.load(std::memory_order_relaxed);
 }
 
 int zeroAllDevices() noexcept {

@@ -24,4 +24,11 @@ void disarmEmergencyZero(int number) noexcept;
 /// errno. Returns how many were taken. A device that has stopped taking reports can hold it for 5 s.
 int zeroAllDevices() noexcept;
 
+/// From now on every port sends zero force whatever it is handed (kYes), or what it is handed again (kNo): a
+/// writer thread that lives on for some milliseconds after the zeros must not undo them. Async-signal-safe.
+enum class HeldAtZero : bool { kNo, kYes };
+void holdDevicesAtZero(HeldAtZero held) noexcept;
+/// For the ports. Any thread, wait-free.
+[[nodiscard]] bool devicesHeldAtZero() noexcept;
+
 }  // namespace fettle::haptic

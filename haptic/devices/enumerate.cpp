@@ -3,6 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -125,13 +128,49 @@ std::vector<DeviceInfo> listDevices() {
     d.profile = profileOf(d.kind);
     devices.push_back(std::move(d));
   }
-  for (DeviceInfo& d : devices) d.readable = ::access(d.path.c_str(), R_OK | W_OK) == 0;
+  for (DeviceInfo& d : devices) {
+    d.readable = ::access(d.path.c_str(), R_OK | W_OK) == 0;
+    d.open_error = d.readable ? 0 : errno;
+  }
   std::stable_partition(devices.begin(), devices.end(),
                         [](const DeviceInfo& d) { return d.kind != DeviceKind::kOther; });
   return devices;
 }
 
-engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word) {
+std::vector<HandTarget> handPath(std::span<const StrokeSample> strokes) {
+  std::vector<HandTarget> path;
+  double first = 0.0;
+  for (const StrokeSample& s : strokes) {
+    if (!std::isfinite(s.t + s.tip_mm.x + s.tip_mm.y + s.tip_mm.z)) continue;
+    if (path.empty()) first = s.t;
+    if (!path.empty() && s.t - first <= path.back().t) continue;
+    path.push_back({s.t - first, s.tip_mm, s.tool});
+  }
+  return path;
+}
+
+DeviceProblem deviceProblem(int open_error) {
+  switch (open_error) {
+    case 0:
+      return {};
+    case EACCES:
+    case EPERM:
+      return {
+          "no permission",
+          "install the udev rules: sudo cp assets/udev/70-fettle.rules /etc/udev/rules.d/ && sudo udevadm "
+          "control --reload && sudo udevadm trigger, then plug the device in again"};
+    case EBUSY:
+      return {"busy", "close the program that uses it"};
+    case ENOENT:
+    case ENODEV:
+    case ENXIO:
+      return {"unplugged", "plug it in again"};
+    default:
+      return {std::strerror(open_error), "plug it in again; see the kernel's log (dmesg)"};
+  }
+}
+
+engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word, double loop_rate_hz) {
   const std::size_t colon = word.find(':');
   const std::string_view head = std::string_view(word).substr(0, colon);
   const std::string rest = colon == std::string::npos ? std::string() : word.substr(colon + 1);
@@ -141,6 +180,16 @@ engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word) {
   if (word == "mouse") return std::make_unique<MouseStylus>();
   if (word == "hand")
     return std::make_unique<SimulatedHand>(std::vector<HandTarget>{HandTarget{}}, HandSpec{});
+  if (head == "hand" && !rest.empty()) {
+    const auto strokes = readStrokes(rest);
+    if (!strokes) return tl::unexpected(strokes.error());
+    std::vector<HandTarget> path = handPath(*strokes);
+    if (path.empty())
+      return engine::inputError("the strokes hold no position to go to", rest, "give a recorded session");
+    HandSpec spec;
+    spec.rate_hz = loop_rate_hz;
+    return std::make_unique<SimulatedHand>(std::move(path), spec);
+  }
   if (head == "replay" && !rest.empty()) {
     auto strokes = readStrokes(rest);
     if (!strokes) return tl::unexpected(strokes.error());
@@ -148,9 +197,10 @@ engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word) {
   }
   for (const DeviceInfo& d : listDevices())
     if (d.path == word) return openKind(d.kind, word);
-  return engine::inputError("there is no such device", word,
-                            "use woodenhaptics, serial, spacemouse, mouse, hand, replay:FILE or a path that "
-                            "fettle devices shows");
+  return engine::inputError(
+      "there is no such device", word,
+      "use woodenhaptics, serial, spacemouse, mouse, hand:FILE, replay:FILE or a path that "
+      "fettle devices shows");
 }
 
 }  // namespace fettle::haptic

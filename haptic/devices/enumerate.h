@@ -3,12 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "engine/base/error.h"
 #include "haptic/devices/device.h"
+#include "haptic/devices/simulated_hand.h"
 
 namespace fettle::haptic {
 
@@ -34,7 +36,8 @@ struct DeviceInfo {
   std::uint16_t usage = 0;
   std::size_t input_bytes = 0;  ///< longest report; 0 = not known
   std::size_t output_bytes = 0;
-  bool readable = false;        ///< this user may open it; if not, the udev rules are missing
+  bool readable = false;        ///< this user may open it
+  int open_error = 0;           ///< errno of the attempt where not; see deviceProblem()
   bool gives_position = false;  ///< 3 axes at least
   bool gives_force = false;
   std::string_view form;  ///< "W8", "P14", "S" where known; else empty
@@ -52,10 +55,24 @@ struct DeviceInfo {
 ///   spacemouse[:WHICH]
 ///   mouse                   MouseStylus
 ///   hand                    SimulatedHand resting at (0, 0, 0)
+///   hand:FILE               SimulatedHand that wants to be where a strokes file says, with its tools
 ///   replay:FILE             ReplayDevice in real time
 ///   a path of listDevices() the device there
 /// A device that is not plugged in is no error, it may come; a path that is not there is.
 /// Errors (kInput): an unknown word, a bad configuration or strokes file.
-[[nodiscard]] engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word);
+/// `loop_rate_hz`: how often the device will be read; the simulated hand's time goes on by that.
+[[nodiscard]] engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word,
+                                                                 double loop_rate_hz = 1000.0);
+
+/// The way of a strokes file as a hand's targets: rows that are not finite or whose time does not rise are
+/// left out. Empty when no row is left.
+[[nodiscard]] std::vector<HandTarget> handPath(std::span<const StrokeSample> strokes);
+
+/// Why a device cannot be opened and what to do, by DeviceInfo::open_error; both empty for 0.
+struct DeviceProblem {
+  std::string what;    ///< "no permission", "busy", "unplugged" or the system's words
+  std::string remedy;  ///< one sentence
+};
+[[nodiscard]] DeviceProblem deviceProblem(int open_error);
 
 }  // namespace fettle::haptic

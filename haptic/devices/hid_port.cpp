@@ -101,7 +101,10 @@ class HidPort final : public ReportPort {
     std::array<std::uint8_t, kWoodenLongest + 1> bytes;
     if (report.size() + 1 > bytes.size()) return PortWrite::kFailed;
     bytes[0] = 0;  // hidapi wants the report id first; 0 = the device has none, and it is not sent
-    std::copy(report.begin(), report.end(), bytes.begin() + 1);
+    if (devicesHeldAtZero())
+      std::fill_n(bytes.begin() + 1, report.size(), std::uint8_t{0});
+    else
+      std::copy(report.begin(), report.end(), bytes.begin() + 1);
     if (emergency_bytes_ != report.size() + 1) {  // the first output, or the form has become known
       emergency_bytes_ = report.size() + 1;
       const std::array<std::uint8_t, kWoodenLongest + 1> zero{};  // no current, in every HID form

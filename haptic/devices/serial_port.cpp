@@ -56,6 +56,8 @@ class SerialPort final : public ReportPort {
   }
 
   PortWrite write(std::span<const std::uint8_t> line) noexcept override {
+    if (devicesHeldAtZero())
+      line = {reinterpret_cast<const std::uint8_t*>(kZeroLine.data()), kZeroLine.size()};
     while (!line.empty()) {
       const ssize_t n = ::write(file_, line.data(), line.size());
       if (n > 0) {

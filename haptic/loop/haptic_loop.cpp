@@ -19,7 +19,8 @@ engine::Result<std::unique_ptr<HapticLoop>> HapticLoop::create(const engine::Ver
   if (!(settings.rate_hz >= Pacer::kLowestRate_hz && settings.rate_hz <= Pacer::kHighestRate_hz))
     return engine::inputError("a loop runs at 1000 to 10000 ticks a second", "rate");
   if (!std::has_single_bit(settings.options.command_capacity) ||
-      !std::has_single_bit(settings.options.event_capacity) || settings.options.event_capacity < 8)
+      !std::has_single_bit(settings.options.event_capacity) || settings.options.event_capacity < 8 ||
+      (settings.options.record_capacity != 0 && !std::has_single_bit(settings.options.record_capacity)))
     return engine::inputError("ring capacities are powers of two, that of events 8 or more", "loop options");
   if (start.grid().width != original.grid().width || start.grid().height != original.grid().height)
     return engine::inputError("the original field has another size than the field", "loop",

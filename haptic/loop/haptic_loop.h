@@ -52,6 +52,9 @@ class HapticLoop {
   }
   /// The oldest event that was not seen yet; false when there is none.
   [[nodiscard]] bool poll(LoopEvent& event) noexcept { return channels_.events.pop(event); }
+  /// The oldest record of a tick that was not taken yet (LoopOptions::record_capacity); false when there is
+  /// none. The rest can be taken after stop().
+  [[nodiscard]] bool pollRecord(TickRecord& record) noexcept { return channels_.records.pop(record); }
   /// The newest tick.
   [[nodiscard]] const LoopState& state() noexcept {
     channels_.state.take();

@@ -213,9 +213,17 @@ void LoopTick::restore(LoopCommand& command) noexcept {
 Tool LoopTick::toolInEffect(const DeviceInput& input, double age_s) const noexcept {
   // No editing by a hand that is not heard of.
   if (input.link != LinkState::kConnected || age_s >= options_.limits.silence_s) return Tool::kFeel;
+  if (options_.edit_rule == EditRule::kWhileForceIsGiven && guard_.state() != SafetyState::kRamping &&
+      guard_.state() != SafetyState::kActive)
+    return Tool::kFeel;
   if (input.tool) return *input.tool;
   const bool on = options_.tool_switch == ToolSwitch::kAlways || (input.buttons & kPrimaryButton) != 0;
   return on ? tool_ : Tool::kFeel;
+}
+
+void LoopTick::record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept {
+  if (options_.record_capacity == 0) return;
+  if (!channels_.records.push({input, guard_.force(), since_ns, force.contact})) ++state_.lost_records;
 }
 
 void LoopTick::noteVelocity(const DeviceInput& input) noexcept {
@@ -325,7 +333,8 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   const glm::dvec3 tip_mm = in_field ? input.position_mm : workspace_.toField(input.position_mm);
   const Tool tool = clutched ? Tool::kFeel : toolInEffect(input, age_s);
 
-  StrokeSample sample{1e-9 * static_cast<double>(now_ns), tip_mm, tool};
+  if (first_ns_ < 0) first_ns_ = now_ns;
+  StrokeSample sample{1e-9 * static_cast<double>(now_ns - first_ns_), tip_mm, tool};
   if (input.link != LinkState::kConnected) sample.tip_mm.x = std::numeric_limits<double>::quiet_NaN();
   const ForceSample force = scene_->tick.run(sample);
 
@@ -335,6 +344,7 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   device_.write(given);
 
   ++state_.tick;
+  record(sample, force, since_ns);
   noteEdit(force, tool);
   publish();
 

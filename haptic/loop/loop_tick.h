@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -18,9 +19,18 @@ enum class ToolSwitch : std::uint8_t {
   kAlways,  ///< whenever in contact: devices without a button
 };
 
+/// When an editing tool may act at all.
+enum class EditRule : std::uint8_t {
+  kAnytime,
+  /// Only while the guard passes force on (Ramping, Active): a hand that feels no surface - not armed yet, or
+  /// after a Fault - would press right through it. For devices that give force.
+  kWhileForceIsGiven,
+};
+
 struct LoopOptions {
   Tool tool = Tool::kFeel;
   ToolSwitch tool_switch = ToolSwitch::kButton;
+  EditRule edit_rule = EditRule::kAnytime;
   /// Buttons that hold the clutch (see Workspace); 0 = none.
   std::uint32_t clutch_buttons = kSecondaryButton;
   Workspace workspace;  ///< ignored by devices whose positions are in the field already
@@ -31,14 +41,18 @@ struct LoopOptions {
   std::uint32_t stroke_gap_ticks = 100;
   std::size_t command_capacity = 256;  ///< power of two
   std::size_t event_capacity = 256;    ///< power of two, >= 8
+  std::size_t record_capacity = 0;     ///< ticks, power of two; 0 = ticks are not recorded
 };
 
 /// The two rings and the slot between the loop and the main side. The loop never waits on any of them.
 struct LoopChannels {
   explicit LoopChannels(const LoopOptions& options)
-      : commands(options.command_capacity), events(options.event_capacity) {}
+      : commands(options.command_capacity),
+        events(options.event_capacity),
+        records(std::max<std::size_t>(options.record_capacity, 1)) {}
   SpscRing<LoopCommand> commands;
   SpscRing<LoopEvent> events;
+  SpscRing<TickRecord> records;  ///< not used with a record_capacity of 0
   LatestSlot<LoopState> state;
 };
 
@@ -72,6 +86,8 @@ struct LoopChannels {
 /// running stroke included; the stroke goes on as a new one.
 ///
 /// A command that has an answer is left in its ring until the answer has a place.
+///
+/// Time. The tick sees seconds since the first one, so that what is recorded is exactly what it saw.
 ///
 /// Threading: constructed on the main side (allocates); run() and stop() on one thread. run(): noexcept,
 /// wait-free, bounded (kMostCommands commands, of which one that swaps versions), no allocation, no lock, no
@@ -118,6 +134,7 @@ class LoopTick {
   void publish() noexcept;
 
   [[nodiscard]] Tool toolInEffect(const DeviceInput& input, double age_s) const noexcept;
+  void record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept;
   void noteVelocity(const DeviceInput& input) noexcept;
 
   // Places of the event ring that edits leave free for answers.
@@ -150,6 +167,7 @@ class LoopTick {
   std::array<TileIndex, kMostCarried> edited_{};
   int edited_count_ = 0;
 
+  std::int64_t first_ns_ = -1;        // wake-up of the first tick: the session's time 0
   std::uint64_t refused_before_ = 0;  // by the scenes that were left
   DeviceInput last_input_;
   bool has_input_ = false;

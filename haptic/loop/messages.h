@@ -96,6 +96,15 @@ struct LoopEvent {
   std::unique_ptr<PreparedScene> retired_scene;
 };
 
+/// What one tick was given and what came of it: loop -> main, one a tick, through a ring of their own. The
+/// inputs in order, written to a strokes file, are the session: a replay of them makes the same field.
+struct TickRecord {
+  StrokeSample input;         ///< the very argument of Tick::run
+  glm::dvec3 given_n{0.0};    ///< what the guard let through, device frame
+  std::int64_t since_ns = 0;  ///< since the previous tick
+  bool contact = false;
+};
+
 /// The newest tick, for the display; the main side reads it from a LatestSlot.
 struct LoopState {
   std::uint64_t tick = 0;
@@ -114,6 +123,7 @@ struct LoopState {
   std::uint64_t refused_edits = 0;  ///< writes that found the tile pool dry, so far
   std::uint64_t adopted = 0;        ///< versions adopted so far
   std::uint64_t carried = 0;        ///< tiles carried over adoptions so far
+  std::uint64_t lost_records = 0;   ///< ticks whose record found its ring full, so far
   TickCounters counters;
   SafetyCounters safety_counters;
 };

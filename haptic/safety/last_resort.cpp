@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 
 #include <sched.h>
 
@@ -97,6 +98,7 @@ bool LastResort::fired() noexcept {
 
 void LastResort::reset() noexcept {
   g_fired.store(false, std::memory_order_relaxed);
+  holdDevicesAtZero(HeldAtZero::kNo);
 }
 
 void LastResort::fire() noexcept {
@@ -113,7 +115,13 @@ void LastResort::fire() noexcept {
     // Release: the destructor that sees kReady again may free the device.
     slot.state.store(SlotState::kReady, std::memory_order_release);
   }
-  // The drivers' own: last, since a device that takes no reports can hold it for seconds.
+  // The drivers' own: last, since a device that takes no reports can hold it for seconds. Twice: a writer
+  // thread may have had a force in hand when the first zeros overtook it; it has given it away by the second,
+  // and has nothing but zeros from then on.
+  holdDevicesAtZero(HeldAtZero::kYes);
+  if (zeroAllDevices() == 0) return;
+  const timespec in_hand{0, 2'000'000};
+  nanosleep(&in_hand, nullptr);
   zeroAllDevices();
 }
 

@@ -1,6 +1,7 @@
 #include "tests/haptic/devices/fake_hidapi/fake_woody.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <utility>
 
@@ -61,7 +62,32 @@ void FakeWoody::sendRaw(std::vector<std::uint8_t> bytes) {
 
 void FakeWoody::turnTo(std::array<std::int32_t, 3> counts) {
   const std::lock_guard lock(mutex_);
-  counts_ = counts;
+  counts_ = from_ = to_ = counts;
+}
+
+void FakeWoody::moveTo(std::array<std::int32_t, 3> counts, std::chrono::milliseconds length) {
+  const std::lock_guard lock(mutex_);
+  from_ = counts_;
+  to_ = counts;
+  from_at_ = Clock::now();
+  to_at_ = from_at_ + length;
+}
+
+std::vector<WoodyCurrents> FakeWoody::history() const {
+  const std::lock_guard lock(mutex_);
+  return history_;
+}
+
+void FakeWoody::note(WoodyCurrents::By by) {
+  history_.push_back({Clock::now(), log_.ma, counts_, by});
+}
+
+void FakeWoody::move(Clock::time_point now) {
+  if (counts_ == to_) return;
+  const double share = std::min(1.0, std::chrono::duration<double>(now - from_at_).count() /
+                                         std::chrono::duration<double>(to_at_ - from_at_).count());
+  for (std::size_t i = 0; i < 3; ++i)
+    counts_[i] = from_[i] + static_cast<std::int32_t>(std::lround(share * (to_[i] - from_[i])));
 }
 
 void FakeWoody::forgetMost() {
@@ -110,6 +136,7 @@ void FakeWoody::output(std::span<const std::uint8_t> report) {
     log_.ma[i] = int16At(report, 2 * i);
     log_.most_ma = std::max(log_.most_ma, std::abs(log_.ma[i]));
   }
+  note(WoodyCurrents::By::kOutput);
 }
 
 void FakeWoody::run() {
@@ -131,16 +158,22 @@ void FakeWoody::run() {
         hid_.unplug();
       }
       log_.ma = {};
+      note(WoodyCurrents::By::kPower);
     }
+    move(now);
     if (!hid_.plugged()) continue;
     for (const auto& bytes : hid_.directWrites(firmware_ == Firmware::kW8 ? 9 : 15)) {
       if (std::any_of(bytes.begin(), bytes.end(), [](std::uint8_t b) { return b != 0; })) continue;
       ++log_.direct_zeros;
       log_.ma = {};
+      note(WoodyCurrents::By::kDirect);
     }
     if (now - last_output_ > kWatchdog) {
-      if (log_.ma != std::array<std::int16_t, 3>{}) ++log_.watchdog_fired;
-      log_.ma = {};
+      if (log_.ma != std::array<std::int16_t, 3>{}) {
+        ++log_.watchdog_fired;
+        log_.ma = {};
+        note(WoodyCurrents::By::kWatchdog);
+      }
     }
     if (now < next) continue;
     next = std::max(next + std::chrono::milliseconds(1), now - std::chrono::milliseconds(1));

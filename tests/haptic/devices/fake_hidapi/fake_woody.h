@@ -25,6 +25,20 @@ struct WoodyLog {
   int most_ma = 0;                   ///< largest of any motor since plug() or forgetMost()
 };
 
+/// The currents from one moment on, and why they changed.
+struct WoodyCurrents {
+  enum class By : std::uint8_t {
+    kOutput,    ///< an output report
+    kDirect,    ///< zeros written straight to the device file
+    kWatchdog,  ///< the firmware's own
+    kPower,     ///< plugged in or out
+  };
+  std::chrono::steady_clock::time_point at;
+  std::array<std::int16_t, 3> ma{};
+  std::array<std::int32_t, 3> counts{};  ///< of the hand then, as turnTo() says them
+  By by = By::kOutput;
+};
+
 /// A WoodenHaptics device that is not there: firmware W8 (free-running) or P14 (lock-step), 1 kHz, a thread
 /// of its own; its watchdog, its encoders that start at zero, its faults on request. All functions: any
 /// thread.
@@ -45,6 +59,10 @@ class FakeWoody {
   void sendRaw(std::vector<std::uint8_t> bytes);
   /// What the encoders read, as the firmware counts: from zero at power-on, or from the preset.
   void turnTo(std::array<std::int32_t, 3> counts);
+  /// The same, on a straight line of counts that takes so long.
+  void moveTo(std::array<std::int32_t, 3> counts, std::chrono::milliseconds length);
+  /// Everything that ever set the currents, in order.
+  [[nodiscard]] std::vector<WoodyCurrents> history() const;
   void pressStylus(bool pressed) { stylus_ = pressed; }
   void pressCalibration() { latch_ = true; }
   void forgetMost();
@@ -54,6 +72,8 @@ class FakeWoody {
   void run();
   void input();
   void output(std::span<const std::uint8_t> report);
+  void move(std::chrono::steady_clock::time_point now);
+  void note(WoodyCurrents::By by);
 
   const Firmware firmware_;
   FakeHid hid_;
@@ -70,7 +90,12 @@ class FakeWoody {
   std::array<std::int32_t, 3> preset_offset_{};
   std::uint16_t counter_ = 0;
   bool waits_for_reply_ = false;
+  std::array<std::int32_t, 3> from_{};  // of the motion that goes on
+  std::array<std::int32_t, 3> to_{};
+  std::chrono::steady_clock::time_point from_at_;
+  std::chrono::steady_clock::time_point to_at_;
   WoodyLog log_;
+  std::vector<WoodyCurrents> history_;
   std::thread thread_;
 };
 

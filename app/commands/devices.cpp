@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include "app/command.h"
+#include "haptic/devices/enumerate.h"
+#include "haptic/devices/mouse_stylus.h"
+#include "haptic/devices/simulated_hand.h"
+
+namespace fettle::app {
+
+namespace {
+
+using haptic::DeviceInfo;
+using haptic::DeviceKind;
+using haptic::DeviceProfile;
+
+// What every entry says, in the same keys. Limits are null where the device has none of the kind.
+Report entry(const std::string& id, const std::string& name, std::string_view kind, const std::string& state,
+             const std::string& remedy, const DeviceProfile& profile) {
+  const auto forceOnly = [&](double value) { return profile.gives_force ? Report(value) : Report(); };
+  return {{"id", id},
+          {"name", name},
+          {"kind", std::string(kind)},
+          {"state", state},
+          {"remedy", remedy.empty() ? Report() : Report(remedy)},
+          {"force", profile.gives_force},
+          {"workspace_radius_mm", profile.space == haptic::DeviceSpace::kDesk
+                                      ? Report(profile.workspace_radius_mm)
+                                      : Report()},  // moves in the field itself
+          {"max_force_n", forceOnly(profile.max_force_n)},
+          {"max_stiffness_n_per_mm", forceOnly(profile.max_stiffness_n_per_mm)},
+          {"max_damping_n_s_per_mm", forceOnly(profile.max_damping_n_s_per_mm)},
+          {"resolution_mm", profile.resolution_mm > 0.0 ? Report(profile.resolution_mm) : Report()},
+          {"rate_hz", profile.rate_hz},
+          {"tested_on_hardware", false}};
+}
+
+Report pluggedIn(const DeviceInfo& d) {
+  const haptic::DeviceProblem problem = haptic::deviceProblem(d.open_error);
+  const bool usable = d.kind != DeviceKind::kOther;
+  Report row = entry(d.path, d.name, haptic::deviceKindName(d.kind),
+                     !usable             ? "no driver"
+                     : d.open_error == 0 ? "ready"
+                                         : problem.what,
+                     usable ? problem.remedy : "", d.profile);
+  if (!usable)
+    for (const char* key : {"workspace_radius_mm", "max_force_n", "max_stiffness_n_per_mm",
+                            "max_damping_n_s_per_mm", "resolution_mm", "rate_hz"})
+      row[key] = nullptr;  // nothing is known of it
+  row["serial"] = d.serial;
+  row["usb_id"] = d.vendor == 0 ? Report() : Report(fmt::format("{:04x}:{:04x}", d.vendor, d.product));
+  row["form"] = d.form.empty() ? Report() : Report(std::string(d.form));
+  row["limits_of"] = usable && d.gives_force ? Report(d.profile.name) : Report();
+  return row;
+}
+
+Report builtIn(const std::string& id, const std::string& name, const std::string& state,
+               const std::string& remedy, const DeviceProfile& profile) {
+  Report row = entry(id, name, "built in", state, remedy, profile);
+  row["serial"] = "";
+  row["usb_id"] = row["form"] = row["limits_of"] = nullptr;
+  return row;
+}
+
+engine::Result<Report> devices() {
+  Report rows = Report::array();
+  for (const DeviceInfo& d : haptic::listDevices()) rows.push_back(pluggedIn(d));
+  // Spacemouse, woodenhaptics and the like need no path: the first one found is taken.
+  rows.push_back(builtIn("mouse", "mouse as a stylus", "needs a window",
+                         "the cursor points at the picture: see fettle view --help",
+                         haptic::MouseStylus().profile()));
+  rows.push_back(builtIn("hand:STROKES", "simulated hand in closed loop, on the way of a strokes file",
+                         "ready", "", haptic::SimulatedHand({haptic::HandTarget{}}, {}).profile()));
+  DeviceProfile replay;
+  replay.space = haptic::DeviceSpace::kField;
+  rows.push_back(builtIn("replay:STROKES", "strokes file in real time", "ready", "", replay));
+  return Report{{"devices", rows}};
+}
+
+std::string known(const Report& value, double factor, const char* unit) {
+  return value.is_null() ? "-" : fmt::format("{:.3g} {}", value.get<double>() * factor, unit);
+}
+
+void print(const Report& report) {
+  bool any = false;
+  for (const Report& d : report["devices"]) {
+    any = any || d["kind"] != "built in";
+    fmt::print("{}\n  {}, {}: {}\n", d["id"].get<std::string>(), d["name"].get<std::string>(),
+               d["kind"].get<std::string>(), d["state"].get<std::string>());
+    if (d["state"] == "no driver") continue;
+    if (d["force"].get<bool>())
+      fmt::print("  force up to {}, stiffness {}, damping {}; {} Hz\n", known(d["max_force_n"], 1.0, "N"),
+                 known(d["max_stiffness_n_per_mm"], 1.0, "N/mm"),
+                 known(d["max_damping_n_s_per_mm"], 1000.0, "N s/m"), d["rate_hz"].get<double>());
+    else
+      fmt::print("  no force; {} Hz\n", d["rate_hz"].get<double>());
+    if (!d["workspace_radius_mm"].is_null())
+      fmt::print("  workspace of {} radius, resolution {}\n", known(d["workspace_radius_mm"], 1.0, "mm"),
+                 known(d["resolution_mm"], 1.0, "mm"));
+    if (!d["remedy"].is_null()) fmt::print("  {}\n", d["remedy"].get<std::string>());
+    if (d["kind"] != "built in") fmt::print("  not tested on hardware: proved against a fake device\n");
+  }
+  if (!any) fmt::print("\nNo force device or 3D mouse is plugged in.\n");
+}
+
+}  // namespace
+
+void addDevices(CLI::App& root, Chosen& chosen) {
+  addCommand(
+      root, chosen, "devices", "What is plugged in and what it can do; use an id with fettle record --device",
+      [](engine::JobControl&) { return devices(); }, print);
+}
+
+}  // namespace fettle::app

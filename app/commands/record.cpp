@@ -1,0 +1,380 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/command.h"
+#include "app/live/live_session.h"
+#include "app/scan_options.h"
+#include "app/terminal.h"
+#include "engine/io/marks.h"
+#include "haptic/devices/enumerate.h"
+#include "haptic/devices/workspace.h"
+#include "haptic/loop/pacer.h"
+#include "haptic/replay.h"
+#include "haptic/scene.h"
+#include "haptic/strokes.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct Options {
+  std::string scan;
+  std::string strokes;
+  std::string out;
+  std::string device;
+  std::string scene;
+  std::string marks;
+  std::string marks_out;
+  std::string tool = "feel";
+  std::string tool_switch = "button";
+  std::string arm;
+  double rate_hz = 1000.0;
+  double seconds = 0.0;
+  double scale = 0.0;  // 0 = fitted
+  std::optional<double> max_force_n;
+  bool keys = false;
+  ScanOptions reading;
+};
+
+constexpr std::array kTools{haptic::Tool::kFeel, haptic::Tool::kSmooth, haptic::Tool::kMark,
+                            haptic::Tool::kUnmark};
+
+haptic::Tool toolOf(const std::string& name) {
+  return *std::find_if(kTools.begin(), kTools.end(), [&](auto t) { return haptic::toolName(t) == name; });
+}
+
+// What the word --device stands for, and what follows from it.
+struct ChosenDevice {
+  std::unique_ptr<haptic::Device> device;
+  std::string file;    // strokes that it plays
+  bool plays = false;  // simulated: ends with its strokes, and no hand is in it
+  double plays_s = 0.0;
+};
+
+engine::Result<ChosenDevice> choose(const Options& options) {
+  ChosenDevice chosen;
+  if (options.device == "mouse")
+    return engine::inputError("the mouse needs a window to point at", "--device mouse",
+                              "take another device; fettle devices lists them");
+  if (options.device == "hand")
+    return engine::inputError("the simulated hand needs a way to go", "--device hand",
+                              "name a strokes file: --device hand:STROKES");
+  for (const std::string_view head : {"hand:", "replay:"})
+    if (options.device.starts_with(head)) {
+      chosen.plays = true;
+      chosen.file = options.device.substr(head.size());
+    }
+  if (chosen.plays) {
+    const auto strokes = haptic::readStrokes(chosen.file);
+    if (!strokes) return tl::unexpected(strokes.error());
+    const auto path = haptic::handPath(*strokes);
+    if (path.empty())
+      return engine::inputError("the strokes hold no position to go to", chosen.file,
+                                "give a recorded session");
+    chosen.plays_s = path.back().t;
+  }
+  auto device = haptic::openDevice(options.device, options.rate_hz);
+  if (!device) return tl::unexpected(device.error());
+  chosen.device = *std::move(device);
+  return chosen;
+}
+
+// The middle of the field, on its surface where there is one.
+glm::dvec3 middleOf(const engine::Version& field) {
+  const engine::Grid& grid = field.grid();
+  const engine::FieldReader reader = field.reader();
+  double height = reader.heightAt(grid.width / 2, grid.height / 2);
+  if (!std::isfinite(height)) {
+    const engine::HeightBounds bounds = reader.bounds();
+    height = bounds.empty() ? 0.0 : 0.5 * (static_cast<double>(bounds.min) + static_cast<double>(bounds.max));
+  }
+  return {0.5 * (grid.width - 1) * grid.spacingXMm(), 0.5 * (grid.height - 1) * grid.spacingYMm(),
+          height * grid.height_unit.mm};
+}
+
+// Where the device lies in the field: --scale, or the whole field within reach unless that felt too stiff.
+engine::Result<haptic::Workspace> place(const Options& options, const engine::Version& felt,
+                                        const haptic::DeviceProfile& profile, const haptic::Scene& scene) {
+  if (profile.space == haptic::DeviceSpace::kField) return haptic::Workspace{};
+  const engine::Grid& grid = felt.grid();
+  const glm::dvec3 middle = middleOf(felt);
+  const double side = std::min((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
+  const double fitted = haptic::Workspace::fit(profile, middle, side).scale();
+  // A spring of k in the field is felt as scale * k (see haptic::Workspace).
+  const double stiffest = profile.max_stiffness_n_per_mm / scene.stiffness_n_per_mm;
+  double scale = options.scale;
+  if (scale == 0.0) scale = profile.gives_force ? std::min(fitted, stiffest) : fitted;
+  if (profile.gives_force && scale > stiffest * (1.0 + 1e-9))
+    return engine::inputError(
+        fmt::format("at this scale the surface is felt with {:.3g} N/mm, and {} holds {:.3g} N/mm",
+                    scale * scene.stiffness_n_per_mm, profile.name, profile.max_stiffness_n_per_mm),
+        fmt::format("--scale {:g}", scale),
+        fmt::format("take a scale of at most {:.3g} or a scene with a softer spring", stiffest));
+  if (!(scale > 0.0)) scale = 1.0;  // a field of one row or column
+  return haptic::Workspace(scale, middle);
+}
+
+// A device without a hand in it arms itself; one that pushes a hand waits for the person.
+engine::Result<ArmPolicy> armPolicy(const Options& options, const ChosenDevice& chosen) {
+  const bool pushes_a_hand = chosen.device->profile().gives_force && !chosen.plays;
+  if (options.arm == "auto" && pushes_a_hand)
+    return engine::inputError("a device that gives force is armed by the person who holds it", "--arm auto",
+                              "leave it out and press a when the stylus is clear of the surface");
+  if (options.arm.empty()) return pushes_a_hand ? ArmPolicy::kAsk : ArmPolicy::kAuto;
+  return options.arm == "auto" ? ArmPolicy::kAuto : ArmPolicy::kAsk;
+}
+
+engine::Result<LiveSettings> settingsFor(const Options& options, const ChosenDevice& chosen,
+                                         const engine::Version& felt, const haptic::Scene& scene) {
+  const haptic::DeviceProfile& profile = chosen.device->profile();
+  LiveSettings settings;
+  auto workspace = place(options, felt, profile, scene);
+  if (!workspace) return tl::unexpected(workspace.error());
+  auto arm = armPolicy(options, chosen);
+  if (!arm) return tl::unexpected(arm.error());
+  settings.arm = *arm;
+  haptic::DeviceProfile limited = profile;
+  if (!profile.gives_force) limited.max_force_n = 0.0;
+  // Down only: what the device can bear is not for the command line to say.
+  if (options.max_force_n) limited.max_force_n = std::min(limited.max_force_n, *options.max_force_n);
+  haptic::LoopOptions& loop = settings.loop.options;
+  loop.limits = haptic::limitsFor(limited);
+  loop.workspace = *workspace;
+  loop.tool = toolOf(options.tool);
+  loop.tool_switch =
+      options.tool_switch == "always" ? haptic::ToolSwitch::kAlways : haptic::ToolSwitch::kButton;
+  loop.edit_rule = profile.gives_force ? haptic::EditRule::kWhileForceIsGiven : haptic::EditRule::kAnytime;
+  // Eight seconds of ticks: what a disk that hangs may take.
+  loop.record_capacity = std::bit_ceil(static_cast<std::size_t>(8.0 * options.rate_hz));
+  settings.loop.rate_hz = options.rate_hz;
+  settings.keys = options.keys ? KeySource::kAnyInput : KeySource::kTerminal;
+  settings.seconds = options.seconds;
+  if (chosen.plays) {
+    // The simulated hand's time goes on by ticks, a replay's by the clock.
+    const auto ticks = static_cast<std::uint64_t>(std::ceil(chosen.plays_s * options.rate_hz)) + 1;
+    if (profile.gives_force)
+      settings.most_ticks = ticks;
+    else
+      settings.seconds = options.seconds > 0.0 ? std::min(options.seconds, chosen.plays_s) : chosen.plays_s;
+  }
+  return settings;
+}
+
+double us(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-3;
+}
+
+Report timingOf(const haptic::TimingFigures& f) {
+  return {{"p50_us", us(f.p50_ns)},
+          {"p99_us", us(f.p99_ns)},
+          {"p999_us", us(f.p999_ns)},
+          {"p9999_us", us(f.p9999_ns)},
+          {"worst_us", us(f.worst_ns)}};
+}
+
+Report deviceOf(const haptic::Device& device, const haptic::DeviceCounters& c) {
+  return {{"name", device.profile().name},
+          {"force", device.profile().gives_force},
+          {"inputs", c.inputs},
+          {"skipped_inputs", c.skipped},
+          {"bad_inputs", c.bad_inputs},
+          {"lost_inputs", c.lost_inputs},
+          {"outputs", c.outputs},
+          {"failed_outputs", c.failed_outputs},
+          {"forced_zeros", c.forced_zeros},
+          {"scaled_forces", c.scaled_forces},
+          {"faults", c.faults},
+          {"connects", c.connects},
+          {"disconnects", c.disconnects},
+          {"longest_output_us", us(c.longest_output_ns)}};
+}
+
+Report safetyOf(const LiveOutcome& outcome, const GivenForce& given, const haptic::SafetyLimits& limits) {
+  const haptic::SafetyCounters& c = outcome.last.safety_counters;
+  return {{"limit_n", limits.peak_force_n},
+          {"slew_limit_n_per_ms", limits.slew_n_per_ms},
+          {"given_peak_n", given.peak_n},
+          {"given_rate_n_per_ms", given.rate_n_per_ms},
+          {"given_rise_n_per_ms", given.rise_n_per_ms},
+          {"faults", c.faults},
+          {"silences", c.silences},
+          {"jumps", c.jumps},
+          {"clamped", c.clamped},
+          {"slewed", c.slewed},
+          {"over_speed", c.over_speed},
+          {"thermal", c.thermal},
+          {"not_finite", c.not_finite},
+          {"arms_refused", c.arms_refused}};
+}
+
+Report eventsOf(const std::vector<SessionEvent>& events) {
+  Report rows = Report::array();
+  for (const SessionEvent& e : events) rows.push_back({{"t", e.t}, {"what", e.what}});
+  return rows;
+}
+
+struct Field {
+  engine::Version scan;   // as imported: what max_change is measured against
+  engine::Version start;  // with the marks to start from
+};
+
+engine::Result<Field> load(const Options& options, engine::JobControl& job) {
+  auto imported = loadScan(options.scan, options.reading, job);
+  if (!imported) return tl::unexpected(imported.error());
+  Field field{imported->field, imported->field};
+  if (options.marks.empty()) return field;
+  auto marked = engine::importMarks(field.start, options.marks);
+  if (!marked) return tl::unexpected(marked.error());
+  field.start = *std::move(marked);
+  return field;
+}
+
+// What was recorded is kept whatever else goes wrong, so it comes first; and nobody can cancel it.
+engine::Status save(const Options& options, const engine::Version& field, haptic::StrokesWriter& strokes) {
+  engine::JobControl job;
+  if (engine::Status status = strokes.commit(); !status) return status;
+  if (!options.out.empty())
+    if (engine::Status status = saveField(field, options.out, job); !status) return status;
+  if (!options.marks_out.empty())
+    if (engine::Status status = engine::exportMarks(field, options.marks_out); !status) return status;
+  return {};
+}
+
+std::string hashOf(const engine::Version& field) {
+  return fmt::format("{:016x}", engine::contentHash(field));
+}
+
+engine::Result<Report> record(const Options& options, engine::JobControl& job) {
+  auto chosen = choose(options);
+  if (!chosen) return tl::unexpected(chosen.error());
+  if (auto status = checkOutputs({{options.strokes, OutputKind::kText},
+                                  {options.out, OutputKind::kField},
+                                  {options.marks_out, OutputKind::kMarks}},
+                                 {options.scan, options.scene, options.marks, chosen->file});
+      !status)
+    return tl::unexpected(status.error());
+  haptic::Scene scene = haptic::defaultScene();
+  if (!options.scene.empty()) {
+    auto loaded = haptic::loadScene(options.scene);
+    if (!loaded) return tl::unexpected(loaded.error());
+    scene = *std::move(loaded);
+  }
+  const auto field = load(options, job);
+  if (!field) return tl::unexpected(field.error());
+  const engine::Version felt = scene.invert ? field->start.inverted() : field->start;
+  const auto settings = settingsFor(options, *chosen, felt, scene);
+  if (!settings) return tl::unexpected(settings.error());
+  auto strokes = haptic::StrokesWriter::create(options.strokes);
+  if (!strokes) return tl::unexpected(strokes.error());
+
+  haptic::Device& device = *chosen->device;
+  SessionLog log(*strokes);
+  auto outcome = runLive(field->start, field->scan, scene, device, *settings, log, job);
+  if (!outcome) return tl::unexpected(outcome.error());
+  if (auto status = save(options, outcome->field, *strokes); !status) return tl::unexpected(status.error());
+
+  // The proof that the recording is the session: the file, read back and replayed, makes the same field.
+  engine::JobControl unhurried;
+  const auto rows = haptic::readStrokes(options.strokes);
+  if (!rows) return tl::unexpected(rows.error());
+  const auto again = haptic::replay(field->start, field->scan, *rows, scene, {}, unhurried);
+  if (!again) return tl::unexpected(again.error());
+  const std::string hash = hashOf(outcome->field);
+  const std::string replayed = hashOf(again->field);
+  if (hash != replayed)
+    warn(fmt::format("{}: a replay gives another field than the session{}", options.strokes,
+                     outcome->last.lost_records + outcome->last.refused_edits > 0
+                         ? ": ticks were lost on the way to the disk, or memory for edits came too late"
+                         : ", please report it"));
+
+  const haptic::Workspace& workspace = settings->loop.options.workspace;
+  const bool desk = device.profile().space == haptic::DeviceSpace::kDesk;
+  return Report{{"ticks", log.rows()},
+                {"contact_ticks", again->report.contact_ticks},
+                {"max_force_n", again->report.max_force_n},
+                {"samples_changed", again->report.samples_changed},
+                {"marked", again->report.marked},
+                {"strokes", outcome->last.stroke},
+                {"seconds", log.seconds()},
+                {"ended_by", outcome->ended_by},
+                {"hash", hash},
+                {"replay_hash", replayed},
+                {"reproduced", hash == replayed},
+                {"lost_rows", outcome->last.lost_records},
+                {"refused_edits", outcome->last.refused_edits},
+                {"rate_hz", options.rate_hz},
+                {"scale", desk ? Report(workspace.scale()) : Report()},
+                {"felt_stiffness_n_per_mm", workspace.feltStiffness(scene.stiffness_n_per_mm)},
+                {"missed", outcome->missed},
+                {"over_1_ms", outcome->over_1_ms},
+                {"lateness", timingOf(outcome->lateness)},
+                {"compute", timingOf(outcome->compute)},
+                {"not_granted", outcome->granted.missing},
+                {"latency_held", outcome->granted.latency_held},
+                {"safety", safetyOf(*outcome, log.given(), settings->loop.options.limits)},
+                {"device", deviceOf(device, outcome->device)},
+                {"events", eventsOf(outcome->events)}};
+}
+
+constexpr const char* kFooter =
+    R"(Safety: a device that gives force gives none until the person who holds it presses a, and again after every fault
+(50 ms without input, the device unplugged, the program held up): the force then rises in half a second. Editing
+tools act only while force is given. Zero force is sent on every way out. Keys while it runs:
+  a arm   d disarm   c calibrate: the stylus is held in its home pose   f feel   s smooth   m mark   u unmark   q end
+Ctrl-C ends the session and keeps it. A program that is killed leaves what was recorded up to the last second in
+a temporary file beside STROKES. The same bits: fettle replay SCAN STROKES OUT, with the same --scene and --marks.)";
+
+}  // namespace
+
+void addRecord(CLI::App& root, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = addCommand(
+      root, chosen, "record", "Touch a scan live with a device, and record the session for replay",
+      [options](engine::JobControl& job) { return record(*options, job); }, printReport, Progress::kOwn);
+  command->add_option("SCAN", options->scan, "The scan to touch")->required();
+  command->add_option("STROKES", options->strokes, "Where the session goes: CSV t,x,y,z,tool, one row a tick")
+      ->required();
+  command->add_option("OUT", options->out, "The field after it, format by extension");
+  command
+      ->add_option("--device", options->device,
+                   "An id of fettle devices, woodenhaptics, serial, spacemouse, hand:STROKES (simulated, in "
+                   "closed loop) or replay:STROKES (in real time)")
+      ->required();
+  command->add_option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
+  command->add_option("--marks", options->marks, "Picture of marks to start from");
+  command->add_option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");
+  command->add_option("--tool", options->tool, "feel, smooth, mark or unmark, at the start")
+      ->check(CLI::IsMember({"feel", "smooth", "mark", "unmark"}))
+      ->capture_default_str();
+  command
+      ->add_option("--switch", options->tool_switch,
+                   "When the tool acts: button, or always in contact for a device without one (W8 boards)")
+      ->check(CLI::IsMember({"button", "always"}))
+      ->capture_default_str();
+  command->add_option("--rate", options->rate_hz, "Ticks a second, 1000 to 10000")
+      ->check(CLI::Range(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
+      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "End after so long; otherwise by q or Ctrl-C")
+      ->check(CLI::Range(1e-3, 86400.0));
+  command
+      ->add_option("--scale", options->scale,
+                   "Millimetres of the field a millimetre of the hand; fitted to the scan without it")
+      ->check(CLI::Range(1e-6, 1e6));
+  command->add_option("--max-force", options->max_force_n, "Newtons, below what the device's profile allows")
+      ->check(CLI::Range(0.0, 1000.0));
+  command
+      ->add_option("--arm", options->arm,
+                   "ask: by the key a; auto: by itself, for devices without force and simulated ones, whose "
+                   "default it is")
+      ->check(CLI::IsMember({"ask", "auto"}));
+  command->add_flag("--keys", options->keys, "Take keys from standard input though it is no terminal");
+  addScanOptions(command, options->reading);
+  command->footer(kFooter);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+
+#include <termios.h>
+
+#include "engine/base/error.h"
+
+namespace fettle::app {
+
+/// Where single keys come from.
+enum class KeySource : std::uint8_t {
+  kTerminal,  ///< standard input when it is a terminal, nowhere otherwise
+  kAnyInput,  ///< standard input, whatever it is: one byte, one key; for scripts and other input aids
+};
+
+/// Single keys from standard input, without waiting and without echo. A terminal is given back as it was:
+/// by the destructor, and on a fatal signal by whoever calls restoreTerminal().
+/// Threading: one thread; one at a time in a process.
+class Keys {
+ public:
+  explicit Keys(KeySource source);
+  ~Keys();
+  Keys(const Keys&) = delete;
+  Keys& operator=(const Keys&) = delete;
+
+  /// Whether anybody can press one.
+  [[nodiscard]] bool available() const noexcept { return available_; }
+  /// The next key, if one was pressed. Line ends are left out.
+  [[nodiscard]] std::optional<char> next() noexcept;
+
+  /// Async-signal-safe; fits LastResort::ZeroReport. No effect when no terminal was changed.
+  static void restoreTerminal(void*) noexcept;
+
+ private:
+  bool available_ = false;
+};
+
+}  // namespace fettle::app

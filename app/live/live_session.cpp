@@ -1,0 +1,250 @@
+#include "app/live/live_session.h"
+
+#include <chrono>
+#include <memory>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "haptic/safety/last_resort.h"
+
+namespace fettle::app {
+
+namespace {
+
+using haptic::CommandKind;
+using haptic::FaultCause;
+using haptic::LinkState;
+using haptic::LoopState;
+using haptic::SafetyState;
+using namespace std::chrono_literals;
+
+constexpr auto kLook = 5ms;          // between two looks at rings, keys and state
+constexpr double kArmAgain_s = 0.1;  // between two tries to arm by itself
+constexpr auto kFade = 30ms;         // a disarmed force is gone after peak / slew = 5 ms
+
+std::string remedyFor(FaultCause cause) {
+  switch (cause) {
+    case FaultCause::kInputLost:
+      return "the device was not heard of: check cable and power, then press a to arm";
+    case FaultCause::kLoopStopped:
+      return "the program was held up: press a to arm";
+    case FaultCause::kUnplugged:
+      return "plug the device in, calibrate it if it asks for that, then press a to arm";
+    case FaultCause::kLastResort:
+    case FaultCause::kNone:
+      break;
+  }
+  return "";
+}
+
+std::string_view linkName(LinkState link) {
+  switch (link) {
+    case LinkState::kDisconnected:
+      return "not plugged in";
+    case LinkState::kUncalibrated:
+      return "not calibrated";
+    case LinkState::kConnected:
+      return "connected";
+  }
+  return "";
+}
+
+// Uncalibrated, the guard's word, also stands for a ready device that nobody has armed.
+std::string stateName(const LoopState& state) {
+  if (state.safety == SafetyState::kUncalibrated && state.link == LinkState::kConnected) return "not armed";
+  return std::string(haptic::name(state.safety));
+}
+
+class LiveSession {
+ public:
+  LiveSession(haptic::HapticLoop& loop, haptic::Device& device, const LiveSettings& settings, SessionLog& log,
+              const engine::JobControl& job)
+      : loop_(loop), device_(device), settings_(settings), log_(log), job_(job), keys_(settings.keys) {}
+
+  engine::Result<LiveOutcome> run() {
+    const haptic::ZeroOnLastResort terminal(&Keys::restoreTerminal, nullptr);
+    // After the program's own handlers, which it calls in turn.
+    if (engine::Status status = haptic::LastResort::install(); !status) return tl::unexpected(status.error());
+    if (engine::Status status = device_.start(); !status) return tl::unexpected(status.error());
+    if (engine::Status status = loop_.start(); !status) {
+      device_.stop();
+      return tl::unexpected(status.error());
+    }
+    tellStart();
+    engine::Status written = work();
+    send(CommandKind::kDisarm);
+    std::this_thread::sleep_for(kFade);
+    outcome_.field = loop_.stop();
+    device_.stop();
+    haptic::LastResort::reset();  // a signal ended the session, not the program: what was done is saved yet
+    if (written) written = drain();
+    if (!written) return tl::unexpected(written.error());
+    finish();
+    return std::move(outcome_);
+  }
+
+ private:
+  void finish() {
+    watch(loop_.state());
+    outcome_.last = loop_.state();
+    outcome_.granted = loop_.realTime();
+    const haptic::LoopTiming& timing = loop_.timing();
+    outcome_.lateness = timing.lateness.figures();
+    outcome_.compute = timing.compute.figures();
+    outcome_.missed = timing.missed.load(std::memory_order_relaxed);
+    outcome_.over_1_ms = timing.lateness.countAbove(1'000'000);
+    outcome_.device = device_.counters();
+  }
+
+  void tellStart() {
+    for (const std::string& missing : loop_.realTime().missing)
+      tell("the loop got less than it asked for", missing);
+    if (settings_.arm == ArmPolicy::kAsk)
+      tell("no force yet", keys_.available()
+                               ? "hold the stylus clear of the surface and press a to arm, q to end"
+                               : "nobody can press a to arm: run it in a terminal, or with --keys");
+  }
+
+  engine::Status work() {
+    const auto begin = std::chrono::steady_clock::now();
+    while (!ended()) {
+      if (engine::Status status = drain(); !status) return status;
+      for (haptic::LoopEvent event; loop_.poll(event);)
+        if (event.kind == haptic::EventKind::kStrokeEnded) tell("stroke kept", "");
+      while (const auto key = keys_.next()) press(*key);
+      const LoopState& state = loop_.state();
+      watch(state);
+      if (settings_.arm == ArmPolicy::kAuto) armByItself(state);
+      const double lived = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      status_.show(state, loop_.timing(), lived, lived > 0.0 ? static_cast<double>(state.tick) / lived : 0.0);
+      std::this_thread::sleep_for(kLook);
+    }
+    return {};
+  }
+
+  bool ended() {
+    if (job_.cancelled()) outcome_.ended_by = "signal";
+    if (quit_) outcome_.ended_by = "key";
+    if (settings_.seconds > 0.0 && log_.seconds() >= settings_.seconds) outcome_.ended_by = "time";
+    if (settings_.most_ticks > 0 && loop_.state().tick >= settings_.most_ticks)
+      outcome_.ended_by = "end of the strokes";
+    return !outcome_.ended_by.empty();
+  }
+
+  engine::Status drain() {
+    for (haptic::TickRecord record; loop_.pollRecord(record);)
+      if (engine::Status status = log_.add(record); !status) return status;
+    return log_.flushIfDue();
+  }
+
+  void send(CommandKind kind, haptic::Tool tool = haptic::Tool::kFeel) {
+    haptic::LoopCommand command;
+    command.kind = kind;
+    command.tool = tool;
+    // A full ring: the loop stands still, and its fault will say so.
+    static_cast<void>(loop_.send(std::move(command)));
+  }
+
+  void choose(haptic::Tool tool) {
+    send(CommandKind::kTool, tool);
+    tell(fmt::format("tool {}", haptic::toolName(tool)), "");
+  }
+
+  void press(char key) {
+    switch (key) {
+      case 'a':
+        send(CommandKind::kArm);
+        break;
+      case 'd':
+        send(CommandKind::kDisarm);
+        break;
+      case 'c':
+        device_.calibrate();
+        break;
+      case 'f':
+        choose(haptic::Tool::kFeel);
+        break;
+      case 's':
+        choose(haptic::Tool::kSmooth);
+        break;
+      case 'm':
+        choose(haptic::Tool::kMark);
+        break;
+      case 'u':
+        choose(haptic::Tool::kUnmark);
+        break;
+      case 'q':
+        quit_ = true;
+        break;
+      default:
+        tell("keys", "a arm, d disarm, c calibrate, f feel, s smooth, m mark, u unmark, q end");
+    }
+  }
+
+  void armByItself(const LoopState& state) {
+    const bool waits = state.safety == SafetyState::kUncalibrated || state.safety == SafetyState::kFault;
+    if (!waits || state.link != LinkState::kConnected || log_.seconds() - tried_at_ < kArmAgain_s) return;
+    tried_at_ = log_.seconds();
+    send(CommandKind::kArm);
+  }
+
+  void watch(const LoopState& state) {
+    if (state.tick == 0) return;
+    const LoopState before = std::exchange(seen_, state);
+    const bool first = before.tick == 0;
+    if (first || state.link != before.link) {
+      const bool home = state.link == LinkState::kUncalibrated;
+      tell(fmt::format("device {}", linkName(state.link)),
+           home ? "hold the stylus in its home pose and press c, or the device's own button" : "");
+    }
+    if (state.safety_counters.faults > before.safety_counters.faults)
+      tell(fmt::format("fault, {}", haptic::name(state.cause)), remedyFor(state.cause));
+    if (state.safety_counters.arms_refused > before.safety_counters.arms_refused)
+      tell("not armed", "the device must be connected, calibrated and heard of");
+    if (first || state.safety != before.safety) tell(stateName(state), "");
+    if (state.lost_records > 0 && before.lost_records == 0)
+      tell("ticks were not recorded", "the disk or the processor is too slow: a replay will differ");
+  }
+
+  void tell(std::string what, std::string remedy) {
+    const double t = 1e-9 * static_cast<double>(loop_.state().time_ns - firstNs());
+    outcome_.events.push_back({t, std::move(what), std::move(remedy)});
+    status_.tell(outcome_.events.back());
+  }
+
+  std::int64_t firstNs() {
+    if (first_ns_ == 0) first_ns_ = loop_.state().time_ns;
+    return first_ns_;
+  }
+
+  haptic::HapticLoop& loop_;
+  haptic::Device& device_;
+  const LiveSettings& settings_;
+  SessionLog& log_;
+  const engine::JobControl& job_;
+  Keys keys_;
+  StatusLine status_;
+  LiveOutcome outcome_;
+  LoopState seen_;
+  std::int64_t first_ns_ = 0;
+  double tried_at_ = -1.0;
+  bool quit_ = false;
+};
+
+}  // namespace
+
+engine::Result<LiveOutcome> runLive(const engine::Version& start, const engine::Version& original,
+                                    const haptic::Scene& scene, haptic::Device& device,
+                                    const LiveSettings& settings, SessionLog& log,
+                                    const engine::JobControl& job) {
+  auto loop = haptic::HapticLoop::create(start, original, scene, device, settings.loop);
+  if (!loop) return tl::unexpected(loop.error());
+  auto outcome = LiveSession(**loop, device, settings, log, job).run();
+  if (outcome && scene.invert) outcome->field = outcome->field.inverted();
+  return outcome;
+}
+
+}  // namespace fettle::app

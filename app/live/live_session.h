@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/live/keys.h"
+#include "app/live/session_log.h"
+#include "app/live/status_line.h"
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/version.h"
+#include "haptic/devices/device.h"
+#include "haptic/loop/haptic_loop.h"
+#include "haptic/scene.h"
+#include "haptic/strokes.h"
+
+namespace fettle::app {
+
+/// Who allows force. A person's hand on a device that gives force must be asked, at the start and after each
+/// fault: only the person knows that the hand holds the stylus and where it is.
+enum class ArmPolicy : std::uint8_t {
+  kAsk,   ///< the key 'a'
+  kAuto,  ///< by itself: devices without force and simulated ones
+};
+
+struct LiveSettings {
+  haptic::HapticLoop::Settings loop;
+  ArmPolicy arm = ArmPolicy::kAsk;
+  KeySource keys = KeySource::kTerminal;
+  double seconds = 0.0;          ///< ends after so long; 0 = not by itself
+  std::uint64_t most_ticks = 0;  ///< ends after so many ticks; 0 = not by itself
+};
+
+struct LiveOutcome {
+  engine::Version field;   ///< as the session left it, the right way up
+  std::string ended_by;    ///< "time", "end of the strokes", "key", "signal"
+  haptic::LoopState last;  ///< the last tick
+  haptic::RealTimeReport granted;
+  haptic::TimingFigures lateness;
+  haptic::TimingFigures compute;
+  std::uint64_t missed = 0;
+  std::uint64_t over_1_ms = 0;
+  haptic::DeviceCounters device;
+  std::vector<SessionEvent> events;
+};
+
+/// A live session without a window: the loop on its thread, records to `log`, keys, status and events, until
+/// time, strokes, a key or a signal (job.cancelled()) ends it; then the force fades before the loop stops.
+///
+///   a arm   d disarm   c calibrate (stylus held in its home pose)
+///   f feel   s smooth   m mark   u unmark   q end
+///
+/// Errors: those of HapticLoop::create and start, of the device, of the strokes file. Thread: main; blocks.
+[[nodiscard]] engine::Result<LiveOutcome> runLive(const engine::Version& start,
+                                                  const engine::Version& original, const haptic::Scene& scene,
+                                                  haptic::Device& device, const LiveSettings& settings,
+                                                  SessionLog& log, const engine::JobControl& job);
+
+}  // namespace fettle::app

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/base/error.h"
+#include "haptic/loop/messages.h"
+#include "haptic/strokes.h"
+
+namespace fettle::app {
+
+/// Something that happened in a session, with its time [s] since the first tick.
+struct SessionEvent {
+  double t = 0.0;
+  std::string what;    ///< "armed", "fault: unplugged", "stroke kept" ...
+  std::string remedy;  ///< what the user may do; may be empty
+};
+
+/// Figures of what the device was told to give.
+struct GivenForce {
+  double peak_n = 0.0;
+  double rate_n_per_ms = 0.0;  ///< largest change of the vector between two ticks, over the time between them
+  double rise_n_per_ms = 0.0;  ///< likewise of its size, upwards alone
+};
+
+/// Takes the records of a session off the loop's ring and to the disk. One thread, not the loop's.
+class SessionLog {
+ public:
+  /// `strokes` outlives this.
+  explicit SessionLog(haptic::StrokesWriter& strokes) : strokes_(strokes) {}
+
+  /// Errors: those of the strokes file (full disk); rows after one are not written.
+  [[nodiscard]] engine::Status add(const haptic::TickRecord& record);
+  /// Once a second of session time, what was added goes to the system; cheap to call often.
+  [[nodiscard]] engine::Status flushIfDue();
+
+  [[nodiscard]] std::int64_t rows() const noexcept { return rows_; }
+  [[nodiscard]] double seconds() const noexcept { return last_t_; }
+  [[nodiscard]] const GivenForce& given() const noexcept { return given_; }
+
+ private:
+  haptic::StrokesWriter& strokes_;
+  GivenForce given_;
+  glm::dvec3 last_n_{0.0};
+  double last_t_ = 0.0;
+  double flushed_t_ = 0.0;
+  std::int64_t rows_ = 0;
+};
+
+}  // namespace fettle::app

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "app/live/session_log.h"
+#include "haptic/loop/messages.h"
+#include "haptic/loop/timing.h"
+
+namespace fettle::app {
+
+/// What a live session shows: one line on stderr that is kept up to date, when stderr is a terminal, and a
+/// line for each event, always. One thread.
+class StatusLine {
+ public:
+  StatusLine();
+  ~StatusLine();  ///< wipes the line
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+
+  /// Redraws at most five times a second. `ticks_per_second` as measured.
+  void show(const haptic::LoopState& state, const haptic::LoopTiming& timing, double seconds,
+            double ticks_per_second);
+  void tell(const SessionEvent& event);
+
+ private:
+  void wipe();
+
+  bool terminal_ = false;
+  double shown_at_ = -1.0;
+};
+
+}  // namespace fettle::app
