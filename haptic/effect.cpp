@@ -1,9 +1,12 @@
 #include "haptic/effect.h"
 
 #include "haptic/effects/coupling.h"
+#include "haptic/effects/edge_snap.h"
 #include "haptic/effects/friction.h"
 #include "haptic/effects/gravity.h"
+#include "haptic/effects/passivity.h"
 #include "haptic/effects/spring.h"
+#include "haptic/effects/texture.h"
 #include "haptic/effects/viscosity.h"
 
 namespace fettle::haptic {
@@ -25,7 +28,6 @@ void needMotion(EffectList& list, const Scene& scene) {
 }
 
 EffectList composeEffects(const Scene& scene, const engine::Version& original, const engine::Version& now) {
-  static_cast<void>(now);
   EffectList list;
   for (const EffectKind kind : scene.effects) {
     switch (kind) {
@@ -47,7 +49,14 @@ EffectList composeEffects(const Scene& scene, const engine::Version& original, c
       case EffectKind::kCoupling:
         addCoupling(list, scene);
         break;
-      default:
+      case EffectKind::kEdgeSnap:
+        addEdgeSnap(list, scene, now);
+        break;
+      case EffectKind::kTexture:
+        addTexture(list, scene);
+        break;
+      case EffectKind::kPassivity:
+        addPassivity(list, scene);
         break;
     }
   }

@@ -41,6 +41,7 @@ struct TickState {
   glm::dvec3 force_n{0.0};   ///< force effects add to it [N]; clamped before finishing effects and tools
   glm::dvec3 press_n{0.0};   ///< part of it with which the tip presses on the surface (spring) [N]
   glm::dvec3 weight_n{0.0};  ///< part of it that only holds up the stylus [N]
+  double stored_mj = 0.0;    ///< energy that the forces so far can give back [N mm], at most
   double strength = 0.0;     ///< for tools: pressing force over limit, 0 .. 1
   MarkedRect marked{};       ///< set by the marking tools
 };

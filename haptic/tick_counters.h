@@ -28,6 +28,13 @@ struct TickCounters {
   std::int64_t refused_edits = 0;
   /// Most cells one closest-point search visited.
   std::int64_t longest_search = 0;
+  /// Ticks in which the passivity controller changed the force. Expected: rare below the stable stiffness.
+  std::int64_t passivity_ticks = 0;
+  /// Net work that the forces given did on the hand since the first tick [N mm], as the passivity observer
+  /// sees it; below zero, the hand put in more than came out. Stays 0 when the scene has no observer.
+  double work_on_hand_mj = 0.0;
+  /// Tiles of edge snap's field that found its memory used up: no pull there until the scene is loaded anew.
+  std::int64_t snap_tiles_refused = 0;
 
   friend bool operator==(const TickCounters&, const TickCounters&) = default;
 };

@@ -52,6 +52,7 @@ void Friction::run(TickState& state) noexcept {
   }
   anchor_mm_ = state.endpoint_mm - strain;
   state.force_n -= stiffness_ * strain;
+  state.stored_mj += 0.5 * stiffness_ * glm::dot(strain, strain);
 }
 
 void addFriction(EffectList& list, const Scene& scene) {

@@ -1,5 +1,7 @@
 #include "haptic/effects/spring.h"
 
+#include <glm/geometric.hpp>
+
 namespace fettle::haptic {
 
 namespace {
@@ -12,6 +14,7 @@ struct Spring {
         static_cast<const Spring*>(data)->stiffness_n_per_mm * state.contact.penetration_mm;
     state.press_n += press;
     state.force_n += press;
+    state.stored_mj += 0.5 * glm::dot(press, state.contact.penetration_mm);
   }
 };
 

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "haptic/effect.h"
+#include "haptic/effects/mark_distance.h"
+
+namespace fettle::haptic {
+
+/// Edge snap: while the tip touches, a horizontal pull towards the nearest marked sample, for tracing edges
+/// that are marked already. With r the horizontal distance to it, F the largest pull and R the reach:
+///   pull(r) = 4 F (r / R) (1 - r / R),   the slope of   U(r) = 4 F R ((r / R)^2 / 2 - (r / R)^3 / 3)
+/// zero on the edge, F halfway, zero at the reach and beyond, where U stays at 2 F R / 3. Between samples U
+/// is the quadratic B-spline whose coefficients are its values at the samples (Unser, "Splines: a perfect fit
+/// for signal and image processing", 1999), and the force its exact gradient: conservative, and continuous
+/// everywhere, in cusps between two edges too.
+///
+/// The pull comes on over 50 ms after the tip touched, so that touching down beside an edge is no kick; it
+/// gives the hand at most 2 F R / 3 mJ each time (passivity, if listed, takes that back).
+/// Marks drawn or taken away, by hand or by another version, reach the pull within bounded work a tick: see
+/// MarkDistance. Where the pull changes under the tip meanwhile, it does by F at most.
+///
+/// Sources: attraction by a potential, Khatib, "Real-time obstacle avoidance for manipulators and mobile
+/// robots" (1986), of which snapping is the opposite sign; guidance along edges as virtual fixtures,
+/// Rosenberg, "Virtual fixtures" (1993).
+/// Stability: restoring stiffness is at most 4 F / R along any sample row or column (a minimum of functions
+/// bends no more than they do, and a B-spline's second differences are averages of theirs): across the edge
+/// b > T / 2 * 4 F / R, together with what else holds the tip along the surface (friction).
+/// Cost: nine distances, some 60 multiplications, and up to one slice of MarkDistance. Memory: MarkDistance.
+class EdgeSnap {
+ public:
+  /// The potential and its slope.
+  struct Potential {
+    double mj = 0.0;        ///< 0 .. 2 F R / 3 [N mm]
+    glm::dvec2 slope{0.0};  ///< [N]
+  };
+
+  EdgeSnap(const EdgeSnapParams& params, const engine::FieldReader& reader);
+
+  /// At a point over the field; beside it as at its border.
+  [[nodiscard]] Potential at(double x_mm, double y_mm) const noexcept;
+  void run(TickState& state) noexcept;
+  void upkeep(TickState& state) noexcept;
+  void forget(Forget why) noexcept;
+
+  [[nodiscard]] const MarkDistance& distance() const noexcept { return distance_; }
+  /// U of a distance [N mm].
+  [[nodiscard]] double potentialOf(double distance_mm) const noexcept {
+    const double q = distance_mm / distance_.reachMm();
+    return scale_mj_ * q * q * (0.5 - q / 3.0);
+  }
+
+ private:
+  MarkDistance distance_;
+  double sx_, sy_;
+  std::int32_t width_, height_;
+  double scale_mj_;  // 4 F R
+  double touched_s_ = 0.0;
+  bool touching_ = false;
+};
+
+void addEdgeSnap(EffectList& list, const Scene& scene, const engine::Version& now);
+
+}  // namespace fettle::haptic

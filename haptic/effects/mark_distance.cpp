@@ -1,0 +1,224 @@
+#include "haptic/effects/mark_distance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fettle::haptic {
+
+using engine::kTileSamples;
+using engine::kTileShift;
+using engine::kTileSide;
+
+namespace {
+
+// Rows from a sample to the nearest mark of its column, when there is none within the reach.
+constexpr std::uint8_t kNone = 255;
+
+std::uint64_t printOf(const engine::Tile& tile) noexcept {
+  if (tile.marked_samples == 0) return 0;
+  std::uint64_t print = 0xcbf29ce484222325ULL;  // FNV-1a, a word at a time
+  for (const std::uint64_t row : tile.marks) {
+    print = (print ^ row) * 0x100000001b3ULL;
+    print ^= print >> 32U;
+  }
+  return print | 1U;
+}
+
+}  // namespace
+
+MarkDistance::MarkDistance(const engine::FieldReader& reader, double reach_mm)
+    : tile_columns_(reader.tileColumns()),
+      tile_rows_(reader.tileRows()),
+      width_(reader.width()),
+      height_(reader.height()),
+      sx_(reader.grid().spacingXMm()),
+      sy_(reader.grid().spacingYMm()),
+      reach_mm_(std::min(reach_mm, kMostReach * std::min(sx_, sy_))),
+      far_(static_cast<float>(reach_mm_)),
+      reach_columns_(std::min(static_cast<int>(reach_mm_ / sx_), kMostReach)),
+      reach_rows_(std::min(static_cast<int>(reach_mm_ / sy_), kMostReach)) {
+  const auto count = static_cast<std::size_t>(tiles());
+  slots_.assign(count, -1);
+  prints_.assign(count, 0);
+  wanted_.assign(count, 0);
+  waiting_.assign(count, 0);
+  // What differs from a field without marks has to be done; so the most memory that can take is known.
+  while (look_at_ < tiles()) look(reader);
+  const std::size_t places = waiting_count_ + kSpareTiles;
+  memory_.assign(places * kTileSamples, far_);
+  free_slots_.reserve(places);
+  for (std::size_t i = places; i > 0; --i) free_slots_.push_back(static_cast<std::int32_t>(i - 1));
+  while (!upToDate()) advance(reader);
+}
+
+std::size_t MarkDistance::bytesHeld() const noexcept {
+  return slots_.capacity() * sizeof(std::int32_t) + prints_.capacity() * sizeof(std::uint64_t) +
+         wanted_.capacity() + waiting_.capacity() * sizeof(std::int32_t) +
+         memory_.capacity() * sizeof(float) + free_slots_.capacity() * sizeof(std::int32_t);
+}
+
+std::int32_t MarkDistance::tilesHeld() const noexcept {
+  return static_cast<std::int32_t>(
+      std::count_if(slots_.begin(), slots_.end(), [](std::int32_t slot) { return slot >= 0; }));
+}
+
+void MarkDistance::wantTile(std::int32_t tc, std::int32_t tr) noexcept {
+  const auto tile = static_cast<std::size_t>(tr * tile_columns_ + tc);
+  if (wanted_[tile] != 0) return;
+  wanted_[tile] = 1;
+  waiting_[(waiting_head_ + waiting_count_) % waiting_.size()] = static_cast<std::int32_t>(tile);
+  ++waiting_count_;
+}
+
+void MarkDistance::markChanged(std::int32_t column, std::int32_t row, std::int32_t columns,
+                               std::int32_t rows) noexcept {
+  const std::int32_t c0 = std::max(column - reach_columns_, 0) >> kTileShift;
+  const std::int32_t r0 = std::max(row - reach_rows_, 0) >> kTileShift;
+  const std::int32_t c1 = std::min(column + columns - 1 + reach_columns_, width_ - 1) >> kTileShift;
+  const std::int32_t r1 = std::min(row + rows - 1 + reach_rows_, height_ - 1) >> kTileShift;
+  for (std::int32_t r = r0; r <= r1; ++r)
+    for (std::int32_t c = c0; c <= c1; ++c) wantTile(c, r);
+}
+
+void MarkDistance::look(const engine::FieldReader& reader) noexcept {
+  const std::int32_t end = std::min(look_at_ + kTilesASlice, tiles());
+  for (; look_at_ < end; ++look_at_) {
+    const std::int32_t tc = look_at_ % tile_columns_;
+    const std::int32_t tr = look_at_ / tile_columns_;
+    const std::uint64_t print = printOf(reader.tile(tc, tr));
+    std::uint64_t& known = prints_[static_cast<std::size_t>(look_at_)];
+    if (print == known) continue;
+    known = print;
+    markChanged(tc << kTileShift, tr << kTileShift, kTileSide, kTileSide);
+  }
+}
+
+void MarkDistance::advance(const engine::FieldReader& reader) noexcept {
+  if (job_tile_ >= 0) {
+    if (job_in_rows_)
+      rowSlice();
+    else
+      columnSlice(reader);
+  } else if (look_at_ < tiles()) {
+    look(reader);
+  } else if (waiting_count_ > 0) {
+    startJob(reader);
+  }
+}
+
+void MarkDistance::startJob(const engine::FieldReader& reader) noexcept {
+  job_tile_ = waiting_[waiting_head_];
+  waiting_head_ = (waiting_head_ + 1) % waiting_.size();
+  --waiting_count_;
+  // From here on a change of marks asks for the tile once more.
+  wanted_[static_cast<std::size_t>(job_tile_)] = 0;
+  job_line_ = 0;
+  job_near_ = false;
+  job_in_rows_ = false;
+  const std::int32_t tc = job_tile_ % tile_columns_;
+  const std::int32_t tr = job_tile_ / tile_columns_;
+  std::uint32_t marked = 0;
+  for (std::int32_t r = std::max(tr - 1, 0); r <= std::min(tr + 1, tile_rows_ - 1); ++r)
+    for (std::int32_t c = std::max(tc - 1, 0); c <= std::min(tc + 1, tile_columns_ - 1); ++c)
+      marked += reader.tile(c, r).marked_samples;
+  if (marked == 0) finishJob();
+}
+
+// First pass: for some columns, how many rows each sample of the tile is from a mark in the same column.
+void MarkDistance::columnSlice(const engine::FieldReader& reader) noexcept {
+  const int columns = kTileSide + 2 * reach_columns_;
+  const int rows = kTileSide + 2 * reach_rows_;
+  const int count = std::min(kColumnsASlice, columns - job_line_);
+  const std::int32_t c0 = ((job_tile_ % tile_columns_) << kTileShift) - reach_columns_ + job_line_;
+  const std::int32_t r0 = ((job_tile_ / tile_columns_) << kTileShift) - reach_rows_;
+  reader.readMarks(c0, r0, count, rows, marks_.data(), kColumnsASlice);
+  for (int c = 0; c < count; ++c) {
+    const auto marked = [&](int r) { return marks_[static_cast<std::size_t>(r * kColumnsASlice + c)] != 0; };
+    const auto vertical = [&](int r) -> std::uint8_t& {
+      return vertical_[static_cast<std::size_t>((r - reach_rows_) * kLongest + job_line_ + c)];
+    };
+    int since = kNone;
+    for (int r = 0; r < rows - reach_rows_; ++r) {
+      since = marked(r) ? 0 : std::min<int>(since + 1, kNone);
+      if (r >= reach_rows_) vertical(r) = static_cast<std::uint8_t>(since > reach_rows_ ? kNone : since);
+    }
+    since = kNone;
+    for (int r = rows - 1; r >= reach_rows_; --r) {
+      since = marked(r) ? 0 : std::min<int>(since + 1, kNone);
+      if (r < rows - reach_rows_ && since <= reach_rows_ && since < vertical(r))
+        vertical(r) = static_cast<std::uint8_t>(since);
+    }
+  }
+  job_line_ += count;
+  if (job_line_ < columns) return;
+  job_line_ = 0;
+  job_in_rows_ = true;
+}
+
+// Second pass: for some rows, the lower envelope of one parabola a column.
+void MarkDistance::rowSlice() noexcept {
+  const int columns = kTileSide + 2 * reach_columns_;
+  const double reach2 = reach_mm_ * reach_mm_;
+  std::array<int, kLongest> apex;         // column of each parabola of the envelope
+  std::array<double, kLongest + 1> from;  // where it begins [columns]
+  for (int line = 0; line < kRowsASlice; ++line, ++job_line_) {
+    const std::uint8_t* vertical = vertical_.data() + job_line_ * kLongest;
+    const auto height2 = [&](int q) {
+      const double y = vertical[q] * sy_;
+      return y * y;
+    };
+    int last = -1;
+    for (int q = 0; q < columns; ++q) {
+      if (vertical[q] == kNone) continue;
+      double begin = -HUGE_VAL;
+      while (last >= 0) {
+        const int p = apex[static_cast<std::size_t>(last)];
+        // Where the parabolas of p < q cross: (2012), equation 3, with sx^2 for the unit.
+        begin = 0.5 * ((height2(q) - height2(p)) / (sx_ * sx_ * (q - p)) + (q + p));
+        if (begin > from[static_cast<std::size_t>(last)]) break;
+        --last;
+        begin = -HUGE_VAL;
+      }
+      ++last;
+      apex[static_cast<std::size_t>(last)] = q;
+      from[static_cast<std::size_t>(last)] = begin;
+    }
+    float* out = result_.data() + job_line_ * kTileSide;
+    if (last < 0) {
+      std::fill_n(out, kTileSide, far_);
+      continue;
+    }
+    from[static_cast<std::size_t>(last) + 1] = HUGE_VAL;
+    std::size_t k = 0;
+    for (int c = 0; c < kTileSide; ++c) {
+      const int x = c + reach_columns_;
+      while (from[k + 1] < x) ++k;
+      const double dx = (x - apex[k]) * sx_;
+      const double d2 = dx * dx + height2(apex[k]);
+      out[c] = d2 < reach2 ? static_cast<float>(std::sqrt(d2)) : far_;
+      job_near_ = job_near_ || d2 < reach2;
+    }
+  }
+  if (job_line_ >= kTileSide) finishJob();
+}
+
+void MarkDistance::finishJob() noexcept {
+  std::int32_t& slot = slots_[static_cast<std::size_t>(job_tile_)];
+  if (!job_near_) {
+    if (slot >= 0) free_slots_.push_back(slot);  // within its capacity: it came from there
+    slot = -1;
+  } else {
+    if (slot < 0 && !free_slots_.empty()) {
+      slot = free_slots_.back();
+      free_slots_.pop_back();
+    }
+    if (slot >= 0)
+      std::copy(result_.begin(), result_.end(),
+                memory_.begin() + static_cast<std::ptrdiff_t>(slot) * kTileSamples);
+    else
+      ++refused_;
+  }
+  job_tile_ = -1;
+}
+
+}  // namespace fettle::haptic

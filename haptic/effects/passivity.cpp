@@ -1,0 +1,57 @@
+#include "haptic/effects/passivity.h"
+
+#include <algorithm>
+
+#include <glm/geometric.hpp>
+
+#include "haptic/force.h"
+
+namespace fettle::haptic {
+
+namespace {
+
+void run(void* data, TickState& state) noexcept {
+  static_cast<Passivity*>(data)->run(state);
+}
+void forget(void* data, Forget why) noexcept {
+  // A contact that ended or a surface that was replaced is in the balance already.
+  if (why == Forget::kInputLost) static_cast<Passivity*>(data)->inputLost();
+}
+
+}  // namespace
+
+void Passivity::run(TickState& state) noexcept {
+  const glm::dvec3 step = known_ ? state.endpoint_mm - at_mm_ : glm::dvec3(0.0);
+  if (known_) {
+    const double work_mj = glm::dot(given_n_, step);
+    state.counters.work_on_hand_mj += work_mj;
+    balance_mj_ = std::max(balance_mj_ + work_mj, -state.stored_mj);
+  }
+  glm::dvec3 force_n = state.force_n - state.weight_n;
+  const double dt_s = state.motion->dt();
+  const double length = glm::length(step);
+  // dt is 0 where the step is no measure of speed (VelocityFilter): a jump is not braked.
+  if (dt_s > 0.0 && length > 0.0 && balance_mj_ + glm::dot(force_n, step) > 0.0) {
+    const glm::dvec3 along = step / length;
+    const double driving_n = glm::dot(force_n, along);
+    const double least_n = std::min(driving_n, 0.0) - brake_ * length / dt_s;
+    force_n += (std::max(-balance_mj_ / length, least_n) - driving_n) * along;
+    const ClampedForce clamped = clampForce(force_n + state.weight_n, state.force_limit_n);
+    state.force_n = clamped.force_n;
+    force_n = state.force_n - state.weight_n;
+    ++state.counters.passivity_ticks;
+  }
+  given_n_ = force_n;
+  at_mm_ = state.endpoint_mm;
+  known_ = true;
+}
+
+void addPassivity(EffectList& list, const Scene& scene) {
+  Passivity& passivity =
+      addData(list, EffectKind::kPassivity, std::make_shared<Passivity>(scene.params.passivity));
+  list.finishing.push_back({&run, &passivity});
+  list.resets.push_back({&forget, &passivity});
+  needMotion(list, scene);
+}
+
+}  // namespace fettle::haptic
