@@ -27,7 +27,7 @@ EdgeSnap::EdgeSnap(const EdgeSnapParams& params, const engine::FieldReader& read
       sy_(reader.grid().spacingYMm()),
       width_(reader.width()),
       height_(reader.height()),
-      scale_mj_(4.0 * params.force_n * distance_.reachMm()) {}
+      deepest_mj_(2.0 / 3.0 * params.force_n * distance_.reachMm()) {}
 
 EdgeSnap::Potential EdgeSnap::at(double x_mm, double y_mm) const noexcept {
   const double x = std::clamp(x_mm / sx_, 0.0, static_cast<double>(width_ - 1));
@@ -63,7 +63,7 @@ void EdgeSnap::run(TickState& state) noexcept {
   const Potential potential = at(state.endpoint_mm.x, state.endpoint_mm.y);
   state.force_n.x -= on * potential.slope.x;
   state.force_n.y -= on * potential.slope.y;
-  state.stored_mj += on * potential.mj;
+  state.stored_mj += on * (potential.mj + deepest_mj_);
 }
 
 void EdgeSnap::upkeep(TickState& state) noexcept {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include <glm/vec2.hpp>
 
 #include "haptic/effect.h"
@@ -9,8 +11,8 @@ namespace fettle::haptic {
 
 /// Edge snap: while the tip touches, a horizontal pull towards the nearest marked sample, for tracing edges
 /// that are marked already. With r the horizontal distance to it, F the largest pull and R the reach:
-///   pull(r) = 4 F (r / R) (1 - r / R),   the slope of   U(r) = 4 F R ((r / R)^2 / 2 - (r / R)^3 / 3)
-/// zero on the edge, F halfway, zero at the reach and beyond, where U stays at 2 F R / 3. Between samples U
+///   pull(r) = 4 F (r / R) (1 - r / R),   the slope of   U(r) = -2 F R / 3 (1 - r / R)^2 (1 + 2 r / R)
+/// zero on the edge, F halfway, zero at the reach and beyond, where U is zero. Between samples U
 /// is the quadratic B-spline whose coefficients are its values at the samples (Unser, "Splines: a perfect fit
 /// for signal and image processing", 1999), and the force its exact gradient: conservative, and continuous
 /// everywhere, in cusps between two edges too.
@@ -31,13 +33,13 @@ class EdgeSnap {
  public:
   /// The potential and its slope.
   struct Potential {
-    double mj = 0.0;        ///< 0 .. 2 F R / 3 [N mm]
+    double mj = 0.0;        ///< -2 F R / 3 .. 0 [N mm]
     glm::dvec2 slope{0.0};  ///< [N]
   };
 
   EdgeSnap(const EdgeSnapParams& params, const engine::FieldReader& reader);
 
-  /// At a point over the field; beside it as at its border.
+  /// At a point over the field (beside it: finite).
   [[nodiscard]] Potential at(double x_mm, double y_mm) const noexcept;
   void run(TickState& state) noexcept;
   void upkeep(TickState& state) noexcept;
@@ -46,15 +48,15 @@ class EdgeSnap {
   [[nodiscard]] const MarkDistance& distance() const noexcept { return distance_; }
   /// U of a distance [N mm].
   [[nodiscard]] double potentialOf(double distance_mm) const noexcept {
-    const double q = distance_mm / distance_.reachMm();
-    return scale_mj_ * q * q * (0.5 - q / 3.0);
+    const double q = std::min(distance_mm / distance_.reachMm(), 1.0);
+    return -deepest_mj_ * (1.0 - q) * (1.0 - q) * (1.0 + 2.0 * q);
   }
 
  private:
   MarkDistance distance_;
   double sx_, sy_;
   std::int32_t width_, height_;
-  double scale_mj_;  // 4 F R
+  double deepest_mj_;  // 2 F R / 3
   double touched_s_ = 0.0;
   bool touching_ = false;
 };

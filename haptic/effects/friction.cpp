@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kRest_s = 0.020;  // without slipping, after which a tip sticks again
 constexpr double kTurnedBack = 0.5;
+// A tip at rest is where it slipped to, but for rounding.
+constexpr double kHair = 1.0 + 1e-9;
 
 void run(void* data, TickState& state) noexcept {
   static_cast<Friction*>(data)->run(state);
@@ -43,9 +45,9 @@ void Friction::run(TickState& state) noexcept {
   const double pull_n = stiffness_ * glm::length(strain);
   const double slide_n = dynamic_ * holding_n;
   if (slipping_ &&
-      (pull_n < kTurnedBack * slide_n || (pull_n <= slide_n && state.t_s - slip_t_s_ >= kRest_s)))
+      (pull_n < kTurnedBack * slide_n || (pull_n <= kHair * slide_n && state.t_s - slip_t_s_ >= kRest_s)))
     slipping_ = false;
-  if (pull_n > (slipping_ ? slide_n : static_ * holding_n)) {
+  if (pull_n > kHair * (slipping_ ? slide_n : static_ * holding_n)) {
     slipping_ = true;
     slip_t_s_ = state.t_s;
     strain *= slide_n / pull_n;

@@ -37,6 +37,7 @@ MarkDistance::MarkDistance(const engine::FieldReader& reader, double reach_mm)
       far_(static_cast<float>(reach_mm_)),
       reach_columns_(std::min(static_cast<int>(reach_mm_ / sx_), kMostReach)),
       reach_rows_(std::min(static_cast<int>(reach_mm_ / sy_), kMostReach)) {
+  if (static_cast<double>(far_) < reach_mm_) far_ = std::nextafter(far_, HUGE_VALF);
   const auto count = static_cast<std::size_t>(tiles());
   slots_.assign(count, -1);
   prints_.assign(count, 0);

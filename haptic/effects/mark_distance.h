@@ -36,7 +36,7 @@ class MarkDistance {
   MarkDistance(const engine::FieldReader& reader, double reach_mm);
 
   [[nodiscard]] double reachMm() const noexcept { return reach_mm_; }
-  /// Distance of a sample of the field [mm]; the reach when it is at least that far.
+  /// Distance of a sample of the field [mm]; the reach (rounded up to a float) when it is at least that far.
   [[nodiscard]] float at(std::int32_t column, std::int32_t row) const noexcept {
     const std::int32_t slot = slots_[static_cast<std::size_t>((row >> engine::kTileShift) * tile_columns_ +
                                                               (column >> engine::kTileShift))];

@@ -49,8 +49,9 @@ class TextureTable {
 /// Sources: Minsky, Ouh-young, Steele, Brooks, Behensky, "Feeling and seeing: issues in force display"
 /// (1990): lateral forces by the gradient of a relief; Choi and Tan, "Perceived instability of virtual haptic
 /// texture" (2004): what texture asks of rate and stiffness.
-/// Stability. With largest slope s <= pi A / lambda and curvature c <= 2 pi^2 A / lambda^2 (Bernstein's
-/// inequality for the band limit), the stiffness that the hand meets in any direction is at most
+/// Stability. With largest slope s <= pi A / lambda and curvature c <= 1.02 * 2 pi^2 A / lambda^2
+/// (Bernstein's inequality for the band limit; 1.02 is the spline's part), the stiffness that the hand meets
+/// in any direction is at most
 ///   K (1 + s^2) + F_max c,   and   b > T / 2 times that.
 /// And sampled relief needs samples: crossing it at speed v gives v / lambda cycles a second, to be kept
 /// below a tenth of the rate. Cost: 16 coefficients, some 80 multiplications. Memory: 256 KiB, only in a
