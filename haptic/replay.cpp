@@ -121,6 +121,13 @@ engine::Result<ReplayResult> replay(const engine::Version& start, const engine::
                                     const ReplayOptions& options, engine::JobControl& job) {
   if (const std::optional<std::string> problem = sceneProblem(scene))
     return engine::inputError(*problem, "scene");
+  if (scene.tip == TipShape::kSphere) {
+    if (const std::optional<std::string> problem = sphereProblem(scene.tip_radius_mm, start.grid()))
+      return engine::inputError(*problem, "scene");
+    if (options.measure == MeasureContact::kYes)
+      return engine::inputError("a ball's contact has no certified one to be measured by", "scene",
+                                "measure with the tip \"point\"");
+  }
   if (start.grid().width != original.grid().width || start.grid().height != original.grid().height)
     return engine::inputError("the original field has another size than the field", "replay",
                               "give the scan that the field was made from");

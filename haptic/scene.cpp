@@ -19,6 +19,7 @@ constexpr int kMaxCertifiedRadius = 64;
 constexpr double kMaxStiffness = 1000.0;
 constexpr double kMaxForce = 1000.0;
 constexpr double kMaxBrushRadius = 64.0;
+constexpr double kMaxTipRadius = 100.0;
 
 constexpr std::array<std::string_view, kEffectKinds> kEffectNames = {"spring",    "smoothing", "friction",
                                                                      "viscosity", "edge_snap", "texture",
@@ -146,8 +147,12 @@ class SceneReader {
   void top(const toml::table& file) {
     entries(file, "", [&](std::string_view key, const toml::node& value) {
       if (key == "tip") {
-        if (const auto i = word(value, key, std::array<std::string_view, 1>{"point"}))
+        if (const auto i = word(value, key, std::array<std::string_view, 2>{"point", "sphere"}))
           scene_.tip = static_cast<TipShape>(*i);
+      } else if (key == "tip_radius_mm") {
+        number(value, key, scene_.tip_radius_mm);
+        require(value, positiveUpTo(scene_.tip_radius_mm, kMaxTipRadius),
+                "tip_radius_mm must be above 0 and at most 100");
       } else if (key == "invert") {
         if (value.is_boolean())
           scene_.invert = *value.value<bool>();
@@ -285,6 +290,8 @@ Scene defaultScene() {
 std::optional<std::string> sceneProblem(const Scene& scene) {
   if (scene.certified_radius_cells < 1 || scene.certified_radius_cells > kMaxCertifiedRadius)
     return fmt::format("the certified radius must be 1 to {} cells", kMaxCertifiedRadius);
+  if (scene.tip == TipShape::kSphere && !positiveUpTo(scene.tip_radius_mm, kMaxTipRadius))
+    return fmt::format("the tip's radius must be above 0 and at most {} mm", kMaxTipRadius);
   if (!positiveUpTo(scene.stiffness_n_per_mm, kMaxStiffness))
     return fmt::format("the stiffness must be above 0 and at most {} N/mm", kMaxStiffness);
   if (!positiveUpTo(scene.force_limit_n, kMaxForce))

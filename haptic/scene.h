@@ -13,10 +13,12 @@ namespace fettle::haptic {
 
 /// Shape of the stylus tip.
 enum class TipShape : std::uint8_t {
-  kPoint,  ///< a point: the seed paper's
+  kPoint,   ///< a point: the seed paper's
+  kSphere,  ///< a ball: sphere_tip.h
 };
 
 /// How the closest point of the surface is found.
+/// For the point tip; a ball has one way, sphere_tip.h.
 enum class ContactLevel : std::uint8_t {
   kPaper,      ///< local search from the previous proxy's cell (Potter, Johnson, Cohen 2004)
   kCertified,  ///< the true closest point of all cells within a radius, by branch and bound
@@ -47,6 +49,9 @@ inline constexpr int kEffectKinds = 9;
 /// behaviour; a scene is turned into a tick once, when it is loaded.
 struct Scene {
   TipShape tip = TipShape::kPoint;
+  /// Ball's radius [mm]; the endpoint is its centre. > 0 .. 100, and at most 16 cells of the field that is
+  /// touched (sphereProblem). Nothing to a point.
+  double tip_radius_mm = 0.1;
 
   ContactLevel level = ContactLevel::kPaper;
   /// Level certified: all cells whose horizontal distance to the endpoint is at most this many times the

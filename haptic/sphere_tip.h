@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "engine/field/grid.h"
 #include "haptic/contact.h"
+#include "haptic/sphere_solve.h"
 #include "haptic/sphere_window.h"
 #include "haptic/surface.h"
 #include "haptic/tick_counters.h"
@@ -53,7 +55,7 @@ inline constexpr double kMostSphereCells = 16.0;
 /// spacing, plus roundings of the heights. At rest no step longer than that makes it nearer to the endpoint.
 /// Continuity: steps are at most stepMm(), between a quarter of a cell and a cell, and both ends are free of
 /// the material. A ball cannot step over anything that would lift its centre by more than s^2 / (8 r) for a
-/// step s: 1/32 of a cell for r = 2 cells. A hand that moves more than kSphereSteps steps in one tick is
+/// step s: 1/16 of a cell for r = 2 cells. A hand that moves more than kSphereSteps steps in one tick is
 /// placed anew, lifted out vertically, as it is at the first tick; so is a centre that an edit buried.
 ///
 /// Holes and borders. A ball rests on the rim of a hole that is too small for it, and falls into a larger
@@ -71,7 +73,10 @@ class SphereTracker {
   [[nodiscard]] Contact update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters) noexcept;
 
   /// Forgets the centre, as before the first tick.
-  void reset() noexcept { placed_ = false; }
+  void reset() noexcept {
+    placed_ = false;
+    touching_ = false;
+  }
 
   /// Centre after the last tick [mm]; equal to the endpoint while nothing is touched.
   [[nodiscard]] const glm::dvec3& centre() const noexcept { return centre_; }
@@ -84,17 +89,29 @@ class SphereTracker {
 
   [[nodiscard]] bool clearOfAll(const Surface& surface, const glm::dvec3& a,
                                 const glm::dvec3& b) const noexcept;
-  void look(const Surface& surface, const glm::dvec3& centre) noexcept;
+  void look(const Surface& surface, const glm::dvec3& centre, TouchList& out) noexcept;
   void lift(const Surface& surface) noexcept;
+  [[nodiscard]] HalfSpace cutFor(const glm::dvec3& point, const glm::dvec3& normal) const noexcept;
+  [[nodiscard]] int halfSpacesAt(const TouchList& near) noexcept;
+  [[nodiscard]] int addCuts(const glm::dvec3& to, TouchList& there, double tolerance, int seen,
+                            int cuts) noexcept;
+  [[nodiscard]] glm::dvec3 slideOf(const Projection& step) const noexcept;
   [[nodiscard]] Arrival walk(const Surface& surface, const glm::dvec3& endpoint,
                              TickCounters& counters) noexcept;
 
+  static constexpr int kMostCuts = 16;
+
   double radius_, step_, slack_, tolerance_;
   glm::dvec3 centre_{0.0};
+  glm::dvec3 previous_{0.0};  // endpoint
   bool placed_ = false;
+  bool touching_ = false;
   Touch pressed_;  // the touch with the largest share of the force, after walk()
   SphereWindow window_;
-  TouchList near_;
+  int here_ = 0;  // which list is that of the centre; the other is for where it may go
+  std::array<TouchList, 2> lists_;
+  std::array<HalfSpace, TouchList::kMost + kMostCuts> half_spaces_;
+  std::array<Touch, kMostCuts> cuts_;
 };
 
 /// Steps of one tick.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include <glm/vec3.hpp>
@@ -37,6 +38,8 @@ struct TouchList {
   int count = 0;
   /// Nearest distance among all found [mm]; HUGE_VAL when there is none.
   double nearest_mm = 0.0;
+  /// Whether the centre is below the surface; then the touches mean nothing.
+  bool below = false;
 };
 
 /// A copy of the samples around a ball, in millimetres.
@@ -53,12 +56,18 @@ class SphereWindow {
   /// Whether a ball at `centre` still lies within what was loaded.
   [[nodiscard]] bool holds(const glm::dvec3& centre) const noexcept;
 
+  /// To be called when the field may have changed: the next centre is not held.
+  void forget() noexcept { low_x_ = HUGE_VAL; }
+
   /// All touches nearer than `reach_mm` (at most what load() was given); when there are more than fit, the
-  /// nearest ones. `centre` is not below the surface.
+  /// nearest ones.
   void touches(const glm::dvec3& centre, double reach_mm, TouchList& out) const noexcept;
 
   /// Height of the surface under (x, y) [mm]; -HUGE_VAL over holes and beside the field.
   [[nodiscard]] double heightUnder(const glm::dvec3& at) const noexcept;
+  /// The point of the surface straight above or below `at`, and the surface's normal there; false over holes
+  /// and beside the field.
+  [[nodiscard]] bool under(const glm::dvec3& at, Touch& out) const noexcept;
   /// Highest sample within the window [mm]; -HUGE_VAL when there is none.
   [[nodiscard]] double highest() const noexcept { return highest_; }
 
@@ -67,15 +76,14 @@ class SphereWindow {
     double z00, z10, z01, z11;
   };
   [[nodiscard]] Corners corners(std::int32_t i, std::int32_t j) const noexcept {
-    const double* z = z_.data() + j * stride_ + i;
-    return {z[0], z[1], z[stride_], z[stride_ + 1]};
+    const double* z = z_.data() + j * columns_ + i;
+    return {z[0], z[1], z[columns_], z[columns_ + 1]};
   }
   [[nodiscard]] bool valid(std::int32_t i, std::int32_t j) const noexcept;
   class Collector;
 
   std::array<double, kMostSide * kMostSide> z_{};
   std::array<float, kMostSide * kMostSide> raw_{};
-  std::int32_t stride_ = 0;
   std::int32_t column_ = 0, row_ = 0;    // field sample of z_[0]
   std::int32_t columns_ = 0, rows_ = 0;  // samples
   double sx_ = 1.0, sy_ = 1.0;

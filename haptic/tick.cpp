@@ -10,6 +10,9 @@ Tick::Tick(const Scene& scene, engine::LiveField& field, const engine::Version& 
     : field_(field),
       surface_(field.reader()),
       tracker_(scene.level, scene.certified_radius_cells),
+      sphere_(scene.tip == TipShape::kSphere
+                  ? std::make_unique<SphereTracker>(scene.tip_radius_mm, field.reader().grid())
+                  : nullptr),
       effects_(composeEffects(scene, original, field.snapshot())),
       force_limit_n_(scene.force_limit_n) {}
 
@@ -27,6 +30,7 @@ ForceSample Tick::run(const StrokeSample& input) noexcept {
   if (!(std::isfinite(input.tip_mm.x) && std::isfinite(input.tip_mm.y) && std::isfinite(input.tip_mm.z))) {
     ++counters_.bad_input;
     tracker_.reset();
+    if (sphere_) sphere_->reset();
     contact_ = {};
     weight_n_ = glm::dvec3(0.0);
     if (effects_.motion) effects_.motion->reset();
@@ -34,7 +38,8 @@ ForceSample Tick::run(const StrokeSample& input) noexcept {
     return out;
   }
   const bool was_touching = contact_.touching;
-  contact_ = tracker_.update(surface_, input.tip_mm, counters_);
+  contact_ = sphere_ ? sphere_->update(surface_, input.tip_mm, counters_)
+                     : tracker_.update(surface_, input.tip_mm, counters_);
   if (effects_.motion) effects_.motion->update(input.t, input.tip_mm);
   if (!contact_.touching) {
     if (was_touching) forget(Forget::kContactEnded);

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <memory>
+
 #include "engine/field/live_field.h"
 #include "engine/field/version.h"
 #include "haptic/contact.h"
 #include "haptic/effect.h"
 #include "haptic/scene.h"
+#include "haptic/sphere_tip.h"
 #include "haptic/strokes.h"
 #include "haptic/surface.h"
 #include "haptic/tick_counters.h"
@@ -37,6 +41,8 @@ class Tick {
   /// The contact of the last tick.
   [[nodiscard]] const Contact& contact() const noexcept { return contact_; }
   [[nodiscard]] const TickCounters& counters() const noexcept { return counters_; }
+  /// Bytes held for the shape of the tip: 0 for a point.
+  [[nodiscard]] std::size_t tipBytes() const noexcept { return sphere_ ? sizeof(SphereTracker) : 0; }
   /// The surface as the last tick left it.
   [[nodiscard]] Surface& surface() noexcept { return surface_; }
 
@@ -55,6 +61,7 @@ class Tick {
   engine::LiveField& field_;
   Surface surface_;
   ContactTracker tracker_;
+  std::unique_ptr<SphereTracker> sphere_;  // null with a point for a tip
   EffectList effects_;
   double force_limit_n_;
   glm::dvec3 weight_n_{0.0};
