@@ -20,13 +20,23 @@ SearchResult countedSearch(Surface& surface, const glm::dvec3& endpoint, CellInd
   return result;
 }
 
+// The contact test at what a search found. Where distance is at a local minimum over all cells that share the
+// point, the penetration vector is made of their normals with weights of one sign, and all normals have
+// z > 0: its own z tells the side, and no normal is worked out (four square roots at a vertex).
+bool touchesAt(Surface& surface, const SearchResult& found, const glm::dvec3& endpoint,
+               TickCounters& counters, Contact& out) noexcept {
+  if (!found.ringed) return contactTest(surface, found.point, endpoint, counters, out);
+  out.proxy = found.point;
+  out.penetration_mm = found.point.position_mm - endpoint;
+  return out.penetration_mm.z > 0.0;
+}
+
 }  // namespace
 
 bool contactTest(Surface& surface, const SurfacePoint& proxy, const glm::dvec3& endpoint,
                  TickCounters& counters, Contact& out) noexcept {
   const SurfaceNormal normal = surfaceNormal(surface, proxy);
   out.proxy = proxy;
-  out.normal = normal.direction;
   out.penetration_mm = proxy.position_mm - endpoint;
   const bool positive = glm::dot(out.penetration_mm, normal.direction) > 0.0;
   const bool below = out.penetration_mm.z > 0.0;
@@ -44,7 +54,7 @@ bool ContactTracker::track(Surface& surface, const glm::dvec3& endpoint, TickCou
     ++counters.lost_cell;
     return false;
   }
-  return contactTest(surface, found.point, endpoint, counters, out);
+  return touchesAt(surface, found, endpoint, counters, out);
 }
 
 bool ContactTracker::collide(Surface& surface, const glm::dvec3& endpoint, bool below, CellIndex own,
@@ -54,7 +64,7 @@ bool ContactTracker::collide(Surface& surface, const glm::dvec3& endpoint, bool 
     const double u = std::clamp(above.x / surface.spacingX() - cell.column, 0.0, 1.0);
     const double v = std::clamp(above.y / surface.spacingY() - cell.row, 0.0, 1.0);
     const SearchResult found = countedSearch(surface, endpoint, cell, u, v, counters);
-    return contactTest(surface, found.point, endpoint, counters, out);
+    return touchesAt(surface, found, endpoint, counters, out);
   };
 
   RayWalk walk(surface, from, endpoint);
@@ -84,9 +94,9 @@ bool ContactTracker::collide(Surface& surface, const glm::dvec3& endpoint, bool 
          contactTest(surface, closest, endpoint, counters, out);
 }
 
-Contact ContactTracker::update(Surface& surface, const glm::dvec3& endpoint,
-                               TickCounters& counters) noexcept {
-  Contact contact;
+void ContactTracker::update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters,
+                            Contact& contact) noexcept {
+  contact.touching = false;
   CellIndex own;
   Patch own_patch;
   const bool inside = surface.cellUnder(endpoint, own);
@@ -125,7 +135,6 @@ Contact ContactTracker::update(Surface& surface, const glm::dvec3& endpoint,
   previous_ = endpoint;
   previous_over_cell_ = over_cell;
   has_previous_ = true;
-  return contact;
 }
 
 }  // namespace fettle::haptic

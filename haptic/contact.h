@@ -16,8 +16,7 @@ struct Contact {
   bool touching = false;
   // The rest means something only while touching.
   SurfacePoint proxy;
-  glm::dvec3 normal{0.0, 0.0, 1.0};  ///< unit length, z > 0
-  glm::dvec3 penetration_mm{0.0};    ///< proxy minus endpoint
+  glm::dvec3 penetration_mm{0.0};  ///< proxy minus endpoint; surfaceNormal() gives the normal to who needs it
 };
 
 /// The two modes of the seed paper, as a state machine over ticks.
@@ -47,10 +46,11 @@ struct Contact {
 /// nothing to feel (counted). The side of the field and the walls of holes are no surface; who enters the
 /// material through them is in contact at once (counted).
 ///
-/// At a vertex the mean normal can point to the wrong side: with slopes of 1 and 1000 around a pit it does.
-/// At a point that is a local minimum of the distance over all four cells the side is known without it, by
-/// the sign of proxy.z - endpoint.z (the penetration vector is then a combination of the four normals, all of
-/// which have z > 0); where the two disagree the sign decides (counted).
+/// At a point that is a local minimum of the distance over all cells that share it the penetration vector is
+/// a combination of their normals with weights of one sign, and all of these have z > 0: the sign of proxy.z
+/// - endpoint.z is the test, and no normal is worked out. Only where a hole, the border or the search's bound
+/// cuts the search short the mean normal is. It can point to the wrong side, at a pit with slopes of 1 and
+/// 1000 for one; where the two disagree over four cells the sign decides (counted).
 ///
 /// Threading: one thread; wait-free, noexcept, allocates nothing.
 class ContactTracker {
@@ -59,7 +59,9 @@ class ContactTracker {
       : level_(level), radius_cells_(certified_radius_cells) {}
 
   /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt.
-  [[nodiscard]] Contact update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters) noexcept;
+  /// `contact` is overwritten (in place, because it is 100 bytes a tick).
+  void update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters,
+              Contact& contact) noexcept;
 
   /// Forgets contact and previous endpoint, as before the first tick: the next ray is a point.
   void reset() noexcept {
@@ -83,7 +85,8 @@ class ContactTracker {
   double u_ = 0.0, v_ = 0.0;
 };
 
-/// The contact test at a surface point (see ContactTracker); fills normal and penetration.
+/// The contact test by the mean normal at any surface point (see ContactTracker); fills proxy and
+/// penetration.
 [[nodiscard]] bool contactTest(Surface& surface, const SurfacePoint& proxy, const glm::dvec3& endpoint,
                                TickCounters& counters, Contact& out) noexcept;
 

@@ -51,6 +51,13 @@ using PairMask = __m128d;
 [[nodiscard]] inline Pair absolute(Pair x) noexcept {
   return _mm_andnot_pd(_mm_set1_pd(-0.0), x);
 }
+/// True in one lane alone.
+[[nodiscard]] inline PairMask firstLane() noexcept {
+  return _mm_castsi128_pd(_mm_set_epi64x(0, -1));
+}
+[[nodiscard]] inline PairMask secondLane() noexcept {
+  return _mm_castsi128_pd(_mm_set_epi64x(-1, 0));
+}
 /// Bit 0: first lane true, bit 1: second lane true.
 [[nodiscard]] inline int lanes(PairMask mask) noexcept {
   return _mm_movemask_pd(mask);
@@ -83,6 +90,12 @@ using PairMask = int;  // as lanes() gives it
 }
 [[nodiscard]] inline Pair absolute(Pair x) noexcept {
   return Pair{std::abs(x[0]), std::abs(x[1])};
+}
+[[nodiscard]] inline PairMask firstLane() noexcept {
+  return 1;
+}
+[[nodiscard]] inline PairMask secondLane() noexcept {
+  return 2;
 }
 [[nodiscard]] inline int lanes(PairMask mask) noexcept {
   return mask;

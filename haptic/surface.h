@@ -121,6 +121,46 @@ class Surface {
     return !std::isnan(d);
   }
 
+  /// The five samples around a vertex that one of its four cells lacks, as heights [mm]; NaN in holes and
+  /// beside the field.
+  struct Star {
+    double across_u;    ///< next sample along x, away from that cell
+    double across_v;    ///< next sample along y, likewise
+    double corners[3];  ///< the far corners of the three other cells
+    [[nodiscard]] bool complete() const noexcept {
+      return !std::isnan(across_u + across_v + corners[0] + corners[1] + corners[2]);
+    }
+  };
+  /// `column`, `row`: the vertex, a sample of the field; `dc`, `dr`: 1 or -1, the way from the cell across
+  /// it.
+  [[nodiscard, gnu::always_inline]] Star star(std::int32_t column, std::int32_t row, int dc,
+                                              int dr) noexcept {
+    using engine::kTileShift;
+    using engine::kTileSide;
+    const int c = column & (kTileSide - 1);
+    const int r = row & (kTileSide - 1);
+    const bool within = c != 0 && r != 0 && c != kTileSide - 1 && r != kTileSide - 1 &&
+                        column < cellColumns() && row < cellRows();
+    float h[5];
+    if (within) [[likely]] {
+      const float* s = tileAt(column >> kTileShift, row >> kTileShift).samples.data() + r * kTileSide + c;
+      const int dv = dr * kTileSide;
+      h[0] = s[dc];
+      h[1] = s[dv];
+      h[2] = s[dc - dv];
+      h[3] = s[dv - dc];
+      h[4] = s[dc + dv];
+    } else {
+      h[0] = sampleOrHole(column + dc, row);
+      h[1] = sampleOrHole(column, row + dr);
+      h[2] = sampleOrHole(column + dc, row - dr);
+      h[3] = sampleOrHole(column - dc, row + dr);
+      h[4] = sampleOrHole(column + dc, row + dr);
+    }
+    const auto mm = [&](float height) { return factor_ * static_cast<double>(height); };
+    return {mm(h[0]), mm(h[1]), {mm(h[2]), mm(h[3]), mm(h[4])}};
+  }
+
  private:
   struct Corners {
     float z00, z10, z01, z11;
@@ -151,6 +191,11 @@ class Surface {
         tile_ != nullptr && tc == tile_column_ && tr == tile_row_ ? *tile_ : reader_.tile(tc, tr);
     return t
         .samples[static_cast<std::size_t>((row & (kTileSide - 1)) * kTileSide + (column & (kTileSide - 1)))];
+  }
+
+  [[nodiscard, gnu::noinline]] float sampleOrHole(std::int32_t column, std::int32_t row) const noexcept {
+    const bool there = column >= 0 && row >= 0 && column < reader_.width() && row < reader_.height();
+    return there ? sample(column, row) : NAN;
   }
 
   engine::FieldReader reader_;

@@ -38,8 +38,10 @@ ForceSample Tick::run(const StrokeSample& input) noexcept {
     return out;
   }
   const bool was_touching = contact_.touching;
-  contact_ = sphere_ ? sphere_->update(surface_, input.tip_mm, counters_)
-                     : tracker_.update(surface_, input.tip_mm, counters_);
+  if (sphere_)
+    contact_ = sphere_->update(surface_, input.tip_mm, counters_);
+  else
+    tracker_.update(surface_, input.tip_mm, counters_, contact_);
   if (effects_.motion) effects_.motion->update(input.t, input.tip_mm);
   if (!contact_.touching) {
     if (was_touching) forget(Forget::kContactEnded);
