@@ -175,7 +175,7 @@ class SceneReader {
       return true;
     });
     if (scene_.params.friction.dynamic_coefficient > scene_.params.friction.static_coefficient)
-      complain(file, kDynamicAboveStatic);
+      complain(*file.get("friction"), kDynamicAboveStatic);
   }
 
   void effects(const toml::node& value) {

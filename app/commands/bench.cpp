@@ -6,6 +6,7 @@
 #include "bench/haptic_bench.h"
 #include "bench/machine.h"
 #include "haptic/loop/loop_bench.h"
+#include "bench/stiffness_sweep.h"
 
 namespace fettle::app {
 
@@ -126,3 +127,39 @@ void addBench(CLI::App& root, Chosen& chosen) {
 }
 
 }  // namespace fettle::app
+engine::Result<Report> stability(const bench::StiffnessSweepOptions& options, engine::JobControl& job) {
+  const auto rows = bench::stiffnessSweep(options, job);
+  if (!rows) return tl::unexpected(rows.error());
+  Report report{{"mass_kg", options.mass_kg}, {"press_n", options.press_n}, {"rows", Report::array()}};
+  for (const bench::StiffnessRow& row : *rows)
+    report["rows"].push_back({{"rate_hz", row.rate_hz},
+                              {"damping_n_s_per_mm", row.damping_n_s_per_mm},
+                              {"theory_n_per_mm", row.theory_n_per_mm},
+                              {"exact_n_per_mm", row.exact_n_per_mm},
+                              {"measured_n_per_mm", row.measured_n_per_mm},
+                              {"ratio", row.ratio}});
+  return report;
+}
+
+void printStability(const Report& report) {
+  fmt::print("largest stiffness [N/mm] that does not buzz: {} kg pressed with {} N\n\n",
+             report["mass_kg"].get<double>(), report["press_n"].get<double>());
+  fmt::print("{:>8}{:>12}{:>12}{:>12}{:>12}{:>18}\n", "Hz", "b, N s/mm", "2 b / T", "simulated", "measured",
+             "measured/theory");
+  for (const Report& row : report["rows"])
+    fmt::print("{:>8.0f}{:>12.4f}{:>12.3f}{:>12.3f}{:>12.3f}{:>18.3f}\n", row["rate_hz"].get<double>(),
+               row["damping_n_s_per_mm"].get<double>(), row["theory_n_per_mm"].get<double>(),
+               row["exact_n_per_mm"].get<double>(), row["measured_n_per_mm"].get<double>(),
+               row["ratio"].get<double>());
+}
+
+  auto sweep_options = std::make_shared<bench::StiffnessSweepOptions>();
+  CLI::App* sweep = addCommand(
+      *bench, chosen, "stability", "Stiffness at which a felt wall starts to buzz, against b > K T / 2",
+      [sweep_options](engine::JobControl& job) { return stability(*sweep_options, job); }, printStability);
+  sweep->add_option("--damping", sweep_options->damping_n_s_per_mm, "Damping of the device, N s/mm")
+      ->capture_default_str();
+  sweep->add_option("--mass", sweep_options->mass_kg, "Moving mass, kg")->capture_default_str();
+  sweep->add_option("--press", sweep_options->press_n, "Constant press, N")->capture_default_str();
+  sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
+

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "haptic/effects/stability.h"
 #include "haptic/scene.h"
 #include "haptic/strokes.h"
 #include "tests/support/temp_folder.h"
@@ -80,15 +81,73 @@ TEST(SceneFile, TheDocumentedDefaultIsTheDefaultAndAllExamplesLoad) {
   EXPECT_EQ(gentle->max_change, 0.05);
 }
 
+TEST(SceneFile, EverythingListsEveryEffectWithinWhatADeviceHolds) {
+  const auto scene = loadScene(std::string(FETTLE_SOURCE_DIR) + "/assets/scenes/everything.toml");
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_EQ(scene->effects.size(), static_cast<std::size_t>(kEffectKinds));
+  EXPECT_EQ(scene->params.friction.dynamic_coefficient, 0.2);
+  EXPECT_EQ(scene->params.texture.wavelength_mm, 2.0);
+  EXPECT_EQ(sceneProblem(*scene), std::nullopt);
+  DeviceProfile profile;
+  profile.max_stiffness_n_per_mm = 1.0;
+  profile.max_damping_n_s_per_mm = 0.005;
+  EXPECT_EQ(stabilityProblem(*scene, profile, 1000.0), std::nullopt);
+  // The weakest of devices does not hold it, at a fifth of the rate nothing does.
+  EXPECT_NE(stabilityProblem(*scene, DeviceProfile{}, 1000.0), std::nullopt);
+  EXPECT_NE(stabilityProblem(*scene, profile, 200.0), std::nullopt);
+  profile.max_damping_n_s_per_mm = 0.003;
+  EXPECT_NE(stabilityProblem(*scene, profile, 1000.0), std::nullopt);
+}
+
+TEST(SceneFile, EffectsThatStandOnTheSpringComeAfterIt) {
+  Scene scene;
+  for (const EffectKind kind : {EffectKind::kFriction, EffectKind::kTexture, EffectKind::kCoupling}) {
+    scene.effects = {kind};
+    EXPECT_NE(sceneProblem(scene), std::nullopt);
+    scene.effects = {kind, EffectKind::kSpring};
+    EXPECT_NE(sceneProblem(scene), std::nullopt);
+    scene.effects = {EffectKind::kSpring, kind};
+    EXPECT_EQ(sceneProblem(scene), std::nullopt);
+  }
+  scene.params.friction = {0.2, 0.3, 1.0};
+  EXPECT_NE(sceneProblem(scene), std::nullopt);
+  scene = {};
+  scene.params.velocity.filter_ms = NAN;
+  EXPECT_NE(sceneProblem(scene), std::nullopt);
+}
+
 TEST(SceneFile, RefusesUnknownKeysTypesAndRangesWithTheLine) {
   const tests::TempFolder folder;
   const std::string path = folder.file("s.toml");
-  for (const char* line :
-       {"colour = 1", "invert = 1", "effects = [\"glow\"]", "effects = [\"spring\", \"spring\"]",
-        "effects = 3", "tip = \"ball\"", "force = { limit_n = 0 }", "force = { limit_n = nan }",
-        "force = { stiffness = 1 }", "force = { stiffness_n_per_mm = \"1\" }",
-        "contact = { certified_radius_cells = 1.5 }", "contact = { level = \"best\" }",
-        "brush = { max_change = -1 }", "brush = { radius_samples = 65 }", "= 3"}) {
+  for (const char* line : {"colour = 1",
+                           "invert = 1",
+                           "effects = [\"glow\"]",
+                           "effects = [\"spring\", \"spring\"]",
+                           "effects = 3",
+                           "tip = \"ball\"",
+                           "force = { limit_n = 0 }",
+                           "force = { limit_n = nan }",
+                           "force = { stiffness = 1 }",
+                           "force = { stiffness_n_per_mm = \"1\" }",
+                           "contact = { certified_radius_cells = 1.5 }",
+                           "contact = { level = \"best\" }",
+                           "brush = { max_change = -1 }",
+                           "friction = { static = 3 }",
+                           "friction = { static = nan }",
+                           "friction = { dynamic = 0.5 }",
+                           "friction = { grip = 1 }",
+                           "viscosity = { in = \"air\" }",
+                           "viscosity = { damping_n_s_per_mm = -1 }",
+                           "edge_snap = { reach_mm = 0 }",
+                           "texture = { wavelength_mm = \"1\" }",
+                           "texture = 3",
+                           "texture = { pattern = \"wood\" }",
+                           "gravity = { stylus_kg = inf }",
+                           "coupling = { in = \"contact\" }",
+                           "effects = [\"friction\", \"spring\"]",
+                           "velocity = { filter_ms = 51 }",
+                           "brush = { radius_samples = 65 }",
+                           "= 3"}) {
     put(path, std::string("# a scene\n") + line + "\n");
     const auto scene = loadScene(path);
     ASSERT_FALSE(scene) << line;
