@@ -1,13 +1,14 @@
 // The tick under an allocator that counts: none with every tool, brush and level once the pool is filled.
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <new>
 
 #include <gtest/gtest.h>
 
+#include "bench/hand_stroke.h"
 #include "engine/field/live_field.h"
 #include "haptic/tick.h"
-#include "bench/hand_stroke.h"
 
 namespace {
 // Relaxed: one thread counts and reads.
@@ -41,29 +42,49 @@ void operator delete[](void* p, std::size_t) noexcept {
 namespace fettle::haptic {
 namespace {
 
-TEST(NeverAllocate, ATickDoesNotWithAnyToolOrLevel) {
+// Each effect alone on the spring, then all of them: times both levels, more than a million ticks.
+TEST(NeverAllocate, ATickDoesNotWithAnyToolLevelOrEffect) {
   const engine::Version field = bench::workpiece(300, 0.05);
   ASSERT_TRUE(field.memory()->tiles.reserve(200));
   ASSERT_TRUE(field.memory()->nodes.reserve(50));
   bench::HandMotion motion;
   motion.ticks = 60000;
   std::vector<StrokeSample> strokes = bench::handStroke(field, motion);
-  for (std::size_t i = 0; i < strokes.size(); ++i) strokes[i].tool = static_cast<Tool>(i / 500 % kTools);
-  for (const ContactLevel level : {ContactLevel::kPaper, ContactLevel::kCertified}) {
-    Scene scene;
-    scene.level = level;
-    scene.brush_radius_samples = 2.0;
-    scene.mark_radius_samples = 1.0;
-    scene.max_change = 0.5;
-    engine::LiveField live(field, engine::Growth::kNever);
-    Tick tick(scene, live, field);
-    const long before = g_allocations.load(std::memory_order_relaxed);
-    long contacts = 0;
-    for (const StrokeSample& sample : strokes) contacts += tick.run(sample).contact ? 1 : 0;
-    EXPECT_EQ(g_allocations.load(std::memory_order_relaxed), before);
-    EXPECT_GT(contacts, 30000);
-    EXPECT_EQ(tick.counters().refused_edits, 0);
+  for (std::size_t i = 0; i < strokes.size(); ++i) {
+    strokes[i].tool = static_cast<Tool>(i / 500 % kTools);
+    if (i % 7001 == 0) strokes[i].tip_mm.x = std::nan("");
+    if (i % 7001 == 3000) strokes[i].tip_mm.z = -1e6;
   }
+  long ticks = 0;
+  for (const ContactLevel level : {ContactLevel::kPaper, ContactLevel::kCertified})
+    for (int listed = 1; listed <= kEffectKinds; ++listed) {
+      Scene scene;
+      scene.level = level;
+      scene.brush_radius_samples = 2.0;
+      scene.mark_radius_samples = 1.0;
+      scene.max_change = 0.5;
+      scene.params.viscosity.medium = ViscousMedium::kEverywhere;
+      for (int k = 0; k < kEffectKinds; ++k) {
+        const auto kind = static_cast<EffectKind>(k);
+        const bool there = k == listed || listed == kEffectKinds;
+        if (there && kind != EffectKind::kSpring && kind != EffectKind::kSmoothing)
+          scene.effects.push_back(kind);
+      }
+      ASSERT_FALSE(sceneProblem(scene));
+      engine::LiveField live(field, engine::Growth::kNever);
+      Tick tick(scene, live, field);
+      const long before = g_allocations.load(std::memory_order_relaxed);
+      long contacts = 0;
+      for (std::size_t i = 0; i < strokes.size(); ++i) {
+        if (i % 9000 == 8999) tick.fieldChanged();
+        contacts += tick.run(strokes[i]).contact ? 1 : 0;
+      }
+      EXPECT_EQ(g_allocations.load(std::memory_order_relaxed), before) << listed;
+      EXPECT_GT(contacts, 30000);
+      EXPECT_EQ(tick.counters().refused_edits, 0);
+      ticks += static_cast<long>(strokes.size());
+    }
+  EXPECT_GE(ticks, 1000000);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ engine::Version bumpy() {
   });
 }
 
-TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelOrCommand) {
+TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
   if (!fettle::tests::allocationGuardWorks()) GTEST_SKIP() << "a sanitizer brings its own allocator";
   {
     // The guard itself: it must see what it is to forbid.
@@ -81,6 +81,11 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelOrCommand) {
       scene.mark_radius_samples = static_cast<double>(k % 4);
       scene.invert = k % 7 == 3;
       if (k % 3 == 0) scene.max_change = 0.1;
+      // Every effect is in half of the scenes, each time beside others.
+      for (int effect = static_cast<int>(EffectKind::kFriction); effect < kEffectKinds; ++effect)
+        if (((k >> (effect % 3)) + static_cast<std::uint64_t>(effect)) % 2 == 0)
+          scene.effects.push_back(static_cast<EffectKind>(effect));
+      scene.params.viscosity.medium = k % 2 == 0 ? ViscousMedium::kEverywhere : ViscousMedium::kContact;
       ASSERT_TRUE(bench.send(CommandKind::kScene, [&](LoopCommand& c) {
         c.scene = std::make_unique<PreparedScene>(scene, start);
       }));
