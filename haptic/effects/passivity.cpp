@@ -21,17 +21,19 @@ void forget(void* data, Forget why) noexcept {
 }  // namespace
 
 void Passivity::run(TickState& state) noexcept {
-  const glm::dvec3 step = known_ ? state.endpoint_mm - at_mm_ : glm::dvec3(0.0);
-  if (known_) {
+  // dt is 0 where the step is no measure of speed (VelocityFilter): a jump or a gap is no way that the hand
+  // went against the force, and is neither counted nor braked.
+  const double dt_s = state.motion->dt();
+  const bool moved = known_ && dt_s > 0.0;
+  const glm::dvec3 step = moved ? state.endpoint_mm - at_mm_ : glm::dvec3(0.0);
+  if (moved) {
     const double work_mj = glm::dot(given_n_, step);
     state.counters.work_on_hand_mj += work_mj;
     balance_mj_ = std::max(balance_mj_ + work_mj, -state.stored_mj);
   }
   glm::dvec3 force_n = state.force_n - state.weight_n;
-  const double dt_s = state.motion->dt();
   const double length = glm::length(step);
-  // dt is 0 where the step is no measure of speed (VelocityFilter): a jump is not braked.
-  if (dt_s > 0.0 && length > 0.0 && balance_mj_ + glm::dot(force_n, step) > 0.0) {
+  if (length > 0.0 && balance_mj_ + glm::dot(force_n, step) > 0.0) {
     const glm::dvec3 along = step / length;
     const double driving_n = glm::dot(force_n, along);
     const double least_n = std::min(driving_n, 0.0) - brake_ * length / dt_s;

@@ -23,6 +23,7 @@ namespace fettle::haptic {
 /// Sources: Hannaford and Ryu, "Time-domain passivity control of haptic interfaces" (2002): observer,
 /// series damper; Ryu, Kim, Hannaford, "Stability control of haptic interfaces with reference energy" (2004):
 /// observing against what may be stored instead of against zero.
+/// Jumps of the position, gaps above 20 ms and samples without time (VelocityFilter) are not counted.
 /// Stability: the brake is a sampled damper, b < 2 m / T (see viscosity.h); taking force away needs no bound.
 /// What comes after the tick (ForceGuard) only lowers forces; while it does, the observer counts with more
 /// than was given.

@@ -169,7 +169,8 @@ TEST(Passivity, HardInputsKeepItFiniteAndQuiet) {
     if (i % 100 == 11) e.z = 5e-324;
     if (i % 100 == 20) touch.tick.fieldChanged();
     ASSERT_LE(glm::length(touch.at(e).force_n), 8.0 * (1 + 1e-12));
-    ASSERT_FALSE(std::isnan(touch.tick.counters().work_on_hand_mj)) << i;
+    // Jumps are not counted: what is left are steps of a hand, 5 mm at 8 N each at most.
+    ASSERT_LE(std::abs(touch.tick.counters().work_on_hand_mj), 40.0 * (i + 1)) << i;
   }
 }
 
