@@ -16,6 +16,19 @@ std::string text(const Report& value) {
   return value.dump();
 }
 
+// "row 3, column 5, height 9.792"; a string as it is.
+std::string line(const Report& object) {
+  if (!object.is_object()) return text(object);
+  std::string joined;
+  for (const auto& [key, value] : object.items())
+    joined += fmt::format("{}{} {}", joined.empty() ? "" : ", ", key, text(value));
+  return joined;
+}
+
+bool isList(const Report& value) {
+  return value.is_array() && !value.empty() && (value.front().is_object() || value.front().is_string());
+}
+
 void printIndented(const Report& report, int indent) {
   std::size_t widest = 0;
   for (const auto& [key, value] : report.items()) widest = std::max(widest, key.size());
@@ -23,6 +36,9 @@ void printIndented(const Report& report, int indent) {
     if (value.is_object()) {
       fmt::print("{:{}}{}\n", "", indent, key);
       printIndented(value, indent + 2);
+    } else if (isList(value)) {
+      fmt::print("{:{}}{}\n", "", indent, key);
+      for (const Report& entry : value) fmt::print("{:{}}  {}\n", "", indent, line(entry));
     } else if (!(value.is_array() && value.empty())) {
       fmt::print("{:{}}{:<{}}  {}\n", "", indent, key, widest, text(value));
     }

@@ -92,14 +92,15 @@ std::string seedProblem(const std::string& text) {
              : "give a whole number from 0 to 18446744073709551615";
 }
 
-engine::Result<std::pair<int, int>> parseSize(const std::string& text, const std::string& option) {
+engine::Result<std::pair<int, int>> parseSize(const std::string& text, const std::string& option,
+                                              SideRange sides) {
   int width = 0;
   int height = 0;
   char rest = 0;
-  if (std::sscanf(text.c_str(), "%6dx%6d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
-      width > engine::Grid::kMaxSide || height > engine::Grid::kMaxSide)
+  const auto fits = [&](int side) { return side >= sides.smallest && side <= sides.largest; };
+  if (std::sscanf(text.c_str(), "%6dx%6d%c", &width, &height, &rest) != 2 || !fits(width) || !fits(height))
     return engine::inputError(fmt::format("{} is not a size", text), option,
-                              fmt::format("give WIDTHxHEIGHT, each 1 to {}", engine::Grid::kMaxSide));
+                              fmt::format("give WIDTHxHEIGHT, each {} to {}", sides.smallest, sides.largest));
   return std::pair{width, height};
 }
 

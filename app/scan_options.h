@@ -41,9 +41,17 @@ void addScanOptions(CLI::App* command, ScanOptions& options);
 [[nodiscard]] engine::Result<double> parseHeight(const std::string& text, const engine::Grid& grid,
                                                  const std::string& option);
 
-/// "WIDTHxHEIGHT", both 1 to 262144. Errors name the option.
+/// Sides that a size may have, both ends included.
+struct SideRange {
+  int smallest;
+  int largest;
+};
+inline constexpr SideRange kFieldSides{1, engine::Grid::kMaxSide};
+inline constexpr SideRange kPictureSides{16, 16384};
+
+/// "WIDTHxHEIGHT", both within `sides`. Errors name the option.
 [[nodiscard]] engine::Result<std::pair<int, int>> parseSize(const std::string& text,
-                                                            const std::string& option);
+                                                            const std::string& option, SideRange sides);
 
 /// What is wrong with a seed as typed; empty when nothing is. For CLI::Option::check.
 [[nodiscard]] std::string seedProblem(const std::string& text);

@@ -39,7 +39,7 @@ engine::Result<render::PictureSpec> picture(const Options& options, engine::JobC
   render::PictureSpec spec;
   spec.view = options.view;
   spec.cell_px = kStillCellPx;
-  const auto size = parseSize(options.size, "--size");
+  const auto size = parseSize(options.size, "--size", kPictureSides);
   if (!size) return tl::unexpected(size.error());
   std::tie(spec.view.width, spec.view.height) = *size;
   if (!options.centre.empty()) {

@@ -20,7 +20,7 @@ struct Options {
 };
 
 engine::Result<Report> synth(Options options, engine::JobControl& job) {
-  const auto size = parseSize(options.size, "--size");
+  const auto size = parseSize(options.size, "--size", kFieldSides);
   if (!size) return tl::unexpected(size.error());
   options.spec.width = size->first;
   options.spec.height = size->second;
