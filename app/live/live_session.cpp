@@ -33,6 +33,8 @@ std::string remedyFor(FaultCause cause) {
       return "the program was held up: press a to arm";
     case FaultCause::kUnplugged:
       return "plug the device in, calibrate it if it asks for that, then press a to arm";
+    case FaultCause::kOutputStalled:
+      return "the device takes no force: plug it in again, or press a to arm when it has recovered";
     case FaultCause::kLastResort:
     case FaultCause::kNone:
       break;

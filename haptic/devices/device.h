@@ -56,6 +56,9 @@ struct DeviceInput {
   std::uint64_t sequence = 0;
   std::int64_t arrival_ns = 0;  ///< std::chrono::steady_clock, when it arrived at this machine
   LinkState link = LinkState::kDisconnected;
+  /// So long the report that is being written waits for the device to take it [ns]; 0 = nothing waits. When
+  /// it goes on for longer than some ms, the hand does not get what the loop gives.
+  std::int64_t output_waits_ns = 0;
   std::optional<Tool> tool{};  ///< set by devices that choose the tool themselves (a replayed stroke)
 
   friend bool operator==(const DeviceInput&, const DeviceInput&) = default;

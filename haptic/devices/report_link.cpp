@@ -185,7 +185,9 @@ PortWrite ReportLink::send(ReportPort& port, OutputRule::Send what, const glm::d
   const std::size_t size = handler_.encode(zero ? glm::dvec3{0.0} : value, report);
   if (size == 0) return PortWrite::kFailed;
   const std::int64_t start = steadyNs();
+  writing_since_ns_.store(start, std::memory_order_relaxed);
   const PortWrite outcome = port.write({report.data(), size});
+  writing_since_ns_.store(0, std::memory_order_relaxed);
   const std::int64_t took = steadyNs() - start;
   // Relaxed, no compare-and-swap: this thread alone writes it.
   if (took > longest_output_ns_.load(std::memory_order_relaxed))

@@ -67,6 +67,12 @@ class ReportLink {
   /// Loop thread, wait-free: output for the device (motor currents, whatever encode() takes).
   void write(const glm::dvec3& output) noexcept;
 
+  /// Any thread, wait-free: since when a write has been waiting for the device [ns of steadyNs]; 0 = none is.
+  [[nodiscard]] std::int64_t writingSinceNs() const noexcept {
+    // Relaxed: a number of its own, looked at once a tick.
+    return writing_since_ns_.load(std::memory_order_relaxed);
+  }
+
   /// Any thread. `inputs`, `bad_inputs` and the like are each right; together they may be of two moments.
   [[nodiscard]] DeviceCounters counters() const noexcept;
 
@@ -116,6 +122,7 @@ class ReportLink {
   std::atomic<std::uint64_t> connects_{0};
   std::atomic<std::uint64_t> disconnects_{0};
   std::atomic<std::int64_t> longest_output_ns_{0};
+  std::atomic<std::int64_t> writing_since_ns_{0};
 };
 
 /// std::chrono::steady_clock in nanoseconds, the clock of DeviceInput::arrival_ns.

@@ -1,5 +1,6 @@
 #include "haptic/devices/wooden_haptics.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "haptic/devices/wooden_kinematics.h"
@@ -22,7 +23,10 @@ WoodenHaptics::~WoodenHaptics() {
 
 DeviceInput WoodenHaptics::read() noexcept {
   state_.take();
-  return state_.latest().input;
+  DeviceInput input = state_.latest().input;
+  const std::int64_t since = link_.writingSinceNs();
+  input.output_waits_ns = since == 0 ? 0 : std::max<std::int64_t>(steadyNs() - since, 0);
+  return input;
 }
 
 void WoodenHaptics::write(const glm::dvec3& force_n) noexcept {

@@ -13,8 +13,10 @@
 #include <vector>
 
 #include <sched.h>
+#include <unistd.h>
 
 #include "engine/field/builder.h"
+#include "haptic/loop/cyclictest.h"
 #include "haptic/loop/haptic_loop.h"
 #include "haptic/loop/pacer.h"
 
@@ -24,6 +26,8 @@ namespace {
 
 constexpr std::int32_t kSide = 1024;
 constexpr double kSpacing_mm = 0.1;
+constexpr double kSlice_s = 5.0;
+constexpr double kShortestCyclictest_s = 0.5;  // it takes some 10 ms to start
 
 // A noisy plate: smoothing never runs out of work.
 engine::Version benchField() {
@@ -101,31 +105,6 @@ class PlainThread {
   std::thread thread_;
 };
 
-// One busy thread a core, at normal priority, through more memory than the caches hold.
-class Load {
- public:
-  explicit Load(unsigned threads) {
-    for (unsigned i = 0; i < threads; ++i)
-      threads_.emplace_back([this] {
-        std::vector<std::uint64_t> memory(std::size_t{4} << 20, 1);
-        while (!stop_.load(std::memory_order_relaxed)) {
-          std::uint64_t sum = 0;
-          for (std::uint64_t& word : memory) word = (sum += word * 0x9e3779b97f4a7c15U);
-        }
-      });
-  }
-  ~Load() {
-    stop_.store(true, std::memory_order_relaxed);
-    for (std::thread& thread : threads_) thread.join();
-  }
-  Load(const Load&) = delete;
-  Load& operator=(const Load&) = delete;
-
- private:
-  std::atomic<bool> stop_{false};
-  std::vector<std::thread> threads_;
-};
-
 std::vector<int> usableCores() {
   cpu_set_t set;
   CPU_ZERO(&set);
@@ -158,15 +137,18 @@ class Measurement {
     const int last = cores.empty() ? -1 : cores.back();
     const auto begin = std::chrono::steady_clock::now();
     job_.begin("measuring", static_cast<std::uint64_t>(1000.0 * options_.seconds));
-    std::unique_ptr<Load> load;
+    std::unique_ptr<BusyProcesses> load;
     if (options_.load == BenchLoad::kBusy)
-      load = std::make_unique<Load>(std::max(1U, static_cast<unsigned>(cores.size())));
-    for (int half = 0; half < 2; ++half) {
-      const int loop_core = half == 0 ? last : first;
-      const int plain_core = half == 0 ? first : last;
+      load = std::make_unique<BusyProcesses>(std::max(1U, static_cast<unsigned>(cores.size())));
+    // An even number, so that each has each core as long.
+    const int slices = 2 * std::max(1, static_cast<int>(std::lround(options_.seconds / (2.0 * kSlice_s))));
+    const double slice_s = options_.seconds / slices;
+    chooseReference(slice_s);
+    for (int slice = 0; slice < slices; ++slice) {
+      const bool even = slice % 2 == 0;
       const engine::Status done =
-          together ? measure(loop_core, plain_core, Which::kBoth, 0.5 * options_.seconds)
-                   : measure(first, first, half == 0 ? Which::kLoop : Which::kPlain, 0.5 * options_.seconds);
+          together ? measure(even ? last : first, even ? first : last, Which::kBoth, slice_s)
+                   : measure(first, first, even ? Which::kLoop : Which::kReference, slice_s);
       if (!done) return tl::unexpected(done.error());
     }
     report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -174,14 +156,14 @@ class Measurement {
     report_.load = options_.load;
     report_.machine = machineName();
     fill(report_.loop, "haptic loop", loop_timing_);
-    fill(report_.plain, "plain thread", plain_timing_);
-    report_.p99_ratio = ratio(report_.loop.lateness.p99_ns, report_.plain.lateness.p99_ns);
-    report_.p999_ratio = ratio(report_.loop.lateness.p999_ns, report_.plain.lateness.p999_ns);
+    fill(report_.reference, report_.no_cyclictest.empty() ? "cyclictest" : "plain thread", reference_timing_);
+    report_.p99_ratio = ratio(report_.loop.lateness.p99_ns, report_.reference.lateness.p99_ns);
+    report_.p999_ratio = ratio(report_.loop.lateness.p999_ns, report_.reference.lateness.p999_ns);
     return report_;
   }
 
  private:
-  enum class Which : std::uint8_t { kBoth, kLoop, kPlain };
+  enum class Which : std::uint8_t { kBoth, kLoop, kReference };
 
   RealTimeWish wishFor(int core) const {
     RealTimeWish wish;
@@ -190,14 +172,33 @@ class Measurement {
     return wish;
   }
 
-  engine::Status measure(int loop_core, int plain_core, Which which, double seconds) {
-    std::unique_ptr<PlainThread> plain;
-    if (which != Which::kLoop)
-      plain = std::make_unique<PlainThread>(options_.rate_hz, wishFor(plain_core), plain_timing_);
-    const engine::Status done =
-        which == Which::kPlain ? wait(seconds, nullptr) : withLoop(loop_core, seconds);
-    if (plain) report_.plain.missing = plain->stop().missing;
-    return done;
+  void chooseReference(double slice_s) {
+    if (!Cyclictest::installed())
+      report_.no_cyclictest = "cyclictest is not installed (package rt-tests): a plain thread stands in";
+    else if (slice_s < kShortestCyclictest_s)
+      report_.no_cyclictest = "the time is too short for cyclictest: a plain thread stands in";
+    else
+      report_.reference.latency_held =
+          ::access("/dev/cpu_dma_latency", W_OK) == 0;  // it says so, and goes on
+  }
+
+  engine::Status measure(int loop_core, int reference_core, Which which, double seconds) {
+    if (which == Which::kLoop) return withLoop(loop_core, seconds);
+    const auto alongside = [&] {
+      return which == Which::kReference ? wait(seconds, nullptr) : withLoop(loop_core, seconds);
+    };
+    if (!report_.no_cyclictest.empty()) {
+      PlainThread plain(options_.rate_hz, wishFor(reference_core), reference_timing_);
+      const engine::Status done = alongside();
+      const RealTimeReport granted = plain.stop();
+      report_.reference.missing = granted.missing;
+      report_.reference.latency_held = granted.latency_held;
+      return done;
+    }
+    auto cyclictest = Cyclictest::start({reference_core, options_.priority, options_.rate_hz, seconds});
+    if (!cyclictest) return tl::unexpected(cyclictest.error());
+    if (engine::Status done = alongside(); !done) return done;
+    return cyclictest->finish(reference_timing_.lateness);
   }
 
   engine::Status withLoop(int core, double seconds) {
@@ -220,6 +221,7 @@ class Measurement {
     const engine::Status done = wait(seconds, &loop);
     static_cast<void>(loop.stop());
     report_.loop.missing = loop.realTime().missing;
+    report_.loop.latency_held = loop.realTime().latency_held;
     report_.refused_edits += loop.state().refused_edits;
     loop_timing_.lateness.add(loop.timing().lateness);
     loop_timing_.compute.add(loop.timing().compute);
@@ -255,7 +257,7 @@ class Measurement {
   LoopBenchOptions options_;
   engine::JobControl& job_;
   LoopBenchReport report_;
-  LoopTiming loop_timing_, plain_timing_;
+  LoopTiming loop_timing_, reference_timing_;
 };
 
 }  // namespace

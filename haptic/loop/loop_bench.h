@@ -13,7 +13,7 @@ namespace fettle::haptic {
 /// What else keeps the machine busy while the loop is measured.
 enum class BenchLoad : std::uint8_t {
   kIdle,  ///< nothing of ours
-  kBusy,  ///< on every core a thread at normal priority that works through memory without a pause
+  kBusy,  ///< as many processes as cores, at normal priority, that work through memory without a pause
 };
 
 struct LoopBenchOptions {
@@ -25,12 +25,13 @@ struct LoopBenchOptions {
 
 /// One thread's time keeping.
 struct LoopBenchRow {
-  std::string name;  ///< "haptic loop", "plain thread"
+  std::string name;  ///< "haptic loop", "cyclictest", "plain thread"
   TimingFigures lateness;
-  TimingFigures compute;             ///< of the plain thread: count 0
-  std::uint64_t missed = 0;          ///< periods skipped
+  TimingFigures compute;             ///< of the loop alone; of others: count 0
+  std::uint64_t missed = 0;          ///< periods skipped; cyclictest does not count them
   std::uint64_t over_1_ms = 0;       ///< wake-ups later than 1 ms
   std::vector<std::string> missing;  ///< what the system did not give (RealTimeReport)
+  bool latency_held = false;         ///< /dev/cpu_dma_latency
 };
 
 struct LoopBenchReport {
@@ -39,18 +40,20 @@ struct LoopBenchReport {
   BenchLoad load = BenchLoad::kIdle;
   std::string machine;  ///< processor and number of cores
   LoopBenchRow loop;
-  LoopBenchRow plain;
-  double p99_ratio = 0.0;   ///< loop over plain; 0 when the plain one is 0
-  double p999_ratio = 0.0;  ///< likewise. Target: at most 1.2
+  LoopBenchRow reference;     ///< cyclictest, or the plain thread where there is none
+  std::string no_cyclictest;  ///< why not; empty when it is the reference
+  double p99_ratio = 0.0;     ///< loop over reference; 0 when that is 0
+  double p999_ratio = 0.0;    ///< likewise. Target: at most 1.2
   std::uint64_t refused_edits = 0;
   std::uint64_t events = 0;  ///< publications that the main side took
 };
 
-/// Measures the live loop beside a thread that does nothing but cyclictest's part (absolute sleep, pinned,
-/// same priority, memory locked). Both run at the same time on different cores, so that they meet the same
-/// weather, and change cores halfway, so that a core with more interrupts favours neither; on one core they
-/// run one after the other. The loop does all it does in a session: a simulated hand presses and smooths a
-/// 1024 x 1024 field for good, the main side takes the edits.
+/// Measures the live loop beside cyclictest, or where that is not installed beside a thread that does its
+/// part (absolute sleep, pinned, same priority, memory locked). Both run at the same time on different cores,
+/// so that they meet the same weather, in slices of some seconds, and change cores from slice to slice, so
+/// that a core with more interrupts favours neither; on one core they take the slices in turns. The loop does
+/// all it does in a session: a simulated hand presses and smooths a 1024 x 1024 field for good, the main side
+/// takes the edits.
 ///
 /// Progress: stage "measuring", steps = milliseconds. Errors: kInput for options out of range; kCancelled;
 /// kFailed when threads or memory cannot be had. Thread: main; blocks.

@@ -61,6 +61,8 @@ std::string_view name(FaultCause cause) noexcept {
       return "loop stopped";
     case FaultCause::kUnplugged:
       return "unplugged";
+    case FaultCause::kOutputStalled:
+      return "output stalled";
     case FaultCause::kLastResort:
       return "ended by a signal";
   }
@@ -104,14 +106,17 @@ void ForceGuard::advanceState(const SafetyInput& input, double dt_s, double age_
       fault(FaultCause::kLoopStopped);
     else if (age_s >= limits_.fault_s)
       fault(FaultCause::kInputLost);
+    else if (!(input.output_waits_s < limits_.fault_s))
+      fault(FaultCause::kOutputStalled);
   }
 
   // A late tick is a silence too: the driver takes a force back that is not renewed for 10 ms.
   const bool gap = age_s >= limits_.silence_s || dt_s >= limits_.silence_s;
+  const bool heard = !gap && input.output_waits_s < limits_.fault_s;
   if (wants_arm_) {
     wants_arm_ = false;
     if (!armed()) {
-      if (input.link == LinkState::kConnected && !gap && !wants_fault_) {
+      if (input.link == LinkState::kConnected && heard && !wants_fault_) {
         state_ = SafetyState::kArmed;
         cause_ = FaultCause::kNone;
         silent_ = false;

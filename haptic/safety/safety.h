@@ -33,15 +33,16 @@ inline constexpr int kSafetyStates = 6;
 
 enum class FaultCause : std::uint8_t {
   kNone,
-  kInputLost,    ///< no good input for SafetyLimits::fault_s
-  kLoopStopped,  ///< the loop itself did not run for that long (debugger, suspend)
-  kUnplugged,    ///< the device went away while armed
-  kLastResort,   ///< the program is being ended by a signal
+  kInputLost,      ///< no good input for SafetyLimits::fault_s
+  kLoopStopped,    ///< the loop itself did not run for that long (debugger, suspend)
+  kUnplugged,      ///< the device went away while armed
+  kOutputStalled,  ///< the device has not taken a report for SafetyLimits::fault_s
+  kLastResort,     ///< the program is being ended by a signal
 };
 
 /// "disconnected", "uncalibrated", "armed", "ramping", "active", "fault".
 [[nodiscard]] std::string_view name(SafetyState state) noexcept;
-/// "", "input lost", "loop stopped", "unplugged", "ended by a signal".
+/// "", "input lost", "loop stopped", "unplugged", "output stalled", "ended by a signal".
 [[nodiscard]] std::string_view name(FaultCause cause) noexcept;
 
 /// Whether something other than the hand changed what is felt since the last tick: another version adopted,
@@ -57,6 +58,7 @@ struct SafetyInput {
   glm::dvec3 command_n{0.0};          ///< force the scene asks for [N]
   glm::dvec3 velocity_mm_per_s{0.0};  ///< of the tip
   Disturbance disturbance = Disturbance::kNone;
+  double output_waits_s = 0.0;  ///< so long the device has not taken the report being written [s]
 };
 
 /// Everything the guard ever did, counted. Plain numbers of the thread that ticks.
@@ -93,6 +95,8 @@ struct SafetyCounters {
 ///   - the output is finite and |F| <= peak_force_n * (1 + 1e-12);
 ///   - it changes by at most slew * min(dt, 2 ms) a step, so a late tick is no kick; a force that fades to
 ///     zero (fault, silence, bad command) may use the whole dt, and a lost link is zero at once;
+///   - a device that has not taken a report for 50 ms is a Fault as well: its own watchdog may have cut the
+///     force meanwhile, and what it takes next must not be the force of now, at once;
 ///   - without good input for 10 ms it is on its way to zero, which takes at most peak / slew; after 50 ms
 ///     the state is Fault and stays so until arm(); a disarm() does not clear it;
 ///   - in Disconnected, Uncalibrated, Armed and Fault nothing but such a fade is given;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "haptic/loop/cyclictest.h"
+
 namespace fettle::haptic {
 namespace {
 
@@ -13,7 +15,7 @@ TEST(LoopBench, CountsEveryPeriodOnceAsATickOrAsMissed) {
   options.priority = 0;
   const auto report = benchLoop(options, job);
   ASSERT_TRUE(report) << report.error().line();
-  for (const LoopBenchRow* row : {&report->loop, &report->plain}) {
+  for (const LoopBenchRow* row : {&report->loop, &report->reference}) {
     // 1,200 periods in two halves; a busy machine starts threads late.
     const std::uint64_t periods = row->lateness.count + row->missed;
     EXPECT_GT(periods, 800U) << row->name;
@@ -21,9 +23,40 @@ TEST(LoopBench, CountsEveryPeriodOnceAsATickOrAsMissed) {
     EXPECT_LE(row->lateness.p9999_ns, row->lateness.worst_ns);
   }
   EXPECT_EQ(report->loop.compute.count, report->loop.lateness.count);
-  EXPECT_EQ(report->plain.compute.count, 0U);
+  EXPECT_EQ(report->reference.compute.count, 0U);
   EXPECT_GT(report->events, 10U);
   EXPECT_EQ(report->refused_edits, 0U);
+}
+
+TEST(LoopBench, CyclictestsHistogramIsReadWithWhatLiesBeyondIt) {
+  TimingHistogram h;
+  ASSERT_TRUE(
+      addCyclictestHistogram("# /dev/cpu_dma_latency set to 0us\n# Histogram\n000003 000002\n"
+                             "000040 000001\n# Total: 000000003\n# Max Latencies: 25000\n"
+                             "# Histogram Overflows: 00001\n",
+                             h));
+  const TimingFigures f = h.figures();
+  EXPECT_EQ(f.count, 4U);
+  EXPECT_EQ(f.worst_ns, 25'000'000);
+  EXPECT_EQ(h.countAbove(1'000'000), 1U);
+  EXPECT_NEAR(static_cast<double>(f.p50_ns), 3000.0, 3000.0 / 32);
+  TimingHistogram none;
+  EXPECT_FALSE(addCyclictestHistogram("Unable to change scheduling policy!\n", none));
+  EXPECT_FALSE(addCyclictestHistogram("", none));
+}
+
+TEST(LoopBench, MeasuresBesideCyclictestWhereItIsInstalledAndSaysWhereItIsNot) {
+  if (!Cyclictest::installed()) GTEST_SKIP() << "cyclictest (rt-tests) is not installed";
+  engine::JobControl job;
+  const auto report = benchLoop({.seconds = 1.4, .load = BenchLoad::kBusy, .priority = 0}, job);
+  ASSERT_TRUE(report) << report.error().line();
+  EXPECT_EQ(report->no_cyclictest, "");
+  EXPECT_EQ(report->reference.name, "cyclictest");
+  EXPECT_EQ(report->reference.lateness.count, 1400U);
+  const auto brief = benchLoop({.seconds = 0.2, .priority = 0}, job);
+  ASSERT_TRUE(brief);
+  EXPECT_NE(brief->no_cyclictest, "");
+  EXPECT_EQ(brief->reference.name, "plain thread");
 }
 
 TEST(LoopBench, RefusesWhatIsOutOfRangeAndStopsWhenAskedTo) {

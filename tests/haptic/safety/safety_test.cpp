@@ -179,6 +179,28 @@ TEST(ForceGuard, DebuggerStopIsAFaultAtTheFirstTickAfterIt) {
   EXPECT_EQ(w.guard().cause(), FaultCause::kLoopStopped);
 }
 
+TEST(ForceGuard, DeviceThatTakesNoReportForFiftyMillisecondsIsAFaultAndCanNotBeArmed) {
+  GuardWitness w = active();
+  run(w, pressing(4.0), 20);
+  SafetyInput waits = pressing(4.0);
+  waits.output_waits_s = 0.049;
+  run(w, waits, 5);
+  EXPECT_EQ(w.guard().state(), SafetyState::kActive);
+  waits.output_waits_s = 0.050;
+  run(w, waits, 1);
+  EXPECT_EQ(w.guard().cause(), FaultCause::kOutputStalled);
+  const std::int64_t refused = w.guard().counters().arms_refused;
+  w.arm();
+  run(w, waits, 10);
+  EXPECT_EQ(w.guard().state(), SafetyState::kFault);
+  EXPECT_EQ(w.guard().counters().arms_refused, refused + 1);
+  EXPECT_EQ(glm::length(w.guard().force()), 0.0);
+  w.arm();
+  run(w, pressing(0.0), 2);
+  EXPECT_EQ(w.guard().state(), SafetyState::kRamping);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
 TEST(ForceGuard, UnplugIsZeroAtOnceAndNeedsReArmingAfterRePlug) {
   GuardWitness w = active();
   run(w, pressing(4.0), 20);
