@@ -5,8 +5,8 @@
 #include "app/command.h"
 #include "bench/haptic_bench.h"
 #include "bench/machine.h"
-#include "haptic/loop/loop_bench.h"
 #include "bench/stiffness_sweep.h"
+#include "haptic/loop/loop_bench.h"
 
 namespace fettle::app {
 
@@ -59,20 +59,27 @@ Report rowOf(const haptic::LoopBenchRow& row) {
           {"compute_worst_us", us(row.compute.worst_ns)},
           {"missed", row.missed},
           {"over_1_ms", row.over_1_ms},
+          {"latency_held", row.latency_held},
           {"not_granted", row.missing}};
 }
 
 engine::Result<Report> loop(const haptic::LoopBenchOptions& options, engine::JobControl& job) {
   const auto measured = haptic::benchLoop(options, job);
   if (!measured) return tl::unexpected(measured.error());
+  const bool beside_cyclictest = measured->no_cyclictest.empty();
+  Report reference = rowOf(measured->reference);
+  if (beside_cyclictest) reference["missed"] = nullptr;  // it does not count them
   return Report{{"machine", measured->machine},
                 {"seconds", measured->seconds},
                 {"rate_hz", measured->rate_hz},
                 {"load", measured->load == haptic::BenchLoad::kBusy ? "busy" : "idle"},
+                {"reference", measured->reference.name},
                 {"p99_ratio", measured->p99_ratio},
                 {"p999_ratio", measured->p999_ratio},
                 {"refused_edits", measured->refused_edits},
-                {"rows", {rowOf(measured->loop), rowOf(measured->plain)}}};
+                {"cyclictest", beside_cyclictest ? reference : Report()},
+                {"no_cyclictest", beside_cyclictest ? Report() : Report(measured->no_cyclictest)},
+                {"rows", {rowOf(measured->loop), reference}}};
 }
 
 void printLoop(const Report& report) {
@@ -86,11 +93,16 @@ void printLoop(const Report& report) {
                row["name"].get<std::string>(), row["lateness_p50_us"].get<double>(),
                row["lateness_p99_us"].get<double>(), row["lateness_p999_us"].get<double>(),
                row["lateness_p9999_us"].get<double>(), row["lateness_worst_us"].get<double>(),
-               row["missed"].get<std::uint64_t>(), row["over_1_ms"].get<std::uint64_t>());
+               row["missed"].is_null() ? "-" : row["missed"].dump(), row["over_1_ms"].get<std::uint64_t>());
   for (const Report& row : report["rows"])
     for (const Report& missing : row["not_granted"])
       fmt::print("{}: {}\n", row["name"].get<std::string>(), missing.get<std::string>());
-  fmt::print("\nloop over plain thread: p99 {:.2f}, p99.9 {:.2f}\n", report["p99_ratio"].get<double>(),
+  for (const Report& row : report["rows"])
+    fmt::print("{}: processor {} (/dev/cpu_dma_latency)\n", row["name"].get<std::string>(),
+               row["latency_held"].get<bool>() ? "kept out of deep sleep" : "free to sleep deeply");
+  if (!report["no_cyclictest"].is_null()) fmt::print("{}\n", report["no_cyclictest"].get<std::string>());
+  fmt::print("\nhaptic loop over {}: p99 {:.2f}, p99.9 {:.2f}; target 1.20\n",
+             report["reference"].get<std::string>(), report["p99_ratio"].get<double>(),
              report["p999_ratio"].get<double>());
 }
 
@@ -114,7 +126,7 @@ void addBench(CLI::App& root, Chosen& chosen) {
   auto loop_options = std::make_shared<haptic::LoopBenchOptions>();
   auto busy = std::make_shared<bool>(false);
   CLI::App* lateness = addCommand(
-      *bench, chosen, "loop", "Lateness of the live loop beside a plain real-time thread in the same run",
+      *bench, chosen, "loop", "Lateness of the live loop beside cyclictest in the same run",
       [loop_options, busy](engine::JobControl& job) {
         haptic::LoopBenchOptions options = *loop_options;
         options.load = *busy ? haptic::BenchLoad::kBusy : haptic::BenchLoad::kIdle;
@@ -123,7 +135,7 @@ void addBench(CLI::App& root, Chosen& chosen) {
       printLoop);
   lateness->add_option("--seconds", loop_options->seconds, "How long to measure")->capture_default_str();
   lateness->add_option("--rate", loop_options->rate_hz, "Ticks a second")->capture_default_str();
-  lateness->add_flag("--busy", *busy, "Keep every core busy with other work meanwhile");
+  lateness->add_flag("--busy", *busy, "Keep every core busy by other processes meanwhile");
 }
 
 }  // namespace fettle::app
@@ -153,13 +165,12 @@ void printStability(const Report& report) {
                row["ratio"].get<double>());
 }
 
-  auto sweep_options = std::make_shared<bench::StiffnessSweepOptions>();
-  CLI::App* sweep = addCommand(
-      *bench, chosen, "stability", "Stiffness at which a felt wall starts to buzz, against b > K T / 2",
-      [sweep_options](engine::JobControl& job) { return stability(*sweep_options, job); }, printStability);
-  sweep->add_option("--damping", sweep_options->damping_n_s_per_mm, "Damping of the device, N s/mm")
-      ->capture_default_str();
-  sweep->add_option("--mass", sweep_options->mass_kg, "Moving mass, kg")->capture_default_str();
-  sweep->add_option("--press", sweep_options->press_n, "Constant press, N")->capture_default_str();
-  sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
-
+auto sweep_options = std::make_shared<bench::StiffnessSweepOptions>();
+CLI::App* sweep = addCommand(
+    *bench, chosen, "stability", "Stiffness at which a felt wall starts to buzz, against b > K T / 2",
+    [sweep_options](engine::JobControl& job) { return stability(*sweep_options, job); }, printStability);
+sweep->add_option("--damping", sweep_options->damping_n_s_per_mm, "Damping of the device, N s/mm")
+    ->capture_default_str();
+sweep->add_option("--mass", sweep_options->mass_kg, "Moving mass, kg")->capture_default_str();
+sweep->add_option("--press", sweep_options->press_n, "Constant press, N")->capture_default_str();
+sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
