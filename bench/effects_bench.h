@@ -24,7 +24,7 @@ struct EffectsBenchRow {
   double median_ns = 0.0;
   double fastest_ns = 0.0;
   double worst_ns = 0.0;
-  std::optional<double> instructions;  ///< a tick, in user space; none where they cannot be counted
+  std::optional<double> instructions;  ///< a tick that touches, in user space; none where not available
   std::int64_t bytes = 0;              ///< held by the effect (the tip); for "all" by all of them
   std::int64_t contact_ticks = 0;
   std::uint64_t hash = 0;  ///< of all forces and of the field after it; the same in every repeat

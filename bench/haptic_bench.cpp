@@ -1,14 +1,18 @@
 #include "bench/haptic_bench.h"
 
 #include <algorithm>
+#include <chrono>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "bench/hand_stroke.h"
 #include "bench/machine.h"
+#include "engine/field/live_field.h"
+#include "haptic/loop/rt_thread.h"
 #include "haptic/replay.h"
 #include "haptic/scene.h"
+#include "haptic/tick.h"
 
 namespace fettle::bench {
 
@@ -20,21 +24,58 @@ struct Way {
   const char* name;
   haptic::Tool tool;
   haptic::ContactLevel level;
-  std::int64_t share;  // runs ticks / share
+  std::int64_t share;   // runs ticks / share
+  double ball_samples;  // radius of the tip; 0 is a point
 };
 
 constexpr Way kWays[] = {
-    {"paper, feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 1},
-    {"paper, 3x3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 1},
-    {"certified radius 2, feel", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 10},
+    {"paper, feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 1, 0.0},
+    {"paper, 3x3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 1, 0.0},
+    {"certified radius 2, feel", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 10, 0.0},
+    {"sphere r = 2 samples, feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0},
 };
 
+constexpr std::size_t kTimedTicks = 100'000;
+
+// Single ticks by the clock, apart from the runs that count ticks a second: reading it takes as long as a
+// part of a tick.
+void timeTicks(const haptic::Scene& scene, const engine::Version& field,
+               std::span<const haptic::StrokeSample> strokes, HapticBenchRow& row) {
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  haptic::Tick tick(scene, live, field);
+  std::vector<double> ns;
+  ns.reserve(std::min(strokes.size(), kTimedTicks));
+  const haptic::DenormalScope as_in_the_loop;
+  for (const haptic::StrokeSample& sample : strokes.first(ns.capacity())) {
+    const auto begin = std::chrono::steady_clock::now();
+    (void)tick.run(sample);
+    ns.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count());
+  }
+  std::sort(ns.begin(), ns.end());
+  const auto quantile = [&](double q) {
+    return ns[std::min(ns.size() - 1, static_cast<std::size_t>(q * static_cast<double>(ns.size())))];
+  };
+  row.p50_ns = quantile(0.5);
+  row.p99_ns = quantile(0.99);
+  row.p999_ns = quantile(0.999);
+  row.worst_ns = ns.back();
+}
+
 engine::Result<HapticBenchRow> run(const Way& way, const engine::Version& field,
-                                   std::vector<haptic::StrokeSample>& strokes,
+                                   std::vector<haptic::StrokeSample>& strokes, double& raised_mm,
                                    const HapticBenchOptions& options, engine::JobControl& job) {
-  for (haptic::StrokeSample& s : strokes) s.tool = way.tool;
   haptic::Scene scene = haptic::defaultScene();
   scene.level = way.level;
+  const double radius_mm = way.ball_samples * kSpacingMm;
+  if (radius_mm > 0.0) {
+    scene.tip = haptic::TipShape::kSphere;
+    scene.tip_radius_mm = radius_mm;
+  }
+  for (haptic::StrokeSample& s : strokes) {
+    s.tool = way.tool;
+    s.tip_mm.z += radius_mm - raised_mm;
+  }
+  raised_mm = radius_mm;
   const auto part = std::span<const haptic::StrokeSample>(strokes).first(
       std::max<std::size_t>(1, strokes.size() / static_cast<std::size_t>(way.share)));
   HapticBenchRow row;
@@ -55,6 +96,7 @@ engine::Result<HapticBenchRow> run(const Way& way, const engine::Version& field,
   row.slowest = rates.front();
   row.median = rates[rates.size() / 2];
   row.fastest = rates.back();
+  timeTicks(scene, field, part, row);
   return row;
 }
 
@@ -73,8 +115,9 @@ engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options,
   motion.ticks = options.ticks;
   motion.speed_mm_s = options.speed_mm_s;
   std::vector<haptic::StrokeSample> strokes = handStroke(field, motion);
+  double raised_mm = 0.0;  // a ball's endpoint is its centre: the same press is one radius higher
   for (const Way& way : kWays) {
-    auto row = run(way, field, strokes, options, job);
+    auto row = run(way, field, strokes, raised_mm, options, job);
     if (!row) return tl::unexpected(row.error());
     report.rows.push_back(*std::move(row));
   }

@@ -25,7 +25,7 @@ struct InstructionCount {
 /// Instructions that `work` takes in user space, the call itself included; code of other threads is not.
 ///
 /// By the processor's counter where the system allows it. Else `work` is run in a forked copy of the process
-/// that is stepped through one instruction at a time, some 200,000 a second: keep it to a few million. Then
+/// that is stepped through one instruction at a time, 50,000 to 200,000 a second: keep it short. Then
 /// what `work` changes is lost with the copy; it must not wait for another thread, since the copy has none.
 /// Two markers around nothing are counted too and taken off. Thread: any; blocks.
 [[nodiscard]] InstructionCount countInstructions(const std::function<void()>& work);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/command.h"
+#include "bench/effects_bench.h"
 #include "bench/haptic_bench.h"
 #include "bench/machine.h"
 #include "bench/stiffness_sweep.h"
@@ -27,6 +28,10 @@ engine::Result<Report> haptic(const bench::HapticBenchOptions& options, engine::
                               {"ticks_per_second", row.median},
                               {"slowest", row.slowest},
                               {"fastest", row.fastest},
+                              {"tick_p50_ns", row.p50_ns},
+                              {"tick_p99_ns", row.p99_ns},
+                              {"tick_p999_ns", row.p999_ns},
+                              {"tick_worst_ns", row.worst_ns},
                               {"hash", fmt::format("{:016x}", row.hash)}});
   return report;
 }
@@ -35,12 +40,56 @@ void printHaptic(const Report& report) {
   fmt::print("{}\n{} x {} samples, median of {} runs; one thread copies {:.1f} GB/s\n\n",
              report["machine"].get<std::string>(), report["side"].get<int>(), report["side"].get<int>(),
              report["repeats"].get<int>(), report["copy_bytes_per_second"].get<double>() * 1e-9);
-  fmt::print("{:<28}{:>12}{:>14}{:>12}{:>12}  hash\n", "", "ticks", "M ticks/s", "slowest", "fastest");
+  fmt::print("{:<28}{:>12}{:>14}{:>12}{:>12}{:>11}{:>11}{:>11}{:>11}  hash\n", "", "ticks", "M ticks/s",
+             "slowest", "fastest", "p50 ns", "p99 ns", "p99.9 ns", "worst ns");
   for (const Report& row : report["rows"])
-    fmt::print("{:<28}{:>12}{:>14.3f}{:>12.3f}{:>12.3f}  {}\n", row["name"].get<std::string>(),
-               row["ticks"].get<std::int64_t>(), row["ticks_per_second"].get<double>() * 1e-6,
-               row["slowest"].get<double>() * 1e-6, row["fastest"].get<double>() * 1e-6,
+    fmt::print("{:<28}{:>12}{:>14.3f}{:>12.3f}{:>12.3f}{:>11.0f}{:>11.0f}{:>11.0f}{:>11.0f}  {}\n",
+               row["name"].get<std::string>(), row["ticks"].get<std::int64_t>(),
+               row["ticks_per_second"].get<double>() * 1e-6, row["slowest"].get<double>() * 1e-6,
+               row["fastest"].get<double>() * 1e-6, row["tick_p50_ns"].get<double>(),
+               row["tick_p99_ns"].get<double>(), row["tick_p999_ns"].get<double>(),
+               row["tick_worst_ns"].get<double>(), row["hash"].get<std::string>());
+}
+
+engine::Result<Report> effects(const bench::EffectsBenchOptions& options, engine::JobControl& job) {
+  const auto measured = bench::benchEffects(options, job);
+  if (!measured) return tl::unexpected(measured.error());
+  Report report{{"machine", measured->machine},
+                {"side", options.side},
+                {"ticks", options.ticks},
+                {"repeats", options.repeats},
+                {"instructions_counted_by", bench::countedByName(measured->counted_by)},
+                {"rows", Report::array()}};
+  for (const bench::EffectsBenchRow& row : measured->rows)
+    report["rows"].push_back(
+        {{"name", row.name},
+         {"ns_per_tick", row.median_ns},
+         {"fastest_ns", row.fastest_ns},
+         {"worst_ns", row.worst_ns},
+         {"instructions_per_tick", row.instructions ? Report(*row.instructions) : Report()},
+         {"bytes", row.bytes},
+         {"contact_ticks", row.contact_ticks},
+         {"hash", fmt::format("{:016x}", row.hash)}});
+  return report;
+}
+
+void printEffects(const Report& report) {
+  fmt::print("{}\n{} x {} samples, {} ticks, median of {} runs, round the rows; instructions: {}\n\n",
+             report["machine"].get<std::string>(), report["side"].get<int>(), report["side"].get<int>(),
+             report["ticks"].get<std::int64_t>(), report["repeats"].get<int>(),
+             report["instructions_counted_by"].get<std::string>());
+  fmt::print("{:<22}{:>11}{:>11}{:>11}{:>15}{:>12}{:>11}  hash\n", "", "ns a tick", "fastest", "worst",
+             "instructions", "bytes", "contact");
+  for (const Report& row : report["rows"]) {
+    const Report& instructions = row["instructions_per_tick"];
+    fmt::print("{:<22}{:>11.1f}{:>11.1f}{:>11.1f}{:>15}{:>12}{:>11}  {}\n", row["name"].get<std::string>(),
+               row["ns_per_tick"].get<double>(), row["fastest_ns"].get<double>(),
+               row["worst_ns"].get<double>(),
+               instructions.is_null() ? std::string("not available")
+                                      : fmt::format("{:.0f}", instructions.get<double>()),
+               row["bytes"].get<std::int64_t>(), row["contact_ticks"].get<std::int64_t>(),
                row["hash"].get<std::string>());
+  }
 }
 
 double us(std::int64_t ns) {
@@ -106,39 +155,6 @@ void printLoop(const Report& report) {
              report["p999_ratio"].get<double>());
 }
 
-}  // namespace
-
-void addBench(CLI::App& root, Chosen& chosen) {
-  CLI::App* bench =
-      root.add_subcommand("bench", "Benchmarks: median, spread, worst, machine, hash of the result");
-  bench->require_subcommand(1);
-
-  auto haptic_options = std::make_shared<bench::HapticBenchOptions>();
-  CLI::App* ticks = addCommand(
-      *bench, chosen, "haptic", "Ticks a second of contact, force and local smoothing",
-      [haptic_options](engine::JobControl& job) { return haptic(*haptic_options, job); }, printHaptic);
-  ticks->add_option("--side", haptic_options->side, "Samples along each side of the field")
-      ->capture_default_str();
-  ticks->add_option("--ticks", haptic_options->ticks, "Ticks of each run")->capture_default_str();
-  ticks->add_option("--repeats", haptic_options->repeats, "Runs of each row")->capture_default_str();
-  ticks->add_option("--speed", haptic_options->speed_mm_s, "Speed of the hand, mm/s")->capture_default_str();
-
-  auto loop_options = std::make_shared<haptic::LoopBenchOptions>();
-  auto busy = std::make_shared<bool>(false);
-  CLI::App* lateness = addCommand(
-      *bench, chosen, "loop", "Lateness of the live loop beside cyclictest in the same run",
-      [loop_options, busy](engine::JobControl& job) {
-        haptic::LoopBenchOptions options = *loop_options;
-        options.load = *busy ? haptic::BenchLoad::kBusy : haptic::BenchLoad::kIdle;
-        return loop(options, job);
-      },
-      printLoop);
-  lateness->add_option("--seconds", loop_options->seconds, "How long to measure")->capture_default_str();
-  lateness->add_option("--rate", loop_options->rate_hz, "Ticks a second")->capture_default_str();
-  lateness->add_flag("--busy", *busy, "Keep every core busy by other processes meanwhile");
-}
-
-}  // namespace fettle::app
 engine::Result<Report> stability(const bench::StiffnessSweepOptions& options, engine::JobControl& job) {
   const auto rows = bench::stiffnessSweep(options, job);
   if (!rows) return tl::unexpected(rows.error());
@@ -165,12 +181,55 @@ void printStability(const Report& report) {
                row["ratio"].get<double>());
 }
 
-auto sweep_options = std::make_shared<bench::StiffnessSweepOptions>();
-CLI::App* sweep = addCommand(
-    *bench, chosen, "stability", "Stiffness at which a felt wall starts to buzz, against b > K T / 2",
-    [sweep_options](engine::JobControl& job) { return stability(*sweep_options, job); }, printStability);
-sweep->add_option("--damping", sweep_options->damping_n_s_per_mm, "Damping of the device, N s/mm")
-    ->capture_default_str();
-sweep->add_option("--mass", sweep_options->mass_kg, "Moving mass, kg")->capture_default_str();
-sweep->add_option("--press", sweep_options->press_n, "Constant press, N")->capture_default_str();
-sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
+}  // namespace
+
+void addBench(CLI::App& root, Chosen& chosen) {
+  CLI::App* bench =
+      root.add_subcommand("bench", "Benchmarks: median, spread, worst, machine, hash of the result");
+  bench->require_subcommand(1);
+
+  auto haptic_options = std::make_shared<bench::HapticBenchOptions>();
+  CLI::App* ticks = addCommand(
+      *bench, chosen, "haptic", "Ticks a second of contact, force and local smoothing",
+      [haptic_options](engine::JobControl& job) { return haptic(*haptic_options, job); }, printHaptic);
+  ticks->add_option("--side", haptic_options->side, "Samples along each side of the field")
+      ->capture_default_str();
+  ticks->add_option("--ticks", haptic_options->ticks, "Ticks of each run")->capture_default_str();
+  ticks->add_option("--repeats", haptic_options->repeats, "Runs of each row")->capture_default_str();
+  ticks->add_option("--speed", haptic_options->speed_mm_s, "Speed of the hand, mm/s")->capture_default_str();
+
+  auto effects_options = std::make_shared<bench::EffectsBenchOptions>();
+  CLI::App* prices = addCommand(
+      *bench, chosen, "effects", "What each effect of a scene costs a tick, and what it holds",
+      [effects_options](engine::JobControl& job) { return effects(*effects_options, job); }, printEffects);
+  prices->add_option("--side", effects_options->side, "Samples along each side of the field")
+      ->capture_default_str();
+  prices->add_option("--ticks", effects_options->ticks, "Ticks of each run")->capture_default_str();
+  prices->add_option("--repeats", effects_options->repeats, "Runs of each row")->capture_default_str();
+
+  auto loop_options = std::make_shared<haptic::LoopBenchOptions>();
+  auto busy = std::make_shared<bool>(false);
+  CLI::App* lateness = addCommand(
+      *bench, chosen, "loop", "Lateness of the live loop beside cyclictest in the same run",
+      [loop_options, busy](engine::JobControl& job) {
+        haptic::LoopBenchOptions options = *loop_options;
+        options.load = *busy ? haptic::BenchLoad::kBusy : haptic::BenchLoad::kIdle;
+        return loop(options, job);
+      },
+      printLoop);
+  lateness->add_option("--seconds", loop_options->seconds, "How long to measure")->capture_default_str();
+  lateness->add_option("--rate", loop_options->rate_hz, "Ticks a second")->capture_default_str();
+  auto sweep_options = std::make_shared<bench::StiffnessSweepOptions>();
+  CLI::App* sweep = addCommand(
+      *bench, chosen, "stability", "Stiffness at which a felt wall starts to buzz, against b > K T / 2",
+      [sweep_options](engine::JobControl& job) { return stability(*sweep_options, job); }, printStability);
+  sweep->add_option("--damping", sweep_options->damping_n_s_per_mm, "Damping of the device, N s/mm")
+      ->capture_default_str();
+  sweep->add_option("--mass", sweep_options->mass_kg, "Moving mass, kg")->capture_default_str();
+  sweep->add_option("--press", sweep_options->press_n, "Constant press, N")->capture_default_str();
+  sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
+
+  lateness->add_flag("--busy", *busy, "Keep every core busy by other processes meanwhile");
+}
+
+}  // namespace fettle::app
