@@ -224,6 +224,7 @@ struct Field {
 };
 
 engine::Result<Field> load(const Options& options, engine::JobControl& job) {
+  const ProgressLine progress(job);
   auto imported = loadScan(options.scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   Field field{imported->field, imported->field};

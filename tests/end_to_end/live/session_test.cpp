@@ -106,7 +106,7 @@ TEST_P(LiveSession, StrokeIsKeptWhenTheDeviceIsPulledOutAndWorkGoesOnAfterItIsBa
   const nlohmann::json report = session.end();
   EXPECT_GE(report["strokes"], 2);
   EXPECT_EQ(report["device"]["disconnects"], 1);
-  EXPECT_EQ(report["safety"]["faults"], 1);
+  EXPECT_GE(report["safety"]["faults"], 1);
   EXPECT_GT(report["samples_changed"], 20);
   EXPECT_GT(rowsWithNaN(session.strokes), 0U);  // while it was out: no position, so none in the file
 }
