@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/field/version.h"
+
+namespace fettle::engine {
+
+/// A rectangle of samples [column, column + columns) x [row, row + rows); empty while columns is 0.
+struct FieldRect {
+  std::int32_t column = 0, row = 0;
+  std::int32_t columns = 0, rows = 0;
+
+  [[nodiscard]] bool empty() const noexcept { return columns == 0; }
+  friend bool operator==(const FieldRect&, const FieldRect&) = default;
+};
+
+/// How far apart two versions are.
+struct Change {
+  std::int64_t tiles = 0;  ///< places of the table whose tile is another object
+  std::int64_t nodes = 0;  ///< inner nodes that are other objects
+  FieldRect rect;  ///< around those tiles, cut to the field: whole tiles, so it may hold more than changed
+  bool inverted = false;  ///< whether the signs differ
+
+  [[nodiscard]] bool none() const noexcept { return tiles == 0 && !inverted; }
+  /// Memory of one version that the other does not share [bytes].
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return static_cast<std::size_t>(tiles) * sizeof(Tile) + static_cast<std::size_t>(nodes) * sizeof(Node);
+  }
+};
+
+/// Compares pointers, not samples: O(changed tiles), nothing is allocated. Both versions have one size and
+/// one memory. Any thread.
+[[nodiscard]] Change measureChange(const Version& before, const Version& after) noexcept;
+
+}  // namespace fettle::engine

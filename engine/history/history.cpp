@@ -1,0 +1,124 @@
+#include "engine/history/history.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <utility>
+
+namespace fettle::engine {
+
+namespace {
+
+using namespace std::string_view_literals;
+constexpr std::array kKindNames{"stroke"sv, "filter"sv, "mark"sv, "invert"sv, "import"sv};
+
+}  // namespace
+
+std::string_view stepKindName(StepKind kind) noexcept {
+  return kKindNames[static_cast<std::size_t>(kind)];
+}
+
+std::optional<StepKind> stepKindFromName(std::string_view name) noexcept {
+  const auto* found = std::ranges::find(kKindNames, name);
+  if (found == kKindNames.end()) return std::nullopt;
+  return static_cast<StepKind>(found - kKindNames.begin());
+}
+
+StepTime stepTimeNow() noexcept {
+  return std::chrono::floor<std::chrono::milliseconds>(std::chrono::system_clock::now());
+}
+
+History::History(Version start, std::size_t bound_bytes, std::int64_t number)
+    : start_(std::move(start)), first_(number), number_(number), bound_(bound_bytes) {
+  assert(!start_.empty());
+}
+
+History::History(Version state, std::int64_t number, std::int64_t first, std::vector<Step> steps,
+                 std::size_t bound_bytes)
+    : start_(steps.empty() ? std::move(state) : steps.front().before),
+      first_(first),
+      number_(number),
+      bound_(bound_bytes) {
+  for (Step& step : steps) {
+    step.info.bytes = measureChange(step.before, step.after).bytes();
+    bytes_ += step.info.bytes;
+    steps_.push_back({std::move(step.info), std::move(step.after)});
+  }
+  assert(number_ >= first_ && number_ <= last());
+}
+
+const Version& History::state(std::int64_t number) const noexcept {
+  assert(number >= first_ && number <= last());
+  return number == first_ ? start_ : steps_[static_cast<std::size_t>(number - first_ - 1)].after;
+}
+
+const StepInfo& History::info(std::int64_t number) const noexcept {
+  assert(number > first_ && number <= last());
+  return steps_[static_cast<std::size_t>(number - first_ - 1)].info;
+}
+
+Step History::step(std::int64_t number) const {
+  return {info(number), state(number - 1), state(number)};
+}
+
+bool History::push(StepInfo info, Version after, std::vector<Version>& dropped) {
+  const Change change = measureChange(current(), after);
+  if (change.none()) return false;
+  while (last() > number_) {
+    bytes_ -= steps_.back().info.bytes;
+    dropped.push_back(std::move(steps_.back().after));
+    steps_.pop_back();
+  }
+  if (info.rect.empty()) info.rect = change.rect;
+  info.bytes = change.bytes();
+  bytes_ += info.bytes;
+  steps_.push_back({std::move(info), std::move(after)});
+  ++number_;
+  keepBound(dropped);
+  return true;
+}
+
+bool History::push(StepInfo info, Version after) {
+  std::vector<Version> dropped;
+  return push(std::move(info), std::move(after), dropped);
+}
+
+void History::keepBound(std::vector<Version>& dropped) {
+  // Only what lies behind: the state in use and all states ahead of it stay.
+  while (bytes_ > bound_ && number_ > first_ + 1) {
+    bytes_ -= steps_.front().info.bytes;
+    dropped.push_back(std::exchange(start_, std::move(steps_.front().after)));
+    steps_.pop_front();
+    ++first_;
+  }
+}
+
+void History::setBound(std::size_t bound_bytes, std::vector<Version>& dropped) {
+  bound_ = bound_bytes;
+  keepBound(dropped);
+}
+
+void History::prepend(Step step) {
+  assert(step.after == start_ && first_ > 0);
+  step.info.bytes = measureChange(step.before, step.after).bytes();
+  bytes_ += step.info.bytes;
+  steps_.push_front({std::move(step.info), std::move(start_)});
+  start_ = std::move(step.before);
+  --first_;
+}
+
+std::optional<Version> History::undo() noexcept {
+  return goTo(number_ - 1);
+}
+
+std::optional<Version> History::redo() noexcept {
+  return goTo(number_ + 1);
+}
+
+std::optional<Version> History::goTo(std::int64_t number) noexcept {
+  if (number < first_ || number > last()) return std::nullopt;
+  number_ = number;
+  return current();
+}
+
+}  // namespace fettle::engine

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/field/version.h"
+#include "engine/history/change.h"
+
+namespace fettle::engine {
+
+/// What made a step.
+enum class StepKind : std::uint8_t { kStroke, kFilter, kMark, kInvert, kImport };
+
+/// "stroke", "filter", "mark", "invert", "import"; these words stand in session files.
+[[nodiscard]] std::string_view stepKindName(StepKind kind) noexcept;
+[[nodiscard]] std::optional<StepKind> stepKindFromName(std::string_view name) noexcept;
+
+/// UTC, to the millisecond.
+using StepTime = std::chrono::sys_time<std::chrono::milliseconds>;
+[[nodiscard]] StepTime stepTimeNow() noexcept;
+
+/// What a list of steps shows of one.
+struct StepInfo {
+  std::string name;  ///< for a person, e.g. "Median 5 x 5"
+  StepKind kind = StepKind::kStroke;
+  StepTime time{};
+  /// Where samples or marks changed; whole tiles unless whoever made the step knew better.
+  FieldRect rect;
+  std::size_t bytes = 0;  ///< memory that undoing this step needs and the field after it does not [bytes]
+};
+
+/// One edit: the state it was made on and the state it made.
+struct Step {
+  StepInfo info;
+  Version before;
+  Version after;
+};
+
+/// Linear undo and redo: a row of states, each but the first made from the one before it by a step.
+///
+///   state   0 ------- 1 ------- 2 ------- 3 ------- 4          numbered from the original scan on
+///              step 1    step 2    step 3    step 4
+///           ^ first()           ^ number()          ^ last()
+///
+/// Step k leads from state k - 1 to state k. Undo and redo move number(); a push throws the steps after it
+/// away. Versions share tiles, so a state costs what its step changed. Once the states together cost more
+/// than the bound the oldest are dropped: first() rises, numbers stay. (A session file keeps them, see
+/// session.h.)
+///
+/// Threading: one thread (the main side). Dropping versions frees tiles, in proportion to what they alone
+/// hold: 50 ns a tile; the calls that drop hand them back, so that the caller may let go of them on another
+/// thread.
+class History {
+ public:
+  static constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
+
+  /// Starts at state `number`, the state of the field now.
+  explicit History(Version start, std::size_t bound_bytes = kNoBound, std::int64_t number = 0);
+
+  /// Puts a row of steps back, as a session file gives them: steps[0] leads from state `first` to first + 1
+  /// and its `before` is that state, each next one's `before` is `after` of the one before it; `number` lies
+  /// in first .. first + steps.size(). `state` is the version of `number`. Nothing is dropped, whatever the
+  /// bound.
+  History(Version state, std::int64_t number, std::int64_t first, std::vector<Step> steps,
+          std::size_t bound_bytes);
+
+  /// Adds the step from current() to `after` and goes there. No step is made, and false returned, when
+  /// `after` is the very same state. An empty `rect` is replaced by that of the changed tiles; info.bytes is
+  /// filled in. `dropped` gets the versions that the history lets go of: redo states, and the oldest beyond
+  /// the bound. The newest step is always kept. O(changed tiles), a few ns each.
+  bool push(StepInfo info, Version after, std::vector<Version>& dropped);
+  /// As above, freeing what is dropped here and now.
+  bool push(StepInfo info, Version after);
+
+  [[nodiscard]] const Version& current() const noexcept { return state(number_); }
+  [[nodiscard]] std::int64_t number() const noexcept { return number_; }
+  [[nodiscard]] std::int64_t first() const noexcept { return first_; }
+  [[nodiscard]] std::int64_t last() const noexcept {
+    return first_ + static_cast<std::int64_t>(steps_.size());
+  }
+  [[nodiscard]] bool canUndo() const noexcept { return number_ > first_; }
+  [[nodiscard]] bool canRedo() const noexcept { return number_ < last(); }
+
+  /// Goes one step back or on and gives the version to restore; nothing at the end of the row. O(1).
+  [[nodiscard]] std::optional<Version> undo() noexcept;
+  [[nodiscard]] std::optional<Version> redo() noexcept;
+  /// Goes to any state that is held; nothing, and no move, for others. O(1).
+  [[nodiscard]] std::optional<Version> goTo(std::int64_t number) noexcept;
+
+  /// State `number`, in first() .. last().
+  [[nodiscard]] const Version& state(std::int64_t number) const noexcept;
+  /// Step `number`, in first() + 1 .. last(): it led to the state of that number.
+  [[nodiscard]] const StepInfo& info(std::int64_t number) const noexcept;
+  [[nodiscard]] Step step(std::int64_t number) const;
+
+  /// Puts an older step in front of the first (read back from a session file); its `after` is state(first()).
+  void prepend(Step step);
+
+  /// Memory that holding all states costs beyond holding one [bytes]. Kept up to date step by step; exact
+  /// unless a step brought tiles of an older state back (a tile is then counted each time it leaves or
+  /// comes).
+  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+  [[nodiscard]] std::size_t bound() const noexcept { return bound_; }
+  void setBound(std::size_t bound_bytes, std::vector<Version>& dropped);
+
+ private:
+  struct Made {
+    StepInfo info;
+    Version after;
+  };
+  void keepBound(std::vector<Version>& dropped);
+
+  Version start_;  // state first_
+  std::deque<Made> steps_;
+  std::int64_t first_ = 0;
+  std::int64_t number_ = 0;
+  std::size_t bytes_ = 0;
+  std::size_t bound_ = kNoBound;
+};
+
+}  // namespace fettle::engine
