@@ -21,8 +21,8 @@ namespace {
 constexpr double kSpacingMm = 0.05;
 constexpr double kBallSamples = 2.0;
 // Counting may have to go in single steps of 5 to 20 us.
-constexpr std::size_t kCountedTicks = 40;
-constexpr std::size_t kCountedBallTicks = 8;
+constexpr std::size_t kCountedTicks = 24;
+constexpr std::size_t kCountedBallTicks = 2;
 constexpr int kTouchingBefore = 20;
 constexpr std::size_t kTicksBetweenLooks = 4096;
 

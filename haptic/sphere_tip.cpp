@@ -43,7 +43,7 @@ SphereTracker::SphereTracker(double radius_mm, const engine::Grid& grid) noexcep
   radius_ = std::min(radius_mm, kMostSphereCells * cell);
   // The lens that a step s cuts from a ball is s^2 / (8 r) deep: cell / 16 in the middle of the range.
   step_ = cell * std::clamp(std::sqrt(0.5 * radius_ / cell), 0.25, 1.0);
-  slack_ = radius_ < cell ? step_ : 0.25 * cell;
+  slack_ = radius_ < cell ? step_ : 0.1 * cell;
   tolerance_ = kTolerance * std::min(radius_, cell);
 }
 

@@ -30,7 +30,7 @@ inline constexpr double kMostSphereCells = 16.0;
 ///             .   o   .        contact.penetration_mm = centre - endpoint
 ///   ____      .   |   .  ____
 ///       \______ . | .___/      contact.proxy = the point of the surface that the ball presses on most
-///                 x            contact.normal = from there to the centre
+///                 x            pressed().normal = from there to the centre
 ///              endpoint
 ///
 /// A ball on a height field is a point on another one: the material M = all at or below the surface, grown by
@@ -80,6 +80,8 @@ class SphereTracker {
 
   /// Centre after the last tick [mm]; equal to the endpoint while nothing is touched.
   [[nodiscard]] const glm::dvec3& centre() const noexcept { return centre_; }
+  /// The touch that bears most of the force, while touching: contact.proxy with its normal.
+  [[nodiscard]] const Touch& pressed() const noexcept { return pressed_; }
   [[nodiscard]] double radiusMm() const noexcept { return radius_; }
   [[nodiscard]] double stepMm() const noexcept { return step_; }
   [[nodiscard]] double toleranceMm(double height_mm) const noexcept;

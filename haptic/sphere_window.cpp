@@ -322,7 +322,7 @@ void SphereWindow::Collector::wall(std::int32_t ci, std::int32_t cj, std::int32_
   const double t = std::clamp(q / s, 0.0, 1.0);
   const double other = along_x ? z[1] : z[w_.columns_];
   if (c_.z >= z[0] + t * (other - z[0])) return;  // above the rim: its edge and its samples see to that
-  const bool at_end = t * s != q;
+  const bool at_end = q < 0.0 || q > s;
   const std::int32_t vi = i + (along_x && t == 1.0 ? 1 : 0);
   const std::int32_t vj = j + (!along_x && t == 1.0 ? 1 : 0);
   const double mx = along_x && !at_end ? 0.0 : c_.x - (w_.column_ + vi) * w_.sx_;
