@@ -11,8 +11,9 @@ namespace fettle::haptic {
 
 namespace {
 
-// Pieces of a cell that is twisted enough for two minima; two in one piece would be one to the ball.
-constexpr int kPieces = 6;
+// Pieces of a cell that is twisted enough for two minima. With 6 a ball came 0.016 of a cell into one of
+// slope 10.
+constexpr int kPieces = 24;
 // Two cells must never both leave a touch on their common side to the other: what rounding may do to the
 // comparison, relative. A touch too many there does no harm, it is the same as its neighbour's.
 constexpr double kSeam = 1e-10;
