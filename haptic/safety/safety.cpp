@@ -138,7 +138,7 @@ void ForceGuard::advanceState(const SafetyInput& input, double dt_s, double age_
 void ForceGuard::rampUnexpectedRise(const SafetyInput& input, double dt_s) noexcept {
   const double command_n = glm::length(input.command_n);
   if (state_ == SafetyState::kArmed) {
-    if (!silent_ && command_n <= limits_.small_force_n) startRamp(0.0);
+    if (!silent_ && glm::length(input.command_n - input.at_rest_n) <= limits_.small_force_n) startRamp(0.0);
   } else if (state_ == SafetyState::kActive || state_ == SafetyState::kRamping) {
     const bool jumped = glm::length(input.velocity_mm_per_s) > limits_.jump_speed_mm_per_s;
     const bool disturbed = input.disturbance != Disturbance::kNone;

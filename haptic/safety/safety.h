@@ -59,6 +59,9 @@ struct SafetyInput {
   glm::dvec3 velocity_mm_per_s{0.0};  ///< of the tip
   Disturbance disturbance = Disturbance::kNone;
   double output_waits_s = 0.0;  ///< so long the device has not taken the report being written [s]
+  /// Part of the command that is there with the hand at rest in free space (the stylus' weight) [N]: who arms
+  /// waits for the rest of it to be small.
+  glm::dvec3 at_rest_n{0.0};
 };
 
 /// Everything the guard ever did, counted. Plain numbers of the thread that ticks.

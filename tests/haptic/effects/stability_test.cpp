@@ -5,6 +5,7 @@
 #include "haptic/devices/simulated_hand.h"
 #include "haptic/loop/loop_tick.h"
 #include "tests/haptic/effects/touch.h"
+#include "tests/haptic/loop/hand_device.h"
 
 namespace fettle::haptic {
 namespace {
@@ -124,6 +125,29 @@ TEST(Stability, TheWholeLoopStartsToBuzzThereToo) {
     std::printf("%6.0f Hz through the loop: ratio %.4f\n", rate, ratio);
     EXPECT_NEAR(ratio, 1.0, 0.15) << rate;
   }
+}
+
+// The guard waits for a small force before the first touch; a stylus held up is not one.
+TEST(Gravity, DoesNotKeepTheGuardWaitingAndComesOnInARamp) {
+  const engine::Version flat = tests::fieldOf(16, 16, [](int, int) { return 0.0; });
+  Scene scene = tests::sceneOf({EffectKind::kSpring, EffectKind::kGravity});
+  scene.params.gravity.stylus_kg = 0.1;
+  tests::LoopBench bench(flat, flat, scene, tests::testOptions(Tool::kFeel));
+  ASSERT_TRUE(bench.send(CommandKind::kArm));
+  double last = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    bench.tickAt({7.0, 7.0, 3.0});
+    EXPECT_LE(bench.device.force.z - last, 0.02) << i;  // 8 N in half a second: 0.016 N a tick
+    last = bench.device.force.z;
+  }
+  EXPECT_EQ(bench.loop.state().safety, SafetyState::kActive);
+  EXPECT_NEAR(last, 0.980665, 1e-12);
+  // Who arms deep inside still has to come out first.
+  tests::LoopBench inside(flat, flat, scene, tests::testOptions(Tool::kFeel));
+  ASSERT_TRUE(inside.send(CommandKind::kArm));
+  for (int i = 0; i < 100; ++i) inside.tickAt({7.0, 7.0, -1.0});
+  EXPECT_EQ(inside.loop.state().safety, SafetyState::kArmed);
+  EXPECT_EQ(inside.device.force, glm::dvec3(0.0));
 }
 
 }  // namespace
