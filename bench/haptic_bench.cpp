@@ -104,22 +104,27 @@ engine::Result<HapticBenchRow> run(const Way& way, const engine::Version& field,
 
 engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options, engine::JobControl& job) {
   if (options.side < 64 || options.side > 32768 || options.ticks < 10 || options.ticks > 100'000'000 ||
-      options.repeats < 1 || options.repeats > 100 || !(options.speed_mm_s > 0.0))
+      options.repeats < 1 || options.repeats > 100 || options.speeds_mm_s.empty() ||
+      !std::all_of(options.speeds_mm_s.begin(), options.speeds_mm_s.end(),
+                   [](double speed) { return speed > 0.0 && speed <= 1e4; }))
     return engine::inputError("an option of the benchmark is out of range", "bench haptic",
-                              "side 64 to 32768, ticks 10 to 1e8, repeats 1 to 100, speed above 0");
+                              "side 64 to 32768, ticks 10 to 1e8, repeats 1 to 100, speeds above 0 to 10000");
   HapticBenchReport report;
   report.machine = machine();
   report.copy_bytes_per_s = copyBytesPerSecond();
   const engine::Version field = workpiece(options.side, kSpacingMm);
-  HandMotion motion;
-  motion.ticks = options.ticks;
-  motion.speed_mm_s = options.speed_mm_s;
-  std::vector<haptic::StrokeSample> strokes = handStroke(field, motion);
-  double raised_mm = 0.0;  // a ball's endpoint is its centre: the same press is one radius higher
-  for (const Way& way : kWays) {
-    auto row = run(way, field, strokes, raised_mm, options, job);
-    if (!row) return tl::unexpected(row.error());
-    report.rows.push_back(*std::move(row));
+  for (const double speed : options.speeds_mm_s) {
+    HandMotion motion;
+    motion.ticks = options.ticks;
+    motion.speed_mm_s = speed;
+    std::vector<haptic::StrokeSample> strokes = handStroke(field, motion);
+    double raised_mm = 0.0;  // a ball's endpoint is its centre: the same press is one radius higher
+    for (const Way& way : kWays) {
+      auto row = run(way, field, strokes, raised_mm, options, job);
+      if (!row) return tl::unexpected(row.error());
+      row->speed_mm_s = speed;
+      report.rows.push_back(*std::move(row));
+    }
   }
   return report;
 }

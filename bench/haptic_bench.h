@@ -13,12 +13,14 @@ struct HapticBenchOptions {
   std::int32_t side = 4096;        ///< samples along each side of the field, 64 .. 32768
   std::int64_t ticks = 1'000'000;  ///< of each run; certified contact and a ball take a tenth of them
   int repeats = 5;                 ///< 1 .. 100
-  double speed_mm_s = 50.0;        ///< of the hand over the field
+  /// Of the hand over the field, each > 0. A person who follows an edge goes at about 20.
+  std::vector<double> speeds_mm_s = {10.0, 20.0, 50.0};
 };
 
 /// One way of touching, run `repeats` times from the same start. Ticks a second.
 struct HapticBenchRow {
   std::string name;
+  double speed_mm_s = 0.0;
   std::int64_t ticks = 0;
   std::int64_t contact_ticks = 0;
   double median = 0.0;
@@ -39,8 +41,9 @@ struct HapticBenchReport {
 };
 
 /// Replays a hand that wanders over a milled, noisy workpiece, as fast as the machine can: the whole tick
-/// with collision, contact, force and, where named, 3 x 3 local smoothing. Errors: kInput for options out of
-/// range, kCancelled, kFailed when two repeats differ in a bit. Thread: any; blocks.
+/// with collision, contact, force and, where named, 3 x 3 local smoothing; every way at each speed. Errors:
+/// kInput for options out of range, kCancelled, kFailed when two repeats differ in a bit. Thread: any;
+/// blocks.
 [[nodiscard]] engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options,
                                                             engine::JobControl& job);
 

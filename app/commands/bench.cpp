@@ -23,6 +23,7 @@ engine::Result<Report> haptic(const bench::HapticBenchOptions& options, engine::
                 {"rows", Report::array()}};
   for (const bench::HapticBenchRow& row : measured->rows)
     report["rows"].push_back({{"name", row.name},
+                              {"speed_mm_s", row.speed_mm_s},
                               {"ticks", row.ticks},
                               {"contact_ticks", row.contact_ticks},
                               {"ticks_per_second", row.median},
@@ -40,15 +41,16 @@ void printHaptic(const Report& report) {
   fmt::print("{}\n{} x {} samples, median of {} runs; one thread copies {:.1f} GB/s\n\n",
              report["machine"].get<std::string>(), report["side"].get<int>(), report["side"].get<int>(),
              report["repeats"].get<int>(), report["copy_bytes_per_second"].get<double>() * 1e-9);
-  fmt::print("{:<28}{:>12}{:>14}{:>12}{:>12}{:>11}{:>11}{:>11}{:>11}  hash\n", "", "ticks", "M ticks/s",
-             "slowest", "fastest", "p50 ns", "p99 ns", "p99.9 ns", "worst ns");
+  fmt::print("{:<28}{:>6}{:>9}{:>11}{:>9}{:>9}{:>8}{:>8}{:>9}{:>10}  hash\n", "", "mm/s", "ticks",
+             "M ticks/s", "slowest", "fastest", "p50 ns", "p99 ns", "p99.9 ns", "worst ns");
   for (const Report& row : report["rows"])
-    fmt::print("{:<28}{:>12}{:>14.3f}{:>12.3f}{:>12.3f}{:>11.0f}{:>11.0f}{:>11.0f}{:>11.0f}  {}\n",
-               row["name"].get<std::string>(), row["ticks"].get<std::int64_t>(),
-               row["ticks_per_second"].get<double>() * 1e-6, row["slowest"].get<double>() * 1e-6,
-               row["fastest"].get<double>() * 1e-6, row["tick_p50_ns"].get<double>(),
-               row["tick_p99_ns"].get<double>(), row["tick_p999_ns"].get<double>(),
-               row["tick_worst_ns"].get<double>(), row["hash"].get<std::string>());
+    fmt::print("{:<28}{:>6.0f}{:>9}{:>11.3f}{:>9.3f}{:>9.3f}{:>8.0f}{:>8.0f}{:>9.0f}{:>10.0f}  {}\n",
+               row["name"].get<std::string>(), row["speed_mm_s"].get<double>(),
+               row["ticks"].get<std::int64_t>(), row["ticks_per_second"].get<double>() * 1e-6,
+               row["slowest"].get<double>() * 1e-6, row["fastest"].get<double>() * 1e-6,
+               row["tick_p50_ns"].get<double>(), row["tick_p99_ns"].get<double>(),
+               row["tick_p999_ns"].get<double>(), row["tick_worst_ns"].get<double>(),
+               row["hash"].get<std::string>());
 }
 
 engine::Result<Report> effects(const bench::EffectsBenchOptions& options, engine::JobControl& job) {
@@ -196,7 +198,9 @@ void addBench(CLI::App& root, Chosen& chosen) {
       ->capture_default_str();
   ticks->add_option("--ticks", haptic_options->ticks, "Ticks of each run")->capture_default_str();
   ticks->add_option("--repeats", haptic_options->repeats, "Runs of each row")->capture_default_str();
-  ticks->add_option("--speed", haptic_options->speed_mm_s, "Speed of the hand, mm/s")->capture_default_str();
+  ticks->add_option("--speed", haptic_options->speeds_mm_s, "Speeds of the hand, mm/s")
+      ->delimiter(',')
+      ->capture_default_str();
 
   auto effects_options = std::make_shared<bench::EffectsBenchOptions>();
   CLI::App* prices = addCommand(
