@@ -13,10 +13,10 @@ namespace fettle::haptic {
 /// Sources: Colgate, Stanley, Brown, "Issues in the haptic display of tool use" (1995); Adams and Hannaford,
 /// "Stable haptic interaction with virtual environments" (1999).
 /// Stability: against a device of mass m, b < 2 m / T (see viscosity.h). With wall K and filter weight
-/// a = T / (T + tau) passive while b_device > K T / 2 + b a / (2 - a); stable far beyond: the damper makes up
-/// for the half sample that the wall is late as long as b exceeds about K (T / 2 + its own delay), a
-/// condition that its test runs into from both sides.
-/// No state of its own. Cost: ten multiplications, and the velocity filter's.
+/// a = T / (T + tau) passive while b_device > K T / 2 + b a / (2 - a). That is more than a mass needs: stable
+/// is what has b_device + b above K T / 2 and what the damper's own delay takes back of b. Its test runs into
+/// both ends, the damping that is missing and 2 m / T. No state of its own. Cost: ten multiplications, and
+/// the velocity filter's.
 void addCoupling(EffectList& list, const Scene& scene);
 
 }  // namespace fettle::haptic
