@@ -52,7 +52,7 @@ inline constexpr double kMostSphereCells = 16.0;
 /// "Image analysis and mathematical morphology" (dilation by a ball).
 ///
 /// Errors. The ball reaches into the material by at most toleranceMm(): 1e-6 of the smaller of radius and
-/// spacing, plus roundings of the heights. At rest no step longer than that makes it nearer to the endpoint.
+/// spacing, plus roundings of the heights. At rest no step longer than 1e-4 of that size makes it nearer.
 /// Continuity: steps are at most stepMm(), between a quarter of a cell and a cell, and both ends are free of
 /// the material. A ball cannot step over anything that would lift its centre by more than s^2 / (8 r) for a
 /// step s: 1/16 of a cell for r = 2 cells. A hand that moves more than kSphereSteps steps in one tick is
