@@ -90,8 +90,8 @@ class LiveSession {
 
  private:
   void finish() {
-    watch(loop_.state());
-    outcome_.last = loop_.state();
+    watch();
+    outcome_.last = now_;
     outcome_.granted = loop_.realTime();
     const haptic::LoopTiming& timing = loop_.timing();
     outcome_.lateness = timing.lateness.figures();
@@ -117,11 +117,10 @@ class LiveSession {
       for (haptic::LoopEvent event; loop_.poll(event);)
         if (event.kind == haptic::EventKind::kStrokeEnded) tell("stroke kept", "");
       while (const auto key = keys_.next()) press(*key);
-      const LoopState& state = loop_.state();
-      watch(state);
-      if (settings_.arm == ArmPolicy::kAuto) armByItself(state);
+      watch();
+      if (settings_.arm == ArmPolicy::kAuto) armByItself();
       const double lived = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-      status_.show(state, loop_.timing(), lived, lived > 0.0 ? static_cast<double>(state.tick) / lived : 0.0);
+      status_.show(now_, loop_.timing(), lived, lived > 0.0 ? static_cast<double>(now_.tick) / lived : 0.0);
       std::this_thread::sleep_for(kLook);
     }
     return {};
@@ -131,7 +130,7 @@ class LiveSession {
     if (job_.cancelled()) outcome_.ended_by = "signal";
     if (quit_) outcome_.ended_by = "key";
     if (settings_.seconds > 0.0 && log_.seconds() >= settings_.seconds) outcome_.ended_by = "time";
-    if (settings_.most_ticks > 0 && loop_.state().tick >= settings_.most_ticks)
+    if (settings_.most_ticks > 0 && now_.tick >= settings_.most_ticks)
       outcome_.ended_by = "end of the strokes";
     return !outcome_.ended_by.empty();
   }
@@ -186,16 +185,19 @@ class LiveSession {
     }
   }
 
-  void armByItself(const LoopState& state) {
-    const bool waits = state.safety == SafetyState::kUncalibrated || state.safety == SafetyState::kFault;
-    if (!waits || state.link != LinkState::kConnected || log_.seconds() - tried_at_ < kArmAgain_s) return;
+  void armByItself() {
+    const bool waits = now_.safety == SafetyState::kUncalibrated || now_.safety == SafetyState::kFault;
+    if (!waits || now_.link != LinkState::kConnected || log_.seconds() - tried_at_ < kArmAgain_s) return;
     tried_at_ = log_.seconds();
     send(CommandKind::kArm);
   }
 
-  void watch(const LoopState& state) {
-    if (state.tick == 0) return;
-    const LoopState before = std::exchange(seen_, state);
+  // The one place that looks: what the slot hands out is valid until the next look.
+  void watch() {
+    const LoopState before = std::exchange(now_, loop_.state());
+    if (now_.tick == 0) return;
+    if (first_ns_ == 0) first_ns_ = now_.time_ns;
+    const LoopState& state = now_;
     const bool first = before.tick == 0;
     if (first || state.link != before.link) {
       const bool home = state.link == LinkState::kUncalibrated;
@@ -212,14 +214,9 @@ class LiveSession {
   }
 
   void tell(std::string what, std::string remedy) {
-    const double t = 1e-9 * static_cast<double>(loop_.state().time_ns - firstNs());
+    const double t = 1e-9 * static_cast<double>(now_.time_ns - first_ns_);
     outcome_.events.push_back({t, std::move(what), std::move(remedy)});
     status_.tell(outcome_.events.back());
-  }
-
-  std::int64_t firstNs() {
-    if (first_ns_ == 0) first_ns_ = loop_.state().time_ns;
-    return first_ns_;
   }
 
   haptic::HapticLoop& loop_;
@@ -230,8 +227,8 @@ class LiveSession {
   Keys keys_;
   StatusLine status_;
   LiveOutcome outcome_;
-  LoopState seen_;
-  std::int64_t first_ns_ = 0;
+  LoopState now_;              // as of the last look
+  std::int64_t first_ns_ = 0;  // of the first tick seen
   double tried_at_ = -1.0;
   bool quit_ = false;
 };
