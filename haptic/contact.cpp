@@ -94,6 +94,12 @@ bool ContactTracker::collide(Surface& surface, const glm::dvec3& endpoint, bool 
          contactTest(surface, closest, endpoint, counters, out);
 }
 
+bool ContactTracker::staysAbove(CellIndex own, const Patch& own_patch, const glm::dvec3& endpoint,
+                                bool below) const noexcept {
+  return !below && has_previous_ && previous_over_cell_ && previous_cell_ == own &&
+         !entersPatch(own_patch, previous_, endpoint, 0.0, 1.0);
+}
+
 void ContactTracker::update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters,
                             Contact& contact) noexcept {
   contact.touching = false;
@@ -120,7 +126,8 @@ void ContactTracker::update(Surface& surface, const glm::dvec3& endpoint, TickCo
       }
     } else {
       contact.touching = (was_touching && track(surface, endpoint, counters, contact)) ||
-                         collide(surface, endpoint, below, own, counters, contact);
+                         (!staysAbove(own, own_patch, endpoint, below) &&
+                          collide(surface, endpoint, below, own, counters, contact));
     }
     touching_ = contact.touching;
     if (touching_) {
@@ -134,6 +141,7 @@ void ContactTracker::update(Surface& surface, const glm::dvec3& endpoint, TickCo
   }
   previous_ = endpoint;
   previous_over_cell_ = over_cell;
+  previous_cell_ = own;
   has_previous_ = true;
 }
 

@@ -75,11 +75,16 @@ class ContactTracker {
   [[nodiscard]] bool collide(Surface& surface, const glm::dvec3& endpoint, bool below, CellIndex own,
                              TickCounters& counters, Contact& out) noexcept;
 
+  /// Whether a ray within one cell stays above its patch: no walk is needed to see that it hits nothing.
+  [[nodiscard]] bool staysAbove(CellIndex own, const Patch& own_patch, const glm::dvec3& endpoint,
+                                bool below) const noexcept;
+
   ContactLevel level_;
   int radius_cells_;
   bool touching_ = false;
   bool has_previous_ = false;
   bool previous_over_cell_ = false;
+  CellIndex previous_cell_;  // under previous_, if any
   glm::dvec3 previous_{0.0};
   CellIndex cell_;  // of the previous proxy, while touching
   double u_ = 0.0, v_ = 0.0;

@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/field/reader.h"
+#include "haptic/pair.h"
 
 namespace fettle::haptic {
 
@@ -80,8 +81,9 @@ class Surface {
   /// The cell below or above a point, whether or not it has a hole; false beside the field. A point on a
   /// line between cells belongs to the upper one, on the field's own far edge to the last.
   [[nodiscard]] bool cellUnder(const glm::dvec3& point, CellIndex& cell) const noexcept {
-    const double x = point.x / sx_;
-    const double y = point.y / sy_;
+    const Pair at = Pair{point.x, point.y} / Pair{sx_, sy_};
+    const double x = at[0];
+    const double y = at[1];
     // Negated so that NaN is outside; a field without cells has nothing inside.
     if (!(x >= 0.0 && y >= 0.0 && x <= cellColumns() && y <= cellRows())) return false;
     if (cellColumns() < 1 || cellRows() < 1) return false;
@@ -208,9 +210,8 @@ class Surface {
 
 /// Whether a point lies strictly below the patch of the cell under it.
 [[nodiscard]] inline bool belowPatch(const Patch& patch, const glm::dvec3& point) noexcept {
-  const double u = std::clamp((point.x - patch.x0) / patch.sx, 0.0, 1.0);
-  const double v = std::clamp((point.y - patch.y0) / patch.sy, 0.0, 1.0);
-  return point.z < patch.heightAt(u, v);
+  const Pair at = unit((Pair{point.x, point.y} - Pair{patch.x0, patch.y0}) / Pair{patch.sx, patch.sy});
+  return point.z < patch.heightAt(at[0], at[1]);
 }
 
 }  // namespace fettle::haptic
