@@ -55,7 +55,7 @@ class HapticLoop {
   /// The oldest record of a tick that was not taken yet (LoopOptions::record_capacity); false when there is
   /// none. The rest can be taken after stop().
   [[nodiscard]] bool pollRecord(TickRecord& record) noexcept { return channels_.records.pop(record); }
-  /// The newest tick.
+  /// The newest tick; valid until the next call: who looks twice a round keeps a copy.
   [[nodiscard]] const LoopState& state() noexcept {
     channels_.state.take();
     return channels_.state.latest();
