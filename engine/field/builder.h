@@ -38,6 +38,12 @@ class FieldBuilder {
   void writeMarks(std::int32_t column, std::int32_t row, std::int32_t columns, std::int32_t rows,
                   const std::uint8_t* marks, std::ptrdiff_t stride) noexcept;
 
+  /// Tile (tc, tr) itself, for readers that store whole tiles: fill `samples` and `marks` as Tile wants them
+  /// (no infinity; holes and no marks outside the field); build() makes the rest. Threading as writeHeights.
+  [[nodiscard]] Tile& tile(std::int32_t tc, std::int32_t tr) noexcept {
+    return *tiles_[static_cast<std::size_t>(tr) * tile_columns_ + tc];
+  }
+
   /// Samples that were infinite and became holes.
   [[nodiscard]] std::int64_t infinities() const noexcept {
     return infinities_->load(std::memory_order_relaxed);

@@ -61,6 +61,9 @@ class History {
  public:
   static constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
 
+  /// Holds nothing; of use only to be assigned to.
+  History() = default;
+
   /// Starts at state `number`, the state of the field now.
   explicit History(Version start, std::size_t bound_bytes = kNoBound, std::int64_t number = 0);
 

@@ -59,4 +59,10 @@ struct Format {
 [[nodiscard]] Result<Exported> writeXyz(const Version&, const std::string&, const ExportOptions&,
                                         JobControl&);
 
+// In engine/session.
+[[nodiscard]] bool looksLikeSession(std::string_view head, std::string_view extension);
+[[nodiscard]] Result<Imported> readSession(const InputFile&, const ImportOptions&, JobControl&);
+[[nodiscard]] Result<Exported> writeSession(const Version&, const std::string&, const ExportOptions&,
+                                            JobControl&);
+
 }  // namespace fettle::engine

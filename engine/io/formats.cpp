@@ -19,6 +19,7 @@ constexpr std::array kTiff{".tif"sv, ".tiff"sv};
 constexpr std::array kPng{".png"sv};
 constexpr std::array kAscii{".asc"sv, ".agr"sv, ".grd"sv};
 constexpr std::array kPly{".ply"sv};
+constexpr std::array kSession{".fettle"sv};
 constexpr std::array kXyz{".xyz"sv, ".txt"sv, ".csv"sv, ".pts"sv, ".dat"sv};
 
 // Signatures first; text that is nothing else is tried as points.
@@ -30,6 +31,7 @@ constexpr std::array kTable{
            looksLikeAsciiGrid,
            readAsciiGrid,
            writeAsciiGrid},
+    Format{{"Fettle", "Fettle session", kSession, true, true}, looksLikeSession, readSession, writeSession},
     Format{{"XYZ", "text with x y z a line", kXyz, true, true}, looksLikeXyz, readXyz, writeXyz},
 };
 

@@ -50,10 +50,13 @@ struct Session {
   OriginalScan scan;
   OriginalStorage storage = OriginalStorage::kEmbedded;
   Version original;  ///< the scan as imported, the right way up: deviation and --max-change refer to it
-  History history{Version()};  ///< states held; state 0 is `original`
+  History history;   ///< states held; state 0 is `original`
   SessionNotes notes;
   std::vector<JournalEntry> journal;
 };
+
+/// Whether a session's journal is read: its ticks may take more memory than the field.
+enum class JournalReading : std::uint8_t { kRead, kLeave };
 
 struct SessionOpenOptions {
   /// Undo and redo steps are loaded, those nearest to the current state first, until their tiles take this
@@ -62,6 +65,8 @@ struct SessionOpenOptions {
   /// Where a referenced scan lies now. Empty: where it was, else at the same place relative to the session,
   /// else beside the session.
   std::string scan_path;
+  /// With kLeave Session::journal stays empty. The file keeps it, and SessionWriter::saveAs too.
+  JournalReading journal = JournalReading::kRead;
 };
 
 /// What a session takes on disk.

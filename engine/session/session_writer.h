@@ -33,6 +33,8 @@ struct SessionStatus {
   double last_commit_s = 0.0;        ///< from the call to the end of its transaction
   double worst_commit_s = 0.0;
   std::uint64_t last_commit_bytes = 0;  ///< of tiles, compressed
+  std::uint64_t tiles_done = 0;         ///< of the action being written, when it has tiles
+  std::uint64_t tiles_total = 0;
   /// What keeps the writer from writing: nothing is lost, all that waits is kept in memory and in order. It
   /// tries again with every further action and with retry(); saveAs() goes elsewhere.
   std::optional<Error> error;

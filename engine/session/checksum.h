@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "engine/base/error.h"
+
+namespace fettle::engine {
+
+/// Checksum of one row of a session: XXH64 (Y. Collet, seed 0) over its columns in their order, an integer as
+/// 8 bytes little-endian, a real as the 8 bytes of its binary64, a text or blob as its length (8 bytes) and
+/// its bytes, a NULL as the length 2^64 - 1. Against accidents on the disk, not against forgery.
+class RowChecksum {
+ public:
+  RowChecksum& integer(std::int64_t value);
+  RowChecksum& real(double value);
+  RowChecksum& text(std::string_view value);
+  RowChecksum& null();
+  [[nodiscard]] std::int64_t value() const noexcept;
+
+ private:
+  std::string bytes_;
+};
+
+/// Size and XXH64 (seed 0) of a file's bytes, what `xxh64sum` prints.
+struct FileChecksum {
+  std::uint64_t bytes = 0;
+  std::uint64_t xxh64 = 0;
+  friend bool operator==(const FileChecksum&, const FileChecksum&) = default;
+};
+/// Errors (kInput): the file cannot be read.
+[[nodiscard]] Result<FileChecksum> fileChecksum(const std::string& path);
+
+}  // namespace fettle::engine

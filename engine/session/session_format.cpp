@@ -1,0 +1,63 @@
+// Sessions among the formats of scans: what is read is the field as the session's user left it, marks
+// included.
+
+#include <tuple>
+
+#include <fmt/format.h>
+
+#include "engine/io/format.h"
+#include "engine/session/session.h"
+#include "engine/session/tables.h"
+
+namespace fettle::engine {
+
+bool looksLikeSession(std::string_view head, std::string_view extension) {
+  // Any other database is left to be refused by name only if it is called a session.
+  constexpr std::string_view kSqlite("SQLite format 3\0", 16);
+  if (extension == ".fettle") return true;
+  if (!head.starts_with(kSqlite) || head.size() < 72) return false;
+  std::int64_t application = 0;
+  for (std::size_t i = 68; i < 72; ++i) application = application << 8 | static_cast<unsigned char>(head[i]);
+  return application == kSessionApplicationId;
+}
+
+Result<Imported> readSession(const InputFile& file, const ImportOptions& options, JobControl& job) {
+  if (options.no_data || options.z_scale)
+    return inputError("a session holds heights and holes as they are",
+                      options.no_data ? "--no-data" : "--z-scale", "leave the option out");
+  SessionOpenOptions reading;
+  reading.history_bytes = 0;
+  reading.journal = JournalReading::kLeave;
+  Result<Session> session = openSession(file.path(), reading, job);
+  if (!session) return tl::unexpected(session.error());
+  Imported imported;
+  imported.field = session->history.current();
+  imported.format = "Fettle";
+  Grid grid = imported.field.grid();
+  if (options.spacing && *options.spacing != std::pair(grid.spacing_x, grid.spacing_y)) {
+    imported.warnings.push_back(
+        fmt::format("the session's spacing {} x {} was overruled", grid.spacing_x, grid.spacing_y));
+    std::tie(grid.spacing_x, grid.spacing_y) = *options.spacing;
+  }
+  if (options.unit && (*options.unit != grid.lateral_unit || *options.unit != grid.height_unit)) {
+    imported.warnings.push_back(fmt::format("the session's units {} and {} were overruled",
+                                            grid.lateral_unit.name, grid.height_unit.name));
+    grid.lateral_unit = grid.height_unit = *options.unit;
+  }
+  if (!(grid == imported.field.grid())) imported.field = imported.field.withGrid(std::move(grid));
+  return imported;
+}
+
+Result<Exported> writeSession(const Version& field, const std::string& path, const ExportOptions&,
+                              JobControl& job) {
+  // The right way up is what a session calls its original; an inverted field is one step away from it.
+  const bool inverted = field.reader().sign() < 0;
+  Session session;
+  session.original = inverted ? field.inverted() : field;
+  session.history = History(session.original);
+  if (inverted) session.history.push({"Invert", StepKind::kInvert, stepTimeNow(), {}, 0}, field);
+  if (auto saved = saveSession(session, path, job); !saved) return tl::unexpected(saved.error());
+  return Exported{"Fettle", {}};
+}
+
+}  // namespace fettle::engine

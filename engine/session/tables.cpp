@@ -1,0 +1,381 @@
+#include "engine/session/tables.h"
+
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "engine/session/packed_bytes.h"
+
+namespace fettle::engine {
+
+namespace {
+
+// Small columns stand before long ones: a row's beginning lies in the tree's own pages, its end need not.
+constexpr const char* kSchema = R"(
+CREATE TABLE head(id INTEGER PRIMARY KEY CHECK(id=1), state INTEGER NOT NULL, last_state INTEGER NOT NULL,
+  next_tile INTEGER NOT NULL, journal INTEGER NOT NULL, notes INTEGER NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE grid(id INTEGER PRIMARY KEY CHECK(id=1), width INTEGER NOT NULL, height INTEGER NOT NULL,
+  spacing_x REAL NOT NULL, spacing_y REAL NOT NULL, origin_x REAL NOT NULL, origin_y REAL NOT NULL,
+  lateral_unit TEXT NOT NULL, lateral_mm REAL NOT NULL, height_unit TEXT NOT NULL, height_mm REAL NOT NULL,
+  crs_wkt TEXT NOT NULL, height_per_count REAL NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE original(id INTEGER PRIMARY KEY CHECK(id=1), storage TEXT NOT NULL, path TEXT NOT NULL,
+  relative_path TEXT NOT NULL, format TEXT NOT NULL, bytes INTEGER NOT NULL, xxh64 INTEGER NOT NULL,
+  content_hash INTEGER NOT NULL, no_data REAL, spacing_x REAL, spacing_y REAL, z_scale REAL, unit TEXT,
+  unit_mm REAL, cell_size REAL, cell_rule INTEGER NOT NULL, checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE step(number INTEGER PRIMARY KEY, name TEXT NOT NULL, kind TEXT NOT NULL, time_ms INTEGER NOT NULL,
+  sign INTEGER NOT NULL, rect_column INTEGER NOT NULL, rect_row INTEGER NOT NULL, rect_columns INTEGER NOT NULL,
+  rect_rows INTEGER NOT NULL, first_tile INTEGER NOT NULL, tiles INTEGER NOT NULL,
+  checksum INTEGER NOT NULL) STRICT;
+CREATE TABLE tile(id INTEGER PRIMARY KEY, step INTEGER NOT NULL, position INTEGER NOT NULL,
+  checksum INTEGER NOT NULL, data BLOB NOT NULL) STRICT;
+CREATE INDEX tile_place ON tile(position, step);
+CREATE TABLE journal(id INTEGER PRIMARY KEY, state INTEGER NOT NULL, time_ms INTEGER NOT NULL,
+  checksum INTEGER NOT NULL, action TEXT NOT NULL, data BLOB NOT NULL) STRICT;
+CREATE TABLE note(key TEXT PRIMARY KEY, checksum INTEGER NOT NULL, text TEXT NOT NULL) STRICT;
+)";
+
+StepTime timeOf(std::int64_t ms) {
+  return StepTime(std::chrono::milliseconds(ms));
+}
+std::int64_t msOf(StepTime time) {
+  return time.time_since_epoch().count();
+}
+
+std::int64_t checksumOf(const HeadRow& h) {
+  return RowChecksum()
+      .integer(h.state)
+      .integer(h.last_state)
+      .integer(h.next_tile)
+      .integer(h.journal)
+      .integer(h.notes)
+      .value();
+}
+
+std::int64_t checksumOf(const Grid& g) {
+  return RowChecksum()
+      .integer(g.width)
+      .integer(g.height)
+      .real(g.spacing_x)
+      .real(g.spacing_y)
+      .real(g.origin_x)
+      .real(g.origin_y)
+      .text(g.lateral_unit.name)
+      .real(g.lateral_unit.mm)
+      .text(g.height_unit.name)
+      .real(g.height_unit.mm)
+      .text(g.crs_wkt)
+      .real(g.height_per_count)
+      .value();
+}
+
+std::int64_t checksumOf(const StepRow& s) {
+  return RowChecksum()
+      .integer(s.number)
+      .text(s.info.name)
+      .text(stepKindName(s.info.kind))
+      .integer(msOf(s.info.time))
+      .integer(s.sign > 0 ? 1 : -1)
+      .integer(s.info.rect.column)
+      .integer(s.info.rect.row)
+      .integer(s.info.rect.columns)
+      .integer(s.info.rect.rows)
+      .integer(s.first_tile)
+      .integer(s.tiles)
+      .value();
+}
+
+std::int64_t checksumOf(const TilePlace& place, std::string_view data) {
+  return RowChecksum().integer(place.id).integer(place.step).integer(place.position).text(data).value();
+}
+
+std::int64_t checksumOf(std::int64_t id, const JournalEntry& entry, std::string_view packed) {
+  return RowChecksum()
+      .integer(id)
+      .integer(entry.state)
+      .integer(msOf(entry.time))
+      .text(entry.action)
+      .text(packed)
+      .value();
+}
+
+}  // namespace
+
+Result<Statement*> SessionTables::cached(const char* sql) {
+  for (const auto& [text, statement] : statements_)
+    if (text == sql) {
+      statement->reset();
+      return statement.get();
+    }
+  Result<Statement> prepared = database_->prepare(sql);
+  if (!prepared) return tl::unexpected(prepared.error());
+  statements_.emplace_back(sql, std::make_unique<Statement>(std::move(*prepared)));
+  return statements_.back().second.get();
+}
+
+Status SessionTables::create() {
+  return database_->execute(fmt::format("{} PRAGMA application_id={}; PRAGMA user_version={};", kSchema,
+                                        kSessionApplicationId, kSessionFormat));
+}
+
+Status SessionTables::recognise() {
+  const Result<std::int64_t> application = database_->integer("PRAGMA application_id");
+  if (!application) return tl::unexpected(application.error());
+  const std::string& path = database_->shownPath();
+  if (*application != kSessionApplicationId)
+    return inputError("the file is a database, but not a Fettle session", path, "name a session or a scan");
+  const Result<std::int64_t> format = database_->integer("PRAGMA user_version");
+  if (!format) return tl::unexpected(format.error());
+  if (*format > kSessionFormat)
+    return inputError(fmt::format("the session was written by a newer Fettle (format {}, this one knows {})",
+                                  *format, kSessionFormat),
+                      path, "update Fettle, or export the field with the program that wrote it");
+  if (*format < 1) return damaged(fmt::format("format {} never was", *format), path);
+  return {};
+}
+
+Status SessionTables::writeHead(const HeadRow& head) {
+  const Result<Statement*> s = cached("INSERT OR REPLACE INTO head VALUES(1,?,?,?,?,?,?)");
+  if (!s) return tl::unexpected(s.error());
+  (*s)->bind(1, head.state).bind(2, head.last_state).bind(3, head.next_tile).bind(4, head.journal);
+  (*s)->bind(5, head.notes).bind(6, checksumOf(head));
+  return (*s)->run();
+}
+
+Result<HeadRow> SessionTables::readHead() {
+  const std::string& path = database_->shownPath();
+  const Result<Statement*> s = cached("SELECT state,last_state,next_tile,journal,notes,checksum FROM head");
+  if (!s) return tl::unexpected(s.error());
+  const Result<bool> row = (*s)->step();
+  if (!row) return tl::unexpected(row.error());
+  if (!*row) return damaged("it has no head", path);
+  const HeadRow head{(*s)->integer(0), (*s)->integer(1), (*s)->integer(2), (*s)->integer(3),
+                     (*s)->integer(4)};
+  const bool right = (*s)->integer(5) == checksumOf(head);
+  (*s)->reset();
+  if (!right || head.state < 0 || head.state > head.last_state || head.journal < 0)
+    return damaged("its head does not fit its checksum", path);
+  return head;
+}
+
+Status SessionTables::writeGrid(const Grid& g) {
+  const Result<Statement*> s = cached("INSERT INTO grid VALUES(1,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  if (!s) return tl::unexpected(s.error());
+  (*s)->bind(1, g.width).bind(2, g.height).bindReal(3, g.spacing_x).bindReal(4, g.spacing_y);
+  (*s)->bindReal(5, g.origin_x).bindReal(6, g.origin_y);
+  (*s)->bindText(7, g.lateral_unit.name).bindReal(8, g.lateral_unit.mm);
+  (*s)->bindText(9, g.height_unit.name).bindReal(10, g.height_unit.mm);
+  (*s)->bindText(11, g.crs_wkt).bindReal(12, g.height_per_count).bind(13, checksumOf(g));
+  return (*s)->run();
+}
+
+Result<Grid> SessionTables::readGrid() {
+  const std::string& path = database_->shownPath();
+  const Result<Statement*> s = cached(
+      "SELECT width,height,spacing_x,spacing_y,origin_x,origin_y,lateral_unit,lateral_mm,height_unit,"
+      "height_mm,crs_wkt,height_per_count,checksum FROM grid");
+  if (!s) return tl::unexpected(s.error());
+  Statement& q = **s;
+  const Result<bool> row = q.step();
+  if (!row) return tl::unexpected(row.error());
+  if (!*row) return damaged("it has no grid", path);
+  Grid g;
+  const std::int64_t width = q.integer(0);
+  const std::int64_t height = q.integer(1);
+  if (width < 1 || height < 1 || width > Grid::kMaxSide || height > Grid::kMaxSide)
+    return damaged(fmt::format("a field of {} x {} samples cannot be", width, height), path);
+  g.width = static_cast<std::int32_t>(width);
+  g.height = static_cast<std::int32_t>(height);
+  g.spacing_x = q.real(2);
+  g.spacing_y = q.real(3);
+  g.origin_x = q.real(4);
+  g.origin_y = q.real(5);
+  g.lateral_unit = {std::string(q.bytes(6)), q.real(7)};
+  g.height_unit = {std::string(q.bytes(8)), q.real(9)};
+  g.crs_wkt = q.bytes(10);
+  g.height_per_count = q.real(11);
+  const bool right = q.integer(12) == checksumOf(g);
+  q.reset();
+  if (!right) return damaged("its grid does not fit its checksum", path);
+  return g;
+}
+
+Status SessionTables::insertStep(const StepRow& r) {
+  const Result<Statement*> s = cached("INSERT INTO step VALUES(?,?,?,?,?,?,?,?,?,?,?,?)");
+  if (!s) return tl::unexpected(s.error());
+  (*s)->bind(1, r.number).bindText(2, r.info.name).bindText(3, stepKindName(r.info.kind));
+  (*s)->bind(4, msOf(r.info.time)).bind(5, r.sign > 0 ? 1 : -1);
+  (*s)->bind(6, r.info.rect.column).bind(7, r.info.rect.row);
+  (*s)->bind(8, r.info.rect.columns).bind(9, r.info.rect.rows);
+  (*s)->bind(10, r.first_tile).bind(11, r.tiles).bind(12, checksumOf(r));
+  return (*s)->run();
+}
+
+Result<std::vector<StepRow>> SessionTables::readSteps(const HeadRow& head) {
+  const std::string& path = database_->shownPath();
+  const Result<Statement*> s = cached(
+      "SELECT number,name,kind,time_ms,sign,rect_column,rect_row,rect_columns,rect_rows,first_tile,tiles,"
+      "checksum FROM step ORDER BY number");
+  if (!s) return tl::unexpected(s.error());
+  Statement& q = **s;
+  std::vector<StepRow> steps;
+  for (;;) {
+    const Result<bool> row = q.step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) break;
+    StepRow r;
+    r.number = q.integer(0);
+    r.info.name = q.bytes(1);
+    const std::optional<StepKind> kind = stepKindFromName(q.bytes(2));
+    r.info.kind = kind.value_or(StepKind::kStroke);
+    r.info.time = timeOf(q.integer(3));
+    r.sign = q.integer(4) > 0 ? 1.0F : -1.0F;
+    r.info.rect = {static_cast<std::int32_t>(q.integer(5)), static_cast<std::int32_t>(q.integer(6)),
+                   static_cast<std::int32_t>(q.integer(7)), static_cast<std::int32_t>(q.integer(8))};
+    r.first_tile = q.integer(9);
+    r.tiles = q.integer(10);
+    if (!kind || q.integer(11) != checksumOf(r) || r.number != static_cast<std::int64_t>(steps.size()))
+      return damaged(fmt::format("step {} does not fit its checksum", steps.size()), path);
+    steps.push_back(std::move(r));
+  }
+  q.reset();
+  if (static_cast<std::int64_t>(steps.size()) != head.last_state + 1)
+    return damaged(fmt::format("{} of {} steps are there", steps.size(), head.last_state + 1), path);
+  return steps;
+}
+
+Status SessionTables::truncateSteps(std::int64_t number) {
+  // Tiles lie in the order of their steps, so theirs are the last ids: a range of the table, no search.
+  const Result<Statement*> tiles =
+      cached("DELETE FROM tile WHERE id>=(SELECT min(first_tile) FROM step WHERE number>?)");
+  if (!tiles) return tl::unexpected(tiles.error());
+  (*tiles)->bind(1, number);
+  if (Status status = (*tiles)->run(); !status) return status;
+  const Result<Statement*> steps = cached("DELETE FROM step WHERE number>?");
+  if (!steps) return tl::unexpected(steps.error());
+  (*steps)->bind(1, number);
+  return (*steps)->run();
+}
+
+Status SessionTables::insertTile(const TilePlace& place, std::string_view data) {
+  const Result<Statement*> s = cached("INSERT INTO tile VALUES(?,?,?,?,?)");
+  if (!s) return tl::unexpected(s.error());
+  (*s)->bind(1, place.id).bind(2, place.step).bind(3, place.position);
+  (*s)->bind(4, checksumOf(place, data)).bindBlob(5, data);
+  return (*s)->run();
+}
+
+Result<std::vector<TilePlace>> SessionTables::readPlaces(const std::vector<StepRow>& steps) {
+  const std::string& path = database_->shownPath();
+  const Result<Statement*> s =
+      cached("SELECT position,step,id FROM tile INDEXED BY tile_place ORDER BY position,step");
+  if (!s) return tl::unexpected(s.error());
+  std::vector<std::int64_t> counts(steps.size());
+  std::vector<TilePlace> places;
+  for (;;) {
+    const Result<bool> row = (*s)->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) break;
+    const TilePlace p{(*s)->integer(0), (*s)->integer(1), (*s)->integer(2)};
+    const bool known = p.step >= 0 && p.step < static_cast<std::int64_t>(steps.size());
+    if (!known || p.id < steps[static_cast<std::size_t>(p.step)].first_tile || p.position < 0 ||
+        p.id >= steps[static_cast<std::size_t>(p.step)].first_tile +
+                    steps[static_cast<std::size_t>(p.step)].tiles ||
+        (!places.empty() && places.back().position == p.position && places.back().step == p.step))
+      return damaged(fmt::format("tile {} belongs nowhere", p.id), path);
+    ++counts[static_cast<std::size_t>(p.step)];
+    places.push_back(p);
+  }
+  (*s)->reset();
+  for (std::size_t k = 0; k < steps.size(); ++k)
+    if (counts[k] != steps[k].tiles)
+      return damaged(fmt::format("{} of the {} tiles of step {} are there", counts[k], steps[k].tiles, k),
+                     path);
+  return places;
+}
+
+Status SessionTables::readTile(const TilePlace& place, std::string& data) {
+  const std::string& path = database_->shownPath();
+  const Result<Statement*> s = cached("SELECT step,position,checksum,data FROM tile WHERE id=?");
+  if (!s) return tl::unexpected(s.error());
+  (*s)->bind(1, place.id);
+  const Result<bool> row = (*s)->step();
+  if (!row) return tl::unexpected(row.error());
+  if (!*row) return damaged(fmt::format("tile {} is missing", place.id), path);
+  data = (*s)->bytes(3);
+  const bool right = (*s)->integer(0) == place.step && (*s)->integer(1) == place.position &&
+                     (*s)->integer(2) == checksumOf(place, data);
+  (*s)->reset();
+  if (!right) return damaged(fmt::format("tile {} does not fit its checksum", place.id), path);
+  return {};
+}
+
+Status SessionTables::appendJournal(std::int64_t id, const JournalEntry& entry) {
+  const Result<Statement*> s = cached("INSERT INTO journal VALUES(?,?,?,?,?,?)");
+  if (!s) return tl::unexpected(s.error());
+  const std::string packed = packBytes(entry.data);
+  (*s)->bind(1, id).bind(2, entry.state).bind(3, msOf(entry.time));
+  (*s)->bind(4, checksumOf(id, entry, packed)).bindText(5, entry.action).bindBlob(6, packed);
+  return (*s)->run();
+}
+
+Result<std::vector<JournalEntry>> SessionTables::readJournal(const HeadRow& head) {
+  const std::string& path = database_->shownPath();
+  const Result<Statement*> s =
+      cached("SELECT id,state,time_ms,checksum,action,data FROM journal ORDER BY id");
+  if (!s) return tl::unexpected(s.error());
+  std::vector<JournalEntry> journal;
+  for (;;) {
+    const Result<bool> row = (*s)->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) break;
+    JournalEntry entry{std::string((*s)->bytes(4)), {}, timeOf((*s)->integer(2)), (*s)->integer(1)};
+    const auto id = static_cast<std::int64_t>(journal.size()) + 1;
+    if ((*s)->integer(0) != id || (*s)->integer(3) != checksumOf(id, entry, (*s)->bytes(5)) ||
+        !unpackBytes((*s)->bytes(5), entry.data))
+      return damaged(fmt::format("entry {} of its journal does not fit its checksum", id), path);
+    journal.push_back(std::move(entry));
+  }
+  (*s)->reset();
+  if (static_cast<std::int64_t>(journal.size()) != head.journal)
+    return damaged(fmt::format("{} of {} entries of its journal are there", journal.size(), head.journal),
+                   path);
+  return journal;
+}
+
+Status SessionTables::writeNote(const std::string& key, const std::string& text, bool& is_new) {
+  const Result<Statement*> find = cached("SELECT 1 FROM note WHERE key=?");
+  if (!find) return tl::unexpected(find.error());
+  (*find)->bindText(1, key);
+  const Result<bool> row = (*find)->step();
+  if (!row) return tl::unexpected(row.error());
+  is_new = !*row;
+  (*find)->reset();
+  const Result<Statement*> s = cached("INSERT OR REPLACE INTO note VALUES(?,?,?)");
+  if (!s) return tl::unexpected(s.error());
+  (*s)->bindText(1, key).bind(2, RowChecksum().text(key).text(text).value()).bindText(3, text);
+  return (*s)->run();
+}
+
+Result<SessionNotes> SessionTables::readNotes(const HeadRow& head) {
+  const std::string& path = database_->shownPath();
+  const Result<Statement*> s = cached("SELECT key,checksum,text FROM note");
+  if (!s) return tl::unexpected(s.error());
+  SessionNotes notes;
+  for (;;) {
+    const Result<bool> row = (*s)->step();
+    if (!row) return tl::unexpected(row.error());
+    if (!*row) break;
+    std::string key((*s)->bytes(0));
+    std::string text((*s)->bytes(2));
+    if ((*s)->integer(1) != RowChecksum().text(key).text(text).value())
+      return damaged("a note does not fit its checksum", path);
+    notes.emplace(std::move(key), std::move(text));
+  }
+  (*s)->reset();
+  if (static_cast<std::int64_t>(notes.size()) != head.notes)
+    return damaged(fmt::format("{} of {} notes are there", notes.size(), head.notes), path);
+  return notes;
+}
+
+}  // namespace fettle::engine

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/field/grid.h"
+#include "engine/session/checksum.h"
+#include "engine/session/database.h"
+#include "engine/session/session.h"
+
+namespace fettle::engine {
+
+// The tables of a session file, row by row; what they mean is in docs/formats.md. Reading a row checks its
+// checksum and its ranges; errors are those of Database, and damaged().
+
+inline constexpr std::int64_t kSessionApplicationId = 0x4654544C;  // "FTTL"
+inline constexpr std::int64_t kSessionFormat = 1;                  // user_version
+
+/// The file's one moving part: where the user is, and how much there must be.
+struct HeadRow {
+  std::int64_t state = 0;       ///< current one
+  std::int64_t last_state = 0;  ///< furthest redo
+  std::int64_t next_tile = 1;   ///< ids are never used again
+  std::int64_t journal = 0;     ///< rows
+  std::int64_t notes = 0;       ///< rows
+};
+
+struct OriginalRow {
+  OriginalScan scan;
+  OriginalStorage storage = OriginalStorage::kEmbedded;
+  std::string relative_path;  ///< from the session's folder; empty when there is none
+  FileChecksum file;          ///< zeros when the file could not be read
+  std::uint64_t content_hash = 0;
+};
+
+struct StepRow {
+  std::int64_t number = 0;
+  StepInfo info;  // bytes is not kept
+  float sign = 1.0F;
+  std::int64_t first_tile = 0;
+  std::int64_t tiles = 0;
+};
+
+/// Where a stored tile belongs: state `step` and those after it have it at `position` (row * columns +
+/// column, in tiles), until a later step brings another.
+struct TilePlace {
+  std::int64_t position = 0;
+  std::int64_t step = 0;
+  std::int64_t id = 0;
+};
+
+class SessionTables {
+ public:
+  explicit SessionTables(Database& database) : database_(&database) {}
+
+  [[nodiscard]] Database& database() const noexcept { return *database_; }
+
+  /// Makes the tables in an empty database.
+  [[nodiscard]] Status create();
+  /// Refuses what is not a session or is of a newer format.
+  [[nodiscard]] Status recognise();
+
+  [[nodiscard]] Status writeGrid(const Grid& grid);
+  [[nodiscard]] Result<Grid> readGrid();
+  [[nodiscard]] Status writeOriginal(const OriginalRow& row);
+  [[nodiscard]] Result<OriginalRow> readOriginal();
+  [[nodiscard]] Status writeHead(const HeadRow& head);
+  [[nodiscard]] Result<HeadRow> readHead();
+
+  [[nodiscard]] Status insertStep(const StepRow& row);
+  /// Steps 0 .. head.last_state.
+  [[nodiscard]] Result<std::vector<StepRow>> readSteps(const HeadRow& head);
+  /// Removes the steps above `number` and their tiles.
+  [[nodiscard]] Status truncateSteps(std::int64_t number);
+
+  [[nodiscard]] Status insertTile(const TilePlace& place, std::string_view data);
+  /// All tiles of the steps, ordered by position, then step; counts checked against the steps'.
+  [[nodiscard]] Result<std::vector<TilePlace>> readPlaces(const std::vector<StepRow>& steps);
+  /// The packed tile of a place, checked.
+  [[nodiscard]] Status readTile(const TilePlace& place, std::string& data);
+
+  [[nodiscard]] Status appendJournal(std::int64_t id, const JournalEntry& entry);
+  [[nodiscard]] Result<std::vector<JournalEntry>> readJournal(const HeadRow& head);
+  /// `is_new` tells whether there was none of that key.
+  [[nodiscard]] Status writeNote(const std::string& key, const std::string& text, bool& is_new);
+  [[nodiscard]] Result<SessionNotes> readNotes(const HeadRow& head);
+
+ private:
+  // Prepared at first use and kept.
+  [[nodiscard]] Result<Statement*> cached(const char* sql);
+
+  Database* database_;
+  std::vector<std::pair<const char*, std::unique_ptr<Statement>>> statements_;
+};
+
+}  // namespace fettle::engine

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "engine/field/tile.h"
+
+namespace fettle::engine {
+
+/// Samples and marks of a tile as a session stores them: a zstd frame of
+///
+///   4 x 4096 bytes   the samples as byte planes, highest byte first, rows from the lowest up
+///   512 bytes        the marks, 64 words, little-endian; left out when none is set
+///
+/// where a sample stands as the difference, modulo 2^32, of its number from that of its left neighbour (in
+/// the first column: of the one below; the first of all: of 0), doubled, with the sign moved into the lowest
+/// bit. The number of a float orders as the floats do: its bits, all turned over when negative, else with the
+/// highest one set. Every bit comes back: payloads of NaN and the sign of zero too.
+///
+/// Measured against plain bytes on five real scans (zstd level 1): 12 to 97 % smaller files. Each plane is a
+/// block of its own with its own code table, which alone gives 3 to 8 %. A plane predictor (left + below -
+/// corner) was better on one scan only; levels above 1 gave 1 to 5 % for 1.4 times the time.
+///
+/// Threading: a codec holds its zstd contexts; one thread at a time.
+class TileCodec {
+ public:
+  TileCodec();
+  ~TileCodec();
+  TileCodec(TileCodec&&) noexcept;
+
+  static constexpr std::size_t kSampleBytes = std::size_t{kTileSamples} * 4;
+  static constexpr std::size_t kMarkBytes = std::size_t{kTileSide} * 8;
+
+  /// Samples and marks alone; bounds and counts are not kept.
+  void encode(const Tile& tile, std::string& out);
+
+  /// Fills samples and marks; bounds and counts are left alone. False for anything encode() does not make.
+  [[nodiscard]] bool decode(std::span<const char> stored, Tile& tile);
+
+ private:
+  struct Contexts;
+  std::unique_ptr<Contexts> contexts_;
+};
+
+/// Whether both have the same bits in samples and marks.
+[[nodiscard]] bool sameBits(const Tile& a, const Tile& b) noexcept;
+
+}  // namespace fettle::engine
