@@ -160,6 +160,7 @@ class SessionWriter::Impl {
  private:
   // A text that still waits gives way to a newer one of its key, unless it is being written.
   bool replaceNote(const SessionAction& action) {
+    if (!action.journal.empty()) return false;
     for (std::size_t i = queue_.size(); i-- > fixed_;)
       if (queue_[i]->kind == SessionAction::Kind::kNote && queue_[i]->key == action.key) {
         queue_[i]->text = action.text;
@@ -324,11 +325,12 @@ void SessionWriter::moveTo(std::int64_t number, std::vector<JournalEntry> journa
   impl_->ask(std::move(action));
 }
 
-void SessionWriter::setNote(std::string key, std::string text) {
+void SessionWriter::setNote(std::string key, std::string text, std::vector<JournalEntry> journal) {
   auto action = std::make_unique<SessionAction>();
   action->kind = SessionAction::Kind::kNote;
   action->key = std::move(key);
   action->text = std::move(text);
+  action->journal = std::move(journal);
   impl_->ask(std::move(action));
 }
 

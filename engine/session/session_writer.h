@@ -88,7 +88,8 @@ class SessionWriter {
   /// Undo, redo: the field is in state `number` now.
   void moveTo(std::int64_t number, std::vector<JournalEntry> journal);
 
-  void setNote(std::string key, std::string text);
+  /// A text that is to be found again. Without journal it replaces one of the same key that still waits.
+  void setNote(std::string key, std::string text, std::vector<JournalEntry> journal = {});
 
   /// Something to remember that is no step.
   void addJournal(JournalEntry entry);
