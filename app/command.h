@@ -48,6 +48,7 @@ void addRender(CLI::App& root, Chosen& chosen);
 void addCompare(CLI::App& root, Chosen& chosen);
 void addConvert(CLI::App& root, Chosen& chosen);
 void addDevices(CLI::App& root, Chosen& chosen);
+void addView(CLI::App& root, Chosen& chosen);
 void addBench(CLI::App& root, Chosen& chosen);
 void addDemo(CLI::App& root, Chosen& chosen);
 

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
     addCompare(root, chosen);
     addConvert(root, chosen);
     addDevices(root, chosen);
+    addView(root, chosen);
     addDemo(root, chosen);
     addBench(root, chosen);
   });

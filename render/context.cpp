@@ -58,7 +58,8 @@ bool layerInstalled(const vk::raii::Context& loader) {
 
 }  // namespace
 
-std::string rejection(const vk::raii::PhysicalDevice& device, std::uint32_t& queue_family) {
+std::string rejection(const vk::raii::PhysicalDevice& device, std::uint32_t& queue_family,
+                      vk::SurfaceKHR surface) {
   const vk::PhysicalDeviceProperties properties = device.getProperties();
   if (properties.apiVersion < VK_API_VERSION_1_3)
     return fmt::format("offers Vulkan {}.{}, 1.3 is needed", VK_API_VERSION_MAJOR(properties.apiVersion),
@@ -79,12 +80,15 @@ std::string rejection(const vk::raii::PhysicalDevice& device, std::uint32_t& que
     return "cannot draw to sRGB images";
   if (!can(vk::Format::eD32Sfloat, F::eDepthStencilAttachment)) return "has no 32-bit depth";
   const auto families = device.getQueueFamilyProperties();
+  bool draws = false;
   for (std::uint32_t i = 0; i < families.size(); ++i)
     if (families[i].queueFlags & vk::QueueFlagBits::eGraphics) {
+      draws = true;
+      if (surface && device.getSurfaceSupportKHR(i, surface) == VK_FALSE) continue;
       queue_family = i;
       return {};
     }
-  return "has no queue that draws";
+  return draws ? "cannot show pictures in this window" : "has no queue that draws";
 }
 
 Context::~Context() {
@@ -95,7 +99,8 @@ Context::~Context() {
     }
 }
 
-engine::Result<std::unique_ptr<Context>> Context::create(const RendererOptions& options) try {
+engine::Result<std::unique_ptr<Context>> Context::create(const RendererOptions& options,
+                                                         const SurfaceWish* wish) try {
   std::unique_ptr<Context> context(new Context());
   const bool validate = options.validation == Validation::kOn;
   if (context->loader_.enumerateInstanceVersion() < VK_API_VERSION_1_3)
@@ -113,9 +118,13 @@ engine::Result<std::unique_ptr<Context>> Context::create(const RendererOptions& 
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     instance_info.pNext = &messenger;  // the making and ending of the instance itself
   }
+  if (wish != nullptr)
+    extensions.insert(extensions.end(), wish->instance_extensions.begin(), wish->instance_extensions.end());
   instance_info.setPEnabledLayerNames(layers).setPEnabledExtensionNames(extensions);
   context->instance_ = vk::raii::Instance(context->loader_, instance_info);
   if (validate) context->messenger_ = vk::raii::DebugUtilsMessengerEXT(context->instance_, messenger);
+  if (wish != nullptr)
+    context->surface_ = vk::raii::SurfaceKHR(context->instance_, wish->make(*context->instance_));
 
   vk::raii::PhysicalDevices devices = nullptr;
   try {
@@ -130,7 +139,7 @@ engine::Result<std::unique_ptr<Context>> Context::create(const RendererOptions& 
     const vk::PhysicalDeviceProperties properties = device.getProperties();
     const std::string name = properties.deviceName;
     std::uint32_t device_family = 0;
-    std::string reason = rejection(device, device_family);
+    std::string reason = rejection(device, device_family, *context->surface_);
     if (reason.empty() && lower(name).find(lower(options.device)) == std::string::npos)
       reason = "is not the one asked for";
     if (!reason.empty()) {
@@ -161,7 +170,10 @@ engine::Result<std::unique_ptr<Context>> Context::create(const RendererOptions& 
   features.dynamicRendering = VK_TRUE;
   features.synchronization2 = VK_TRUE;
   vk::DeviceCreateInfo device_info;
+  const char* const swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
   device_info.setQueueCreateInfos(queue).setPNext(&features);
+  if (wish != nullptr) device_info.setPEnabledExtensionNames(swapchain);
+  context->family_ = family;
   context->device_ = vk::raii::Device(context->physical_, device_info);
   context->queue_ = vk::raii::Queue(context->device_, family, 0);
   context->pool_ =

@@ -30,16 +30,25 @@ class DebugMessages {
   std::vector<std::string> messages_;
 };
 
-/// The way to one Vulkan device: instance, device, one queue that draws and copies, one command pool.
-/// Promises Vulkan 1.3 with dynamic rendering and synchronization2, and sampling of 32-bit and 8-bit unsigned
-/// images. Leaves out: windows, several queues, memory management beyond one allocation a resource.
+/// What a context must be able to show pictures in: a window system's surface.
+struct SurfaceWish {
+  std::vector<const char*> instance_extensions;  ///< what the window system asks for
+  /// Makes the window's surface; the context owns it. Throws vk::SystemError.
+  std::function<VkSurfaceKHR(VkInstance)> make;
+};
+
+/// The way to one Vulkan device: instance, device, one queue that draws and copies (and shows, where a
+/// surface was wished for), one command pool. Promises Vulkan 1.3 with dynamic rendering and
+/// synchronization2, and sampling of 32-bit and 8-bit unsigned images. Leaves out: windows, several queues,
+/// memory management beyond one allocation a resource.
 ///
 /// Threading: one thread at a time. Functions other than create() throw vk::SystemError; the room's door
 /// (renderer.cpp) turns that into an Error.
 class Context {
  public:
-  /// Errors as Renderer::create states.
-  [[nodiscard]] static engine::Result<std::unique_ptr<Context>> create(const RendererOptions& options);
+  /// Errors as Renderer::create states. With `wish` only devices that can show pictures on its surface do.
+  [[nodiscard]] static engine::Result<std::unique_ptr<Context>> create(const RendererOptions& options,
+                                                                       const SurfaceWish* wish = nullptr);
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
   ~Context();
@@ -49,6 +58,11 @@ class Context {
   [[nodiscard]] const vk::PhysicalDeviceLimits& limits() const noexcept { return limits_; }
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const DebugMessages& messages() const noexcept { return *messages_; }
+  [[nodiscard]] const vk::raii::Instance& instance() const noexcept { return instance_; }
+  [[nodiscard]] const vk::raii::Queue& queue() const noexcept { return queue_; }
+  [[nodiscard]] std::uint32_t queueFamily() const noexcept { return family_; }
+  /// The window's; null without a wish.
+  [[nodiscard]] vk::SurfaceKHR surface() const noexcept { return *surface_; }
 
   /// Records commands by `record`, runs them and waits until they are done.
   void run(const std::function<void(const vk::raii::CommandBuffer&)>& record);
@@ -64,6 +78,8 @@ class Context {
   vk::raii::Context loader_;
   vk::raii::Instance instance_ = nullptr;
   vk::raii::DebugUtilsMessengerEXT messenger_ = nullptr;
+  vk::raii::SurfaceKHR surface_ = nullptr;
+  std::uint32_t family_ = 0;
   vk::raii::PhysicalDevice physical_ = nullptr;
   vk::PhysicalDeviceLimits limits_;
   vk::PhysicalDeviceMemoryProperties memory_;
@@ -74,6 +90,8 @@ class Context {
 };
 
 /// Why a device will not do; empty when it will. `queue_family` is set to the family to use when it will.
-[[nodiscard]] std::string rejection(const vk::raii::PhysicalDevice& device, std::uint32_t& queue_family);
+/// `surface`: what it must be able to show pictures on; null for none.
+[[nodiscard]] std::string rejection(const vk::raii::PhysicalDevice& device, std::uint32_t& queue_family,
+                                    vk::SurfaceKHR surface = {});
 
 }  // namespace fettle::render

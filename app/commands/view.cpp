@@ -1,0 +1,72 @@
+#include <memory>
+
+#include "app/command.h"
+#include "app/scan_options.h"
+#include "app/terminal.h"
+#include "app/view/workstation.h"
+#include "haptic/loop/pacer.h"
+#include "haptic/scene.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct Options {
+  ViewOptions view;
+  std::string scene;
+  std::string size = "1280x800";
+  bool validate = false;
+};
+
+engine::Result<Report> view(const Options& given, engine::JobControl& job) {
+  ViewOptions options = given.view;
+  const auto size = parseSize(given.size, "--size", kPictureSides);
+  if (!size) return tl::unexpected(size.error());
+  std::tie(options.window.width, options.window.height) = *size;
+  if (!given.scene.empty()) {
+    auto scene = haptic::loadScene(given.scene);
+    if (!scene) return tl::unexpected(scene.error());
+    options.scene = *std::move(scene);
+  }
+  if (given.validate) options.window.validation = render::Validation::kOn;
+  auto station = Workstation::create(options);
+  if (!station) return tl::unexpected(station.error());
+  auto report = (*station)->run(job);
+  if (report)
+    for (const auto& message : (*report)["validation_messages"])
+      warn("validation: " + message.get<std::string>());
+  return report;
+}
+
+constexpr const char* kFooter =
+    "F1 in the window lists the keys. Without a device that gives force the mouse is the stylus: choose a "
+    "tool\n"
+    "(T feel, S smooth, M mark, U unmark), press with the left button, deeper with the wheel.";
+
+}  // namespace
+
+void addView(CLI::App& root, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = addCommand(
+      root, chosen, "view", "The window: see, feel and clean a scan",
+      [options](engine::JobControl& job) { return view(*options, job); }, printReport, Progress::kOwn);
+  command->add_option("SCAN", options->view.scan, "The scan to open; without it, drop one on the window");
+  command->add_option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
+  command
+      ->add_option("--device", options->view.touch.device,
+                   "mouse, an id of fettle devices, woodenhaptics, serial, spacemouse, hand:STROKES")
+      ->capture_default_str();
+  command->add_option("--rate", options->view.touch.rate_hz, "Ticks of the loop a second, 1000 to 10000")
+      ->check(CLI::Range(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
+      ->capture_default_str();
+  command->add_option("--size", options->size, "Pixels of the window, WIDTHxHEIGHT")->capture_default_str();
+  command->add_option("--seconds", options->view.seconds, "End after so long")
+      ->check(CLI::Range(1e-3, 86400.0));
+  command->add_option("--gpu", options->view.window.device, "Use the Vulkan device whose name holds this");
+  command->add_flag("--validate", options->validate,
+                    "Let the Vulkan validation layers watch; they must be installed");
+  addScanOptions(command, options->view.reading);
+  command->footer(kFooter);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+
+namespace fettle::app {
+
+/// One long piece of work on a thread of its own, looked at by the main thread once a frame. Starting another
+/// cancels the one under way and waits for it to notice (JobControl: some 50 ms); so does the destructor.
+/// Threading: the main thread calls everything.
+template <class T>
+class Background {
+ public:
+  using Work = std::function<engine::Result<T>(engine::JobControl&)>;
+
+  Background() = default;
+  ~Background() { cancel(); }
+  Background(const Background&) = delete;
+  Background& operator=(const Background&) = delete;
+
+  void start(Work work) {
+    cancel();
+    thread_ = {};
+    run_ = std::make_unique<Run>();
+    thread_ = std::jthread([run = run_.get(), work = std::move(work)] {
+      try {
+        run->result.emplace(work(run->job));
+      } catch (const std::bad_alloc&) {
+        run->result.emplace(
+            engine::failure("memory ran out", "", "close other programs or take a smaller scan"));
+      }
+      // Release: the result is there for whoever sees this.
+      run->done.store(true, std::memory_order_release);
+    });
+  }
+
+  void cancel() noexcept {
+    if (run_) run_->job.cancel();
+  }
+
+  [[nodiscard]] bool busy() const noexcept { return run_ != nullptr; }
+  /// 0 .. 1; and what it is at.
+  [[nodiscard]] double progress() const noexcept {
+    if (!run_ || run_->job.total() == 0) return 0.0;
+    return std::min(1.0, static_cast<double>(run_->job.done()) / static_cast<double>(run_->job.total()));
+  }
+  [[nodiscard]] const char* stage() const noexcept { return run_ ? run_->job.stage() : ""; }
+  [[nodiscard]] bool cancelling() const noexcept { return run_ && run_->job.cancelled(); }
+
+  /// The result, once, when it is there.
+  [[nodiscard]] std::optional<engine::Result<T>> take() {
+    // Acquire: pairs with the release above.
+    if (!run_ || !run_->done.load(std::memory_order_acquire)) return std::nullopt;
+    thread_.join();
+    std::optional<engine::Result<T>> result = std::move(run_->result);
+    run_.reset();
+    return result;
+  }
+
+ private:
+  struct Run {
+    engine::JobControl job;
+    std::optional<engine::Result<T>> result;
+    std::atomic<bool> done{false};
+  };
+  std::unique_ptr<Run> run_;
+  std::jthread thread_;  // last: joined before what it works on goes
+};
+
+}  // namespace fettle::app

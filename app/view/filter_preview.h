@@ -1,0 +1,64 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/view/background.h"
+#include "app/view/touch.h"
+#include "engine/filter/filter.h"
+#include "haptic/loop/adopt_filtered.h"
+
+namespace fettle::app {
+
+/// "Median 5 x 5", "Gaussian 7 x 7, 3 passes, only marks".
+[[nodiscard]] std::string filterName(const engine::FilterSpec& spec);
+
+/// Filters tried out on the field in the background while touch goes on, and the one that is applied.
+/// Threading: main.
+class FilterPreview {
+ public:
+  static constexpr std::size_t kMostVariants = 3;  // and the field itself: four pictures
+
+  struct Variant {
+    engine::FilterSpec spec;
+    engine::Version base;  ///< as felt when it was computed
+    engine::Filtered result;
+  };
+
+  /// What the panel edits.
+  engine::FilterSpec spec;
+
+  /// Computes `spec` on the field as it is now. `keep`: beside the variants there are; else in their place.
+  enum class Keep : std::uint8_t { kReplace, kBeside };
+  void compute(const Touch& touch, Keep keep);
+  /// Brings the newest variant into the field as one step; computes it first when there is none for `spec`.
+  void apply(Touch& touch);
+  void cancel(Touch& touch);
+  /// Takes in what was computed. True when something to be seen changed.
+  [[nodiscard]] bool poll(Touch& touch, std::vector<Notice>& notices);
+
+  [[nodiscard]] const std::vector<Variant>& variants() const noexcept { return variants_; }
+  void drop(std::size_t variant);
+  [[nodiscard]] bool computing() const noexcept { return computing_.busy(); }
+  [[nodiscard]] bool applying() const noexcept { return applying_.busy(); }
+  [[nodiscard]] double progress() const noexcept {
+    return computing_.busy() ? computing_.progress() : applying_.progress();
+  }
+  /// Times a filter was applied.
+  [[nodiscard]] int applied() const noexcept { return applied_; }
+  /// How long the last computation took [s].
+  [[nodiscard]] double seconds() const noexcept { return seconds_; }
+
+ private:
+  void adopt(Touch& touch, Variant variant);
+
+  std::vector<Variant> variants_;
+  Keep keep_ = Keep::kReplace;
+  bool apply_when_done_ = false;
+  double seconds_ = 0.0;
+  int applied_ = 0;
+  Background<Variant> computing_;
+  Background<haptic::AdoptionReport> applying_;
+};
+
+}  // namespace fettle::app

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "render/window.h"
+
+namespace fettle::app {
+
+/// Everything a person can ask for without pointing at something. Menus, keys and the shortcut list all come
+/// from the one table in shortcuts.cpp.
+enum class Action : std::uint8_t {
+  kOpen,
+  kSave,
+  kSaveAs,
+  kExport,
+  kQuit,
+  kUndo,
+  kRedo,
+  kNavigate,
+  kFeel,
+  kSmooth,
+  kMark,
+  kUnmark,
+  kBrushRadius,
+  kBrushStrength,
+  kBrushSmaller,
+  kBrushLarger,
+  kInvert,
+  kShowMarks,
+  kClearMarks,
+  kFilterNext,
+  kFilterPreview,
+  kFilterApply,
+  kDeviation,
+  kContours,
+  kNextMap,
+  kSplitPreview,
+  kViewAll,
+  kViewLastStroke,
+  kViewFront,
+  kViewBack,
+  kViewRight,
+  kViewLeft,
+  kViewTop,
+  kProjection,
+  kTurnLeft,
+  kTurnRight,
+  kTiltUp,
+  kTiltDown,
+  kPanLeft,
+  kPanRight,
+  kPanUp,
+  kPanDown,
+  kZoomIn,
+  kZoomOut,
+  kArm,
+  kDisarm,
+  kCalibrate,
+  kShortcuts,
+  kSidePanel,
+};
+
+struct Shortcut {
+  Action action;
+  std::string_view section;  ///< "File", "Edit", "Tool", "Filter", "View", "Device", "Help"
+  std::string_view name;     ///< what it does, for menus and the list
+  render::Key key = render::Key::kNone;
+  render::Modifiers modifiers{};
+  render::Key other_key = render::Key::kNone;  ///< for keyboards that lack the first
+};
+
+[[nodiscard]] std::span<const Shortcut> shortcuts();
+[[nodiscard]] const Shortcut& shortcutOf(Action action);
+/// What a key stands for; nothing for keys without a meaning.
+[[nodiscard]] std::optional<Action> actionOf(render::Key key, render::Modifiers modifiers);
+/// "Ctrl+Shift+S", "F1", "keypad 7".
+[[nodiscard]] std::string keyText(render::Key key, render::Modifiers modifiers);
+
+}  // namespace fettle::app

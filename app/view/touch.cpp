@@ -1,0 +1,450 @@
+#include "app/view/touch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <numbers>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "haptic/devices/enumerate.h"
+#include "haptic/safety/last_resort.h"
+
+namespace fettle::app {
+namespace {
+
+using haptic::CommandKind;
+using haptic::EventKind;
+using haptic::LoopCommand;
+using haptic::Tool;
+using namespace std::chrono_literals;
+
+constexpr auto kFade = 30ms;  // a disarmed force is gone after peak / slew = 5 ms
+constexpr std::int64_t kArmAgain_ns = 100'000'000;
+constexpr std::int64_t kRateWindow_ns = 500'000'000;
+
+std::int64_t nowNs() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+double spacingMm(const engine::Grid& grid) {
+  return std::max(grid.spacingXMm(), grid.spacingYMm());
+}
+
+// A mouse knows no force: its depth stands for it. Two cells deep is pressing hard, on a coin as on a valley.
+haptic::Scene fitted(haptic::Scene scene, const engine::Grid& grid) {
+  scene.stiffness_n_per_mm = std::clamp(scene.force_limit_n / (2.0 * spacingMm(grid)), 1e-6, 1000.0);
+  return scene;
+}
+
+haptic::MouseFeel feelFor(const engine::Grid& grid) {
+  const double cell = spacingMm(grid);
+  haptic::MouseFeel feel;
+  feel.hover_mm = cell;
+  feel.press_mm = cell;
+  feel.wheel_step_mm = 0.1 * cell;
+  feel.deepest_mm = 4.0 * cell;
+  return feel;
+}
+
+std::string stepName(Tool tool) {
+  switch (tool) {
+    case Tool::kSmooth:
+      return "Smooth";
+    case Tool::kMark:
+      return "Mark";
+    case Tool::kUnmark:
+      return "Unmark";
+    case Tool::kFeel:
+      break;
+  }
+  return "Stroke";
+}
+
+engine::StepKind stepKind(Tool tool) {
+  return tool == Tool::kMark || tool == Tool::kUnmark ? engine::StepKind::kMark : engine::StepKind::kStroke;
+}
+
+}  // namespace
+
+// One question at a time from a worker; the main thread carries it to the loop and the answer back.
+struct Touch::Mailbox {
+  enum class Question : std::uint8_t { kNone, kSnapshot, kAdopt };
+  std::mutex mutex;
+  std::condition_variable answered;
+  Question question = Question::kNone;
+  bool sent = false;
+  bool ready = false;
+  bool closed = false;
+  std::uint64_t id = 0;     // of the newest snapshot: an adoption carries the same
+  engine::Version version;  // of the question or the answer
+  bool adopted = false;
+
+  engine::Result<engine::Version> ask(Question what, engine::Version given, bool& was_adopted) {
+    std::unique_lock lock(mutex);
+    if (closed) return engine::cancelled();
+    question = what;
+    sent = ready = false;
+    version = std::move(given);
+    answered.wait(lock, [&] { return ready || closed; });
+    if (!ready) {
+      question = Question::kNone;
+      return engine::cancelled();
+    }
+    question = Question::kNone;
+    was_adopted = adopted;
+    return std::exchange(version, {});
+  }
+  void answer(engine::Version given, bool was_adopted) {
+    {
+      const std::scoped_lock lock(mutex);
+      if (question == Question::kNone) return;
+      version = std::move(given);
+      adopted = was_adopted;
+      ready = true;
+    }
+    answered.notify_all();
+  }
+};
+
+Touch::Touch(engine::History history, const engine::Version& original, const haptic::Scene& scene,
+             const TouchOptions& options)
+    : options_(options),
+      history_(std::move(history)),
+      original_(original),
+      scene_(scene),
+      mailbox_(std::make_unique<Mailbox>()) {
+  committed_ = history_.current();
+  field_ = scene_.invert ? committed_.inverted() : committed_;
+}
+
+engine::Result<std::unique_ptr<Touch>> Touch::start(engine::History history, const engine::Version& original,
+                                                    const haptic::Scene& scene, const TouchOptions& options) {
+  const engine::Grid& grid = original.grid();
+  std::unique_ptr<Touch> touch(new Touch(std::move(history), original, scene, options));
+  if (options.device == "mouse") {
+    auto mouse = std::make_unique<haptic::MouseStylus>(feelFor(grid));
+    touch->mouse_ = mouse.get();
+    touch->device_ = std::move(mouse);
+    if (options.fit_spring) touch->scene_ = fitted(scene, grid);
+  } else {
+    auto device = haptic::openDevice(options.device, options.rate_hz);
+    if (!device) return tl::unexpected(device.error());
+    touch->device_ = std::move(*device);
+  }
+  const haptic::DeviceProfile& profile = touch->device_->profile();
+  haptic::HapticLoop::Settings settings;
+  settings.rate_hz = options.rate_hz;
+  haptic::DeviceProfile limited = profile;
+  if (!profile.gives_force) limited.max_force_n = 0.0;
+  settings.options.limits = haptic::limitsFor(limited);
+  settings.options.edit_rule =
+      profile.gives_force ? haptic::EditRule::kWhileForceIsGiven : haptic::EditRule::kAnytime;
+  // A view of a large field keeps the main thread away for longer than a frame at times.
+  settings.options.event_capacity = 1024;
+  settings.options.command_capacity = 1024;
+  if (profile.space == haptic::DeviceSpace::kDesk) {
+    const glm::dvec3 middle{
+        0.5 * (grid.width - 1) * grid.spacingXMm(), 0.5 * (grid.height - 1) * grid.spacingYMm(),
+        touch->field_.reader().bounds().empty() ? 0.0
+                                                : touch->field_.reader().bounds().max * grid.height_unit.mm};
+    const double side = std::min((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
+    double scale = side > 0.0 ? haptic::Workspace::fit(profile, middle, side).scale() : 1.0;
+    // A spring of k in the field is felt as scale * k (haptic::Workspace): no stiffer than the device holds.
+    if (profile.gives_force)
+      scale = std::min(scale, profile.max_stiffness_n_per_mm / touch->scene_.stiffness_n_per_mm);
+    settings.options.workspace = haptic::Workspace(scale, middle);
+    touch->scale_at_start_ = scale;
+  }
+  auto loop =
+      haptic::HapticLoop::create(touch->committed_, original, touch->scene_, *touch->device_, settings);
+  if (!loop) return tl::unexpected(loop.error());
+  touch->loop_ = std::move(*loop);
+  if (auto status = haptic::LastResort::install(); !status) return tl::unexpected(status.error());
+  if (auto status = touch->device_->start(); !status) return tl::unexpected(status.error());
+  if (auto status = touch->loop_->start(); !status) {
+    touch->device_->stop();
+    touch->loop_.reset();
+    return tl::unexpected(status.error());
+  }
+  for (const std::string& missing : touch->loop_->realTime().missing)
+    touch->notices_.push_back({"the loop got less than it asked for", missing});
+  return touch;
+}
+
+Touch::~Touch() {
+  closePort();
+  if (!loop_) return;
+  LoopCommand command;
+  command.kind = CommandKind::kDisarm;
+  static_cast<void>(loop_->send(std::move(command)));
+  if (device_->profile().gives_force) std::this_thread::sleep_for(kFade);
+  static_cast<void>(loop_->stop());
+  device_->stop();
+}
+
+bool Touch::strokeRuns() const noexcept {
+  return restores_open_ == 0 && !(upright(field_) == committed_);
+}
+
+void Touch::send(LoopCommand&& command) {
+  // In order: what waits goes first. The ring is only full while the loop stands still.
+  if (!unsent_.empty() || !loop_->send(std::move(command))) unsent_.push_back(std::move(command));
+}
+
+void Touch::poll() {
+  while (!unsent_.empty() && loop_->send(std::move(unsent_.front()))) unsent_.erase(unsent_.begin());
+  for (haptic::LoopEvent event; loop_->poll(event);) take(std::move(event));
+  answerPort();
+  armByItself();
+  measureRate();
+  watch();
+}
+
+void Touch::noteEdit(const haptic::LoopEvent& event) {
+  // Made after the event before was published, and at the earliest one period of publication ago for each
+  // publication that this one took along.
+  const haptic::LoopState state = loop_->state();
+  const double period_ns = 1e9 / options_.rate_hz;
+  const auto periods = static_cast<std::uint64_t>(8) * (event.merged + 1);
+  const std::uint64_t first = std::max(last_event_tick_, event.tick > periods ? event.tick - periods : 0);
+  const double ago = state.tick > first ? static_cast<double>(state.tick - first) * period_ns : 0.0;
+  const std::int64_t made = state.time_ns - static_cast<std::int64_t>(ago);
+  if (!unshown_ns_ || made < *unshown_ns_) unshown_ns_ = made;
+}
+
+void Touch::take(haptic::LoopEvent&& event) {
+  if (!event.version.empty()) field_ = event.version;
+  switch (event.kind) {
+    case EventKind::kEdited:
+      noteEdit(event);
+      stroke_tool_ = tool_;
+      break;
+    case EventKind::kStrokeEnded:
+      if (!event.rect.empty() && !(upright(event.version) == committed_)) {
+        noteEdit(event);
+        last_rect_ = {event.rect.column, event.rect.row, event.rect.columns, event.rect.rows};
+        push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(event.version));
+      }
+      break;
+    case EventKind::kSnapshot:
+      mailbox_->answer(event.version, false);
+      break;
+    case EventKind::kAdopted: {
+      // A stroke under way when the result came is a step of its own.
+      if (!event.before.empty() && !(upright(event.before) == committed_) && !adoption_begun_)
+        push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(event.before));
+      // Further rounds belong to the same step.
+      if (adoption_begun_ && history_.canUndo()) static_cast<void>(history_.undo());
+      push(adoption_name_, engine::StepKind::kFilter, upright(event.version));
+      adoption_begun_ = true;
+      mailbox_->answer(event.version, true);
+      break;
+    }
+    case EventKind::kAdoptRefused:
+      mailbox_->answer(event.version.empty() ? field_ : event.version, false);
+      break;
+    case EventKind::kRestored:
+      if (restores_open_ > 0) --restores_open_;
+      committed_ = upright(event.version);
+      break;
+    case EventKind::kSceneChanged:
+      break;
+  }
+  last_event_tick_ = std::max(last_event_tick_, event.tick);
+  // What the event still holds is freed here, off the loop.
+}
+
+void Touch::push(const std::string& name, engine::StepKind kind, const engine::Version& after) {
+  engine::StepInfo info;
+  info.name = name;
+  info.kind = kind;
+  info.time = engine::stepTimeNow();
+  if (history_.push(std::move(info), after) && kind == engine::StepKind::kFilter)
+    last_rect_ = history_.info(history_.number()).rect;
+  committed_ = after;
+}
+
+void Touch::setTool(Tool tool) {
+  tool_ = tool;
+  LoopCommand command;
+  command.kind = CommandKind::kTool;
+  command.tool = tool;
+  send(std::move(command));
+}
+
+void Touch::setScene(const haptic::Scene& scene) {
+  scene_ = scene;
+  LoopCommand command;
+  command.kind = CommandKind::kScene;
+  command.id = next_id_++;
+  command.scene = std::make_unique<haptic::PreparedScene>(scene_, original_);
+  send(std::move(command));
+}
+
+void Touch::restore(const engine::Version& version) {
+  LoopCommand command;
+  command.kind = CommandKind::kRestore;
+  command.id = next_id_++;
+  command.version = scene_.invert ? version.inverted() : version;
+  ++restores_open_;
+  adoption_begun_ = false;
+  send(std::move(command));
+}
+
+void Touch::undo() {
+  poll();
+  if (strokeRuns()) push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(field_));
+  if (const auto version = history_.undo()) restore(*version);
+}
+
+void Touch::redo() {
+  poll();
+  if (!canRedo()) return;
+  if (const auto version = history_.redo()) restore(*version);
+}
+
+void Touch::goTo(std::int64_t state) {
+  poll();
+  if (strokeRuns()) push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(field_));
+  if (const auto version = history_.goTo(state)) restore(*version);
+}
+
+void Touch::replace(engine::Version version, std::string name, engine::StepKind kind) {
+  poll();
+  if (strokeRuns()) push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(field_));
+  push(name, kind, version);
+  restore(version);
+}
+
+void Touch::arm() {
+  LoopCommand command;
+  command.kind = CommandKind::kArm;
+  send(std::move(command));
+}
+void Touch::disarm() {
+  LoopCommand command;
+  command.kind = CommandKind::kDisarm;
+  send(std::move(command));
+}
+void Touch::calibrate() {
+  device_->calibrate();
+}
+
+void Touch::setView(double azimuth_deg, double zoom) {
+  if (device_->profile().space != haptic::DeviceSpace::kDesk) return;
+  if (std::abs(std::remainder(azimuth_deg - view_azimuth_deg_, 360.0)) < 0.5 &&
+      std::abs(zoom / view_zoom_ - 1.0) < 0.01)
+    return;
+  view_azimuth_deg_ = azimuth_deg;
+  view_zoom_ = zoom;
+  LoopCommand command;
+  command.kind = CommandKind::kView;
+  // Never stiffer than at the start, where the whole field was within reach or the device at its limit.
+  command.scale = scale_at_start_ / std::max(zoom, 1.0);
+  command.turn_rad = azimuth_deg * std::numbers::pi / 180.0;
+  send(std::move(command));
+}
+
+engine::Result<engine::Version> Touch::snapshot() {
+  bool unused = false;
+  return mailbox_->ask(Mailbox::Question::kSnapshot, {}, unused);
+}
+
+engine::Result<Touch::Answer> Touch::adopt(engine::Version version) {
+  Answer answer;
+  auto live = mailbox_->ask(Mailbox::Question::kAdopt, std::move(version), answer.adopted);
+  if (!live) return tl::unexpected(live.error());
+  answer.version = std::move(*live);
+  return answer;
+}
+
+void Touch::pause() {
+  std::this_thread::sleep_for(20ms);
+}
+
+void Touch::closePort() {
+  {
+    const std::scoped_lock lock(mailbox_->mutex);
+    mailbox_->closed = true;
+  }
+  mailbox_->answered.notify_all();
+}
+
+void Touch::allowPort() {
+  const std::scoped_lock lock(mailbox_->mutex);
+  mailbox_->closed = false;
+  adoption_begun_ = false;
+}
+
+void Touch::answerPort() {
+  LoopCommand command;
+  {
+    const std::scoped_lock lock(mailbox_->mutex);
+    if (mailbox_->question == Mailbox::Question::kNone || mailbox_->sent) return;
+    if (mailbox_->question == Mailbox::Question::kSnapshot) {
+      command.kind = CommandKind::kSnapshot;
+      mailbox_->id = next_id_++;
+    } else {
+      command.kind = CommandKind::kAdopt;
+      command.version = std::move(mailbox_->version);
+    }
+    command.id = mailbox_->id;
+    mailbox_->sent = true;
+  }
+  send(std::move(command));
+}
+
+void Touch::armByItself() {
+  // Only a device that cannot push: one that does is armed by the person who holds it.
+  if (device_->profile().gives_force && options_.device.rfind("hand", 0) != 0) return;
+  const haptic::LoopState state = loop_->state();
+  const bool waits =
+      state.safety == haptic::SafetyState::kUncalibrated || state.safety == haptic::SafetyState::kFault;
+  const std::int64_t now = nowNs();
+  if (!waits || state.link != haptic::LinkState::kConnected || now - armed_try_ns_ < kArmAgain_ns) return;
+  armed_try_ns_ = now;
+  arm();
+}
+
+void Touch::measureRate() {
+  const haptic::LoopState state = loop_->state();
+  if (rate_ns_ == 0) {
+    rate_ns_ = state.time_ns;
+    rate_tick_ = state.tick;
+    return;
+  }
+  if (state.time_ns - rate_ns_ < kRateWindow_ns) return;
+  measured_rate_ =
+      static_cast<double>(state.tick - rate_tick_) * 1e9 / static_cast<double>(state.time_ns - rate_ns_);
+  rate_ns_ = state.time_ns;
+  rate_tick_ = state.tick;
+}
+
+void Touch::watch() {
+  const haptic::LoopState state = loop_->state();
+  if (state.tick == 0) return;
+  if (device_->profile().gives_force) {
+    if (state.safety_counters.faults > seen_.safety_counters.faults)
+      notices_.push_back({fmt::format("fault, {}", haptic::name(state.cause)), "press A to arm again"});
+    if (state.safety_counters.arms_refused > seen_.safety_counters.arms_refused)
+      notices_.push_back({"not armed", "the device must be connected, calibrated and heard of"});
+    if (seen_.tick > 0 && state.link != seen_.link && state.link == haptic::LinkState::kUncalibrated)
+      notices_.push_back({"the device is not calibrated", "hold the stylus in its home pose and calibrate"});
+  }
+  if (state.refused_edits > seen_.refused_edits)
+    notices_.push_back({"memory for edits came too late", "part of a stroke was not done"});
+  seen_ = state;
+}
+
+void Touch::noteShown(std::int64_t edit_ns, std::int64_t shown_ns) {
+  latency_.add(shown_ns - edit_ns);
+  last_latency_ms_ = 1e-6 * static_cast<double>(shown_ns - edit_ns);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,170 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/history/history.h"
+#include "haptic/devices/device.h"
+#include "haptic/devices/mouse_stylus.h"
+#include "haptic/loop/adopt_filtered.h"
+#include "haptic/loop/haptic_loop.h"
+#include "haptic/loop/timing.h"
+#include "haptic/scene.h"
+
+namespace fettle::app {
+
+struct TouchOptions {
+  std::string device = "mouse";  ///< a word of haptic::openDevice
+  double rate_hz = 1000.0;
+  /// Spring and depth of the mouse follow the field's spacing; off when a scene file says the spring.
+  bool fit_spring = true;
+};
+
+/// Something the user should read.
+struct Notice {
+  std::string what;
+  std::string remedy;
+};
+
+/// The live loop as the window sees it: field, tools, undo, device. It owns the loop and its device; what the
+/// loop tells is taken in by poll(), and what is shown is the newest version the loop has published.
+///
+/// Steps. A stroke, the adoption of a filter and a change of all marks are a step each (engine::History, the
+/// right way up). Undo and redo ask the loop to restore a version; the history moves at once, the field when
+/// the loop answers. Undo while a stroke runs makes a step of it first.
+///
+/// Inversion is a sign that the scene sets: field() has it, history() and upright() do not.
+///
+/// Threading: main thread, but for the port (AdoptionPort), which a worker uses and main answers in poll().
+class Touch final : public haptic::AdoptionPort {
+ public:
+  /// Opens and starts the device and the loop. `start` and `original` the right way up. Errors: those of
+  /// openDevice, HapticLoop::create and start.
+  [[nodiscard]] static engine::Result<std::unique_ptr<Touch>> start(engine::History history,
+                                                                    const engine::Version& original,
+                                                                    const haptic::Scene& scene,
+                                                                    const TouchOptions& options);
+  ~Touch() override;
+  Touch(const Touch&) = delete;
+  Touch& operator=(const Touch&) = delete;
+
+  /// Takes in what the loop told. Cheap; to be called often.
+  void poll();
+  /// As felt.
+  [[nodiscard]] const engine::Version& field() const noexcept { return field_; }
+  [[nodiscard]] engine::Version upright() const { return upright(field_); }
+  [[nodiscard]] const engine::History& history() const noexcept { return history_; }
+  [[nodiscard]] const engine::Version& original() const noexcept { return original_; }
+  [[nodiscard]] const haptic::Scene& scene() const noexcept { return scene_; }
+  /// Where the last step changed something.
+  [[nodiscard]] engine::FieldRect lastRect() const noexcept { return last_rect_; }
+
+  void setTool(haptic::Tool tool);
+  [[nodiscard]] haptic::Tool tool() const noexcept { return tool_; }
+  /// Takes a scene in range (sceneProblem); it is felt from the next tick or two on.
+  void setScene(const haptic::Scene& scene);
+  void undo();
+  void redo();
+  void goTo(std::int64_t state);
+  [[nodiscard]] bool canUndo() const noexcept { return history_.canUndo() || strokeRuns(); }
+  [[nodiscard]] bool canRedo() const noexcept { return history_.canRedo() && !strokeRuns(); }
+  /// Puts a version (upright, of the same memory) in place as one step.
+  void replace(engine::Version version, std::string name, engine::StepKind kind);
+  void arm();
+  void disarm();
+  void calibrate();
+  /// The view turned or zoomed: "away" on the desk stays "into the picture". Devices in field coordinates
+  /// have nothing to turn.
+  void setView(double azimuth_deg, double zoom);
+
+  /// The next adoption's name in the list of steps.
+  void nameAdoption(std::string name) { adoption_name_ = std::move(name); }
+  engine::Result<engine::Version> snapshot() override;
+  engine::Result<Answer> adopt(engine::Version version) override;
+  void pause() override;
+  /// Lets a worker that waits at the port go, with kCancelled; until allowPort().
+  void closePort();
+  void allowPort();
+
+  [[nodiscard]] haptic::MouseStylus* mouse() noexcept { return mouse_; }
+  [[nodiscard]] const haptic::Device& device() const noexcept { return *device_; }
+  /// The newest tick.
+  [[nodiscard]] haptic::LoopState state() noexcept { return loop_->state(); }
+  [[nodiscard]] const haptic::LoopTiming& timing() const noexcept { return loop_->timing(); }
+  [[nodiscard]] const haptic::RealTimeReport& realTime() const noexcept { return loop_->realTime(); }
+  [[nodiscard]] double rate() const noexcept { return options_.rate_hz; }
+  /// Ticks a second, over the last second or so.
+  [[nodiscard]] double measuredRate() const noexcept { return measured_rate_; }
+  [[nodiscard]] std::vector<Notice> takeNotices() { return std::exchange(notices_, {}); }
+
+  /// Edit to pixel: the time [steady_clock ns] before which no edit in field() that was not taken by this
+  /// call yet can have been made; empty when there is none. Too early by at most the loop's period of
+  /// publication, 8 ticks.
+  [[nodiscard]] std::optional<std::int64_t> takeUnshownEdit() noexcept {
+    return std::exchange(unshown_ns_, std::nullopt);
+  }
+  /// A frame with all that such a time stands for was on the screen at `shown_ns`.
+  void noteShown(std::int64_t edit_ns, std::int64_t shown_ns);
+  [[nodiscard]] const haptic::TimingHistogram& latency() const noexcept { return latency_; }
+  [[nodiscard]] double lastLatencyMs() const noexcept { return last_latency_ms_; }
+
+  [[nodiscard]] static engine::Version upright(const engine::Version& version) {
+    return version.reader().sign() < 0.0F ? version.inverted() : version;
+  }
+
+ private:
+  struct Mailbox;
+  Touch(engine::History history, const engine::Version& original, const haptic::Scene& scene,
+        const TouchOptions& options);
+  void take(haptic::LoopEvent&& event);
+  void restore(const engine::Version& upright_version);
+  void send(haptic::LoopCommand&& command);
+  void push(const std::string& name, engine::StepKind kind, const engine::Version& after);
+  void noteEdit(const haptic::LoopEvent& event);
+  void answerPort();
+  void armByItself();
+  void measureRate();
+  void watch();
+  [[nodiscard]] bool strokeRuns() const noexcept;
+
+  TouchOptions options_;
+  engine::History history_;
+  engine::Version original_;
+  haptic::Scene scene_;
+  haptic::Tool tool_ = haptic::Tool::kFeel;
+  std::unique_ptr<haptic::Device> device_;
+  haptic::MouseStylus* mouse_ = nullptr;  // device_, when it is one
+  std::unique_ptr<haptic::HapticLoop> loop_;
+  engine::Version field_;      // newest published
+  engine::Version committed_;  // upright: the last step's, what a running stroke is measured against
+  haptic::Tool stroke_tool_ = haptic::Tool::kFeel;
+  engine::FieldRect last_rect_;
+  std::vector<haptic::LoopCommand> unsent_;  // found the ring full
+  std::uint64_t next_id_ = 1;
+  std::uint64_t restores_open_ = 0;
+  std::string adoption_name_ = "Filter";
+  bool adoption_begun_ = false;  // the running adoption has its step
+  std::unique_ptr<Mailbox> mailbox_;
+  std::vector<Notice> notices_;
+  haptic::LoopState seen_;
+  double scale_at_start_ = 1.0;
+  double view_azimuth_deg_ = 0.0, view_zoom_ = 1.0;
+
+  std::optional<std::int64_t> unshown_ns_;
+  std::uint64_t last_event_tick_ = 0;
+  haptic::TimingHistogram latency_;
+  double last_latency_ms_ = 0.0;
+
+  std::uint64_t rate_tick_ = 0;
+  std::int64_t rate_ns_ = 0;
+  double measured_rate_ = 0.0;
+  std::int64_t armed_try_ns_ = 0;
+};
+
+}  // namespace fettle::app

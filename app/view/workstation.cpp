@@ -1,0 +1,252 @@
+#include "app/view/workstation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <glm/geometric.hpp>
+
+#include "app/terminal.h"
+
+namespace fettle::app {
+namespace {
+
+constexpr double kIdle_s = 0.1;     // between two frames while nothing happens
+constexpr double kBusy_s = 0.03;    // ... while only figures move
+constexpr std::size_t kPlot = 240;  // frames of force shown
+
+std::string layoutFile() {
+  const std::string folder = settingsFolder();
+  return folder.empty() ? std::string() : folder + "/layout.ini";
+}
+std::string recentFile() {
+  const std::string folder = settingsFolder();
+  return folder.empty() ? std::string() : folder + "/recent.txt";
+}
+
+double ms(std::int64_t ns) {
+  return 1e-6 * static_cast<double>(ns);
+}
+
+}  // namespace
+
+Workstation::Workstation(const ViewOptions& options) : options_(options), recent_(recentFile()) {}
+
+Workstation::~Workstation() {
+  // Workers that wait at the port are let go before they are joined.
+  if (touch_) touch_->closePort();
+}
+
+engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptions& options) {
+  std::unique_ptr<Workstation> station(new Workstation(options));
+  render::WindowOptions window = options.window;
+  window.layout_file = layoutFile();
+  auto opened = render::Window::create(window);
+  if (!opened) return tl::unexpected(opened.error());
+  station->window_ = std::move(*opened);
+  station->window_->setWhileWaiting([s = station.get()] { s->whileWaiting(); });
+  station->picture_ = std::make_unique<render::WindowStill>(*station->window_);
+  station->view_.azimuth_deg = 330.0;
+  if (!options.scan.empty()) station->open(options.scan);
+  return station;
+}
+
+engine::Result<Report> Workstation::run(engine::JobControl& job) {
+  const auto begin = std::chrono::steady_clock::now();
+  while (!quit_) {
+    goRound();
+    if (!end_) return tl::unexpected(end_.error());
+    if (window_->closeAsked()) {
+      window_->refuseClose();
+      askToQuit();
+    }
+    const double lived = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
+  }
+  return report();
+}
+
+bool Workstation::active() const {
+  return stale_ || stylus_held_ || drag_ != Drag::kNone || figures_.upload.pending_tiles > 0;
+}
+
+void Workstation::goRound() {
+  const bool working = loading_.busy() || saving_.busy() || filters_.computing() || filters_.applying();
+  window_->poll(active() ? 0.0 : working ? kBusy_s : kIdle_s);
+  whileWaiting();
+  handleInput();
+  for (const std::string& path : window_->takeDrops()) askToOpen(path);
+  takeResults();
+  if (window_->minimised()) {
+    // Nothing to draw, everything else goes on.
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return;
+  }
+  frame();
+}
+
+// Also called again and again while the device draws: the cursor goes on to the loop, and what the loop tells
+// is taken off its ring.
+void Workstation::whileWaiting() {
+  window_->poll(0.0);
+  for (const render::InputEvent& event : window_->takeInput()) {
+    toStylus(event);
+    input_.push_back(event);
+  }
+  if (touch_) touch_->poll();
+}
+
+void Workstation::takeResults() {
+  if (auto done = loading_.take()) {
+    if (*done) {
+      takeImported(std::move(**done));
+    } else if (!touch_ && loading_path_ == options_.scan &&
+               done->error().kind != engine::ErrorKind::kCancelled) {
+      // Named on the command line: its errors are the command's.
+      end_ = tl::unexpected(done->error());
+      return;
+    } else if (done->error().kind != engine::ErrorKind::kCancelled) {
+      message(done->error().line(), "");
+    }
+    stale_ = true;
+  }
+  if (auto done = saving_.take()) {
+    if (*done) {
+      if (keep_save_path_) {
+        save_path_ = saving_path_;
+        saved_ = **done;
+      }
+      status_text_ = fmt::format("written: {}", saving_path_);
+      goOn();
+    } else {
+      after_saving_ = AfterSaving::kNothing;
+      if (done->error().kind != engine::ErrorKind::kCancelled)
+        message(done->error().line(), "the field is kept here; save it elsewhere");
+    }
+  }
+  if (!touch_) return;
+  touch_->poll();
+  if (filters_.poll(*touch_, notices_)) stale_ = true;
+  for (Notice& notice : touch_->takeNotices()) notices_.push_back(std::move(notice));
+  while (notices_.size() > 6) notices_.erase(notices_.begin());
+  if (auto done = measuring_.take(); done && *done) deviation_ = **done;
+  const engine::Version now = touch_->upright();
+  if (!measuring_.busy() && !(measured_ == now) && !stylus_held_) {
+    measured_ = now;
+    measuring_.start([original = touch_->original(), now](engine::JobControl& job) {
+      return engine::compareFields(original, now, job);
+    });
+  }
+}
+
+void Workstation::frame() {
+  ImGui::GetIO().DisplaySize =
+      ImVec2(static_cast<float>(window_->width()), static_cast<float>(window_->height()));
+  const std::optional<std::int64_t> edit = touch_ ? touch_->takeUnshownEdit() : std::nullopt;
+  window_->beginFrame();
+  panels();
+  if (touch_) drawPicture();
+  const auto shown = window_->present();
+  if (!shown) {
+    end_ = tl::unexpected(shown.error());
+    return;
+  }
+  if (touch_ && edit && shown->shown_ns > 0) touch_->noteShown(*edit, shown->shown_ns);
+  ++frames_;
+}
+
+void Workstation::drawPicture() {
+  const haptic::LoopState state = touch_->state();
+  const double moved = glm::length(state.endpoint_mm - drawn_state_.endpoint_mm);
+  const render::Rectangle& area = window_->pictureArea();
+  const double pixel_mm = figures_.pixels_per_mm > 0.0 ? 1.0 / figures_.pixels_per_mm : 0.0;
+  if (moved > pixel_mm || state.contact != drawn_state_.contact) stale_ = true;
+  if (view_.width != area.width || view_.height != area.height) stale_ = true;
+  view_.width = area.width;
+  view_.height = area.height;
+
+  render::Shown shown;
+  shown.versions.push_back(touch_->field());
+  for (const FilterPreview::Variant& variant : filters_.variants())
+    shown.versions.push_back(variant.result.field);
+  if (display_.deviation)
+    shown.original = touch_->scene().invert ? touch_->original().inverted() : touch_->original();
+  shown.marks = display_.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
+  const bool same =
+      shown.versions == shown_.versions && shown.original == shown_.original && shown.marks == shown_.marks;
+  if (!same) {
+    if (const auto status = picture_->update(shown); !status) {
+      message(status.error().line(), "");
+      return;
+    }
+    shown_ = std::move(shown);
+    stale_ = true;
+  }
+  if (!stale_ && figures_.upload.pending_tiles == 0) return;
+  stale_ = false;
+
+  render::FrameInput input;
+  input.view = view_;
+  input.arrangement = display_.split && shown_.versions.size() == 2 ? render::Arrangement::kSplit
+                                                                    : render::Arrangement::kSideBySide;
+  input.split = display_.split_at;
+  input.contours = display_.contours ? render::Contours::kShow : render::Contours::kHide;
+  input.marks_opacity = display_.marks_opacity;
+  input.map = display_.map;
+  input.theme = display_.theme;
+  input.decoration = display_.furniture ? render::Decoration::kFull : render::Decoration::kNone;
+  input.light_azimuth_deg = display_.light_azimuth_deg;
+  input.light_elevation_deg = display_.light_elevation_deg;
+  if (shown_.versions.size() > 1) {
+    input.titles.emplace_back("as it is");
+    for (const auto& variant : filters_.variants()) input.titles.push_back(filterName(variant.spec));
+  }
+  drawn_state_ = state;
+  const auto start = std::chrono::steady_clock::now();
+  const auto figures = picture_->draw(input);
+  if (!figures) {
+    end_ = tl::unexpected(figures.error());
+    return;
+  }
+  const auto took = std::chrono::steady_clock::now() - start;
+  figures_ = *figures;
+  frame_ms_ = std::chrono::duration<double, std::milli>(took).count();
+  frame_times_.add(std::chrono::duration_cast<std::chrono::nanoseconds>(took).count());
+  tiles_uploaded_ += figures_.upload.tiles;
+  bytes_uploaded_ += figures_.upload.bytes;
+  force_plot_.push_back(static_cast<float>(glm::length(state.force_n)));
+  if (force_plot_.size() > kPlot) force_plot_.erase(force_plot_.begin());
+  touch_->setView(view_.azimuth_deg, view_.zoom);
+}
+
+Report Workstation::report() const {
+  Report r{{"device", window_->device()}, {"frames", frames_}};
+  const haptic::TimingFigures frame = frame_times_.figures();
+  r["frame_p50_ms"] = ms(frame.p50_ns);
+  r["frame_p99_ms"] = ms(frame.p99_ns);
+  r["tiles_uploaded"] = tiles_uploaded_;
+  r["bytes_uploaded"] = bytes_uploaded_;
+  if (touch_) {
+    const haptic::TimingFigures late = touch_->timing().lateness.figures();
+    const haptic::TimingFigures edit = touch_->latency().figures();
+    r["ticks"] = late.count;
+    r["rate_hz"] = touch_->measuredRate();
+    r["lateness_p50_us"] = 1e3 * ms(late.p50_ns);
+    r["lateness_p99_us"] = 1e3 * ms(late.p99_ns);
+    r["lateness_worst_us"] = 1e3 * ms(late.worst_ns);
+    r["edits_shown"] = edit.count;
+    r["edit_to_pixel_p50_ms"] = ms(edit.p50_ns);
+    r["edit_to_pixel_p99_ms"] = ms(edit.p99_ns);
+    r["steps"] = touch_->history().number();
+    r["filters_applied"] = filters_.applied();
+    r["saved"] = save_path_;
+    r["unsaved_changes"] = unsaved();
+  }
+  r["validation_messages"] = window_->validationMessages();
+  return r;
+}
+
+}  // namespace fettle::app

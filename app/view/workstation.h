@@ -1,0 +1,189 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/command.h"
+#include "app/scan_options.h"
+#include "app/view/background.h"
+#include "app/view/filter_preview.h"
+#include "app/view/navigation.h"
+#include "app/view/recent_files.h"
+#include "app/view/shortcuts.h"
+#include "app/view/touch.h"
+#include "engine/compare/compare.h"
+#include "engine/io/import.h"
+#include "render/live_picture.h"
+#include "render/window.h"
+#include "render/window_still.h"
+
+namespace fettle::app {
+
+struct ViewOptions {
+  std::string scan;  ///< may be empty: a window to drop one on
+  std::optional<haptic::Scene> scene;
+  TouchOptions touch;
+  ScanOptions reading;
+  render::WindowOptions window;
+  double seconds = 0.0;  ///< ends after so long; 0 = not by itself
+};
+
+/// `fettle view`: one window, one field, one loop. The main thread goes round: take input, take in what loop
+/// and workers told, lay the panels out, draw what changed, show it. Between two looks of the device at a
+/// frame it goes on taking the cursor to the loop, so that strokes are as smooth on a slow device as on a
+/// fast one.
+///
+/// Threading: main.
+class Workstation {
+ public:
+  [[nodiscard]] static engine::Result<std::unique_ptr<Workstation>> create(const ViewOptions& options);
+  ~Workstation();
+
+  /// Until the user quits, the time is up or the job is cancelled. The report: see workstation.cpp.
+  [[nodiscard]] engine::Result<Report> run(engine::JobControl& job);
+
+ private:
+  enum class Dialog : std::uint8_t { kNone, kOpen, kSaveAs, kExport, kUnsaved, kShortcuts, kMessage };
+  enum class Adjusting : std::uint8_t { kNothing, kRadius, kDepth };
+  // What the user was about to do when unsaved work stood in the way.
+  enum class AfterSaving : std::uint8_t { kNothing, kQuit, kOpen };
+
+  struct Display {
+    bool marks = true;
+    bool deviation = false;
+    bool contours = false;
+    bool split = true;
+    double split_at = 0.5;
+    render::ColourMap map = render::ColourMap::kAuto;
+    render::Theme theme = render::Theme::kDark;
+    float marks_opacity = 0.65F;
+    float light_azimuth_deg = 135.0F;
+    float light_elevation_deg = 45.0F;
+    bool furniture = true;
+  };
+  struct Saved {
+    std::string path;
+  };
+
+  explicit Workstation(const ViewOptions& options);
+
+  // workstation.cpp: the round
+  void goRound();
+  void whileWaiting();
+  void frame();
+  void takeResults();
+  void drawPicture();
+  [[nodiscard]] Report report() const;
+  [[nodiscard]] bool active() const;
+
+  // workstation_input.cpp
+  void handleInput();
+  void toStylus(const render::InputEvent& event);
+  void handle(const render::InputEvent& event);
+  void handleKey(const render::InputEvent& event);
+  bool handleAdjusting(const render::InputEvent& event);
+  void act(Action action);
+  void chooseTool(std::optional<haptic::Tool> tool);
+  void setBrushRadius(double samples);
+  void setPressDepth(double mm);
+  void clearMarks();
+  [[nodiscard]] bool inPicture(double x, double y) const;
+  [[nodiscard]] std::optional<render::Picked> pick(double x, double y) const;
+  [[nodiscard]] Drag dragOf(const render::InputEvent& event) const;
+
+  // workstation_files.cpp
+  void open(const std::string& path);
+  void askToOpen(const std::string& path);
+  void takeImported(engine::Imported imported);
+  void save();
+  void startSaving(const std::string& path, bool keep_path);
+  void askToQuit();
+  void goOn();  // with what waited for saving
+  [[nodiscard]] bool unsaved() const;
+  [[nodiscard]] std::string suggestedPath() const;
+  void dialogs();
+  void pathDialog(const char* title, const char* button);
+  void message(std::string what, std::string remedy);
+
+  // workstation_panels.cpp
+  void panels();
+  void menuBar();
+  void menuItem(Action action, bool enabled = true, bool ticked = false);
+  void sidePanel();
+  void toolPanel();
+  void statusPanel();
+  void historyPanel();
+  void filterPanel();
+  void displayPanel();
+  void hapticsPanel();
+  void deviationPanel();
+  void statusBar();
+  void splitLine();
+
+  ViewOptions options_;
+  std::unique_ptr<render::Window> window_;
+  std::unique_ptr<render::WindowStill> picture_;
+  RecentFiles recent_;
+  std::vector<render::InputEvent> input_;
+
+  // The field and what is done to it.
+  std::string path_;  // of the scan
+  std::string loading_path_;
+  std::string save_path_;  // where Ctrl+S writes to; empty until chosen
+  std::string saving_path_;
+  engine::Version saved_;  // upright, as the file holds it
+  std::unique_ptr<Touch> touch_;
+  Background<engine::Imported> loading_;
+  Background<engine::Version> saving_;
+  Background<engine::Deviation> measuring_;
+  bool keep_save_path_ = false;
+  engine::Version measured_;  // what measuring_ works on, or deviation_ is of
+  std::optional<engine::Deviation> deviation_;
+  FilterPreview filters_;
+  std::vector<Notice> notices_;
+
+  // The picture.
+  render::View view_;
+  Display display_;
+  Habits habits_ = Habits::kBlender;
+  render::FrameStatistics figures_;
+  render::Shown shown_;
+  bool stale_ = true;
+  haptic::LoopState drawn_state_;
+  double frame_ms_ = 0.0;
+  haptic::TimingHistogram frame_times_;
+  std::int64_t tiles_uploaded_ = 0;
+  std::int64_t bytes_uploaded_ = 0;
+  std::uint64_t frames_ = 0;
+
+  // The hand.
+  bool tool_on_ = false;  // the left button is the stylus
+  bool stylus_held_ = false;
+  Drag drag_ = Drag::kNone;
+  bool dragging_split_ = false;
+  double last_x_ = 0.0, last_y_ = 0.0;
+  std::optional<render::Picked> under_cursor_;
+  Adjusting adjusting_ = Adjusting::kNothing;
+  double adjust_from_ = 0.0, adjust_x_ = 0.0;
+  std::string typed_;
+  double press_mm_ = 0.0;
+
+  // Panels.
+  Dialog dialog_ = Dialog::kNone;
+  bool dialog_fresh_ = false;
+  std::string dialog_path_;
+  Notice message_;
+  AfterSaving after_saving_ = AfterSaving::kNothing;
+  std::string open_next_;
+  bool side_panel_ = true;
+  float side_width_ = 0.0F;
+  bool quit_ = false;
+  std::vector<float> force_plot_;
+  engine::Status end_;
+  std::string status_text_;
+};
+
+}  // namespace fettle::app

@@ -1,0 +1,161 @@
+#include "render/ui_layer.h"
+
+#include <array>
+#include <cmath>
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
+
+#include "render/font_data.h"
+
+namespace fettle::render {
+namespace {
+
+using Layout = vk::ImageLayout;
+using Stage = vk::PipelineStageFlagBits2;
+using Access = vk::AccessFlagBits2;
+
+constexpr float kText_px = 15.0F;
+
+// ImGui's back end reports through a function without a place for context; the room's rule is to throw.
+void check(VkResult result) {
+  if (result < 0) throw vk::SystemError(vk::make_error_code(static_cast<vk::Result>(result)), "ImGui");
+}
+
+// One pass over the image that already holds the picture.
+vk::raii::RenderPass makePass(const vk::raii::Device& device) {
+  vk::AttachmentDescription colour;
+  colour.setFormat(UiLayer::kFormat)
+      .setLoadOp(vk::AttachmentLoadOp::eLoad)
+      .setStoreOp(vk::AttachmentStoreOp::eStore)
+      .setStencilLoadOp(vk::AttachmentLoadOp::eDontCare)
+      .setStencilStoreOp(vk::AttachmentStoreOp::eDontCare)
+      .setInitialLayout(Layout::eColorAttachmentOptimal)
+      .setFinalLayout(Layout::eColorAttachmentOptimal);
+  const vk::AttachmentReference reference{0, Layout::eColorAttachmentOptimal};
+  vk::SubpassDescription subpass;
+  subpass.setPipelineBindPoint(vk::PipelineBindPoint::eGraphics).setColorAttachments(reference);
+  vk::RenderPassCreateInfo info;
+  return {device, info.setAttachments(colour).setSubpasses(subpass)};
+}
+
+}  // namespace
+
+UiLayer::UiLayer(Context& context, GLFWwindow* window, double scale, const std::string& layout_file)
+    : context_(context), layout_file_(layout_file) {
+  const vk::raii::Device& device = context.device();
+  const vk::DescriptorPoolSize size{vk::DescriptorType::eCombinedImageSampler, 4};
+  vk::DescriptorPoolCreateInfo pool{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 4};
+  descriptors_ = vk::raii::DescriptorPool(device, pool.setPoolSizes(size));
+  pass_ = makePass(device);
+
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = layout_file_.empty() ? nullptr : layout_file_.c_str();
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  io.ConfigWindowsMoveFromTitleBarOnly = true;
+  makeStyle(scale);
+  ImFontConfig font;
+  font.FontDataOwnedByAtlas = false;
+  // Latin, Greek, arrows, and the few signs that figures need.
+  static constexpr std::array<ImWchar, 9> kLetters{0x20,   0x17F,  0x370,  0x3FF, 0x2010,
+                                                   0x2122, 0x2190, 0x22FF, 0};
+  const std::span<const std::uint8_t> regular = regularFont();
+  // ImGui wants a pointer it may write to, and writes nothing to data it does not own.
+  io.Fonts->AddFontFromMemoryTTF(const_cast<std::uint8_t*>(regular.data()), static_cast<int>(regular.size()),
+                                 std::round(kText_px * static_cast<float>(scale)), &font, kLetters.data());
+  ImGui_ImplGlfw_InitForVulkan(window, true);
+  ImGui_ImplVulkan_InitInfo init{};
+  init.Instance = *context.instance();
+  init.PhysicalDevice = *context.physical();
+  init.Device = *device;
+  init.QueueFamily = context.queueFamily();
+  init.Queue = *context.queue();
+  init.DescriptorPool = *descriptors_;
+  init.MinImageCount = 2;
+  init.ImageCount = 2;
+  init.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+  init.CheckVkResultFn = &check;
+  ImGui_ImplVulkan_Init(&init, *pass_);
+  context.run(
+      [](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
+  ImGui_ImplVulkan_DestroyFontUploadObjects();
+}
+
+UiLayer::~UiLayer() {
+  try {
+    context_.device().waitIdle();
+  } catch (const vk::SystemError&) {
+    // A lost device has nothing under way.
+  }
+  ImGui_ImplVulkan_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+void UiLayer::makeStyle(double scale) const {
+  ImGui::StyleColorsDark();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 0.0F;
+  style.FrameRounding = 3.0F;
+  style.GrabRounding = 3.0F;
+  style.WindowBorderSize = 0.0F;
+  style.ScaleAllSizes(static_cast<float>(scale));
+}
+
+void UiLayer::fit(vk::Extent2D extent) {
+  if (image_.extent() == extent) return;
+  using Usage = vk::ImageUsageFlagBits;
+  context_.device().waitIdle();
+  framebuffer_.clear();
+  image_ = GpuImage(context_, kFormat, extent, 1, GpuImage::Kind::kPlane,
+                    Usage::eColorAttachment | Usage::eTransferDst | Usage::eTransferSrc,
+                    vk::ImageAspectFlagBits::eColor);
+  const vk::ImageView view = image_.view();
+  vk::FramebufferCreateInfo info;
+  info.setRenderPass(*pass_)
+      .setAttachments(view)
+      .setWidth(extent.width)
+      .setHeight(extent.height)
+      .setLayers(1);
+  framebuffer_ = vk::raii::Framebuffer(context_.device(), info);
+}
+
+void UiLayer::beginFrame() {
+  ImGui_ImplVulkan_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+}
+
+void UiLayer::endFrame() {
+  ImGui::Render();
+}
+
+void UiLayer::clear(const vk::raii::CommandBuffer& commands) const {
+  change(commands, image_, Layout::eUndefined, Layout::eTransferDstOptimal, Stage::eAllTransfer,
+         Access::eTransferRead, Stage::eAllTransfer, Access::eTransferWrite);
+  commands.clearColorImage(image_.image(), Layout::eTransferDstOptimal,
+                           vk::ClearColorValue(std::array<float, 4>{0.09F, 0.09F, 0.10F, 1.0F}),
+                           image_.range());
+  // Two writes by transfers in a row want their order said.
+  change(commands, image_, Layout::eTransferDstOptimal, Layout::eTransferDstOptimal, Stage::eAllTransfer,
+         Access::eTransferWrite, Stage::eAllTransfer, Access::eTransferWrite);
+}
+
+void UiLayer::draw(const vk::raii::CommandBuffer& commands) const {
+  change(commands, image_, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal, Stage::eAllTransfer,
+         Access::eTransferWrite, Stage::eColorAttachmentOutput,
+         Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
+  vk::RenderPassBeginInfo begin;
+  begin.setRenderPass(*pass_).setFramebuffer(*framebuffer_).setRenderArea({{0, 0}, image_.extent()});
+  commands.beginRenderPass(begin, vk::SubpassContents::eInline);
+  ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *commands);
+  commands.endRenderPass();
+  change(commands, image_, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal,
+         Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eAllTransfer,
+         Access::eTransferRead);
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+
+#include "render/memory.h"
+
+struct GLFWwindow;
+
+namespace fettle::render {
+
+/// Dear ImGui on this room's device: fonts, the render pass that its back end asks for, and the image in
+/// which pictures and panels come together. The image holds sRGB code values without saying so (UNORM), since
+/// that is what ImGui's colours are and how it blends them.
+///
+/// Threading: main thread. Throws vk::SystemError.
+class UiLayer {
+ public:
+  static constexpr vk::Format kFormat = vk::Format::eR8G8B8A8Unorm;
+
+  /// `scale`: of the display. `layout_file`: where ImGui keeps the panels' places; empty: nowhere.
+  UiLayer(Context& context, GLFWwindow* window, double scale, const std::string& layout_file);
+  ~UiLayer();
+  UiLayer(const UiLayer&) = delete;
+  UiLayer& operator=(const UiLayer&) = delete;
+
+  void fit(vk::Extent2D extent);
+  void beginFrame();
+  /// Ends the frame's panels and keeps what they draw.
+  void endFrame();
+
+  /// The image is the target of transfers first (bring()), then of the panels (draw()), then ready to be
+  /// copied from.
+  void clear(const vk::raii::CommandBuffer& commands) const;
+  void draw(const vk::raii::CommandBuffer& commands) const;
+  [[nodiscard]] const GpuImage& image() const noexcept { return image_; }
+
+ private:
+  void makeStyle(double scale) const;
+
+  Context& context_;
+  std::string layout_file_;  // ImGui keeps a pointer to its text
+  vk::raii::DescriptorPool descriptors_ = nullptr;
+  vk::raii::RenderPass pass_ = nullptr;
+  GpuImage image_;
+  vk::raii::Framebuffer framebuffer_ = nullptr;
+};
+
+}  // namespace fettle::render
