@@ -47,6 +47,9 @@ Status checkFile(const std::string& path) {
 
 struct ReadingConnection::Copies {
   fs::path folder;
+  explicit Copies(fs::path made) : folder(std::move(made)) {}
+  Copies(const Copies&) = delete;
+  Copies& operator=(const Copies&) = delete;
   ~Copies() {
     std::error_code ignored;
     fs::remove_all(folder, ignored);
@@ -68,7 +71,7 @@ Result<ReadingConnection> ReadingConnection::open(const std::string& path) {
       if (error || mkdtemp(name.data()) == nullptr)
         return inputError("the session needs a folder for a copy, and there is none", path,
                           "set TMPDIR to a folder you may write to");
-      connection.copies_ = std::make_shared<Copies>(Copies{name});
+      connection.copies_ = std::make_shared<Copies>(name);
       at = (fs::path(name) / "copy.fettle").string();
       fs::copy_file(path, at, error);
       if (!error) fs::copy_file(path + "-wal", at + "-wal", error);

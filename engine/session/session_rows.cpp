@@ -92,7 +92,7 @@ Status settleOldSession(const std::string& path, const std::string& shown) {
 
 Status beginBuilding(Database& database) {
   return database.execute(
-      fmt::format("PRAGMA page_size={}; PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; PRAGMA "
+      fmt::format("PRAGMA page_size={}; PRAGMA journal_mode=MEMORY; PRAGMA synchronous=OFF; PRAGMA "
                   "locking_mode=EXCLUSIVE; PRAGMA cache_size=-16384;",
                   kSessionPageBytes));
 }

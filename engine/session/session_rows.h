@@ -30,8 +30,8 @@ namespace fettle::engine {
 /// that it will not be taken for the new one's. The caller holds the lock.
 [[nodiscard]] Status settleOldSession(const std::string& path, const std::string& shown);
 
-/// Pragmas for a file under a temporary name: no log and no flushing, the whole file is flushed before it is
-/// named.
+/// Pragmas for a file under a temporary name: no file beside it and no flushing, for it is flushed whole
+/// before it is named. Its journal is in memory and nearly empty: new pages have nothing to be put back to.
 [[nodiscard]] Status beginBuilding(Database& database);
 
 }  // namespace fettle::engine

@@ -8,7 +8,7 @@
 namespace fettle::engine {
 
 /// Waits this long for a reader that brings a session in order; a writer will not be waited for.
-inline constexpr int kLockWaitMs = 2000;
+inline constexpr int kLockWaitMs = 1000;
 
 /// The right to write a session to `real_path` (links followed). Error: someone else has it.
 [[nodiscard]] Result<SessionLock> lockSession(const std::string& real_path, const std::string& shown);

@@ -1,7 +1,7 @@
-// session_kill_driver FILE SEED WIDTH HEIGHT create|resume
+// session_kill_driver FILE SEED WIDTH HEIGHT create|resume READY
 // Works on a session as Play does, as fast as the writer keeps up with, until it is killed. Tells on stdout,
 // a line each:
-//   ready          the session exists and is open
+//   ready          the session exists and is open; the file READY is made as well
 //   begun N        action N is about to be handed to the writer
 //   committed N    the writer has reported that nothing waits any more
 
@@ -33,7 +33,7 @@ int refuse(const Error& error) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 6) return 2;
+  if (count != 7) return 2;
   const std::string path = arguments[1];
   const std::uint64_t seed = std::strtoull(arguments[2], nullptr, 10);
   SessionWriterOptions options;
@@ -53,6 +53,7 @@ int main(int count, char** arguments) {
     play = std::make_unique<Play>(seed, resumed->session);
   }
   tell("ready\n");
+  if (std::FILE* ready = std::fopen(arguments[6], "w")) std::fclose(ready);
   for (;;) {
     const std::int64_t n = play->actions() + 1;
     tell(fmt::format("begun {}\n", n));
