@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <new>
 
+#include <sys/mman.h>
+
 namespace fettle::engine {
 
 template <class T, std::size_t kSlabBytes>
@@ -15,7 +17,13 @@ auto ObjectPool<T, kSlabBytes>::addSlab() noexcept -> Slab* {
   if (slab_count_ == kMaxSlabs) return nullptr;
   void* memory = std::aligned_alloc(kSlabBytes, kSlabBytes);
   if (memory == nullptr) return nullptr;
-  // Only the header and the counters are touched: pages of items come from the system when first written.
+  // From the second slab on (small fields stay small) large pages, because a stroke wanders over more tiles
+  // than the processor keeps small pages in mind: 3 % of a tick on 4096 x 4096 samples. And all of them now,
+  // because the haptic thread must not wait for the system to bring one. Both are wishes that may be refused.
+  if (slab_count_ > 0) {
+    (void)madvise(memory, kSlabBytes, MADV_HUGEPAGE);
+    (void)madvise(memory, kSlabBytes, MADV_POPULATE_WRITE);
+  }
   Slab* slab = static_cast<Slab*>(memory);
   slab->pool = this;
   slab->first = static_cast<std::uint32_t>(slab_count_ * kCount);
