@@ -20,8 +20,10 @@ engine::Result<Report> convert(const Options& options, engine::JobControl& job) 
     return tl::unexpected(status.error());
   const auto imported = loadScan(options.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  const auto written = engine::exportField(imported->field, options.out, {}, job);
+  auto written = engine::exportField(imported->field, options.out, {}, job);
   if (!written) return tl::unexpected(written.error());
+  if (imported->field.reader().root().marked_children != 0 && written->format != "Fettle")
+    written->warnings.push_back("the marks of the session are not kept, the format has none");
   for (const std::string& warning : written->warnings) warn(options.out + ": " + warning);
   return Report{{"format", written->format}, {"from", imported->format}, {"warnings", written->warnings}};
 }
