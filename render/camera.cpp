@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <glm/geometric.hpp>
@@ -90,6 +91,7 @@ Camera Camera::fit(const View& view, const Box& shown, const Box& drawn, const R
     const double far_distance = std::max(distance - far, 1.001 * near_distance);
     camera.pixels_per_mm_ = view.zoom * 0.5 * plot.height / (kTanHalfAngle * distance);
     const double range = far_distance / (far_distance - near_distance);
+    camera.near_w_ = near_distance;
     from_view[0][0] = view.zoom / (kTanHalfAngle * aspect);
     from_view[1][1] = -view.zoom / kTanHalfAngle;
     from_view[2][2] = -range;
@@ -116,6 +118,23 @@ Ray Camera::rayAt(const glm::dvec2& pixel) const noexcept {
   const glm::dvec4 far = scene_from_clip_ * glm::dvec4(x, y, 1.0, 1.0);
   const glm::dvec3 from = glm::dvec3(near) / near.w;
   return {from, glm::normalize(glm::dvec3(far) / far.w - from)};
+}
+
+double Camera::movesAtMost(const glm::dvec3& step, const Box& box) const noexcept {
+  const glm::dvec4 move = clip_from_scene_ * glm::dvec4(step, 0.0);
+  double w = std::numeric_limits<double>::infinity();
+  for (const glm::dvec3& corner : corners(box))
+    w = std::min(w, (clip_from_scene_ * glm::dvec4(corner, 1.0)).w);
+  // (x + dx) / (w + dw) - x / w = (dx - (x / w) dw) / (w + dw), and |x / w| <= 1 for what is seen. The end of
+  // the move is in the box or a step from it, hence the smaller w.
+  w = std::max(w - std::abs(move.w), near_w_);
+  return std::hypot((std::abs(move.x) + std::abs(move.w)) * 0.5 * plot_.width,
+                    (std::abs(move.y) + std::abs(move.w)) * 0.5 * plot_.height) /
+         w;
+}
+
+double Camera::depthOf(const glm::dvec3& point) const noexcept {
+  return -glm::dot(to_viewer_, point);
 }
 
 bool Camera::misses(const Box& box) const noexcept {

@@ -54,6 +54,13 @@ class Camera {
   /// What lies under a place in the picture.
   [[nodiscard]] Ray rayAt(const glm::dvec2& pixel) const noexcept;
 
+  /// How far a point of the box can move in the picture when it moves by at most `step` in the scene, as a
+  /// bound [px]; of points and moves whose visible part counts: what lies before the near plane does not.
+  [[nodiscard]] double movesAtMost(const glm::dvec3& step, const Box& box) const noexcept;
+
+  /// Distance from the viewer, for sorting: grows away from it.
+  [[nodiscard]] double depthOf(const glm::dvec3& point) const noexcept;
+
   /// Whether no part of the box can be in the plot. Conservative: false when in doubt.
   [[nodiscard]] bool misses(const Box& box) const noexcept;
 
@@ -62,6 +69,7 @@ class Camera {
   glm::dmat4 scene_from_clip_{1.0};
   glm::dvec3 right_{1.0, 0.0, 0.0}, up_{0.0, 1.0, 0.0}, to_viewer_{0.0, 0.0, 1.0};
   double pixels_per_mm_ = 1.0;
+  double near_w_ = 1.0;  // clip w on the near plane; 1 when orthographic
   Rectangle plot_;
 };
 

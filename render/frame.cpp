@@ -78,7 +78,7 @@ engine::Result<double> Frame::draw(const PicturePlan& plan, std::span<const Pane
   const int samples = options.samples_per_side;
 
   const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, 3 * panel_count},
-                         vk::DescriptorPoolSize{vk::DescriptorType::eSampledImage, 8 * panel_count},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eSampledImage, 10 * panel_count},
                          vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, 3 * panel_count}};
   vk::DescriptorPoolCreateInfo pool_info{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
                                          3 * panel_count};
@@ -133,6 +133,7 @@ engine::Result<double> Frame::draw(const PicturePlan& plan, std::span<const Pane
     for (const auto& [set, list] : {std::pair{*r.surface_set, &patches}, {*r.wall_set, &walls}}) {
       writes.push_back(bufferWrite(set, gpu::kBindPanel, vk::DescriptorType::eUniformBuffer, block));
       writes.push_back(imageWrite(set, gpu::kBindHeights, heights));
+      writes.push_back(imageWrite(set, gpu::kBindShade, heights));
       writes.push_back(imageWrite(set, gpu::kBindMarks, marks));
       writes.push_back(imageWrite(set, gpu::kBindOriginal, original));
       writes.push_back(bufferWrite(set, gpu::kBindPatches, vk::DescriptorType::eStorageBuffer, *list));

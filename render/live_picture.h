@@ -137,16 +137,16 @@ struct LiveOptions {
   int max_image_side = 0;  ///< as RendererOptions
   /// Bytes moved a frame at most while an edit or a filter result comes over; the rest waits for the next
   /// one.
-  std::int64_t upload_bytes_a_frame = std::int64_t{24} << 20;
+  std::int64_t upload_bytes_a_frame = std::int64_t{6} << 20;
 };
 
 /// A field that changes, drawn many times a second.
 ///
 /// Cost follows the screen. Each frame chooses square patches of kPatchCells x kPatchCells cells, each with
 /// its own stride, coarse where that shows less than `error_px`, by measured deviations (render/detail.h).
-/// Patches of different strides meet in skirts: narrow strips that hang from a patch's edge as deep as the
-/// two can differ and lean outward by a quarter of a pixel, so that no ray passes between, straight down
-/// included.
+/// Where patches of different strides meet, a seam closes the gap: a strip between the two edges that
+/// overlaps both by a quarter of a pixel on the screen, so that no ray passes between, straight down
+/// included. A coarse cell that stands in for a wall takes colour and light from the height it is drawn at.
 ///
 /// Uploads go through a persistently mapped ring and wait for nothing: the frames in flight read the image as
 /// it was, the next one as it is. Only the rectangle of each changed tile moves, with copies of every 4th,

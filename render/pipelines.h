@@ -3,7 +3,7 @@
 #include <compare>
 #include <map>
 
-#include "render/context.h"
+#include "render/target.h"
 
 namespace fettle::render {
 
@@ -15,18 +15,24 @@ struct SurfaceVariant {
   bool deviation = false;
   bool contours = false;
   bool smooth = false;
+  bool holes = true;
+  bool cell_slopes = false;
   friend auto operator<=>(const SurfaceVariant&, const SurfaceVariant&) = default;
 };
 
 /// The pipelines, made when first asked for and kept. Throws vk::SystemError.
 class Pipelines {
  public:
-  explicit Pipelines(const Context& context);
+  /// For pictures of this format.
+  explicit Pipelines(const Context& context, vk::Format colour = kColourFormat);
 
   [[nodiscard]] vk::Pipeline surface(const SurfaceVariant& variant);
   enum class Paged { kNo, kYes };
   [[nodiscard]] vk::Pipeline wall(Paged paged);
+  [[nodiscard]] vk::Pipeline seam(const SurfaceVariant& variant);
   [[nodiscard]] vk::Pipeline floor();
+  enum class Lines { kOnTop, kInScene };
+  [[nodiscard]] vk::Pipeline lines(Lines depth);
   [[nodiscard]] vk::Pipeline quads();
 
   /// Layouts of the surface's and the picture's set 0 and pipelines (shaders/layout.h names the bindings).
@@ -42,10 +48,12 @@ class Pipelines {
   [[nodiscard]] vk::raii::Pipeline make(const Recipe& recipe);
 
   const Context& context_;
+  vk::Format colour_;
   vk::raii::DescriptorSetLayout scene_set_ = nullptr, picture_set_ = nullptr;
   vk::raii::PipelineLayout scene_layout_ = nullptr, picture_layout_ = nullptr;
-  std::map<SurfaceVariant, vk::raii::Pipeline> surfaces_;
+  std::map<SurfaceVariant, vk::raii::Pipeline> surfaces_, seams_;
   std::map<Paged, vk::raii::Pipeline> walls_;
+  std::map<Lines, vk::raii::Pipeline> lines_;
   vk::raii::Pipeline floor_ = nullptr, quads_ = nullptr;
   std::size_t made_ = 0;
 };

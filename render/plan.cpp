@@ -46,6 +46,10 @@ engine::Status check(const PictureSpec& spec) {
   if (spec.range && !(std::isfinite(spec.range->low) && std::isfinite(spec.range->high) &&
                       spec.range->low < spec.range->high))
     return inputError("the range of the colours is empty", "picture", "give a low end below the high end");
+  return {};
+}
+
+engine::Status checkFields(const PictureSpec& spec) {
   if (spec.field.empty() || (spec.compare && spec.compare->empty()) ||
       (spec.deviation_from && spec.deviation_from->empty()))
     return inputError("there is no field to draw", "picture");
@@ -90,25 +94,50 @@ double chooseExaggeration(double relief_mm, double extent_mm) {
   return std::clamp(roundDown125(0.18 / ratio), 1e-36, 1e36);
 }
 
+PictureSpans spansOf(std::span<const engine::Version> fields,
+                     const std::optional<engine::Version>& deviation_from) {
+  PictureSpans spans;
+  const engine::LengthUnit& unit = fields.front().grid().height_unit;
+  for (const engine::Version& v : fields) {
+    ValueSpan span = heightSpan(v);
+    const double to_first = v.grid().height_unit.mm / unit.mm;
+    for (ValueRange* r : {&span.robust, &span.extreme}) *r = {r->low * to_first, r->high * to_first};
+    spans.heights = join(spans.heights, span);
+    if (deviation_from) spans.colours = join(spans.colours, deviationSpan(v, *deviation_from));
+  }
+  if (!deviation_from) spans.colours = spans.heights;
+  return spans;
+}
+
 engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
   if (engine::Status ok = check(spec); !ok) return tl::unexpected(ok.error());
-  PicturePlan plan;
-  std::vector<const engine::Version*> fields{&spec.field};
-  if (spec.compare) fields.push_back(&*spec.compare);
+  if (engine::Status ok = checkFields(spec); !ok) return tl::unexpected(ok.error());
+  std::vector<engine::Version> fields{spec.field};
+  if (spec.compare) fields.push_back(*spec.compare);
+  const bool titled = !spec.title_left.empty() || (spec.compare && !spec.title_right.empty());
+  engine::Result<PicturePlan> plan =
+      layPicture(spec, fields, spansOf(fields, spec.deviation_from),
+                 layOut(spec.view, spec.decoration, static_cast<int>(fields.size()),
+                        titled ? Titles::kAbove : Titles::kNone));
+  if (!plan) return plan;
+  for (PanelPlan& panel : plan->panels)
+    panel.detail = chooseDetail(panel.field, panel.placing, panel.camera,
+                                spec.cell_px / spec.samples_per_side, panel.floor_z, panel.cut_z);
+  plan->furniture.titles = {spec.title_left};
+  if (spec.compare) plan->furniture.titles.push_back(spec.title_right);
+  return plan;
+}
 
-  // Geometry. Both fields share one reference and one unit of height: the first one's.
-  const engine::LengthUnit& unit = spec.field.grid().height_unit;
-  ValueSpan heights, colours;
+engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const engine::Version> fields,
+                                       const PictureSpans& spans, Layout layout) {
+  if (engine::Status ok = check(spec); !ok) return tl::unexpected(ok.error());
+  PicturePlan plan;
+  plan.layout = std::move(layout);
+  // Geometry. All fields share one reference and one unit of height: the first one's.
+  const engine::LengthUnit& unit = fields.front().grid().height_unit;
+  const ValueSpan &heights = spans.heights, &colours = spans.colours;
   glm::dvec2 extent{0.0};
-  for (const engine::Version* v : fields) {
-    ValueSpan span = heightSpan(*v);
-    const double to_first = v->grid().height_unit.mm / unit.mm;
-    for (ValueRange* r : {&span.robust, &span.extreme}) *r = {r->low * to_first, r->high * to_first};
-    heights = join(heights, span);
-    if (spec.deviation_from) colours = join(colours, deviationSpan(*v, *spec.deviation_from));
-    extent = glm::max(extent, placingOf(v->grid()).extent());
-  }
-  if (!spec.deviation_from) colours = heights;
+  for (const engine::Version& v : fields) extent = glm::max(extent, placingOf(v.grid()).extent());
   const double relief = heights.robust.high - heights.robust.low;  // [height_unit]
   const double widest = std::max(extent.x, extent.y);
   plan.exaggeration = spec.view.vertical_exaggeration > 0.0 ? spec.view.vertical_exaggeration
@@ -137,9 +166,6 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
     plan.range = {-limit, limit};
   }
 
-  const bool titled = !spec.title_left.empty() || (spec.compare && !spec.title_right.empty());
-  plan.layout = layOut(spec.view, spec.decoration, static_cast<int>(fields.size()),
-                       titled ? Titles::kAbove : Titles::kNone);
   const std::vector<Tick> steps = ticks(plan.range.low, plan.range.high, 13);
   const double contour_step =
       steps.size() > 1 ? steps[1].value - steps[0].value : plan.range.high - plan.range.low;
@@ -151,7 +177,9 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
       return inputError(fmt::format("a picture of {} x {} pixels leaves no room for the surface",
                                     spec.view.width, spec.view.height),
                         "picture size", "make it larger, or leave the furniture out");
-    panel.field = *fields[i];
+    panel.field = fields[i];
+    panel.floor_z = floor_z;
+    panel.cut_z = cut_z;
     panel.placing = placingOf(panel.field.grid());
     const glm::dvec2 half = 0.5 * extent;
     const Box shown{{-half.x, -half.y, floor_z}, {half.x, half.y, top_z}};
@@ -165,8 +193,6 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
     panel.camera = Camera::fit(view, shown, drawn, inner);
     const glm::dvec2 cell_rays =
         cellPixels(panel.placing, panel.camera) * static_cast<double>(spec.samples_per_side);
-    panel.detail = chooseDetail(panel.field, panel.placing, panel.camera,
-                                spec.cell_px / spec.samples_per_side, floor_z, cut_z);
     const double larger = std::max(cell_rays.x, cell_rays.y);
     panel.smooth = larger > 1.5;
 
@@ -174,6 +200,10 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
     const double own_unit =
         panel.field.grid().height_unit.mm / unit.mm;  // first's units a unit of this field
     const double share = 1.0 / own_unit;
+    panel.reference = reference * share;
+    panel.mm_per_unit = mm_per_unit * own_unit;
+    panel.lowest = lowest_drawn * share;
+    panel.highest = highest_drawn * share;
     u = {};
     u.clip_from_scene = glm::mat4(panel.camera.clipFromScene());
     u.placing = glm::vec4(glm::dvec4(panel.placing.first, panel.placing.spacing));
@@ -192,6 +222,13 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
     u.no_data = vec4Of(plan.palette.no_data, 1.0);
     u.wall = vec4Of(plan.palette.wall, 1.0);
     u.size = glm::ivec4(panel.placing.size, panel.placing.true_size);
+    u.shade = glm::ivec4(0, 0, panel.placing.size);
+    // A ray up or down the picture; seen from straight above nothing is drawn beside its sample.
+    // In perspective that holds for the middle of the picture alone.
+    const double least = spec.view.projection == Projection::kPerspective ? 0.3 : 0.0;
+    const double upright =
+        std::max(least, std::abs(panel.camera.up().z)) * panel.camera.pixelsPerMm() * spec.samples_per_side;
+    u.seam = glm::vec4(0.0F, static_cast<float>(std::min(1e30, 1.0 / std::max(upright, 1e-30))), 0.0F, 0.0F);
     // Differences over about the width of a ray: finer ones would be noise that no pixel can show.
     u.paging.w =
         std::max(1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::min(cell_rays.x, cell_rays.y)))));
@@ -206,13 +243,13 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
   f.above = !colours.empty && colours.extreme.high > plan.range.high;
   f.quantity = quantity == Quantity::kDeviation ? "deviation" : "height";
   f.height_unit = unit;
-  f.lateral_unit = spec.field.grid().lateral_unit;
+  f.lateral_unit = fields.front().grid().lateral_unit;
   f.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
   f.exaggeration = plan.exaggeration;
   f.approximate_scale = spec.view.projection == Projection::kPerspective;
-  for (const engine::Version* v : fields) {
-    f.marks = f.marks || (spec.marks == MarksOverlay::kShow && anyMark(*v));
-    f.no_data = f.no_data || anyHole(*v);
+  for (const engine::Version& v : fields) {
+    f.marks = f.marks || (spec.marks == MarksOverlay::kShow && anyMark(v));
+    f.no_data = f.no_data || anyHole(v);
   }
   f.marks_opacity = static_cast<float>(spec.marks_opacity);
   if (f.below || f.above) {
@@ -226,8 +263,6 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
   }
   if (quantity == Quantity::kDeviation && !colours.empty && colours.extreme == ValueRange{})
     f.note = "no deviation";
-  f.titles = {spec.title_left};
-  if (spec.compare) f.titles.push_back(spec.title_right);
   return plan;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/base/error.h"
@@ -20,6 +22,12 @@ struct PanelPlan {
   Placing placing;
   Detail detail;
   bool smooth = false;          ///< specialisation: cells larger than rays
+  double reference = 0.0;       ///< height at scene z 0 [height_unit of the field]
+  double mm_per_unit = 1.0;     ///< scene mm, exaggeration included, a height unit
+  double lowest = 0.0;          ///< heights below are drawn at this one [height_unit]
+  double highest = 0.0;         ///< and those above at this
+  double floor_z = 0.0;         ///< of the plate under the surface [scene mm]
+  double cut_z = 0.0;           ///< nothing is drawn above [scene mm]
   gpu::PanelUniforms uniforms;  ///< all but `paging.xyz`, which the field's texture knows
 };
 
@@ -33,6 +41,23 @@ struct PicturePlan {
   ValueRange range;
   double exaggeration = 1.0;
 };
+
+/// What the fields of a picture hold: heights of all of them in the first one's unit, and what the colours
+/// show.
+struct PictureSpans {
+  ValueSpan heights;
+  ValueSpan colours;
+};
+/// Reads all fields (and the original): time follows their size.
+[[nodiscard]] PictureSpans spansOf(std::span<const engine::Version> fields,
+                                   const std::optional<engine::Version>& deviation_from);
+
+/// A picture with known spans in a known layout, one field a plot; time does not follow the fields' size. All
+/// but the patches. spec.field, spec.compare and spec.title_.. are not looked at. Errors (kInput): as
+/// planPicture.
+[[nodiscard]] engine::Result<PicturePlan> layPicture(const PictureSpec& spec,
+                                                     std::span<const engine::Version> fields,
+                                                     const PictureSpans& spans, Layout layout);
 
 /// Heights are drawn as scene z = (height - reference) * height_unit.mm * exaggeration with the reference at
 /// the middle of the robust span of both fields; spikes beyond it are cut half a span above and just over the

@@ -2,9 +2,11 @@
 #include "layout.h"
 
 layout(constant_id = kSpecPaged) const bool kPaged = false;
+layout(constant_id = kSpecHoles) const bool kHoles = true;
 
 layout(set = 0, binding = kBindPanel, std140) uniform PanelBlock { PanelUniforms panel; };
 layout(set = 0, binding = kBindHeights) uniform utexture2DArray heights_image;
+layout(set = 0, binding = kBindShade) uniform utexture2DArray shade_image;
 
 // Where sample `s` of the virtual field lies in an image array. Pages are powers of two so that this is shifts.
 ivec3 texelOf(ivec2 s) {
@@ -15,6 +17,27 @@ ivec3 texelOf(ivec2 s) {
 }
 
 uint rawHeight(ivec2 s) { return texelFetch(heights_image, texelOf(s), 0).x; }
+
+// Colours may come from every 2^shade.x-th sample: a far view would else fetch a cache line for every pixel.
+ivec3 shadeTexelOf(ivec2 s) {
+  s = clamp(s, ivec2(0), (panel.size.zw - 1) >> panel.shade.x);
+  if (!kPaged) return ivec3(s, 0);
+  const ivec2 log2_page = panel.paging.xy - panel.shade.x;
+  const ivec2 page = s >> log2_page;
+  return ivec3(s - (page << log2_page), page.y * panel.paging.z + page.x);
+}
+
+uint shadeHeight(ivec2 s) { return texelFetch(shade_image, shadeTexelOf(s), 0).x; }
+
+// Place among those samples of the point `local` samples from sample `base`: cell, and where in it.
+ivec2 shadeCell(ivec2 base, vec2 local, out vec2 f) {
+  const int step = 1 << panel.shade.x;
+  const ivec2 first = base >> panel.shade.x;
+  const vec2 p = (vec2(base - (first << panel.shade.x)) + local) / float(step);
+  const ivec2 cell = clamp(first + ivec2(floor(p)), ivec2(0), panel.shade.zw - 2);
+  f = clamp(p - vec2(cell - first), 0.0, 1.0);
+  return cell;
+}
 
 // On the bits, because a driver may take "x != x" for false.
 bool isHole(uint raw) { return (raw & 0x7fffffffu) > 0x7f800000u; }
@@ -33,7 +56,7 @@ vec3 scenePoint(ivec2 s, float z) { return vec3(panel.placing.xy + vec2(s) * pan
 // itself are dropped.
 float drawnZ(ivec2 s, ivec2 stride) {
   uint raw = rawHeight(s);
-  if (isHole(raw)) {
+  if (kHoles && isHole(raw)) {
     // At most 8 rings, so that a stride of 2^k costs no more than a stride of 8.
     const ivec2 step = max(stride >> 3, ivec2(1));
     const int rings = max(stride.x / step.x, stride.y / step.y);

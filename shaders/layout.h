@@ -19,14 +19,17 @@ using glm::vec4;
 #define FETTLE_CONST const int
 #endif
 
-// Cells along one side of a patch, the unit in which the surface is drawn. 32: a patch is one instance of
-// kPatchVertices vertices, enough that the cost of an instance does not show, and small enough to cull by.
-FETTLE_CONST kPatchCells = 32;
+// Cells along one side of a patch, the unit in which the surface is drawn; a power of two, 8 .. 32. 16: a patch is
+// one instance of kPatchVertices vertices, enough that the cost of an instance does not show, and small enough to
+// follow a wall without spending many fine cells beside it.
+FETTLE_CONST kPatchCells = 16;
 // One strip row: left and right vertex of every column, first and last doubled to jump to the next row.
 FETTLE_CONST kStripVertices = 2 * (kPatchCells + 1) + 2;
 FETTLE_CONST kPatchVertices = kStripVertices * kPatchCells;
 // A wall: top and bottom vertex of every column of a patch along one edge of the field.
 FETTLE_CONST kWallVertices = 2 * (kPatchCells + 1);
+// A seam: the vertices of a patch's edge, and below or above each the edge of the coarser patch beyond it.
+FETTLE_CONST kSeamVertices = 2 * (kPatchCells + 1);
 
 FETTLE_CONST kColours = 256;
 
@@ -36,6 +39,8 @@ FETTLE_CONST kBindHeights = 1;   // utexture2DArray, bits of a float; a hole is 
 FETTLE_CONST kBindMarks = 2;     // utexture2DArray, non-zero = marked
 FETTLE_CONST kBindOriginal = 3;  // utexture2DArray, heights that the deviation is counted from
 FETTLE_CONST kBindPatches = 4;   // buffer of Patch
+FETTLE_CONST kBindShade = 5;     // utexture2DArray, every 2^shade.x-th sample of the heights; marks and original likewise
+FETTLE_CONST kBindLines = 6;     // buffer of Line
 
 // Bindings of descriptor set 0 of the picture.
 FETTLE_CONST kBindScene = 0;   // texture2D, one panel at several rays a pixel, premultiplied
@@ -49,6 +54,10 @@ FETTLE_CONST kSpecMarks = 1;
 FETTLE_CONST kSpecDeviation = 2;
 FETTLE_CONST kSpecContours = 3;
 FETTLE_CONST kSpecSmooth = 4;  // normals interpolated inside a cell: only worth it where cells are larger than rays
+
+FETTLE_CONST kSpecHoles = 5;   // there may be holes
+FETTLE_CONST kSpecCell = 6;    // for speed: slopes of the cell alone where kSpecSmooth is off, the nearest of 256 colours
+FETTLE_CONST kSpecCount = 7;
 
 // What a Quad is filled with.
 FETTLE_CONST kFillSolid = 0;
@@ -71,12 +80,21 @@ struct PanelUniforms {
   vec4 no_data;          // 160: linear red, green, blue
   vec4 wall;             // 176: linear red, green, blue
   ivec4 size;            // 192: virtual columns, rows; true columns, rows
-  ivec4 paging;          // 208: log2 of a page's columns, rows; pages across; step of differences [samples]
-  vec4 colours[kColours];  // 224: linear red, green, blue
+  ivec4 paging;          // 208: log2 of a page's columns, rows; pages across; step of differences [2^shade.x samples]
+  ivec4 shade;           // 224: log2 of the step between samples that colours come from; -; columns, rows of those
+  vec4 seam;             // 240: how far seams overlap [px]; drawn so far from its sample, a point is beside it [scene mm]; -; -
+  vec4 colours[kColours];  // 256: linear red, green, blue
 };
 
 struct Patch {
   ivec4 place;  // first column, first row; log2 of the stride in columns, in rows
+};
+
+// A line over the surface, with round ends.
+struct Line {
+  vec4 from;    // scene mm; width [px]
+  vec4 to;      // scene mm; -
+  vec4 colour;  // linear red, green, blue; opacity
 };
 
 // A filled rectangle of the finished picture.
@@ -88,12 +106,14 @@ struct Quad {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(PanelUniforms) == 224 + 16 * kColours);
+static_assert(sizeof(PanelUniforms) == 256 + 16 * kColours);
 static_assert(offsetof(PanelUniforms, placing) == 64);
 static_assert(offsetof(PanelUniforms, limits) == 96);
 static_assert(offsetof(PanelUniforms, size) == 192);
-static_assert(offsetof(PanelUniforms, colours) == 224);
+static_assert(offsetof(PanelUniforms, shade) == 224);
+static_assert(offsetof(PanelUniforms, colours) == 256);
 static_assert(sizeof(Patch) == 16);
+static_assert(sizeof(Line) == 48);
 static_assert(sizeof(Quad) == 64);
 }  // namespace fettle::render::gpu
 #endif

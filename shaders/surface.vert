@@ -8,6 +8,7 @@ layout(set = 0, binding = kBindPatches, std430) readonly buffer Patches { Patch 
 
 layout(location = 0) flat out ivec2 base;  // first sample of the patch
 layout(location = 1) out vec2 local;       // samples from it, kept small so that no fraction is lost far out
+layout(location = 2) out float drawn_z;    // scene mm
 
 void main() {
   const Patch p = patches[gl_InstanceIndex];
@@ -18,5 +19,6 @@ void main() {
   const ivec2 s = min(p.place.xy + ivec2(k >> 1, strip + (k & 1)) * stride, panel.size.xy - 1);
   base = p.place.xy;
   local = vec2(s - p.place.xy);
-  gl_Position = panel.clip_from_scene * vec4(scenePoint(s, drawnZ(s, stride)), 1.0);
+  drawn_z = drawnZ(s, stride);
+  gl_Position = panel.clip_from_scene * vec4(scenePoint(s, drawn_z), 1.0);
 }

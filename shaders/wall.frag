@@ -10,9 +10,10 @@ layout(location = 0) out vec4 colour;
 
 void main() {
   // The wall stands under a rim cell only where the surface does: no corner of that cell is a hole.
-  const ivec2 cell = clamp(base + ivec2(floor(local)), ivec2(0), panel.size.xy - 2);
-  if (isHole(rawHeight(cell)) || isHole(rawHeight(cell + ivec2(1, 0))) || isHole(rawHeight(cell + ivec2(0, 1))) ||
-      isHole(rawHeight(cell + ivec2(1, 1))))
+  vec2 f;
+  const ivec2 cell = shadeCell(base, local, f);
+  if (isHole(shadeHeight(cell)) || isHole(shadeHeight(cell + ivec2(1, 0))) || isHole(shadeHeight(cell + ivec2(0, 1))) ||
+      isHole(shadeHeight(cell + ivec2(1, 1))))
     discard;
   colour = vec4(panel.wall.rgb * (0.55 + 0.45 * max(dot(normal, panel.light.xyz), 0.0)), 1.0);
 }

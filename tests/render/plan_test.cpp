@@ -75,8 +75,8 @@ TEST(Plan, APatchOfHolesIsNotDrawnAndZoomingInDrawsFewer) {
       fieldOf(gridOf(256, 256), [](int c, int r) { return c >= 128 && r < 128 ? kNan : c * 0.1; });
   PictureSpec spec = mapOf(field, 600, 600);
   const std::size_t all = planPicture(spec)->panels[0].detail.patches.size();
-  // Of the 16 patches without a height of their own, 4 reach up to row 128, where the heights begin.
-  EXPECT_EQ(all, 64U - 12U);
+  // Of the 64 patches without a height of their own, 8 reach up to row 128, where the heights begin.
+  EXPECT_EQ(all, 256U - 56U);
   spec.view.zoom = 4;
   EXPECT_LT(planPicture(spec)->panels[0].detail.patches.size(), all / 2);
 }

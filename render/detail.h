@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "engine/field/reader.h"
+#include "shaders/layout.h"
+
+namespace fettle::render {
+
+/// How far a coarse surface lies from the fine one, measured.
+///
+/// The surface at level k has a vertex at every 2^k-th sample (and at the last column and row, where that
+/// cuts a cell short), two triangles a cell, their common edge from the cell's upper left to its lower right
+/// corner. Level 0 is the surface at full resolution. A patch of level k has kPatchCells x kPatchCells such
+/// cells and covers a square of kPatchCells * 2^k samples; patch (x, y) begins at sample (x, y) * kPatchCells
+/// * 2^k.
+///
+/// For each patch two numbers are kept [height_unit, sign of the version left out]:
+///
+///   deviation  no point of the patch lies higher above or below the surface of level 0 than this. The edges
+///   of
+///              a coarse cell and its diagonal are edges of the fine surface too, so the difference of the
+///              two is linear on every fine triangle and largest at a sample: looking at the samples is
+///              enough. In cells cut short by the field's end the diagonals differ; their kink is added.
+///              Levels 1 .. 6 are measured at every sample; above, the difference between level k and k - 1
+///              is measured at the vertices of k - 1 and added to the deviation of the four patches below
+///              (triangle inequality).
+///   excess     how far samples of a cell reach above the highest or below the lowest of its vertices, at
+///   most.
+///              A step between two samples has a large deviation and no excess: every height on it is drawn,
+///              at most a cell beside its place. Infinite where a cell holds a hole.
+///
+/// A hole at a vertex takes the height that shaders/field.glsl gives it, so what is measured is what is
+/// drawn. Where that finds none, the deviation is infinite if the cell shows anything. Rounding is accounted
+/// for: four units in the last place of the highest magnitude are added.
+///
+/// Memory: about 0.03 bytes a sample. Threading: measure() and refresh() use all cores and block; reading
+/// while they run is a race. Determinism: the same bits for any thread count.
+class DetailMeasure {
+ public:
+  struct Error {
+    float deviation = 0.0F;
+    float excess = 0.0F;
+  };
+
+  /// Forgets everything and measures a field.
+  void measure(const engine::FieldReader& reader);
+  /// Measures anew what the samples of these tiles (column, row) bear on.
+  void refresh(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles);
+
+  /// The level at which one patch covers the field.
+  [[nodiscard]] int topLevel() const noexcept { return static_cast<int>(levels_.size()) - 1; }
+  /// Patches across and up at level k, 0 <= k <= topLevel().
+  [[nodiscard]] glm::ivec2 patches(int level) const noexcept;
+  /// Of patch (x, y); nothing at level 0.
+  [[nodiscard]] Error error(int level, std::int32_t x, std::int32_t y) const noexcept {
+    if (level == 0) return {};
+    const Level& l = levels_[static_cast<std::size_t>(level)];
+    return l.errors[static_cast<std::size_t>(y) * static_cast<std::size_t>(l.count.x) +
+                    static_cast<std::size_t>(x)];
+  }
+  /// Samples along one side of a patch of this level.
+  [[nodiscard]] static std::int32_t side(int level) noexcept { return gpu::kPatchCells << level; }
+
+  /// Highest level that is measured tile by tile.
+  static constexpr int kTileLevels = 6;
+
+ private:
+  struct Level {
+    glm::ivec2 count{0, 0};
+    std::vector<Error> errors;
+  };
+  void measureTile(const engine::FieldReader& reader, glm::ivec2 tile);
+  void gather(int level, glm::ivec2 patch);
+  void nest(const engine::FieldReader& reader, int level, glm::ivec2 patch);
+
+  glm::ivec2 size_{2, 2};  // virtual samples: see Placing
+  glm::ivec2 tiles_{1, 1};
+  std::vector<Level> levels_;
+  // Of levels whose patches are larger than a tile: by tile, kTileLevels apart.
+  std::vector<std::array<Error, kTileLevels + 1>> tile_errors_;
+};
+
+/// A tile's part in it: `heights` are its samples and the first ones of the tiles above and to the right (65
+/// x 65, row-major), `cells` how many cells it has across and up (0 .. 64). Writes the errors of the cells of
+/// level k, cut into squares of `patch_cells` cells of that level (or fewer, where the tile is smaller),
+/// row-major with `across` squares a row. `vertices`: heights at this level's vertices, kMissingVertex where
+/// there is none to be found; row-major, (64 >> k) + 1 a row.
+inline constexpr float kMissingVertex = 1e30F;
+inline constexpr int kTileStride = engine::kTileSide + 1;
+void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const float* vertices,
+                      int patch_cells, int across, DetailMeasure::Error* out);
+
+/// Height of a vertex as shaders/field.glsl finds it (drawnZ): the sample itself, or for a hole the first
+/// height on the rings around it. NaN when there is none. `s` within the virtual field.
+[[nodiscard]] float drawnHeight(const engine::FieldReader& reader, glm::ivec2 s,
+                                std::int32_t stride) noexcept;
+
+}  // namespace fettle::render

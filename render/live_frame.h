@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "render/glyphs.h"
+#include "render/live_target.h"
+#include "render/live_texture.h"
+#include "render/patches.h"
+#include "render/pipelines.h"
+#include "render/plan.h"
+#include "render/submissions.h"
+
+namespace fettle::render {
+
+/// One panel of a live frame.
+struct LivePanel {
+  Rectangle plot;     ///< where the camera's picture lies [px]
+  Rectangle visible;  ///< the part of it that is drawn
+  gpu::PanelUniforms uniforms{};
+  const PatchChoice* choice = nullptr;
+  const LiveTexture* field = nullptr;
+  const LiveTexture* original = nullptr;  ///< null for heights
+  int shade_level = 0;                    ///< of LiveTexture
+  SurfaceVariant variant;
+  std::vector<gpu::Line> in_scene, on_top;
+};
+
+/// Records a frame: surfaces, lines, furniture, and whatever the target wants over it. What a frame in flight
+/// reads is kept until its turn comes round.
+///
+/// Threading: as Context. Throws vk::SystemError.
+class LiveFrame {
+ public:
+  static constexpr std::size_t kMostPanels = 4;
+
+  LiveFrame(Context& context, vk::Format colour);
+
+  /// Records into submissions.commands(). `staging` carries new letters.
+  void record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
+              const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
+              const LiveTarget& target);
+
+  [[nodiscard]] const Pipelines& pipelines() const noexcept { return pipelines_; }
+
+ private:
+  // Sets of one panel; the last one is the picture's.
+  struct PanelSets {
+    vk::raii::DescriptorSet surface = nullptr, seams = nullptr, walls = nullptr, in_scene = nullptr,
+                            on_top = nullptr;
+  };
+  struct Slot {
+    Buffer arena;
+    std::array<PanelSets, kMostPanels> panels;
+    vk::raii::DescriptorSet picture = nullptr;
+  };
+  struct Block {
+    vk::DeviceSize offset = 0, bytes = 0;
+  };
+  void bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging, std::uint64_t submission,
+                   const Glyphs& glyphs);
+
+  Context& context_;
+  Pipelines pipelines_;
+  vk::raii::DescriptorPool pool_ = nullptr;
+  std::array<Slot, Submissions::kInFlight> slots_;
+  GpuImage depth_;
+  GpuImage glyphs_;
+  std::uint64_t glyph_generation_ = 0;
+};
+
+}  // namespace fettle::render

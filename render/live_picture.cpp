@@ -1,0 +1,571 @@
+#include "render/live_picture.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "engine/field/difference.h"
+#include "render/live_frame.h"
+#include "render/live_overlay.h"
+#include "render/pick.h"
+
+namespace fettle::render {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double msSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+constexpr vk::DeviceSize kStagingBytes = vk::DeviceSize{64} << 20U;
+constexpr float kSeamPx = 0.25F;
+
+engine::Error errorOf(const std::string& device, const char* what) {
+  return engine::failure(fmt::format("drawing failed ({})", what), device, "start the picture anew").value();
+}
+
+bool related(const engine::Version& a, const engine::Version& b) {
+  return !a.empty() && !b.empty() && a.memory() == b.memory() && a.grid().width == b.grid().width &&
+         a.grid().height == b.grid().height;
+}
+
+bool holed(const engine::Version& v) {
+  return v.reader().root().holed_children != 0;
+}
+
+// Off-screen image that a frame is drawn to and copied out of.
+struct Canvas {
+  GpuImage image;
+  [[nodiscard]] LiveTarget target() const {
+    LiveTarget t;
+    t.image = image.image();
+    t.view = image.view();
+    t.extent = image.extent();
+    t.leaves_as = vk::ImageLayout::eTransferSrcOptimal;
+    return t;
+  }
+};
+
+// Where the panels lie: as layOut has them in a row, or two rows of two.
+render::Layout arranged(const FrameInput& input, int versions) {
+  const bool titled =
+      std::any_of(input.titles.begin(), input.titles.end(), [](const auto& t) { return !t.empty(); });
+  const Titles titles = titled ? Titles::kAbove : Titles::kNone;
+  if (input.arrangement == Arrangement::kSplit && versions >= 2) {
+    render::Layout layout = layOut(input.view, input.decoration, 1, titles);
+    layout.plots.push_back(layout.plots.front());
+    return layout;
+  }
+  if (versions < 4) return layOut(input.view, input.decoration, versions, titles);
+  render::Layout layout = layOut(input.view, input.decoration, 2, titles);
+  const std::vector<Rectangle> columns = layout.plots;
+  const int gap = static_cast<int>(std::lround((titled ? 40 : 16) * layout.scale));
+  layout.plots.clear();
+  for (int row = 0; row < 2; ++row)
+    for (Rectangle plot : columns) {
+      const int height = (plot.height - gap) / 2;
+      plot.y += row * (height + gap);
+      plot.height = height;
+      layout.plots.push_back(plot);
+    }
+  return layout;
+}
+
+}  // namespace
+
+struct LivePicture::Impl {
+  std::unique_ptr<Context> own;  // empty when somebody else's is used
+  Context& context;
+  LiveOptions options;
+  std::uint32_t max_side = 0;
+  Glyphs glyphs;
+  Submissions submissions;
+  StagingRing staging;
+  LiveFrame frame;
+
+  Shown shown;
+  struct Field {
+    LiveTexture texture;
+    DetailMeasure measure;
+  };
+  std::vector<Field> fields;
+  LiveTexture original;
+  std::optional<PictureSpans> spans;
+  UploadStatistics uploaded;  // since the last frame
+  Canvas canvas;
+  struct Seen {
+    PicturePlan plan;
+    std::vector<Rectangle> visible;
+  };
+  std::optional<Seen> seen;
+  bool broken = false;  // an upload was left half done
+
+  Impl(std::unique_ptr<Context> owned, Context& used, vk::Format colour, const LiveOptions& o, Glyphs g)
+      : own(std::move(owned)),
+        context(used),
+        options(o),
+        glyphs(std::move(g)),
+        submissions(context),
+        staging(context, kStagingBytes),
+        frame(context, colour) {
+    max_side = context.limits().maxImageDimension2D;
+    if (o.max_image_side > 0)
+      max_side = std::min(max_side, static_cast<std::uint32_t>(std::max(64, o.max_image_side)));
+  }
+
+  engine::Status update(const Shown& next);
+  void bringAll(LiveTexture& texture);
+  engine::Result<PicturePlan> plan(const FrameInput& input);
+  engine::Result<FrameStatistics> draw(const FrameInput& input, const LiveTarget& target);
+  void drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats, PicturePlan plan);
+  std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLine::Depth depth,
+                                 const PanelPlan& panel) const;
+};
+
+// All that is pending, however long it takes: before the first picture of a field.
+void LivePicture::Impl::bringAll(LiveTexture& texture) {
+  std::vector<glm::ivec2> moved;
+  while (texture.pending() > 0) {
+    if (submissions.begin() > 0.5) ++uploaded.stalls;
+    staging.release(submissions.done());
+    UploadStatistics count;
+    texture.pump(staging, submissions.next(), submissions.commands(), std::int64_t{16} << 20U, count, moved);
+    uploaded.tiles += count.tiles;
+    uploaded.bytes += count.bytes;
+    uploaded.changed_samples += count.changed_samples;
+    submissions.submit({});
+  }
+}
+
+engine::Status LivePicture::Impl::update(const Shown& next) {
+  const auto start = Clock::now();
+  if (next.versions.empty() || next.versions.size() > LiveFrame::kMostPanels)
+    return engine::inputError(fmt::format("{} versions in one picture", next.versions.size()), "picture",
+                              "show one to four");
+  const auto fits = [&](const engine::Version& v) {
+    return !v.empty() && v.grid().width == next.versions.front().grid().width &&
+           v.grid().height == next.versions.front().grid().height;
+  };
+  if (!std::all_of(next.versions.begin(), next.versions.end(), fits) ||
+      (next.original && !fits(*next.original)))
+    return engine::inputError("the versions have different sizes, or one is empty", "picture",
+                              "show states of one field");
+  // Whatever is let go below may be read by frames in flight; and a field that fails halfway is forgotten.
+  const auto idle = [this] { submissions.finish(); };
+  const bool was_broken = broken;
+  broken = true;
+  if (was_broken) {
+    idle();
+    fields.clear();
+    original.clear();
+  }
+  bool fresh = false;
+  if (fields.size() > next.versions.size()) idle();
+  fields.resize(next.versions.size());
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const engine::Version& v = next.versions[i];
+    const auto state = fields[i].texture.want(context, v, next.marks, max_side, idle);
+    if (!state) return tl::unexpected(state.error());
+    if (*state != LiveTexture::Freshness::kFresh) {
+      if (!shown.versions.empty() && fields[i].texture.pending() > 0 && next.marks != shown.marks)
+        bringAll(fields[i].texture);
+      continue;
+    }
+    fresh = fresh || i == 0;
+    bringAll(fields[i].texture);
+    if (i > 0 && related(next.versions[0], v)) {
+      fields[i].measure = fields[0].measure;
+      std::vector<glm::ivec2> tiles;
+      for (const engine::TileChange& c : engine::changedTiles(next.versions[0], v))
+        tiles.emplace_back(c.tile_column, c.tile_row);
+      fields[i].measure.refresh(v.reader(), tiles);
+    } else {
+      fields[i].measure.measure(v.reader());
+    }
+  }
+  if (next.original) {
+    const auto state = original.want(context, *next.original, MarksOverlay::kHide, max_side, idle);
+    if (!state) return tl::unexpected(state.error());
+    if (*state == LiveTexture::Freshness::kFresh) {
+      bringAll(original);
+      fresh = true;
+    }
+  } else if (!original.version().empty()) {
+    idle();
+    original.clear();
+  }
+  if (fresh || next.original.has_value() != shown.original.has_value()) spans.reset();
+  shown = next;
+  broken = false;
+  uploaded.ms += msSince(start);
+  return {};
+}
+
+engine::Result<PicturePlan> LivePicture::Impl::plan(const FrameInput& input) {
+  const bool finite = std::isfinite(input.light_azimuth_deg) && input.light_elevation_deg >= 5.0 &&
+                      input.light_elevation_deg <= 90.0;
+  if (!(input.error_px > 0.0) || input.vertex_budget < 4096 || input.vertex_budget > (1 << 24) || !finite ||
+      !(input.split >= 0.0 && input.split <= 1.0))
+    return engine::inputError("the error, the budget, the split or the light is out of range", "picture",
+                              "see FrameInput");
+  PictureSpec spec;
+  spec.view = input.view;
+  spec.deviation_from = shown.original;
+  spec.range = input.range;
+  spec.marks = shown.marks;
+  spec.marks_opacity = input.marks_opacity;
+  spec.map = input.map;
+  spec.contours = input.contours;
+  spec.decoration = input.decoration;
+  spec.theme = input.theme;
+  spec.samples_per_side = 1;
+  if (!spans) spans = spansOf(shown.versions, shown.original);
+  engine::Result<PicturePlan> plan =
+      layPicture(spec, shown.versions, *spans, arranged(input, static_cast<int>(shown.versions.size())));
+  if (plan) plan->furniture.titles = input.titles;
+  return plan;
+}
+
+std::vector<gpu::Line> LivePicture::Impl::linesOf(const std::vector<OverlayLine>& lines,
+                                                  OverlayLine::Depth depth, const PanelPlan& panel) const {
+  std::vector<gpu::Line> out;
+  const double per_mm = panel.mm_per_unit / panel.field.grid().height_unit.mm;
+  const double zero_mm = panel.reference * panel.field.grid().height_unit.mm;
+  // A hair towards the viewer, so that a line on the surface is not lost in it.
+  const glm::dvec3 lift = (depth == OverlayLine::Depth::kInScene ? 1.5 / panel.camera.pixelsPerMm() : 0.0) *
+                          panel.camera.toViewer();
+  const auto scene = [&](const glm::dvec3& p) {
+    return glm::dvec3(panel.placing.first + glm::dvec2(p), (p.z - zero_mm) * per_mm) + lift;
+  };
+  for (const OverlayLine& l : lines)
+    if (l.depth == depth)
+      out.push_back({glm::vec4(glm::vec3(scene(l.from_mm)), l.width_px),
+                     glm::vec4(glm::vec3(scene(l.to_mm)), 0.0F), glm::vec4(l.colour, l.opacity)});
+  return out;
+}
+
+engine::Result<FrameStatistics> LivePicture::Impl::draw(const FrameInput& input, const LiveTarget& target) {
+  if (shown.versions.empty() || broken)
+    return engine::inputError("there is no field to draw", "picture", "give it a version first");
+  engine::Result<PicturePlan> planned = plan(input);
+  if (!planned) return tl::unexpected(planned.error());
+  for (const Rectangle& plot : planned->layout.plots)
+    if (plot.width < 8 || plot.height < 8)
+      return engine::inputError(fmt::format("a picture of {} x {} pixels leaves no room for the surface",
+                                            input.view.width, input.view.height),
+                                "picture size", "make it larger, or leave the furniture out");
+  FrameStatistics stats;
+  drawOn(input, target, stats, *std::move(planned));
+  return stats;
+}
+
+void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats,
+                               PicturePlan plan) {
+  stats.wait_ms = submissions.begin();
+  const auto start = Clock::now();
+  staging.release(submissions.done());
+
+  // What changed: to the device, and into the measures that patches are chosen by.
+  UploadStatistics count;
+  std::vector<glm::ivec2> moved;
+  for (Field& f : fields) {
+    moved.clear();
+    f.texture.pump(staging, submissions.next(), submissions.commands(), options.upload_bytes_a_frame, count,
+                   moved);
+    if (!moved.empty()) f.measure.refresh(f.texture.version().reader(), moved);
+  }
+  moved.clear();
+  if (!original.version().empty())
+    original.pump(staging, submissions.next(), submissions.commands(), options.upload_bytes_a_frame, count,
+                  moved);
+  stats.upload = uploaded;
+  stats.upload.tiles += count.tiles;
+  stats.upload.bytes += count.bytes;
+  stats.upload.changed_samples += count.changed_samples;
+  stats.upload.pending_tiles = count.pending_tiles;
+  const double pumped_ms = msSince(start);
+  stats.upload.ms += pumped_ms;
+  uploaded = {};
+
+  const auto select_start = Clock::now();
+  const bool split = input.arrangement == Arrangement::kSplit && fields.size() >= 2;
+  const std::size_t count_panels = split ? 2 : plan.panels.size();
+  std::vector<PatchChoice> choices(count_panels);
+  std::vector<LivePanel> panels(count_panels);
+  Seen now;
+  std::vector<OverlayLine> lines = input.overlays.lines;
+  for (const Overlays::Ring& ring : input.overlays.rings)
+    appendRing(shown.versions.front().reader(), ring, lines);
+  for (std::size_t i = 0; i < count_panels; ++i) {
+    const PanelPlan& p = plan.panels[i];
+    PatchQuestion q;
+    q.measure = &fields[i].measure;
+    q.reader = p.field.reader();
+    q.placing = p.placing;
+    q.camera = p.camera;
+    q.mm_per_unit = p.mm_per_unit;
+    q.reference = p.reference;
+    q.lowest = p.lowest;
+    q.highest = p.highest;
+    q.floor_z = p.floor_z;
+    q.error_px = input.error_px;
+    q.vertex_budget = input.vertex_budget / static_cast<std::int64_t>(count_panels);
+    choices[i] = choosePatches(q);
+    stats.patches += static_cast<std::int64_t>(choices[i].patches.size());
+    stats.vertices += choices[i].vertices();
+    stats.triangles += choices[i].triangles();
+    stats.bound_px = std::max(stats.bound_px, choices[i].bound_px);
+    stats.within_budget = stats.within_budget && choices[i].within_budget;
+
+    LivePanel& panel = panels[i];
+    panel.plot = panel.visible = p.plot;
+    if (split) {
+      const int at = static_cast<int>(std::lround(input.split * p.plot.width));
+      if (i == 0)
+        panel.visible.width = at;
+      else
+        panel.visible = {p.plot.x + at, p.plot.y, p.plot.width - at, p.plot.height};
+    }
+    now.visible.push_back(panel.visible);
+    panel.choice = &choices[i];
+    panel.field = &fields[i].texture;
+    panel.original = original.version().empty() ? nullptr : &original;
+    panel.uniforms = p.uniforms;
+    gpu::PanelUniforms& u = panel.uniforms;
+    // Colours from samples about a pixel apart: in perspective the near part is larger than the middle.
+    const glm::dvec2 px = cellPixels(p.placing, p.camera);
+    const double nearer = input.view.projection == Projection::kPerspective ? 2.0 : 1.0;
+    while (panel.shade_level + 1 < LiveTexture::kLevels &&
+           std::ldexp(std::max(px.x, px.y) * nearer, LiveTexture::shift(panel.shade_level + 1)) <= 1.0)
+      ++panel.shade_level;
+    const int shift = LiveTexture::shift(panel.shade_level);
+    if (shift > 0) {
+      u.shade = glm::ivec4(shift, 0, glm::max((p.placing.true_size - 1) / (1 << shift) + 1, glm::ivec2(2)));
+      u.paging.w = std::max(
+          1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::ldexp(std::min(px.x, px.y), shift)))));
+    }
+    u.seam.x = kSeamPx;
+    const Paging& paging = panel.field->paging();
+    u.paging.x = paging.log2_columns;
+    u.paging.y = paging.log2_rows;
+    u.paging.z = static_cast<int>(paging.across);
+    const double azimuth = input.light_azimuth_deg * std::numbers::pi / 180.0;
+    const double up = std::sin(input.light_elevation_deg * std::numbers::pi / 180.0);
+    const glm::dvec3 right = p.camera.right();
+    const glm::dvec3 away{-right.y, right.x, 0.0};
+    const glm::dvec3 level = std::cos(azimuth) * right + std::sin(azimuth) * away;
+    u.light = glm::vec4(glm::vec3(std::sqrt(std::max(0.0, 1.0 - up * up)) * level + glm::dvec3(0.0, 0.0, up)),
+                        u.light.w);
+    panel.variant = {paging.paged(),
+                     shown.marks == MarksOverlay::kShow,
+                     panel.original != nullptr,
+                     input.contours == Contours::kShow,
+                     std::max(px.x, px.y) > 1.5,
+                     holed(p.field) || (panel.original != nullptr && holed(original.version())),
+                     true};
+    panel.in_scene = linesOf(lines, OverlayLine::Depth::kInScene, p);
+    panel.on_top = linesOf(lines, OverlayLine::Depth::kOnTop, p);
+  }
+  stats.select_ms = msSince(select_start);
+
+  std::vector<std::string> warnings;
+  if (glyphs.used() > Glyphs::kSide / 2) glyphs.clear();
+  std::vector<gpu::Quad> furniture =
+      furnish(plan.layout, input.view, plan.furniture, plan.palette, glyphs, warnings);
+  if (split) {
+    const Rectangle& right = now.visible[1];
+    gpu::Quad line{};
+    line.pixels = glm::vec4(right.x - 1, right.y, right.x + 1, right.y + right.height);
+    line.colour = glm::vec4(plan.palette.ink, 1.0F);
+    line.fill = glm::ivec4(gpu::kFillSolid, 1, 0, 0);
+    furniture.push_back(line);
+  }
+  frame.record(submissions, staging, panels, furniture, plan.palette.ground, glyphs, target);
+  submissions.submit({target.free, vk::PipelineStageFlagBits2::eColorAttachmentOutput, target.done});
+  stats.device_ms = submissions.lastMs();
+  stats.range = plan.range;
+  stats.vertical_exaggeration = plan.exaggeration;
+  stats.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
+  stats.record_ms = msSince(start) - stats.select_ms - pumped_ms;
+  now.plan = std::move(plan);
+  seen = std::move(now);
+}
+
+LivePicture::LivePicture(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+LivePicture::~LivePicture() = default;
+
+engine::Result<std::unique_ptr<LivePicture>> LivePicture::create(const LiveOptions& options) {
+  RendererOptions wanted;
+  wanted.validation = options.validation;
+  wanted.device = options.device;
+  auto context = Context::create(wanted);
+  if (!context) return tl::unexpected(context.error());
+  auto glyphs = Glyphs::create();
+  if (!glyphs) return tl::unexpected(glyphs.error());
+  Context& used = **context;
+  const std::string name = used.name();
+  try {
+    return std::unique_ptr<LivePicture>(new LivePicture(
+        std::make_unique<Impl>(*std::move(context), used, kColourFormat, options, *std::move(glyphs))));
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(name, error.what()));
+  }
+}
+
+engine::Result<std::unique_ptr<LivePicture>> LivePicture::create(Context& context,
+                                                                 std::uint32_t colour_format,
+                                                                 const LiveOptions& options) {
+  auto glyphs = Glyphs::create();
+  if (!glyphs) return tl::unexpected(glyphs.error());
+  try {
+    return std::unique_ptr<LivePicture>(new LivePicture(std::make_unique<Impl>(
+        nullptr, context, static_cast<vk::Format>(colour_format), options, *std::move(glyphs))));
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(context.name(), error.what()));
+  }
+}
+
+engine::Status LivePicture::update(const Shown& shown) {
+  try {
+    return impl_->update(shown);
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+  }
+}
+
+engine::Status LivePicture::update(const engine::Version& version) {
+  Shown next = impl_->shown;
+  next.versions = {version};
+  next.original.reset();
+  return update(next);
+}
+
+engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, LiveTarget& target) {
+  try {
+    FrameInput sized = input;
+    sized.view.width = static_cast<int>(target.extent.width);
+    sized.view.height = static_cast<int>(target.extent.height);
+    return impl_->draw(sized, target);
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+  }
+}
+
+engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input) {
+  try {
+    const auto start = Clock::now();
+    if (input.view.width < 16 || input.view.height < 16 || input.view.width > 16384 ||
+        input.view.height > 16384)
+      return engine::inputError(
+          fmt::format("a picture of {} x {} pixels", input.view.width, input.view.height), "picture size",
+          "give 16 to 16384 pixels each way");
+    const vk::Extent2D extent{static_cast<std::uint32_t>(input.view.width),
+                              static_cast<std::uint32_t>(input.view.height)};
+    if (impl_->canvas.image.extent() != extent) {
+      impl_->submissions.finish();
+      impl_->canvas.image =
+          GpuImage(impl_->context, kColourFormat, extent, 1, GpuImage::Kind::kPlane,
+                   vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc,
+                   vk::ImageAspectFlagBits::eColor);
+    }
+    engine::Result<FrameStatistics> stats = impl_->draw(input, impl_->canvas.target());
+    if (!stats) return stats;
+    impl_->submissions.finish();
+    stats->device_ms = impl_->submissions.lastMs();
+    stats->wait_ms = msSince(start) - stats->record_ms - stats->select_ms - stats->upload.ms;
+    return stats;
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+  }
+}
+
+engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, Image& out) {
+  engine::Result<FrameStatistics> stats = drawAndWait(input);
+  if (!stats) return stats;
+  try {
+    const GpuImage& from = impl_->canvas.image;
+    Image image;
+    image.width = input.view.width;
+    image.height = input.view.height;
+    image.rgba.resize(std::size_t{4} * from.extent().width * from.extent().height);
+    const Buffer buffer(impl_->context, image.rgba.size(), vk::BufferUsageFlagBits::eTransferDst);
+    Submissions& submissions = impl_->submissions;
+    (void)submissions.begin();
+    vk::BufferImageCopy copy;
+    copy.setImageSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
+        .setImageExtent({from.extent().width, from.extent().height, 1});
+    submissions.commands().copyImageToBuffer(from.image(), vk::ImageLayout::eTransferSrcOptimal,
+                                             *buffer.handle(), copy);
+    vk::MemoryBarrier2 to_host;
+    to_host.setSrcStageMask(vk::PipelineStageFlagBits2::eCopy)
+        .setSrcAccessMask(vk::AccessFlagBits2::eTransferWrite)
+        .setDstStageMask(vk::PipelineStageFlagBits2::eHost)
+        .setDstAccessMask(vk::AccessFlagBits2::eHostRead);
+    vk::DependencyInfo dependency;
+    submissions.commands().pipelineBarrier2(dependency.setMemoryBarriers(to_host));
+    submissions.submit({});
+    submissions.finish();
+    std::memcpy(image.rgba.data(), buffer.data(), image.rgba.size());
+    out = std::move(image);
+    return stats;
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+  }
+}
+
+std::optional<Picked> LivePicture::pick(double x, double y) const {
+  if (!impl_->seen) return std::nullopt;
+  for (std::size_t i = 0; i < impl_->seen->visible.size(); ++i) {
+    const Rectangle& r = impl_->seen->visible[i];
+    if (x < r.x || y < r.y || x >= r.x + r.width || y >= r.y + r.height) continue;
+    const PanelPlan& p = impl_->seen->plan.panels[i];
+    const double unit = p.field.grid().height_unit.mm;
+    const Ray ray = p.camera.rayAt({x, y});
+    const auto field = [&](const glm::dvec3& s) {
+      return glm::dvec3(glm::dvec2(s) - p.placing.first, (s.z / p.mm_per_unit + p.reference) * unit);
+    };
+    const glm::dvec3 from = field(ray.from);
+    const auto hit = meetSurface(p.field.reader(), from, field(ray.from + ray.along) - from);
+    if (!hit) return std::nullopt;
+    return Picked{static_cast<int>(i), hit->position_mm, hit->column, hit->row};
+  }
+  return std::nullopt;
+}
+
+std::optional<std::pair<double, double>> LivePicture::pixelOf(int panel, const glm::dvec3& field_mm) const {
+  if (!impl_->seen || panel < 0 || static_cast<std::size_t>(panel) >= impl_->seen->visible.size())
+    return std::nullopt;
+  const PanelPlan& p = impl_->seen->plan.panels[static_cast<std::size_t>(panel)];
+  const double unit = p.field.grid().height_unit.mm;
+  const glm::dvec2 at = p.camera.pixelOf(
+      glm::dvec3(p.placing.first + glm::dvec2(field_mm), (field_mm.z / unit - p.reference) * p.mm_per_unit));
+  return std::pair{at.x, at.y};
+}
+
+void LivePicture::refreshRanges() {
+  impl_->spans.reset();
+}
+
+void LivePicture::finish() {
+  try {
+    impl_->submissions.finish();
+  } catch (const vk::SystemError&) {
+    // Lost: nothing is under way.
+  }
+}
+
+const std::string& LivePicture::device() const noexcept {
+  return impl_->context.name();
+}
+
+std::vector<std::string> LivePicture::validationMessages() const {
+  return impl_->context.messages().all();
+}
+
+}  // namespace fettle::render

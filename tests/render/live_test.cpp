@@ -1,0 +1,467 @@
+// The live picture on a device, validation layers on.
+#include "render/live_picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "engine/field/live_field.h"
+#include "tests/render/fields.h"
+
+namespace fettle::render {
+namespace {
+
+double hash01(int c, int r) {
+  std::uint32_t h = static_cast<std::uint32_t>(c) * 2654435761U ^ static_cast<std::uint32_t>(r) * 2246822519U;
+  h ^= h >> 15U;
+  h *= 2246822519U;
+  return (h >> 8U) / 16777216.0;
+}
+
+// A machined part in little: slopes, a boss and a groove with steep walls, a dome, some noise.
+double part(int c, int r) {
+  const double x = c * 0.1, y = r * 0.1;
+  double z = 0.02 * x + 0.01 * hash01(c, r);
+  if (std::hypot(x - 20, y - 30) < 9) z += 5;
+  if (y > 8 && y < 12) z -= 3;
+  const double dome = std::hypot(x - 45, y - 25);
+  if (dome < 12) z += std::sqrt(144 - dome * dome) * 0.5;
+  return z;
+}
+
+engine::Version partField(int w = 640, int h = 480) {
+  return fieldOf(gridOf(w, h, 0.1, 0.1), part);
+}
+
+FrameInput bare(int width = 480, int height = 320) {
+  FrameInput input;
+  input.view.width = width;
+  input.view.height = height;
+  input.decoration = Decoration::kNone;
+  return input;
+}
+
+// The surface at full resolution.
+FrameInput full(FrameInput input) {
+  input.error_px = 1e-9;
+  input.vertex_budget = 1 << 24;
+  return input;
+}
+
+std::unique_ptr<LivePicture> makePicture(int max_image_side = 0) {
+  LiveOptions options;
+  options.validation = Validation::kOn;
+  options.max_image_side = max_image_side;
+  auto picture = LivePicture::create(options);
+  if (!picture) ADD_FAILURE() << picture.error().line();
+  return picture ? *std::move(picture) : nullptr;
+}
+
+struct Frame {
+  Image image;
+  FrameStatistics stats;
+};
+
+Frame shoot(LivePicture& picture, const FrameInput& input) {
+  Frame frame;
+  const auto stats = picture.draw(input, frame.image);
+  if (!stats) {
+    ADD_FAILURE() << stats.error().line();
+    return frame;
+  }
+  for (const std::string& message : picture.validationMessages()) ADD_FAILURE() << message;
+  frame.stats = *stats;
+  return frame;
+}
+
+std::vector<FrameInput> views() {
+  std::vector<FrameInput> all;
+  for (const auto& [azimuth, elevation, zoom] :
+       {std::tuple{0.0, 90.0, 1.0}, {315.0, 45.0, 1.0}, {20.0, 25.0, 1.0}, {100.0, 60.0, 2.5}}) {
+    FrameInput input = bare();
+    input.view.azimuth_deg = azimuth;
+    input.view.elevation_deg = elevation;
+    input.view.zoom = zoom;
+    all.push_back(input);
+    input.view.projection = Projection::kPerspective;
+    all.push_back(input);
+  }
+  return all;
+}
+
+// Pixels of `a` that no pixel of `b` within `radius` equals within `codes` in every channel.
+int unmatched(const Image& a, const Image& b, int radius, int codes) {
+  int off = 0;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      bool found = false;
+      for (int v = std::max(0, y - radius); v <= std::min(a.height - 1, y + radius) && !found; ++v)
+        for (int u = std::max(0, x - radius); u <= std::min(a.width - 1, x + radius) && !found; ++u) {
+          int worst = 0;
+          for (int k = 0; k < 3; ++k)
+            worst = std::max(worst, std::abs(pixel(a, x, y)[k] - pixel(b, u, v)[k]));
+          found = worst <= codes;
+        }
+      off += !found;
+    }
+  return off;
+}
+
+TEST(Live, TheCoarsePictureLiesWithinItsBoundOfTheFullOne) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture);
+  ASSERT_TRUE(picture->update(partField()));
+  for (const FrameInput& view : views()) {
+    SCOPED_TRACE(testing::Message() << view.view.azimuth_deg << ' ' << view.view.elevation_deg << ' '
+                                    << static_cast<int>(view.view.projection));
+    const Frame fine = shoot(*picture, full(view));
+    EXPECT_LE(fine.stats.bound_px, 1e-9);
+    for (const double error : {1.0, 3.0}) {
+      FrameInput input = view;
+      input.error_px = error;
+      input.vertex_budget = 1 << 21;
+      const Frame coarse = shoot(*picture, input);
+      EXPECT_LE(coarse.stats.bound_px, error);
+      EXPECT_LE(coarse.stats.vertices, fine.stats.vertices);
+      // A displaced point falls on a pixel at most the bound plus a pixel away; what is seen between two rays
+      // is not in the picture at all, so that along edges some pixels have no partner: 2 in a thousand, of
+      // noise and walls.
+      const int radius = static_cast<int>(std::ceil(error)) + 1;
+      const int pixels = coarse.image.width * coarse.image.height;
+      EXPECT_LE(unmatched(coarse.image, fine.image, radius, 10), pixels / 500) << error;
+      EXPECT_LE(unmatched(fine.image, coarse.image, radius, 10), pixels / 500) << error;
+    }
+  }
+}
+
+TEST(Live, NoGroundShowsInsideTheSurfaceAtAnyMixOfStrides) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture);
+  // No holes, so no plate lies under the surface: whatever shines through is the ground.
+  for (const engine::Version& field : {partField(), fieldOf(gridOf(700, 500, 0.1, 0.1), [](int c, int r) {
+                                         return hash01(c / 90, r / 70) < 0.4 ? 0.8 * hash01(c, r) : 0.002 * c;
+                                       })}) {
+    ASSERT_TRUE(picture->update(field));
+    for (FrameInput input : views()) {
+      input.theme = Theme::kLight;  // no colour of the surface is as light as its ground
+      for (const double error : {1.0, 5.0}) {
+        input.error_px = error;
+        const Frame frame = shoot(*picture, input);
+        const int reach = static_cast<int>(std::ceil(frame.stats.bound_px)) + 1;
+        // The ground's own colour, from an empty picture.
+        FrameInput away = input;
+        away.view.zoom = 1e-3;
+        const Frame ground = shoot(*picture, away);
+        (void)shoot(*picture, input);
+        int inside = 0;
+        std::vector<char> solid(static_cast<std::size_t>(input.view.width * input.view.height));
+        for (int y = 0; y < input.view.height; ++y)
+          for (int x = 0; x < input.view.width; ++x)
+            solid[static_cast<std::size_t>(y * input.view.width + x)] =
+                picture->pick(x + 0.5, y + 0.5).has_value();
+        for (int y = reach; y < input.view.height - reach; ++y)
+          for (int x = reach; x < input.view.width - reach; ++x) {
+            bool deep = true;
+            for (int v = -reach; v <= reach && deep; ++v)
+              for (int u = -reach; u <= reach && deep; ++u)
+                deep = solid[static_cast<std::size_t>((y + v) * input.view.width + x + u)] != 0;
+            if (!deep) continue;
+            ++inside;
+            ASSERT_FALSE(
+                std::equal(pixel(frame.image, x, y), pixel(frame.image, x, y) + 3, pixel(ground.image, 0, 0)))
+                << x << ' ' << y << " at " << input.view.azimuth_deg << ' ' << input.view.elevation_deg
+                << " error " << error;
+          }
+        EXPECT_GT(inside, 15000);
+      }
+    }
+  }
+}
+
+TEST(Live, AnEditMovesItsRectangleOnlyAndThePictureEqualsAFreshOne) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture);
+  const engine::Version before =
+      fieldOf(gridOf(640, 480, 0.1, 0.1), part, [](int c, int) { return c % 50 == 0; });
+  Shown shown;
+  shown.versions = {before};
+  shown.marks = MarksOverlay::kShow;
+  ASSERT_TRUE(picture->update(shown));
+  FrameInput input = bare();
+  const Frame first = shoot(*picture, input);
+  EXPECT_EQ(first.stats.upload.tiles, 2 * 10 * 8);
+  EXPECT_EQ(shoot(*picture, input).stats.upload.bytes, 0);
+
+  engine::LiveField live(before, engine::Growth::kAllowed);
+  std::vector<float> bump(30 * 30);
+  for (std::size_t i = 0; i < bump.size(); ++i) bump[i] = 6.0F + 0.01F * static_cast<float>(i % 7);
+  ASSERT_TRUE(live.writeHeights(50, 50, 30, 30, bump.data(), 30));  // four tiles meet at (64, 64)
+  ASSERT_TRUE(live.setMark(300, 10, !before.reader().markedAt(300, 10)));
+  shown.versions = {live.snapshot()};
+  ASSERT_TRUE(picture->update(shown));
+  const Frame edited = shoot(*picture, input);
+  EXPECT_EQ(edited.stats.upload.tiles, 4 + 1);
+  EXPECT_EQ(edited.stats.upload.changed_samples, 900 + 1);
+  EXPECT_EQ(edited.stats.upload.stalls, 0);
+  EXPECT_EQ(edited.stats.upload.pending_tiles, 0);
+  // At most a fifth more than the rectangles themselves, coarse copies included.
+  EXPECT_LE(static_cast<double>(edited.stats.upload.bytes), 1.2 * (900 * 4 + 4));
+  EXPECT_NE(edited.image.rgba, first.image.rgba);
+
+  auto fresh = makePicture();
+  ASSERT_TRUE(fresh->update(shown));
+  // The colours' range is that of the field first seen: the same one for both.
+  input.range = edited.stats.range;
+  input.view.vertical_exaggeration = 1.0;
+  EXPECT_EQ(shoot(*picture, input).image.rgba.size(), edited.image.rgba.size());
+  picture->refreshRanges();
+  EXPECT_EQ(shoot(*picture, input).image.rgba, shoot(*fresh, input).image.rgba);
+
+  // Back again, as undo does; and upside down, which moves nothing.
+  shown.versions = {before};
+  ASSERT_TRUE(picture->update(shown));
+  EXPECT_EQ(shoot(*picture, input).stats.upload.tiles, 5);
+  shown.versions = {before.inverted()};
+  ASSERT_TRUE(picture->update(shown));
+  EXPECT_EQ(shoot(*picture, input).stats.upload.tiles, 0);
+}
+
+TEST(Live, AFilterResultComesOverInSharesAndEndsAsAFreshPicture) {
+  LiveOptions options;
+  options.validation = Validation::kOn;
+  options.upload_bytes_a_frame = 200000;
+  auto created = LivePicture::create(options);
+  ASSERT_TRUE(created);
+  LivePicture& picture = **created;
+  const engine::Version before = partField();
+  ASSERT_TRUE(picture.update(before));
+  FrameInput input = bare();
+  input.view.vertical_exaggeration = 1.0;
+  input.range = ValueRange{-3, 9};
+  (void)shoot(picture, input);
+  engine::LiveField live(before, engine::Growth::kAllowed);
+  std::vector<float> z(640 * 480);
+  for (int i = 0; i < 640 * 480; ++i)
+    z[static_cast<std::size_t>(i)] = static_cast<float>(1.01 * part(i % 640, i / 640));
+  ASSERT_TRUE(live.writeHeights(0, 0, 640, 480, z.data(), 640));
+  ASSERT_TRUE(picture.update(live.snapshot()));
+  int frames = 0;
+  Frame frame;
+  do {
+    frame = shoot(picture, input);
+    EXPECT_LE(frame.stats.upload.bytes, 200000 + 18000);
+    EXPECT_EQ(frame.stats.upload.stalls, 0);
+    // Another edit while it is under way: of a tile still waiting, or one already there.
+    if (frames == 2) {
+      ASSERT_TRUE(live.setHeight(5, 5, 8.0F) && live.setHeight(600, 470, 8.0F));
+      ASSERT_TRUE(picture.update(live.snapshot()));
+    }
+    ASSERT_LT(++frames, 100);
+  } while (frame.stats.upload.pending_tiles > 0);
+  EXPECT_GT(frames, 4);
+  picture.refreshRanges();
+  auto fresh = makePicture();
+  ASSERT_TRUE(fresh->update(live.snapshot()));
+  EXPECT_EQ(shoot(picture, input).image.rgba, shoot(*fresh, input).image.rgba);
+}
+
+TEST(Live, PagesAndCoarseCopiesGiveTheSamePixelsAsOneImage) {
+  const engine::Version field = fieldOf(
+      gridOf(1500, 700, 0.1, 0.1),
+      [](int c, int r) { return (c * 13 + r * 7) % 401 == 0 ? kNan : part(c, r); },
+      [](int c, int r) { return (c + r) % 90 < 4; });
+  Shown shown;
+  shown.versions = {field};
+  shown.original = fieldOf(gridOf(1500, 700, 0.1, 0.1), [](int c, int r) { return 0.98 * part(c, r); });
+  shown.marks = MarksOverlay::kShow;
+  auto paged = makePicture(128), plain = makePicture();
+  ASSERT_TRUE(paged->update(shown));
+  ASSERT_TRUE(plain->update(shown));
+  for (const double zoom : {0.5, 1.0, 20.0}) {
+    FrameInput input = bare();
+    input.view.zoom = zoom;
+    input.contours = Contours::kShow;
+    const Frame a = shoot(*paged, input), b = shoot(*plain, input);
+    EXPECT_EQ(a.image.rgba, b.image.rgba) << zoom;
+  }
+}
+
+TEST(Live, VerticesStayWithinTheBudgetWhateverTheFieldAndTheBoundIsSaid) {
+  auto picture = makePicture();
+  // Noise as high as hills: nothing coarse is close to it.
+  ASSERT_TRUE(
+      picture->update(fieldOf(gridOf(2048, 2048, 0.1, 0.1), [](int c, int r) { return 30 * hash01(c, r); })));
+  for (const std::int64_t budget : {16384, 98304}) {
+    FrameInput input = bare();
+    input.view.vertical_exaggeration = 1.0;
+    input.vertex_budget = budget;
+    const Frame frame = shoot(*picture, input);
+    EXPECT_LE(frame.stats.vertices, budget);
+    EXPECT_GT(frame.stats.vertices, budget / 2);
+    EXPECT_FALSE(frame.stats.within_budget);
+    EXPECT_GT(frame.stats.bound_px, 1.0);
+  }
+  // A plane costs next to nothing at any size.
+  ASSERT_TRUE(picture->update(
+      fieldOf(gridOf(2048, 2048, 0.1, 0.1), [](int c, int r) { return 0.25 * c + 0.5 * r; })));
+  const Frame plane = shoot(*picture, bare());
+  EXPECT_LT(plane.stats.vertices, 4096);
+  EXPECT_LE(plane.stats.bound_px, 1.0);
+}
+
+TEST(Live, ASpikeOfASingleSampleIsDrawnFromAnyDistance) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture->update(fieldOf(gridOf(2000, 2000, 0.1, 0.1),
+                                      [](int c, int r) { return c == 1003 && r == 997 ? 60.0 : 0.01 * c; })));
+  FrameInput input = bare();
+  input.view.vertical_exaggeration = 1.0;
+  input.view.elevation_deg = 20;
+  const Frame frame = shoot(*picture, input);
+  EXPECT_LE(frame.stats.bound_px, 1.0);
+  // The finest patch is there: a spike is not stepped over.
+  EXPECT_GT(frame.stats.patches, 8);
+}
+
+TEST(Live, PickAndPixelOfAreInverse) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture->update(partField()));
+  for (const FrameInput& input : views()) {
+    (void)shoot(*picture, input);
+    int hits = 0;
+    for (int y = 7; y < input.view.height; y += 31)
+      for (int x = 5; x < input.view.width; x += 29) {
+        const auto picked = picture->pick(x, y);
+        if (!picked) continue;
+        ++hits;
+        const auto at = picture->pixelOf(picked->panel, picked->position_mm);
+        ASSERT_TRUE(at);
+        EXPECT_NEAR(at->first, x, 1e-6);
+        EXPECT_NEAR(at->second, y, 1e-6);
+      }
+    EXPECT_GT(hits, 20);
+  }
+}
+
+TEST(Live, SplitShowsOneVersionOnEachSideOfTheLineAndFourShareACamera) {
+  auto picture = makePicture();
+  const engine::Version a = partField(), b = fieldOf(gridOf(640, 480, 0.1, 0.1),
+                                                     [](int c, int r) { return 0.5 * part(c, r); });
+  FrameInput input = bare();
+  input.view.vertical_exaggeration = 1.0;
+  input.range = ValueRange{-3, 9};
+  Shown shown;
+  shown.versions = {a, b};
+  ASSERT_TRUE(picture->update(shown));
+  input.arrangement = Arrangement::kSplit;
+  input.split = 0.25;
+  input.vertex_budget = 1 << 20;
+  const Frame split = shoot(*picture, input);
+  const auto left = picture->pick(115, 160), right = picture->pick(300, 160);
+  ASSERT_TRUE(left && right);
+  EXPECT_EQ(left->panel, 0);
+  EXPECT_EQ(right->panel, 1);
+  input.split = 1.0;
+  const Image first = shoot(*picture, input).image;
+  input.split = 0.0;
+  const Image second = shoot(*picture, input).image;
+  for (int y = 0; y < 320; y += 3)
+    for (int x = 0; x < 480; x += 3) {
+      if (std::abs(x - 120) < 3) continue;
+      const Image& one = x < 120 ? first : second;
+      ASSERT_TRUE(std::equal(pixel(split.image, x, y), pixel(split.image, x, y) + 3, pixel(one, x, y)))
+          << x << ' ' << y;
+    }
+  shown.versions = {a, b, a, b};
+  ASSERT_TRUE(picture->update(shown));
+  input.arrangement = Arrangement::kSideBySide;
+  const Frame four = shoot(*picture, input);
+  const auto corner = picture->pixelOf(0, {32, 24, 0}), opposite = picture->pixelOf(2, {32, 24, 0});
+  ASSERT_TRUE(corner && opposite);
+  const int down = static_cast<int>(std::lround(opposite->second - corner->second));
+  EXPECT_NEAR(opposite->first, corner->first, 1e-9);
+  EXPECT_GT(down, 100);
+  // The viewport's offset is added to a float: an edge may fall on the other side of a ray.
+  int other = 0;
+  for (int y = 10; y < 140; ++y)
+    for (int x = 0; x < 230; ++x)
+      other +=
+          !std::equal(pixel(four.image, x, y), pixel(four.image, x, y) + 3, pixel(four.image, x, y + down));
+  EXPECT_LT(other, 130 * 230 / 200);
+}
+
+TEST(Live, OverlaysAreSeenWhereTheyAreAndHiddenByWhatLiesBefore) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture->update(partField()));
+  FrameInput input = bare();
+  input.view.azimuth_deg = 0;
+  input.view.elevation_deg = 30;
+  input.view.vertical_exaggeration = 1.0;
+  const Frame plain = shoot(*picture, input);
+  // A disc far behind the field's middle and deep under it: only the one on top is seen.
+  const glm::dvec3 buried{32, 30, -2};
+  const auto at = [&] { return *picture->pixelOf(0, buried); };
+  OverlayLine disc{buried, buried, {1, 0, 0}, 1.0F, 9.0F};
+  disc.depth = OverlayLine::Depth::kInScene;
+  input.overlays.lines = {disc};
+  const Frame hidden = shoot(*picture, input);
+  EXPECT_EQ(hidden.image.rgba, plain.image.rgba);
+  input.overlays.lines[0].depth = OverlayLine::Depth::kOnTop;
+  const Frame seen = shoot(*picture, input);
+  const std::uint8_t* p = pixel(seen.image, static_cast<int>(at().first), static_cast<int>(at().second));
+  EXPECT_EQ(p[0], 255);
+  EXPECT_EQ(p[1], 0);
+  // A ring on the surface, and a stylus in contact.
+  input.overlays.lines.clear();
+  input.overlays.rings = {{20, 30, 12, {1, 0, 1}, 3}};
+  appendStylus({{30, 20, 9}, {30, 20, 3}, {0, 0, 2}, true, 1.5}, 4.0, input.overlays.lines);
+  const Frame all = shoot(*picture, input);
+  int magenta = 0;
+  for (int i = 0; i < 480 * 320; ++i) {
+    const std::uint8_t* q = pixel(all.image, i % 480, i / 480);
+    magenta += q[0] > 240 && q[1] < 15 && q[2] > 240;
+  }
+  EXPECT_GT(magenta, 200);
+}
+
+TEST(Live, FurnitureThemesLightAndMapsAreDrawnAndRefusedWhenOutOfRange) {
+  auto picture = makePicture();
+  FrameInput input;
+  input.view.width = 960;
+  input.view.height = 600;
+  Image image;
+  EXPECT_FALSE(picture->draw(input, image));  // nothing to show yet
+  ASSERT_TRUE(picture->update(partField()));
+  input.titles = {"part"};
+  const Frame dark = shoot(*picture, input);
+  input.light_azimuth_deg = -45;
+  const Frame lit = shoot(*picture, input);
+  EXPECT_NE(dark.image.rgba, lit.image.rgba);
+  for (const auto& wrong : {&FrameInput::error_px, &FrameInput::split, &FrameInput::light_elevation_deg}) {
+    FrameInput bad = input;
+    bad.*wrong = -1.0;
+    const auto refused = picture->draw(bad, image);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, engine::ErrorKind::kInput);
+  }
+  Shown odd;
+  odd.versions = {partField(), fieldOf(gridOf(8, 8), [](int, int) { return 1; })};
+  EXPECT_FALSE(picture->update(odd));
+  EXPECT_TRUE(picture->draw(input, image));  // what was there still is
+}
+
+TEST(Live, FieldsWithoutCellsHolesOnlyAndHugeHeightsAreDrawn) {
+  auto picture = makePicture();
+  for (const auto& [w, h] : {std::pair{1, 1}, {1, 40}, {40, 1}, {2, 2}, {65, 1}, {64, 64}, {65, 65}}) {
+    ASSERT_TRUE(picture->update(fieldOf(gridOf(w, h), [](int c, int r) { return c + r; })));
+    EXPECT_GT(shoot(*picture, bare()).stats.patches, 0) << w << " x " << h;
+  }
+  ASSERT_TRUE(picture->update(fieldOf(gridOf(30, 30), [](int, int) { return kNan; })));
+  EXPECT_EQ(shoot(*picture, bare()).stats.patches, 0);
+  ASSERT_TRUE(picture->update(fieldOf(gridOf(300, 300), [](int c, int r) {
+    return c == 100 && r == 75 ? 1e6 : c == 9 ? -3e30 : 0.1 * (c % 3);
+  })));
+  EXPECT_LE(shoot(*picture, bare()).stats.vertices, 98304);
+}
+
+}  // namespace
+}  // namespace fettle::render
