@@ -24,10 +24,11 @@ function(fettle_room name)
   target_link_libraries(fettle_${name} PUBLIC fettle_options ${ARG_LINKS})
 endfunction()
 
-# fettle_test(name SOURCES files... LINKS targets... [LABELS labels...] [DRAWS]): one test program.
+# fettle_test(name SOURCES files... LINKS targets... [LABELS labels...] [DRAWS] [SERIAL]): one test program.
+# SERIAL: its cases play in real time, so none runs beside another test.
 # Every case is its own CTest entry, so a failure names the sentence that broke.
 function(fettle_test name)
-  cmake_parse_arguments(ARG "DRAWS" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "DRAWS;SERIAL" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
@@ -46,5 +47,5 @@ function(fettle_test name)
     set(environment ENVIRONMENT LSAN_OPTIONS=detect_leaks=0)
   endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" ${environment})
+    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" RUN_SERIAL ${ARG_SERIAL} ${environment})
 endfunction()

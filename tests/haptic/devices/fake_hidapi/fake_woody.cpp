@@ -5,12 +5,16 @@
 #include <cstdlib>
 #include <utility>
 
+#include <pthread.h>
+#include <sched.h>
+
 namespace fettle::fake {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kWatchdog{500};
+constexpr int kPriority = 90;
 
 std::int16_t int16At(std::span<const std::uint8_t> b, std::size_t at) {
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(b[at] | (b[at + 1] << 8)));
@@ -140,6 +144,9 @@ void FakeWoody::output(std::span<const std::uint8_t> report) {
 }
 
 void FakeWoody::run() {
+  // Hardware is not held up by a busy machine: above everything, where that is allowed.
+  const sched_param priority{.sched_priority = kPriority};
+  static_cast<void>(pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority));
   Clock::time_point next = Clock::now();
   while (!stop_) {
     const auto out = stalled_ ? FakeHid::Out::kStalled : FakeHid::Out::kTaken;
