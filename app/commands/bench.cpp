@@ -6,6 +6,7 @@
 #include "bench/effects_bench.h"
 #include "bench/haptic_bench.h"
 #include "bench/machine.h"
+#include "bench/render_bench.h"
 #include "bench/stiffness_sweep.h"
 #include "haptic/loop/loop_bench.h"
 
@@ -183,6 +184,43 @@ void printStability(const Report& report) {
                row["ratio"].get<double>());
 }
 
+engine::Result<Report> picture(const bench::RenderBenchOptions& options, engine::JobControl& job) {
+  const auto result = bench::benchRender(options, job);
+  if (!result) return tl::unexpected(result.error());
+  Report report{{"machine", result->machine},
+                {"device", result->device},
+                {"first_ms", result->first_ms},
+                {"rows", Report::array()}};
+  for (const bench::RenderBenchRow& row : result->rows)
+    report["rows"].push_back({{"name", row.name},
+                              {"samples", row.samples},
+                              {"p50_ms", row.p50_ms},
+                              {"p99_ms", row.p99_ms},
+                              {"worst_ms", row.worst_ms},
+                              {"cpu_ms", row.cpu_ms},
+                              {"vertices", row.vertices},
+                              {"triangles", row.triangles},
+                              {"bound_px", row.bound_px},
+                              {"upload_ms", row.upload_ms},
+                              {"upload_ratio", row.upload_ratio},
+                              {"stalls", row.stalls},
+                              {"hash", fmt::format("{:016x}", row.hash)}});
+  return report;
+}
+
+void printPicture(const Report& report) {
+  fmt::print("{}\n{}\n\n{:<13}{:>8}{:>9}{:>9}{:>9}{:>9}{:>10}{:>9}{:>11}{:>8}  {}\n",
+             report["machine"].get<std::string>(), report["device"].get<std::string>(), "", "Msample",
+             "p50 ms", "p99 ms", "worst", "cpu ms", "vertices", "bound px", "upload ms", "ratio", "hash");
+  for (const Report& row : report["rows"])
+    fmt::print("{:<13}{:>8.1f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>10}{:>9.2f}{:>11.3f}{:>8.3f}  {}\n",
+               row["name"].get<std::string>(), row["samples"].get<double>() / 1e6,
+               row["p50_ms"].get<double>(), row["p99_ms"].get<double>(), row["worst_ms"].get<double>(),
+               row["cpu_ms"].get<double>(), row["vertices"].get<std::int64_t>(),
+               row["bound_px"].get<double>(), row["upload_ms"].get<double>(),
+               row["upload_ratio"].get<double>(), row["hash"].get<std::string>());
+}
+
 }  // namespace
 
 void addBench(CLI::App& root, Chosen& chosen) {
@@ -232,6 +270,16 @@ void addBench(CLI::App& root, Chosen& chosen) {
   sweep->add_option("--mass", sweep_options->mass_kg, "Moving mass, kg")->capture_default_str();
   sweep->add_option("--press", sweep_options->press_n, "Constant press, N")->capture_default_str();
   sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
+
+  auto render_options = std::make_shared<bench::RenderBenchOptions>();
+  CLI::App* drawing = addCommand(
+      *bench, chosen, "render", "Frames of a field that changes: time, vertices, screen error, uploads",
+      [render_options](engine::JobControl& job) { return picture(*render_options, job); }, printPicture);
+  drawing->add_option("--side", render_options->sides, "Samples along each side, one field each");
+  drawing->add_option("--frames", render_options->frames, "Frames of each row")->capture_default_str();
+  drawing->add_option("--error", render_options->error_px, "Screen error wanted, px")->capture_default_str();
+  drawing->add_option("--vertices", render_options->vertex_budget, "Vertices a frame at most")
+      ->capture_default_str();
 
   lateness->add_flag("--busy", *busy, "Keep every core busy by other processes meanwhile");
 }
