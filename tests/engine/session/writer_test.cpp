@@ -43,7 +43,7 @@ RC_GTEST_PROP(SessionWriter, TheFileFollowsEveryActionAndAnotherReaderSeesIt, ()
   const auto writer = created(play.session, path, options);
   RC_ASSERT(writer != nullptr);
   JobControl job;
-  const int rounds = *rc::gen::inRange(1, 6);
+  const int rounds = *rc::gen::inRange(1, 4);
   for (int round = 0; round < rounds; ++round) {
     const int actions = *rc::gen::inRange(0, 12);
     for (int a = 0; a < actions; ++a) play.act(writer.get());
