@@ -15,7 +15,7 @@ struct RenderBenchOptions {
   int width = 1280;                                    ///< of the picture [px]
   int height = 800;
   double error_px = 1.0;
-  std::int64_t vertex_budget = 98304;
+  std::int64_t vertex_budget = 65536;
 };
 
 /// One way of drawing, `frames` times from a camera that goes round, every frame waited for.

@@ -244,7 +244,7 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
     const auto paged = p.variant.paged ? Pipelines::Paged::kYes : Pipelines::Paged::kNo;
     draw(p.choice->patches.size(), pipelines_.surface(p.variant), *sets.surface, gpu::kPatchVertices);
     if (!p.choice->seams.empty())
-      draw(p.choice->seams.size(), pipelines_.seam(p.variant), *sets.seams, gpu::kSeamVertices);
+      draw(2 * p.choice->seams.size(), pipelines_.seam(p.variant), *sets.seams, gpu::kSeamStripVertices);
     // The plate is seen through holes alone.
     if (p.variant.holes) draw(1, pipelines_.floor(), *sets.surface, 4);
     draw(p.choice->walls.size(), pipelines_.wall(paged), *sets.walls, gpu::kWallVertices);

@@ -92,7 +92,7 @@ struct FrameInput {
   /// Screen error wanted [px], > 0. What is reached is in FrameStatistics::bound_px.
   double error_px = 1.0;
   /// Vertices a frame may cost, all panels together, 4096 .. 2^24.
-  std::int64_t vertex_budget = 98304;
+  std::int64_t vertex_budget = 65536;
 };
 
 /// What bringing a version over took.

@@ -195,7 +195,7 @@ std::int64_t PatchChoice::vertices() const noexcept {
 
 std::int64_t PatchChoice::triangles() const noexcept {
   return static_cast<std::int64_t>(patches.size()) * 2 * gpu::kPatchCells * gpu::kPatchCells +
-         static_cast<std::int64_t>(seams.size() + walls.size()) * 2 * gpu::kPatchCells;
+         static_cast<std::int64_t>(2 * seams.size() + walls.size()) * 2 * gpu::kPatchCells;
 }
 
 PatchChoice choosePatches(const PatchQuestion& question) {

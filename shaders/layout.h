@@ -28,8 +28,10 @@ FETTLE_CONST kStripVertices = 2 * (kPatchCells + 1) + 2;
 FETTLE_CONST kPatchVertices = kStripVertices * kPatchCells;
 // A wall: top and bottom vertex of every column of a patch along one edge of the field.
 FETTLE_CONST kWallVertices = 2 * (kPatchCells + 1);
-// A seam: the vertices of a patch's edge, and below or above each the edge of the coarser patch beyond it.
-FETTLE_CONST kSeamVertices = 2 * (kPatchCells + 1);
+// A seam is drawn as two strips: the vertices of a patch's edge, and beside each the edge of the coarser patch beyond
+// it.
+FETTLE_CONST kSeamStripVertices = 2 * (kPatchCells + 1);
+FETTLE_CONST kSeamVertices = 2 * kSeamStripVertices;
 
 FETTLE_CONST kColours = 256;
 

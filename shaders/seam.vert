@@ -1,9 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Closes the gap between a patch's edge and the coarser edge of the patch beyond it: a strip from the one to the other
-// that overlaps both by a fraction of a pixel across the edge, because a vertex in the middle of the coarser edge is
-// rounded to one side of it or the other. place: first sample of the edge; level | the other's level << 8; side as in
+// Closes the gap between a patch's edge and the coarser edge of the patch beyond it: two strips from the one to the
+// other that overlap both by a fraction of a pixel, one to the left and right, one up and down, because a vertex in the
+// middle of the coarser edge is rounded to one side of it or the other. (One strip that overlaps across the edge turns
+// over where the edge does, on walls and spikes, and leaves a hole there.) place: first sample of the edge; level | the other's level << 8; side as in
 // wall.vert.
 #include "field.glsl"
 
@@ -17,7 +18,7 @@ layout(location = 2) out float drawn_z;
 vec4 clipOf(ivec2 s, float z) { return panel.clip_from_scene * vec4(scenePoint(s, z), 1.0); }
 
 void main() {
-  const Patch p = patches[gl_InstanceIndex];
+  const Patch p = patches[gl_InstanceIndex >> 1];
   const int side = p.place.w;
   const ivec2 stride = ivec2(1 << (p.place.z & 255)), wide = ivec2(1 << (p.place.z >> 8));
   const ivec2 along = (side & 1) == 0 ? ivec2(1, 0) : ivec2(0, 1);
@@ -30,17 +31,14 @@ void main() {
   const ivec2 b = min(a + along * wide, last);
   const int run = (b.x - a.x) + (b.y - a.y);
   const float t = run == 0 ? 0.0 : float((s.x - a.x) + (s.y - a.y)) / float(run);
-  const float za = drawnZ(a, wide), zb = drawnZ(b, wide);
-  const float fine = drawnZ(s, stride), coarse = mix(za, zb, t);
+  const float fine = drawnZ(s, stride), coarse = mix(drawnZ(a, wide), drawnZ(b, wide), t);
   const vec4 at_fine = clipOf(s, fine), at_coarse = clipOf(s, coarse);
-  const vec4 ca = clipOf(a, za), cb = clipOf(b, zb);
   drawn_z = fine;
   gl_Position = at_fine;
   // Behind the viewer nothing has a place in the picture.
-  if (min(min(at_fine.w, at_coarse.w), min(ca.w, cb.w)) <= 0.0) return;
+  if (min(at_fine.w, at_coarse.w) <= 0.0) return;
   const vec2 half_px = 0.5 * push.plot_px.xy;
-  const vec2 edge = (cb.xy / cb.w - ca.xy / ca.w) * half_px;
-  const vec2 across = dot(edge, edge) > 1e-12 ? normalize(vec2(-edge.y, edge.x)) : vec2(0.0, 1.0);
+  const vec2 across = (gl_InstanceIndex & 1) == 0 ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
   const bool upper = (gl_VertexIndex & 1) != 0;
   const bool fine_is_upper = dot((at_fine.xy / at_fine.w - at_coarse.xy / at_coarse.w) * half_px, across) > 0.0;
   const bool takes_fine = upper == fine_is_upper;

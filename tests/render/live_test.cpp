@@ -143,6 +143,7 @@ TEST(Live, NoGroundShowsInsideTheSurfaceAtAnyMixOfStrides) {
                                        })}) {
     ASSERT_TRUE(picture->update(field));
     for (FrameInput input : views()) {
+      std::vector<char> solid;      // by pixel: the surface lies there, whatever the strides
       input.theme = Theme::kLight;  // no colour of the surface is as light as its ground
       for (const double error : {1.0, 5.0}) {
         input.error_px = error;
@@ -154,11 +155,10 @@ TEST(Live, NoGroundShowsInsideTheSurfaceAtAnyMixOfStrides) {
         const Frame ground = shoot(*picture, away);
         (void)shoot(*picture, input);
         int inside = 0;
-        std::vector<char> solid(static_cast<std::size_t>(input.view.width * input.view.height));
-        for (int y = 0; y < input.view.height; ++y)
-          for (int x = 0; x < input.view.width; ++x)
-            solid[static_cast<std::size_t>(y * input.view.width + x)] =
-                picture->pick(x + 0.5, y + 0.5).has_value();
+        if (solid.empty())
+          for (int y = 0; y < input.view.height; ++y)
+            for (int x = 0; x < input.view.width; ++x)
+              solid.push_back(picture->pick(x + 0.5, y + 0.5).has_value());
         for (int y = reach; y < input.view.height - reach; ++y)
           for (int x = reach; x < input.view.width - reach; ++x) {
             bool deep = true;
