@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <utility>
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -95,6 +98,26 @@ Key keyOf(int key, int scancode) {
 
 Modifiers modifiersOf(int bits) {
   return {(bits & GLFW_MOD_CONTROL) != 0, (bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_ALT) != 0};
+}
+
+// Xlib ends the program when its server goes away, and a program that uses it can only choose its last words.
+// GLFW loads the library by itself, so it is asked for here the same way.
+int onDisplayLost(void*) {
+  std::fputs(
+      "fettle: error: the connection to the display was lost, window, open the window again; what was not "
+      "saved "
+      "is gone\n",
+      stderr);
+  // Not exit(): the device's and the loop's threads still work on what it would destroy.
+  std::quick_exit(1);
+}
+void sayWhenDisplayIsLost() {
+  using Handler = int (*)(void*);
+  void* x11 = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+  if (x11 == nullptr) return;  // another window system
+  if (auto* set = reinterpret_cast<Handler (*)(Handler)>(dlsym(x11, "XSetIOErrorHandler")))
+    set(&onDisplayLost);
+  dlclose(x11);
 }
 
 constexpr const char* kDisplayRemedy =
@@ -222,6 +245,7 @@ engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& opti
     return engine::failure(fmt::format("there is no display to open a window on ({})", lastGlfwError()),
                            "window", kDisplayRemedy);
   impl->glfw.started = true;
+  sayWhenDisplayIsLost();
   if (glfwVulkanSupported() == GLFW_FALSE)
     return engine::failure("no Vulkan driver can show pictures in a window", "window",
                            "on Debian: apt install libvulkan1 mesa-vulkan-drivers");
@@ -347,11 +371,6 @@ LiveTarget& Window::pictureTarget() {
   w.target.leaves_as = Layout::eTransferSrcOptimal;
   w.drawn = true;
   return w.target;
-}
-
-const PictureTarget& Window::pictureImage() {
-  (void)pictureTarget();
-  return impl_->picture;
 }
 
 void Window::Impl::bringPicture(const vk::raii::CommandBuffer& commands) const {

@@ -14,7 +14,6 @@ namespace fettle::render {
 
 class Context;
 struct LiveTarget;
-struct PictureTarget;
 
 /// Keys by what is written on them: letters as 'A' .. 'Z' and digits as '0' .. '9' in the user's own layout,
 /// so that Ctrl+Z is where a German or French keyboard has its Z; signs as their ASCII code.
@@ -133,8 +132,6 @@ class Window {
   /// What to draw the picture to, of the size of its area (LivePicture::draw). Keeps its content from frame
   /// to frame. Throws vk::SystemError when there is no memory for it.
   [[nodiscard]] LiveTarget& pictureTarget();
-  /// The same image for what draws to the end before it returns (Frame).
-  [[nodiscard]] const PictureTarget& pictureImage();
   /// The VkFormat of the picture's target.
   [[nodiscard]] static std::uint32_t pictureFormat();
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <cstdlib>
 #include <mutex>
 #include <numbers>
 #include <thread>
@@ -38,6 +39,9 @@ double spacingMm(const engine::Grid& grid) {
 
 // A mouse knows no force: its depth stands for it. Two cells deep is pressing hard, on a coin as on a valley.
 haptic::Scene fitted(haptic::Scene scene, const engine::Grid& grid) {
+  // A cursor jumps up and down walls that a hand would go round, and would leave a local search behind them.
+  scene.level = haptic::ContactLevel::kCertified;
+  scene.certified_radius_cells = 6;  // more than the four cells that it presses at most
   scene.stiffness_n_per_mm = std::clamp(scene.force_limit_n / (2.0 * spacingMm(grid)), 1e-6, 1000.0);
   return scene;
 }
@@ -166,6 +170,9 @@ engine::Result<std::unique_ptr<Touch>> Touch::start(engine::History history, con
   if (!loop) return tl::unexpected(loop.error());
   touch->loop_ = std::move(*loop);
   if (auto status = haptic::LastResort::install(); !status) return tl::unexpected(status.error());
+  // The way out when the display is lost (render/window.cpp).
+  static const int at_quick_exit = std::at_quick_exit([] { haptic::LastResort::fire(); });
+  static_cast<void>(at_quick_exit);
   if (auto status = touch->device_->start(); !status) return tl::unexpected(status.error());
   if (auto status = touch->loop_->start(); !status) {
     touch->device_->stop();

@@ -48,7 +48,9 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
   if (!opened) return tl::unexpected(opened.error());
   station->window_ = std::move(*opened);
   station->window_->setWhileWaiting([s = station.get()] { s->whileWaiting(); });
-  station->picture_ = std::make_unique<render::WindowStill>(*station->window_);
+  auto picture = render::LivePicture::create(station->window_->context(), render::Window::pictureFormat());
+  if (!picture) return tl::unexpected(picture.error());
+  station->picture_ = std::move(*picture);
   station->view_.azimuth_deg = 330.0;
   if (!options.scan.empty()) station->open(options.scan);
   return station;
@@ -93,8 +95,11 @@ void Workstation::goRound() {
 void Workstation::whileWaiting() {
   window_->poll(0.0);
   for (const render::InputEvent& event : window_->takeInput()) {
-    toStylus(event);
-    input_.push_back(event);
+    const bool at_once = std::none_of(input_.begin(), input_.end(), [](const Pending& p) {
+      return p.event.kind == render::InputKind::kKeyDown;
+    });
+    if (at_once) toStylus(event);
+    input_.push_back({event, at_once});
   }
   if (touch_) touch_->poll();
 }
@@ -203,10 +208,34 @@ void Workstation::drawPicture() {
   if (shown_.versions.size() > 1) {
     input.titles.emplace_back("as it is");
     for (const auto& variant : filters_.variants()) input.titles.push_back(filterName(variant.spec));
+    // One plot has room for one title.
+    if (input.arrangement == render::Arrangement::kSplit)
+      input.titles = {fmt::format("left: as it is, right: {}", input.titles[1]), ""};
+  }
+  const bool stylus = tool_on_ || touch_->mouse() == nullptr;
+  if (stylus && state.link == haptic::LinkState::kConnected) {
+    const haptic::Scene& scene = touch_->scene();
+    const engine::Grid& grid = touch_->field().grid();
+    render::StylusState tip;
+    tip.endpoint_mm = state.endpoint_mm;
+    tip.proxy_mm = state.proxy_mm;
+    tip.force_n = state.force_n;
+    tip.contact = state.contact;
+    if (scene.tip == haptic::TipShape::kSphere) tip.tip_radius_mm = scene.tip_radius_mm;
+    // The largest force is an arrow of sixty pixels.
+    render::appendStylus(tip, 60.0 * pixel_mm / scene.force_limit_n, input.overlays.lines);
+    const bool marking = touch_->tool() == haptic::Tool::kMark || touch_->tool() == haptic::Tool::kUnmark;
+    const double radius = marking ? scene.mark_radius_samples : scene.brush_radius_samples;
+    render::Overlays::Ring ring;
+    ring.x_mm = state.contact ? state.proxy_mm.x : state.endpoint_mm.x;
+    ring.y_mm = state.contact ? state.proxy_mm.y : state.endpoint_mm.y;
+    ring.radius_mm = std::max(radius, 0.5) * std::max(grid.spacingXMm(), grid.spacingYMm());
+    ring.colour = marking ? glm::vec3{1.0F, 0.55F, 0.0F} : glm::vec3{1.0F, 1.0F, 1.0F};
+    input.overlays.rings.push_back(ring);
   }
   drawn_state_ = state;
   const auto start = std::chrono::steady_clock::now();
-  const auto figures = picture_->draw(input);
+  const auto figures = picture_->draw(input, window_->pictureTarget());
   if (!figures) {
     end_ = tl::unexpected(figures.error());
     return;

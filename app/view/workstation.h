@@ -18,7 +18,6 @@
 #include "engine/io/import.h"
 #include "render/live_picture.h"
 #include "render/window.h"
-#include "render/window_still.h"
 
 namespace fettle::app {
 
@@ -64,10 +63,6 @@ class Workstation {
     float light_elevation_deg = 45.0F;
     bool furniture = true;
   };
-  struct Saved {
-    std::string path;
-  };
-
   explicit Workstation(const ViewOptions& options);
 
   // workstation.cpp: the round
@@ -90,6 +85,7 @@ class Workstation {
   void setBrushRadius(double samples);
   void setPressDepth(double mm);
   void clearMarks();
+  [[nodiscard]] bool takeDialogKey(render::Key key);
   [[nodiscard]] bool inPicture(double x, double y) const;
   [[nodiscard]] std::optional<render::Picked> pick(double x, double y) const;
   [[nodiscard]] Drag dragOf(const render::InputEvent& event) const;
@@ -122,12 +118,19 @@ class Workstation {
   void deviationPanel();
   void statusBar();
   void splitLine();
+  [[nodiscard]] render::Rectangle plot() const;  // of the picture's surface, in the window
 
   ViewOptions options_;
   std::unique_ptr<render::Window> window_;
-  std::unique_ptr<render::WindowStill> picture_;
+  std::unique_ptr<render::LivePicture> picture_;
   RecentFiles recent_;
-  std::vector<render::InputEvent> input_;
+  // What hands did since the last frame. The stylus has its events before the frame comes to the others,
+  // unless a key waits that may choose another tool: then it waits behind it.
+  struct Pending {
+    render::InputEvent event;
+    bool stylus_has_it = false;
+  };
+  std::vector<Pending> input_;
 
   // The field and what is done to it.
   std::string path_;  // of the scan
@@ -174,7 +177,9 @@ class Workstation {
   // Panels.
   Dialog dialog_ = Dialog::kNone;
   bool dialog_fresh_ = false;
+  std::uint64_t dialog_frame_ = 0;  // the last one with a dialog
   std::string dialog_path_;
+  render::Key dialog_key_ = render::Key::kNone;  // pressed since the last frame
   Notice message_;
   AfterSaving after_saving_ = AfterSaving::kNothing;
   std::string open_next_;

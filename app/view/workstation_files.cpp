@@ -154,7 +154,8 @@ void Workstation::pathDialog(const char* title, const char* button) {
   if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize)) return;
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-1.0F);
-  bool confirmed = ImGui::InputText("##path", &dialog_path_, ImGuiInputTextFlags_EnterReturnsTrue);
+  bool confirmed = ImGui::InputText("##path", &dialog_path_,
+                                    ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue);
   if (dialog_ == Dialog::kOpen) {
     // What lies where the path points to so far.
     std::error_code error;
@@ -185,9 +186,9 @@ void Workstation::pathDialog(const char* title, const char* button) {
     if (fs::exists(dialog_path_, error))
       ImGui::TextColored(ImVec4(1.0F, 0.7F, 0.2F, 1.0F), "replaces the file there");
   }
-  confirmed = ImGui::Button(button) || confirmed;
+  confirmed = ImGui::Button(button) || takeDialogKey(render::Key::kEnter) || confirmed;
   ImGui::SameLine();
-  const bool left = ImGui::Button("Cancel") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
+  const bool left = ImGui::Button("Cancel") || takeDialogKey(render::Key::kEscape);
   if (confirmed && !dialog_path_.empty()) {
     const Dialog which = std::exchange(dialog_, Dialog::kNone);
     ImGui::CloseCurrentPopup();
@@ -227,11 +228,16 @@ void Workstation::dialogs() {
       title = "Fettle";
       break;
   }
-  if (std::exchange(dialog_fresh_, false)) ImGui::OpenPopup(title);
+  dialog_frame_ = frames_;
+  stale_ = true;
+  if (std::exchange(dialog_fresh_, false)) {
+    ImGui::OpenPopup(title);
+    dialog_key_ = render::Key::kNone;
+  }
   const ImVec2 middle(0.5F * ImGui::GetIO().DisplaySize.x, 0.5F * ImGui::GetIO().DisplaySize.y);
   ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
-  const auto escape = [] { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)); };
-  const auto enter = [] { return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)); };
+  const auto escape = [&] { return takeDialogKey(render::Key::kEscape); };
+  const auto enter = [&] { return takeDialogKey(render::Key::kEnter); };
   switch (dialog_) {
     case Dialog::kOpen:
       pathDialog(title, "Open");
@@ -245,7 +251,7 @@ void Workstation::dialogs() {
         ImGui::Text("%s was changed and is not saved.", nameOf(path_).c_str());
         const bool writes = ImGui::Button("Save (Enter)") || enter();
         ImGui::SameLine();
-        const bool drops = ImGui::Button("Discard (D)") || ImGui::IsKeyPressed('D');
+        const bool drops = ImGui::Button("Discard (D)") || takeDialogKey(render::letter('D'));
         ImGui::SameLine();
         const bool stays = ImGui::Button("Go back (Esc)") || escape();
         if (writes || drops || stays) {

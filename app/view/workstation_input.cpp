@@ -72,7 +72,8 @@ void Workstation::toStylus(const InputEvent& event) {
 }
 
 void Workstation::handleInput() {
-  for (const InputEvent& event : std::exchange(input_, {})) {
+  for (const auto& [event, stylus_has_it] : std::exchange(input_, {})) {
+    if (!stylus_has_it) toStylus(event);
     if (event.kind != InputKind::kMove || !event.panels_mouse || ImGui::IsAnyMouseDown()) stale_ = true;
     handle(event);
     last_x_ = event.x;
@@ -109,7 +110,7 @@ void Workstation::handle(const InputEvent& event) {
   const engine::Grid& grid = touch_->field().grid();
   const render::Rectangle& area = window_->pictureArea();
   const double dx = event.x - last_x_, dy = event.y - last_y_;
-  const double split_px = area.x + display_.split_at * area.width;
+  const double split_px = plot().x + display_.split_at * plot().width;
   switch (event.kind) {
     case InputKind::kButtonDown:
       if (event.panels_mouse || !inPicture(event.x, event.y)) return;
@@ -126,7 +127,7 @@ void Workstation::handle(const InputEvent& event) {
       break;
     case InputKind::kMove:
       if (dragging_split_)
-        display_.split_at = std::clamp((event.x - area.x) / std::max(area.width, 1), 0.02, 0.98);
+        display_.split_at = std::clamp((event.x - plot().x) / std::max(plot().width, 1), 0.02, 0.98);
       else if (drag_ == Drag::kTurn)
         Navigation::turn(view_, dx, dy, area.width);
       else if (drag_ == Drag::kPan)
@@ -151,12 +152,14 @@ void Workstation::handle(const InputEvent& event) {
 }
 
 void Workstation::handleKey(const InputEvent& event) {
-  if (event.panels_key) return;  // a text field has it
-  const auto action = actionOf(event.key, event.modifiers);
   if (dialog_ != Dialog::kNone) {
-    // The dialogs have Enter and Esc themselves.
+    // A short press falls between two frames, and ImGui would not see it.
+    dialog_key_ = event.key;
     return;
   }
+  // A text field has it; for two frames ImGui still says so of the field of a dialog that was closed.
+  if (event.panels_key && frames_ > dialog_frame_ + 3) return;
+  const auto action = actionOf(event.key, event.modifiers);
   if (event.modifiers == render::Modifiers{true, false, false} && event.key >= render::letter('1') &&
       event.key <= render::letter('9')) {
     const auto n = static_cast<std::size_t>(static_cast<int>(event.key) - '1');
@@ -210,6 +213,12 @@ bool Workstation::handleAdjusting(const InputEvent& event) {
     default:
       return event.kind != InputKind::kWheel;
   }
+}
+
+bool Workstation::takeDialogKey(Key key) {
+  if (dialog_key_ != key) return false;
+  dialog_key_ = Key::kNone;
+  return true;
 }
 
 void Workstation::chooseTool(std::optional<Tool> tool) {

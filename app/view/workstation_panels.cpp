@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "app/view/workstation.h"
+#include "render/overlay.h"
 
 namespace fettle::app {
 namespace {
@@ -151,11 +152,22 @@ void Workstation::panels() {
   dialogs();
 }
 
+render::Rectangle Workstation::plot() const {
+  const render::Rectangle& area = window_->pictureArea();
+  const auto layout =
+      render::layOut(view_, display_.furniture ? render::Decoration::kFull : render::Decoration::kNone, 1,
+                     shown_.versions.size() > 1 ? render::Titles::kAbove : render::Titles::kNone);
+  render::Rectangle rectangle = layout.plots.front();
+  rectangle.x += area.x;
+  rectangle.y += area.y;
+  return rectangle;
+}
+
 void Workstation::splitLine() {
   if (!display_.split || shown_.versions.size() != 2) return;
-  const render::Rectangle& area = window_->pictureArea();
-  const float x = static_cast<float>(area.x + display_.split_at * area.width);
-  const float y = static_cast<float>(area.y + area.height / 2);
+  const render::Rectangle area = plot();
+  const auto x = static_cast<float>(area.x + display_.split_at * area.width);
+  const auto y = static_cast<float>(area.y + area.height / 2);
   ImGui::GetBackgroundDrawList()->AddCircleFilled(ImVec2(x, y), 7.0F * static_cast<float>(window_->scale()),
                                                   IM_COL32(255, 255, 255, 220));
 }
