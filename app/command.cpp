@@ -51,6 +51,17 @@ void printReport(const Report& report) {
   printIndented(report, 0);
 }
 
+CLI::Validator within(double lowest, double highest) {
+  return CLI::Validator(
+      [lowest, highest](const std::string& text) {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && value >= lowest && value <= highest)
+          return std::string();
+        return fmt::format("{} is not a number from {:g} to {:g}", text, lowest, highest);
+      },
+      fmt::format("FLOAT in [{:g} - {:g}]", lowest, highest));
+}
+
 CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
                      std::function<engine::Result<Report>(engine::JobControl&)> run,
                      std::function<void(const Report&)> print, Progress progress) {

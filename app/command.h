@@ -39,6 +39,9 @@ CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, co
                      std::function<void(const Report&)> print = printReport,
                      Progress progress = Progress::kLine);
 
+/// For CLI::Option::check: a number from `lowest` to `highest`. CLI::Range lets NaN through.
+[[nodiscard]] CLI::Validator within(double lowest, double highest);
+
 void addInfo(CLI::App& root, Chosen& chosen);
 void addSynth(CLI::App& root, Chosen& chosen);
 void addFilter(CLI::App& root, Chosen& chosen);

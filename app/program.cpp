@@ -79,6 +79,12 @@ int runProgram(int argc, char** argv, const std::function<void(CLI::App&, Chosen
     if (error.get_exit_code() == 0) return finish(root.exit(error));  // --help and --version
     std::string command;
     for (const CLI::App* used : root.get_subcommands()) command = used->get_name() + " ";
+    // "A subcommand is required" is no answer to one that is misspelt.
+    const auto rest = root.remaining(true);
+    if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr && !rest.empty() &&
+        !rest[0].starts_with("-"))
+      return report({ErrorKind::kInput, fmt::format("there is no command {}{}", command, rest[0]), "",
+                     fmt::format("see fettle {}--help", command)});
     return report({ErrorKind::kInput, error.what(), "", fmt::format("see fettle {}--help", command)});
   }
   try {

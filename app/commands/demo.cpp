@@ -28,6 +28,18 @@ const engine::TruthFigures& figures(const DemoRun& run, const std::string& name)
   return run.results.front().figures;
 }
 
+// What a run that ends early leaves: files that are whole, which it says, or no folder that was not there.
+engine::Error ended(engine::Error error, const DemoOptions& options, bool made) {
+  std::error_code ignored;
+  const bool empty = std::filesystem::is_empty(options.folder, ignored);
+  if (empty && made) std::filesystem::remove(options.folder, ignored);
+  if (error.kind == engine::ErrorKind::kCancelled && !empty) {
+    error.where = options.folder;
+    error.remedy = "each file in it is whole, the rest is missing: run it again";
+  }
+  return error;
+}
+
 engine::Result<Report> demo(const DemoOptions& options, engine::JobControl& job) {
   if (auto status = engine::validate(demoFilter(engine::FilterKind::kBox, options)); !status)
     return tl::unexpected(status.error());
@@ -36,15 +48,17 @@ engine::Result<Report> demo(const DemoOptions& options, engine::JobControl& job)
       return engine::inputError(fmt::format("{} is no place in the field", at), "--look-at",
                                 "give fractions from 0 to 1");
   std::error_code error;
-  std::filesystem::create_directories(options.folder, error);
-  if (error) return engine::inputError("the folder cannot be made", options.folder, error.message());
+  const bool made = std::filesystem::create_directories(options.folder, error);
+  if (error)
+    return engine::inputError(fmt::format("the folder cannot be made: {}", error.message()), options.folder,
+                              "name a folder that you may write to");
   const auto run = runDemo(options, job);
-  if (!run) return tl::unexpected(run.error());
+  if (!run) return tl::unexpected(ended(run.error(), options, made));
   const std::string table_file = (std::filesystem::path(options.folder) / "table.csv").string();
   if (auto status = engine::writeFileAtomically(table_file, csv(*run)); !status)
     return tl::unexpected(status.error());
   const auto pictures = drawDemo(*run, options, job);
-  if (!pictures) return tl::unexpected(pictures.error());
+  if (!pictures) return tl::unexpected(ended(pictures.error(), options, made));
 
   Report report{{"folder", options.folder},      {"width", options.side},
                 {"height", options.side},        {"window", options.window},

@@ -12,6 +12,7 @@
 #include "app/terminal.h"
 #include "engine/io/marks.h"
 #include "haptic/devices/enumerate.h"
+#include "haptic/devices/simulated_hand.h"
 #include "haptic/devices/workspace.h"
 #include "haptic/loop/pacer.h"
 #include "haptic/replay.h"
@@ -56,7 +57,7 @@ struct ChosenDevice {
   double plays_s = 0.0;
 };
 
-engine::Result<ChosenDevice> choose(const Options& options) {
+engine::Result<ChosenDevice> choose(const Options& options, const haptic::Scene& scene) {
   ChosenDevice chosen;
   if (options.device == "mouse")
     return engine::inputError("the mouse needs a window to point at", "--device mouse",
@@ -78,6 +79,13 @@ engine::Result<ChosenDevice> choose(const Options& options) {
                                 "give a recorded session");
     chosen.plays_s = path.back().t;
   }
+  const bool holds_up = std::find(scene.effects.begin(), scene.effects.end(), haptic::EffectKind::kGravity) !=
+                        scene.effects.end();
+  if (holds_up && options.device.starts_with("hand:"))
+    warn(fmt::format(
+        "the simulated hand holds no stylus, and gravity compensation for {:g} kg lifts it by {:.2g} mm",
+        scene.params.gravity.stylus_kg,
+        9.80665 * scene.params.gravity.stylus_kg / haptic::HandSpec{}.stiffness_n_per_mm));
   auto device = haptic::openDevice(options.device, options.rate_hz);
   if (!device) return tl::unexpected(device.error());
   chosen.device = *std::move(device);
@@ -100,7 +108,12 @@ glm::dvec3 middleOf(const engine::Version& field) {
 // Where the device lies in the field: --scale, or the whole field within reach unless that felt too stiff.
 engine::Result<haptic::Workspace> place(const Options& options, const engine::Version& felt,
                                         const haptic::DeviceProfile& profile, const haptic::Scene& scene) {
-  if (profile.space == haptic::DeviceSpace::kField) return haptic::Workspace{};
+  if (profile.space == haptic::DeviceSpace::kField) {
+    if (options.scale != 0.0)
+      return engine::inputError(fmt::format("{} moves in millimetres of the field already", profile.name),
+                                "--scale", "leave it out");
+    return haptic::Workspace{};
+  }
   const engine::Grid& grid = felt.grid();
   const glm::dvec3 middle = middleOf(felt);
   const double side = std::min((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
@@ -251,7 +264,13 @@ std::string hashOf(const engine::Version& field) {
 }
 
 engine::Result<Report> record(const Options& options, engine::JobControl& job) {
-  auto chosen = choose(options);
+  haptic::Scene scene = haptic::defaultScene();
+  if (!options.scene.empty()) {
+    auto loaded = haptic::loadScene(options.scene);
+    if (!loaded) return tl::unexpected(loaded.error());
+    scene = *std::move(loaded);
+  }
+  auto chosen = choose(options, scene);
   if (!chosen) return tl::unexpected(chosen.error());
   if (auto status = checkOutputs({{options.strokes, OutputKind::kText},
                                   {options.out, OutputKind::kField},
@@ -259,12 +278,6 @@ engine::Result<Report> record(const Options& options, engine::JobControl& job) {
                                  {options.scan, options.scene, options.marks, chosen->file});
       !status)
     return tl::unexpected(status.error());
-  haptic::Scene scene = haptic::defaultScene();
-  if (!options.scene.empty()) {
-    auto loaded = haptic::loadScene(options.scene);
-    if (!loaded) return tl::unexpected(loaded.error());
-    scene = *std::move(loaded);
-  }
   const auto field = load(options, job);
   if (!field) return tl::unexpected(field.error());
   const engine::Version felt = scene.invert ? field->start.inverted() : field->start;
@@ -292,6 +305,11 @@ engine::Result<Report> record(const Options& options, engine::JobControl& job) {
                      outcome->last.lost_records + outcome->last.refused_edits > 0
                          ? ": ticks were lost on the way to the disk, or memory for edits came too late"
                          : ", please report it"));
+
+  if (device.profile().gives_force && again->report.contact_ticks > 0 && !(log.given().peak_n > 0.0))
+    warn(
+        "no force was given and nothing edited: armed inside the surface, the stylus must first come out of "
+        "it");
 
   const haptic::Workspace& workspace = settings->loop.options.workspace;
   const bool desk = device.profile().space == haptic::DeviceSpace::kDesk;
@@ -358,16 +376,16 @@ void addRecord(CLI::App& root, Chosen& chosen) {
       ->check(CLI::IsMember({"button", "always"}))
       ->capture_default_str();
   command->add_option("--rate", options->rate_hz, "Ticks a second, 1000 to 10000")
-      ->check(CLI::Range(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
+      ->check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
       ->capture_default_str();
   command->add_option("--seconds", options->seconds, "End after so long; otherwise by q or Ctrl-C")
-      ->check(CLI::Range(1e-3, 86400.0));
+      ->check(within(1e-3, 86400.0));
   command
       ->add_option("--scale", options->scale,
                    "Millimetres of the field a millimetre of the hand; fitted to the scan without it")
-      ->check(CLI::Range(1e-6, 1e6));
+      ->check(within(1e-6, 1e6));
   command->add_option("--max-force", options->max_force_n, "Newtons, below what the device's profile allows")
-      ->check(CLI::Range(0.0, 1000.0));
+      ->check(within(0.0, 1000.0));
   command
       ->add_option("--arm", options->arm,
                    "ask: by the key a; auto: by itself, for devices without force and simulated ones, whose "

@@ -42,6 +42,8 @@ engine::Result<Report> replay(const Options& options, engine::JobControl& job) {
   }
   const auto strokes = haptic::readStrokes(options.strokes);
   if (!strokes) return tl::unexpected(strokes.error());
+  if (strokes->empty())
+    return engine::inputError("the strokes hold no row", options.strokes, "give a recorded session");
   auto imported = loadScan(options.scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   engine::Version field = imported->field;

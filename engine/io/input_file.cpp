@@ -36,7 +36,7 @@ Result<InputFile> InputFile::open(const std::string& path) {
   if (descriptor < 0) {
     const int error = errno;
     return inputError(fmt::format("the file cannot be read: {}", std::generic_category().message(error)),
-                      path, error == ENOENT ? "check the path" : "");
+                      path, error == ENOENT ? "check the path" : "check who may read it");
   }
   struct stat status {};
   const bool known = fstat(descriptor, &status) == 0;
@@ -45,7 +45,7 @@ Result<InputFile> InputFile::open(const std::string& path) {
     return inputError("this is a folder, not a file", path, "name a file in it");
   if (!known || !S_ISREG(status.st_mode))
     return inputError("this is no ordinary file", path, "copy the data to a file first");
-  if (status.st_size == 0) return inputError("the file is empty", path);
+  if (status.st_size == 0) return inputError("the file is empty", path, "give a scan with samples in it");
   return file;
 }
 

@@ -264,9 +264,10 @@ class Measurement {
 
 engine::Result<LoopBenchReport> benchLoop(const LoopBenchOptions& options, engine::JobControl& job) {
   if (!(options.seconds > 0.0 && options.seconds <= 3600.0))
-    return engine::inputError("the time to measure is not within 0 and 3600 s", "seconds");
+    return engine::inputError("the time to measure is not within 0 and 3600 s", "--seconds",
+                              "give a time between");
   if (!(options.rate_hz >= Pacer::kLowestRate_hz && options.rate_hz <= Pacer::kHighestRate_hz))
-    return engine::inputError("a loop runs at 1000 to 10000 ticks a second", "rate");
+    return engine::inputError("a loop runs at 1000 to 10000 ticks a second", "--rate", "give a rate between");
   if (options.priority < 0 || options.priority > 99)
     return engine::inputError("a priority is within 0 and 99", "priority");
   try {
