@@ -82,13 +82,14 @@ class SessionWriter::Impl {
   Status flush(JobControl& job) {
     std::unique_lock lock(queue_lock_);
     const std::uint64_t until = asked_;
-    const std::uint64_t failures = failures_;
+    // A try that is under way may have failed before the disk was made good: only a later one counts.
+    const std::uint64_t begun = tries_;
     if (status_.committed < until) {
       try_again_ = true;
       wake_worker_.notify_one();
     }
     while (status_.committed < until) {
-      if (status_.error && failures_ != failures) return tl::unexpected(*status_.error);
+      if (status_.error && failed_try_ > begun) return tl::unexpected(*status_.error);
       if (job.cancelled()) return cancelled();
       wake_waiters_.wait_for(lock, kLook);
     }
@@ -174,9 +175,11 @@ class SessionWriter::Impl {
   // Writes the first of the queue. The caller holds file_lock_.
   Status writeNext() {
     const SessionAction* action = nullptr;
+    std::uint64_t own_try = 0;
     {
       const std::scoped_lock lock(queue_lock_);
       if (queue_.empty()) return {};
+      own_try = ++tries_;
       action = queue_.front().get();
       fixed_ = 1;
       try_again_ = false;
@@ -203,7 +206,7 @@ class SessionWriter::Impl {
         status_.error.reset();
       } else {
         status_.error = written.error();
-        ++failures_;
+        failed_try_ = own_try;
       }
     }
     wake_waiters_.notify_all();
@@ -265,7 +268,8 @@ class SessionWriter::Impl {
   std::deque<std::unique_ptr<SessionAction>> queue_;
   std::size_t fixed_ = 0;  // this many at the front are in use and may not change
   std::uint64_t asked_ = 0;
-  std::uint64_t failures_ = 0;
+  std::uint64_t tries_ = 0;         // begun so far
+  std::uint64_t failed_try_ = 0;    // the last that failed
   std::int64_t planned_state_ = 0;  // once all that waits is written
   std::int64_t planned_last_ = 0;
   bool try_again_ = false;

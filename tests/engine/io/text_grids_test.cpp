@@ -155,7 +155,7 @@ TEST(Formats, TheTableNamesWhatCanBeReadAndWritten) {
     EXPECT_FALSE(info.extensions.empty());
     EXPECT_TRUE(info.reads && info.writes);
   }
-  EXPECT_EQ(names, (std::vector<std::string>{"GTiff", "PNG", "PLY", "AAIGrid", "XYZ"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"GTiff", "PNG", "PLY", "AAIGrid", "Fettle", "XYZ"}));
 }
 
 }  // namespace
