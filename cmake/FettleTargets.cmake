@@ -24,7 +24,7 @@ function(fettle_room name)
   target_link_libraries(fettle_${name} PUBLIC fettle_options ${ARG_LINKS})
 endfunction()
 
-# fettle_test(name SOURCES files... LINKS targets... [LABELS labels...] [DRAWS] [SERIAL]): one test program.
+# fettle_test(name SOURCES files... LINKS targets... [LABELS label] [DRAWS] [SERIAL]): one test program.
 # SERIAL: its cases play in real time, so none runs beside another test.
 # Every case is its own CTest entry, so a failure names the sentence that broke.
 function(fettle_test name)
@@ -35,17 +35,25 @@ function(fettle_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LINKS} fettle_test_support GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE FETTLE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
-  if("concurrency" IN_LIST ARG_LABELS)
+  if(ARG_LABELS MATCHES "^(concurrency|live)$")
     if(NOT TARGET concurrency_tests)
       add_custom_target(concurrency_tests)  # what the thread sanitizer runs; see .ci/run
     endif()
     add_dependencies(concurrency_tests ${name})
   endif()
+  # Only properties with a value, and no more than one label: CTest's script is made from a flat list, in which an
+  # empty value swallows the name of the next property and a second label is taken for one.
+  set(properties TIMEOUT ${ARG_TIMEOUT})
+  if(ARG_LABELS)
+    list(APPEND properties LABELS "${ARG_LABELS}")
+  endif()
+  if(ARG_SERIAL)
+    list(APPEND properties RUN_SERIAL TRUE)
+  endif()
   # Libraries that the Vulkan loader brings in and unloads again leak a little at exit, without a name left to
   # suppress them by: programs that draw are checked for everything but leaks.
   if(ARG_DRAWS)
-    set(environment ENVIRONMENT LSAN_OPTIONS=detect_leaks=0)
+    list(APPEND properties ENVIRONMENT LSAN_OPTIONS=detect_leaks=0)
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120
-    PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" RUN_SERIAL ${ARG_SERIAL} ${environment})
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120 PROPERTIES ${properties})
 endfunction()
