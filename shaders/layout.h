@@ -1,5 +1,5 @@
-// Read by C++ and by every shader, so that the two sides cannot drift apart. Only types whose std140, std430 and
-// C++ layouts agree are used: 4-component vectors, matrices of them and arrays of them.
+// Read by C++ and by every shader, so that the two sides cannot drift apart. Only types whose std140, std430
+// and C++ layouts agree are used: 4-component vectors, matrices of them and arrays of them.
 #ifndef FETTLE_SHADERS_LAYOUT_H
 #define FETTLE_SHADERS_LAYOUT_H
 
@@ -19,17 +19,17 @@ using glm::vec4;
 #define FETTLE_CONST const int
 #endif
 
-// Cells along one side of a patch, the unit in which the surface is drawn; a power of two, 8 .. 32. 16: a patch is
-// one instance of kPatchVertices vertices, enough that the cost of an instance does not show, and small enough to
-// follow a wall without spending many fine cells beside it.
+// Cells along one side of a patch, the unit in which the surface is drawn; a power of two, 8 .. 32. 16: a
+// patch is one instance of kPatchVertices vertices, enough that the cost of an instance does not show, and
+// small enough to follow a wall without spending many fine cells beside it.
 FETTLE_CONST kPatchCells = 16;
 // One strip row: left and right vertex of every column, first and last doubled to jump to the next row.
 FETTLE_CONST kStripVertices = 2 * (kPatchCells + 1) + 2;
 FETTLE_CONST kPatchVertices = kStripVertices * kPatchCells;
 // A wall: top and bottom vertex of every column of a patch along one edge of the field.
 FETTLE_CONST kWallVertices = 2 * (kPatchCells + 1);
-// A seam is drawn as two strips: the vertices of a patch's edge, and beside each the edge of the coarser patch beyond
-// it.
+// A seam is drawn as two strips: the vertices of a patch's edge, and beside each the edge of the coarser
+// patch beyond it.
 FETTLE_CONST kSeamStripVertices = 2 * (kPatchCells + 1);
 FETTLE_CONST kSeamVertices = 2 * kSeamStripVertices;
 
@@ -41,8 +41,9 @@ FETTLE_CONST kBindHeights = 1;   // utexture2DArray, bits of a float; a hole is 
 FETTLE_CONST kBindMarks = 2;     // utexture2DArray, non-zero = marked
 FETTLE_CONST kBindOriginal = 3;  // utexture2DArray, heights that the deviation is counted from
 FETTLE_CONST kBindPatches = 4;   // buffer of Patch
-FETTLE_CONST kBindShade = 5;     // utexture2DArray, every 2^shade.x-th sample of the heights; marks and original likewise
-FETTLE_CONST kBindLines = 6;     // buffer of Line
+// utexture2DArray, every 2^shade.x-th sample of the heights; marks and original likewise.
+FETTLE_CONST kBindShade = 5;
+FETTLE_CONST kBindLines = 6;  // buffer of Line
 
 // Bindings of descriptor set 0 of the picture.
 FETTLE_CONST kBindScene = 0;   // texture2D, one panel at several rays a pixel, premultiplied
@@ -55,19 +56,20 @@ FETTLE_CONST kSpecPaged = 0;
 FETTLE_CONST kSpecMarks = 1;
 FETTLE_CONST kSpecDeviation = 2;
 FETTLE_CONST kSpecContours = 3;
-FETTLE_CONST kSpecSmooth = 4;  // normals interpolated inside a cell: only worth it where cells are larger than rays
-
-FETTLE_CONST kSpecHoles = 5;   // there may be holes
-FETTLE_CONST kSpecCell = 6;    // for speed: slopes of the cell alone where kSpecSmooth is off, the nearest of 256 colours
+// Normals interpolated inside a cell: only worth it where cells are larger than rays.
+FETTLE_CONST kSpecSmooth = 4;
+FETTLE_CONST kSpecHoles = 5;  // there may be holes
+// For speed: slopes of the cell alone where kSpecSmooth is off, the nearest of 256 colours.
+FETTLE_CONST kSpecCell = 6;
 FETTLE_CONST kSpecCount = 7;
 
 // What a Quad is filled with.
 FETTLE_CONST kFillSolid = 0;
-FETTLE_CONST kFillGlyph = 1;   // uv: texel of the glyph image
-FETTLE_CONST kFillColours = 2; // uv.y: place in the colour map, 0 .. 1
-FETTLE_CONST kFillScene = 3;   // uv: ray of the scene image
-FETTLE_CONST kFillUp = 4;      // triangle standing on the quad's lower edge, colour as kFillColours
-FETTLE_CONST kFillDown = 5;    // triangle hanging from the quad's upper edge
+FETTLE_CONST kFillGlyph = 1;    // uv: texel of the glyph image
+FETTLE_CONST kFillColours = 2;  // uv.y: place in the colour map, 0 .. 1
+FETTLE_CONST kFillScene = 3;    // uv: ray of the scene image
+FETTLE_CONST kFillUp = 4;       // triangle standing on the quad's lower edge, colour as kFillColours
+FETTLE_CONST kFillDown = 5;     // triangle hanging from the quad's upper edge
 
 // Scene coordinates: millimetres from the middle of what is shown, x and y as in the field, z up with the
 // exaggeration in it. "Virtual" samples: a field of one row or column is drawn as two equal ones.
@@ -75,16 +77,17 @@ struct PanelUniforms {
   mat4 clip_from_scene;  // bytes   0 ..  63
   vec4 placing;          //  64: x, y of virtual sample (0, 0) [scene mm]; spacing x, y [mm]
   vec4 relief;           //  80: sign of heights; height at scene z 0; scene mm a height unit; floor's scene z
-  vec4 limits;           //  96: lowest and highest height drawn; steeper ones are cut; sign of the original; -
-  vec4 colouring;        // 112: value of the first colour; 1 / range; contour step (value); rays a cell
-  vec4 light;            // 128: unit vector to the light; share of light without direction
-  vec4 marks_tint;       // 144: linear red, green, blue; opacity
-  vec4 no_data;          // 160: linear red, green, blue
-  vec4 wall;             // 176: linear red, green, blue
-  ivec4 size;            // 192: virtual columns, rows; true columns, rows
-  ivec4 paging;          // 208: log2 of a page's columns, rows; pages across; step of differences [2^shade.x samples]
-  ivec4 shade;           // 224: log2 of the step between samples that colours come from; -; columns, rows of those
-  vec4 seam;             // 240: how far seams overlap [px]; drawn so far from its sample, a point is beside it [scene mm]; -; -
+  vec4 limits;      //  96: lowest and highest height drawn; steeper ones are cut; sign of the original; -
+  vec4 colouring;   // 112: value of the first colour; 1 / range; contour step (value); rays a cell
+  vec4 light;       // 128: unit vector to the light; share of light without direction
+  vec4 marks_tint;  // 144: linear red, green, blue; opacity
+  vec4 no_data;     // 160: linear red, green, blue
+  vec4 wall;        // 176: linear red, green, blue
+  ivec4 size;       // 192: virtual columns, rows; true columns, rows
+  ivec4 paging;  // 208: log2 of a page's columns, rows; pages across; step of differences [2^shade.x samples]
+  ivec4 shade;   // 224: log2 of the step between samples that colours come from; -; columns, rows of those
+  // Seam: how far seams overlap [px]; drawn so far from its sample, a point is beside it [scene mm]; -; -.
+  vec4 seam;               // 240
   vec4 colours[kColours];  // 256: linear red, green, blue
 };
 

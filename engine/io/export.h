@@ -31,9 +31,9 @@ struct Exported {
 ///   .png        16-bit grey, 0 = hole, quantised: the warning says count and largest error
 ///   .fettle     a session (engine/session) that begins with this field, marks and sign included, bit for bit
 ///
-/// Other formats take no marks: these go to their own file (marks.h). The file appears whole or not at all (atomic_file.h). Errors:
-/// kInput for an unknown extension, a path that cannot be written, a full disk; kCancelled.
-/// Thread: any; a long job.
+/// Other formats take no marks: these go to their own file (marks.h). The file appears whole or not at all
+/// (atomic_file.h). Errors: kInput for an unknown extension, a path that cannot be written, a full disk;
+/// kCancelled. Thread: any; a long job.
 [[nodiscard]] Result<Exported> exportField(const Version& field, const std::string& path,
                                            const ExportOptions& options, JobControl& job);
 
