@@ -54,14 +54,15 @@ int main(int count, char** arguments) {
   }
   tell("ready\n");
   if (std::FILE* ready = std::fopen(arguments[6], "w")) std::fclose(ready);
+  std::string before;  // told in one write with what follows it: between two actions there is no moment
   for (;;) {
     const std::int64_t n = play->actions() + 1;
-    tell(fmt::format("begun {}\n", n));
+    tell(before + fmt::format("begun {}\n", n));
     play->act(writer.get());
     for (SessionStatus status = writer->status(); status.waiting != 0; status = writer->status()) {
       if (status.error) return refuse(*status.error);
       std::this_thread::sleep_for(std::chrono::microseconds(100));
     }
-    tell(fmt::format("committed {}\n", n));
+    before = fmt::format("committed {}\n", n);
   }
 }

@@ -99,7 +99,7 @@ TEST(SessionKill, AtAnyMomentNothingButTheActionInProgressIsLost) {
     ++seen[!fs::exists(path)             ? "before the session was there"
            : !told.ready                 ? "while it opened"
            : told.begun > told.committed ? "within an action"
-                                         : "between two actions"];
+                                         : "before its first action"];
     seen["with a log left"] += log ? 1 : 0;
     if (!fs::exists(path)) {
       ASSERT_FALSE(told.ready);
@@ -129,7 +129,7 @@ TEST(SessionKill, AtAnyMomentNothingButTheActionInProgressIsLost) {
              slowest_open * 1e3);
   for (const auto& [what, count] : seen) fmt::print("  {:4} {}\n", count, what);
   // The moments must have been spread: a test that always kills an idle program shows nothing.
-  EXPECT_GE(seen["within an action"], kills / 2);
+  EXPECT_GE(seen["within an action"], kills / 3);
   EXPECT_GE(seen["with a log left"], kills / 4);
 }
 
