@@ -71,24 +71,6 @@ class Writes {
   std::vector<vk::WriteDescriptorSet> writes_;
 };
 
-void barrier(const vk::raii::CommandBuffer& commands, vk::Image image, ImageLayout from, ImageLayout to,
-             vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access, vk::PipelineStageFlags2 after,
-             vk::AccessFlags2 after_access) {
-  vk::ImageMemoryBarrier2 b;
-  b.setSrcStageMask(before)
-      .setSrcAccessMask(before_access)
-      .setDstStageMask(after)
-      .setDstAccessMask(after_access)
-      .setOldLayout(from)
-      .setNewLayout(to)
-      .setSrcQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
-      .setDstQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
-      .setImage(image)
-      .setSubresourceRange({vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
-  vk::DependencyInfo info;
-  commands.pipelineBarrier2(info.setImageMemoryBarriers(b));
-}
-
 }  // namespace
 
 LiveFrame::LiveFrame(Context& context, vk::Format colour) : context_(context), pipelines_(context, colour) {
@@ -199,9 +181,9 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
   writes.apply(context_.device());
 
   // The acquired image is waited for at this stage: the change of layout comes after it.
-  barrier(commands, target.image, ImageLayout::eUndefined, ImageLayout::eColorAttachmentOptimal,
-          Stage::eColorAttachmentOutput | Stage::eCopy, {}, Stage::eColorAttachmentOutput,
-          Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
+  change(commands, target.image, ImageLayout::eUndefined, ImageLayout::eColorAttachmentOptimal,
+         Stage::eColorAttachmentOutput | Stage::eCopy, {}, Stage::eColorAttachmentOutput,
+         Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
   change(commands, depth_, ImageLayout::eUndefined, ImageLayout::eDepthAttachmentOptimal,
          Stage::eEarlyFragmentTests | Stage::eLateFragmentTests, Access::eDepthStencilAttachmentWrite,
          Stage::eEarlyFragmentTests | Stage::eLateFragmentTests,
@@ -255,10 +237,9 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
   commands.endRendering();
 
   if (!furniture.empty() || target.over) {
-    barrier(commands, target.image, ImageLayout::eColorAttachmentOptimal,
-            ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
-            Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput,
-            Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
+    change(commands, target.image, ImageLayout::eColorAttachmentOptimal, ImageLayout::eColorAttachmentOptimal,
+           Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput,
+           Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
     colour.setLoadOp(vk::AttachmentLoadOp::eLoad);
     rendering.setPDepthAttachment(nullptr);
     commands.beginRendering(rendering);
@@ -277,10 +258,10 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
     commands.endRendering();
   }
   const bool copied = target.leaves_as == ImageLayout::eTransferSrcOptimal;
-  barrier(commands, target.image, ImageLayout::eColorAttachmentOptimal, target.leaves_as,
-          Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite,
-          copied ? Stage::eCopy : Stage::eBottomOfPipe,
-          copied ? vk::AccessFlags2(Access::eTransferRead) : vk::AccessFlags2{});
+  change(commands, target.image, ImageLayout::eColorAttachmentOptimal, target.leaves_as,
+         Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite,
+         copied ? Stage::eCopy : Stage::eBottomOfPipe,
+         copied ? vk::AccessFlags2(Access::eTransferRead) : vk::AccessFlags2{});
 }
 
 }  // namespace fettle::render

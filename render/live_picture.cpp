@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/field/difference.h"
+#include "render/capture.h"
 #include "render/live_frame.h"
 #include "render/live_overlay.h"
 #include "render/pick.h"
@@ -497,18 +498,7 @@ engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, Image
     const Buffer buffer(impl_->context, image.rgba.size(), vk::BufferUsageFlagBits::eTransferDst);
     Submissions& submissions = impl_->submissions;
     (void)submissions.begin();
-    vk::BufferImageCopy copy;
-    copy.setImageSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
-        .setImageExtent({from.extent().width, from.extent().height, 1});
-    submissions.commands().copyImageToBuffer(from.image(), vk::ImageLayout::eTransferSrcOptimal,
-                                             *buffer.handle(), copy);
-    vk::MemoryBarrier2 to_host;
-    to_host.setSrcStageMask(vk::PipelineStageFlagBits2::eCopy)
-        .setSrcAccessMask(vk::AccessFlagBits2::eTransferWrite)
-        .setDstStageMask(vk::PipelineStageFlagBits2::eHost)
-        .setDstAccessMask(vk::AccessFlagBits2::eHostRead);
-    vk::DependencyInfo dependency;
-    submissions.commands().pipelineBarrier2(dependency.setMemoryBarriers(to_host));
+    copyToHost(submissions.commands(), from, buffer);
     submissions.submit({});
     submissions.finish();
     std::memcpy(image.rgba.data(), buffer.data(), image.rgba.size());

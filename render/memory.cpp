@@ -38,11 +38,13 @@ GpuImage::GpuImage(const Context& context, vk::Format format, vk::Extent2D exten
   view_ = vk::raii::ImageView(context.device(), view);
 }
 
-void change(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::ImageLayout from,
-            vk::ImageLayout to, vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access,
-            vk::PipelineStageFlags2 after, vk::AccessFlags2 after_access) {
-  vk::ImageMemoryBarrier2 barrier;
-  barrier.setSrcStageMask(before)
+namespace {
+
+void barrier(const vk::raii::CommandBuffer& commands, vk::Image image, const vk::ImageSubresourceRange& range,
+             vk::ImageLayout from, vk::ImageLayout to, vk::PipelineStageFlags2 before,
+             vk::AccessFlags2 before_access, vk::PipelineStageFlags2 after, vk::AccessFlags2 after_access) {
+  vk::ImageMemoryBarrier2 step;
+  step.setSrcStageMask(before)
       .setSrcAccessMask(before_access)
       .setDstStageMask(after)
       .setDstAccessMask(after_access)
@@ -50,11 +52,26 @@ void change(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::
       .setNewLayout(to)
       .setSrcQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
       .setDstQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
-      .setImage(image.image())
-      .setSubresourceRange(image.range());
+      .setImage(image)
+      .setSubresourceRange(range);
   vk::DependencyInfo dependency;
-  dependency.setImageMemoryBarriers(barrier);
+  dependency.setImageMemoryBarriers(step);
   commands.pipelineBarrier2(dependency);
+}
+
+}  // namespace
+
+void change(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::ImageLayout from,
+            vk::ImageLayout to, vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access,
+            vk::PipelineStageFlags2 after, vk::AccessFlags2 after_access) {
+  barrier(commands, image.image(), image.range(), from, to, before, before_access, after, after_access);
+}
+
+void change(const vk::raii::CommandBuffer& commands, vk::Image image, vk::ImageLayout from,
+            vk::ImageLayout to, vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access,
+            vk::PipelineStageFlags2 after, vk::AccessFlags2 after_access) {
+  barrier(commands, image, {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}, from, to, before, before_access,
+          after, after_access);
 }
 
 }  // namespace fettle::render

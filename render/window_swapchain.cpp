@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "render/memory.h"
+
 namespace fettle::render {
 namespace {
 
@@ -11,24 +13,6 @@ using Access = vk::AccessFlagBits2;
 
 constexpr std::uint64_t kForever = UINT64_MAX;
 constexpr std::uint64_t kLook_ns = 1'000'000;
-
-void change(const vk::raii::CommandBuffer& commands, vk::Image image, Layout from, Layout to,
-            vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access, vk::PipelineStageFlags2 after,
-            vk::AccessFlags2 after_access) {
-  vk::ImageMemoryBarrier2 barrier;
-  barrier.setImage(image)
-      .setOldLayout(from)
-      .setNewLayout(to)
-      .setSrcStageMask(before)
-      .setSrcAccessMask(before_access)
-      .setDstStageMask(after)
-      .setDstAccessMask(after_access)
-      .setSrcQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
-      .setDstQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
-      .setSubresourceRange({vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1});
-  vk::DependencyInfo info;
-  commands.pipelineBarrier2(info.setImageMemoryBarriers(barrier));
-}
 
 vk::SurfaceFormatKHR chooseFormat(const std::vector<vk::SurfaceFormatKHR>& offered) {
   for (const vk::Format wanted : {vk::Format::eB8G8R8A8Unorm, vk::Format::eR8G8B8A8Unorm})

@@ -8,6 +8,7 @@
 
 #include "app/command.h"
 #include "app/live/live_session.h"
+#include "app/live/placement.h"
 #include "app/scan_options.h"
 #include "app/terminal.h"
 #include "engine/io/marks.h"
@@ -114,22 +115,16 @@ engine::Result<haptic::Workspace> place(const Options& options, const engine::Ve
                                 "--scale", "leave it out");
     return haptic::Workspace{};
   }
-  const engine::Grid& grid = felt.grid();
-  const glm::dvec3 middle = middleOf(felt);
-  const double side = std::min((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
-  const double fitted = haptic::Workspace::fit(profile, middle, side).scale();
-  // A spring of k in the field is felt as scale * k (see haptic::Workspace).
-  const double stiffest = profile.max_stiffness_n_per_mm / scene.stiffness_n_per_mm;
-  double scale = options.scale;
-  if (scale == 0.0) scale = profile.gives_force ? std::min(fitted, stiffest) : fitted;
+  const double stiffest = stiffestScale(profile, scene.stiffness_n_per_mm);
+  const double scale =
+      options.scale > 0.0 ? options.scale : fittedScale(profile, felt.grid(), scene.stiffness_n_per_mm);
   if (profile.gives_force && scale > stiffest * (1.0 + 1e-9))
     return engine::inputError(
         fmt::format("at this scale the surface is felt with {:.3g} N/mm, and {} holds {:.3g} N/mm",
                     scale * scene.stiffness_n_per_mm, profile.name, profile.max_stiffness_n_per_mm),
         fmt::format("--scale {:g}", scale),
         fmt::format("take a scale of at most {:.3g} or a scene with a softer spring", stiffest));
-  if (!(scale > 0.0)) scale = 1.0;  // a field of one row or column
-  return haptic::Workspace(scale, middle);
+  return haptic::Workspace(scale, middleOf(felt));
 }
 
 // A device without a hand in it arms itself; one that pushes a hand waits for the person.
@@ -152,11 +147,10 @@ engine::Result<LiveSettings> settingsFor(const Options& options, const ChosenDev
   if (!arm) return tl::unexpected(arm.error());
   settings.arm = *arm;
   haptic::DeviceProfile limited = profile;
-  if (!profile.gives_force) limited.max_force_n = 0.0;
   // Down only: what the device can bear is not for the command line to say.
   if (options.max_force_n) limited.max_force_n = std::min(limited.max_force_n, *options.max_force_n);
   haptic::LoopOptions& loop = settings.loop.options;
-  loop.limits = haptic::limitsFor(limited);
+  loop.limits = sessionLimits(limited);
   loop.workspace = *workspace;
   loop.tool = toolOf(options.tool);
   loop.tool_switch =

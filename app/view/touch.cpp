@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "app/live/placement.h"
 #include "haptic/devices/enumerate.h"
 #include "haptic/safety/last_resort.h"
 
@@ -144,9 +145,7 @@ engine::Result<std::unique_ptr<Touch>> Touch::start(engine::History history, con
   const haptic::DeviceProfile& profile = touch->device_->profile();
   haptic::HapticLoop::Settings settings;
   settings.rate_hz = options.rate_hz;
-  haptic::DeviceProfile limited = profile;
-  if (!profile.gives_force) limited.max_force_n = 0.0;
-  settings.options.limits = haptic::limitsFor(limited);
+  settings.options.limits = sessionLimits(profile);
   settings.options.edit_rule =
       profile.gives_force ? haptic::EditRule::kWhileForceIsGiven : haptic::EditRule::kAnytime;
   // A view of a large field keeps the main thread away for longer than a frame at times.
@@ -157,11 +156,7 @@ engine::Result<std::unique_ptr<Touch>> Touch::start(engine::History history, con
         0.5 * (grid.width - 1) * grid.spacingXMm(), 0.5 * (grid.height - 1) * grid.spacingYMm(),
         touch->field_.reader().bounds().empty() ? 0.0
                                                 : touch->field_.reader().bounds().max * grid.height_unit.mm};
-    const double side = std::min((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
-    double scale = side > 0.0 ? haptic::Workspace::fit(profile, middle, side).scale() : 1.0;
-    // A spring of k in the field is felt as scale * k (haptic::Workspace): no stiffer than the device holds.
-    if (profile.gives_force)
-      scale = std::min(scale, profile.max_stiffness_n_per_mm / touch->scene_.stiffness_n_per_mm);
+    const double scale = fittedScale(profile, grid, touch->scene_.stiffness_n_per_mm);
     settings.options.workspace = haptic::Workspace(scale, middle);
     touch->scale_at_start_ = scale;
   }

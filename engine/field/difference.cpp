@@ -2,34 +2,17 @@
 
 #include <cassert>
 
+#include "engine/field/difference_inl.h"
+
 namespace fettle::engine {
-
-namespace {
-
-void descend(const Node& before, const Node& after, std::int32_t tc, std::int32_t tr,
-             std::vector<TileChange>& out) {
-  if (&before == &after) return;
-  const std::int32_t tiles_a_child = 1 << (3 * (before.level - 2));
-  for (int k = 0; k < kFanOut; ++k) {
-    const void* a = before.children[k];
-    const void* b = after.children[k];
-    if (a == b) continue;
-    const std::int32_t column = tc + (k % 8) * tiles_a_child;
-    const std::int32_t row = tr + (k / 8) * tiles_a_child;
-    if (before.level == 2)
-      out.push_back({column, row, TileRef::share(static_cast<const Tile*>(a)),
-                     TileRef::share(static_cast<const Tile*>(b))});
-    else
-      descend(*static_cast<const Node*>(a), *static_cast<const Node*>(b), column, row, out);
-  }
-}
-
-}  // namespace
 
 std::vector<TileChange> changedTiles(const Version& before, const Version& after) {
   assert(before.grid().width == after.grid().width && before.grid().height == after.grid().height);
   std::vector<TileChange> changes;
-  descend(before.reader().root(), after.reader().root(), 0, 0, changes);
+  detail::walkChanges(before.reader().root(), after.reader().root(), 0, 0,
+                      [&](std::int32_t column, std::int32_t row, const Tile& a, const Tile& b) {
+                        changes.push_back({column, row, TileRef::share(&a), TileRef::share(&b)});
+                      });
   return changes;
 }
 

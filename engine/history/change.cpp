@@ -4,6 +4,8 @@
 #include <cassert>
 #include <limits>
 
+#include "engine/field/difference_inl.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -13,28 +15,6 @@ struct Extent {
   std::int32_t column1 = -1, row1 = -1;                                             // the last ones
 };
 
-void descend(const Node& before, const Node& after, std::int32_t tc, std::int32_t tr, Change& change,
-             Extent& extent) noexcept {
-  ++change.nodes;
-  const std::int32_t tiles_a_child = 1 << (3 * (before.level - 2));
-  for (int k = 0; k < kFanOut; ++k) {
-    const void* a = before.children[k];
-    const void* b = after.children[k];
-    if (a == b) continue;
-    const std::int32_t column = tc + (k % 8) * tiles_a_child;
-    const std::int32_t row = tr + (k / 8) * tiles_a_child;
-    if (before.level == 2) {
-      ++change.tiles;
-      extent.column0 = std::min(extent.column0, column);
-      extent.row0 = std::min(extent.row0, row);
-      extent.column1 = std::max(extent.column1, column);
-      extent.row1 = std::max(extent.row1, row);
-    } else {
-      descend(*static_cast<const Node*>(a), *static_cast<const Node*>(b), column, row, change, extent);
-    }
-  }
-}
-
 }  // namespace
 
 Change measureChange(const Version& before, const Version& after) noexcept {
@@ -43,9 +23,14 @@ Change measureChange(const Version& before, const Version& after) noexcept {
   Change change;
   change.inverted = before.reader().sign() != after.reader().sign();
   Extent extent;
-  const Node& a = before.reader().root();
-  const Node& b = after.reader().root();
-  if (&a != &b) descend(a, b, 0, 0, change, extent);
+  change.nodes = detail::walkChanges(before.reader().root(), after.reader().root(), 0, 0,
+                                     [&](std::int32_t column, std::int32_t row, const Tile&, const Tile&) {
+                                       ++change.tiles;
+                                       extent.column0 = std::min(extent.column0, column);
+                                       extent.row0 = std::min(extent.row0, row);
+                                       extent.column1 = std::max(extent.column1, column);
+                                       extent.row1 = std::max(extent.row1, row);
+                                     });
   if (change.inverted) {
     change.rect = {0, 0, grid.width, grid.height};
   } else if (change.tiles != 0) {

@@ -23,14 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using tests::TempFolder;
 
-std::string differenceOnDisk(const Session& session, const std::string& path) {
-  JobControl job;
-  const auto back = openSession(path, {}, job);
-  if (!back) return back.error().line();
-  if (const auto whole = verifySession(path, job); !whole) return whole.error().line();
-  return difference(session, *back, Compare::kWhole);
-}
-
 // Until the writer has nothing to do: all written, or an error.
 SessionStatus settled(const SessionWriter& writer) {
   for (;;) {

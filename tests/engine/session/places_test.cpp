@@ -19,12 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 using tests::TempFolder;
 
-std::string differenceOnDisk(const Session& session, const std::string& path) {
-  JobControl job;
-  const auto back = openSession(path, {}, job);
-  return back ? difference(session, *back, Compare::kWhole) : back.error().line();
-}
-
 // The folder read-only, for root too, while this lives.
 class ReadOnly {
  public:

@@ -209,4 +209,12 @@ std::string difference(const Session& a, const Session& b, Compare compare) {
   return {};
 }
 
+std::string differenceOnDisk(const Session& session, const std::string& path) {
+  JobControl job;
+  const auto back = openSession(path, {}, job);
+  if (!back) return back.error().line();
+  if (const auto whole = verifySession(path, job); !whole) return whole.error().line();
+  return difference(session, *back, Compare::kWhole);
+}
+
 }  // namespace fettle::engine

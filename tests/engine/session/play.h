@@ -42,6 +42,10 @@ class Play {
 enum class Compare : std::uint8_t { kWhole, kHeldByBoth };
 [[nodiscard]] std::string difference(const Session& a, const Session& b, Compare compare);
 
+/// What a session file holds otherwise than `session`: the first difference, or why it cannot be opened, or
+/// what its checksums say; empty if nothing.
+[[nodiscard]] std::string differenceOnDisk(const Session& session, const std::string& path);
+
 /// The first bit in which two versions differ, bounds and counts of their tiles included; empty if none.
 [[nodiscard]] std::string difference(const Version& a, const Version& b);
 

@@ -24,15 +24,6 @@ std::unique_ptr<SessionWriter> created(const Session& session, const std::string
   return writer ? std::move(*writer) : nullptr;
 }
 
-std::string differenceOnDisk(const Session& session, const std::string& path,
-                             Compare compare = Compare::kWhole) {
-  JobControl job;
-  const auto back = openSession(path, {}, job);
-  if (!back) return back.error().line();
-  if (const auto whole = verifySession(path, job); !whole) return whole.error().line();
-  return difference(session, *back, compare);
-}
-
 RC_GTEST_PROP(SessionWriter, TheFileFollowsEveryActionAndAnotherReaderSeesIt, ()) {
   const TempFolder folder;
   const std::string path = folder.file("a.fettle");
