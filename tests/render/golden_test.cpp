@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "render/live_picture.h"
 #include "tests/render/fields.h"
 
 namespace fettle::render {
@@ -35,10 +36,7 @@ engine::Version part(double noise_mm) {
                  [](int c, int r) { return std::abs(std::hypot(c * 0.25 - 12, r * 0.25 - 18) - 6) < 0.4; });
 }
 
-void compareWithGolden(const std::string& name, const PictureSpec& spec) {
-  Renderer* renderer = sharedRenderer();
-  ASSERT_NE(renderer, nullptr);
-  const Image actual = shoot(*renderer, spec).image;
+void compareWithGolden(const std::string& name, const Image& actual) {
   const std::string path = std::string(FETTLE_SOURCE_DIR) + "/tests/render/golden/" + name + ".png";
   if (const char* update = std::getenv("FETTLE_UPDATE_GOLDEN"); update != nullptr && *update == '1') {
     ASSERT_TRUE(writePng(actual, path));
@@ -66,6 +64,34 @@ void compareWithGolden(const std::string& name, const PictureSpec& spec) {
   EXPECT_TRUE(writePng(*expected, (folder / (name + ".expected.png")).string()));
   EXPECT_TRUE(writePng(difference, (folder / (name + ".difference.png")).string()));
   FAIL() << off << " pixels differ from " << path << "; see " << folder;
+}
+
+void compareWithGolden(const std::string& name, const PictureSpec& spec) {
+  Renderer* renderer = sharedRenderer();
+  ASSERT_NE(renderer, nullptr);
+  compareWithGolden(name, shoot(*renderer, spec).image);
+}
+
+// The live picture, that has its own way of drawing the same thing.
+void compareWithGolden(const std::string& name, const Shown& shown, const FrameInput& input) {
+  LiveOptions options;
+  options.validation = Validation::kOn;
+  const auto picture = LivePicture::create(options);
+  ASSERT_TRUE(picture) << picture.error().line();
+  ASSERT_TRUE((*picture)->update(shown));
+  Image actual;
+  ASSERT_TRUE((*picture)->draw(input, actual));
+  for (const std::string& message : (*picture)->validationMessages()) ADD_FAILURE() << message;
+  compareWithGolden(name, actual);
+}
+
+FrameInput frame(double azimuth_deg, double elevation_deg) {
+  FrameInput input;
+  input.view.width = 480;
+  input.view.height = 300;
+  input.view.azimuth_deg = azimuth_deg;
+  input.view.elevation_deg = elevation_deg;
+  return input;
 }
 
 PictureSpec small(const engine::Version& field) {
@@ -108,6 +134,47 @@ TEST(Golden, GreyWithContourLines) {
   spec.map = ColourMap::kGrey;
   spec.contours = Contours::kShow;
   compareWithGolden("grey_contours", spec);
+}
+
+TEST(Golden, LiveWithMarksHolesContoursAndAStylus) {
+  Shown shown;
+  shown.versions = {part(0.05)};
+  shown.marks = MarksOverlay::kShow;
+  FrameInput input = frame(315, 40);
+  input.contours = Contours::kShow;
+  input.titles = {"part"};
+  input.overlays.rings = {{29, 19, 4, {1, 1, 1}, 2}};
+  appendStylus({{12, 18, 4}, {12, 18, 3}, {0, 0, 2}, true, 1.0}, 1.0, input.overlays.lines);
+  compareWithGolden("live_marks", shown, input);
+}
+
+TEST(Golden, LiveDeviationInPerspectiveBesideTheOriginal) {
+  Shown shown;
+  shown.versions = {part(0.02), part(0.3)};
+  shown.original = part(0.3);
+  FrameInput input = frame(20, 60);
+  input.view.projection = Projection::kPerspective;
+  input.theme = Theme::kLight;
+  input.titles = {"smooth", "rough"};
+  compareWithGolden("live_deviation", shown, input);
+}
+
+TEST(Golden, LiveCoarseFromAfar) {
+  // Every level of colours, and cells that stand in for walls.
+  engine::Grid grid = gridOf(1600, 1200, 0.025, 0.025);
+  Shown shown;
+  shown.versions = {fieldOf(grid, [](int c, int r) {
+    const double x = c * 0.025, y = r * 0.025;
+    double z = 0.02 * x + 0.002 * ((c * 31 + r * 17) % 64);
+    if (std::hypot(x - 12, y - 18) < 6) z += 3;
+    if (y > 5 && y < 8) z -= 1.5;
+    return z;
+  })};
+  FrameInput input = frame(300, 35);
+  input.view.zoom = 0.8;
+  input.vertex_budget = 16384;
+  input.decoration = Decoration::kNone;
+  compareWithGolden("live_coarse", shown, input);
 }
 
 }  // namespace
