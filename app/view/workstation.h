@@ -104,7 +104,7 @@ class Workstation {
   void pathDialog(const char* title, const char* button);
   void message(std::string what, std::string remedy);
 
-  // workstation_panels.cpp
+  // panels/
   void panels();
   void menuBar();
   void menuItem(Action action, bool enabled = true, bool ticked = false);

@@ -1,0 +1,147 @@
+#include "app/view/workstation.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/view/panels/widgets.h"
+#include "render/overlay.h"
+
+namespace fettle::app {
+namespace {
+
+using haptic::Tool;
+
+constexpr float kSide_px = 320.0F;
+constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
+
+}  // namespace
+
+void Workstation::panels() {
+  menuBar();
+  const float scale = static_cast<float>(window_->scale());
+  const float top = ImGui::GetFrameHeight();
+  const float bottom = ImGui::GetFrameHeight();
+  const float width = ImGui::GetIO().DisplaySize.x, height = ImGui::GetIO().DisplaySize.y;
+  if (side_width_ <= 0.0F) side_width_ = kSide_px * scale;
+  side_width_ = std::clamp(side_width_, 160.0F * scale, std::max(0.6F * width, 161.0F * scale));
+  const float side = side_panel_ && touch_ ? side_width_ : 0.0F;
+  if (side > 0.0F) {
+    ImGui::SetNextWindowPos(ImVec2(width - side, top));
+    ImGui::SetNextWindowSize(ImVec2(side, height - top - bottom));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(160.0F * scale, 0.0F), ImVec2(width, height));
+    sidePanel();
+  }
+  statusBar();
+  window_->setPictureArea(
+      {0, static_cast<int>(top), static_cast<int>(width - side), static_cast<int>(height - top - bottom)});
+  if (!touch_) {
+    ImGui::SetNextWindowPos(ImVec2(0.5F * width, 0.45F * height), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
+    ImGui::Begin("##empty", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
+                     ImGuiWindowFlags_NoSavedSettings);
+    if (loading_.busy()) {
+      ImGui::Text("%s: %s", std::filesystem::path(loading_path_).filename().c_str(), loading_.stage());
+      ImGui::ProgressBar(static_cast<float>(loading_.progress()), ImVec2(360.0F * scale, 0.0F));
+      if (ImGui::Button("Cancel")) loading_.cancel();
+    } else {
+      ImGui::TextUnformatted("Drop a scan here, or press Ctrl+O");
+    }
+    ImGui::End();
+  }
+  splitLine();
+  dialogs();
+}
+
+render::Rectangle Workstation::plot() const {
+  const render::Rectangle& area = window_->pictureArea();
+  const auto layout =
+      render::layOut(view_, display_.furniture ? render::Decoration::kFull : render::Decoration::kNone, 1,
+                     shown_.versions.size() > 1 ? render::Titles::kAbove : render::Titles::kNone);
+  render::Rectangle rectangle = layout.plots.front();
+  rectangle.x += area.x;
+  rectangle.y += area.y;
+  return rectangle;
+}
+
+void Workstation::splitLine() {
+  if (!display_.split || shown_.versions.size() != 2) return;
+  const render::Rectangle area = plot();
+  const auto x = static_cast<float>(area.x + display_.split_at * area.width);
+  const auto y = static_cast<float>(area.y + area.height / 2);
+  ImGui::GetBackgroundDrawList()->AddCircleFilled(ImVec2(x, y), 7.0F * static_cast<float>(window_->scale()),
+                                                  IM_COL32(255, 255, 255, 220));
+}
+
+void Workstation::statusBar() {
+  const float height = ImGui::GetFrameHeight();
+  ImGui::SetNextWindowPos(ImVec2(0.0F, ImGui::GetIO().DisplaySize.y - height));
+  ImGui::SetNextWindowSize(ImVec2(ImGui::GetIO().DisplaySize.x, height));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(8.0F, 2.0F));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
+  ImGui::Begin("##status", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+  if (adjusting_ != Adjusting::kNothing) {
+    const haptic::Scene& scene = touch_->scene();
+    const bool marking = touch_->tool() == Tool::kMark || touch_->tool() == Tool::kUnmark;
+    const std::string now =
+        adjusting_ == Adjusting::kRadius
+            ? fmt::format("brush radius {:.3g} samples",
+                          marking ? scene.mark_radius_samples : scene.brush_radius_samples)
+            : fmt::format("press depth {:.4g} mm", touch_->mouse()->pressMm());
+    ImGui::TextUnformatted(
+        fmt::format("{} {}: move or type, Enter or left button keeps it, Esc or right button leaves it", now,
+                    typed_.empty() ? "" : "[" + typed_ + "]")
+            .c_str());
+  } else if (saving_.busy()) {
+    ImGui::ProgressBar(static_cast<float>(saving_.progress()), ImVec2(240.0F, 0.0F), "saving");
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Cancel")) saving_.cancel();
+  } else if (touch_ && loading_.busy()) {
+    ImGui::ProgressBar(static_cast<float>(loading_.progress()), ImVec2(240.0F, 0.0F), "opening");
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Cancel")) loading_.cancel();
+  } else {
+    std::string text = status_text_;
+    if (touch_) {
+      if (unsaved()) text += "  (changed)";
+      if (tool_on_ && under_cursor_) {
+        const engine::Grid& grid = touch_->field().grid();
+        text += fmt::format("   x {:.4f}  y {:.4f}  z {:.5g} {}",
+                            grid.origin_x + under_cursor_->position_mm.x / grid.lateral_unit.mm,
+                            grid.origin_y + under_cursor_->position_mm.y / grid.lateral_unit.mm,
+                            under_cursor_->position_mm.z / grid.height_unit.mm, grid.height_unit.name);
+      }
+    }
+    ImGui::TextUnformatted(text.c_str());
+  }
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+}
+
+void Workstation::sidePanel() {
+  ImGui::Begin("Panels", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+  side_width_ = ImGui::GetWindowSize().x;
+  for (const Notice& notice : notices_) {
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s%s%s", notice.what.c_str(),
+                       notice.remedy.empty() ? "" : ": ", notice.remedy.c_str());
+    ImGui::PopTextWrapPos();
+  }
+  if (!notices_.empty() && ImGui::SmallButton("Understood")) notices_.clear();
+  if (ImGui::CollapsingHeader("Tool", kOpen)) toolPanel();
+  if (ImGui::CollapsingHeader("Status", kOpen)) statusPanel();
+  if (ImGui::CollapsingHeader("Filters", kOpen)) filterPanel();
+  if (ImGui::CollapsingHeader("Steps", kOpen)) historyPanel();
+  if (ImGui::CollapsingHeader("Display")) displayPanel();
+  if (ImGui::CollapsingHeader("Change since the scan", kOpen)) deviationPanel();
+  if (ImGui::CollapsingHeader("Haptics")) hapticsPanel();
+  ImGui::End();
+}
+
+}  // namespace fettle::app

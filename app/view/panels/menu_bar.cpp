@@ -1,0 +1,96 @@
+#include "app/view/workstation.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/view/panels/widgets.h"
+
+namespace fettle::app {
+namespace {
+
+using haptic::Tool;
+
+}  // namespace
+
+void Workstation::menuItem(Action action, bool enabled, bool ticked) {
+  const Shortcut& s = shortcutOf(action);
+  if (ImGui::MenuItem(std::string(s.name).c_str(), keyText(s.key, s.modifiers).c_str(), ticked, enabled))
+    act(action);
+}
+
+void Workstation::menuBar() {
+  if (!ImGui::BeginMainMenuBar()) return;
+  const bool field = touch_ != nullptr;
+  if (ImGui::BeginMenu("File")) {
+    menuItem(Action::kOpen);
+    if (ImGui::BeginMenu("Recent files", !recent_.paths().empty())) {
+      const std::vector<std::string> paths = recent_.paths();
+      for (std::size_t i = 0; i < paths.size(); ++i)
+        if (ImGui::MenuItem(paths[i].c_str(), fmt::format("Ctrl+{}", i + 1).c_str())) askToOpen(paths[i]);
+      ImGui::EndMenu();
+    }
+    menuItem(Action::kSave, field);
+    menuItem(Action::kSaveAs, field);
+    menuItem(Action::kExport, field);
+    menuItem(Action::kQuit);
+    ImGui::EndMenu();
+  }
+  if (ImGui::BeginMenu("Edit")) {
+    menuItem(Action::kUndo, field && touch_->canUndo());
+    menuItem(Action::kRedo, field && touch_->canRedo());
+    ImGui::Separator();
+    menuItem(Action::kFilterNext, field);
+    menuItem(Action::kFilterPreview, field);
+    menuItem(Action::kFilterApply, field && !filters_.variants().empty());
+    menuItem(Action::kSplitPreview, field, display_.split);
+    ImGui::EndMenu();
+  }
+  if (ImGui::BeginMenu("Tool")) {
+    const auto on = [&](Tool tool) { return tool_on_ && touch_ && touch_->tool() == tool; };
+    menuItem(Action::kNavigate, field, !tool_on_);
+    menuItem(Action::kFeel, field, on(Tool::kFeel));
+    menuItem(Action::kSmooth, field, on(Tool::kSmooth));
+    menuItem(Action::kMark, field, on(Tool::kMark));
+    menuItem(Action::kUnmark, field, on(Tool::kUnmark));
+    ImGui::Separator();
+    for (const Action a : {Action::kBrushRadius, Action::kBrushStrength, Action::kBrushSmaller,
+                           Action::kBrushLarger, Action::kClearMarks})
+      menuItem(a, field);
+    menuItem(Action::kShowMarks, field, display_.marks);
+    menuItem(Action::kInvert, field, field && touch_->scene().invert);
+    ImGui::EndMenu();
+  }
+  if (ImGui::BeginMenu("View")) {
+    menuItem(Action::kDeviation, field, display_.deviation);
+    menuItem(Action::kContours, field, display_.contours);
+    menuItem(Action::kNextMap, field);
+    ImGui::Separator();
+    for (const Action a : {Action::kViewAll, Action::kViewLastStroke, Action::kViewFront, Action::kViewBack,
+                           Action::kViewRight, Action::kViewLeft, Action::kViewTop, Action::kProjection,
+                           Action::kZoomIn, Action::kZoomOut})
+      menuItem(a, field);
+    ImGui::Separator();
+    if (ImGui::BeginMenu("Mouse")) {
+      const auto choice = [&](const char* name, Habits habits) {
+        if (ImGui::MenuItem(name, nullptr, habits_ == habits)) habits_ = habits;
+      };
+      choice("Blender: middle turns, Shift+middle moves", Habits::kBlender);
+      choice("CloudCompare: left turns, right moves", Habits::kCloudCompare);
+      choice("MeshLab: middle turns, right moves", Habits::kMeshLab);
+      ImGui::EndMenu();
+    }
+    menuItem(Action::kSidePanel, true, side_panel_);
+    ImGui::EndMenu();
+  }
+  if (ImGui::BeginMenu("Device")) {
+    for (const Action a : {Action::kArm, Action::kDisarm, Action::kCalibrate}) menuItem(a, field);
+    ImGui::EndMenu();
+  }
+  if (ImGui::BeginMenu("Help")) {
+    menuItem(Action::kShortcuts);
+    ImGui::EndMenu();
+  }
+  ImGui::EndMainMenuBar();
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,33 @@
+#include "app/view/workstation.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <glm/geometric.hpp>
+
+#include "app/view/panels/widgets.h"
+
+namespace fettle::app {
+
+void Workstation::statusPanel() {
+  const haptic::TimingFigures late = touch_->timing().lateness.figures();
+  const haptic::LoopState state = touch_->state();
+  const haptic::TimingFigures edit = touch_->latency().figures();
+  figure("loop", fmt::format("{:.0f} of {:.0f} Hz", touch_->measuredRate(), touch_->rate()));
+  figure("lateness p50, p99",
+         fmt::format("{:.0f}, {:.0f} us", microseconds(late.p50_ns), microseconds(late.p99_ns)));
+  figure("missed ticks", fmt::format("{}", touch_->timing().missed.load(std::memory_order_relaxed)));
+  figure("force", fmt::format("{:.2f} N{}", glm::length(state.force_n), state.contact ? ", touching" : ""));
+  figure("frame", fmt::format("{:.1f} ms on the GPU, {:.1f} ms", figures_.device_ms, frame_ms_));
+  figure("surface", fmt::format("{} triangles, error {:.2f} px", figures_.triangles, figures_.bound_px));
+  figure("uploaded",
+         fmt::format("{} tiles, {}", tiles_uploaded_, bytesText(static_cast<double>(bytes_uploaded_))));
+  figure("last upload",
+         fmt::format("{} tiles, {}, {:.2f} ms", figures_.upload.tiles,
+                     bytesText(static_cast<double>(figures_.upload.bytes)), figures_.upload.ms));
+  figure("edit to pixel",
+         edit.count == 0 ? std::string("-")
+                         : fmt::format("{:.0f} ms; p50 {:.0f}, p99 {:.0f}", touch_->lastLatencyMs(),
+                                       1e-3 * microseconds(edit.p50_ns), 1e-3 * microseconds(edit.p99_ns)));
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,90 @@
+#include "app/view/workstation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace fettle::app {
+namespace {
+
+using render::InputEvent;
+using render::InputKind;
+using render::Key;
+using render::MouseButton;
+
+constexpr double kRadius_px = 8.0;  // of the cursor's way for one sample of radius
+constexpr double kDepth_px = 20.0;  // ... for a tenth of the deepest press
+
+}  // namespace
+
+void Workstation::handleKey(const InputEvent& event) {
+  if (dialog_ != Dialog::kNone) {
+    // A short press falls between two frames, and ImGui would not see it.
+    dialog_key_ = event.key;
+    return;
+  }
+  // A text field has it; for two frames ImGui still says so of the field of a dialog that was closed.
+  if (event.panels_key && frames_ > dialog_frame_ + 3) return;
+  const auto action = actionOf(event.key, event.modifiers);
+  if (event.modifiers == render::Modifiers{true, false, false} && event.key >= render::letter('1') &&
+      event.key <= render::letter('9')) {
+    const auto n = static_cast<std::size_t>(static_cast<int>(event.key) - '1');
+    if (n < recent_.paths().size()) askToOpen(recent_.paths()[n]);
+    return;
+  }
+  if (action) act(*action);
+}
+
+// F and Shift+F: move or type, confirm with the left button or Enter, leave with the right one or Esc.
+bool Workstation::handleAdjusting(const InputEvent& event) {
+  const bool radius = adjusting_ == Adjusting::kRadius;
+  const auto set = [&](double value) { radius ? setBrushRadius(value) : setPressDepth(value); };
+  const auto end = [&] {
+    adjusting_ = Adjusting::kNothing;
+    typed_.clear();
+  };
+  switch (event.kind) {
+    case InputKind::kMove: {
+      if (!typed_.empty()) return true;
+      const double way = event.x - adjust_x_;
+      set(adjust_from_ + (radius ? std::round(way / kRadius_px) : way / kDepth_px * 0.1 * press_mm_));
+      return true;
+    }
+    case InputKind::kButtonDown:
+      if (event.button == MouseButton::kRight) set(adjust_from_);
+      end();
+      return true;
+    case InputKind::kKeyDown: {
+      const int code = static_cast<int>(event.key);
+      const int keypad0 = static_cast<int>(Key::kKeypad0);
+      if (code >= '0' && code <= '9') {
+        typed_ += static_cast<char>(code);
+      } else if (code >= keypad0 && code <= keypad0 + 9) {
+        typed_ += static_cast<char>('0' + code - keypad0);
+      } else if (event.key == Key::kPeriod || event.key == Key::kKeypadPeriod) {
+        typed_ += '.';
+      } else if (event.key == Key::kBackspace && !typed_.empty()) {
+        typed_.pop_back();
+      } else if (event.key == Key::kEnter || event.key == Key::kKeypadEnter) {
+        end();
+        return true;
+      } else {
+        set(adjust_from_);
+        end();
+        return event.key == Key::kEscape;
+      }
+      if (!typed_.empty()) set(std::strtod(typed_.c_str(), nullptr));
+      return true;
+    }
+    default:
+      return event.kind != InputKind::kWheel;
+  }
+}
+
+bool Workstation::takeDialogKey(Key key) {
+  if (dialog_key_ != key) return false;
+  dialog_key_ = Key::kNone;
+  return true;
+}
+
+}  // namespace fettle::app
