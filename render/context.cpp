@@ -133,24 +133,43 @@ engine::Result<std::unique_ptr<Context>> Context::create(const RendererOptions& 
     // No driver at all: some loaders report that as an error, others as an empty list.
   }
   std::string reasons;
-  int best = -1;
-  std::uint32_t family = 0;
+  const auto reject = [&](const std::string& name, const std::string& why) {
+    reasons += fmt::format("{}\"{}\" {}", reasons.empty() ? "" : "; ", name, why);
+  };
+  struct Candidate {
+    int preference = 0;
+    std::uint32_t family = 0;
+    vk::raii::PhysicalDevice device = nullptr;
+  };
+  std::vector<Candidate> candidates;
   for (vk::raii::PhysicalDevice& device : devices) {
     const vk::PhysicalDeviceProperties properties = device.getProperties();
     const std::string name = properties.deviceName;
-    std::uint32_t device_family = 0;
-    std::string reason = rejection(device, device_family, *context->surface_);
+    std::uint32_t family = 0;
+    std::string reason = rejection(device, family, *context->surface_);
     if (reason.empty() && lower(name).find(lower(options.device)) == std::string::npos)
       reason = "is not the one asked for";
-    if (!reason.empty()) {
-      reasons += fmt::format("{}\"{}\" {}", reasons.empty() ? "" : "; ", name, reason);
-    } else if (preference(properties.deviceType) > best) {
-      best = preference(properties.deviceType);
-      family = device_family;
-      context->physical_ = std::move(device);
-    }
+    if (!reason.empty())
+      reject(name, reason);
+    else
+      candidates.push_back({preference(properties.deviceType), family, std::move(device)});
   }
-  if (best < 0)
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.preference > b.preference; });
+  std::vector<const char*> needed;
+  if (wish != nullptr) needed.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  // A device that hangs is still listed: then the next best draws, more slowly.
+  for (Candidate& candidate : candidates) {
+    try {
+      context->startDevice(candidate.device, candidate.family, needed);
+    } catch (const vk::SystemError& error) {
+      reject(candidate.device.getProperties().deviceName, fmt::format("does not start ({})", error.what()));
+      continue;
+    }
+    context->physical_ = std::move(candidate.device);
+    break;
+  }
+  if (!*context->device_)
     return engine::failure(
         reasons.empty() ? "no Vulkan device found" : "no suitable Vulkan device: " + reasons, "Vulkan",
         options.device.empty() ? kInstall : "name another device or none");
@@ -163,21 +182,6 @@ engine::Result<std::unique_ptr<Context>> Context::create(const RendererOptions& 
       fmt::format("{} ({} {})", properties.get<vk::PhysicalDeviceProperties2>().properties.deviceName.data(),
                   driver.driverName.data(), driver.driverInfo.data());
   context->memory_ = context->physical_.getMemoryProperties();
-
-  const float priority = 1.0F;
-  const vk::DeviceQueueCreateInfo queue{{}, family, 1, &priority};
-  vk::PhysicalDeviceVulkan13Features features;
-  features.dynamicRendering = VK_TRUE;
-  features.synchronization2 = VK_TRUE;
-  vk::DeviceCreateInfo device_info;
-  const char* const swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
-  device_info.setQueueCreateInfos(queue).setPNext(&features);
-  if (wish != nullptr) device_info.setPEnabledExtensionNames(swapchain);
-  context->family_ = family;
-  context->device_ = vk::raii::Device(context->physical_, device_info);
-  context->queue_ = vk::raii::Queue(context->device_, family, 0);
-  context->pool_ =
-      vk::raii::CommandPool(context->device_, {vk::CommandPoolCreateFlagBits::eTransient, family});
   return context;
 } catch (const vk::SystemError& error) {
   return engine::failure(fmt::format("Vulkan does not start ({})", error.what()), "Vulkan", kInstall);
@@ -185,6 +189,22 @@ engine::Result<std::unique_ptr<Context>> Context::create(const RendererOptions& 
   // The loader itself is missing.
   return engine::failure(fmt::format("Vulkan does not start ({})", error.what()), "Vulkan",
                          "on Debian: apt install libvulkan1 mesa-vulkan-drivers");
+}
+
+void Context::startDevice(const vk::raii::PhysicalDevice& physical, std::uint32_t family,
+                          const std::vector<const char*>& extensions) {
+  const float priority = 1.0F;
+  const vk::DeviceQueueCreateInfo queue{{}, family, 1, &priority};
+  vk::PhysicalDeviceVulkan13Features features;
+  features.dynamicRendering = VK_TRUE;
+  features.synchronization2 = VK_TRUE;
+  vk::DeviceCreateInfo device_info;
+  device_info.setQueueCreateInfos(queue).setPNext(&features).setPEnabledExtensionNames(extensions);
+  vk::raii::Device device(physical, device_info);
+  pool_ = vk::raii::CommandPool(device, {vk::CommandPoolCreateFlagBits::eTransient, family});
+  queue_ = vk::raii::Queue(device, family, 0);
+  device_ = std::move(device);
+  family_ = family;
 }
 
 void Context::run(const std::function<void(const vk::raii::CommandBuffer&)>& record) {

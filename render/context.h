@@ -46,7 +46,8 @@ struct SurfaceWish {
 /// (renderer.cpp) turns that into an Error.
 class Context {
  public:
-  /// Errors as Renderer::create states. With `wish` only devices that can show pictures on its surface do.
+  /// Errors as Renderer::create states. The best device that starts; with `wish` only of those that can show
+  /// pictures on its surface.
   [[nodiscard]] static engine::Result<std::unique_ptr<Context>> create(const RendererOptions& options,
                                                                        const SurfaceWish* wish = nullptr);
   Context(const Context&) = delete;
@@ -72,6 +73,9 @@ class Context {
 
  private:
   Context() = default;
+  /// Makes device, queue and pool; nothing when it throws.
+  void startDevice(const vk::raii::PhysicalDevice& physical, std::uint32_t family,
+                   const std::vector<const char*>& extensions);
 
   // Destroyed in reverse: device before messenger before instance, and what the messenger writes to last.
   std::unique_ptr<DebugMessages> messages_ = std::make_unique<DebugMessages>();

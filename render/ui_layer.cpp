@@ -42,14 +42,8 @@ vk::raii::RenderPass makePass(const vk::raii::Device& device) {
 
 }  // namespace
 
-UiLayer::UiLayer(Context& context, GLFWwindow* window, double scale, const std::string& layout_file)
-    : context_(context), layout_file_(layout_file) {
-  const vk::raii::Device& device = context.device();
-  const vk::DescriptorPoolSize size{vk::DescriptorType::eCombinedImageSampler, 4};
-  vk::DescriptorPoolCreateInfo pool{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 4};
-  descriptors_ = vk::raii::DescriptorPool(device, pool.setPoolSizes(size));
-  pass_ = makePass(device);
-
+UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_file)
+    : layout_file_(layout_file) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -67,6 +61,20 @@ UiLayer::UiLayer(Context& context, GLFWwindow* window, double scale, const std::
   io.Fonts->AddFontFromMemoryTTF(const_cast<std::uint8_t*>(regular.data()), static_cast<int>(regular.size()),
                                  std::round(kText_px * static_cast<float>(scale)), &font, kLetters.data());
   ImGui_ImplGlfw_InitForVulkan(window, true);
+}
+
+UiLayer::~UiLayer() {
+  leave();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+void UiLayer::enter(Context& context) {
+  const vk::raii::Device& device = context.device();
+  const vk::DescriptorPoolSize size{vk::DescriptorType::eCombinedImageSampler, 4};
+  vk::DescriptorPoolCreateInfo pool{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 4};
+  descriptors_ = vk::raii::DescriptorPool(device, pool.setPoolSizes(size));
+  pass_ = makePass(device);
   ImGui_ImplVulkan_InitInfo init{};
   init.Instance = *context.instance();
   init.PhysicalDevice = *context.physical();
@@ -78,21 +86,26 @@ UiLayer::UiLayer(Context& context, GLFWwindow* window, double scale, const std::
   init.ImageCount = 2;
   init.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
   init.CheckVkResultFn = &check;
+  context_ = &context;  // from here on there is something to let go of, whatever of it succeeds
   ImGui_ImplVulkan_Init(&init, *pass_);
   context.run(
       [](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
   ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
 
-UiLayer::~UiLayer() {
+void UiLayer::leave() noexcept {
+  if (context_ == nullptr) return;
   try {
-    context_.device().waitIdle();
+    context_->device().waitIdle();
   } catch (const vk::SystemError&) {
     // A lost device has nothing under way.
   }
   ImGui_ImplVulkan_Shutdown();
-  ImGui_ImplGlfw_Shutdown();
-  ImGui::DestroyContext();
+  framebuffer_ = nullptr;
+  image_ = GpuImage();
+  pass_ = nullptr;
+  descriptors_ = nullptr;
+  context_ = nullptr;
 }
 
 void UiLayer::makeStyle(double scale) const {
@@ -108,9 +121,9 @@ void UiLayer::makeStyle(double scale) const {
 void UiLayer::fit(vk::Extent2D extent) {
   if (image_.extent() == extent) return;
   using Usage = vk::ImageUsageFlagBits;
-  context_.device().waitIdle();
+  context_->device().waitIdle();
   framebuffer_.clear();
-  image_ = GpuImage(context_, kFormat, extent, 1, GpuImage::Kind::kPlane,
+  image_ = GpuImage(*context_, kFormat, extent, 1, GpuImage::Kind::kPlane,
                     Usage::eColorAttachment | Usage::eTransferDst | Usage::eTransferSrc,
                     vk::ImageAspectFlagBits::eColor);
   const vk::ImageView view = image_.view();
@@ -120,7 +133,7 @@ void UiLayer::fit(vk::Extent2D extent) {
       .setWidth(extent.width)
       .setHeight(extent.height)
       .setLayers(1);
-  framebuffer_ = vk::raii::Framebuffer(context_.device(), info);
+  framebuffer_ = vk::raii::Framebuffer(context_->device(), info);
 }
 
 void UiLayer::beginFrame() {

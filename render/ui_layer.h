@@ -8,7 +8,7 @@ struct GLFWwindow;
 
 namespace fettle::render {
 
-/// Dear ImGui on this room's device: fonts, the render pass that its back end asks for, and the image in
+/// Dear ImGui on this room's devices: fonts, the render pass that its back end asks for, and the image in
 /// which pictures and panels come together. The image holds sRGB code values without saying so (UNORM), since
 /// that is what ImGui's colours are and how it blends them.
 ///
@@ -17,11 +17,17 @@ class UiLayer {
  public:
   static constexpr vk::Format kFormat = vk::Format::eR8G8B8A8Unorm;
 
-  /// `scale`: of the display. `layout_file`: where ImGui keeps the panels' places; empty: nowhere.
-  UiLayer(Context& context, GLFWwindow* window, double scale, const std::string& layout_file);
+  /// `scale`: of the display. `layout_file`: where ImGui keeps the panels' places; empty: nowhere. What the
+  /// panels hold (places, text being typed) lives as long as this, whatever becomes of devices.
+  UiLayer(GLFWwindow* window, double scale, const std::string& layout_file);
   ~UiLayer();
   UiLayer(const UiLayer&) = delete;
   UiLayer& operator=(const UiLayer&) = delete;
+
+  /// From now on the panels are drawn with this context; one at a time.
+  void enter(Context& context);
+  /// Lets go of all that belongs to it, lost or not. Between leave() and enter() nothing below may be called.
+  void leave() noexcept;
 
   void fit(vk::Extent2D extent);
   void beginFrame();
@@ -37,7 +43,7 @@ class UiLayer {
  private:
   void makeStyle(double scale) const;
 
-  Context& context_;
+  Context* context_ = nullptr;
   std::string layout_file_;  // ImGui keeps a pointer to its text
   vk::raii::DescriptorPool descriptors_ = nullptr;
   vk::raii::RenderPass pass_ = nullptr;

@@ -1,6 +1,7 @@
 #include "render/window.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -15,10 +16,14 @@
 #include "render/live_target.h"
 #include "render/target.h"
 #include "render/ui_layer.h"
+#include "render/ui_text.h"
 #include "render/window_swapchain.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+
+// GLFW's own, by a pointer that names no type of Xlib (GLFW/glfw3native.h would bring all of it in).
+extern "C" void* glfwGetX11Display();
 
 namespace fettle::render {
 namespace {
@@ -100,23 +105,34 @@ Modifiers modifiersOf(int bits) {
   return {(bits & GLFW_MOD_CONTROL) != 0, (bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_ALT) != 0};
 }
 
-// Xlib ends the program when its server goes away, and a program that uses it can only choose its last words.
-// GLFW loads the library by itself, so it is asked for here the same way.
-int onDisplayLost(void*) {
-  std::fputs(
-      "fettle: error: the connection to the display was lost, window, open the window again; what was not "
-      "saved "
-      "is gone\n",
-      stderr);
-  // Not exit(): the device's and the loop's threads still work on what it would destroy.
+// Set by Xlib's handler, read by the window: both on the main thread, but a signal's care costs nothing.
+std::atomic<bool> display_lost{false};
+
+// Xlib ends the program when its server goes away, unless it is told not to; from then on its calls do
+// nothing. GLFW loads the library by itself, so it is asked for here the same way. (XSetIOErrorExitHandler:
+// libX11 1.7, 2020. With an older one the program ends here, by quick_exit: the device's and the loop's
+// threads still work on what exit() would destroy.)
+int onDisplayLost(void* display) {
+  display_lost.store(true);
+  if (display != nullptr) return 0;
+  std::fputs("fettle: error: the connection to the display was lost, window, open the window again\n",
+             stderr);
   std::quick_exit(1);
 }
-void sayWhenDisplayIsLost() {
+int onDisplayLostForGood(void* /*display*/) {
+  return onDisplayLost(nullptr);
+}
+void goOnAfterDisplay(void* /*display*/, void* /*data*/) {}
+void sayWhenDisplayIsLost(void* display) {
   using Handler = int (*)(void*);
+  using ExitHandler = void (*)(void*, void*);
   void* x11 = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
-  if (x11 == nullptr) return;  // another window system
-  if (auto* set = reinterpret_cast<Handler (*)(Handler)>(dlsym(x11, "XSetIOErrorHandler")))
-    set(&onDisplayLost);
+  if (x11 == nullptr || display == nullptr) return;  // another window system
+  auto* set = reinterpret_cast<Handler (*)(Handler)>(dlsym(x11, "XSetIOErrorHandler"));
+  auto* set_exit =
+      reinterpret_cast<void (*)(void*, ExitHandler, void*)>(dlsym(x11, "XSetIOErrorExitHandler"));
+  if (set != nullptr) set(set_exit != nullptr ? &onDisplayLost : &onDisplayLostForGood);
+  if (set_exit != nullptr) set_exit(display, &goOnAfterDisplay, nullptr);
   dlclose(x11);
 }
 
@@ -124,8 +140,11 @@ constexpr const char* kDisplayRemedy =
     "run it in a graphical session, or with a virtual display: xvfb-run fettle view ...";
 
 engine::Error lost(const std::string& device, const char* what) {
+  if (display_lost.load())
+    return engine::failure("the connection to the display was lost", "window", "open the window again")
+        .value();
   return engine::failure(fmt::format("showing the picture failed ({})", what), device,
-                         "the field is kept; open the window again")
+                         "open the window again")
       .value();
 }
 
@@ -141,12 +160,18 @@ struct Window::Impl {
       if (started) glfwTerminate();
     }
   } glfw;
+  SurfaceWish wish;
+  RendererOptions device;
+  std::string device_name;            // outlives the context
+  std::vector<std::string> messages;  // of the contexts before this one
+  std::unique_ptr<UiLayer> ui;        // outlives contexts: it holds the panels
   std::unique_ptr<Context> context;
   std::unique_ptr<Swapchain> swapchain;
-  std::unique_ptr<UiLayer> ui;
   PictureTarget picture;
   LiveTarget target;
-  bool drawn = false;  // something was drawn to `picture`
+  bool drawn = false;   // something was drawn to `picture`
+  bool usable = false;  // as far as the last present() can tell
+  bool seen = false;    // the window is on the screen
   Rectangle area{0, 0, 16, 16};
   std::vector<InputEvent> input;
   std::vector<std::string> drops;
@@ -180,7 +205,43 @@ struct Window::Impl {
             held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT), held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT)};
   }
   void bringPicture(const vk::raii::CommandBuffer& commands) const;
+  engine::Status enterDevice();
+  void leaveDevice() noexcept;
 };
+
+engine::Status Window::Impl::enterDevice() {
+  auto made = Context::create(device, &wish);
+  if (!made) return tl::unexpected(made.error());
+  context = *std::move(made);
+  device_name = context->name();
+  try {
+    swapchain = std::make_unique<Swapchain>(*context);
+    ui->enter(*context);
+  } catch (const std::exception& error) {
+    const engine::Error why = lost(device_name, error.what());
+    leaveDevice();
+    return tl::unexpected(why);
+  }
+  usable = true;
+  return {};
+}
+
+void Window::Impl::leaveDevice() noexcept {
+  if (!context) return;
+  try {
+    context->device().waitIdle();
+  } catch (const vk::SystemError&) {
+    // A lost device has nothing under way.
+  }
+  usable = drawn = false;
+  ui->leave();
+  picture = {};
+  target = {};
+  swapchain.reset();
+  const std::vector<std::string> said = context->messages().all();
+  messages.insert(messages.end(), said.begin(), said.end());
+  context.reset();
+}
 
 // Set before ImGui's own callbacks, which call these in turn.
 void Window::Impl::listen() {
@@ -231,11 +292,7 @@ void Window::Impl::listen() {
 Window::Window(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Window::~Window() {
-  if (impl_ && impl_->context) try {
-      impl_->context->device().waitIdle();
-    } catch (const vk::SystemError&) {
-      // A lost device has nothing under way.
-    }
+  if (impl_) impl_->leaveDevice();
 }
 
 engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& options) {
@@ -245,12 +302,15 @@ engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& opti
     return engine::failure(fmt::format("there is no display to open a window on ({})", lastGlfwError()),
                            "window", kDisplayRemedy);
   impl->glfw.started = true;
-  sayWhenDisplayIsLost();
+  display_lost.store(false);
+  sayWhenDisplayIsLost(glfwGetX11Display());
   if (glfwVulkanSupported() == GLFW_FALSE)
     return engine::failure("no Vulkan driver can show pictures in a window", "window",
                            "on Debian: apt install libvulkan1 mesa-vulkan-drivers");
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  // It appears with its first frame: until then it would show whatever lay there before.
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "fettle");
   glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "fettle");
   impl->glfw.window =
@@ -261,37 +321,48 @@ engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& opti
   glfwSetWindowSizeLimits(impl->glfw.window, 480, 320, GLFW_DONT_CARE, GLFW_DONT_CARE);
   impl->listen();
 
-  SurfaceWish wish;
   std::uint32_t count = 0;
   const char** extensions = glfwGetRequiredInstanceExtensions(&count);
-  wish.instance_extensions.assign(extensions, extensions + count);
-  wish.make = [window = impl->glfw.window](VkInstance instance) {
+  impl->wish.instance_extensions.assign(extensions, extensions + count);
+  impl->wish.make = [window = impl->glfw.window](VkInstance instance) {
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     const VkResult result = glfwCreateWindowSurface(instance, window, nullptr, &surface);
     if (result != VK_SUCCESS)
       throw vk::SystemError(vk::make_error_code(static_cast<vk::Result>(result)), "window surface");
     return surface;
   };
-  RendererOptions device;
-  device.validation = options.validation;
-  device.device = options.device;
-  auto context = Context::create(device, &wish);
-  if (!context) return tl::unexpected(context.error());
-  impl->context = std::move(*context);
-  try {
-    impl->swapchain = std::make_unique<Swapchain>(*impl->context);
-    float scale_x = 1.0F, scale_y = 1.0F;
-    glfwGetWindowContentScale(impl->glfw.window, &scale_x, &scale_y);
-    impl->ui =
-        std::make_unique<UiLayer>(*impl->context, impl->glfw.window,
-                                  std::clamp(static_cast<double>(scale_x), 0.5, 4.0), options.layout_file);
-  } catch (const std::exception& error) {
-    return tl::unexpected(lost(impl->context->name(), error.what()));
-  }
+  impl->device.validation = options.validation;
+  impl->device.device = options.device;
+  float scale_x = 1.0F, scale_y = 1.0F;
+  glfwGetWindowContentScale(impl->glfw.window, &scale_x, &scale_y);
+  impl->ui = std::make_unique<UiLayer>(impl->glfw.window, std::clamp(static_cast<double>(scale_x), 0.5, 4.0),
+                                       options.layout_file);
+  if (const auto entered = impl->enterDevice(); !entered) return tl::unexpected(entered.error());
   return std::unique_ptr<Window>(new Window(std::move(impl)));
 }
 
+bool Window::displayLost() const {
+  return display_lost.load();
+}
+
+bool Window::usable() {
+  if (!impl_->context || !impl_->usable) return false;
+  try {
+    impl_->context->device().waitIdle();
+  } catch (const vk::SystemError&) {
+    impl_->usable = false;
+  }
+  return impl_->usable;
+}
+
+engine::Status Window::renew() {
+  impl_->leaveDevice();
+  if (display_lost.load()) return tl::unexpected(lost(impl_->device_name, ""));
+  return impl_->enterDevice();
+}
+
 void Window::poll(double wait_s) {
+  if (display_lost.load()) return;
   if (wait_s > 0.0)
     glfwWaitEventsTimeout(wait_s);
   else
@@ -335,10 +406,19 @@ Context& Window::context() {
   return *impl_->context;
 }
 const std::string& Window::device() const {
-  return impl_->context->name();
+  return impl_->device_name;
 }
 std::vector<std::string> Window::validationMessages() const {
-  return impl_->context->messages().all();
+  std::vector<std::string> all = impl_->messages;
+  if (impl_->context) {
+    const std::vector<std::string> said = impl_->context->messages().all();
+    all.insert(all.end(), said.begin(), said.end());
+  }
+  return all;
+}
+std::vector<PanelText> Window::texts() const {
+  const ImDrawData* drawn = ImGui::GetDrawData();
+  return drawn != nullptr ? textsOf(*drawn) : std::vector<PanelText>{};
 }
 
 void Window::beginFrame() {
@@ -357,7 +437,7 @@ std::uint32_t Window::pictureFormat() {
   return static_cast<std::uint32_t>(kColourFormat);
 }
 
-LiveTarget& Window::pictureTarget() {
+engine::Result<LiveTarget*> Window::pictureTarget() try {
   Impl& w = *impl_;
   const vk::Extent2D extent{static_cast<std::uint32_t>(w.area.width),
                             static_cast<std::uint32_t>(w.area.height)};
@@ -370,7 +450,12 @@ LiveTarget& Window::pictureTarget() {
   w.target.extent = extent;
   w.target.leaves_as = Layout::eTransferSrcOptimal;
   w.drawn = true;
-  return w.target;
+  return &w.target;
+} catch (const std::exception& error) {
+  // The old image may be gone and no new one there.
+  impl_->picture = {};
+  impl_->drawn = false;
+  return tl::unexpected(lost(impl_->device_name, error.what()));
 }
 
 void Window::Impl::bringPicture(const vk::raii::CommandBuffer& commands) const {
@@ -396,7 +481,13 @@ engine::Result<PresentReport> Window::present() {
   PresentReport report;
   w.ui->endFrame();
   try {
+    if (display_lost.load()) return tl::unexpected(lost(w.device_name, ""));
     if (minimised()) return report;
+    const auto meanwhile = [&w] {
+      if (w.while_waiting) w.while_waiting();
+      // A dead display gives no image back, and not every driver says so.
+      if (display_lost.load()) throw vk::SurfaceLostKHRError("display");
+    };
     // A window that changes its size while it is shown needs another try.
     for (int tries = 0; tries < 3; ++tries) {
       if (!w.swapchain->fit(w.frameSize())) return report;
@@ -409,7 +500,10 @@ engine::Result<PresentReport> Window::present() {
             if (w.drawn) w.bringPicture(commands);
             w.ui->draw(commands);
           },
-          w.while_waiting);
+          meanwhile,
+          [&w] {
+            if (!std::exchange(w.seen, true)) glfwShowWindow(w.glfw.window);
+          });
       const auto end = std::chrono::steady_clock::now();
       report.draw_ms = std::chrono::duration<double, std::milli>(end - start).count();
       report.shown_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(end.time_since_epoch()).count();
@@ -417,7 +511,8 @@ engine::Result<PresentReport> Window::present() {
     }
     return report;
   } catch (const std::exception& error) {
-    return tl::unexpected(lost(w.context->name(), error.what()));
+    w.usable = false;
+    return tl::unexpected(lost(w.device_name, error.what()));
   }
 }
 
@@ -446,7 +541,7 @@ engine::Result<Image> Window::capture() {
     for (std::size_t i = 3; i < bytes; i += 4) image.rgba[i] = 255;
     return image;
   } catch (const std::exception& error) {
-    return tl::unexpected(lost(w.context->name(), error.what()));
+    return tl::unexpected(lost(w.device_name, error.what()));
   }
 }
 

@@ -92,6 +92,14 @@ struct PresentReport {
   std::int64_t shown_ns = 0;  ///< steady_clock when the frame was handed to the window system, drawn
 };
 
+/// A piece of text on the panels, as a person reads it.
+struct PanelText {
+  std::string text;          ///< UTF-8, what is visible of it
+  float x = 0.0F, y = 0.0F;  ///< its left upper corner in the frame [pixels]
+  float width = 0.0F, height = 0.0F;
+  bool cut = false;  ///< its beginning or its end lies outside of its panel
+};
+
 /// A window with panels over pictures. The pictures are drawn by the code that draws off-screen, into targets
 /// of the same kind; the window copies them in, puts the panels (Dear ImGui) over them and shows it all.
 ///
@@ -130,14 +138,29 @@ class Window {
   void setPictureArea(const Rectangle& area);
   [[nodiscard]] const Rectangle& pictureArea() const;
   /// What to draw the picture to, of the size of its area (LivePicture::draw). Keeps its content from frame
-  /// to frame. Throws vk::SystemError when there is no memory for it.
-  [[nodiscard]] LiveTarget& pictureTarget();
+  /// to frame. Never null. Errors (kFailed): no memory for it, or the device was lost.
+  [[nodiscard]] engine::Result<LiveTarget*> pictureTarget();
   /// The VkFormat of the picture's target.
   [[nodiscard]] static std::uint32_t pictureFormat();
 
   /// Draws the panels over the picture and shows the frame. Nothing is shown while the window has no size.
-  /// Errors (kFailed): the device or the display was lost.
+  /// The window itself appears with its first frame. Errors (kFailed): the device, the surface or the display
+  /// was lost, or memory ran out; see usable() and renew().
   [[nodiscard]] engine::Result<PresentReport> present();
+  /// What is written on the panels of the last frame, from back to front.
+  [[nodiscard]] std::vector<PanelText> texts() const;
+
+  /// Whether the device still works and the window can be shown on. False from a present() that lost one of
+  /// them on, or when asking the device says so: then renew(), and draw nothing before.
+  [[nodiscard]] bool usable();
+  /// Makes everything of the device anew on the same window: driver instance, device, surface, panels' fonts.
+  /// Takes the device asked for, or another one when that does not start. What others made with context()
+  /// must be gone before, and context() is another one afterwards. Errors as create(): the window stays
+  /// without a device, and renew() may be tried again; beginFrame() and all that draws may not be called.
+  [[nodiscard]] engine::Status renew();
+  /// The display ended, or the connection to it: for good. Input has stopped, present() fails. The process
+  /// goes on, so that work can be kept.
+  [[nodiscard]] bool displayLost() const;
 
   /// The last frame as shown. Errors as present.
   [[nodiscard]] engine::Result<Image> capture();

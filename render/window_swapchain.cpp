@@ -77,13 +77,19 @@ bool Swapchain::fit(vk::Extent2D wanted) {
 }
 
 bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::CommandBuffer&)>& record,
-                     const std::function<void()>& while_waiting) {
+                     const std::function<void()>& while_waiting,
+                     const std::function<void()>& before_showing) {
   std::uint32_t index = 0;
   bool right_size = true;
   try {
-    const auto [result, acquired] = swapchain_.acquireNextImage(kForever, *acquired_);
-    index = acquired;
-    right_size = result != vk::Result::eSuboptimalKHR;
+    // FIFO: with every image still waiting for the display this takes as long as the display does.
+    std::pair<vk::Result, std::uint32_t> next;
+    do {
+      next = swapchain_.acquireNextImage(while_waiting ? kLook_ns : kForever, *acquired_);
+      if (next.first == vk::Result::eTimeout || next.first == vk::Result::eNotReady) while_waiting();
+    } while (next.first == vk::Result::eTimeout || next.first == vk::Result::eNotReady);
+    index = next.second;
+    right_size = next.first != vk::Result::eSuboptimalKHR;
   } catch (const vk::OutOfDateKHRError&) {
     extent_ = vk::Extent2D{};
     return false;
@@ -118,6 +124,7 @@ bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::
     while_waiting();
   context_.device().resetFences(*done_);
 
+  if (before_showing) before_showing();
   vk::PresentInfoKHR present;
   present.setWaitSemaphores(*drawn_[index]).setSwapchains(*swapchain_).setImageIndices(index);
   try {

@@ -25,10 +25,11 @@ class Swapchain {
 
   /// Copies `source` (colour, in eTransferSrcOptimal, of extent()) to the next image and shows it. `record`
   /// comes before the copy in the same submission; returns when the device has done it all, calling
-  /// `while_waiting`, if any, about every millisecond until then. False: the size
-  /// is no longer right, fit() again.
+  /// `while_waiting`, if any, about every millisecond until then, and `before_showing`, if any, when the
+  /// image is ready. False: the size is no longer right, fit() again.
   [[nodiscard]] bool show(vk::Image source, const std::function<void(const vk::raii::CommandBuffer&)>& record,
-                          const std::function<void()>& while_waiting);
+                          const std::function<void()>& while_waiting,
+                          const std::function<void()>& before_showing);
 
  private:
   Context& context_;

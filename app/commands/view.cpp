@@ -62,6 +62,10 @@ void addView(CLI::App& root, Chosen& chosen) {
   command->add_option("--size", options->size, "Pixels of the window, WIDTHxHEIGHT")->capture_default_str();
   command->add_option("--seconds", options->view.seconds, "End after so long")
       ->check(CLI::Range(1e-3, 86400.0));
+  command
+      ->add_option("--events", options->view.events,
+                   "Tell there what the window shows and was told to do: a JSON object a line, for scripts")
+      ->type_name("FILE");
   command->add_option("--gpu", options->view.window.device, "Use the Vulkan device whose name holds this");
   command->add_flag("--validate", options->validate,
                     "Let the Vulkan validation layers watch; they must be installed");

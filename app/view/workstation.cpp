@@ -48,9 +48,12 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
   if (!opened) return tl::unexpected(opened.error());
   station->window_ = std::move(*opened);
   station->window_->setWhileWaiting([s = station.get()] { s->whileWaiting(); });
-  auto picture = render::LivePicture::create(station->window_->context(), render::Window::pictureFormat());
-  if (!picture) return tl::unexpected(picture.error());
-  station->picture_ = std::move(*picture);
+  if (const auto made = station->makePicture(); !made) return tl::unexpected(made.error());
+  if (!options.events.empty()) {
+    auto events = EventLog::open(options.events);
+    if (!events) return tl::unexpected(events.error());
+    station->events_ = *std::move(events);
+  }
   station->view_.azimuth_deg = 330.0;
   if (!options.scan.empty()) station->open(options.scan);
   return station;
@@ -79,9 +82,18 @@ void Workstation::goRound() {
   const bool working = loading_.busy() || saving_.busy() || filters_.computing() || filters_.applying();
   window_->poll(active() ? 0.0 : working ? kBusy_s : kIdle_s);
   whileWaiting();
+  countHands();
   handleInput();
-  for (const std::string& path : window_->takeDrops()) askToOpen(path);
+  for (const std::string& path : window_->takeDrops()) {
+    ++hands_.drops;
+    askToOpen(path);
+  }
   takeResults();
+  if (!picture_ || window_->displayLost()) {
+    // Nothing to draw with: touch and workers go on.
+    renewPicture();
+    return;
+  }
   if (window_->minimised()) {
     // Nothing to draw, everything else goes on.
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -156,11 +168,12 @@ void Workstation::frame() {
   if (touch_) drawPicture();
   const auto shown = window_->present();
   if (!shown) {
-    end_ = tl::unexpected(shown.error());
+    losePicture(shown.error());
     return;
   }
   if (touch_ && edit && shown->shown_ns > 0) touch_->noteShown(*edit, shown->shown_ns);
   ++frames_;
+  tell();
 }
 
 void Workstation::drawPicture() {
@@ -184,7 +197,8 @@ void Workstation::drawPicture() {
       shown.versions == shown_.versions && shown.original == shown_.original && shown.marks == shown_.marks;
   if (!same) {
     if (const auto status = picture_->update(shown); !status) {
-      message(status.error().line(), "");
+      // Of a lost device present() tells.
+      if (window_->usable()) message(status.error().line(), "");
       return;
     }
     shown_ = std::move(shown);
@@ -235,9 +249,11 @@ void Workstation::drawPicture() {
   }
   drawn_state_ = state;
   const auto start = std::chrono::steady_clock::now();
-  const auto figures = picture_->draw(input, window_->pictureTarget());
+  const auto target = window_->pictureTarget();
+  if (!target) return;  // present() tells
+  const auto figures = picture_->draw(input, **target);
   if (!figures) {
-    end_ = tl::unexpected(figures.error());
+    if (window_->usable()) status_text_ = figures.error().line();
     return;
   }
   const auto took = std::chrono::steady_clock::now() - start;

@@ -9,6 +9,7 @@
 #include "app/command.h"
 #include "app/scan_options.h"
 #include "app/view/background.h"
+#include "app/view/event_log.h"
 #include "app/view/filter_preview.h"
 #include "app/view/navigation.h"
 #include "app/view/recent_files.h"
@@ -28,6 +29,7 @@ struct ViewOptions {
   ScanOptions reading;
   render::WindowOptions window;
   double seconds = 0.0;  ///< ends after so long; 0 = not by itself
+  std::string events;    ///< where to tell what happens (EventLog); empty: nowhere
 };
 
 /// `fettle view`: one window, one field, one loop. The main thread goes round: take input, take in what loop
@@ -73,6 +75,17 @@ class Workstation {
   void drawPicture();
   [[nodiscard]] Report report() const;
   [[nodiscard]] bool active() const;
+
+  // workstation_device.cpp: a graphics device that is lost
+  [[nodiscard]] engine::Status makePicture();
+  void losePicture(const engine::Error& why);
+  void renewPicture();
+  [[nodiscard]] std::string keepWork();
+
+  // workstation_told.cpp: what --events tells
+  void countHands();
+  [[nodiscard]] Report told() const;
+  void tell();
 
   // workstation_input.cpp
   void handleInput();
@@ -161,6 +174,18 @@ class Workstation {
   std::int64_t tiles_uploaded_ = 0;
   std::int64_t bytes_uploaded_ = 0;
   std::uint64_t frames_ = 0;
+  // Devices lost so far, tries to come back since the picture last stood for a while, and when the next one
+  // is.
+  int device_losses_ = 0;
+  int renewals_ = 0;
+  std::chrono::steady_clock::time_point renew_at_;
+  std::chrono::steady_clock::time_point renewed_at_;
+
+  // For whoever drives the window: what hands did so far.
+  EventLog events_;
+  struct Hands {
+    std::uint64_t keys = 0, buttons = 0, wheels = 0, drops = 0;
+  } hands_;
 
   // The hand.
   bool tool_on_ = false;  // the left button is the stylus

@@ -180,7 +180,7 @@ void Workstation::act(Action action) {
       break;
     case Action::kDeviation:
       display_.deviation = !display_.deviation;
-      picture_->refreshRanges();
+      if (picture_) picture_->refreshRanges();
       break;
     case Action::kContours:
       display_.contours = !display_.contours;

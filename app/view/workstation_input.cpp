@@ -23,7 +23,8 @@ bool Workstation::inPicture(double x, double y) const {
 
 std::optional<render::Picked> Workstation::pick(double x, double y) const {
   const render::Rectangle& area = window_->pictureArea();
-  return picture_->pick(x - area.x, y - area.y);
+  // A lost device takes its picture with it.
+  return picture_ ? picture_->pick(x - area.x, y - area.y) : std::nullopt;
 }
 
 // What cannot wait for the next frame: the mouse as stylus.

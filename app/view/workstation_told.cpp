@@ -1,0 +1,120 @@
+// What `fettle view --events` tells: the state of the window as a person sees it, for scripts and tests that
+// drive it by keys and mouse and have to know when what they did is on the screen.
+#include <cmath>
+
+#include "app/view/workstation.h"
+#include "haptic/safety/safety.h"
+
+namespace fettle::app {
+namespace {
+
+// Enough digits to tell two states apart, few enough that rounding does not make two of one.
+double rounded(double value) {
+  return std::round(value * 1e6) / 1e6;
+}
+
+}  // namespace
+
+// Keys are stable. Lengths are pixels of the frame, "cursor" and "picture" from its upper left corner.
+Report Workstation::told() const {
+  static constexpr const char* kDialogs[] = {"none",    "open",      "save as", "export",
+                                             "unsaved", "shortcuts", "message"};
+  static constexpr const char* kTools[] = {"feel", "smooth", "mark", "unmark"};
+  const render::Rectangle& area = window_->pictureArea();
+  Report r{{"keys", hands_.keys},
+           {"buttons", hands_.buttons},
+           {"wheels", hands_.wheels},
+           {"drops", hands_.drops},
+           {"cursor", {std::lround(last_x_), std::lround(last_y_)}},
+           {"frame", {window_->width(), window_->height()}},
+           {"picture", {area.x, area.y, area.width, area.height}},
+           {"scale", rounded(window_->scale())},
+           {"dialog", kDialogs[static_cast<std::size_t>(dialog_)]},
+           {"dialog_path", dialog_path_},
+           {"message", dialog_ == Dialog::kMessage ? message_.what : ""},
+           {"status", status_text_},
+           {"device_losses", device_losses_},
+           {"loading", loading_.busy()},
+           {"saving", saving_.busy()},
+           {"path", path_},
+           {"save_path", save_path_}};
+  Report notices = Report::array();
+  for (const Notice& notice : notices_) notices.push_back(notice.what);
+  r["notices"] = notices;
+  bool settled = !active() && input_.empty() && !loading_.busy() && !saving_.busy();
+  if (touch_) {
+    const haptic::LoopState& drawn = drawn_state_;
+    const haptic::LoopState now = touch_->state();
+    const haptic::Scene& scene = touch_->scene();
+    r["tool"] = tool_on_ ? kTools[static_cast<std::size_t>(touch_->tool())] : "view";
+    r["steps"] = touch_->history().number();
+    r["last_step"] = touch_->history().last();
+    r["unsaved"] = unsaved();
+    r["inverted"] = scene.invert;
+    r["brush"] = rounded(scene.brush_radius_samples);
+    r["mark_brush"] = rounded(scene.mark_radius_samples);
+    r["press_mm"] = touch_->mouse() != nullptr ? rounded(touch_->mouse()->pressMm()) : 0.0;
+    r["adjusting"] = adjusting_ == Adjusting::kRadius  ? "radius"
+                     : adjusting_ == Adjusting::kDepth ? "depth"
+                                                       : "";
+    r["typed"] = typed_;
+    r["view"] = {rounded(view_.azimuth_deg), rounded(view_.elevation_deg), rounded(view_.zoom),
+                 rounded(view_.centre_x), rounded(view_.centre_y)};
+    r["perspective"] = view_.projection == render::Projection::kPerspective;
+    r["marks"] = display_.marks;
+    r["deviation"] = display_.deviation;
+    r["contours"] = display_.contours;
+    r["map"] = static_cast<int>(display_.map);
+    r["light"] = {std::lround(display_.light_azimuth_deg), std::lround(display_.light_elevation_deg)};
+    Report variants = Report::array();
+    for (const FilterPreview::Variant& v : filters_.variants()) variants.push_back(filterName(v.spec));
+    r["filter"] = filterName(filters_.spec);
+    r["variants"] = variants;
+    r["filtering"] = filters_.computing();
+    r["applying"] = filters_.applying();
+    r["filters_applied"] = filters_.applied();
+    r["device"] = touch_->device().profile().name;
+    r["connected"] = now.link == haptic::LinkState::kConnected;
+    r["safety"] = std::string(haptic::name(now.safety));
+    r["stroke"] = stylus_held_;
+    r["touching"] = drawn.contact;
+    // The cells that the cursor points at and that the stylus was drawn over: the same when it has followed.
+    const engine::Grid& grid = touch_->field().grid();
+    const auto cell = [&](double x_mm, double y_mm) {
+      return Report{std::lround(std::floor(x_mm / grid.spacingXMm())),
+                    std::lround(std::floor(y_mm / grid.spacingYMm()))};
+    };
+    r["under_cursor"] =
+        under_cursor_ ? cell(under_cursor_->position_mm.x, under_cursor_->position_mm.y) : Report();
+    r["stylus_at"] = cell(drawn.endpoint_mm.x, drawn.endpoint_mm.y);
+    settled = settled && !filters_.computing() && !filters_.applying() &&
+              shown_.versions.front() == touch_->field() && touch_->history().current() == touch_->upright();
+  }
+  r["settled"] = settled;
+  return r;
+}
+
+void Workstation::countHands() {
+  for (const Pending& p : input_) {
+    const render::InputKind kind = p.event.kind;
+    hands_.keys += kind == render::InputKind::kKeyDown;
+    hands_.buttons += kind == render::InputKind::kButtonDown || kind == render::InputKind::kButtonUp;
+    hands_.wheels += kind == render::InputKind::kWheel;
+  }
+}
+
+void Workstation::tell() {
+  if (!events_.listens()) return;
+  events_.tell(told(), [this] {
+    Report texts = Report::array();
+    for (const render::PanelText& text : window_->texts())
+      texts.push_back(
+          {{"text", text.text},
+           {"at",
+            {std::lround(text.x), std::lround(text.y), std::lround(text.width), std::lround(text.height)}},
+           {"cut", text.cut}});
+    return Report{{"frames", frames_}, {"texts", texts}};
+  });
+}
+
+}  // namespace fettle::app
