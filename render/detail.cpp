@@ -33,6 +33,8 @@ float drawnHeight(const engine::FieldReader& reader, glm::ivec2 s, std::int32_t 
   float h = rawHeight(reader, s.x, s.y);
   if (!std::isnan(h)) return h;
   const std::int32_t step = std::max(stride >> 3, 1), rings = stride / step;
+  // On the last column and row as well, only places of that step are looked at.
+  s -= s & (step - 1);
   for (std::int32_t ring = 1; ring <= rings && std::isnan(h); ++ring)
     for (std::int32_t i = -ring; i < ring && std::isnan(h); ++i) {
       h = rawHeight(reader, s.x + step * i, s.y - step * ring);

@@ -79,7 +79,8 @@ engine::Result<double> Frame::draw(const PicturePlan& plan, std::span<const Pane
 
   const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, 3 * panel_count},
                          vk::DescriptorPoolSize{vk::DescriptorType::eSampledImage, 10 * panel_count},
-                         vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, 3 * panel_count}};
+                         vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, 3 * panel_count},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eUniformTexelBuffer, 2 * panel_count}};
   vk::DescriptorPoolCreateInfo pool_info{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
                                          3 * panel_count};
   const vk::raii::DescriptorPool pool(device, pool_info.setPoolSizes(sizes));
@@ -106,6 +107,9 @@ engine::Result<double> Frame::draw(const PicturePlan& plan, std::span<const Pane
   quads.insert(quads.end(), furniture.begin(), furniture.end());
   const Buffer quad_buffer = bufferOf<gpu::Quad>(context_, quads, Usage::eStorageBuffer);
 
+  const Buffer no_pages(context_, 256, Usage::eUniformTexelBuffer);
+  const vk::raii::BufferView no_pages_view(device,
+                                           {{}, *no_pages.handle(), vk::Format::eR32Uint, 0, VK_WHOLE_SIZE});
   std::vector<PanelResources> resources;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const PanelDraw& draw = panels[i];
@@ -137,6 +141,9 @@ engine::Result<double> Frame::draw(const PicturePlan& plan, std::span<const Pane
       writes.push_back(imageWrite(set, gpu::kBindMarks, marks));
       writes.push_back(imageWrite(set, gpu::kBindOriginal, original));
       writes.push_back(bufferWrite(set, gpu::kBindPatches, vk::DescriptorType::eStorageBuffer, *list));
+      // Something to bind where the shader does not look.
+      vk::WriteDescriptorSet pages{set, gpu::kBindPages, 0, 1, vk::DescriptorType::eUniformTexelBuffer};
+      writes.push_back(pages.setPTexelBufferView(&*no_pages_view));
     }
     writes.push_back(imageWrite(*r.picture_set, gpu::kBindScene, scene));
     writes.push_back(imageWrite(*r.picture_set, gpu::kBindGlyphs, letters));

@@ -59,15 +59,20 @@ class Writes {
     buffers_.push_back({*buffer.handle(), block.first, block.second});
     add(set, binding, type, nullptr, &buffers_.back());
   }
+  void texels(vk::DescriptorSet set, int binding, vk::BufferView view) {
+    views_.push_back(view);
+    add(set, binding, vk::DescriptorType::eUniformTexelBuffer, nullptr, nullptr, &views_.back());
+  }
   void apply(const vk::raii::Device& device) const { device.updateDescriptorSets(writes_, {}); }
 
  private:
   void add(vk::DescriptorSet set, int binding, vk::DescriptorType type, const vk::DescriptorImageInfo* image,
-           const vk::DescriptorBufferInfo* buffer) {
-    writes_.push_back({set, static_cast<std::uint32_t>(binding), 0, 1, type, image, buffer});
+           const vk::DescriptorBufferInfo* buffer, const vk::BufferView* view = nullptr) {
+    writes_.push_back({set, static_cast<std::uint32_t>(binding), 0, 1, type, image, buffer, view});
   }
   std::deque<vk::DescriptorImageInfo> images_;
   std::deque<vk::DescriptorBufferInfo> buffers_;
+  std::deque<vk::BufferView> views_;
   std::vector<vk::WriteDescriptorSet> writes_;
 };
 
@@ -78,13 +83,17 @@ LiveFrame::LiveFrame(Context& context, vk::Format colour) : context_(context), p
   constexpr std::uint32_t kSets = kSlots * (5 * kMostPanels + 1);
   const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, kSets},
                          vk::DescriptorPoolSize{vk::DescriptorType::eSampledImage, 4 * kSets},
-                         vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, 2 * kSets}};
+                         vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, 2 * kSets},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eUniformTexelBuffer, kSets}};
   vk::DescriptorPoolCreateInfo info{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, kSets};
   pool_ = vk::raii::DescriptorPool(context.device(), info.setPoolSizes(sizes));
   const auto setOf = [&](vk::DescriptorSetLayout layout) {
     vk::DescriptorSetAllocateInfo wanted{*pool_};
     return std::move(vk::raii::DescriptorSets(context.device(), wanted.setSetLayouts(layout)).front());
   };
+  no_pages_ = Buffer(context, kAlign, vk::BufferUsageFlagBits::eUniformTexelBuffer);
+  no_pages_view_ = vk::raii::BufferView(context.device(),
+                                        {{}, *no_pages_.handle(), vk::Format::eR32Uint, 0, VK_WHOLE_SIZE});
   for (Slot& slot : slots_) {
     for (PanelSets& p : slot.panels)
       for (vk::raii::DescriptorSet* set : {&p.surface, &p.seams, &p.walls, &p.in_scene, &p.on_top})
@@ -136,25 +145,30 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
 
   Packing packing;
   struct Blocks {
-    std::pair<vk::DeviceSize, vk::DeviceSize> uniforms, patches, seams, walls, in_scene, on_top;
+    std::pair<vk::DeviceSize, vk::DeviceSize> uniforms, patches, seams, walls, in_scene, on_top, pages;
   };
   std::vector<Blocks> blocks;
   for (const LivePanel& p : panels)
     blocks.push_back({packing.add<gpu::PanelUniforms>(std::span(&p.uniforms, 1)),
                       packing.add<gpu::Patch>(p.choice->patches), packing.add<gpu::Patch>(p.choice->seams),
                       packing.add<gpu::Patch>(p.choice->walls), packing.add<gpu::Line>(p.in_scene),
-                      packing.add<gpu::Line>(p.on_top)});
+                      packing.add<gpu::Line>(p.on_top), packing.add<std::uint32_t>(p.pages)});
   const auto quads = packing.add<gpu::Quad>(furniture);
   if (slot.arena.bytes() < packing.bytes())
     slot.arena = Buffer(context_, std::max<vk::DeviceSize>(2 * packing.bytes(), 1 << 16),
-                        vk::BufferUsageFlagBits::eUniformBuffer | vk::BufferUsageFlagBits::eStorageBuffer);
+                        vk::BufferUsageFlagBits::eUniformBuffer | vk::BufferUsageFlagBits::eStorageBuffer |
+                            vk::BufferUsageFlagBits::eUniformTexelBuffer);
   packing.write(slot.arena.data());
 
   Writes writes;
   constexpr auto kUniform = vk::DescriptorType::eUniformBuffer, kStorage = vk::DescriptorType::eStorageBuffer;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
-    const PanelSets& sets = slot.panels[i];
+    PanelSets& sets = slot.panels[i];
+    if (p.variant.by_need)
+      sets.pages = vk::raii::BufferView(
+          context_.device(),
+          {{}, *slot.arena.handle(), vk::Format::eR32Uint, blocks[i].pages.first, blocks[i].pages.second});
     for (const auto& [set, list] : {std::pair{*sets.surface, blocks[i].patches},
                                     {*sets.seams, blocks[i].seams},
                                     {*sets.walls, blocks[i].walls}}) {
@@ -165,6 +179,7 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
       writes.image(set, gpu::kBindOriginal,
                    (p.original != nullptr ? p.original : p.field)->heights(p.shade_level));
       writes.buffer(set, gpu::kBindPatches, kStorage, slot.arena, list);
+      writes.texels(set, gpu::kBindPages, p.variant.by_need ? *sets.pages : *no_pages_view_);
     }
     for (const auto& [set, list] :
          {std::pair{*sets.in_scene, blocks[i].in_scene}, {*sets.on_top, blocks[i].on_top}}) {
@@ -223,7 +238,9 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
       commands.bindDescriptorSets(kGraphics, pipelines_.sceneLayout(), 0, set, {});
       commands.draw(vertices, static_cast<std::uint32_t>(count), 0, 0);
     };
-    const auto paged = p.variant.paged ? Pipelines::Paged::kYes : Pipelines::Paged::kNo;
+    const auto paged = p.variant.by_need ? Pipelines::Paged::kByNeed
+                       : p.variant.paged ? Pipelines::Paged::kYes
+                                         : Pipelines::Paged::kNo;
     draw(p.choice->patches.size(), pipelines_.surface(p.variant), *sets.surface, gpu::kPatchVertices);
     if (!p.choice->seams.empty())
       draw(2 * p.choice->seams.size(), pipelines_.seam(p.variant), *sets.seams, gpu::kSeamStripVertices);

@@ -24,6 +24,7 @@ struct LivePanel {
   const LiveTexture* original = nullptr;  ///< null for heights
   int shade_level = 0;                    ///< of LiveTexture
   SurfaceVariant variant;
+  std::vector<std::uint32_t> pages;  ///< of pageTable; empty unless by need
   std::vector<gpu::Line> in_scene, on_top;
 };
 
@@ -49,6 +50,7 @@ class LiveFrame {
   struct PanelSets {
     vk::raii::DescriptorSet surface = nullptr, seams = nullptr, walls = nullptr, in_scene = nullptr,
                             on_top = nullptr;
+    vk::raii::BufferView pages = nullptr;  // of the arena
   };
   struct Slot {
     Buffer arena;
@@ -65,6 +67,8 @@ class LiveFrame {
   Pipelines pipelines_;
   vk::raii::DescriptorPool pool_ = nullptr;
   std::array<Slot, Submissions::kInFlight> slots_;
+  Buffer no_pages_;  // what is bound where the shader does not look
+  vk::raii::BufferView no_pages_view_ = nullptr;
   GpuImage depth_;
   GpuImage glyphs_;
   std::uint64_t glyph_generation_ = 0;

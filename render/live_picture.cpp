@@ -13,6 +13,7 @@
 #include "render/capture.h"
 #include "render/live_frame.h"
 #include "render/live_overlay.h"
+#include "render/page_demand.h"
 #include "render/pick.h"
 
 namespace fettle::render {
@@ -38,6 +39,31 @@ bool related(const engine::Version& a, const engine::Version& b) {
 
 bool holed(const engine::Version& v) {
   return v.reader().root().holed_children != 0;
+}
+
+// The finest level that stays on the device for good: what a quarter of the pool holds if `textures` of them
+// do. The coarsest patch, which is drawn when nothing else can be, has vertices every 2^top samples and looks
+// for heights beside holes at an eighth of that: those are there in any case.
+int fixedLevel(const engine::Grid& grid, const PagePool& pool, std::size_t textures) {
+  int top = 0;
+  while ((std::max(grid.width, grid.height) - 2) / DetailMeasure::side(top) > 0) ++top;
+  const int coarsest = std::clamp((top - 3) / 2, 0, kDataLevels - 1);
+  const PageGrid pages(grid.width, grid.height, pool.log2Side());
+  int level = 0;
+  while (level<coarsest&& static_cast<std::uint64_t>(PageSet::fixedPages(pages, level)) * textures * 4> pool
+             .slots()
+             .count())
+    ++level;
+  return level;
+}
+
+std::uint64_t largestHeap(const vk::raii::PhysicalDevice& device) {
+  const vk::PhysicalDeviceMemoryProperties memory = device.getMemoryProperties();
+  vk::DeviceSize largest = 0;
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+    if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)
+      largest = std::max(largest, memory.memoryHeaps[i].size);
+  return largest;
 }
 
 // Off-screen image that a frame is drawn to and copied out of.
@@ -94,7 +120,10 @@ struct LivePicture::Impl {
   struct Field {
     LiveTexture texture;
     DetailMeasure measure;
+    engine::Version measured;  // what `measure` is of, when no tile of the texture is pending
   };
+  std::uint64_t memory_budget = 0;
+  std::unique_ptr<PagePool> pool;  // null unless pages are there by need
   std::vector<Field> fields;
   LiveTexture original;
   std::optional<PictureSpans> spans;
@@ -118,13 +147,18 @@ struct LivePicture::Impl {
     max_side = context.limits().maxImageDimension2D;
     if (o.max_image_side > 0)
       max_side = std::min(max_side, static_cast<std::uint32_t>(std::max(64, o.max_image_side)));
+    memory_budget = static_cast<std::uint64_t>(std::max<std::int64_t>(0, o.memory_budget_bytes));
+    if (memory_budget == 0) memory_budget = largestHeap(context.physical()) / 2;
   }
 
   engine::Status update(const Shown& next);
+  bool wantsPool(const Shown& next) const;
+  engine::Status arrangePool(const Shown& next);
   void bringAll(LiveTexture& texture);
   engine::Result<PicturePlan> plan(const FrameInput& input);
   engine::Result<FrameStatistics> draw(const FrameInput& input, const LiveTarget& target);
   void drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats, PicturePlan plan);
+  void bringPages(PageDemand& demand, std::int64_t bytes_left, FrameStatistics& stats);
   std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLine::Depth depth,
                                  const PanelPlan& panel) const;
 };
@@ -142,6 +176,41 @@ void LivePicture::Impl::bringAll(LiveTexture& texture) {
     uploaded.changed_samples += count.changed_samples;
     submissions.submit({});
   }
+}
+
+// Whether what is to be shown has to come by need.
+bool LivePicture::Impl::wantsPool(const Shown& next) const {
+  // Back from a pool means to bring all of a field at once: not between versions of one.
+  if (pool && !shown.versions.empty() && related(shown.versions.front(), next.versions.front())) return true;
+  std::uint64_t all = 0;
+  const auto add = [&](const engine::Version& v, MarksOverlay marks) {
+    const std::uint64_t bytes = LiveTexture::bytesOfWhole(context, v.grid(), marks, max_side);
+    all = bytes == 0 ? memory_budget + 1 : all + bytes;
+    return all <= memory_budget;
+  };
+  for (const engine::Version& v : next.versions)
+    if (!add(v, next.marks)) return true;
+  return next.original && !add(*next.original, MarksOverlay::kHide);
+}
+
+// The pool that `next` takes, with nothing in it when it is another one than before.
+engine::Status LivePicture::Impl::arrangePool(const Shown& next) {
+  const bool wants = wantsPool(next);
+  const bool marks = next.marks == MarksOverlay::kShow;
+  if (wants == (pool != nullptr) && (!wants || pool->hasMarks() || !marks)) return {};
+  submissions.finish();
+  // The measures are kept: they are of the versions that were wanted as soon as the pending tiles are in
+  // them.
+  for (Field& f : fields) {
+    if (f.texture.pending() > 0) f.measure.refresh(f.texture.version().reader(), f.texture.pendingTiles());
+    f.texture.clear();
+  }
+  original.clear();
+  pool.reset();
+  if (wants)
+    pool = std::make_unique<PagePool>(context, memory_budget,
+                                      marks ? PagePool::Marks::kBeside : PagePool::Marks::kNone, max_side);
+  return {};
 }
 
 engine::Status LivePicture::Impl::update(const Shown& next) {
@@ -166,32 +235,44 @@ engine::Status LivePicture::Impl::update(const Shown& next) {
     fields.clear();
     original.clear();
   }
+  if (engine::Status ok = arrangePool(next); !ok) return ok;
   bool fresh = false;
   if (fields.size() > next.versions.size()) idle();
   fields.resize(next.versions.size());
+  const auto want = [&](LiveTexture& texture, const engine::Version& v, MarksOverlay marks) {
+    if (!pool) return texture.want(context, v, marks, max_side, idle);
+    return texture.want(*pool, fixedLevel(v.grid(), *pool, next.versions.size() + 1), v, idle);
+  };
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const engine::Version& v = next.versions[i];
-    const auto state = fields[i].texture.want(context, v, next.marks, max_side, idle);
+    const auto state = want(fields[i].texture, v, next.marks);
     if (!state) return tl::unexpected(state.error());
     if (*state != LiveTexture::Freshness::kFresh) {
       if (!shown.versions.empty() && fields[i].texture.pending() > 0 && next.marks != shown.marks)
         bringAll(fields[i].texture);
+      fields[i].measured = v;
       continue;
     }
-    fresh = fresh || i == 0;
     bringAll(fields[i].texture);
-    if (i > 0 && related(next.versions[0], v)) {
-      fields[i].measure = fields[0].measure;
+    const bool known = related(fields[i].measured, v);
+    fresh = fresh || (i == 0 && !known);
+    if (known || (i > 0 && related(next.versions[0], v))) {
       std::vector<glm::ivec2> tiles;
-      for (const engine::TileChange& c : engine::changedTiles(next.versions[0], v))
+      if (!known) {
+        fields[i].measure = fields[0].measure;
+        tiles = fields[0].texture.pendingTiles();
+      }
+      for (const engine::TileChange& c :
+           engine::changedTiles(known ? fields[i].measured : next.versions[0], v))
         tiles.emplace_back(c.tile_column, c.tile_row);
       fields[i].measure.refresh(v.reader(), tiles);
     } else {
       fields[i].measure.measure(v.reader());
     }
+    fields[i].measured = v;
   }
   if (next.original) {
-    const auto state = original.want(context, *next.original, MarksOverlay::kHide, max_side, idle);
+    const auto state = want(original, *next.original, MarksOverlay::kHide);
     if (!state) return tl::unexpected(state.error());
     if (*state == LiveTexture::Freshness::kFresh) {
       bringAll(original);
@@ -266,6 +347,24 @@ engine::Result<FrameStatistics> LivePicture::Impl::draw(const FrameInput& input,
   return stats;
 }
 
+// Pages that this frame asks for, within what is left of its bytes.
+void LivePicture::Impl::bringPages(PageDemand& demand, std::int64_t bytes_left, FrameStatistics& stats) {
+  UploadStatistics count;
+  ResidencyStatistics& r = stats.residency;
+  const PageDemand::Outcome outcome =
+      demand.settle(*pool, staging, submissions.next(), submissions.commands(), bytes_left, count);
+  stats.upload.bytes += count.bytes;
+  stats.upload.pending_tiles += count.pending_tiles;
+  r.by_need = true;
+  r.device_bytes = static_cast<std::int64_t>(pool->bytes());
+  r.pages = pool->slots().count();
+  r.pages_used = pool->slots().used();
+  r.pages_asked = outcome.asked;
+  r.pages_loaded = outcome.loaded;
+  r.pages_waiting = outcome.waiting;
+  r.pages_beyond = outcome.beyond;
+}
+
 void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats,
                                PicturePlan plan) {
   stats.wait_ms = submissions.begin();
@@ -297,8 +396,10 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   const auto select_start = Clock::now();
   const bool split = input.arrangement == Arrangement::kSplit && fields.size() >= 2;
   const std::size_t count_panels = split ? 2 : plan.panels.size();
+  std::vector<PatchTree> trees;
   std::vector<PatchChoice> choices(count_panels);
   std::vector<LivePanel> panels(count_panels);
+  PageDemand demand;
   Seen now;
   std::vector<OverlayLine> lines = input.overlays.lines;
   for (const Overlays::Ring& ring : input.overlays.rings)
@@ -317,12 +418,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     q.floor_z = p.floor_z;
     q.error_px = input.error_px;
     q.vertex_budget = input.vertex_budget / static_cast<std::int64_t>(count_panels);
-    choices[i] = choosePatches(q);
-    stats.patches += static_cast<std::int64_t>(choices[i].patches.size());
-    stats.vertices += choices[i].vertices();
-    stats.triangles += choices[i].triangles();
-    stats.bound_px = std::max(stats.bound_px, choices[i].bound_px);
-    stats.within_budget = stats.within_budget && choices[i].within_budget;
+    trees.emplace_back(q);
 
     LivePanel& panel = panels[i];
     panel.plot = panel.visible = p.plot;
@@ -334,7 +430,6 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
         panel.visible = {p.plot.x + at, p.plot.y, p.plot.width - at, p.plot.height};
     }
     now.visible.push_back(panel.visible);
-    panel.choice = &choices[i];
     panel.field = &fields[i].texture;
     panel.original = original.version().empty() ? nullptr : &original;
     panel.uniforms = p.uniforms;
@@ -369,9 +464,29 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
                      input.contours == Contours::kShow,
                      std::max(px.x, px.y) > 1.5,
                      holed(p.field) || (panel.original != nullptr && holed(original.version())),
-                     true};
+                     true,
+                     pool != nullptr};
+    if (pool)
+      demand.want(trees[i].leaves(), fields[i].texture, panel.original != nullptr ? &original : nullptr,
+                  panel.shade_level, u.paging.w, submissions.next());
     panel.in_scene = linesOf(lines, OverlayLine::Depth::kInScene, p);
     panel.on_top = linesOf(lines, OverlayLine::Depth::kOnTop, p);
+  }
+  if (pool) bringPages(demand, options.upload_bytes_a_frame - count.bytes, stats);
+  for (std::size_t i = 0; i < count_panels; ++i) {
+    if (pool) {
+      const PageSet& pages = *fields[i].texture.pages();
+      trees[i].prune([&](const PatchLeaf& leaf) { return PageDemand::drawable(leaf, pages); });
+      panels[i].uniforms.pages = pageHead(pages.grid());
+      panels[i].pages = pageTable(pages, panels[i].original != nullptr ? original.pages() : nullptr);
+    }
+    choices[i] = trees[i].list();
+    panels[i].choice = &choices[i];
+    stats.patches += static_cast<std::int64_t>(choices[i].patches.size());
+    stats.vertices += choices[i].vertices();
+    stats.triangles += choices[i].triangles();
+    stats.bound_px = std::max(stats.bound_px, choices[i].bound_px);
+    stats.within_budget = stats.within_budget && choices[i].within_budget;
   }
   stats.select_ms = msSince(select_start);
 

@@ -100,9 +100,21 @@ struct UploadStatistics {
   std::int64_t tiles = 0;            ///< tiles of heights and tiles of marks that moved
   std::int64_t bytes = 0;            ///< all that moved, coarse copies included
   std::int64_t changed_samples = 0;  ///< in the rectangles that differ, one a tile
-  std::int64_t pending_tiles = 0;    ///< left for the next frames
+  std::int64_t pending_tiles = 0;    ///< left for the next frames, pages that wait included
   std::int64_t stalls = 0;           ///< times the CPU waited for staging to be free
   double ms = 0.0;                   ///< on this thread: comparing, measuring, copying to staging
+};
+
+/// A field of which the finest samples are on the device by need (LiveOptions::memory_budget_bytes).
+struct ResidencyStatistics {
+  bool by_need = false;            ///< false: all is there, and the rest of this stays zero
+  std::int64_t device_bytes = 0;   ///< of the pool of pages, full or not
+  std::int64_t pages = 0;          ///< that the pool holds
+  std::int64_t pages_used = 0;     ///< with something in them
+  std::int64_t pages_asked = 0;    ///< this frame asked for, of levels that come by need
+  std::int64_t pages_loaded = 0;   ///< brought with this frame
+  std::int64_t pages_waiting = 0;  ///< come with the next ones; drawn coarser meanwhile, as bound_px says
+  std::int64_t pages_beyond = 0;   ///< do not fit while the others are asked for; drawn coarser
 };
 
 struct FrameStatistics {
@@ -114,10 +126,11 @@ struct FrameStatistics {
   double bound_px = 0.0;
   bool within_budget = true;  ///< false: refining stopped because of vertex_budget, bound_px > error_px
   UploadStatistics upload;    ///< since the last frame
-  double select_ms = 0.0;     ///< choosing the patches
-  double record_ms = 0.0;     ///< everything else on this thread, waiting not counted
-  double wait_ms = 0.0;       ///< waiting for the frame before the last one: the device is behind
-  double device_ms = -1.0;    ///< from submission to done, of the last frame known to be done; -1: none yet
+  ResidencyStatistics residency;
+  double select_ms = 0.0;   ///< choosing the patches
+  double record_ms = 0.0;   ///< everything else on this thread, waiting not counted
+  double wait_ms = 0.0;     ///< waiting for the frame before the last one: the device is behind
+  double device_ms = -1.0;  ///< from submission to done, of the last frame known to be done; -1: none yet
   ValueRange range;
   double vertical_exaggeration = 1.0;
   double pixels_per_mm = 1.0;  ///< at the middle of the picture
@@ -138,6 +151,12 @@ struct LiveOptions {
   /// Bytes moved a frame at most while an edit or a filter result comes over; the rest waits for the next
   /// one.
   std::int64_t upload_bytes_a_frame = std::int64_t{6} << 20;
+  /// Device memory that the samples of all versions, of the original and their marks may take [bytes]; 0:
+  /// half of the largest heap of the device's own memory. What does not fit, or is larger than the device's
+  /// images, is there by need: coarse copies always, finer samples in pages where the view asks for them,
+  /// within upload_bytes_a_frame. Frames after a move may be coarser then than error_px; FrameStatistics says
+  /// so. Once by need, versions of the same field stay so.
+  std::int64_t memory_budget_bytes = 0;
 };
 
 /// A field that changes, drawn many times a second.

@@ -23,46 +23,10 @@ glm::ivec2 tileOf(std::uint64_t key) {
   return {static_cast<std::int32_t>(key & 0xffffffffU), static_cast<std::int32_t>(key >> 32U)};
 }
 
-// Marks of the squares of 2^shift samples from `column`, any of them.
-std::uint8_t anyMark(const engine::Tile& tile, int column, int row, int shift) {
-  const int side = 1 << shift;
-  const std::uint64_t mask = (side == kSide ? ~std::uint64_t{0} : (std::uint64_t{1} << side) - 1) << column;
-  for (int r = row; r < row + side; ++r)
-    if ((tile.marks[static_cast<std::size_t>(r)] & mask) != 0) return 1;
-  return 0;
-}
+// Nothing else moves while a tile's measures are brought up to date: as much as if it had moved as a whole.
+constexpr std::int64_t kTileCost = engine::kTileSamples * sizeof(float);
 
 }  // namespace
-
-void LiveTexture::Span::join(const Span& other) noexcept {
-  first_column = std::min(first_column, other.first_column);
-  first_row = std::min(first_row, other.first_row);
-  last_column = std::max(last_column, other.last_column);
-  last_row = std::max(last_row, other.last_row);
-}
-
-LiveTexture::Span LiveTexture::changedHeights(const engine::Tile& a, const engine::Tile& b) noexcept {
-  Span span;
-  for (int r = 0; r < kSide; ++r) {
-    const float* x = a.samples.data() + r * kSide;
-    const float* y = b.samples.data() + r * kSide;
-    if (std::memcmp(x, y, sizeof(float) * kSide) == 0) continue;
-    int first = 0, last = kSide - 1;
-    while (std::memcmp(x + first, y + first, sizeof(float)) == 0) ++first;
-    while (std::memcmp(x + last, y + last, sizeof(float)) == 0) --last;
-    span.join({first, r, last, r});
-  }
-  return span;
-}
-
-LiveTexture::Span LiveTexture::changedMarks(const engine::Tile& a, const engine::Tile& b) noexcept {
-  Span span;
-  for (int r = 0; r < kSide; ++r) {
-    const std::uint64_t d = a.marks[static_cast<std::size_t>(r)] ^ b.marks[static_cast<std::size_t>(r)];
-    if (d != 0) span.join({std::countr_zero(d), r, kSide - 1 - std::countl_zero(d), r});
-  }
-  return span;
-}
 
 void LiveTexture::clear() noexcept {
   for (auto& kind : images_)
@@ -71,16 +35,81 @@ void LiveTexture::clear() noexcept {
   unprepared_[0] = unprepared_[1] = false;
   pending_.clear();
   order_.clear();
+  hurried_.clear();
   front_ = 0;
   version_ = {};
+  pages_.reset();
+  fixed_left_ = 0;
   ++generation_;
 }
 
-void LiveTexture::add(std::int32_t column, std::int32_t row, int kind, const Span& span) {
+void LiveTexture::add(std::int32_t column, std::int32_t row, TileKind kind, const TileSpan& span) {
   if (span.empty()) return;
   const auto [at, fresh] = pending_.try_emplace(keyOf(column, row));
   if (fresh) order_.push_back(at->first);
-  at->second.spans[kind].join(span);
+  at->second.spans[static_cast<std::size_t>(kind)].join(span);
+}
+
+void LiveTexture::addChanges(const engine::Version& next) {
+  for (const engine::TileChange& change : engine::changedTiles(version_, next)) {
+    add(change.tile_column, change.tile_row, TileKind::kHeights,
+        changedHeights(*change.before, *change.after));
+    if (has_marks_)
+      add(change.tile_column, change.tile_row, TileKind::kMarks, changedMarks(*change.before, *change.after));
+    // Before the old tile's memory may be given to another one.
+    if (pages_) pages_->forget({change.tile_column, change.tile_row});
+  }
+}
+
+std::vector<glm::ivec2> LiveTexture::pendingTiles() const {
+  std::vector<glm::ivec2> tiles;
+  for (const auto& [key, what] : pending_) tiles.push_back(tileOf(key));
+  return tiles;
+}
+
+std::uint64_t LiveTexture::bytesOfWhole(const Context& context, const engine::Grid& grid, MarksOverlay marks,
+                                        std::uint32_t max_side) {
+  const Paging paging = choosePaging(grid.width, grid.height, max_side);
+  const vk::DeviceSize samples = vk::DeviceSize{paging.columns} * paging.rows * paging.layers();
+  const vk::ImageFormatProperties limit = context.physical().getImageFormatProperties(
+      vk::Format::eR32Uint, vk::ImageType::e2D, vk::ImageTiling::eOptimal,
+      vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst);
+  if (paging.layers() > context.limits().maxImageArrayLayers || samples * 4 > limit.maxResourceSize) return 0;
+  std::uint64_t bytes = 0;
+  for (int level = 0; level < kLevels; ++level)
+    bytes += (samples >> (2 * shift(level))) * (marks == MarksOverlay::kShow ? 5 : 4);
+  return bytes;
+}
+
+engine::Result<LiveTexture::Freshness> LiveTexture::want(PagePool& pool, int fixed_from,
+                                                         const engine::Version& version,
+                                                         const std::function<void()>& idle) {
+  const engine::Grid& grid = version.grid();
+  const bool related = pages_ && &pages_->pool() == &pool && !version_.empty() &&
+                       version_.memory() == version.memory() && version_.grid().width == grid.width &&
+                       version_.grid().height == grid.height;
+  if (related) {
+    if (!(version_ == version)) addChanges(version);
+    version_ = version;
+    return Freshness::kRelated;
+  }
+  idle();
+  clear();
+  pages_ = std::make_unique<PageSet>(pool, grid.width, grid.height, fixed_from);
+  has_marks_ = pool.hasMarks();
+  fixed_left_ = static_cast<std::size_t>(PageSet::fixedPages(pages_->grid(), fixed_from));
+  if (!pages_->reserve()) {
+    clear();
+    return engine::failure(
+        fmt::format(
+            "the coarse copies of a field of {} x {} samples take more than the {} KiB that a picture may "
+            "have on the device",
+            grid.width, grid.height, pool.bytes() >> 10U),
+        "picture", "allow more memory, or show fewer versions at a time");
+  }
+  version_ = version;
+  ++generation_;
+  return Freshness::kFresh;
 }
 
 engine::Result<LiveTexture::Freshness> LiveTexture::want(Context& context, const engine::Version& version,
@@ -88,9 +117,10 @@ engine::Result<LiveTexture::Freshness> LiveTexture::want(Context& context, const
                                                          const std::function<void()>& idle) {
   const engine::Grid& grid = version.grid();
   const engine::FieldReader reader = version.reader();
-  const bool related = !version_.empty() && version_.memory() == version.memory() &&
+  const bool related = !pages_ && !version_.empty() && version_.memory() == version.memory() &&
                        version_.grid().width == grid.width && version_.grid().height == grid.height;
-  const auto make = [&](int kind, vk::Format format) {
+  const auto make = [&](TileKind what, vk::Format format) {
+    const auto kind = static_cast<std::size_t>(what);
     for (int level = 0; level < kLevels; ++level)
       images_[kind][static_cast<std::size_t>(level)] = GpuImage(
           context, format, {paging_.columns >> shift(level), paging_.rows >> shift(level)}, paging_.layers(),
@@ -99,7 +129,7 @@ engine::Result<LiveTexture::Freshness> LiveTexture::want(Context& context, const
     unprepared_[kind] = true;
     ++generation_;
     for (std::int32_t r = 0; r < reader.tileRows(); ++r)
-      for (std::int32_t c = 0; c < reader.tileColumns(); ++c) add(c, r, kind, whole());
+      for (std::int32_t c = 0; c < reader.tileColumns(); ++c) add(c, r, what, TileSpan::whole());
   };
   if (!related) {
     idle();
@@ -117,106 +147,143 @@ engine::Result<LiveTexture::Freshness> LiveTexture::want(Context& context, const
               grid.width, grid.height, bytes >> 20U, paging_.layers(), limit.maxResourceSize >> 20U,
               context.limits().maxImageArrayLayers),
           context.name(), "draw a part of it or a field with fewer samples");
-    make(0, vk::Format::eR32Uint);
+    make(TileKind::kHeights, vk::Format::eR32Uint);
   } else if (!(version_ == version)) {
-    for (const engine::TileChange& change : engine::changedTiles(version_, version)) {
-      add(change.tile_column, change.tile_row, 0, changedHeights(*change.before, *change.after));
-      if (has_marks_)
-        add(change.tile_column, change.tile_row, 1, changedMarks(*change.before, *change.after));
-    }
+    addChanges(version);
   }
   if (marks == MarksOverlay::kShow && !has_marks_) {
     if (related) idle();
-    make(1, vk::Format::eR8Uint);
+    make(TileKind::kMarks, vk::Format::eR8Uint);
     has_marks_ = true;
   }
   version_ = version;
   return related ? Freshness::kRelated : Freshness::kFresh;
 }
 
-bool LiveTexture::copy(StagingRing& ring, std::uint64_t submission, glm::ivec2 tile, int kind,
-                       const Span& span, std::vector<vk::BufferImageCopy> (&copies)[2][kLevels],
+bool LiveTexture::copy(StagingRing& ring, std::uint64_t submission, glm::ivec2 tile, TileKind kind,
+                       const TileSpan& span, std::vector<vk::BufferImageCopy> (&copies)[2][kLevels],
                        UploadStatistics& count) const {
   const engine::Tile& data = version_.reader().tile(tile.x, tile.y);
-  const vk::DeviceSize item = kind == 0 ? sizeof(float) : 1;
-  // Of each level the samples (or, for marks, the squares) that lie in the span.
-  struct Part {
-    int column = 0, row = 0, columns = 0, rows = 0;
-    vk::DeviceSize offset = 0;
-  } parts[kLevels];
-  vk::DeviceSize bytes = 0;
+  TilePart parts[kLevels];
+  vk::DeviceSize offsets[kLevels] = {}, bytes = 0;
   for (int level = 0; level < kLevels; ++level) {
-    const int s = shift(level), up = kind == 0 ? (1 << s) - 1 : 0;
-    Part& p = parts[level];
-    p.column = (span.first_column + up) >> s;
-    p.row = (span.first_row + up) >> s;
-    p.columns = (span.last_column >> s) - p.column + 1;
-    p.rows = (span.last_row >> s) - p.row + 1;
-    p.offset = bytes;
-    if (p.columns > 0 && p.rows > 0)
-      bytes += (static_cast<vk::DeviceSize>(p.columns * p.rows) * item + 15) / 16 * 16;
+    parts[level] = partOf(span, kind, shift(level));
+    offsets[level] = bytes;
+    if (!parts[level].empty()) bytes += (parts[level].items() * bytesOf(kind) + 15) / 16 * 16;
   }
   const std::optional<vk::DeviceSize> at = ring.take(bytes, submission);
   if (!at) return false;
   for (int level = 0; level < kLevels; ++level) {
-    const Part& p = parts[level];
-    if (p.columns <= 0 || p.rows <= 0) continue;
+    const TilePart& p = parts[level];
+    if (p.empty()) continue;
     const int s = shift(level);
-    std::byte* out = ring.buffer().data() + *at + p.offset;
-    for (int r = 0; r < p.rows; ++r) {
-      const int row = (p.row + r) << s;
-      if (kind == 0) {
-        const float* from = data.samples.data() + row * kSide;
-        if (level == 0) {
-          std::memcpy(out, from + p.column, static_cast<std::size_t>(p.columns) * sizeof(float));
-          out += static_cast<std::size_t>(p.columns) * sizeof(float);
-        } else {
-          for (int c = 0; c < p.columns; ++c, out += sizeof(float))
-            std::memcpy(out, from + ((p.column + c) << s), sizeof(float));
-        }
-      } else {
-        for (int c = 0; c < p.columns; ++c) *out++ = std::byte{anyMark(data, (p.column + c) << s, row, s)};
-      }
-    }
+    copyPart(data, kind, s, p, ring.buffer().data() + *at + offsets[level],
+             static_cast<std::size_t>(p.columns) * bytesOf(kind));
     const std::uint32_t columns = paging_.columns >> s, rows = paging_.rows >> s;
     const std::uint32_t column = static_cast<std::uint32_t>(tile.x * (kSide >> s) + p.column);
     const std::uint32_t row = static_cast<std::uint32_t>(tile.y * (kSide >> s) + p.row);
     vk::BufferImageCopy copy;
-    copy.setBufferOffset(*at + p.offset)
+    copy.setBufferOffset(*at + offsets[level])
         .setImageSubresource(
             {vk::ImageAspectFlagBits::eColor, 0, row / rows * paging_.across + column / columns, 1})
         .setImageOffset(
             {static_cast<std::int32_t>(column % columns), static_cast<std::int32_t>(row % rows), 0})
         .setImageExtent({static_cast<std::uint32_t>(p.columns), static_cast<std::uint32_t>(p.rows), 1});
-    copies[kind][level].push_back(copy);
-    count.bytes += static_cast<std::int64_t>(static_cast<vk::DeviceSize>(p.columns * p.rows) * item);
+    copies[static_cast<std::size_t>(kind)][level].push_back(copy);
+    count.bytes += static_cast<std::int64_t>(p.items() * bytesOf(kind));
   }
   ++count.tiles;
-  count.changed_samples += std::int64_t{parts[0].columns} * parts[0].rows;
+  count.changed_samples += static_cast<std::int64_t>(parts[0].items());
   return true;
+}
+
+std::optional<std::uint64_t> LiveTexture::nextPending() {
+  while (!hurried_.empty() && !pending_.contains(hurried_.back())) hurried_.pop_back();
+  if (!hurried_.empty()) return hurried_.back();
+  while (front_ < order_.size() && !pending_.contains(order_[front_])) ++front_;
+  if (front_ < order_.size()) return order_[front_];
+  order_.clear();
+  front_ = 0;
+  return std::nullopt;
+}
+
+bool LiveTexture::settled(int entry) {
+  if (pending_.empty()) return true;
+  const PageGrid& grid = pages_->grid();
+  const PageGrid::Place place = grid.place(entry);
+  const int log2_tiles = grid.log2Side() + shift(place.level) - engine::kTileShift;
+  const engine::FieldReader reader = version_.reader();
+  const glm::ivec2 first = place.page << log2_tiles;
+  const glm::ivec2 end =
+      glm::min(first + (1 << log2_tiles), glm::ivec2(reader.tileColumns(), reader.tileRows()));
+  bool all = true;
+  for (int y = first.y; y < end.y; ++y)
+    for (int x = first.x; x < end.x; ++x) {
+      const auto found = pending_.find(keyOf(x, y));
+      if (found == pending_.end()) continue;
+      all = false;
+      if (!found->second.hurried) hurried_.push_back(found->first);
+      found->second.hurried = true;
+    }
+  return all;
+}
+
+bool LiveTexture::pumpPages(StagingRing& ring, std::uint64_t submission,
+                            const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
+                            UploadStatistics& count, std::vector<glm::ivec2>& moved) {
+  std::int64_t spent = 0;
+  const engine::FieldReader reader = version_.reader();
+  for (; fixed_left_ > 0 && spent < byte_budget; --fixed_left_) {
+    const int entry = pages_->grid().entries() - static_cast<int>(fixed_left_);
+    if (pages_->share(entry, reader, submission)) continue;
+    std::int64_t bytes = 0;
+    if (pages_->load(entry, reader, ring, submission, bytes) != PageSet::Load::kDone) break;
+    spent += bytes;
+    count.bytes += bytes;
+  }
+  while (spent < byte_budget) {
+    const std::optional<std::uint64_t> key = nextPending();
+    if (!key) break;
+    const Pending& p = pending_.at(*key);
+    std::int64_t bytes = 0;
+    if (!pages_->write(tileOf(*key), p.spans, reader, ring, submission, bytes)) break;
+    spent += std::max(bytes, kTileCost);
+    count.bytes += bytes;
+    if (!p.spans[0].empty()) moved.push_back(tileOf(*key));
+    for (const TileSpan& span : p.spans) {
+      if (span.empty() || bytes == 0) continue;
+      ++count.tiles;
+      count.changed_samples +=
+          std::int64_t{span.last_column - span.first_column + 1} * (span.last_row - span.first_row + 1);
+    }
+    pending_.erase(*key);
+  }
+  if (pending_.empty() && fixed_left_ == 0) pages_->name(reader);
+  pages_->pool().flush(commands, ring.buffer());
+  count.pending_tiles += static_cast<std::int64_t>(pending());
+  return spent > 0;
 }
 
 bool LiveTexture::pump(StagingRing& ring, std::uint64_t submission, const vk::raii::CommandBuffer& commands,
                        std::int64_t byte_budget, UploadStatistics& count, std::vector<glm::ivec2>& moved) {
+  if (pages_) return pumpPages(ring, submission, commands, byte_budget, count, moved);
   const std::int64_t bytes_before = count.bytes;
   std::vector<vk::BufferImageCopy> copies[2][kLevels];
-  while (front_ < order_.size() && count.bytes - bytes_before < byte_budget) {
-    const std::uint64_t key = order_[front_];
-    Pending& p = pending_.at(key);
+  while (count.bytes - bytes_before < byte_budget) {
+    const std::optional<std::uint64_t> key = nextPending();
+    if (!key) break;
+    Pending& p = pending_.at(*key);
     bool room = true;
-    for (int kind = 0; kind < 2 && room; ++kind) {
-      if (p.spans[kind].empty()) continue;
-      room = copy(ring, submission, tileOf(key), kind, p.spans[kind], copies, count);
-      if (room && kind == 0) moved.push_back(tileOf(key));
-      if (room) p.spans[kind] = Span{};
+    for (const TileKind kind : {TileKind::kHeights, TileKind::kMarks}) {
+      TileSpan& span = p.spans[static_cast<std::size_t>(kind)];
+      if (span.empty()) continue;
+      room = copy(ring, submission, tileOf(*key), kind, span, copies, count);
+      if (!room) break;
+      if (kind == TileKind::kHeights) moved.push_back(tileOf(*key));
+      span = TileSpan{};
     }
     if (!room) break;
-    pending_.erase(key);
-    ++front_;
-  }
-  if (front_ == order_.size()) {
-    order_.clear();
-    front_ = 0;
+    pending_.erase(*key);
   }
   bool any = false;
   for (int kind = 0; kind < 2; ++kind)

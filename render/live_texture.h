@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -11,20 +13,32 @@
 #include "engine/field/version.h"
 #include "render/field_texture.h"
 #include "render/live_picture.h"
+#include "render/page_set.h"
 #include "render/submissions.h"
+#include "render/tile_copy.h"
 
 namespace fettle::render {
 
 /// A field on the device that follows a version: all samples, and copies with every 4th, 16th and 64th of
 /// them, in images of their own (marks likewise; a coarse mark is one when any sample of its square is
-/// marked).
+/// marked). Or by need: in pages of a pool that others share, of which the coarse ones stay for good and the
+/// others come when they are asked for (render/page_demand.h).
 ///
 /// Threading: as Context. Throws vk::SystemError.
 class LiveTexture {
  public:
-  static constexpr int kLevels = 4;
+  static constexpr int kLevels = kDataLevels;
   /// log2 of the step between the samples of a level.
-  [[nodiscard]] static constexpr int shift(int level) noexcept { return 2 * level; }
+  [[nodiscard]] static constexpr int shift(int level) noexcept { return dataShift(level); }
+
+  LiveTexture() = default;
+  LiveTexture(LiveTexture&&) noexcept = default;
+  LiveTexture& operator=(LiveTexture&&) noexcept = default;
+
+  /// Device memory that all of a field takes [bytes], before alignment; 0 when the device has no image for
+  /// it.
+  [[nodiscard]] static std::uint64_t bytesOfWhole(const Context& context, const engine::Grid& grid,
+                                                  MarksOverlay marks, std::uint32_t max_side);
 
   enum class Freshness {
     kRelated,  ///< what differs is pending
@@ -36,20 +50,34 @@ class LiveTexture {
   [[nodiscard]] engine::Result<Freshness> want(Context& context, const engine::Version& version,
                                                MarksOverlay marks, std::uint32_t max_side,
                                                const std::function<void()>& idle);
+  /// The same by need, in a pool that outlives the texture; marks are brought when the pool has them. Pages
+  /// of levels from `fixed_from` up are pending like everything else. Errors (kFailed): the pool holds fewer.
+  [[nodiscard]] engine::Result<Freshness> want(PagePool& pool, int fixed_from, const engine::Version& version,
+                                               const std::function<void()>& idle);
 
   /// Records copies of pending tiles, until `byte_budget` is spent or the ring has no room; whether any were.
   /// `moved` gets the tiles whose heights are on their way now.
   bool pump(StagingRing& ring, std::uint64_t submission, const vk::raii::CommandBuffer& commands,
             std::int64_t byte_budget, UploadStatistics& count, std::vector<glm::ivec2>& moved);
 
-  [[nodiscard]] std::size_t pending() const noexcept { return pending_.size(); }
+  /// Tiles, and pages that stay for good, that have not moved yet.
+  [[nodiscard]] std::size_t pending() const noexcept { return pending_.size() + fixed_left_; }
+  /// Tiles that differ from what is on the device, in no order.
+  [[nodiscard]] std::vector<glm::ivec2> pendingTiles() const;
+  /// Whether no tile of a page is pending. Those that are move before others do.
+  [[nodiscard]] bool settled(int entry);
+  /// Null unless by need.
+  [[nodiscard]] PageSet* pages() const noexcept { return pages_.get(); }
   [[nodiscard]] const engine::Version& version() const noexcept { return version_; }
   [[nodiscard]] const Paging& paging() const noexcept { return paging_; }
+  /// By need: the pool, of all levels.
   [[nodiscard]] vk::ImageView heights(int level) const {
+    if (pages_) return pages_->pool().view(TileKind::kHeights);
     return images_[0][static_cast<std::size_t>(level)].view();
   }
   [[nodiscard]] bool hasMarks() const noexcept { return has_marks_; }
   [[nodiscard]] vk::ImageView marks(int level) const {
+    if (pages_) return pages_->pool().view(TileKind::kMarks);
     return has_marks_ ? images_[1][static_cast<std::size_t>(level)].view() : heights(level);
   }
   /// Grows whenever the views change.
@@ -57,32 +85,33 @@ class LiveTexture {
   void clear() noexcept;
 
  private:
-  // Samples of a tile, last ones included; empty when last < first.
-  struct Span {
-    int first_column = engine::kTileSide, first_row = engine::kTileSide, last_column = -1, last_row = -1;
-    [[nodiscard]] bool empty() const noexcept { return last_column < first_column; }
-    void join(const Span& other) noexcept;
-  };
   struct Pending {
-    Span spans[2];  // heights, marks
+    TileSpan spans[2];  // heights, marks
+    bool hurried = false;
   };
-  static Span changedHeights(const engine::Tile& a, const engine::Tile& b) noexcept;
-  static Span changedMarks(const engine::Tile& a, const engine::Tile& b) noexcept;
-  static constexpr Span whole() noexcept { return {0, 0, engine::kTileSide - 1, engine::kTileSide - 1}; }
-  void add(std::int32_t column, std::int32_t row, int kind, const Span& span);
-  [[nodiscard]] bool copy(StagingRing& ring, std::uint64_t submission, glm::ivec2 tile, int kind,
-                          const Span& span, std::vector<vk::BufferImageCopy> (&copies)[2][kLevels],
+  void add(std::int32_t column, std::int32_t row, TileKind kind, const TileSpan& span);
+  void addChanges(const engine::Version& next);
+  [[nodiscard]] bool copy(StagingRing& ring, std::uint64_t submission, glm::ivec2 tile, TileKind kind,
+                          const TileSpan& span, std::vector<vk::BufferImageCopy> (&copies)[2][kLevels],
                           UploadStatistics& count) const;
+  [[nodiscard]] std::optional<std::uint64_t> nextPending();
+  [[nodiscard]] bool pumpPages(StagingRing& ring, std::uint64_t submission,
+                               const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
+                               UploadStatistics& count, std::vector<glm::ivec2>& moved);
 
   engine::Version version_;  // what is wanted
   Paging paging_;
   std::array<GpuImage, kLevels> images_[2];  // heights, marks
   bool has_marks_ = false;
   std::unordered_map<std::uint64_t, Pending> pending_;
-  std::vector<std::uint64_t> order_;  // keys of pending_, to be taken from the front
+  std::vector<std::uint64_t>
+      order_;  // keys of pending_, to be taken from the front; some may be gone from there
   std::size_t front_ = 0;
+  std::vector<std::uint64_t> hurried_;   // keys to be taken first, from the back
   bool unprepared_[2] = {false, false};  // images whose layout is still undefined
   std::uint64_t generation_ = 0;
+  std::unique_ptr<PageSet> pages_;
+  std::size_t fixed_left_ = 0;  // pages that stay for good, the last of the table, still to come
 };
 
 }  // namespace fettle::render

@@ -27,6 +27,7 @@ GpuImage::GpuImage(const Context& context, vk::Format format, vk::Extent2D exten
       .setUsage(usage);
   image_ = vk::raii::Image(context.device(), info);
   const vk::MemoryRequirements needs = image_.getMemoryRequirements();
+  bytes_ = needs.size;
   memory_ = vk::raii::DeviceMemory(
       context.device(), {needs.size, context.memoryType(needs.memoryTypeBits, Property::eDeviceLocal)});
   image_.bindMemory(*memory_, 0);

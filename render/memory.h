@@ -40,6 +40,8 @@ class GpuImage {
   [[nodiscard]] vk::Image image() const noexcept { return *image_; }
   [[nodiscard]] vk::ImageView view() const noexcept { return *view_; }
   [[nodiscard]] vk::Extent2D extent() const noexcept { return extent_; }
+  /// Device memory it takes, alignment and all.
+  [[nodiscard]] vk::DeviceSize bytes() const noexcept { return bytes_; }
   [[nodiscard]] vk::ImageSubresourceRange range() const noexcept { return {aspect_, 0, 1, 0, layers_}; }
 
  private:
@@ -47,6 +49,7 @@ class GpuImage {
   vk::raii::Image image_ = nullptr;
   vk::raii::ImageView view_ = nullptr;
   vk::Extent2D extent_;
+  vk::DeviceSize bytes_ = 0;
   std::uint32_t layers_ = 1;
   vk::ImageAspectFlags aspect_;
 };

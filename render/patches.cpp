@@ -15,177 +15,192 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // side of two patches has the seam, and four finer ones share a coarser one's edges.
 constexpr std::int64_t kVerticesAPatch = gpu::kPatchVertices + 2 * gpu::kSeamVertices;
 
-struct TreeNode {
-  int level = 0;
-  std::int32_t x = 0, y = 0;  // in patches of its level
-  double error_px = 0.0;
-  double depth = 0.0;
-  std::array<std::int32_t, 4> children{-1, -1, -1, -1};  // -1: nothing to draw there
-  bool leaf = true;
-};
-
-class Chooser {
- public:
-  explicit Chooser(const PatchQuestion& question) : q_(question) {
-    const glm::dvec3 along_x{q_.placing.spacing.x, 0.0, 0.0}, along_y{0.0, q_.placing.spacing.y, 0.0};
-    along_x_ = along_x;
-    along_y_ = along_y;
-  }
-
-  PatchChoice choose() {
-    PatchChoice choice;
-    const int top = q_.measure->topLevel();
-    if (add(top, 0, 0) < 0) return choice;
-    const auto less = [this](std::int32_t a, std::int32_t b) {
-      // The index makes the order, and with it the picture, one and the same.
-      const double ea = node(a).error_px, eb = node(b).error_px;
-      return ea != eb ? ea < eb : a > b;
-    };
-    std::priority_queue<std::int32_t, std::vector<std::int32_t>, decltype(less)> waiting(less);
-    waiting.push(0);
-    std::int64_t leaves = 1;
-    while (!waiting.empty()) {
-      const std::int32_t worst = waiting.top();
-      if (!(node(worst).error_px > q_.error_px)) break;
-      if ((leaves + 3) * kVerticesAPatch > q_.vertex_budget) {
-        choice.within_budget = false;
-        break;
-      }
-      waiting.pop();
-      const TreeNode parent = node(worst);
-      --leaves;
-      std::array<std::int32_t, 4> children{};
-      for (int i = 0; i < 4; ++i) {
-        children[static_cast<std::size_t>(i)] =
-            add(parent.level - 1, 2 * parent.x + (i & 1), 2 * parent.y + (i >> 1));
-        if (children[static_cast<std::size_t>(i)] < 0) continue;
-        waiting.push(children[static_cast<std::size_t>(i)]);
-        ++leaves;
-      }
-      node(worst).children = children;
-      node(worst).leaf = false;
-    }
-    list(choice);
-    return choice;
-  }
-
- private:
-  TreeNode& node(std::int32_t i) { return nodes_[static_cast<std::size_t>(i)]; }
-
-  // The heights of the closed square of a patch, from squares of the pyramid a quarter as large or so.
-  engine::HeightBounds heights(glm::ivec2 first, glm::ivec2 last) const {
-    int level = 0;
-    std::int32_t side = engine::kBlockSide;
-    while (side * 4 < last.x - first.x && level < q_.reader.topLevel()) {
-      side *= 8;
-      ++level;
-    }
-    const glm::ivec2 end(q_.reader.width() - 1, q_.reader.height() - 1);
-    engine::HeightBounds all{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-    for (std::int32_t y = std::min(first.y, end.y) / side; y <= std::min(last.y, end.y) / side; ++y)
-      for (std::int32_t x = std::min(first.x, end.x) / side; x <= std::min(last.x, end.x) / side; ++x) {
-        const engine::HeightBounds b = q_.reader.bounds(level, x, y);
-        if (b.empty()) continue;
-        all.min = std::min(all.min, b.min);
-        all.max = std::max(all.max, b.max);
-      }
-    return all;
-  }
-
-  // Appends a patch; -1 when there is nothing to draw.
-  std::int32_t add(int level, std::int32_t x, std::int32_t y) {
-    const std::int32_t side = DetailMeasure::side(level);
-    const glm::ivec2 first = glm::ivec2(x, y) * side;
-    if (first.x >= q_.placing.size.x - 1 || first.y >= q_.placing.size.y - 1) return -1;
-    const glm::ivec2 last = glm::min(first + side, q_.placing.size - 1);
-    const engine::HeightBounds raw = heights(first, last);
-    if (raw.empty()) return -1;
-    const double low = std::clamp<double>(raw.min, q_.lowest, q_.highest);
-    const double high = std::clamp<double>(raw.max, q_.lowest, q_.highest);
-    const glm::dvec2 a = q_.placing.first + q_.placing.spacing * glm::dvec2(first);
-    const glm::dvec2 b = q_.placing.first + q_.placing.spacing * glm::dvec2(last);
-    const bool rim = x == 0 || y == 0 || last.x == q_.placing.size.x - 1 || last.y == q_.placing.size.y - 1;
-    const DetailMeasure::Error error = q_.measure->error(level, x, y);
-    // A hole's vertex may take its height from beside the patch.
-    const bool holed = !(error.excess < std::numeric_limits<float>::infinity());
-    const double drawn_low = holed ? q_.lowest : low, drawn_high = holed ? q_.highest : high;
-    Box box{{a.x, a.y, (drawn_low - q_.reference) * q_.mm_per_unit},
-            {b.x, b.y, (drawn_high - q_.reference) * q_.mm_per_unit}};
-    Box seen = box;
-    if (rim || holed) seen.low.z = std::min(seen.low.z, q_.floor_z);
-    if (q_.camera.misses(seen)) return -1;
-
-    TreeNode n;
-    n.level = level;
-    n.x = x;
-    n.y = y;
-    n.depth = q_.camera.depthOf(0.5 * (box.low + box.high));
-    if (level > 0) {
-      const bool cut = raw.min < q_.lowest || raw.max > q_.highest;
-      const double upright = cut ? drawn_high - drawn_low : error.deviation;
-      n.error_px =
-          upright < 1e30 ? q_.camera.movesAtMost({0.0, 0.0, upright * q_.mm_per_unit}, box) : kInfinity;
-      if (n.error_px > q_.error_px && !holed) {
-        const double stride = std::ldexp(1.0, level);
-        const double sideways =
-            q_.camera.movesAtMost(stride * along_x_, box) + q_.camera.movesAtMost(stride * along_y_, box);
-        n.error_px = std::min(
-            n.error_px, sideways + q_.camera.movesAtMost({0.0, 0.0, error.excess * q_.mm_per_unit}, box));
-      }
-    }
-    nodes_.push_back(n);
-    return static_cast<std::int32_t>(nodes_.size() - 1);
-  }
-
-  // The level of the leaf that holds patch (x, y) of `level`; that level itself when finer ones do, or none.
-  int levelAt(int level, std::int32_t x, std::int32_t y) {
-    if (x < 0 || y < 0) return level;
-    std::int32_t at = 0;
-    const int top = node(0).level;
-    if ((x >> (top - level)) != 0 || (y >> (top - level)) != 0) return level;
-    while (!node(at).leaf && node(at).level > level) {
-      const int down = node(at).level - 1 - level;
-      at = node(at).children[static_cast<std::size_t>(((y >> down) & 1) * 2 + ((x >> down) & 1))];
-      if (at < 0) return level;
-    }
-    return node(at).leaf ? std::max(level, node(at).level) : level;
-  }
-
-  void list(PatchChoice& choice) {
-    std::vector<std::int32_t> leaves;
-    for (std::size_t i = 0; i < nodes_.size(); ++i)
-      if (nodes_[i].leaf) leaves.push_back(static_cast<std::int32_t>(i));
-    std::sort(leaves.begin(), leaves.end(), [this](std::int32_t a, std::int32_t b) {
-      return node(a).depth != node(b).depth ? node(a).depth < node(b).depth : a < b;
-    });
-    const glm::ivec2 end = q_.placing.size - 1;
-    for (const std::int32_t leaf : leaves) {
-      const TreeNode& n = node(leaf);
-      choice.bound_px = std::max(choice.bound_px, n.error_px);
-      const std::int32_t side = DetailMeasure::side(n.level);
-      const glm::ivec2 first = glm::ivec2(n.x, n.y) * side, last = glm::min(first + side, end);
-      choice.patches.push_back({{first.x, first.y, n.level, n.level}});
-      const std::array<glm::ivec2, 4> begins{first, {last.x, first.y}, {first.x, last.y}, first};
-      const std::array<bool, 4> rim{first.y == 0, last.x == end.x, last.y == end.y, first.x == 0};
-      const std::array<glm::ivec2, 4> steps{{{0, -1}, {1, 0}, {0, 1}, {-1, 0}}};
-      for (int s = 0; s < 4; ++s) {
-        const auto k = static_cast<std::size_t>(s);
-        if (rim[k]) {
-          choice.walls.push_back({{begins[k].x, begins[k].y, n.level, n.level | s << 8}});
-          continue;
-        }
-        const int other = levelAt(n.level, n.x + steps[k].x, n.y + steps[k].y);
-        if (other > n.level) choice.seams.push_back({{begins[k].x, begins[k].y, n.level | other << 8, s}});
-      }
-    }
-  }
-
-  const PatchQuestion& q_;
-  glm::dvec3 along_x_{0.0}, along_y_{0.0};
-  std::vector<TreeNode> nodes_;
-};
-
 }  // namespace
+
+PatchTree::PatchTree(const PatchQuestion& question) : q_(question) {
+  if (add(q_.measure->topLevel(), 0, 0) >= 0) refine();
+}
+
+void PatchTree::refine() {
+  const auto less = [this](std::int32_t a, std::int32_t b) {
+    // The index makes the order, and with it the picture, one and the same.
+    const double ea = node(a).error_px, eb = node(b).error_px;
+    return ea != eb ? ea < eb : a > b;
+  };
+  std::priority_queue<std::int32_t, std::vector<std::int32_t>, decltype(less)> waiting(less);
+  waiting.push(0);
+  std::int64_t leaves = 1;
+  while (!waiting.empty()) {
+    const std::int32_t worst = waiting.top();
+    if (!(node(worst).error_px > q_.error_px)) break;
+    if ((leaves + 3) * kVerticesAPatch > q_.vertex_budget) {
+      within_budget_ = false;
+      break;
+    }
+    waiting.pop();
+    const Node parent = node(worst);
+    --leaves;
+    std::array<std::int32_t, 4> children{};
+    for (int i = 0; i < 4; ++i) {
+      children[static_cast<std::size_t>(i)] =
+          add(parent.level - 1, 2 * parent.x + (i & 1), 2 * parent.y + (i >> 1));
+      if (children[static_cast<std::size_t>(i)] < 0) continue;
+      waiting.push(children[static_cast<std::size_t>(i)]);
+      ++leaves;
+    }
+    node(worst).children = children;
+    node(worst).leaf = false;
+  }
+}
+
+// The heights of the closed square of a patch, from squares of the pyramid a quarter as large or so.
+engine::HeightBounds PatchTree::heights(glm::ivec2 first, glm::ivec2 last) const {
+  int level = 0;
+  std::int32_t side = engine::kBlockSide;
+  while (side * 4 < last.x - first.x && level < q_.reader.topLevel()) {
+    side *= 8;
+    ++level;
+  }
+  const glm::ivec2 end(q_.reader.width() - 1, q_.reader.height() - 1);
+  engine::HeightBounds all{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+  for (std::int32_t y = std::min(first.y, end.y) / side; y <= std::min(last.y, end.y) / side; ++y)
+    for (std::int32_t x = std::min(first.x, end.x) / side; x <= std::min(last.x, end.x) / side; ++x) {
+      const engine::HeightBounds b = q_.reader.bounds(level, x, y);
+      if (b.empty()) continue;
+      all.min = std::min(all.min, b.min);
+      all.max = std::max(all.max, b.max);
+    }
+  return all;
+}
+
+// Appends a patch; -1 when there is nothing to draw.
+std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
+  const std::int32_t side = DetailMeasure::side(level);
+  const glm::ivec2 first = glm::ivec2(x, y) * side;
+  if (first.x >= q_.placing.size.x - 1 || first.y >= q_.placing.size.y - 1) return -1;
+  const glm::ivec2 last = glm::min(first + side, q_.placing.size - 1);
+  const engine::HeightBounds raw = heights(first, last);
+  if (raw.empty()) return -1;
+  const double low = std::clamp<double>(raw.min, q_.lowest, q_.highest);
+  const double high = std::clamp<double>(raw.max, q_.lowest, q_.highest);
+  const glm::dvec2 a = q_.placing.first + q_.placing.spacing * glm::dvec2(first);
+  const glm::dvec2 b = q_.placing.first + q_.placing.spacing * glm::dvec2(last);
+  const bool rim = x == 0 || y == 0 || last.x == q_.placing.size.x - 1 || last.y == q_.placing.size.y - 1;
+  const DetailMeasure::Error error = q_.measure->error(level, x, y);
+  // A hole's vertex may take its height from beside the patch.
+  const bool holed = !(error.excess < std::numeric_limits<float>::infinity());
+  const double drawn_low = holed ? q_.lowest : low, drawn_high = holed ? q_.highest : high;
+  Box box{{a.x, a.y, (drawn_low - q_.reference) * q_.mm_per_unit},
+          {b.x, b.y, (drawn_high - q_.reference) * q_.mm_per_unit}};
+  Box seen = box;
+  if (rim || holed) seen.low.z = std::min(seen.low.z, q_.floor_z);
+  if (q_.camera.misses(seen)) return -1;
+
+  Node n;
+  n.level = level;
+  n.x = x;
+  n.y = y;
+  n.holed = holed;
+  n.depth = q_.camera.depthOf(0.5 * (box.low + box.high));
+  if (level > 0) {
+    const bool cut = raw.min < q_.lowest || raw.max > q_.highest;
+    const double upright = cut ? drawn_high - drawn_low : error.deviation;
+    n.error_px =
+        upright < 1e30 ? q_.camera.movesAtMost({0.0, 0.0, upright * q_.mm_per_unit}, box) : kInfinity;
+    if (n.error_px > q_.error_px && !holed) {
+      const double stride = std::ldexp(1.0, level);
+      const glm::dvec3 along_x{q_.placing.spacing.x, 0.0, 0.0}, along_y{0.0, q_.placing.spacing.y, 0.0};
+      const double sideways =
+          q_.camera.movesAtMost(stride * along_x, box) + q_.camera.movesAtMost(stride * along_y, box);
+      n.error_px = std::min(n.error_px,
+                            sideways + q_.camera.movesAtMost({0.0, 0.0, error.excess * q_.mm_per_unit}, box));
+    }
+  }
+  nodes_.push_back(n);
+  return static_cast<std::int32_t>(nodes_.size() - 1);
+}
+
+// The level of the leaf that holds patch (x, y) of `level`; that level itself when finer ones do, or none.
+int PatchTree::levelAt(int level, std::int32_t x, std::int32_t y) const {
+  if (x < 0 || y < 0) return level;
+  std::int32_t at = 0;
+  const int top = node(0).level;
+  if ((x >> (top - level)) != 0 || (y >> (top - level)) != 0) return level;
+  while (!node(at).leaf && node(at).level > level) {
+    const int down = node(at).level - 1 - level;
+    at = node(at).children[static_cast<std::size_t>(((y >> down) & 1) * 2 + ((x >> down) & 1))];
+    if (at < 0) return level;
+  }
+  return node(at).leaf ? std::max(level, node(at).level) : level;
+}
+
+std::vector<std::int32_t> PatchTree::sorted() const {
+  std::vector<std::int32_t> leaves;
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    if (nodes_[i].leaf) leaves.push_back(static_cast<std::int32_t>(i));
+  std::sort(leaves.begin(), leaves.end(), [this](std::int32_t a, std::int32_t b) {
+    return node(a).depth != node(b).depth ? node(a).depth < node(b).depth : a < b;
+  });
+  return leaves;
+}
+
+std::vector<PatchLeaf> PatchTree::leaves() const {
+  std::vector<PatchLeaf> all;
+  for (const std::int32_t i : sorted()) all.push_back({node(i).level, {node(i).x, node(i).y}, node(i).holed});
+  return all;
+}
+
+void PatchTree::prune(const std::function<bool(const PatchLeaf&)>& drawable) {
+  if (nodes_.empty() || prune(0, drawable)) return;
+  drop(0);
+  node(0).leaf = true;
+}
+
+// Whether the subtree is drawable now.
+bool PatchTree::prune(std::int32_t at, const std::function<bool(const PatchLeaf&)>& drawable) {
+  const auto self = [&] { return drawable({node(at).level, {node(at).x, node(at).y}, node(at).holed}); };
+  if (node(at).leaf) return self();
+  bool all = true;
+  for (const std::int32_t child : node(at).children)
+    if (child >= 0 && !prune(child, drawable)) all = false;
+  if (all) return true;
+  if (!self()) return false;
+  drop(at);
+  node(at).leaf = true;
+  return true;
+}
+
+void PatchTree::drop(std::int32_t at) {
+  for (const std::int32_t child : node(at).children)
+    if (child >= 0) drop(child);
+  node(at).leaf = false;
+}
+
+PatchChoice PatchTree::list() const {
+  PatchChoice choice;
+  choice.within_budget = within_budget_;
+  const glm::ivec2 end = q_.placing.size - 1;
+  for (const std::int32_t leaf : sorted()) {
+    const Node& n = node(leaf);
+    choice.bound_px = std::max(choice.bound_px, n.error_px);
+    const std::int32_t side = DetailMeasure::side(n.level);
+    const glm::ivec2 first = glm::ivec2(n.x, n.y) * side, last = glm::min(first + side, end);
+    choice.patches.push_back({{first.x, first.y, n.level, n.level}});
+    const std::array<glm::ivec2, 4> begins{first, {last.x, first.y}, {first.x, last.y}, first};
+    const std::array<bool, 4> rim{first.y == 0, last.x == end.x, last.y == end.y, first.x == 0};
+    const std::array<glm::ivec2, 4> steps{{{0, -1}, {1, 0}, {0, 1}, {-1, 0}}};
+    for (int s = 0; s < 4; ++s) {
+      const auto k = static_cast<std::size_t>(s);
+      if (rim[k]) {
+        choice.walls.push_back({{begins[k].x, begins[k].y, n.level, n.level | s << 8}});
+        continue;
+      }
+      const int other = levelAt(n.level, n.x + steps[k].x, n.y + steps[k].y);
+      if (other > n.level) choice.seams.push_back({{begins[k].x, begins[k].y, n.level | other << 8, s}});
+    }
+  }
+  return choice;
+}
 
 std::int64_t PatchChoice::vertices() const noexcept {
   return static_cast<std::int64_t>(patches.size()) * gpu::kPatchVertices +
@@ -199,7 +214,7 @@ std::int64_t PatchChoice::triangles() const noexcept {
 }
 
 PatchChoice choosePatches(const PatchQuestion& question) {
-  return Chooser(question).choose();
+  return PatchTree(question).list();
 }
 
 }  // namespace fettle::render

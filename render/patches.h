@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "render/detail.h"
@@ -35,6 +37,13 @@ struct PatchChoice {
   [[nodiscard]] std::int64_t triangles() const noexcept;  ///< without those of area zero
 };
 
+/// A patch that is drawn, or was chosen to be.
+struct PatchLeaf {
+  int level = 0;
+  glm::ivec2 patch{0};  ///< in patches of its level
+  bool holed = false;   ///< may hold a hole (level 0 keeps no record of that)
+};
+
 /// Refines the patch of the largest screen error, until all are within error_px or the budget is spent.
 /// Leaves out what is outside the plot or has no height, by the min/max pyramid.
 ///
@@ -45,6 +54,43 @@ struct PatchChoice {
 /// Where heights of the patch are cut, the first is replaced by the range of what is left of them, since
 /// cutting and interpolating do not commute. So bound_px is the Hausdorff distance on the screen between the
 /// two, at most. The third part is Camera::movesAtMost, which bounds what a step can look like.
+class PatchTree {
+ public:
+  explicit PatchTree(const PatchQuestion& question);
+  /// What was chosen, near ones first.
+  [[nodiscard]] std::vector<PatchLeaf> leaves() const;
+  /// Draws a coarser patch in the place of those of which one is not `drawable`: bound_px grows to what is
+  /// drawn then. The coarsest patch is drawn in any case.
+  void prune(const std::function<bool(const PatchLeaf&)>& drawable);
+  [[nodiscard]] PatchChoice list() const;
+
+ private:
+  struct Node {
+    int level = 0;
+    std::int32_t x = 0, y = 0;  // in patches of its level
+    double error_px = 0.0;
+    double depth = 0.0;
+    std::array<std::int32_t, 4> children{-1, -1, -1, -1};  // -1: nothing to draw there
+    bool leaf = true;
+    bool holed = false;
+  };
+  [[nodiscard]] const Node& node(std::int32_t i) const noexcept {
+    return nodes_[static_cast<std::size_t>(i)];
+  }
+  [[nodiscard]] Node& node(std::int32_t i) noexcept { return nodes_[static_cast<std::size_t>(i)]; }
+  void refine();
+  [[nodiscard]] engine::HeightBounds heights(glm::ivec2 first, glm::ivec2 last) const;
+  std::int32_t add(int level, std::int32_t x, std::int32_t y);
+  [[nodiscard]] int levelAt(int level, std::int32_t x, std::int32_t y) const;
+  [[nodiscard]] std::vector<std::int32_t> sorted() const;
+  bool prune(std::int32_t at, const std::function<bool(const PatchLeaf&)>& drawable);
+  void drop(std::int32_t at);
+
+  PatchQuestion q_;
+  std::vector<Node> nodes_;
+  bool within_budget_ = true;
+};
+
 [[nodiscard]] PatchChoice choosePatches(const PatchQuestion& question);
 
 }  // namespace fettle::render

@@ -45,7 +45,8 @@ Pipelines::Pipelines(const Context& context, vk::Format colour) : context_(conte
                          binding(gpu::kBindOriginal, vk::DescriptorType::eSampledImage),
                          binding(gpu::kBindPatches, vk::DescriptorType::eStorageBuffer),
                          binding(gpu::kBindShade, vk::DescriptorType::eSampledImage),
-                         binding(gpu::kBindLines, vk::DescriptorType::eStorageBuffer)};
+                         binding(gpu::kBindLines, vk::DescriptorType::eStorageBuffer),
+                         binding(gpu::kBindPages, vk::DescriptorType::eUniformTexelBuffer)};
   const std::array picture{binding(gpu::kBindScene, vk::DescriptorType::eSampledImage),
                            binding(gpu::kBindGlyphs, vk::DescriptorType::eSampledImage),
                            binding(gpu::kBindQuads, vk::DescriptorType::eStorageBuffer),
@@ -126,8 +127,8 @@ namespace {
 std::array<vk::Bool32, gpu::kSpecCount> constantsOf(const SurfaceVariant& v) {
   static_assert(gpu::kSpecPaged == 0 && gpu::kSpecMarks == 1 && gpu::kSpecDeviation == 2 &&
                 gpu::kSpecContours == 3 && gpu::kSpecSmooth == 4 && gpu::kSpecHoles == 5 &&
-                gpu::kSpecCell == 6);
-  return {v.paged, v.marks, v.deviation, v.contours, v.smooth, v.holes, v.cell_slopes};
+                gpu::kSpecCell == 6 && gpu::kSpecByNeed == 7);
+  return {v.paged, v.marks, v.deviation, v.contours, v.smooth, v.holes, v.cell_slopes, v.by_need};
 }
 
 }  // namespace
@@ -165,6 +166,7 @@ vk::Pipeline Pipelines::wall(Paged paged) {
   Recipe recipe{.vertex = wall_vert_spirv, .fragment = wall_frag_spirv, .layout = *scene_layout_};
   recipe.constants[gpu::kSpecPaged] = paged == Paged::kYes;
   recipe.constants[gpu::kSpecHoles] = VK_TRUE;
+  recipe.constants[gpu::kSpecByNeed] = paged == Paged::kByNeed;
   return *walls_.emplace(paged, make(recipe)).first->second;
 }
 

@@ -17,6 +17,7 @@ struct SurfaceVariant {
   bool smooth = false;
   bool holes = true;
   bool cell_slopes = false;
+  bool by_need = false;  ///< pages on the device by need (render/page_demand.h)
   friend auto operator<=>(const SurfaceVariant&, const SurfaceVariant&) = default;
 };
 
@@ -27,7 +28,7 @@ class Pipelines {
   explicit Pipelines(const Context& context, vk::Format colour = kColourFormat);
 
   [[nodiscard]] vk::Pipeline surface(const SurfaceVariant& variant);
-  enum class Paged { kNo, kYes };
+  enum class Paged { kNo, kYes, kByNeed };
   [[nodiscard]] vk::Pipeline wall(Paged paged);
   [[nodiscard]] vk::Pipeline seam(const SurfaceVariant& variant);
   [[nodiscard]] vk::Pipeline floor();

@@ -3,10 +3,46 @@
 
 layout(constant_id = kSpecPaged) const bool kPaged = false;
 layout(constant_id = kSpecHoles) const bool kHoles = true;
+layout(constant_id = kSpecByNeed) const bool kByNeed = false;
 
 layout(set = 0, binding = kBindPanel, std140) uniform PanelBlock { PanelUniforms panel; };
 layout(set = 0, binding = kBindHeights) uniform utexture2DArray heights_image;
 layout(set = 0, binding = kBindShade) uniform utexture2DArray shade_image;
+// A texture and no storage buffer: differences between fragments ask for entries outside the surface too, and not
+// every driver loads from buffers there.
+layout(set = 0, binding = kBindPages) uniform utextureBuffer page_table;
+
+uint pageEntry(int number) { return texelFetch(page_table, number).x; }
+
+// Where sample `s` of a page lies in the pool.
+ivec3 pooledTexel(uint entry, ivec2 s) {
+  const ivec2 page = ivec2(entry & kEntrySideMask, entry >> kEntryUpShift & kEntrySideMask);
+  return ivec3((page << panel.pages.pool.x) + (s & ((1 << panel.pages.pool.x) - 1)),
+               entry >> kEntryLayerShift & kEntryLayerMask);
+}
+
+uint entryOf(int level, ivec2 s) {
+  const ivec2 page = s >> panel.pages.pool.x;
+  return pageEntry(panel.pages.level[level].x + page.y * panel.pages.level[level].y + page.x);
+}
+
+// Sample `s` of the field, of which the level of every 2^log2_step-th sample is there: a multiple of that, or on the
+// last column or row.
+uint rawByNeed(ivec2 s, int log2_step) {
+  const ivec2 last = panel.size.zw - 1;
+  s = clamp(s, ivec2(0), last);
+  const int level = min(log2_step >> 1, kDataLevels - 1);
+  ivec3 texel;
+  if (level > 0 && any(equal(s, last))) {
+    const int number = s.x == last.x ? s.y : panel.pages.pool.z + s.x;
+    texel = pooledTexel(pageEntry(panel.pages.pool.y + (number >> 2 * panel.pages.pool.x)),
+                        ivec2(number, number >> panel.pages.pool.x));
+  } else {
+    const ivec2 at = s >> 2 * level;
+    texel = pooledTexel(entryOf(level, at), at);
+  }
+  return texelFetch(heights_image, texel, 0).x;
+}
 
 // Where sample `s` of the virtual field lies in an image array. Pages are powers of two so that this is shifts.
 ivec3 texelOf(ivec2 s) {
@@ -16,25 +52,63 @@ ivec3 texelOf(ivec2 s) {
   return ivec3(s - (page << panel.paging.xy), page.y * panel.paging.z + page.x);
 }
 
-uint rawHeight(ivec2 s) { return texelFetch(heights_image, texelOf(s), 0).x; }
+uint rawHeight(ivec2 s, int log2_step) {
+  return kByNeed ? rawByNeed(s, log2_step) : texelFetch(heights_image, texelOf(s), 0).x;
+}
 
-// Colours may come from every 2^shade.x-th sample: a far view would else fetch a cache line for every pixel.
+// Colours may come from every 2^shade.x-th sample: a far view would else fetch a cache line for every pixel. Where those
+// are not on the device yet they come from a coarser level: so shadeCell() sets these three, which hold for what is
+// asked for after it.
+int shade_log2 = panel.shade.x;       // of the step between samples
+ivec2 shade_size = panel.shade.zw;    // columns, rows
+int shade_difference = panel.paging.w;  // step of differences
+
 ivec3 shadeTexelOf(ivec2 s) {
-  s = clamp(s, ivec2(0), (panel.size.zw - 1) >> panel.shade.x);
+  s = clamp(s, ivec2(0), (panel.size.zw - 1) >> shade_log2);
+  if (kByNeed) return pooledTexel(entryOf(shade_log2 >> 1, s), s);
   if (!kPaged) return ivec3(s, 0);
   const ivec2 log2_page = panel.paging.xy - panel.shade.x;
   const ivec2 page = s >> log2_page;
   return ivec3(s - (page << log2_page), page.y * panel.paging.z + page.x);
 }
 
+// The same in the original.
+ivec3 originalTexelOf(ivec2 s) {
+  if (!kByNeed) return shadeTexelOf(s);
+  s = clamp(s, ivec2(0), (panel.size.zw - 1) >> shade_log2);
+  const int level = shade_log2 >> 1;
+  const ivec2 page = s >> panel.pages.pool.x;
+  return pooledTexel(pageEntry(panel.pages.pool.w + panel.pages.level[level].x +
+                                   page.y * panel.pages.level[level].y + page.x),
+                     s);
+}
+
 uint shadeHeight(ivec2 s) { return texelFetch(shade_image, shadeTexelOf(s), 0).x; }
+
+// Whether what a cell's colour is made of is on the device: samples from two before to three after it.
+bool readable(int level, ivec2 cell) {
+  const ivec2 last = panel.pages.level[level].zw - 1;
+  const ivec2 low = clamp(cell - 2, ivec2(0), last), high = clamp(cell + 3, ivec2(0), last);
+  uint all = entryOf(level, low);
+  if ((low >> panel.pages.pool.x) != (high >> panel.pages.pool.x))
+    all |= entryOf(level, high) | entryOf(level, ivec2(low.x, high.y)) | entryOf(level, ivec2(high.x, low.y));
+  return all >> kEntryAwayShift == 0u;
+}
 
 // Place among those samples of the point `local` samples from sample `base`: cell, and where in it.
 ivec2 shadeCell(ivec2 base, vec2 local, out vec2 f) {
-  const int step = 1 << panel.shade.x;
-  const ivec2 first = base >> panel.shade.x;
-  const vec2 p = (vec2(base - (first << panel.shade.x)) + local) / float(step);
-  const ivec2 cell = clamp(first + ivec2(floor(p)), ivec2(0), panel.shade.zw - 2);
+  if (kByNeed) {
+    const ivec2 s = base + ivec2(floor(local));
+    int level = panel.shade.x >> 1;
+    while (level < kDataLevels - 1 && !readable(level, s >> 2 * level)) ++level;
+    shade_log2 = 2 * level;
+    if (shade_log2 > panel.shade.x) shade_size = max(((panel.size.zw - 1) >> shade_log2) + 1, ivec2(2));
+    shade_difference = max(panel.paging.w >> (shade_log2 - panel.shade.x), 1);
+  }
+  const int step = 1 << shade_log2;
+  const ivec2 first = base >> shade_log2;
+  const vec2 p = (vec2(base - (first << shade_log2)) + local) / float(step);
+  const ivec2 cell = clamp(first + ivec2(floor(p)), ivec2(0), shade_size - 2);
   f = clamp(p - vec2(cell - first), 0.0, 1.0);
   return cell;
 }
@@ -55,17 +129,20 @@ vec3 scenePoint(ivec2 s, float z) { return vec3(panel.placing.xy + vec2(s) * pan
 // that the valid part of a cell larger than one sample is drawn where it belongs; the fragments over the hole
 // itself are dropped.
 float drawnZ(ivec2 s, ivec2 stride) {
-  uint raw = rawHeight(s);
+  uint raw = rawHeight(s, findMSB(stride.x));
   if (kHoles && isHole(raw)) {
     // At most 8 rings, so that a stride of 2^k costs no more than a stride of 8.
     const ivec2 step = max(stride >> 3, ivec2(1));
+    const int log2_step = findMSB(step.x);
+    // On the last column and row as well, only places of that step are looked at.
+    s &= ~(step - 1);
     const int rings = max(stride.x / step.x, stride.y / step.y);
     for (int ring = 1; ring <= rings && isHole(raw); ++ring)
       for (int i = -ring; i < ring && isHole(raw); ++i) {
-        raw = rawHeight(s + step * ivec2(i, -ring));
-        if (isHole(raw)) raw = rawHeight(s + step * ivec2(ring, i));
-        if (isHole(raw)) raw = rawHeight(s + step * ivec2(-i, ring));
-        if (isHole(raw)) raw = rawHeight(s + step * ivec2(-ring, -i));
+        raw = rawHeight(s + step * ivec2(i, -ring), log2_step);
+        if (isHole(raw)) raw = rawHeight(s + step * ivec2(ring, i), log2_step);
+        if (isHole(raw)) raw = rawHeight(s + step * ivec2(-i, ring), log2_step);
+        if (isHole(raw)) raw = rawHeight(s + step * ivec2(-ring, -i), log2_step);
       }
     if (isHole(raw)) return panel.relief.w;
   }

@@ -34,6 +34,8 @@ FETTLE_CONST kSeamStripVertices = 2 * (kPatchCells + 1);
 FETTLE_CONST kSeamVertices = 2 * kSeamStripVertices;
 
 FETTLE_CONST kColours = 256;
+// Levels of a field on the device: every sample, every 4th, 16th and 64th.
+FETTLE_CONST kDataLevels = 4;
 
 // Bindings of descriptor set 0 of the surface.
 FETTLE_CONST kBindPanel = 0;     // uniform PanelUniforms
@@ -44,6 +46,7 @@ FETTLE_CONST kBindPatches = 4;   // buffer of Patch
 // utexture2DArray, every 2^shade.x-th sample of the heights; marks and original likewise.
 FETTLE_CONST kBindShade = 5;
 FETTLE_CONST kBindLines = 6;  // buffer of Line
+FETTLE_CONST kBindPages = 7;  // utextureBuffer, entries of the page table: which pages are on the device
 
 // Bindings of descriptor set 0 of the picture.
 FETTLE_CONST kBindScene = 0;   // texture2D, one panel at several rays a pixel, premultiplied
@@ -61,7 +64,10 @@ FETTLE_CONST kSpecSmooth = 4;
 FETTLE_CONST kSpecHoles = 5;  // there may be holes
 // For speed: slopes of the cell alone where kSpecSmooth is off, the nearest of 256 colours.
 FETTLE_CONST kSpecCell = 6;
-FETTLE_CONST kSpecCount = 7;
+// Samples lie in pages that are on the device by need: heights_image, marks_image and original_image are pools
+// of them.
+FETTLE_CONST kSpecByNeed = 7;
+FETTLE_CONST kSpecCount = 8;
 
 // What a Quad is filled with.
 FETTLE_CONST kFillSolid = 0;
@@ -70,6 +76,12 @@ FETTLE_CONST kFillColours = 2;  // uv.y: place in the colour map, 0 .. 1
 FETTLE_CONST kFillScene = 3;    // uv: ray of the scene image
 FETTLE_CONST kFillUp = 4;       // triangle standing on the quad's lower edge, colour as kFillColours
 FETTLE_CONST kFillDown = 5;     // triangle hanging from the quad's upper edge
+
+// How a page table is read (render/page_table.h): one entry a page, the field's, then the original's.
+struct PageHead {
+  ivec4 level[kDataLevels];  // entry of a level's first page; pages across; columns, rows of samples
+  ivec4 pool;  // log2 of a page's side; the rim's first entry; number of its row's first sample; entries of a field
+};
 
 // Scene coordinates: millimetres from the middle of what is shown, x and y as in the field, z up with the
 // exaggeration in it. "Virtual" samples: a field of one row or column is drawn as two equal ones.
@@ -89,11 +101,19 @@ struct PanelUniforms {
   // Seam: how far seams overlap [px]; drawn so far from its sample, a point is beside it [scene mm]; -; -.
   vec4 seam;               // 240
   vec4 colours[kColours];  // 256: linear red, green, blue
+  PageHead pages;          // where samples are on the device by need
 };
 
 struct Patch {
   ivec4 place;  // first column, first row; log2 of the stride in columns, in rows
 };
+
+// An entry: the page's place in a layer of the pool [pages], and the layer; and whether colours may not be read there.
+FETTLE_CONST kEntryUpShift = 8;
+FETTLE_CONST kEntryLayerShift = 16;
+FETTLE_CONST kEntrySideMask = 0xff;
+FETTLE_CONST kEntryLayerMask = 0x3fff;
+FETTLE_CONST kEntryAwayShift = 31;
 
 // A line over the surface, with round ends.
 struct Line {
@@ -111,13 +131,14 @@ struct Quad {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(PanelUniforms) == 256 + 16 * kColours);
+static_assert(sizeof(PanelUniforms) == 256 + 16 * kColours + sizeof(PageHead));
 static_assert(offsetof(PanelUniforms, placing) == 64);
 static_assert(offsetof(PanelUniforms, limits) == 96);
 static_assert(offsetof(PanelUniforms, size) == 192);
 static_assert(offsetof(PanelUniforms, shade) == 224);
 static_assert(offsetof(PanelUniforms, colours) == 256);
 static_assert(sizeof(Patch) == 16);
+static_assert(sizeof(PageHead) == 80);
 static_assert(sizeof(Line) == 48);
 static_assert(sizeof(Quad) == 64);
 }  // namespace fettle::render::gpu

@@ -23,7 +23,7 @@ layout(location = 0) out vec4 colour;
 float slope(ivec2 s, ivec2 d, float h) {
   const uint after = shadeHeight(s + d);
   const uint before = shadeHeight(s - d);
-  const ivec2 last = panel.shade.zw - 1;
+  const ivec2 last = shade_size - 1;
   const bool has_after = !(kHoles && isHole(after)) && all(lessThanEqual(s + d, last));
   const bool has_before = !(kHoles && isHole(before)) && all(greaterThanEqual(s - d, ivec2(0)));
   const float a = has_after ? heightOf(after) : h;
@@ -35,7 +35,7 @@ float slope(ivec2 s, ivec2 d, float h) {
 // slope to the sample outside, when there is one. `sign` is +1 when the outer sample lies after the corner.
 float cornerSlope(ivec2 outer, float at, float inward, float sign) {
   const uint raw = shadeHeight(outer);
-  const bool inside = all(greaterThanEqual(outer, ivec2(0))) && all(lessThan(outer, panel.shade.zw));
+  const bool inside = all(greaterThanEqual(outer, ivec2(0))) && all(lessThan(outer, shade_size));
   return (kHoles && isHole(raw)) || !inside ? inward : 0.5 * (inward + sign * (heightOf(raw) - at));
 }
 
@@ -68,10 +68,10 @@ void main() {
   bool compared = true;
   if (kDeviation) {
     uvec4 before;
-    before.x = texelFetch(original_image, shadeTexelOf(cell), 0).x;
-    before.y = texelFetch(original_image, shadeTexelOf(cell + ivec2(1, 0)), 0).x;
-    before.z = texelFetch(original_image, shadeTexelOf(cell + ivec2(0, 1)), 0).x;
-    before.w = texelFetch(original_image, shadeTexelOf(cell + ivec2(1, 1)), 0).x;
+    before.x = texelFetch(original_image, originalTexelOf(cell), 0).x;
+    before.y = texelFetch(original_image, originalTexelOf(cell + ivec2(1, 0)), 0).x;
+    before.z = texelFetch(original_image, originalTexelOf(cell + ivec2(0, 1)), 0).x;
+    before.w = texelFetch(original_image, originalTexelOf(cell + ivec2(1, 1)), 0).x;
     compared = !(isHole(before.x) || isHole(before.y) || isHole(before.z) || isHole(before.w));
     // Corner by corner, so that equal samples give exactly zero.
     const vec4 d = h - panel.limits.z * uintBitsToFloat(before);
@@ -96,10 +96,10 @@ void main() {
     g = 0.5 * vec2(h.y - h.x + h.w - h.z, h.z - h.x + h.w - h.y);
   } else {
     const float at = f.y < 0.5 ? (f.x < 0.5 ? h.x : h.y) : (f.x < 0.5 ? h.z : h.w);
-    const int step = panel.paging.w;
+    const int step = shade_difference;
     g = vec2(slope(nearest, ivec2(step, 0), at), slope(nearest, ivec2(0, step), at)) / float(step);
   }
-  vec3 normal = normalize(vec3(-g * panel.relief.z / (panel.placing.zw * float(1 << panel.shade.x)), 1.0));
+  vec3 normal = normalize(vec3(-g * panel.relief.z / (panel.placing.zw * float(1 << shade_log2)), 1.0));
 
   if (beside) {
     const vec3 facet = cross(along_x, along_y);

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/field/tile.h"
+
+namespace fettle::render {
+
+/// What of a tile lies on the device twice over: floats, and a byte a mark.
+enum class TileKind { kHeights = 0, kMarks = 1 };
+[[nodiscard]] constexpr std::size_t bytesOf(TileKind kind) noexcept {
+  return kind == TileKind::kHeights ? sizeof(float) : 1;
+}
+
+/// Samples of a tile, last ones included; empty when last < first.
+struct TileSpan {
+  int first_column = engine::kTileSide, first_row = engine::kTileSide, last_column = -1, last_row = -1;
+  [[nodiscard]] bool empty() const noexcept { return last_column < first_column; }
+  void join(const TileSpan& other) noexcept {
+    first_column = std::min(first_column, other.first_column);
+    first_row = std::min(first_row, other.first_row);
+    last_column = std::max(last_column, other.last_column);
+    last_row = std::max(last_row, other.last_row);
+  }
+  [[nodiscard]] static constexpr TileSpan whole() noexcept {
+    return {0, 0, engine::kTileSide - 1, engine::kTileSide - 1};
+  }
+};
+/// The rectangle in which two states of a tile differ, bit for bit.
+[[nodiscard]] TileSpan changedHeights(const engine::Tile& a, const engine::Tile& b) noexcept;
+[[nodiscard]] TileSpan changedMarks(const engine::Tile& a, const engine::Tile& b) noexcept;
+
+/// Part of a tile at one level of the device's copies.
+struct TilePart {
+  int column = 0, row = 0, columns = 0, rows = 0;
+  [[nodiscard]] bool empty() const noexcept { return columns <= 0 || rows <= 0; }
+  [[nodiscard]] std::size_t items() const noexcept {
+    return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+  }
+};
+/// Of the level of every 2^shift-th sample, those that lie in the span; of marks, those whose square of
+/// samples meets it (a coarse mark is one when any sample of its square is marked). 0 <= shift <= 6.
+[[nodiscard]] TilePart partOf(const TileSpan& span, TileKind kind, int shift) noexcept;
+/// Writes a part to `out`, row by row, `stride` bytes from one row to the next.
+void copyPart(const engine::Tile& tile, TileKind kind, int shift, const TilePart& part, std::byte* out,
+              std::size_t stride) noexcept;
+
+}  // namespace fettle::render
