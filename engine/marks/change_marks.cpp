@@ -33,10 +33,6 @@ std::uint64_t inField(const Grid& grid, std::int32_t tc, std::int32_t tr, int ro
 
 }  // namespace
 
-TileRange allTiles(const Grid& grid) noexcept {
-  return {0, 0, (grid.width + kTileSide - 1) / kTileSide, (grid.height + kTileSide - 1) / kTileSide};
-}
-
 Result<Version> changeMarks(const Version& field, TileRange range, const TileMarking& marking,
                             JobControl& job) try {
   const FieldReader reader = field.reader();

@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/tile_range.h"
 #include "engine/field/version.h"
 
 namespace fettle::engine {
@@ -19,13 +20,6 @@ enum class MarkChange : std::uint8_t {
   kMark,    ///< holes among them stay unmarked: there is nothing to keep
   kUnmark,  ///< every mark goes, a hole's too
 };
-
-/// Tiles [column, column + columns) x [row, row + rows) of a field.
-struct TileRange {
-  std::int32_t column = 0, row = 0;
-  std::int32_t columns = 0, rows = 0;
-};
-[[nodiscard]] TileRange allTiles(const Grid& grid) noexcept;
 
 /// The marks that a tile should have. `rows` comes with those it has; bits outside the field are cleared
 /// afterwards. Called from several threads at once, for another tile each.

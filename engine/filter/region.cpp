@@ -1,0 +1,80 @@
+#include "engine/filter/region.h"
+
+#include <algorithm>
+#include <new>
+#include <vector>
+
+#include "engine/field/builder.h"
+#include "engine/field/live_field.h"
+
+namespace fettle::engine {
+
+namespace {
+
+tl::unexpected<Error> noMemory() {
+  return failure("memory for filtering could not be had", "filter", "filter a smaller part");
+}
+
+struct Rect {
+  std::int32_t column, row, columns, rows;
+};
+
+// A rectangle of a field as a field of its own.
+Version piece(const Version& field, const Rect& rect) {
+  const std::size_t samples = static_cast<std::size_t>(rect.columns) * static_cast<std::size_t>(rect.rows);
+  std::vector<float> heights(samples);
+  std::vector<std::uint8_t> marks(samples);
+  field.reader().readHeights(rect.column, rect.row, rect.columns, rect.rows, heights.data(), rect.columns);
+  field.reader().readMarks(rect.column, rect.row, rect.columns, rect.rows, marks.data(), rect.columns);
+  Grid grid = field.grid();
+  grid.width = rect.columns;
+  grid.height = rect.rows;
+  return makeField(grid, heights, marks);
+}
+
+}  // namespace
+
+Result<Version> filterRange(const Version& input, const Version& original, const Version& onto,
+                            const FilterSpec& spec, TileRange range, JobControl& job) try {
+  if (Status valid = validate(spec); !valid) return tl::unexpected(valid.error());
+  const Grid& grid = input.grid();
+  const TileRange all = allTiles(grid);
+  const std::int32_t tc0 = std::max(range.column, 0), tr0 = std::max(range.row, 0);
+  const std::int32_t tc1 = std::min(range.column + range.columns, all.columns);
+  const std::int32_t tr1 = std::min(range.row + range.rows, all.rows);
+  if (tc0 >= tc1 || tr0 >= tr1) return onto;
+  const std::int64_t reach = reachOf(spec);
+  // A reach may be half a million samples: cut in 64 bits.
+  const auto low = [&](std::int32_t tile) {
+    return static_cast<std::int32_t>(std::max<std::int64_t>(std::int64_t{tile} * kTileSide - reach, 0));
+  };
+  const auto high = [&](std::int32_t tile, std::int32_t side) {
+    return static_cast<std::int32_t>(std::min<std::int64_t>(std::int64_t{tile} * kTileSide + reach, side));
+  };
+  Rect around{low(tc0), low(tr0), high(tc1, grid.width), high(tr1, grid.height)};
+  around.columns -= around.column;
+  around.rows -= around.row;
+  const Version part = piece(input, around);
+  // The original is only read where the change is measured against it.
+  const bool same_sign = input.reader().sign() == original.reader().sign();
+  const Version part_original =
+      spec.max_change ? piece(same_sign ? original : original.inverted(), around) : part;
+  const Result<Filtered> done = applyFilter(part, part_original, spec, job);
+  if (!done) return tl::unexpected(done.error());
+  LiveField out(onto, Growth::kAllowed);
+  std::vector<float> heights(kTileSamples);
+  for (std::int32_t tr = tr0; tr < tr1; ++tr)
+    for (std::int32_t tc = tc0; tc < tc1; ++tc) {
+      const std::int32_t c = tc * kTileSide, r = tr * kTileSide;
+      const std::int32_t columns = std::min(kTileSide, grid.width - c),
+                         rows = std::min(kTileSide, grid.height - r);
+      done->field.reader().readHeights(c - around.column, r - around.row, columns, rows, heights.data(),
+                                       kTileSide);
+      if (!out.writeHeights(c, r, columns, rows, heights.data(), kTileSide)) return noMemory();
+    }
+  return out.snapshot();
+} catch (const std::bad_alloc&) {
+  return noMemory();
+}
+
+}  // namespace fettle::engine
