@@ -63,9 +63,28 @@ int shade_log2 = panel.shade.x;       // of the step between samples
 ivec2 shade_size = panel.shade.zw;    // columns, rows
 int shade_difference = panel.paging.w;  // step of differences
 
+// The pages that a cell's colour is made of, samples from two before to three after it: 2 x 2 at most. Looked up once for
+// all of a fragment's samples.
+ivec2 window_page;     // of the lowest of them
+uvec4 window_entries;  // low, to the right, above, above to the right
+
+// Sets the window; whether it is on the device.
+bool readable(int level, ivec2 cell) {
+  const ivec2 last = panel.pages.level[level].zw - 1;
+  const ivec2 low = clamp(cell - 2, ivec2(0), last), high = clamp(cell + 3, ivec2(0), last);
+  window_page = low >> panel.pages.pool.x;
+  window_entries = uvec4(entryOf(level, low), entryOf(level, ivec2(high.x, low.y)),
+                         entryOf(level, ivec2(low.x, high.y)), entryOf(level, high));
+  return (window_entries.x | window_entries.y | window_entries.z | window_entries.w) >> kEntryAwayShift == 0u;
+}
+
 ivec3 shadeTexelOf(ivec2 s) {
   s = clamp(s, ivec2(0), (panel.size.zw - 1) >> shade_log2);
-  if (kByNeed) return pooledTexel(entryOf(shade_log2 >> 1, s), s);
+  if (kByNeed) {
+    const bvec2 beyond = greaterThan(s >> panel.pages.pool.x, window_page);
+    const uvec2 e = beyond.y ? window_entries.zw : window_entries.xy;
+    return pooledTexel(beyond.x ? e.y : e.x, s);
+  }
   if (!kPaged) return ivec3(s, 0);
   const ivec2 log2_page = panel.paging.xy - panel.shade.x;
   const ivec2 page = s >> log2_page;
@@ -85,22 +104,12 @@ ivec3 originalTexelOf(ivec2 s) {
 
 uint shadeHeight(ivec2 s) { return texelFetch(shade_image, shadeTexelOf(s), 0).x; }
 
-// Whether what a cell's colour is made of is on the device: samples from two before to three after it.
-bool readable(int level, ivec2 cell) {
-  const ivec2 last = panel.pages.level[level].zw - 1;
-  const ivec2 low = clamp(cell - 2, ivec2(0), last), high = clamp(cell + 3, ivec2(0), last);
-  uint all = entryOf(level, low);
-  if ((low >> panel.pages.pool.x) != (high >> panel.pages.pool.x))
-    all |= entryOf(level, high) | entryOf(level, ivec2(low.x, high.y)) | entryOf(level, ivec2(high.x, low.y));
-  return all >> kEntryAwayShift == 0u;
-}
-
 // Place among those samples of the point `local` samples from sample `base`: cell, and where in it.
 ivec2 shadeCell(ivec2 base, vec2 local, out vec2 f) {
   if (kByNeed) {
     const ivec2 s = base + ivec2(floor(local));
     int level = panel.shade.x >> 1;
-    while (level < kDataLevels - 1 && !readable(level, s >> 2 * level)) ++level;
+    while (!readable(level, s >> 2 * level) && level < kDataLevels - 1) ++level;
     shade_log2 = 2 * level;
     if (shade_log2 > panel.shade.x) shade_size = max(((panel.size.zw - 1) >> shade_log2) + 1, ivec2(2));
     shade_difference = max(panel.paging.w >> (shade_log2 - panel.shade.x), 1);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
 
 #include "engine/field/live_field.h"
@@ -235,7 +236,7 @@ TEST(Residency, ATightBudgetEndsInTheSamePictureBitForBitOverViewsAndEdits) {
     ASSERT_TRUE(tight->update(shown));
     ASSERT_TRUE(whole->update(shown));
     std::int64_t loaded = 0, gone_coarse = 0;
-    for (int round = 0; round < 14; ++round) {
+    for (int round = 0; round < 9; ++round) {
       SCOPED_TRACE(round);
       FrameInput input = bare(uniform(4, 30), uniform(0, 1), uniform(0, 1));
       if (round % 5 == 4) input.view.centre_x = input.view.centre_y = 1.0;  // the last column and row
@@ -276,9 +277,239 @@ TEST(Residency, ATightBudgetEndsInTheSamePictureBitForBitOverViewsAndEdits) {
       EXPECT_EQ(frame.stats.vertices, expected.stats.vertices);
       EXPECT_EQ(differing(frame.image, expected.image), 0U);
     }
-    EXPECT_GT(loaded, 100);
+    EXPECT_GT(loaded, 80);
     EXPECT_GT(gone_coarse, 3);
   }
+}
+
+// Pixels of `a` that no pixel of `b` within `radius` equals within `codes` in every channel.
+int unmatched(const Image& a, const Image& b, int radius, int codes) {
+  int off = 0;
+  for (int y = 0; y < a.height; ++y)
+    for (int x = 0; x < a.width; ++x) {
+      bool found = false;
+      for (int v = std::max(0, y - radius); v <= std::min(a.height - 1, y + radius) && !found; ++v)
+        for (int u = std::max(0, x - radius); u <= std::min(a.width - 1, x + radius) && !found; ++u) {
+          int worst = 0;
+          for (int k = 0; k < 3; ++k)
+            worst = std::max(worst, std::abs(pixel(a, x, y)[k] - pixel(b, u, v)[k]));
+          found = worst <= codes;
+        }
+      off += !found;
+    }
+  return off;
+}
+
+TEST(Residency, TheBoundHoldsWhilePagesAreMissingAndShrinksAsTheyCome) {
+  // Without noise: it would show in the light on coarse samples, which is not what the bound speaks of.
+  const engine::Version field = fieldOf(gridOf(kWidth, kHeight, 0.05, 0.05), [](int c, int r) {
+    const double x = c * 0.05, y = r * 0.05;
+    return 0.03 * x + 2.0 * std::sin(0.35 * x) * std::cos(0.3 * y) + (y > 8 && y < 12 ? -3.0 : 0.0);
+  });
+  // Two pages a frame.
+  auto tight = makePicture({.budget = 2900000, .bytes_a_frame = 2 * 16384}), whole = makePicture();
+  ASSERT_TRUE(tight->update(field));
+  ASSERT_TRUE(whole->update(field));
+  int with_missing = 0;
+  for (const auto& [zoom, x, y, elevation] :
+       {std::tuple{6.0, 0.3, 0.2, 40.0}, {8.0, 0.8, 0.7, 25.0}, {5.0, 0.5, 0.5, 90.0}}) {
+    FrameInput input = bare(zoom, x, y);
+    input.view.elevation_deg = elevation;
+    input.view.width = 240;
+    input.view.height = 160;
+    FrameInput full = input;
+    full.error_px = 1e-9;
+    full.vertex_budget = 1 << 24;
+    const Frame fine = settle(*whole, full);
+    ASSERT_LE(fine.stats.bound_px, 1e-9);
+    double least = 1e9;
+    for (int frame = 0; frame < 60; ++frame) {
+      const Frame coarse = shoot(*tight, input);
+      if (coarse.stats.residency.pages_waiting == 0) break;
+      EXPECT_GE(coarse.stats.residency.pages_loaded, 1);
+      // The first frame tells of the coarse copies as well, that came with update().
+      if (frame > 0) {
+        EXPECT_LE(coarse.stats.upload.bytes, 2 * 16384);
+      }
+      EXPECT_GT(coarse.stats.upload.pending_tiles, 0);
+      least = std::min(least, coarse.stats.bound_px);
+      const int radius = static_cast<int>(std::ceil(coarse.stats.bound_px)) + 1;
+      if (frame % 3 != 0 || radius > 20) continue;
+      with_missing += coarse.stats.bound_px > 1.0;
+      // As for coarse strides in live_test.cpp: along edges a few pixels have no partner.
+      const int pixels = coarse.image.width * coarse.image.height;
+      EXPECT_LE(unmatched(coarse.image, fine.image, radius, 10), pixels / 500) << coarse.stats.bound_px;
+      EXPECT_LE(unmatched(fine.image, coarse.image, radius, 10), pixels / 500) << coarse.stats.bound_px;
+    }
+    const Frame done = settle(*tight, input);
+    EXPECT_EQ(done.stats.bound_px, settle(*whole, input).stats.bound_px);
+    EXPECT_LE(done.stats.bound_px, least);
+  }
+  EXPECT_GT(with_missing, 5);
+}
+
+TEST(Residency, AViewOfMoreThanTheBudgetComesToRestAndSaysWhatItShows) {
+  auto tight = makePicture({.budget = 450000});
+  ASSERT_TRUE(tight->update(partField()));
+  FrameInput input = bare(1);
+  input.view.elevation_deg = 60;
+  Frame rest = settle(*tight, input);
+  EXPECT_GT(rest.stats.residency.pages_beyond, 0);
+  EXPECT_LE(rest.stats.residency.device_bytes, 450000);
+  EXPECT_GT(rest.stats.bound_px, 1.0);
+  // At rest: nothing is brought any more, and the picture stays as it is.
+  for (int i = 0; i < 3; ++i) {
+    const Frame again = shoot(*tight, input);
+    EXPECT_EQ(again.stats.residency.pages_loaded, 0);
+    EXPECT_EQ(again.stats.upload.bytes, 0);
+    EXPECT_EQ(again.image.rgba, rest.image.rgba);
+  }
+}
+
+TEST(Residency, AFieldLargerThanTheDevicesImagesIsDrawnFromPages) {
+  // 63 samples more than one image of the forced limit would hold each way, many times over.
+  const engine::Version field = fieldOf(gridOf(6000, 190, 0.05, 0.05), part);
+  auto tight = makePicture({.budget = 2900000, .max_side = 64}), whole = makePicture();
+  ASSERT_TRUE(tight->update(field));
+  ASSERT_TRUE(whole->update(field));
+  for (const double x : {0.0, 0.31, 0.77, 1.0}) {
+    FrameInput input = bare(12, x, 0.5);
+    const Frame a = settle(*tight, input), b = settle(*whole, input);
+    EXPECT_TRUE(a.stats.residency.by_need);
+    EXPECT_EQ(a.stats.residency.pages_beyond, 0);
+    EXPECT_EQ(differing(a.image, b.image), 0U) << x;
+  }
+}
+
+TEST(Residency, AnEditBesideTheViewCostsItsCoarseCopiesAlone) {
+  auto tight = makePicture({.budget = 1500000});
+  const engine::Version before = partField();
+  ASSERT_TRUE(tight->update(before));
+  const FrameInput input = bare(12, 0.2, 0.2);
+  (void)settle(*tight, input);
+  engine::LiveField live(before, engine::Growth::kAllowed);
+  const std::vector<float> z(64 * 64, 7.0F);
+  ASSERT_TRUE(live.writeHeights(1280, 960, 64, 64, z.data(), 64));
+  ASSERT_TRUE(tight->update(live.snapshot()));
+  const Frame far = shoot(*tight, input);
+  // Every 16th and 64th sample stay on the device; every 4th comes by need.
+  EXPECT_EQ(far.stats.upload.bytes, (16 + 1) * 4);
+  EXPECT_EQ(far.stats.upload.pending_tiles, 0);
+  const std::vector<float> near(10 * 10, 7.0F);
+  ASSERT_TRUE(live.writeHeights(300, 220, 10, 10, near.data(), 10));
+  ASSERT_TRUE(tight->update(live.snapshot()));
+  EXPECT_GE(shoot(*tight, input).stats.upload.bytes, 10 * 10 * 4);
+}
+
+TEST(Residency, PreviewsAndTheOriginalShareEqualPagesAndShowWhatTheyShould) {
+  const engine::Version original = partField();
+  engine::LiveField live(original, engine::Growth::kAllowed);
+  std::vector<float> z(120 * 90);
+  for (std::size_t i = 0; i < z.size(); ++i) z[i] = 1.0F + 0.001F * static_cast<float>(i % 97);
+  ASSERT_TRUE(live.writeHeights(700, 500, 120, 90, z.data(), 120));
+  const engine::Version edited = live.snapshot();
+  ASSERT_TRUE(live.writeHeights(760, 560, 100, 30, z.data(), 100));
+  const engine::Version preview = live.snapshot();
+  auto tight = makePicture({.budget = 3300000}), whole = makePicture();
+  Shown shown;
+  shown.versions = {edited};
+  shown.marks = MarksOverlay::kShow;
+  FrameInput input = bare(9);
+  const auto compare = [&](const char* what) {
+    SCOPED_TRACE(what);
+    EXPECT_TRUE(tight->update(shown));
+    EXPECT_TRUE(whole->update(shown));
+    const Frame a = settle(*tight, input), b = settle(*whole, input);
+    EXPECT_EQ(a.stats.residency.pages_beyond, 0);
+    EXPECT_EQ(differing(a.image, b.image), 0U);
+    return a.stats.residency;
+  };
+  (void)compare("one version");
+  shown.versions = {edited, preview};
+  shown.original = original;
+  input.range.reset();
+  // Three states are looked at, but where they are alike there is one page. (What an earlier view asked for
+  // is still there as well.)
+  const ResidencyStatistics shared = compare("a preview and the deviation from the original");
+  EXPECT_LT(shared.pages_used, shared.pages_asked * 3 / 4);
+  // Both go on, apart from each other: what one of them changes is not the other's.
+  ASSERT_TRUE(live.writeHeights(690, 530, 60, 60, z.data(), 60));
+  shown.versions = {live.snapshot(), edited};
+  (void)compare("an edit in pages that were shared");
+  shown.versions = {edited, live.snapshot()};
+  (void)compare("the other way round");
+  shown.versions = {original};
+  shown.original.reset();
+  input.range = ValueRange{-3, 9};
+  (void)compare("back to one");
+}
+
+TEST(Residency, MoreVersionsMayTurnAWholeFieldIntoOneByNeedAndMarksMayComeLater) {
+  const engine::Version field = partField();
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  ASSERT_TRUE(live.setHeight(750, 550, 3.0F));
+  // One fits, two do not.
+  auto picture = makePicture({.budget = 10000000}), whole = makePicture();
+  Shown shown;
+  shown.versions = {field};
+  ASSERT_TRUE(picture->update(shown));
+  FrameInput input = bare(8);
+  EXPECT_FALSE(settle(*picture, input).stats.residency.by_need);
+  shown.versions = {live.snapshot(), field};
+  ASSERT_TRUE(picture->update(shown));
+  ASSERT_TRUE(whole->update(shown));
+  const Frame two = settle(*picture, input);
+  EXPECT_TRUE(two.stats.residency.by_need);
+  EXPECT_EQ(differing(two.image, settle(*whole, input).image), 0U);
+  shown.versions = {field};
+  shown.marks = MarksOverlay::kShow;
+  ASSERT_TRUE(picture->update(shown));
+  ASSERT_TRUE(whole->update(shown));
+  const Frame one = settle(*picture, input);
+  EXPECT_TRUE(one.stats.residency.by_need);
+  EXPECT_LE(one.stats.residency.device_bytes, 10000000);
+  EXPECT_EQ(differing(one.image, settle(*whole, input).image), 0U);
+  // A field of its own is looked at afresh.
+  ASSERT_TRUE(picture->update(fieldOf(gridOf(300, 300, 0.05, 0.05), part)));
+  EXPECT_FALSE(settle(*picture, input).stats.residency.by_need);
+}
+
+// What looking pages up costs, for the record; time is not judged here.
+TEST(Residency, ALargePictureFromPagesIsTheSameAndItsTimeIsTold) {
+  auto tight = makePicture({.budget = 5800000}), whole = makePicture();
+  ASSERT_TRUE(tight->update(partField()));
+  ASSERT_TRUE(whole->update(partField()));
+  FrameInput input = bare(4);
+  input.view.width = 1280;
+  input.view.height = 800;
+  const Frame a = settle(*tight, input), b = settle(*whole, input);
+  EXPECT_EQ(a.stats.residency.pages_beyond, 0);
+  EXPECT_EQ(differing(a.image, b.image), 0U);
+  const auto median = [](std::vector<double> ms) {
+    std::nth_element(ms.begin(), ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2), ms.end());
+    return ms[ms.size() / 2];
+  };
+  std::vector<double> device[2], host[2];
+  for (int i = 0; i < 9; ++i)
+    for (const std::size_t k : {std::size_t{0}, std::size_t{1}}) {
+      const auto stats = (k == 0 ? whole : tight)->drawAndWait(input);
+      ASSERT_TRUE(stats);
+      device[k].push_back(stats->device_ms);
+      host[k].push_back(stats->select_ms + stats->record_ms);
+    }
+  std::printf(
+      "1280 x 800, medians of 9: whole %.1f ms drawing, %.2f ms on the host; by need %.1f ms, %.2f ms\n",
+      median(device[0]), median(host[0]), median(device[1]), median(host[1]));
+}
+
+TEST(Residency, ABudgetThatHoldsNotEvenTheCoarseCopiesIsRefused) {
+  auto tight = makePicture({.budget = 40000});
+  const auto refused = tight->update(partField());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, engine::ErrorKind::kFailed);
+  // The picture goes on with what does fit.
+  ASSERT_TRUE(tight->update(fieldOf(gridOf(64, 64, 1, 1), part)));
+  EXPECT_FALSE(shoot(*tight, bare(1)).stats.residency.by_need);
 }
 
 }  // namespace
