@@ -40,8 +40,7 @@ void addScanOptions(CLI::App* command, ScanOptions& options) {
       ->group(group);
 }
 
-engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
-                                          engine::JobControl& job) {
+engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options) {
   engine::ImportOptions import;
   import.no_data = options.no_data;
   if (!options.spacing.empty()) import.spacing = {options.spacing.front(), options.spacing.back()};
@@ -55,7 +54,14 @@ engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOpt
       return engine::inputError(fmt::format("unknown unit {}", options.unit), "--unit",
                                 "take one of nm, um, mm, cm, m, km, in, ft");
   }
-  auto imported = engine::importField(path, import, job);
+  return import;
+}
+
+engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
+                                          engine::JobControl& job) {
+  const auto import = importOptions(options);
+  if (!import) return tl::unexpected(import.error());
+  auto imported = engine::importField(path, *import, job);
   if (imported)
     for (const std::string& warning : imported->warnings) warn(fmt::format("{}: {}", path, warning));
   return imported;

@@ -28,6 +28,9 @@ struct ScanOptions {
 };
 void addScanOptions(CLI::App* command, ScanOptions& options);
 
+/// As the importer takes them. Errors: an unknown unit.
+[[nodiscard]] engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options);
+
 /// Imports a scan; what the importer warns of goes to stderr, each line naming the file.
 [[nodiscard]] engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
                                                         engine::JobControl& job);

@@ -311,23 +311,57 @@ std::optional<std::string> sceneProblem(const Scene& scene) {
   return std::nullopt;
 }
 
+engine::Result<Scene> parseScene(const std::string& text, const std::string& name) {
+  Scene scene = defaultScene();
+  try {
+    const toml::table file = toml::parse(text, name);
+    const SceneReader reader(scene, file);
+    if (reader.problem())
+      return engine::inputError(*reader.problem(), name, "assets/scenes/default.toml documents every key");
+  } catch (const toml::parse_error& error) {
+    return engine::inputError(fmt::format("line {}: {}", error.source().begin.line, error.description()),
+                              name, "correct the line");
+  }
+  return scene;
+}
+
 engine::Result<Scene> loadScene(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::stringstream text;
   // A folder opens and then fails to read.
   if (!in || !(text << in.rdbuf()).good() || in.bad())
     return engine::inputError("the scene cannot be read or is empty", path, "give a readable scene file");
-  Scene scene = defaultScene();
-  try {
-    const toml::table file = toml::parse(text.str(), path);
-    const SceneReader reader(scene, file);
-    if (reader.problem())
-      return engine::inputError(*reader.problem(), path, "assets/scenes/default.toml documents every key");
-  } catch (const toml::parse_error& error) {
-    return engine::inputError(fmt::format("line {}: {}", error.source().begin.line, error.description()),
-                              path, "correct the line");
+  return parseScene(text.str(), path);
+}
+
+std::string sceneText(const Scene& scene) {
+  std::vector<std::string_view> effects;
+  for (const EffectKind effect : scene.effects) effects.push_back(effectName(effect));
+  std::string text = fmt::format(
+      "tip = \"{}\"\ntip_radius_mm = {}\ninvert = {}\neffects = [{}{}{}]\n"
+      "[contact]\nlevel = \"{}\"\ncertified_radius_cells = {}\n"
+      "[force]\nstiffness_n_per_mm = {}\nlimit_n = {}\n"
+      "[brush]\nradius_samples = {}\nmark_radius_samples = {}\n",
+      scene.tip == TipShape::kSphere ? "sphere" : "point", scene.tip_radius_mm, scene.invert,
+      effects.empty() ? "" : "\"", fmt::join(effects, "\", \""), effects.empty() ? "" : "\"",
+      levelName(scene.level), scene.certified_radius_cells, scene.stiffness_n_per_mm, scene.force_limit_n,
+      scene.brush_radius_samples, scene.mark_radius_samples);
+  if (scene.max_change) text += fmt::format("max_change = {}\n", *scene.max_change);
+  EffectParams params = scene.params;
+  std::string_view table;
+  for (const EffectNumber& number : kEffectNumbers) {
+    if (number.table != table) {
+      table = number.table;
+      text += fmt::format("[{}]\n", table);
+      if (table == "viscosity")
+        text += fmt::format("in = \"{}\"\n", kMediumNames[static_cast<std::size_t>(params.viscosity.medium)]);
+      if (table == "texture")
+        text += fmt::format("pattern = \"{}\"\n",
+                            kPatternNames[static_cast<std::size_t>(params.texture.pattern)]);
+    }
+    text += fmt::format("{} = {}\n", number.key, number.of(params));
   }
-  return scene;
+  return text;
 }
 
 }  // namespace fettle::haptic

@@ -1,12 +1,15 @@
-#include <filesystem>
+#include <chrono>
 #include <memory>
 
 #include <fmt/format.h>
 
 #include "app/command.h"
+#include "app/journal/session_player.h"
 #include "app/scan_options.h"
 #include "app/terminal.h"
+#include "app/view/open_document.h"
 #include "engine/io/marks.h"
+#include "engine/session/session.h"
 #include "haptic/replay.h"
 #include "haptic/scene.h"
 #include "haptic/strokes.h"
@@ -27,7 +30,54 @@ struct Options {
   ScanOptions reading;
 };
 
-engine::Result<Report> replay(const Options& options, engine::JobControl& job) {
+// The journal of a session, from the scan on.
+engine::Result<Report> replayJournal(const Options& options, engine::JobControl& job) {
+  if (!options.scene.empty() || !options.marks.empty() || !options.forces.empty() || options.certify)
+    return engine::inputError("a session has its own scenes and marks, and its journal no forces",
+                              options.scan, "leave --scene, --marks, --forces and --certify out");
+  if (auto status = checkOutputs({{options.out, OutputKind::kField}, {options.marks_out, OutputKind::kMarks}},
+                                 {options.scan});
+      !status)
+    return tl::unexpected(status.error());
+  engine::SessionOpenOptions open;
+  open.history_bytes = 0;
+  auto session = engine::openSession(options.scan, open, job);
+  if (!session) return tl::unexpected(session.error());
+  if (session->journal.empty() && session->history.number() > 0)
+    return engine::inputError("the session has no journal", options.scan,
+                              "convert or export its present state instead");
+  const auto begin = std::chrono::steady_clock::now();
+  const auto played = playSession(*session, job);
+  if (!played) return tl::unexpected(played.error());
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  const std::uint64_t made = engine::contentHash(played->field);
+  const std::uint64_t stored = engine::contentHash(session->history.current());
+  if (made != stored)
+    return engine::failure(
+        fmt::format("the journal came to another field ({:016x}) than the session holds ({:016x})", made,
+                    stored),
+        options.scan, "the session's state is whole: convert or export it instead");
+  if (auto status = saveField(played->field, options.out, job); !status)
+    return tl::unexpected(status.error());
+  if (!options.marks_out.empty())
+    if (auto status = engine::exportMarks(played->field, options.marks_out); !status)
+      return tl::unexpected(status.error());
+  return Report{{"ticks", played->ticks},     {"steps", played->steps},
+                {"filters", played->filters}, {"loops", played->loops},
+                {"state", played->state},     {"entries", session->journal.size()},
+                {"seconds", took.count()},    {"hash", fmt::format("{:016x}", made)}};
+}
+
+engine::Result<Report> replay(const Options& given, engine::JobControl& job) {
+  Options options = given;
+  // Two names: a session and where its journal's result goes.
+  if (options.out.empty()) std::swap(options.strokes, options.out);
+  if (options.strokes.empty()) {
+    if (!isSessionPath(options.scan))
+      return engine::inputError("a scan needs strokes to be replayed", options.scan,
+                                "give SCAN STROKES OUT, or SESSION OUT for a session's own journal");
+    return replayJournal(options, job);
+  }
   if (auto status = checkOutputs({{options.out, OutputKind::kField},
                                   {options.marks_out, OutputKind::kMarks},
                                   {options.forces, OutputKind::kText}},
@@ -92,14 +142,17 @@ engine::Result<Report> replay(const Options& options, engine::JobControl& job) {
 
 void addReplay(CLI::App& root, Chosen& chosen) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = addCommand(root, chosen, "replay",
-                                 "Apply a recorded stylus session to a scan, the same bits every time",
-                                 [options](engine::JobControl& job) { return replay(*options, job); });
-  command->add_option("SCAN", options->scan, "The scan to touch")->required();
+  CLI::App* command = addCommand(
+      root, chosen, "replay",
+      "Apply recorded strokes to a scan, or make a session again from its journal: the same bits every time",
+      [options](engine::JobControl& job) { return replay(*options, job); });
+  command->add_option("SCAN", options->scan, "The scan to touch, or a session: NAME.fettle")->required();
   command
-      ->add_option("STROKES", options->strokes, "The session: CSV with header t,x,y,z,tool, one row a tick")
+      ->add_option(
+          "STROKES", options->strokes,
+          "What to do: CSV with header t,x,y,z,tool, one row a tick; left out for a session's own journal")
       ->required();
-  command->add_option("OUT", options->out, "The field after it, format by extension")->required();
+  command->add_option("OUT", options->out, "The field after it, format by extension");
   command->add_option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
   command->add_option("--marks", options->marks, "Picture of marks to start from");
   command->add_option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");

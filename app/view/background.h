@@ -54,14 +54,20 @@ class Background {
   [[nodiscard]] const char* stage() const noexcept { return run_ ? run_->job.stage() : ""; }
   [[nodiscard]] bool cancelling() const noexcept { return run_ && run_->job.cancelled(); }
 
-  /// The result, once, when it is there.
-  [[nodiscard]] std::optional<engine::Result<T>> take() {
-    // Acquire: pairs with the release above.
-    if (!run_ || !run_->done.load(std::memory_order_acquire)) return std::nullopt;
+  /// Waits for the result: for ends that have nothing else to do. Nothing when no work is under way.
+  [[nodiscard]] std::optional<engine::Result<T>> wait() {
+    if (!run_) return std::nullopt;
     thread_.join();
     std::optional<engine::Result<T>> result = std::move(run_->result);
     run_.reset();
     return result;
+  }
+
+  /// The result, once, when it is there.
+  [[nodiscard]] std::optional<engine::Result<T>> take() {
+    // Acquire: pairs with the release above.
+    if (!run_ || !run_->done.load(std::memory_order_acquire)) return std::nullopt;
+    return wait();
   }
 
  private:

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "app/journal/mark_codec.h"
 #include "app/live/placement.h"
 #include "haptic/devices/enumerate.h"
 #include "haptic/safety/last_resort.h"
@@ -24,7 +25,10 @@ using haptic::LoopCommand;
 using haptic::Tool;
 using namespace std::chrono_literals;
 
-constexpr auto kFade = 30ms;  // a disarmed force is gone after peak / slew = 5 ms
+constexpr auto kLook = 1ms;           // between two looks at the state while a force fades
+constexpr auto kLongestFade = 100ms;  // a disarmed force is gone after peak / slew = 5 ms
+constexpr std::size_t kRecordedTicks = 1
+                                       << 16;  // over a minute at 1 kHz, in which the window may stand still
 constexpr std::int64_t kArmAgain_ns = 100'000'000;
 constexpr std::int64_t kRateWindow_ns = 500'000'000;
 
@@ -69,6 +73,10 @@ std::string stepName(Tool tool) {
       break;
   }
   return "Stroke";
+}
+
+bool isAnswer(EventKind kind) {
+  return kind != EventKind::kEdited && kind != EventKind::kStrokeEnded;
 }
 
 engine::StepKind stepKind(Tool tool) {
@@ -118,20 +126,22 @@ struct Touch::Mailbox {
 };
 
 Touch::Touch(engine::History history, const engine::Version& original, const haptic::Scene& scene,
-             const TouchOptions& options)
+             const TouchOptions& options, SessionSink* sink)
     : options_(options),
       history_(std::move(history)),
       original_(original),
       scene_(scene),
+      sink_(sink),
       mailbox_(std::make_unique<Mailbox>()) {
   committed_ = history_.current();
   field_ = scene_.invert ? committed_.inverted() : committed_;
 }
 
 engine::Result<std::unique_ptr<Touch>> Touch::start(engine::History history, const engine::Version& original,
-                                                    const haptic::Scene& scene, const TouchOptions& options) {
+                                                    const haptic::Scene& scene, const TouchOptions& options,
+                                                    SessionSink* sink) {
   const engine::Grid& grid = original.grid();
-  std::unique_ptr<Touch> touch(new Touch(std::move(history), original, scene, options));
+  std::unique_ptr<Touch> touch(new Touch(std::move(history), original, scene, options, sink));
   if (options.device == "mouse") {
     auto mouse = std::make_unique<haptic::MouseStylus>(feelFor(grid));
     touch->mouse_ = mouse.get();
@@ -151,6 +161,7 @@ engine::Result<std::unique_ptr<Touch>> Touch::start(engine::History history, con
   // A view of a large field keeps the main thread away for longer than a frame at times.
   settings.options.event_capacity = 1024;
   settings.options.command_capacity = 1024;
+  settings.options.record_capacity = sink != nullptr ? kRecordedTicks : 0;
   if (profile.space == haptic::DeviceSpace::kDesk) {
     const glm::dvec3 middle{
         0.5 * (grid.width - 1) * grid.spacingXMm(), 0.5 * (grid.height - 1) * grid.spacingYMm(),
@@ -174,20 +185,39 @@ engine::Result<std::unique_ptr<Touch>> Touch::start(engine::History history, con
     touch->loop_.reset();
     return tl::unexpected(status.error());
   }
+  if (sink != nullptr) touch->recorder_.add(journal::Begin{touch->history_.number(), touch->scene_});
   for (const std::string& missing : touch->loop_->realTime().missing)
     touch->notices_.push_back({"the loop got less than it asked for", missing});
   return touch;
 }
 
 Touch::~Touch() {
+  finish();
+}
+
+void Touch::finish() {
   closePort();
-  if (!loop_) return;
-  LoopCommand command;
-  command.kind = CommandKind::kDisarm;
-  static_cast<void>(loop_->send(std::move(command)));
-  if (device_->profile().gives_force) std::this_thread::sleep_for(kFade);
+  if (!loop_ || finished_) return;
+  finishing_ = true;
+  disarm();
+  const auto latest = std::chrono::steady_clock::now() + kLongestFade;
+  while (device_->profile().gives_force && std::chrono::steady_clock::now() < latest) {
+    poll();
+    const haptic::LoopState state = loop_->state();
+    if (unsent_.empty() && state.given_n == glm::dvec3(0.0) && state.safety != haptic::SafetyState::kActive &&
+        state.safety != haptic::SafetyState::kRamping)
+      break;
+    std::this_thread::sleep_for(kLook);
+  }
+  finished_ = true;
   static_cast<void>(loop_->stop());
   device_->stop();
+  // What the loop said last; its ring has been waiting with all of it.
+  for (haptic::LoopEvent event; loop_->poll(event);) held_.push_back(std::move(event));
+  takeRecords();
+  for (; !held_.empty(); held_.pop_front()) take(std::move(held_.front()));
+  keepStroke();
+  if (sink_ != nullptr && !recorder_.empty()) sink_->note(recorder_.take());
 }
 
 bool Touch::strokeRuns() const noexcept {
@@ -200,12 +230,32 @@ void Touch::send(LoopCommand&& command) {
 }
 
 void Touch::poll() {
+  if (finished_) return;
   while (!unsent_.empty() && loop_->send(std::move(unsent_.front()))) unsent_.erase(unsent_.begin());
-  for (haptic::LoopEvent event; loop_->poll(event);) take(std::move(event));
+  for (haptic::LoopEvent event; loop_->poll(event);) held_.push_back(std::move(event));
+  takeRecords();
+  // A journal has an event after all ticks before it and before the tick that took it.
+  const auto recorded = [&](const haptic::LoopEvent& event) {
+    return sink_ == nullptr || recorded_ >= event.tick + (isAnswer(event.kind) ? 1 : 0);
+  };
+  for (; !held_.empty() && recorded(held_.front()); held_.pop_front()) take(std::move(held_.front()));
   answerPort();
   armByItself();
   measureRate();
   watch();
+  if (sink_ != nullptr && recorder_.due()) sink_->note(recorder_.take());
+}
+
+void Touch::takeRecords() {
+  if (sink_ == nullptr) return;
+  for (haptic::TickRecord record; loop_->pollRecord(record); ++recorded_) recorder_.tick(record.input);
+  const std::uint64_t lost = loop_->state().lost_records;
+  if (lost == lost_) return;
+  recorder_.add(journal::Lost{static_cast<std::int64_t>(lost - lost_)});
+  notices_.push_back({"the window stood still for too long to record every tick",
+                      "the work is kept; the journal cannot replay beyond this point"});
+  recorded_ += lost - lost_;
+  lost_ = lost;
 }
 
 void Touch::noteEdit(const haptic::LoopEvent& event) {
@@ -220,8 +270,41 @@ void Touch::noteEdit(const haptic::LoopEvent& event) {
   if (!unshown_ns_ || made < *unshown_ns_) unshown_ns_ = made;
 }
 
+// What a journal must tell of an answer, in the order of the answers.
+void Touch::journalAnswer(const haptic::LoopEvent& event) {
+  if (sink_ == nullptr) return;
+  const LoopPlace at{event.tick, true};
+  switch (event.kind) {
+    case EventKind::kSnapshot:
+      recorder_.add(journal::Snapshot{at});
+      break;
+    case EventKind::kAdopted:
+    case EventKind::kAdoptRefused:
+      recorder_.offerAnswered({at, event.kind == EventKind::kAdopted});
+      break;
+    case EventKind::kRestored:
+      recorder_.add(journal::Restored{event.id, at});
+      break;
+    case EventKind::kSceneChanged:
+      while (!scenes_.empty() && scenes_.front().first != event.id) scenes_.pop_front();
+      if (!scenes_.empty()) recorder_.add(journal::SceneSet{at, scenes_.front().second});
+      break;
+    case EventKind::kEdited:
+    case EventKind::kStrokeEnded:
+      break;
+  }
+}
+
 void Touch::take(haptic::LoopEvent&& event) {
-  if (!event.version.empty()) field_ = event.version;
+  // A stroke under way when a filter's result came is a step of its own, made before it.
+  if (event.kind == EventKind::kAdopted && !event.before.empty() && !(upright(event.before) == committed_) &&
+      !adoption_begun_)
+    push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(event.before), place_);
+  journalAnswer(event);
+  if (!event.version.empty()) {
+    field_ = event.version;
+    place_ = {event.tick, isAnswer(event.kind)};
+  }
   switch (event.kind) {
     case EventKind::kEdited:
       noteEdit(event);
@@ -231,19 +314,19 @@ void Touch::take(haptic::LoopEvent&& event) {
       if (!event.rect.empty() && !(upright(event.version) == committed_)) {
         noteEdit(event);
         last_rect_ = {event.rect.column, event.rect.row, event.rect.columns, event.rect.rows};
-        push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(event.version));
+        push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(event.version), place_);
       }
       break;
     case EventKind::kSnapshot:
       mailbox_->answer(event.version, false);
       break;
     case EventKind::kAdopted: {
-      // A stroke under way when the result came is a step of its own.
-      if (!event.before.empty() && !(upright(event.before) == committed_) && !adoption_begun_)
-        push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(event.before));
       // Further rounds belong to the same step.
-      if (adoption_begun_ && history_.canUndo()) static_cast<void>(history_.undo());
-      push(adoption_name_, engine::StepKind::kFilter, upright(event.version));
+      if (adoption_begun_ && history_.canUndo()) {
+        static_cast<void>(history_.undo());
+        if (sink_ != nullptr) sink_->moveTo(history_.number(), {});
+      }
+      push(adoption_name_, engine::StepKind::kFilter, upright(event.version), place_);
       adoption_begun_ = true;
       mailbox_->answer(event.version, true);
       break;
@@ -262,14 +345,25 @@ void Touch::take(haptic::LoopEvent&& event) {
   // What the event still holds is freed here, off the loop.
 }
 
-void Touch::push(const std::string& name, engine::StepKind kind, const engine::Version& after) {
+void Touch::push(const std::string& name, engine::StepKind kind, const engine::Version& after,
+                 const LoopPlace& at, Source source, std::string data) {
   engine::StepInfo info;
   info.name = name;
   info.kind = kind;
   info.time = engine::stepTimeNow();
-  if (history_.push(std::move(info), after) && kind == engine::StepKind::kFilter)
-    last_rect_ = history_.info(history_.number()).rect;
+  const bool made = history_.push(std::move(info), after);
   committed_ = after;
+  if (!made) return;
+  const std::int64_t number = history_.number();
+  if (kind == engine::StepKind::kFilter || source == Source::kMarks) last_rect_ = history_.info(number).rect;
+  if (sink_ == nullptr) return;
+  recorder_.add(journal::StepMade{number, name, kind, at, source == Source::kMarks}, std::move(data));
+  sink_->commit(number, history_.step(number), recorder_.take());
+}
+
+// A stroke that runs becomes a step as far as it has got.
+void Touch::keepStroke() {
+  if (strokeRuns()) push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(field_), place_);
 }
 
 void Touch::setTool(Tool tool) {
@@ -286,6 +380,7 @@ void Touch::setScene(const haptic::Scene& scene) {
   command.kind = CommandKind::kScene;
   command.id = next_id_++;
   command.scene = std::make_unique<haptic::PreparedScene>(scene_, original_);
+  if (sink_ != nullptr) scenes_.emplace_back(command.id, scene_);
   send(std::move(command));
 }
 
@@ -296,12 +391,16 @@ void Touch::restore(const engine::Version& version) {
   command.version = scene_.invert ? version.inverted() : version;
   ++restores_open_;
   adoption_begun_ = false;
+  if (sink_ != nullptr) {
+    recorder_.add(journal::RestoreAsked{command.id, history_.number()});
+    sink_->moveTo(history_.number(), recorder_.take());
+  }
   send(std::move(command));
 }
 
 void Touch::undo() {
   poll();
-  if (strokeRuns()) push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(field_));
+  keepStroke();
   if (const auto version = history_.undo()) restore(*version);
 }
 
@@ -313,15 +412,34 @@ void Touch::redo() {
 
 void Touch::goTo(std::int64_t state) {
   poll();
-  if (strokeRuns()) push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(field_));
+  keepStroke();
+  if (state == history_.number()) return;
   if (const auto version = history_.goTo(state)) restore(*version);
 }
 
-void Touch::replace(engine::Version version, std::string name, engine::StepKind kind) {
+void Touch::replaceMarks(const engine::Version& base, const engine::Version& marked, std::string name) {
   poll();
-  if (strokeRuns()) push(stepName(stroke_tool_), stepKind(stroke_tool_), upright(field_));
-  push(name, kind, version);
-  restore(version);
+  keepStroke();
+  std::string changes = packMarkChanges(base, marked);
+  const engine::Version& now = history_.current();  // field() may lag behind an undo
+  auto after = base == now ? engine::Result<engine::Version>(marked) : applyMarkChanges(now, changes);
+  if (!after) {
+    notices_.push_back({after.error().what, after.error().remedy});
+    return;
+  }
+  push(name, engine::StepKind::kMark, *after, place_, Source::kMarks, std::move(changes));
+  restore(*after);
+}
+
+std::uint64_t Touch::noteFilterBase() {
+  const std::uint64_t id = ++filters_;
+  if (sink_ != nullptr) recorder_.add(journal::FilterBase{id, place_});
+  return id;
+}
+
+void Touch::noteFilterBegun(std::uint64_t base, const engine::FilterSpec& spec, std::string name) {
+  adoption_name_ = std::move(name);
+  if (sink_ != nullptr) recorder_.beginFilter({base, spec});
 }
 
 void Touch::arm() {
@@ -395,6 +513,7 @@ void Touch::answerPort() {
     } else {
       command.kind = CommandKind::kAdopt;
       command.version = std::move(mailbox_->version);
+      recorder_.offerMade();
     }
     command.id = mailbox_->id;
     mailbox_->sent = true;
@@ -403,6 +522,7 @@ void Touch::answerPort() {
 }
 
 void Touch::armByItself() {
+  if (finishing_) return;
   // Only a device that cannot push: one that does is armed by the person who holds it.
   if (device_->profile().gives_force && options_.device.rfind("hand", 0) != 0) return;
   const haptic::LoopState state = loop_->state();

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/journal/journal.h"
+#include "app/journal/recorder.h"
+#include "app/journal/session_sink.h"
 #include "engine/base/error.h"
 #include "engine/history/history.h"
 #include "haptic/devices/device.h"
@@ -41,21 +44,29 @@ struct Notice {
 ///
 /// Inversion is a sign that the scene sets: field() has it, history() and upright() do not.
 ///
+/// Every step, undo and redo goes to the session (SessionSink) with the journal that makes it again: the
+/// input of each tick, each scene, each round of a filter's adoption, with the tick that took it (journal.h).
+///
 /// Threading: main thread, but for the port (AdoptionPort), which a worker uses and main answers in poll().
 class Touch final : public haptic::AdoptionPort {
  public:
-  /// Opens and starts the device and the loop. `start` and `original` the right way up. Errors: those of
-  /// openDevice, HapticLoop::create and start.
+  /// Opens and starts the device and the loop. `history` and `original` the right way up. `sink` outlives
+  /// this; null: nothing is recorded. Errors: those of openDevice, HapticLoop::create and start.
   [[nodiscard]] static engine::Result<std::unique_ptr<Touch>> start(engine::History history,
                                                                     const engine::Version& original,
                                                                     const haptic::Scene& scene,
-                                                                    const TouchOptions& options);
+                                                                    const TouchOptions& options,
+                                                                    SessionSink* sink);
+  /// As finish(), if that was not called.
   ~Touch() override;
   Touch(const Touch&) = delete;
   Touch& operator=(const Touch&) = delete;
 
   /// Takes in what the loop told. Cheap; to be called often.
   void poll();
+  /// Lets the force fade, ends the loop and takes in its last words: a running stroke becomes a step. Some
+  /// 30 ms with a device that gives force. Nothing but the looks at field and history is of use afterwards.
+  void finish();
   /// As felt.
   [[nodiscard]] const engine::Version& field() const noexcept { return field_; }
   [[nodiscard]] engine::Version upright() const { return upright(field_); }
@@ -69,13 +80,17 @@ class Touch final : public haptic::AdoptionPort {
   [[nodiscard]] haptic::Tool tool() const noexcept { return tool_; }
   /// Takes a scene in range (sceneProblem); it is felt from the next tick or two on.
   void setScene(const haptic::Scene& scene);
+  /// What is done after an undo takes the place of the steps undone.
   void undo();
   void redo();
   void goTo(std::int64_t state);
   [[nodiscard]] bool canUndo() const noexcept { return history_.canUndo() || strokeRuns(); }
   [[nodiscard]] bool canRedo() const noexcept { return history_.canRedo() && !strokeRuns(); }
-  /// Puts a version (upright, of the same memory) in place as one step.
-  void replace(engine::Version version, std::string name, engine::StepKind kind);
+  /// Puts a step read back from a session in front of those held.
+  void prepend(engine::Step step) { history_.prepend(std::move(step)); }
+  /// Puts other marks in place as one step of kind kMark: `marked` is a version of the newest field
+  /// (upright(), the same memory) with marks set and cleared. Strokes made since `marked` was taken are kept.
+  void replaceMarks(const engine::Version& base, const engine::Version& marked, std::string name);
   void arm();
   void disarm();
   void calibrate();
@@ -83,8 +98,11 @@ class Touch final : public haptic::AdoptionPort {
   /// have nothing to turn.
   void setView(double azimuth_deg, double zoom);
 
-  /// The next adoption's name in the list of steps.
-  void nameAdoption(std::string name) { adoption_name_ = std::move(name); }
+  /// To be told of a filter that begins to be computed on field(): what it is called from then on.
+  [[nodiscard]] std::uint64_t noteFilterBase();
+  /// ... and of one whose result is about to be brought in through the port, under a name for the list of
+  /// steps.
+  void noteFilterBegun(std::uint64_t base, const engine::FilterSpec& spec, std::string name);
   engine::Result<engine::Version> snapshot() override;
   engine::Result<Answer> adopt(engine::Version version) override;
   void pause() override;
@@ -120,12 +138,18 @@ class Touch final : public haptic::AdoptionPort {
 
  private:
   struct Mailbox;
+  // Whether a step is what ticks and filters made of the field, or marks set on top of that.
+  enum class Source : std::uint8_t { kLoop, kMarks };
   Touch(engine::History history, const engine::Version& original, const haptic::Scene& scene,
-        const TouchOptions& options);
+        const TouchOptions& options, SessionSink* sink);
+  void takeRecords();
   void take(haptic::LoopEvent&& event);
+  void journalAnswer(const haptic::LoopEvent& event);
+  void keepStroke();
   void restore(const engine::Version& upright_version);
   void send(haptic::LoopCommand&& command);
-  void push(const std::string& name, engine::StepKind kind, const engine::Version& after);
+  void push(const std::string& name, engine::StepKind kind, const engine::Version& after, const LoopPlace& at,
+            Source source = Source::kLoop, std::string data = {});
   void noteEdit(const haptic::LoopEvent& event);
   void answerPort();
   void armByItself();
@@ -142,10 +166,21 @@ class Touch final : public haptic::AdoptionPort {
   haptic::MouseStylus* mouse_ = nullptr;  // device_, when it is one
   std::unique_ptr<haptic::HapticLoop> loop_;
   engine::Version field_;      // newest published
+  LoopPlace place_;            // where in the loop's life that was
   engine::Version committed_;  // upright: the last step's, what a running stroke is measured against
   haptic::Tool stroke_tool_ = haptic::Tool::kFeel;
   engine::FieldRect last_rect_;
   std::vector<haptic::LoopCommand> unsent_;  // found the ring full
+
+  SessionSink* sink_;
+  bool finishing_ = false, finished_ = false;
+  Recorder recorder_;
+  std::uint64_t recorded_ = 0;  // ticks, those lost included
+  std::uint64_t lost_ = 0;
+  std::deque<haptic::LoopEvent> held_;  // until the ticks they stand after are recorded
+  std::deque<std::pair<std::uint64_t, haptic::Scene>> scenes_;  // sent, not answered
+  std::uint64_t filters_ = 0;
+
   std::uint64_t next_id_ = 1;
   std::uint64_t restores_open_ = 0;
   std::string adoption_name_ = "Filter";

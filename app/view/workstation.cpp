@@ -26,6 +26,10 @@ std::string recentFile() {
   const std::string folder = settingsFolder();
   return folder.empty() ? std::string() : folder + "/recent.txt";
 }
+std::string settingsFile() {
+  const std::string folder = settingsFolder();
+  return folder.empty() ? std::string() : folder + "/window.json";
+}
 
 double ms(std::int64_t ns) {
   return 1e-6 * static_cast<double>(ns);
@@ -33,11 +37,16 @@ double ms(std::int64_t ns) {
 
 }  // namespace
 
-Workstation::Workstation(const ViewOptions& options) : options_(options), recent_(recentFile()) {}
+Workstation::Workstation(const ViewOptions& options)
+    : options_(options), recent_(recentFile()), settings_(Settings::load(settingsFile())) {
+  saved_settings_ = settings_;
+  display_ = settings_.display;
+  habits_ = settings_.habits;
+  side_panel_ = settings_.side_panel;
+}
 
 Workstation::~Workstation() {
-  // Workers that wait at the port are let go before they are joined.
-  if (touch_) touch_->closePort();
+  closeDocument(SessionKeeper::Afterwards::kKeep);
 }
 
 engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptions& options) {
@@ -71,15 +80,35 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
     const double lived = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
   }
-  return report();
+  const Report report = this->report();
+  // Who quits has saved what was to be saved. Else nobody was asked: unsaved work is there when the scan is
+  // opened again.
+  const bool kept = !quit_ && unsaved();
+  const std::string path = path_;
+  closeDocument(kept ? SessionKeeper::Afterwards::kKeep : SessionKeeper::Afterwards::kDiscard);
+  if (kept) warn(fmt::format("{}: what was not saved is kept; open the scan again to go on with it", path));
+  return report;
 }
 
 bool Workstation::active() const {
   return stale_ || stylus_held_ || drag_ != Drag::kNone || figures_.upload.pending_tiles > 0;
 }
 
+// What a person chose is written when it has changed, at most once in some seconds.
+void Workstation::rememberLayout() {
+  constexpr std::uint64_t kFrames = 120;
+  if (!quit_ && frames_ % kFrames != 0) return;
+  Settings now = settings_;
+  now.display = display_;
+  now.habits = habits_;
+  now.side_panel = side_panel_;
+  if (now == saved_settings_) return;
+  now.save(settingsFile());
+  saved_settings_ = now;
+}
+
 void Workstation::goRound() {
-  const bool working = loading_.busy() || saving_.busy() || filters_.computing() || filters_.applying();
+  const bool working = mark_edit_.busy() || edges_.busy() || loading_.busy() || saving_.busy() || filters_.computing() || filters_.applying();
   window_->poll(active() ? 0.0 : working ? kBusy_s : kIdle_s);
   whileWaiting();
   countHands();
@@ -119,7 +148,7 @@ void Workstation::whileWaiting() {
 void Workstation::takeResults() {
   if (auto done = loading_.take()) {
     if (*done) {
-      takeImported(std::move(**done));
+      takeDocument(std::move(**done));
     } else if (!touch_ && loading_path_ == options_.scan &&
                done->error().kind != engine::ErrorKind::kCancelled) {
       // Named on the command line: its errors are the command's.
@@ -130,25 +159,24 @@ void Workstation::takeResults() {
     }
     stale_ = true;
   }
-  if (auto done = saving_.take()) {
-    if (*done) {
-      if (keep_save_path_) {
-        save_path_ = saving_path_;
-        saved_ = **done;
-      }
-      status_text_ = fmt::format("written: {}", saving_path_);
-      goOn();
-    } else {
-      after_saving_ = AfterSaving::kNothing;
-      if (done->error().kind != engine::ErrorKind::kCancelled)
-        message(done->error().line(), "the field is kept here; save it elsewhere");
-    }
-  }
+  if (keeper_) keeper_->poll();
+  takeSaved();
   if (!touch_) return;
   touch_->poll();
+  if (auto older = keeper_->older()) {
+    if (*older) {
+      touch_->prepend(**older);
+      touch_->undo();
+    } else {
+      notices_.push_back({older->error().what, older->error().remedy});
+    }
+  }
+  noteForSession();
   if (filters_.poll(*touch_, notices_)) stale_ = true;
+  pollMarking();
   for (Notice& notice : touch_->takeNotices()) notices_.push_back(std::move(notice));
   while (notices_.size() > 6) notices_.erase(notices_.begin());
+  if (change_.poll(*touch_)) stale_ = true;
   if (auto done = measuring_.take(); done && *done) deviation_ = **done;
   const engine::Version now = touch_->upright();
   if (!measuring_.busy() && !(measured_ == now) && !stylus_held_) {
@@ -173,6 +201,7 @@ void Workstation::frame() {
   }
   if (touch_ && edit && shown->shown_ns > 0) touch_->noteShown(*edit, shown->shown_ns);
   ++frames_;
+  rememberLayout();
   tell();
 }
 
@@ -187,9 +216,9 @@ void Workstation::drawPicture() {
   view_.height = area.height;
 
   render::Shown shown;
-  shown.versions.push_back(touch_->field());
-  for (const FilterPreview::Variant& variant : filters_.variants())
-    shown.versions.push_back(variant.result.field);
+  shown.versions.push_back(edges_.over(touch_->field()));
+  const std::vector<FilterPreview::Picture> pictures = filters_.pictures();
+  for (const FilterPreview::Picture& picture : pictures) shown.versions.push_back(picture.field);
   if (display_.deviation)
     shown.original = touch_->scene().invert ? touch_->original().inverted() : touch_->original();
   shown.marks = display_.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
@@ -221,7 +250,7 @@ void Workstation::drawPicture() {
   input.light_elevation_deg = display_.light_elevation_deg;
   if (shown_.versions.size() > 1) {
     input.titles.emplace_back("as it is");
-    for (const auto& variant : filters_.variants()) input.titles.push_back(filterName(variant.spec));
+    for (const FilterPreview::Picture& picture : pictures) input.titles.push_back(picture.title);
     // One plot has room for one title.
     if (input.arrangement == render::Arrangement::kSplit)
       input.titles = {fmt::format("left: as it is, right: {}", input.titles[1]), ""};
@@ -288,6 +317,8 @@ Report Workstation::report() const {
     r["steps"] = touch_->history().number();
     r["filters_applied"] = filters_.applied();
     r["saved"] = save_path_;
+    r["session"] = keeper_->path();
+    r["session_named"] = keeper_->named();
     r["unsaved_changes"] = unsaved();
   }
   r["validation_messages"] = window_->validationMessages();

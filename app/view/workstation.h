@@ -9,14 +9,20 @@
 #include "app/command.h"
 #include "app/scan_options.h"
 #include "app/view/background.h"
+#include "app/view/edge_tool.h"
 #include "app/view/event_log.h"
 #include "app/view/filter_preview.h"
+#include "app/view/lasso.h"
+#include "app/view/live_change.h"
+#include "app/view/mark_edit.h"
 #include "app/view/navigation.h"
+#include "app/view/open_document.h"
 #include "app/view/recent_files.h"
+#include "app/view/session_keeper.h"
+#include "app/view/settings.h"
 #include "app/view/shortcuts.h"
 #include "app/view/touch.h"
 #include "engine/compare/compare.h"
-#include "engine/io/import.h"
 #include "render/live_picture.h"
 #include "render/window.h"
 
@@ -47,24 +53,22 @@ class Workstation {
   [[nodiscard]] engine::Result<Report> run(engine::JobControl& job);
 
  private:
-  enum class Dialog : std::uint8_t { kNone, kOpen, kSaveAs, kExport, kUnsaved, kShortcuts, kMessage };
+  enum class Dialog : std::uint8_t {
+    kNone,
+    kOpen,
+    kSaveAs,
+    kExport,
+    kUnsaved,
+    kRecover,
+    kShortcuts,
+    kMessage
+  };
   enum class Adjusting : std::uint8_t { kNothing, kRadius, kDepth };
   // What the user was about to do when unsaved work stood in the way.
   enum class AfterSaving : std::uint8_t { kNothing, kQuit, kOpen };
+  // Whether what is written is where the work lives from then on, or a copy of it for others.
+  enum class Keeping : std::uint8_t { kWorkThere, kCopy };
 
-  struct Display {
-    bool marks = true;
-    bool deviation = false;
-    bool contours = false;
-    bool split = true;
-    double split_at = 0.5;
-    render::ColourMap map = render::ColourMap::kAuto;
-    render::Theme theme = render::Theme::kDark;
-    float marks_opacity = 0.65F;
-    float light_azimuth_deg = 135.0F;
-    float light_elevation_deg = 45.0F;
-    bool furniture = true;
-  };
   explicit Workstation(const ViewOptions& options);
 
   // workstation.cpp: the round
@@ -97,22 +101,42 @@ class Workstation {
   void chooseTool(std::optional<haptic::Tool> tool);
   void setBrushRadius(double samples);
   void setPressDepth(double mm);
-  void clearMarks();
+  [[nodiscard]] haptic::Tool toolFor(const render::Modifiers& modifiers) const;
   [[nodiscard]] bool takeDialogKey(render::Key key);
   [[nodiscard]] bool inPicture(double x, double y) const;
   [[nodiscard]] std::optional<render::Picked> pick(double x, double y) const;
   [[nodiscard]] Drag dragOf(const render::InputEvent& event) const;
 
+  // workstation_marking.cpp: marks by lasso, by box, by suggestion
+  void beginLasso(Lasso::Shape shape);
+  bool handleLasso(const render::InputEvent& event);
+  void finishLasso(engine::MarkChange change);
+  void drawLasso() const;
+  void actOnEdges(Action action);
+  void pollMarking();
+  [[nodiscard]] std::optional<glm::dvec2> fieldAt(const glm::dvec2& pixel) const;
+  [[nodiscard]] std::vector<engine::TileRange> seenPart() const;
+
   // workstation_files.cpp
   void open(const std::string& path);
   void askToOpen(const std::string& path);
-  void takeImported(engine::Imported imported);
+  void load(const std::string& path, Recovery recovery);
+  void takeDocument(Document document);
+  void closeDocument(SessionKeeper::Afterwards afterwards);
+  void noteForSession();
   void save();
-  void startSaving(const std::string& path, bool keep_path);
+  void startSaving(const std::string& path, Keeping keeping);
+  void takeSaved();
+  void undo();
   void askToQuit();
+  void leave();
   void goOn();  // with what waited for saving
   [[nodiscard]] bool unsaved() const;
-  [[nodiscard]] std::string suggestedPath() const;
+  /// How the work is kept, for the status bar.
+  [[nodiscard]] std::string sessionText() const;
+  [[nodiscard]] std::string suggestedPath(const char* ending) const;
+
+  // workstation_dialogs.cpp
   void dialogs();
   void pathDialog(const char* title, const char* button);
   void message(std::string what, std::string remedy);
@@ -128,7 +152,10 @@ class Workstation {
   void filterPanel();
   void displayPanel();
   void hapticsPanel();
+  void edgePanel();
   void deviationPanel();
+  [[nodiscard]] bool section(const char* name, bool open_at_first);
+  void rememberLayout();
   void statusBar();
   void splitLine();
   [[nodiscard]] render::Rectangle plot() const;  // of the picture's surface, in the window
@@ -148,14 +175,18 @@ class Workstation {
   // The field and what is done to it.
   std::string path_;  // of the scan
   std::string loading_path_;
-  std::string save_path_;  // where Ctrl+S writes to; empty until chosen
+  std::string
+      save_path_;  // where Ctrl+S writes the field to, without a session of the user's; empty until chosen
   std::string saving_path_;
-  engine::Version saved_;  // upright, as the file holds it
+  engine::Version saved_;                  // upright, as the file holds it
+  std::unique_ptr<SessionKeeper> keeper_;  // there with touch_, and outlives it
   std::unique_ptr<Touch> touch_;
-  Background<engine::Imported> loading_;
+  Background<Document> loading_;
   Background<engine::Version> saving_;
   Background<engine::Deviation> measuring_;
-  bool keep_save_path_ = false;
+  Keeping keeping_ = Keeping::kCopy;
+  bool embeds_ = true;  // the scan goes into a session saved as
+  std::chrono::steady_clock::time_point noted_;
   engine::Version measured_;  // what measuring_ works on, or deviation_ is of
   std::optional<engine::Deviation> deviation_;
   FilterPreview filters_;
@@ -165,6 +196,7 @@ class Workstation {
   render::View view_;
   Display display_;
   Habits habits_ = Habits::kBlender;
+  Settings settings_, saved_settings_;  // panels; as the file has them
   render::FrameStatistics figures_;
   render::Shown shown_;
   bool stale_ = true;
@@ -187,6 +219,13 @@ class Workstation {
     std::uint64_t keys = 0, buttons = 0, wheels = 0, drops = 0;
   } hands_;
 
+  // Marks drawn at once, and what the work changed so far.
+  MarkEdit mark_edit_;
+  Lasso lasso_;
+  bool lasso_drawn_ = false;  // by hand, since the button went down
+  EdgeTool edges_;
+  LiveChange change_;
+
   // The hand.
   bool tool_on_ = false;  // the left button is the stylus
   bool stylus_held_ = false;
@@ -198,6 +237,7 @@ class Workstation {
   double adjust_from_ = 0.0, adjust_x_ = 0.0;
   std::string typed_;
   double press_mm_ = 0.0;
+  std::optional<haptic::Tool> turned_tool_;  // chosen, while Ctrl turned it into its opposite
 
   // Panels.
   Dialog dialog_ = Dialog::kNone;
@@ -210,6 +250,7 @@ class Workstation {
   std::string open_next_;
   bool side_panel_ = true;
   float side_width_ = 0.0F;
+  bool enter_panels_ = false;  // the keyboard goes to the panels with the next frame
   bool quit_ = false;
   std::vector<float> force_plot_;
   engine::Status end_;

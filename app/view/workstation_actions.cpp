@@ -67,8 +67,7 @@ void Workstation::clearMarks() {
             return;
           }
     }
-  if (!(field.snapshot() == before))
-    touch_->replace(field.snapshot(), "Clear marks", engine::StepKind::kMark);
+  if (!(field.snapshot() == before)) touch_->replaceMarks(before, field.snapshot(), "Clear marks");
 }
 
 void Workstation::act(Action action) {
@@ -110,10 +109,10 @@ void Workstation::act(Action action) {
     case Action::kExport:
       dialog_ = action == Action::kSaveAs ? Dialog::kSaveAs : Dialog::kExport;
       dialog_fresh_ = true;
-      dialog_path_ = suggestedPath();
+      dialog_path_ = suggestedPath(action == Action::kSaveAs ? ".fettle" : "_fettled.tif");
       break;
     case Action::kUndo:
-      touch_->undo();
+      undo();
       break;
     case Action::kRedo:
       touch_->redo();

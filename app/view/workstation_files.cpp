@@ -2,19 +2,23 @@
 #include <filesystem>
 
 #include <fmt/format.h>
-#include <imgui.h>
-#include <imgui_stdlib.h>
+#include <nlohmann/json.hpp>
 
 #include "app/terminal.h"
 #include "app/view/workstation.h"
 #include "engine/io/export.h"
 #include "engine/io/marks.h"
-#include "haptic/sphere_tip.h"
 
 namespace fettle::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Memory that undo may take; older steps are read back from the session when they are wanted.
+constexpr std::size_t kHistoryBytes = std::size_t{1} << 30;
+// A scan up to so many samples goes into the session whole unless the user says otherwise.
+constexpr std::int64_t kEmbedded = std::int64_t{16} << 20;
+constexpr auto kNoteEvery = std::chrono::seconds(1);
 
 std::string nameOf(const std::string& path) {
   return fs::path(path).filename().string();
@@ -30,16 +34,60 @@ std::string marksPath(const std::string& path) {
   return (p.parent_path() / (p.stem().string() + "_marks.png")).string();
 }
 
+std::string viewText(const render::View& view) {
+  return nlohmann::json{{"azimuth", view.azimuth_deg},
+                        {"elevation", view.elevation_deg},
+                        {"zoom", view.zoom},
+                        {"centre", {view.centre_x, view.centre_y}},
+                        {"exaggeration", view.vertical_exaggeration},
+                        {"perspective", view.projection == render::Projection::kPerspective}}
+      .dump();
+}
+
+// What a session says of the camera; the start's where it does not.
+render::View viewOf(const std::string& text) {
+  render::View view;
+  view.azimuth_deg = 330.0;
+  const auto said = nlohmann::json::parse(text, nullptr, false);
+  if (!said.is_object()) return view;
+  try {
+    view.azimuth_deg = said.at("azimuth").get<double>();
+    view.elevation_deg = said.at("elevation").get<double>();
+    view.zoom = said.at("zoom").get<double>();
+    view.centre_x = said.at("centre").at(0).get<double>();
+    view.centre_y = said.at("centre").at(1).get<double>();
+    view.vertical_exaggeration = said.at("exaggeration").get<double>();
+    if (said.at("perspective").get<bool>()) view.projection = render::Projection::kPerspective;
+  } catch (const nlohmann::json::exception&) {
+    view = {};
+    view.azimuth_deg = 330.0;
+  }
+  return view;
+}
+
 }  // namespace
 
 bool Workstation::unsaved() const {
-  return touch_ && !(touch_->upright() == saved_);
+  if (!touch_) return false;
+  // A session of the user's holds everything, unless it cannot be written.
+  if (keeper_->named()) return keeper_->error().has_value();
+  return !(touch_->upright() == saved_);
 }
 
-std::string Workstation::suggestedPath() const {
-  if (!save_path_.empty()) return save_path_;
+std::string Workstation::sessionText() const {
+  if (!keeper_) return {};
+  if (const auto error = keeper_->error())
+    return fmt::format("not kept: {}; the work is in memory, save it elsewhere", error->what);
+  const std::size_t waiting = keeper_->waiting();
+  if (keeper_->named())
+    return fmt::format("{} {}", waiting > 0 ? "writing" : "kept in", nameOf(keeper_->path()));
+  if (!unsaved()) return {};
+  return keeper_->path().empty() || waiting > 0 ? "changed" : "changed, kept until it is saved";
+}
+
+std::string Workstation::suggestedPath(const char* ending) const {
   const fs::path scan(path_);
-  return (scan.parent_path() / (scan.stem().string() + "_fettled.tif")).string();
+  return (scan.parent_path() / (scan.stem().string() + ending)).string();
 }
 
 void Workstation::message(std::string what, std::string remedy) {
@@ -61,7 +109,7 @@ void Workstation::askToOpen(const std::string& path) {
 
 void Workstation::askToQuit() {
   if (!unsaved()) {
-    quit_ = true;
+    leave();
     return;
   }
   after_saving_ = AfterSaving::kQuit;
@@ -71,29 +119,52 @@ void Workstation::askToQuit() {
 
 void Workstation::goOn() {
   const AfterSaving what = std::exchange(after_saving_, AfterSaving::kNothing);
-  if (what == AfterSaving::kQuit) quit_ = true;
+  if (what == AfterSaving::kQuit) leave();
   if (what == AfterSaving::kOpen) open(open_next_);
 }
 
 void Workstation::open(const std::string& path) {
-  loading_path_ = path;
-  loading_.start(
-      [path, reading = options_.reading](engine::JobControl& job) { return loadScan(path, reading, job); });
+  std::error_code error;
+  const std::string recovery = isSessionPath(path) ? std::string() : recoveryPath(path);
+  const bool own = keeper_ && keeper_->path() == recovery;
+  if (!recovery.empty() && !own && fs::exists(recovery, error)) {
+    open_next_ = path;
+    dialog_ = Dialog::kRecover;
+    dialog_fresh_ = true;
+    return;
+  }
+  load(path, Recovery::kLeave);
 }
 
-void Workstation::takeImported(engine::Imported imported) {
-  const engine::Grid& grid = imported.field.grid();
+void Workstation::load(const std::string& path, Recovery recovery) {
+  loading_path_ = path;
+  loading_.start([path, recovery, reading = options_.reading](engine::JobControl& job) {
+    return openDocument(path, reading, recovery, kHistoryBytes, job);
+  });
+}
+
+void Workstation::takeDocument(Document document) {
+  const engine::Grid& grid = document.original.grid();
   TouchOptions options = options_.touch;
   options.fit_spring = !options_.scene.has_value();
   haptic::Scene scene = options_.scene.value_or(haptic::defaultScene());
-  if (!options_.scene) {
+  const auto noted = document.notes.find("scene");
+  if (!options_.scene && noted != document.notes.end()) {
+    if (const auto kept = haptic::parseScene(noted->second, "the session's scene")) {
+      scene = *kept;
+      options.fit_spring = false;
+    }
+  } else if (!options_.scene) {
     // Wider than the seed's one sample: what a person sees under a brush.
     scene.brush_radius_samples = 6.0;
     scene.mark_radius_samples = 3.0;
   }
-  if (touch_) filters_.cancel(*touch_);
-  auto touch = Touch::start(engine::History(imported.field), imported.field, scene, options);
+  closeDocument(SessionKeeper::Afterwards::kDiscard);
+  const engine::History history = document.history;
+  keeper_ = std::make_unique<SessionKeeper>(document);
+  auto touch = Touch::start(history, document.original, scene, options, keeper_.get());
   if (!touch) {
+    keeper_.reset();
     if (path_.empty())
       end_ = tl::unexpected(touch.error());
     else
@@ -101,214 +172,125 @@ void Workstation::takeImported(engine::Imported imported) {
     return;
   }
   touch_ = std::move(*touch);
-  path_ = loading_path_;
+  path_ = document.path;
   save_path_.clear();
-  saved_ = imported.field;
-  measured_ = imported.field;
+  // What was recovered is still to be saved.
+  saved_ = document.recovered ? document.original : history.current();
+  measured_ = document.original;
   deviation_.reset();
-  measuring_.cancel();
-  view_ = render::View{};
-  view_.azimuth_deg = 330.0;
+  embeds_ = grid.samples() <= kEmbedded;
+  const auto camera = document.notes.find("camera");
+  view_ = viewOf(camera != document.notes.end() ? camera->second : std::string());
   shown_ = {};
   figures_ = {};
   chooseTool(std::nullopt);
   recent_.add(path_);
-  for (const std::string& warning : imported.warnings) notices_.push_back({warning, ""});
+  for (const std::string& warning : document.warnings) notices_.push_back({warning, ""});
+  if (document.recovered)
+    notices_.push_back({fmt::format("{} steps that were not saved are here again", history.number()), ""});
   status_text_ = fmt::format("{}: {} x {} samples, {:.4g} x {:.4g} {}", nameOf(path_), grid.width,
                              grid.height, grid.spacing_x, grid.spacing_y, grid.lateral_unit.name);
   window_->setTitle(nameOf(path_) + " - Fettle");
   stale_ = true;
 }
 
-void Workstation::save() {
-  if (!save_path_.empty()) {
-    startSaving(save_path_, true);
-    return;
-  }
-  // Never over the scan itself without being told so.
-  dialog_ = Dialog::kSaveAs;
-  dialog_fresh_ = true;
-  dialog_path_ = suggestedPath();
+void Workstation::closeDocument(SessionKeeper::Afterwards afterwards) {
+  if (!touch_) return;
+  filters_.cancel(*touch_);
+  measuring_.cancel();
+  // A stroke that runs is a step yet.
+  touch_->finish();
+  if (const auto closed = keeper_->close(afterwards); !closed)
+    warn(fmt::format("{}: what was not written is gone", closed.error().line()));
+  touch_.reset();
+  keeper_.reset();
 }
 
-void Workstation::startSaving(const std::string& path, bool keep_path) {
+void Workstation::leave() {
+  quit_ = true;
+}
+
+// Texts that a session is opened with again.
+void Workstation::noteForSession() {
+  const auto now = std::chrono::steady_clock::now();
+  if (!touch_ || now - noted_ < kNoteEvery) return;
+  noted_ = now;
+  keeper_->setNote("camera", viewText(view_));
+  keeper_->setNote("scene", haptic::sceneText(touch_->scene()));
+}
+
+void Workstation::save() {
+  if (keeper_->named()) {
+    startSaving(keeper_->path(), Keeping::kWorkThere);
+  } else if (!save_path_.empty()) {
+    startSaving(save_path_, Keeping::kWorkThere);
+  } else {
+    // Never over the scan itself without being told so.
+    dialog_ = Dialog::kSaveAs;
+    dialog_fresh_ = true;
+    dialog_path_ = suggestedPath(".fettle");
+  }
+}
+
+void Workstation::startSaving(const std::string& path, Keeping keeping) {
   if (auto status = checkOutputs({{path, OutputKind::kField}}, {}); !status) {
     message(status.error().line(), "");
     return;
   }
   saving_path_ = path;
-  keep_save_path_ = keep_path;
+  keeping_ = keeping;
+  if (isSessionPath(path) && keeping == Keeping::kWorkThere) {
+    touch_->poll();
+    keeper_->saveAs(path,
+                    embeds_ ? engine::OriginalStorage::kEmbedded : engine::OriginalStorage::kReferenced);
+    return;
+  }
   saving_.start(
       [path, field = touch_->upright()](engine::JobControl& job) -> engine::Result<engine::Version> {
         auto done = engine::exportField(field, path, {}, job);
         if (!done) return tl::unexpected(done.error());
-        if (anyMark(field))
+        if (anyMark(field) && !isSessionPath(path))
           if (auto marks = engine::exportMarks(field, marksPath(path)); !marks)
             return tl::unexpected(marks.error());
         return field;
       });
 }
 
-void Workstation::pathDialog(const char* title, const char* button) {
-  ImGui::SetNextWindowSize(ImVec2(640.0F * static_cast<float>(window_->scale()), 0.0F));
-  if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize)) return;
-  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
-  ImGui::SetNextItemWidth(-1.0F);
-  bool confirmed = ImGui::InputText("##path", &dialog_path_,
-                                    ImGuiInputTextFlags_AutoSelectAll | ImGuiInputTextFlags_EnterReturnsTrue);
-  if (dialog_ == Dialog::kOpen) {
-    // What lies where the path points to so far.
-    std::error_code error;
-    const fs::path typed(dialog_path_);
-    const fs::path folder = fs::is_directory(typed, error) ? typed : typed.parent_path();
-    if (ImGui::BeginChild("files", ImVec2(0.0F, 260.0F * static_cast<float>(window_->scale())), true)) {
-      std::vector<fs::path> entries;
-      for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end; !error && it != end;
-           it.increment(error)) {
-        if (it->path().filename().string().front() != '.') entries.push_back(it->path());
-        if (entries.size() > 2000) break;
-      }
-      std::sort(entries.begin(), entries.end());
-      if (ImGui::Selectable("..", false, ImGuiSelectableFlags_DontClosePopups))
-        dialog_path_ = (folder.empty() ? fs::current_path(error) : folder).parent_path().string();
-      for (const fs::path& entry : entries) {
-        const bool is_folder = fs::is_directory(entry, error);
-        const std::string label = entry.filename().string() + (is_folder ? "/" : "");
-        if (ImGui::Selectable(label.c_str(), entry == typed, ImGuiSelectableFlags_DontClosePopups))
-          dialog_path_ = entry.string();
+void Workstation::takeSaved() {
+  std::optional<engine::Status> ended;
+  if (auto done = saving_.take()) {
+    ended = *done ? engine::Status{} : tl::unexpected(done->error());
+    if (*done && keeping_ == Keeping::kWorkThere) {
+      save_path_ = saving_path_;
+      saved_ = **done;
+    }
+  }
+  if (keeper_)
+    if (auto done = keeper_->saved()) {
+      ended = std::move(*done);
+      if (*ended) {
+        path_ = keeper_->path();
+        recent_.add(path_);
+        window_->setTitle(nameOf(path_) + " - Fettle");
       }
     }
-    ImGui::EndChild();
-  } else {
-    std::error_code error;
-    ImGui::TextDisabled(
-        "%s", "format by extension: .tif .asc .xyz .ply .png; marks go beside it as NAME_marks.png");
-    if (fs::exists(dialog_path_, error))
-      ImGui::TextColored(ImVec4(1.0F, 0.7F, 0.2F, 1.0F), "replaces the file there");
+  if (!ended) return;
+  if (*ended) {
+    status_text_ = fmt::format("written: {}", saving_path_);
+    goOn();
+    return;
   }
-  confirmed = ImGui::Button(button) || takeDialogKey(render::Key::kEnter) || confirmed;
-  ImGui::SameLine();
-  const bool left = ImGui::Button("Cancel") || takeDialogKey(render::Key::kEscape);
-  if (confirmed && !dialog_path_.empty()) {
-    const Dialog which = std::exchange(dialog_, Dialog::kNone);
-    ImGui::CloseCurrentPopup();
-    if (which == Dialog::kOpen)
-      askToOpen(dialog_path_);
-    else
-      startSaving(dialog_path_, which == Dialog::kSaveAs);
-  } else if (left) {
-    dialog_ = Dialog::kNone;
-    after_saving_ = AfterSaving::kNothing;
-    ImGui::CloseCurrentPopup();
-  }
-  ImGui::EndPopup();
+  after_saving_ = AfterSaving::kNothing;
+  if (ended->error().kind != engine::ErrorKind::kCancelled)
+    message(ended->error().line(), "the work is kept here; save it elsewhere");
 }
 
-void Workstation::dialogs() {
-  const char* title = nullptr;
-  switch (dialog_) {
-    case Dialog::kNone:
-      return;
-    case Dialog::kOpen:
-      title = "Open a scan";
-      break;
-    case Dialog::kSaveAs:
-      title = "Save as";
-      break;
-    case Dialog::kExport:
-      title = "Export";
-      break;
-    case Dialog::kUnsaved:
-      title = "Unsaved changes";
-      break;
-    case Dialog::kShortcuts:
-      title = "Shortcuts";
-      break;
-    case Dialog::kMessage:
-      title = "Fettle";
-      break;
-  }
-  dialog_frame_ = frames_;
-  stale_ = true;
-  if (std::exchange(dialog_fresh_, false)) {
-    ImGui::OpenPopup(title);
-    dialog_key_ = render::Key::kNone;
-  }
-  const ImVec2 middle(0.5F * ImGui::GetIO().DisplaySize.x, 0.5F * ImGui::GetIO().DisplaySize.y);
-  ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
-  const auto escape = [&] { return takeDialogKey(render::Key::kEscape); };
-  const auto enter = [&] { return takeDialogKey(render::Key::kEnter); };
-  switch (dialog_) {
-    case Dialog::kOpen:
-      pathDialog(title, "Open");
-      break;
-    case Dialog::kSaveAs:
-    case Dialog::kExport:
-      pathDialog(title, "Write");
-      break;
-    case Dialog::kUnsaved:
-      if (ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
-        ImGui::Text("%s was changed and is not saved.", nameOf(path_).c_str());
-        const bool writes = ImGui::Button("Save (Enter)") || enter();
-        ImGui::SameLine();
-        const bool drops = ImGui::Button("Discard (D)") || takeDialogKey(render::letter('D'));
-        ImGui::SameLine();
-        const bool stays = ImGui::Button("Go back (Esc)") || escape();
-        if (writes || drops || stays) {
-          dialog_ = Dialog::kNone;
-          ImGui::CloseCurrentPopup();
-        }
-        if (writes) save();
-        if (drops) goOn();
-        if (stays) after_saving_ = AfterSaving::kNothing;
-        ImGui::EndPopup();
-      }
-      break;
-    case Dialog::kShortcuts:
-      ImGui::SetNextWindowSize(ImVec2(0.0F, 0.8F * ImGui::GetIO().DisplaySize.y));
-      if (ImGui::BeginPopupModal(title, nullptr)) {
-        std::string_view section;
-        for (const Shortcut& s : shortcuts()) {
-          if (s.section != section) {
-            section = s.section;
-            ImGui::Separator();
-            ImGui::TextUnformatted(section.data(), section.data() + section.size());
-          }
-          std::string keys = keyText(s.key, s.modifiers);
-          if (s.other_key != render::Key::kNone) keys += " or " + keyText(s.other_key, s.modifiers);
-          ImGui::Text("  %-24s", keys.c_str());
-          ImGui::SameLine(220.0F * static_cast<float>(window_->scale()));
-          ImGui::TextUnformatted(s.name.data(), s.name.data() + s.name.size());
-        }
-        ImGui::Separator();
-        ImGui::TextUnformatted(
-            "  Ctrl+1 .. Ctrl+9         recent files\n"
-            "  left button              the stylus, while a tool is on; the wheel then sets how deep it "
-            "presses\n"
-            "  middle, right button     turn, move the view (Shift, Ctrl: see View > Mouse); wheel: zoom\n"
-            "  Alt + left button        turn the view");
-        if (ImGui::Button("Close") || escape()) {
-          dialog_ = Dialog::kNone;
-          ImGui::CloseCurrentPopup();
-        }
-        ImGui::EndPopup();
-      }
-      break;
-    case Dialog::kMessage:
-      if (ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
-        ImGui::PushTextWrapPos(600.0F * static_cast<float>(window_->scale()));
-        ImGui::TextUnformatted(message_.what.c_str());
-        if (!message_.remedy.empty()) ImGui::TextDisabled("%s", message_.remedy.c_str());
-        ImGui::PopTextWrapPos();
-        if (ImGui::Button("OK") || escape() || enter()) {
-          dialog_ = Dialog::kNone;
-          ImGui::CloseCurrentPopup();
-        }
-        ImGui::EndPopup();
-      }
-      break;
-    case Dialog::kNone:
-      break;
+void Workstation::undo() {
+  const engine::History& history = touch_->history();
+  if (touch_->canUndo() || history.first() == 0) {
+    touch_->undo();
+  } else if (!keeper_->readingOlder()) {
+    keeper_->readOlder(history);
   }
 }
 

@@ -100,6 +100,10 @@ void Workstation::statusBar() {
     ImGui::ProgressBar(static_cast<float>(saving_.progress()), ImVec2(240.0F, 0.0F), "saving");
     ImGui::SameLine();
     if (ImGui::SmallButton("Cancel")) saving_.cancel();
+  } else if (keeper_ && keeper_->saving()) {
+    ImGui::ProgressBar(static_cast<float>(keeper_->progress()), ImVec2(240.0F, 0.0F), "saving");
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Cancel")) keeper_->cancelSaving();
   } else if (touch_ && loading_.busy()) {
     ImGui::ProgressBar(static_cast<float>(loading_.progress()), ImVec2(240.0F, 0.0F), "opening");
     ImGui::SameLine();
@@ -107,7 +111,7 @@ void Workstation::statusBar() {
   } else {
     std::string text = status_text_;
     if (touch_) {
-      if (unsaved()) text += "  (changed)";
+      if (const std::string kept = sessionText(); !kept.empty()) text += "  (" + kept + ")";
       if (tool_on_ && under_cursor_) {
         const engine::Grid& grid = touch_->field().grid();
         text += fmt::format("   x {:.4f}  y {:.4f}  z {:.5g} {}",

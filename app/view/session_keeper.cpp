@@ -1,0 +1,214 @@
+#include "app/view/session_keeper.h"
+
+#include <utility>
+
+namespace fettle::app {
+namespace {
+
+using engine::OriginalStorage;
+using namespace std::chrono_literals;
+
+constexpr auto kTryAgain = 5s;
+
+}  // namespace
+
+SessionKeeper::SessionKeeper(Document& document)
+    : scan_(document.scan),
+      original_(document.original),
+      start_(document.history),
+      notes_(document.notes),
+      writer_(std::move(document.writer)) {
+  if (!isSessionPath(document.path)) recovery_path_ = recoveryPath(document.path);
+  named_ = writer_ != nullptr && !document.recovered;
+}
+
+SessionKeeper::~SessionKeeper() {
+  static_cast<void>(close(Afterwards::kKeep));
+}
+
+void SessionKeeper::commit(std::int64_t number, engine::Step step,
+                           std::vector<engine::JournalEntry> journal) {
+  hand({Waiting::Kind::kCommit, number, std::move(step), std::move(journal), {}, {}});
+}
+
+void SessionKeeper::moveTo(std::int64_t number, std::vector<engine::JournalEntry> journal) {
+  hand({Waiting::Kind::kMove, number, {}, std::move(journal), {}, {}});
+}
+
+void SessionKeeper::note(std::vector<engine::JournalEntry> journal) {
+  hand({Waiting::Kind::kJournal, 0, {}, std::move(journal), {}, {}});
+}
+
+void SessionKeeper::setNote(const std::string& key, const std::string& text) {
+  if (auto known = notes_.find(key); known != notes_.end() && known->second == text) return;
+  notes_[key] = text;
+  // A file that is made later begins with the notes there are then.
+  if (writer_)
+    writer_->setNote(key, text);
+  else if (making_.busy())
+    waiting_.push_back({Waiting::Kind::kNote, 0, {}, {}, key, text});
+}
+
+void SessionKeeper::hand(Waiting&& what) {
+  if (closed_) return;
+  if (writer_) {
+    give(std::move(what));
+    return;
+  }
+  const bool step = what.kind == Waiting::Kind::kCommit;
+  waiting_.push_back(std::move(what));
+  // The first step is what makes a session worth having.
+  if (step && !making_.busy() && !failed_) {
+    if (recovery_path_.empty())
+      failed_ = engine::Error{engine::ErrorKind::kFailed, "there is no place to keep unsaved work", "",
+                              "save the session under a name"};
+    else
+      make({recovery_path_, OriginalStorage::kReferenced, false});
+  }
+}
+
+void SessionKeeper::give(Waiting&& what) {
+  switch (what.kind) {
+    case Waiting::Kind::kCommit:
+      writer_->commit(what.number, std::move(what.step), std::move(what.journal));
+      break;
+    case Waiting::Kind::kMove:
+      writer_->moveTo(what.number, std::move(what.journal));
+      break;
+    case Waiting::Kind::kJournal:
+      for (engine::JournalEntry& entry : what.journal) writer_->addJournal(std::move(entry));
+      break;
+    case Waiting::Kind::kNote:
+      writer_->setNote(what.key, what.text);
+      break;
+  }
+}
+
+void SessionKeeper::make(const Place& place) {
+  making_place_ = place;
+  tried_ = std::chrono::steady_clock::now();
+  engine::Session session;
+  session.scan = scan_;
+  // A scan that is no file of its own (it came out of a session) can only be embedded.
+  session.storage = scan_.path.empty() ? OriginalStorage::kEmbedded : place.storage;
+  session.original = original_;
+  session.history = start_;
+  session.notes = notes_;
+  making_.start([session = std::move(session), path = place.path](engine::JobControl& job) {
+    return engine::SessionWriter::create(session, path, {}, job);
+  });
+}
+
+void SessionKeeper::made(engine::Result<Writer> result) {
+  if (!result) {
+    failed_ = result.error();
+    if (making_place_.named) saved_ = tl::unexpected(result.error());
+    return;
+  }
+  failed_.reset();
+  writer_ = *std::move(result);
+  for (Waiting& what : std::exchange(waiting_, {})) give(std::move(what));
+  if (!making_place_.named) return;
+  named_ = true;
+  saved_ = engine::Status{};
+  if (!recovery_path_.empty()) removeSession(recovery_path_);
+}
+
+void SessionKeeper::move(const Place& place) {
+  moving_place_ = place;
+  const std::string left = named_ ? std::string() : writer_->path();
+  saving_.start([writer = writer_.get(), place, left](engine::JobControl& job) -> engine::Result<bool> {
+    if (auto moved = writer->saveAs(place.path, place.storage, job); !moved)
+      return tl::unexpected(moved.error());
+    if (!left.empty() && left != place.path) removeSession(left);
+    return true;
+  });
+}
+
+void SessionKeeper::saveAs(const std::string& path, OriginalStorage storage) {
+  if (closed_ || saving_.busy()) return;
+  const Place place{path, scan_.path.empty() ? OriginalStorage::kEmbedded : storage, true};
+  saved_.reset();
+  if (making_.busy())
+    wanted_ = place;
+  else if (writer_)
+    move(place);
+  else
+    make(place);
+}
+
+std::optional<engine::Status> SessionKeeper::saved() {
+  return std::exchange(saved_, std::nullopt);
+}
+
+void SessionKeeper::readOlder(const engine::History& history) {
+  if (!writer_ || closed_) return;
+  reading_.start(
+      [writer = writer_.get(), history](engine::JobControl& job) { return writer->loadOlder(history, job); });
+}
+
+void SessionKeeper::poll() {
+  if (closed_) return;
+  if (auto done = making_.take()) {
+    made(std::move(*done));
+    if (auto place = std::exchange(wanted_, std::nullopt)) saveAs(place->path, place->storage);
+  }
+  if (auto done = saving_.take()) {
+    if (*done) {
+      named_ = true;
+      saved_ = engine::Status{};
+    } else {
+      saved_ = tl::unexpected(done->error());
+    }
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (now - tried_ < kTryAgain) return;
+  if (writer_ && writer_->status().error) {
+    tried_ = now;
+    writer_->retry();
+  } else if (!writer_ && failed_ && !making_.busy() && !recovery_path_.empty()) {
+    make({recovery_path_, OriginalStorage::kReferenced, false});
+  }
+}
+
+std::string SessionKeeper::path() const {
+  return writer_ ? writer_->path() : std::string();
+}
+
+engine::SessionStatus SessionKeeper::status() const {
+  return writer_ ? writer_->status() : engine::SessionStatus{};
+}
+
+std::size_t SessionKeeper::waiting() const {
+  return waiting_.size() + (writer_ ? writer_->status().waiting : 0);
+}
+
+std::optional<engine::Error> SessionKeeper::error() const {
+  return writer_ ? writer_->status().error : failed_;
+}
+
+engine::Status SessionKeeper::close(Afterwards afterwards) {
+  if (std::exchange(closed_, true)) return {};
+  const bool discard = afterwards == Afterwards::kDiscard && !named_;
+  if (discard) {
+    making_.cancel();
+    saving_.cancel();
+  }
+  reading_.cancel();
+  static_cast<void>(reading_.wait());
+  static_cast<void>(saving_.wait());
+  if (auto done = making_.wait()) made(std::move(*done));
+  if (discard) {
+    const std::string path = writer_ ? writer_->path() : std::string();
+    writer_.reset();
+    if (!path.empty()) removeSession(path);
+    return {};
+  }
+  if (!writer_) return waiting_.empty() || !failed_ ? engine::Status{} : tl::unexpected(*failed_);
+  engine::JobControl job;
+  engine::Status status = writer_->close(job);
+  writer_.reset();
+  return status;
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,152 @@
+// A person's work in real time, kept in a session as it goes, made again from the journal alone.
+
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "app/journal/session_player.h"
+#include "app/view/open_document.h"
+#include "tests/app/journal/hand_play.h"
+#include "tests/haptic/support/fields.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+using app::Document;
+using app::SessionKeeper;
+using app::Touch;
+
+constexpr std::size_t kHistoryBytes = std::size_t{64} << 20;
+
+engine::Version roughPart() {
+  std::mt19937_64 random(42);
+  return fieldOf(
+      230, 180,
+      [&](int c, int r) {
+        if ((c / 60 + r / 50) % 5 == 4 && (c + r) % 7 == 0) return std::nan("");
+        return 0.4 * ((c / 30) % 2) + 0.02 * uniform(random, -1.0, 1.0);
+      },
+      0.1, 0.12);
+}
+
+Document fromField(const engine::Version& field, const std::string& name) {
+  Document document;
+  document.path = name;
+  document.original = field;
+  document.history = engine::History(field, kHistoryBytes);
+  return document;
+}
+
+std::unique_ptr<Touch> touchOf(const Document& document, const engine::History& history,
+                               SessionKeeper& keeper) {
+  haptic::Scene scene;
+  scene.brush_radius_samples = 4.0;
+  scene.mark_radius_samples = 2.0;
+  auto touch = Touch::start(history, document.original, scene, {}, &keeper);
+  EXPECT_TRUE(touch) << (touch ? "" : touch.error().line());
+  return touch ? std::move(*touch) : nullptr;
+}
+
+TEST(SessionJournal, ReplaysToTheBitsThatHandsFiltersAndUndoMade) {
+  const TempFolder folder;
+  const std::string path = folder.file("work.fettle");
+  std::map<std::string, int> did;
+  std::uint64_t expected = 0;
+  std::int64_t number = 0;
+  // Three lives of one session: the second and third go on from the file.
+  for (std::uint64_t life = 0; life < 3; ++life) {
+    Document document;
+    if (life == 0) {
+      document = fromField(roughPart(), folder.file("scan.tif"));
+    } else {
+      engine::JobControl job;
+      auto opened = app::openDocument(path, {}, app::Recovery::kLeave, kHistoryBytes, job);
+      ASSERT_TRUE(opened) << opened.error().line();
+      document = *std::move(opened);
+      ASSERT_TRUE(document.writer);
+      EXPECT_EQ(engine::contentHash(document.history.current()), expected);
+      EXPECT_EQ(document.history.number(), number);
+    }
+    const engine::History history = document.history;
+    SessionKeeper keeper(document);
+    if (life == 0) keeper.saveAs(path, engine::OriginalStorage::kEmbedded);
+    auto touch = touchOf(document, history, keeper);
+    ASSERT_TRUE(touch);
+    HandPlay play(*touch, keeper, 1000 + life);
+    for (int i = 0; i < 14; ++i) ++did[play.act()];
+    play.settle();
+    touch->finish();
+    expected = engine::contentHash(touch->history().current());
+    number = touch->history().number();
+    const engine::Status closed = keeper.close(SessionKeeper::Afterwards::kKeep);
+    ASSERT_TRUE(closed) << closed.error().line();
+  }
+  for (const auto& [what, count] : did) std::printf("  %3d %s\n", count, what.c_str());
+
+  engine::JobControl job;
+  const auto session = engine::openSession(path, {}, job);
+  ASSERT_TRUE(session) << session.error().line();
+  EXPECT_EQ(engine::contentHash(session->history.current()), expected);
+  const auto played = app::playSession(*session, job);
+  ASSERT_TRUE(played) << played.error().line();
+  EXPECT_EQ(played->loops, 3);
+  EXPECT_EQ(played->state, number);
+  EXPECT_EQ(engine::contentHash(played->field), expected);
+  std::printf("%lld ticks, %lld steps, %lld filters, %zu entries\n", static_cast<long long>(played->ticks),
+              static_cast<long long>(played->steps), static_cast<long long>(played->filters),
+              session->journal.size());
+  EXPECT_GT(played->steps, 3);
+}
+
+TEST(SessionKeeper, WhatIsOnlyLookedAtLeavesNoFile) {
+  const TempFolder folder;
+  setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
+  const std::string scan = folder.file("scan.tif");
+  {
+    Document document = fromField(roughPart(), scan);
+    const engine::History history = document.history;
+    SessionKeeper keeper(document);
+    auto touch = touchOf(document, history, keeper);
+    ASSERT_TRUE(touch);
+    for (int i = 0; i < 50; ++i) touch->poll();
+    touch->finish();
+    EXPECT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
+  }
+  EXPECT_FALSE(std::filesystem::exists(app::recoveryPath(scan)));
+}
+
+TEST(SessionKeeper, UnsavedWorkIsThereAgainAndGoneWhenDiscarded) {
+  const TempFolder folder;
+  setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
+  const std::string scan = folder.file("scan.tif");
+  const std::string recovery = app::recoveryPath(scan);
+  std::uint64_t expected = 0;
+  for (const auto afterwards : {SessionKeeper::Afterwards::kKeep, SessionKeeper::Afterwards::kDiscard}) {
+    Document document;
+    if (afterwards == SessionKeeper::Afterwards::kKeep) {
+      document = fromField(roughPart(), scan);
+    } else {
+      engine::JobControl job;
+      auto opened = app::openDocument(scan, {}, app::Recovery::kTake, kHistoryBytes, job);
+      ASSERT_TRUE(opened) << opened.error().line();
+      document = *std::move(opened);
+      EXPECT_TRUE(document.recovered);
+      EXPECT_EQ(engine::contentHash(document.history.current()), expected);
+    }
+    const engine::History history = document.history;
+    SessionKeeper keeper(document);
+    auto touch = touchOf(document, history, keeper);
+    ASSERT_TRUE(touch);
+    HandPlay play(*touch, keeper, 5);
+    while (touch->history().last() < 2) static_cast<void>(play.act());
+    play.settle();
+    touch->finish();
+    expected = engine::contentHash(touch->history().current());
+    ASSERT_TRUE(keeper.close(afterwards));
+    EXPECT_EQ(std::filesystem::exists(recovery), afterwards == SessionKeeper::Afterwards::kKeep);
+  }
+}
+
+}  // namespace
+}  // namespace fettle::tests
