@@ -80,6 +80,7 @@ engine::Result<double> Frame::draw(const PicturePlan& plan, std::span<const Pane
   const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, 3 * panel_count},
                          vk::DescriptorPoolSize{vk::DescriptorType::eSampledImage, 10 * panel_count},
                          vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, 3 * panel_count},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eSampler, 3 * panel_count},
                          vk::DescriptorPoolSize{vk::DescriptorType::eUniformTexelBuffer, 2 * panel_count}};
   vk::DescriptorPoolCreateInfo pool_info{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
                                          3 * panel_count};

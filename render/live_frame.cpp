@@ -50,8 +50,9 @@ class Packing {
 // Descriptor writes point at infos that must stay put until they are applied.
 class Writes {
  public:
-  void image(vk::DescriptorSet set, int binding, vk::ImageView view) {
-    images_.push_back({nullptr, view, ImageLayout::eShaderReadOnlyOptimal});
+  void image(vk::DescriptorSet set, int binding, vk::ImageView view,
+             ImageLayout layout = ImageLayout::eShaderReadOnlyOptimal) {
+    images_.push_back({nullptr, view, layout});
     add(set, binding, vk::DescriptorType::eSampledImage, &images_.back(), nullptr);
   }
   void buffer(vk::DescriptorSet set, int binding, vk::DescriptorType type, const Buffer& buffer,
@@ -76,14 +77,75 @@ class Writes {
   std::vector<vk::WriteDescriptorSet> writes_;
 };
 
+// Several images change at once: a device may stop for each barrier.
+class Changes {
+ public:
+  void add(vk::Image image, vk::ImageAspectFlags aspect, ImageLayout from, ImageLayout to,
+           vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access, vk::PipelineStageFlags2 after,
+           vk::AccessFlags2 after_access) {
+    vk::ImageMemoryBarrier2 step;
+    step.setSrcStageMask(before)
+        .setSrcAccessMask(before_access)
+        .setDstStageMask(after)
+        .setDstAccessMask(after_access)
+        .setOldLayout(from)
+        .setNewLayout(to)
+        .setSrcQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
+        .setDstQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
+        .setImage(image)
+        .setSubresourceRange({aspect, 0, 1, 0, 1});
+    steps_.push_back(step);
+  }
+  void record(const vk::raii::CommandBuffer& commands) const {
+    vk::DependencyInfo dependency;
+    dependency.setImageMemoryBarriers(steps_);
+    commands.pipelineBarrier2(dependency);
+  }
+
+ private:
+  std::vector<vk::ImageMemoryBarrier2> steps_;
+};
+
+constexpr auto kColour = vk::ImageAspectFlagBits::eColor;
+constexpr auto kDepth = vk::ImageAspectFlagBits::eDepth;
+constexpr auto kDepthStages = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
+constexpr auto kDepthAccess = Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite;
+constexpr auto kColourAccess = Access::eColorAttachmentRead | Access::eColorAttachmentWrite;
+
+vk::RenderingAttachmentInfo attachment(vk::ImageView view, ImageLayout layout, vk::AttachmentLoadOp load,
+                                       vk::ClearValue clear = {}) {
+  vk::RenderingAttachmentInfo info;
+  info.setImageView(view)
+      .setImageLayout(layout)
+      .setLoadOp(load)
+      .setStoreOp(vk::AttachmentStoreOp::eStore)
+      .setClearValue(clear);
+  return info;
+}
+
+Pipelines::Paged pagedOf(const LivePanel& p) {
+  return p.variant.by_need ? Pipelines::Paged::kByNeed
+         : p.variant.paged ? Pipelines::Paged::kYes
+                           : Pipelines::Paged::kNo;
+}
+Pipelines::Holes holesOf(const LivePanel& p) {
+  return p.variant.holes ? Pipelines::Holes::kYes : Pipelines::Holes::kNo;
+}
+
+bool seen(const LivePanel& p) {
+  return p.visible.width > 0 && p.visible.height > 0;
+}
+
 }  // namespace
 
-LiveFrame::LiveFrame(Context& context, vk::Format colour) : context_(context), pipelines_(context, colour) {
+LiveFrame::LiveFrame(Context& context, vk::Format colour)
+    : context_(context), colour_(colour), pipelines_(context, colour) {
   constexpr auto kSlots = static_cast<std::uint32_t>(Submissions::kInFlight);
   constexpr std::uint32_t kSets = kSlots * (5 * kMostPanels + 1);
   const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, kSets},
-                         vk::DescriptorPoolSize{vk::DescriptorType::eSampledImage, 4 * kSets},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eSampledImage, 5 * kSets},
                          vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, 2 * kSets},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eSampler, kSets},
                          vk::DescriptorPoolSize{vk::DescriptorType::eUniformTexelBuffer, kSets}};
   vk::DescriptorPoolCreateInfo info{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, kSets};
   pool_ = vk::raii::DescriptorPool(context.device(), info.setPoolSizes(sizes));
@@ -131,18 +193,18 @@ void LiveFrame::bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing
          Stage::eCopy, Access::eTransferWrite, Stage::eFragmentShader, Access::eShaderRead);
 }
 
-void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
-                       const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
-                       const LiveTarget& target) {
-  const vk::raii::CommandBuffer& commands = submissions.commands();
-  Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
-  if (!furniture.empty()) bringGlyphs(commands, staging, submissions.next(), glyphs);
-  if (depth_.extent() != target.extent)
-    // The frame in flight draws with the old one.
-    submissions.finish(),
-        depth_ = GpuImage(context_, kDepthFormat, target.extent, 1, GpuImage::Kind::kPlane,
-                          vk::ImageUsageFlagBits::eDepthStencilAttachment, vk::ImageAspectFlagBits::eDepth);
+void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent) {
+  if (depth_.extent() == extent) return;
+  // The frame in flight draws with the old ones.
+  submissions.finish();
+  using Usage = vk::ImageUsageFlagBits;
+  depth_ = GpuImage(context_, kDepthFormat, extent, 1, GpuImage::Kind::kPlane,
+                    Usage::eDepthStencilAttachment | Usage::eSampled, kDepth);
+  base_ = GpuImage(context_, colour_, extent, 1, GpuImage::Kind::kPlane,
+                   Usage::eColorAttachment | Usage::eTransferSrc, kColour);
+}
 
+void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture) {
   Packing packing;
   struct Blocks {
     std::pair<vk::DeviceSize, vk::DeviceSize> uniforms, patches, seams, walls, in_scene, on_top, pages;
@@ -181,6 +243,7 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
       writes.buffer(set, gpu::kBindPatches, kStorage, slot.arena, list);
       writes.texels(set, gpu::kBindPages, p.variant.by_need ? *sets.pages : *no_pages_view_);
     }
+    writes.image(*sets.surface, gpu::kBindDepth, depth_.view(), ImageLayout::eDepthReadOnlyOptimal);
     for (const auto& [set, list] :
          {std::pair{*sets.in_scene, blocks[i].in_scene}, {*sets.on_top, blocks[i].on_top}}) {
       writes.buffer(set, gpu::kBindPanel, kUniform, slot.arena, blocks[i].uniforms);
@@ -194,91 +257,210 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
     writes.buffer(*slot.picture, gpu::kBindMap, kUniform, slot.arena, blocks.front().uniforms);
   }
   writes.apply(context_.device());
+}
 
-  // The acquired image is waited for at this stage: the change of layout comes after it.
-  change(commands, target.image, ImageLayout::eUndefined, ImageLayout::eColorAttachmentOptimal,
-         Stage::eColorAttachmentOutput | Stage::eCopy, {}, Stage::eColorAttachmentOutput,
-         Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
-  change(commands, depth_, ImageLayout::eUndefined, ImageLayout::eDepthAttachmentOptimal,
-         Stage::eEarlyFragmentTests | Stage::eLateFragmentTests, Access::eDepthStencilAttachmentWrite,
-         Stage::eEarlyFragmentTests | Stage::eLateFragmentTests,
-         Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite);
-  vk::RenderingAttachmentInfo colour, depth;
-  colour.setImageView(target.view)
-      .setImageLayout(ImageLayout::eColorAttachmentOptimal)
-      .setLoadOp(vk::AttachmentLoadOp::eClear)
-      .setStoreOp(vk::AttachmentStoreOp::eStore)
-      .setClearValue(vk::ClearColorValue(std::array<float, 4>{ground.x, ground.y, ground.z, 1.0F}));
-  depth.setImageView(depth_.view())
-      .setImageLayout(ImageLayout::eDepthAttachmentOptimal)
-      .setLoadOp(vk::AttachmentLoadOp::eClear)
-      .setStoreOp(vk::AttachmentStoreOp::eDontCare)
-      .setClearValue(vk::ClearDepthStencilValue{1.0F, 0});
+void LiveFrame::beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel) {
+  const vk::Rect2D plot = rectOf(panel.plot);
+  commands.setViewport(0, vk::Viewport{static_cast<float>(plot.offset.x), static_cast<float>(plot.offset.y),
+                                       static_cast<float>(plot.extent.width),
+                                       static_cast<float>(plot.extent.height), 0.0F, 1.0F});
+  commands.setScissor(0, rectOf(panel.visible));
+  const gpu::vec4 size{plot.extent.width, plot.extent.height, plot.offset.x, plot.offset.y};
+  commands.pushConstants<gpu::vec4>(pipelines_.sceneLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
+}
+
+void LiveFrame::instances(const vk::raii::CommandBuffer& commands, vk::Pipeline pipeline,
+                          vk::DescriptorSet set, std::uint32_t vertices, std::size_t first,
+                          std::size_t count) const {
+  commands.bindPipeline(kGraphics, pipeline);
+  commands.bindDescriptorSets(kGraphics, pipelines_.sceneLayout(), 0, set, {});
+  commands.draw(vertices, static_cast<std::uint32_t>(count), 0, static_cast<std::uint32_t>(first));
+}
+
+void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                            std::span<const LivePanel> panels) {
+  using Geometry = Pipelines::Geometry;
+  const vk::RenderingAttachmentInfo depth =
+      attachment(depth_.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eClear,
+                 vk::ClearDepthStencilValue{1.0F, 0});
   vk::RenderingInfo rendering;
-  rendering.setRenderArea({{0, 0}, target.extent})
-      .setLayerCount(1)
-      .setColorAttachments(colour)
-      .setPDepthAttachment(&depth);
+  rendering.setRenderArea({{0, 0}, depth_.extent()}).setLayerCount(1).setPDepthAttachment(&depth);
   commands.beginRendering(rendering);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
+    if (!seen(p)) continue;
+    beginPanel(commands, p);
     const PanelSets& sets = slot.panels[i];
-    const vk::Rect2D plot = rectOf(p.plot), visible = rectOf(p.visible);
-    if (visible.extent.width == 0 || visible.extent.height == 0) continue;
-    commands.setViewport(0, vk::Viewport{static_cast<float>(plot.offset.x), static_cast<float>(plot.offset.y),
-                                         static_cast<float>(plot.extent.width),
-                                         static_cast<float>(plot.extent.height), 0.0F, 1.0F});
-    commands.setScissor(0, visible);
-    const gpu::vec4 size{plot.extent.width, plot.extent.height, 0, 0};
-    commands.pushConstants<gpu::vec4>(pipelines_.sceneLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
-    const auto draw = [&](std::size_t count, vk::Pipeline pipeline, vk::DescriptorSet set,
-                          std::uint32_t vertices) {
-      if (count == 0) return;
-      commands.bindPipeline(kGraphics, pipeline);
-      commands.bindDescriptorSets(kGraphics, pipelines_.sceneLayout(), 0, set, {});
-      commands.draw(vertices, static_cast<std::uint32_t>(count), 0, 0);
-    };
-    const auto paged = p.variant.by_need ? Pipelines::Paged::kByNeed
-                       : p.variant.paged ? Pipelines::Paged::kYes
-                                         : Pipelines::Paged::kNo;
-    draw(p.choice->patches.size(), pipelines_.surface(p.variant), *sets.surface, gpu::kPatchVertices);
+    const auto paged = pagedOf(p);
+    const std::size_t all = p.choice->patches.size(), whole = p.variant.holes ? p.choice->whole : all;
+    if (whole > 0)
+      instances(commands, pipelines_.depth({Geometry::Kind::kPatches, paged, Pipelines::Holes::kNo}),
+                *sets.surface, gpu::kPatchVertices, 0, whole);
+    if (whole < all)
+      instances(commands, pipelines_.depth({Geometry::Kind::kPatches, paged, Pipelines::Holes::kYes}),
+                *sets.surface, gpu::kPatchVertices, whole, all - whole);
     if (!p.choice->seams.empty())
-      draw(2 * p.choice->seams.size(), pipelines_.seam(p.variant), *sets.seams, gpu::kSeamStripVertices);
-    // The plate is seen through holes alone.
-    if (p.variant.holes) draw(1, pipelines_.floor(), *sets.surface, 4);
-    draw(p.choice->walls.size(), pipelines_.wall(paged), *sets.walls, gpu::kWallVertices);
-    if (!p.in_scene.empty())
-      draw(p.in_scene.size(), pipelines_.lines(Pipelines::Lines::kInScene), *sets.in_scene, 4);
-    if (!p.on_top.empty()) draw(p.on_top.size(), pipelines_.lines(Pipelines::Lines::kOnTop), *sets.on_top, 4);
+      instances(commands, pipelines_.depth({Geometry::Kind::kSeams, paged, holesOf(p)}), *sets.seams,
+                gpu::kSeamStripVertices, 0, 2 * p.choice->seams.size());
+  }
+  commands.endRendering();
+}
+
+void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                           std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+                           const glm::vec3& ground) {
+  const vk::RenderingAttachmentInfo cleared =
+      attachment(base_.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eClear,
+                 vk::ClearColorValue(std::array<float, 4>{ground.x, ground.y, ground.z, 1.0F}));
+  vk::RenderingInfo rendering;
+  const vk::RenderingAttachmentInfo read =
+      attachment(depth_.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
+  rendering.setRenderArea({{0, 0}, base_.extent()})
+      .setLayerCount(1)
+      .setColorAttachments(cleared)
+      .setPDepthAttachment(&read);
+  commands.beginRendering(rendering);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    if (!seen(panels[i])) continue;
+    beginPanel(commands, panels[i]);
+    instances(commands, pipelines_.shade(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
   }
   commands.endRendering();
 
-  if (!furniture.empty() || target.over) {
-    change(commands, target.image, ImageLayout::eColorAttachmentOptimal, ImageLayout::eColorAttachmentOptimal,
+  Changes again;
+  again.add(depth_.image(), kDepth, ImageLayout::eDepthReadOnlyOptimal, ImageLayout::eDepthAttachmentOptimal,
+            kDepthStages | Stage::eFragmentShader, Access::eShaderRead, kDepthStages, kDepthAccess);
+  again.add(base_.image(), kColour, ImageLayout::eColorAttachmentOptimal,
+            ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
+            Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput, kColourAccess);
+  again.record(commands);
+  const vk::RenderingAttachmentInfo colour =
+      attachment(base_.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  const vk::RenderingAttachmentInfo depth =
+      attachment(depth_.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  rendering.setColorAttachments(colour).setPDepthAttachment(&depth);
+  commands.beginRendering(rendering);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const LivePanel& p = panels[i];
+    if (!seen(p)) continue;
+    beginPanel(commands, p);
+    // The plate is seen through holes alone.
+    if (p.variant.holes) instances(commands, pipelines_.floor(), *slot.panels[i].surface, 4, 0, 1);
+    if (!p.choice->walls.empty())
+      instances(commands, pipelines_.wall(pagedOf(p), holesOf(p)), *slot.panels[i].walls, gpu::kWallVertices,
+                0, p.choice->walls.size());
+  }
+  commands.endRendering();
+  if (furniture.empty()) return;
+
+  Changes over;
+  over.add(base_.image(), kColour, ImageLayout::eColorAttachmentOptimal, ImageLayout::eColorAttachmentOptimal,
            Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput,
-           Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
-    colour.setLoadOp(vk::AttachmentLoadOp::eLoad);
-    rendering.setPDepthAttachment(nullptr);
+           kColourAccess);
+  over.record(commands);
+  rendering.setPDepthAttachment(nullptr);
+  commands.beginRendering(rendering);
+  const vk::Extent2D extent = base_.extent();
+  commands.setViewport(0, vk::Viewport{0.0F, 0.0F, static_cast<float>(extent.width),
+                                       static_cast<float>(extent.height), 0.0F, 1.0F});
+  commands.setScissor(0, vk::Rect2D{{0, 0}, extent});
+  commands.bindPipeline(kGraphics, pipelines_.quads());
+  const gpu::vec4 size{extent.width, extent.height, 0, 0};
+  commands.pushConstants<gpu::vec4>(pipelines_.pictureLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
+  commands.bindDescriptorSets(kGraphics, pipelines_.pictureLayout(), 0, *slot.picture, {});
+  commands.draw(4, static_cast<std::uint32_t>(furniture.size()), 0, 0);
+  commands.endRendering();
+}
+
+void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                             std::span<const LivePanel> panels, const LiveTarget& target) {
+  vk::ImageCopy copy;
+  copy.setSrcSubresource({kColour, 0, 0, 1})
+      .setDstSubresource({kColour, 0, 0, 1})
+      .setExtent({target.extent.width, target.extent.height, 1});
+  commands.copyImage(base_.image(), ImageLayout::eTransferSrcOptimal, target.image,
+                     ImageLayout::eTransferDstOptimal, copy);
+  const bool lines = std::any_of(panels.begin(), panels.end(), [](const LivePanel& p) {
+    return seen(p) && !(p.in_scene.empty() && p.on_top.empty());
+  });
+  const bool copied = target.leaves_as == ImageLayout::eTransferSrcOptimal;
+  const vk::PipelineStageFlags2 next = copied ? Stage::eCopy : Stage::eBottomOfPipe;
+  const auto reads = copied ? vk::AccessFlags2(Access::eTransferRead) : vk::AccessFlags2{};
+  if (!lines && !target.over) {
+    change(commands, target.image, ImageLayout::eTransferDstOptimal, target.leaves_as, Stage::eCopy,
+           Access::eTransferWrite, next, reads);
+    return;
+  }
+  change(commands, target.image, ImageLayout::eTransferDstOptimal, ImageLayout::eColorAttachmentOptimal,
+         Stage::eCopy, Access::eTransferWrite, Stage::eColorAttachmentOutput, kColourAccess);
+  const vk::RenderingAttachmentInfo colour =
+      attachment(target.view, ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  const vk::RenderingAttachmentInfo depth =
+      attachment(depth_.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  vk::RenderingInfo rendering;
+  rendering.setRenderArea({{0, 0}, target.extent}).setLayerCount(1).setColorAttachments(colour);
+  if (lines) {
+    rendering.setPDepthAttachment(&depth);
     commands.beginRendering(rendering);
-    if (!furniture.empty()) {
-      commands.setViewport(0, vk::Viewport{0.0F, 0.0F, static_cast<float>(target.extent.width),
-                                           static_cast<float>(target.extent.height), 0.0F, 1.0F});
-      commands.setScissor(0, vk::Rect2D{{0, 0}, target.extent});
-      commands.bindPipeline(kGraphics, pipelines_.quads());
-      const gpu::vec4 size{target.extent.width, target.extent.height, 0, 0};
-      commands.pushConstants<gpu::vec4>(pipelines_.pictureLayout(), vk::ShaderStageFlagBits::eVertex, 0,
-                                        size);
-      commands.bindDescriptorSets(kGraphics, pipelines_.pictureLayout(), 0, *slot.picture, {});
-      commands.draw(4, static_cast<std::uint32_t>(furniture.size()), 0, 0);
+    for (std::size_t i = 0; i < panels.size(); ++i) {
+      const LivePanel& p = panels[i];
+      if (!seen(p)) continue;
+      beginPanel(commands, p);
+      if (!p.in_scene.empty())
+        instances(commands, pipelines_.lines(Pipelines::Lines::kInScene), *slot.panels[i].in_scene, 4, 0,
+                  p.in_scene.size());
+      if (!p.on_top.empty())
+        instances(commands, pipelines_.lines(Pipelines::Lines::kOnTop), *slot.panels[i].on_top, 4, 0,
+                  p.on_top.size());
     }
-    if (target.over) target.over(*commands);
     commands.endRendering();
   }
-  const bool copied = target.leaves_as == ImageLayout::eTransferSrcOptimal;
+  if (target.over) {
+    if (lines)
+      change(commands, target.image, ImageLayout::eColorAttachmentOptimal,
+             ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
+             Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput, kColourAccess);
+    rendering.setPDepthAttachment(nullptr);
+    commands.beginRendering(rendering);
+    target.over(*commands);
+    commands.endRendering();
+  }
   change(commands, target.image, ImageLayout::eColorAttachmentOptimal, target.leaves_as,
-         Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite,
-         copied ? Stage::eCopy : Stage::eBottomOfPipe,
-         copied ? vk::AccessFlags2(Access::eTransferRead) : vk::AccessFlags2{});
+         Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, next, reads);
+}
+
+void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
+                       const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
+                       const LiveTarget& target) {
+  const vk::raii::CommandBuffer& commands = submissions.commands();
+  Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
+  if (!furniture.empty()) bringGlyphs(commands, staging, submissions.next(), glyphs);
+  makeLayers(submissions, target.extent);
+  fill(slot, panels, furniture);
+
+  // The frame before may still draw lines against this depth, and copy out of that base.
+  Changes begin;
+  begin.add(depth_.image(), kDepth, ImageLayout::eUndefined, ImageLayout::eDepthAttachmentOptimal,
+            kDepthStages, Access::eDepthStencilAttachmentWrite, kDepthStages, kDepthAccess);
+  begin.record(commands);
+  recordDepth(commands, slot, panels);
+  Changes shade;
+  shade.add(depth_.image(), kDepth, ImageLayout::eDepthAttachmentOptimal, ImageLayout::eDepthReadOnlyOptimal,
+            kDepthStages, Access::eDepthStencilAttachmentWrite, kDepthStages | Stage::eFragmentShader,
+            Access::eDepthStencilAttachmentRead | Access::eShaderRead);
+  shade.add(base_.image(), kColour, ImageLayout::eUndefined, ImageLayout::eColorAttachmentOptimal,
+            Stage::eCopy, Access::eTransferRead, Stage::eColorAttachmentOutput, kColourAccess);
+  shade.record(commands);
+  recordBase(commands, slot, panels, furniture, ground);
+  Changes compose;
+  compose.add(base_.image(), kColour, ImageLayout::eColorAttachmentOptimal, ImageLayout::eTransferSrcOptimal,
+              Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eCopy,
+              Access::eTransferRead);
+  // The acquired image is waited for at these stages: the change of layout comes after it.
+  compose.add(target.image, kColour, ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal,
+              Stage::eColorAttachmentOutput | Stage::eCopy, {}, Stage::eCopy, Access::eTransferWrite);
+  compose.record(commands);
+  recordTarget(commands, slot, panels, target);
 }
 
 }  // namespace fettle::render

@@ -28,8 +28,17 @@ struct LivePanel {
   std::vector<gpu::Line> in_scene, on_top;
 };
 
-/// Records a frame: surfaces, lines, furniture, and whatever the target wants over it. What a frame in flight
-/// reads is kept until its turn comes round.
+/// Records a frame in three layers, each of which is left alone while nothing in it changes:
+///
+///   depth_   of the surface, its seams, rim walls and plate: geometry, drawn without a colour
+///   base_    the surface shaded from that depth, once a pixel (shaders/shade.frag); then what is shaded
+///            triangle by triangle, plate and walls; then the furniture
+///   target   a copy of base_; then overlay lines; then whatever the target wants over it
+///
+/// A second eye (stereo) is a second layer of depth_ and base_ and a second element of
+/// PanelUniforms::views; the passes are the same, drawn with a view mask.
+///
+/// What a frame in flight reads is kept until its turn comes round.
 ///
 /// Threading: as Context. Throws vk::SystemError.
 class LiveFrame {
@@ -46,7 +55,6 @@ class LiveFrame {
   [[nodiscard]] const Pipelines& pipelines() const noexcept { return pipelines_; }
 
  private:
-  // Sets of one panel; the last one is the picture's.
   struct PanelSets {
     vk::raii::DescriptorSet surface = nullptr, seams = nullptr, walls = nullptr, in_scene = nullptr,
                             on_top = nullptr;
@@ -57,19 +65,29 @@ class LiveFrame {
     std::array<PanelSets, kMostPanels> panels;
     vk::raii::DescriptorSet picture = nullptr;
   };
-  struct Block {
-    vk::DeviceSize offset = 0, bytes = 0;
-  };
   void bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging, std::uint64_t submission,
                    const Glyphs& glyphs);
+  void makeLayers(Submissions& submissions, vk::Extent2D extent);
+  void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture);
+  void beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel);
+  void instances(const vk::raii::CommandBuffer& commands, vk::Pipeline pipeline, vk::DescriptorSet set,
+                 std::uint32_t vertices, std::size_t first, std::size_t count) const;
+  void recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                   std::span<const LivePanel> panels);
+  void recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                  std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+                  const glm::vec3& ground);
+  void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                    std::span<const LivePanel> panels, const LiveTarget& target);
 
   Context& context_;
+  vk::Format colour_;
   Pipelines pipelines_;
   vk::raii::DescriptorPool pool_ = nullptr;
   std::array<Slot, Submissions::kInFlight> slots_;
   Buffer no_pages_;  // what is bound where the shader does not look
   vk::raii::BufferView no_pages_view_ = nullptr;
-  GpuImage depth_;
+  GpuImage depth_, base_;
   GpuImage glyphs_;
   std::uint64_t glyph_generation_ = 0;
 };

@@ -13,6 +13,7 @@
 #include "render/capture.h"
 #include "render/live_frame.h"
 #include "render/live_overlay.h"
+#include "render/live_view.h"
 #include "render/page_demand.h"
 #include "render/pick.h"
 
@@ -406,7 +407,16 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     appendRing(shown.versions.front().reader(), ring, lines);
   for (std::size_t i = 0; i < count_panels; ++i) {
     const PanelPlan& p = plan.panels[i];
+    LivePanel& panel = panels[i];
+    // Colours from samples about a pixel apart: in perspective the near part is larger than the middle.
+    const glm::dvec2 px = cellPixels(p.placing, p.camera);
+    const double nearer = input.view.projection == Projection::kPerspective ? 2.0 : 1.0;
+    while (panel.shade_level + 1 < LiveTexture::kLevels &&
+           std::ldexp(std::max(px.x, px.y) * nearer, LiveTexture::shift(panel.shade_level + 1)) <= 1.0)
+      ++panel.shade_level;
+    const int shift = LiveTexture::shift(panel.shade_level);
     PatchQuestion q;
+    q.shade_step = 1 << shift;
     q.measure = &fields[i].measure;
     q.reader = p.field.reader();
     q.placing = p.placing;
@@ -420,7 +430,6 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     q.vertex_budget = input.vertex_budget / static_cast<std::int64_t>(count_panels);
     trees.emplace_back(q);
 
-    LivePanel& panel = panels[i];
     panel.plot = panel.visible = p.plot;
     if (split) {
       const int at = static_cast<int>(std::lround(input.split * p.plot.width));
@@ -434,19 +443,14 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     panel.original = original.version().empty() ? nullptr : &original;
     panel.uniforms = p.uniforms;
     gpu::PanelUniforms& u = panel.uniforms;
-    // Colours from samples about a pixel apart: in perspective the near part is larger than the middle.
-    const glm::dvec2 px = cellPixels(p.placing, p.camera);
-    const double nearer = input.view.projection == Projection::kPerspective ? 2.0 : 1.0;
-    while (panel.shade_level + 1 < LiveTexture::kLevels &&
-           std::ldexp(std::max(px.x, px.y) * nearer, LiveTexture::shift(panel.shade_level + 1)) <= 1.0)
-      ++panel.shade_level;
-    const int shift = LiveTexture::shift(panel.shade_level);
     if (shift > 0) {
       u.shade = glm::ivec4(shift, 0, glm::max((p.placing.true_size - 1) / (1 << shift) + 1, glm::ivec2(2)));
       u.paging.w = std::max(
           1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::ldexp(std::min(px.x, px.y), shift)))));
     }
     u.seam.x = kSeamPx;
+    u.views[0] = viewOf(p.camera, p.placing, p.plot);
+    u.ground = glm::vec4(plan.palette.ground, 1.0F);
     const Paging& paging = panel.field->paging();
     u.paging.x = paging.log2_columns;
     u.paging.y = paging.log2_rows;
@@ -465,7 +469,10 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
                      std::max(px.x, px.y) > 1.5,
                      holed(p.field) || (panel.original != nullptr && holed(original.version())),
                      true,
-                     pool != nullptr};
+                     pool != nullptr,
+                     pool == nullptr && !paging.paged() &&
+                         std::min(p.placing.true_size.x, p.placing.true_size.y) > 1 << shift,
+                     input.view.projection == Projection::kPerspective};
     if (pool)
       demand.want(trees[i].leaves(), fields[i].texture, panel.original != nullptr ? &original : nullptr,
                   panel.shade_level, u.paging.w, submissions.next());
@@ -503,7 +510,9 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     furniture.push_back(line);
   }
   frame.record(submissions, staging, panels, furniture, plan.palette.ground, glyphs, target);
-  submissions.submit({target.free, vk::PipelineStageFlagBits2::eColorAttachmentOutput, target.done});
+  submissions.submit({target.free,
+                      vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
+                      target.done});
   stats.device_ms = submissions.lastMs();
   stats.range = plan.range;
   stats.vertical_exaggeration = plan.exaggeration;
@@ -587,7 +596,8 @@ engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input
       impl_->submissions.finish();
       impl_->canvas.image =
           GpuImage(impl_->context, kColourFormat, extent, 1, GpuImage::Kind::kPlane,
-                   vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc,
+                   vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc |
+                       vk::ImageUsageFlagBits::eTransferDst,
                    vk::ImageAspectFlagBits::eColor);
     }
     engine::Result<FrameStatistics> stats = impl_->draw(input, impl_->canvas.target());

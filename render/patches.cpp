@@ -6,6 +6,10 @@
 #include <limits>
 #include <queue>
 
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
 namespace fettle::render {
 namespace {
 
@@ -176,11 +180,45 @@ void PatchTree::drop(std::int32_t at) {
   node(at).leaf = false;
 }
 
+// Whether a fragment of the patch may look at a hole. By the measure, that knows of holes from level 1 up.
+bool PatchTree::mayShowHole(const Node& n) const {
+  const int top = q_.measure->topLevel();
+  if (top == 0) return true;
+  int level = std::max(n.level, 1);
+  const bool reaches_out = q_.shade_step > 1;
+  while (reaches_out && level < top && DetailMeasure::side(level) < q_.shade_step) ++level;
+  const glm::ivec2 at = glm::ivec2(n.x, n.y) >> (level - n.level);
+  const int reach = reaches_out ? 1 : 0;
+  const glm::ivec2 low = glm::max(at - reach, 0), high = glm::min(at + reach, q_.measure->patches(level) - 1);
+  for (int y = low.y; y <= high.y; ++y)
+    for (int x = low.x; x <= high.x; ++x)
+      if (!(q_.measure->error(level, x, y).excess < kInfinity)) return true;
+  return false;
+}
+
+// Which sides of the field turn their wall to the viewer.
+std::array<bool, 4> PatchTree::wallsSeen() const {
+  // The viewer's place, or the way to it when it is infinitely far. Each side of the field is one plane.
+  glm::dvec4 eye = glm::inverse(q_.camera.clipFromScene()) * glm::dvec4(0.0, 0.0, 1.0, 0.0);
+  eye = std::abs(eye.w) > 1e-12 * glm::length(glm::dvec3(eye)) ? eye / eye.w
+                                                               : glm::dvec4(q_.camera.toViewer(), 0.0);
+  const glm::dvec2 low = q_.placing.first, high = low + q_.placing.extent();
+  // Through a hole the inner side of a wall may be seen.
+  const bool holed = q_.reader.root().holed_children != 0;
+  return {holed || eye.y < eye.w * low.y, holed || eye.x > eye.w * high.x, holed || eye.y > eye.w * high.y,
+          holed || eye.x < eye.w * low.x};
+}
+
 PatchChoice PatchTree::list() const {
   PatchChoice choice;
   choice.within_budget = within_budget_;
   const glm::ivec2 end = q_.placing.size - 1;
-  for (const std::int32_t leaf : sorted()) {
+  const std::array<bool, 4> walls_seen = wallsSeen();
+  std::vector<std::int32_t> leaves = sorted();
+  const auto holed = std::stable_partition(leaves.begin(), leaves.end(),
+                                           [this](std::int32_t leaf) { return !mayShowHole(node(leaf)); });
+  choice.whole = static_cast<std::size_t>(holed - leaves.begin());
+  for (const std::int32_t leaf : leaves) {
     const Node& n = node(leaf);
     choice.bound_px = std::max(choice.bound_px, n.error_px);
     const std::int32_t side = DetailMeasure::side(n.level);
@@ -192,6 +230,7 @@ PatchChoice PatchTree::list() const {
     for (int s = 0; s < 4; ++s) {
       const auto k = static_cast<std::size_t>(s);
       if (rim[k]) {
+        if (!walls_seen[k]) continue;
         choice.walls.push_back({{begins[k].x, begins[k].y, n.level, n.level | s << 8}});
         continue;
       }

@@ -22,11 +22,17 @@ struct PatchQuestion {
   double floor_z = 0.0;                ///< of the plate below; rim walls reach down to it [scene mm]
   double error_px = 1.0;
   std::int64_t vertex_budget = 98304;
+  /// Step between the samples that colours come from [samples], a power of two: a fragment is left out when a
+  /// corner of its cell among those is a hole.
+  std::int32_t shade_step = 1;
 };
 
-/// The surface of one panel: leaves of a quadtree over the field, near ones first.
+/// The surface of one panel: leaves of a quadtree over the field.
 struct PatchChoice {
   std::vector<gpu::Patch> patches;  ///< first sample; level; level
+  /// So many of them, the first ones, have no hole in them or near enough to show; near ones first in either
+  /// part.
+  std::size_t whole = 0;
   /// Where a patch meets one of a higher level: first sample of the edge; level | the other's level << 8;
   /// side (0 low y, 1 high x, 2 high y, 3 low x, as seen from the finer patch).
   std::vector<gpu::Patch> seams;
@@ -81,6 +87,8 @@ class PatchTree {
   void refine();
   [[nodiscard]] engine::HeightBounds heights(glm::ivec2 first, glm::ivec2 last) const;
   std::int32_t add(int level, std::int32_t x, std::int32_t y);
+  [[nodiscard]] bool mayShowHole(const Node& n) const;
+  [[nodiscard]] std::array<bool, 4> wallsSeen() const;
   [[nodiscard]] int levelAt(int level, std::int32_t x, std::int32_t y) const;
   [[nodiscard]] std::vector<std::int32_t> sorted() const;
   bool prune(std::int32_t at, const std::function<bool(const PatchLeaf&)>& drawable);

@@ -5,11 +5,14 @@
 
 #include "floor.frag.h"
 #include "floor.vert.h"
+#include "holes.frag.h"
 #include "line.frag.h"
 #include "line.vert.h"
 #include "quad.frag.h"
 #include "quad.vert.h"
 #include "seam.vert.h"
+#include "shade.frag.h"
+#include "shade.vert.h"
 #include "shaders/layout.h"
 #include "surface.frag.h"
 #include "surface.vert.h"
@@ -30,23 +33,31 @@ vk::DescriptorSetLayoutBinding binding(int number, vk::DescriptorType type) {
 
 // What differs between the pipelines.
 struct Pipelines::Recipe {
-  Words vertex, fragment;
+  Words vertex;
+  Words fragment = {};  // none: depth alone
   vk::PipelineLayout layout;
   vk::PrimitiveTopology topology = vk::PrimitiveTopology::eTriangleStrip;
-  enum class Depth { kTestAndWrite, kTest, kIgnore, kNone } depth = Depth::kTestAndWrite;
+  enum class Depth { kTestAndWrite, kTest, kBehind, kIgnore, kNone } depth = Depth::kTestAndWrite;
   enum class Blend { kReplace, kPremultiplied } blend = Blend::kReplace;
+  enum class Colour { kYes, kNone } colour = Colour::kYes;
   std::array<vk::Bool32, gpu::kSpecCount> constants{};  // by constant_id
 };
 
 Pipelines::Pipelines(const Context& context, vk::Format colour) : context_(context), colour_(colour) {
-  const std::array scene{binding(gpu::kBindPanel, vk::DescriptorType::eUniformBuffer),
-                         binding(gpu::kBindHeights, vk::DescriptorType::eSampledImage),
-                         binding(gpu::kBindMarks, vk::DescriptorType::eSampledImage),
-                         binding(gpu::kBindOriginal, vk::DescriptorType::eSampledImage),
-                         binding(gpu::kBindPatches, vk::DescriptorType::eStorageBuffer),
-                         binding(gpu::kBindShade, vk::DescriptorType::eSampledImage),
-                         binding(gpu::kBindLines, vk::DescriptorType::eStorageBuffer),
-                         binding(gpu::kBindPages, vk::DescriptorType::eUniformTexelBuffer)};
+  nearest_ = vk::raii::Sampler(context.device(), vk::SamplerCreateInfo{}
+                                                     .setAddressModeU(vk::SamplerAddressMode::eClampToEdge)
+                                                     .setAddressModeV(vk::SamplerAddressMode::eClampToEdge));
+  const std::array scene{
+      binding(gpu::kBindPanel, vk::DescriptorType::eUniformBuffer),
+      binding(gpu::kBindHeights, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindMarks, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindOriginal, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindPatches, vk::DescriptorType::eStorageBuffer),
+      binding(gpu::kBindShade, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindLines, vk::DescriptorType::eStorageBuffer),
+      binding(gpu::kBindPages, vk::DescriptorType::eUniformTexelBuffer),
+      binding(gpu::kBindDepth, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindNearest, vk::DescriptorType::eSampler).setImmutableSamplers(*nearest_)};
   const std::array picture{binding(gpu::kBindScene, vk::DescriptorType::eSampledImage),
                            binding(gpu::kBindGlyphs, vk::DescriptorType::eSampledImage),
                            binding(gpu::kBindQuads, vk::DescriptorType::eStorageBuffer),
@@ -68,16 +79,17 @@ vk::raii::Pipeline Pipelines::make(const Recipe& recipe) {
     return vk::raii::ShaderModule(context_.device(),
                                   info.setCodeSize(words.size_bytes()).setPCode(words.data()));
   };
-  const vk::raii::ShaderModule vertex = module(recipe.vertex), fragment = module(recipe.fragment);
+  const vk::raii::ShaderModule vertex = module(recipe.vertex);
+  vk::raii::ShaderModule fragment = nullptr;
+  if (!recipe.fragment.empty()) fragment = module(recipe.fragment);
   std::array<vk::SpecializationMapEntry, gpu::kSpecCount> entries;
   for (std::uint32_t i = 0; i < entries.size(); ++i)
     entries[i] =
         vk::SpecializationMapEntry{i, i * static_cast<std::uint32_t>(sizeof(vk::Bool32)), sizeof(vk::Bool32)};
   vk::SpecializationInfo constants;
   constants.setMapEntries(entries).setDataSize(sizeof(recipe.constants)).setPData(recipe.constants.data());
-  const std::array stages{
-      vk::PipelineShaderStageCreateInfo{{}, Stage::eVertex, *vertex, "main", &constants},
-      vk::PipelineShaderStageCreateInfo{{}, Stage::eFragment, *fragment, "main", &constants}};
+  std::vector<vk::PipelineShaderStageCreateInfo> stages{{{}, Stage::eVertex, *vertex, "main", &constants}};
+  if (*fragment) stages.push_back({{}, Stage::eFragment, *fragment, "main", &constants});
 
   const vk::PipelineVertexInputStateCreateInfo no_vertices;
   const vk::PipelineInputAssemblyStateCreateInfo assembly{{}, recipe.topology};
@@ -87,9 +99,10 @@ vk::raii::Pipeline Pipelines::make(const Recipe& recipe) {
   const vk::PipelineMultisampleStateCreateInfo one_sample{{}, vk::SampleCountFlagBits::e1};
   vk::PipelineDepthStencilStateCreateInfo depth;
   const bool writes = recipe.depth == Recipe::Depth::kTestAndWrite;
-  depth.setDepthTestEnable(writes || recipe.depth == Recipe::Depth::kTest)
+  const bool behind = recipe.depth == Recipe::Depth::kBehind;
+  depth.setDepthTestEnable(writes || behind || recipe.depth == Recipe::Depth::kTest)
       .setDepthWriteEnable(writes)
-      .setDepthCompareOp(vk::CompareOp::eLessOrEqual);
+      .setDepthCompareOp(behind ? vk::CompareOp::eGreater : vk::CompareOp::eLessOrEqual);
   vk::PipelineColorBlendAttachmentState blend;
   using Channel = vk::ColorComponentFlagBits;
   blend.setColorWriteMask(Channel::eR | Channel::eG | Channel::eB | Channel::eA)
@@ -99,12 +112,12 @@ vk::raii::Pipeline Pipelines::make(const Recipe& recipe) {
       .setSrcAlphaBlendFactor(vk::BlendFactor::eOne)
       .setDstAlphaBlendFactor(vk::BlendFactor::eOneMinusSrcAlpha);
   vk::PipelineColorBlendStateCreateInfo blending;
-  blending.setAttachments(blend);
+  if (recipe.colour == Recipe::Colour::kYes) blending.setAttachments(blend);
   const std::array dynamic_states{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
   vk::PipelineDynamicStateCreateInfo dynamic;
   dynamic.setDynamicStates(dynamic_states);
   vk::PipelineRenderingCreateInfo rendering;
-  rendering.setColorAttachmentFormats(colour_);
+  if (recipe.colour == Recipe::Colour::kYes) rendering.setColorAttachmentFormats(colour_);
   if (recipe.depth != Recipe::Depth::kNone) rendering.setDepthAttachmentFormat(kDepthFormat);
   vk::GraphicsPipelineCreateInfo info;
   info.setStages(stages)
@@ -127,8 +140,10 @@ namespace {
 std::array<vk::Bool32, gpu::kSpecCount> constantsOf(const SurfaceVariant& v) {
   static_assert(gpu::kSpecPaged == 0 && gpu::kSpecMarks == 1 && gpu::kSpecDeviation == 2 &&
                 gpu::kSpecContours == 3 && gpu::kSpecSmooth == 4 && gpu::kSpecHoles == 5 &&
-                gpu::kSpecCell == 6 && gpu::kSpecByNeed == 7);
-  return {v.paged, v.marks, v.deviation, v.contours, v.smooth, v.holes, v.cell_slopes, v.by_need};
+                gpu::kSpecCell == 6 && gpu::kSpecByNeed == 7 && gpu::kSpecGather == 8 &&
+                gpu::kSpecPerspective == 9);
+  return {v.paged, v.marks,       v.deviation, v.contours, v.smooth,
+          v.holes, v.cell_slopes, v.by_need,   v.gather,   v.perspective};
 }
 
 }  // namespace
@@ -141,12 +156,29 @@ vk::Pipeline Pipelines::surface(const SurfaceVariant& variant) {
   return *surfaces_.emplace(variant, make(recipe)).first->second;
 }
 
-vk::Pipeline Pipelines::seam(const SurfaceVariant& variant) {
-  const auto found = seams_.find(variant);
-  if (found != seams_.end()) return *found->second;
-  Recipe recipe{.vertex = seam_vert_spirv, .fragment = surface_frag_spirv, .layout = *scene_layout_};
+vk::Pipeline Pipelines::depth(const Geometry& geometry) {
+  const auto found = depths_.find(geometry);
+  if (found != depths_.end()) return *found->second;
+  Recipe recipe{
+      .vertex = geometry.kind == Geometry::Kind::kSeams ? Words(seam_vert_spirv) : surface_vert_spirv,
+      .layout = *scene_layout_,
+      .colour = Recipe::Colour::kNone};
+  if (geometry.holes == Holes::kYes) recipe.fragment = holes_frag_spirv;
+  recipe.constants[gpu::kSpecPaged] = geometry.paged == Paged::kYes;
+  recipe.constants[gpu::kSpecByNeed] = geometry.paged == Paged::kByNeed;
+  recipe.constants[gpu::kSpecHoles] = geometry.holes == Holes::kYes;
+  return *depths_.emplace(geometry, make(recipe)).first->second;
+}
+
+vk::Pipeline Pipelines::shade(const SurfaceVariant& variant) {
+  const auto found = shades_.find(variant);
+  if (found != shades_.end()) return *found->second;
+  Recipe recipe{.vertex = shade_vert_spirv,
+                .fragment = shade_frag_spirv,
+                .layout = *scene_layout_,
+                .depth = Recipe::Depth::kBehind};
   recipe.constants = constantsOf(variant);
-  return *seams_.emplace(variant, make(recipe)).first->second;
+  return *shades_.emplace(variant, make(recipe)).first->second;
 }
 
 vk::Pipeline Pipelines::lines(Lines depth) {
@@ -160,14 +192,14 @@ vk::Pipeline Pipelines::lines(Lines depth) {
   return *lines_.emplace(depth, make(recipe)).first->second;
 }
 
-vk::Pipeline Pipelines::wall(Paged paged) {
-  const auto found = walls_.find(paged);
+vk::Pipeline Pipelines::wall(Paged paged, Holes holes) {
+  const auto found = walls_.find({paged, holes});
   if (found != walls_.end()) return *found->second;
   Recipe recipe{.vertex = wall_vert_spirv, .fragment = wall_frag_spirv, .layout = *scene_layout_};
   recipe.constants[gpu::kSpecPaged] = paged == Paged::kYes;
-  recipe.constants[gpu::kSpecHoles] = VK_TRUE;
+  recipe.constants[gpu::kSpecHoles] = holes == Holes::kYes;
   recipe.constants[gpu::kSpecByNeed] = paged == Paged::kByNeed;
-  return *walls_.emplace(paged, make(recipe)).first->second;
+  return *walls_.emplace(std::pair{paged, holes}, make(recipe)).first->second;
 }
 
 vk::Pipeline Pipelines::floor() {

@@ -2,6 +2,7 @@
 
 #include <compare>
 #include <map>
+#include <utility>
 
 #include "render/target.h"
 
@@ -17,7 +18,9 @@ struct SurfaceVariant {
   bool smooth = false;
   bool holes = true;
   bool cell_slopes = false;
-  bool by_need = false;  ///< pages on the device by need (render/page_demand.h)
+  bool by_need = false;      ///< pages on the device by need (render/page_demand.h)
+  bool gather = false;       ///< see shaders/layout.h
+  bool perspective = false;  ///< looked at by shade() alone
   friend auto operator<=>(const SurfaceVariant&, const SurfaceVariant&) = default;
 };
 
@@ -27,10 +30,21 @@ class Pipelines {
   /// For pictures of this format.
   explicit Pipelines(const Context& context, vk::Format colour = kColourFormat);
 
+  /// Shades every triangle of the surface: colour and depth.
   [[nodiscard]] vk::Pipeline surface(const SurfaceVariant& variant);
   enum class Paged { kNo, kYes, kByNeed };
-  [[nodiscard]] vk::Pipeline wall(Paged paged);
-  [[nodiscard]] vk::Pipeline seam(const SurfaceVariant& variant);
+  enum class Holes { kNo, kYes };  ///< whether some cells are left out
+  [[nodiscard]] vk::Pipeline wall(Paged paged, Holes holes = Holes::kYes);
+  /// Depth of the surface alone: of patches, and of the seams between them.
+  struct Geometry {
+    enum class Kind { kPatches, kSeams } kind = Kind::kPatches;
+    Paged paged = Paged::kNo;
+    Holes holes = Holes::kNo;
+    friend auto operator<=>(const Geometry&, const Geometry&) = default;
+  };
+  [[nodiscard]] vk::Pipeline depth(const Geometry& geometry);
+  /// Shades a plot from that depth, once a pixel: colour alone.
+  [[nodiscard]] vk::Pipeline shade(const SurfaceVariant& variant);
   [[nodiscard]] vk::Pipeline floor();
   enum class Lines { kOnTop, kInScene };
   [[nodiscard]] vk::Pipeline lines(Lines depth);
@@ -50,10 +64,12 @@ class Pipelines {
 
   const Context& context_;
   vk::Format colour_;
+  vk::raii::Sampler nearest_ = nullptr;
   vk::raii::DescriptorSetLayout scene_set_ = nullptr, picture_set_ = nullptr;
   vk::raii::PipelineLayout scene_layout_ = nullptr, picture_layout_ = nullptr;
-  std::map<SurfaceVariant, vk::raii::Pipeline> surfaces_, seams_;
-  std::map<Paged, vk::raii::Pipeline> walls_;
+  std::map<SurfaceVariant, vk::raii::Pipeline> surfaces_, shades_;
+  std::map<Geometry, vk::raii::Pipeline> depths_;
+  std::map<std::pair<Paged, Holes>, vk::raii::Pipeline> walls_;
   std::map<Lines, vk::raii::Pipeline> lines_;
   vk::raii::Pipeline floor_ = nullptr, quads_ = nullptr;
   std::size_t made_ = 0;

@@ -205,7 +205,7 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
     panel.lowest = lowest_drawn * share;
     panel.highest = highest_drawn * share;
     u = {};
-    u.clip_from_scene = glm::mat4(panel.camera.clipFromScene());
+    u.views[0].clip_from_scene = glm::mat4(panel.camera.clipFromScene());
     u.placing = glm::vec4(glm::dvec4(panel.placing.first, panel.placing.spacing));
     u.relief = glm::vec4(
         glm::dvec4(panel.field.reader().sign(), reference * share, mm_per_unit * own_unit, floor_z));

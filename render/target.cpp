@@ -75,7 +75,8 @@ void SceneTarget::finish(const vk::raii::CommandBuffer& commands) const {
 
 PictureTarget::PictureTarget(const Context& context, vk::Extent2D extent)
     : colour(context, kColourFormat, extent, 1, GpuImage::Kind::kPlane,
-             Usage::eColorAttachment | Usage::eTransferSrc, vk::ImageAspectFlagBits::eColor) {}
+             Usage::eColorAttachment | Usage::eTransferSrc | Usage::eTransferDst,
+             vk::ImageAspectFlagBits::eColor) {}
 
 void PictureTarget::begin(const vk::raii::CommandBuffer& commands, const std::array<float, 3>& ground,
                           Pass pass) const {

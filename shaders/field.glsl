@@ -4,6 +4,7 @@
 layout(constant_id = kSpecPaged) const bool kPaged = false;
 layout(constant_id = kSpecHoles) const bool kHoles = true;
 layout(constant_id = kSpecByNeed) const bool kByNeed = false;
+layout(constant_id = kSpecGather) const bool kGather = false;
 
 layout(set = 0, binding = kBindPanel, std140) uniform PanelBlock { PanelUniforms panel; };
 layout(set = 0, binding = kBindHeights) uniform utexture2DArray heights_image;
@@ -43,6 +44,11 @@ uint rawByNeed(ivec2 s, int log2_step) {
   }
   return texelFetch(heights_image, texel, 0).x;
 }
+layout(set = 0, binding = kBindNearest) uniform sampler nearest;
+
+// The eye that is drawn for. Where a pass draws for several at once this is views[gl_ViewIndex], and nothing else
+// in the shaders has to change.
+ViewUniforms viewUniforms() { return panel.views[0]; }
 
 // Where sample `s` of the virtual field lies in an image array. Pages are powers of two so that this is shifts.
 ivec3 texelOf(ivec2 s) {
@@ -122,8 +128,24 @@ ivec2 shadeCell(ivec2 base, vec2 local, out vec2 f) {
   return cell;
 }
 
+// Bits of the heights at a cell's corners: (0, 0), (1, 0), (0, 1), (1, 1).
+uvec4 cellHeights(ivec2 cell) {
+  if (kGather) {
+    // Half way between the four: no rounding can take others.
+    const vec2 at = vec2(cell + 1) / vec2(textureSize(shade_image, 0).xy);
+    return textureGather(usampler2DArray(shade_image, nearest), vec3(at, 0.0)).wzxy;
+  }
+  return uvec4(shadeHeight(cell), shadeHeight(cell + ivec2(1, 0)), shadeHeight(cell + ivec2(0, 1)),
+               shadeHeight(cell + ivec2(1, 1)));
+}
+
 // On the bits, because a driver may take "x != x" for false.
 bool isHole(uint raw) { return (raw & 0x7fffffffu) > 0x7f800000u; }
+
+bool cellIsHole(ivec2 cell) {
+  const uvec4 raw = cellHeights(cell);
+  return isHole(raw.x) || isHole(raw.y) || isHole(raw.z) || isHole(raw.w);
+}
 
 float heightOf(uint raw) { return panel.relief.x * uintBitsToFloat(raw); }
 

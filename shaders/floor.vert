@@ -6,5 +6,5 @@
 
 void main() {
   const ivec2 s = ivec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * (panel.size.xy - 1);
-  gl_Position = panel.clip_from_scene * vec4(scenePoint(s, panel.relief.w), 1.0);
+  gl_Position = viewUniforms().clip_from_scene * vec4(scenePoint(s, panel.relief.w), 1.0);
 }

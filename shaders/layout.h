@@ -45,8 +45,10 @@ FETTLE_CONST kBindOriginal = 3;  // utexture2DArray, heights that the deviation 
 FETTLE_CONST kBindPatches = 4;   // buffer of Patch
 // utexture2DArray, every 2^shade.x-th sample of the heights; marks and original likewise.
 FETTLE_CONST kBindShade = 5;
-FETTLE_CONST kBindLines = 6;  // buffer of Line
-FETTLE_CONST kBindPages = 7;  // utextureBuffer, entries of the page table: which pages are on the device
+FETTLE_CONST kBindLines = 6;    // buffer of Line
+FETTLE_CONST kBindPages = 7;    // utextureBuffer, entries of the page table: which pages are on the device
+FETTLE_CONST kBindDepth = 8;    // texture2D, depth of the surface, in the pixels of the picture
+FETTLE_CONST kBindNearest = 9;  // sampler that takes the nearest texel
 
 // Bindings of descriptor set 0 of the picture.
 FETTLE_CONST kBindScene = 0;   // texture2D, one panel at several rays a pixel, premultiplied
@@ -67,7 +69,11 @@ FETTLE_CONST kSpecCell = 6;
 // Samples lie in pages that are on the device by need: heights_image, marks_image and original_image are pools
 // of them.
 FETTLE_CONST kSpecByNeed = 7;
-FETTLE_CONST kSpecCount = 8;
+// The samples that colours come from lie in one image layer, two or more each way: a cell's four are one
+// look-up.
+FETTLE_CONST kSpecGather = 8;
+FETTLE_CONST kSpecPerspective = 9;  // not all points of a view are equally near
+FETTLE_CONST kSpecCount = 10;
 
 // What a Quad is filled with.
 FETTLE_CONST kFillSolid = 0;
@@ -83,24 +89,39 @@ struct PageHead {
   ivec4 pool;  // log2 of a page's side; the rim's first entry; number of its row's first sample; entries of a field
 };
 
+// Eyes that one panel may be drawn for. Everything that differs between two of them is in ViewUniforms.
+FETTLE_CONST kMostViews = 2;
+
+// One eye. A pass that draws for several at once reads the one of its gl_ViewIndex (viewUniforms() in
+// field.glsl).
+struct ViewUniforms {
+  mat4 clip_from_scene;  // bytes  0 ..  63
+  // (x, y of gl_FragCoord, depth, 1) to homogeneous (samples from `origin` in x, in y, scene z, 1). Worked
+  // out in double precision about a sample near the middle of what is seen, so that no fraction is lost far
+  // out.
+  mat4 field_from_pixel;  //  64 .. 127
+  ivec4 origin;           // 128: virtual sample; -; -
+};
+
 // Scene coordinates: millimetres from the middle of what is shown, x and y as in the field, z up with the
 // exaggeration in it. "Virtual" samples: a field of one row or column is drawn as two equal ones.
 struct PanelUniforms {
-  mat4 clip_from_scene;  // bytes   0 ..  63
-  vec4 placing;          //  64: x, y of virtual sample (0, 0) [scene mm]; spacing x, y [mm]
-  vec4 relief;           //  80: sign of heights; height at scene z 0; scene mm a height unit; floor's scene z
-  vec4 limits;      //  96: lowest and highest height drawn; steeper ones are cut; sign of the original; -
-  vec4 colouring;   // 112: value of the first colour; 1 / range; contour step (value); rays a cell
-  vec4 light;       // 128: unit vector to the light; share of light without direction
-  vec4 marks_tint;  // 144: linear red, green, blue; opacity
-  vec4 no_data;     // 160: linear red, green, blue
-  vec4 wall;        // 176: linear red, green, blue
-  ivec4 size;       // 192: virtual columns, rows; true columns, rows
-  ivec4 paging;  // 208: log2 of a page's columns, rows; pages across; step of differences [2^shade.x samples]
-  ivec4 shade;   // 224: log2 of the step between samples that colours come from; -; columns, rows of those
+  ViewUniforms views[kMostViews];  // bytes   0 .. 287
+  vec4 placing;                    // 288: x, y of virtual sample (0, 0) [scene mm]; spacing x, y [mm]
+  vec4 relief;      // 304: sign of heights; height at scene z 0; scene mm a height unit; floor's scene z
+  vec4 limits;      // 320: lowest and highest height drawn; steeper ones are cut; sign of the original; -
+  vec4 colouring;   // 336: value of the first colour; 1 / range; contour step (value); rays a cell
+  vec4 light;       // 352: unit vector to the light; share of light without direction
+  vec4 marks_tint;  // 368: linear red, green, blue; opacity
+  vec4 no_data;     // 384: linear red, green, blue
+  vec4 wall;        // 400: linear red, green, blue
+  vec4 ground;      // 416: linear red, green, blue: where there is nothing
+  ivec4 size;       // 432: virtual columns, rows; true columns, rows
+  ivec4 paging;  // 448: log2 of a page's columns, rows; pages across; step of differences [2^shade.x samples]
+  ivec4 shade;   // 464: log2 of the step between samples that colours come from; -; columns, rows of those
   // Seam: how far seams overlap [px]; drawn so far from its sample, a point is beside it [scene mm]; -; -.
-  vec4 seam;               // 240
-  vec4 colours[kColours];  // 256: linear red, green, blue
+  vec4 seam;               // 480
+  vec4 colours[kColours];  // 496: linear red, green, blue
   PageHead pages;          // where samples are on the device by need
 };
 
@@ -131,12 +152,15 @@ struct Quad {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(PanelUniforms) == 256 + 16 * kColours + sizeof(PageHead));
-static_assert(offsetof(PanelUniforms, placing) == 64);
-static_assert(offsetof(PanelUniforms, limits) == 96);
-static_assert(offsetof(PanelUniforms, size) == 192);
-static_assert(offsetof(PanelUniforms, shade) == 224);
-static_assert(offsetof(PanelUniforms, colours) == 256);
+static_assert(sizeof(ViewUniforms) == 144);
+static_assert(offsetof(ViewUniforms, field_from_pixel) == 64);
+static_assert(offsetof(ViewUniforms, origin) == 128);
+static_assert(sizeof(PanelUniforms) == 496 + 16 * kColours + sizeof(PageHead));
+static_assert(offsetof(PanelUniforms, placing) == 288);
+static_assert(offsetof(PanelUniforms, limits) == 320);
+static_assert(offsetof(PanelUniforms, size) == 432);
+static_assert(offsetof(PanelUniforms, shade) == 464);
+static_assert(offsetof(PanelUniforms, colours) == 496);
 static_assert(sizeof(Patch) == 16);
 static_assert(sizeof(PageHead) == 80);
 static_assert(sizeof(Line) == 48);

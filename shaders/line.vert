@@ -13,7 +13,7 @@ layout(location = 2) flat out float run;            // length of the line [px]
 
 void main() {
   const Line l = lines[gl_InstanceIndex];
-  vec4 a = panel.clip_from_scene * vec4(l.from.xyz, 1.0), b = panel.clip_from_scene * vec4(l.to.xyz, 1.0);
+  vec4 a = panel.views[0].clip_from_scene * vec4(l.from.xyz, 1.0), b = panel.views[0].clip_from_scene * vec4(l.to.xyz, 1.0);
   index = gl_InstanceIndex;
   // What lies before the near plane is cut off, or its projection would turn round.
   if (a.z < 0.0 && b.z < 0.0) {

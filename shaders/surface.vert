@@ -7,8 +7,8 @@
 layout(set = 0, binding = kBindPatches, std430) readonly buffer Patches { Patch patches[]; };
 
 layout(location = 0) flat out ivec2 base;  // first sample of the patch
-layout(location = 1) out vec2 local;       // samples from it, kept small so that no fraction is lost far out
-layout(location = 2) out float drawn_z;    // scene mm
+// x, y: samples from it, kept small so that no fraction is lost far out; z: scene mm.
+layout(location = 1) out vec3 place;
 
 void main() {
   const Patch p = patches[gl_InstanceIndex];
@@ -18,7 +18,7 @@ void main() {
   const ivec2 stride = ivec2(1) << p.place.zw;
   const ivec2 s = min(p.place.xy + ivec2(k >> 1, strip + (k & 1)) * stride, panel.size.xy - 1);
   base = p.place.xy;
-  local = vec2(s - p.place.xy);
-  drawn_z = drawnZ(s, stride);
-  gl_Position = panel.clip_from_scene * vec4(scenePoint(s, drawn_z), 1.0);
+  place.xy = vec2(s - p.place.xy);
+  place.z = drawnZ(s, stride);
+  gl_Position = viewUniforms().clip_from_scene * vec4(scenePoint(s, place.z), 1.0);
 }

@@ -11,9 +11,6 @@ layout(location = 0) out vec4 colour;
 void main() {
   // The wall stands under a rim cell only where the surface does: no corner of that cell is a hole.
   vec2 f;
-  const ivec2 cell = shadeCell(base, local, f);
-  if (isHole(shadeHeight(cell)) || isHole(shadeHeight(cell + ivec2(1, 0))) || isHole(shadeHeight(cell + ivec2(0, 1))) ||
-      isHole(shadeHeight(cell + ivec2(1, 1))))
-    discard;
+  if (kHoles && cellIsHole(shadeCell(base, local, f))) discard;
   colour = vec4(panel.wall.rgb * (0.55 + 0.45 * max(dot(normal, panel.light.xyz), 0.0)), 1.0);
 }

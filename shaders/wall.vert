@@ -22,5 +22,5 @@ void main() {
   local = vec2(s - p.place.xy);
   normal = side == 0 ? vec3(0, -1, 0) : side == 1 ? vec3(1, 0, 0) : side == 2 ? vec3(0, 1, 0) : vec3(-1, 0, 0);
   const float z = (gl_VertexIndex & 1) == 0 ? drawnZ(s, stride) : panel.relief.w;
-  gl_Position = panel.clip_from_scene * vec4(scenePoint(s, z), 1.0);
+  gl_Position = viewUniforms().clip_from_scene * vec4(scenePoint(s, z), 1.0);
 }

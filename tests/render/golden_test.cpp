@@ -136,16 +136,25 @@ TEST(Golden, GreyWithContourLines) {
   compareWithGolden("grey_contours", spec);
 }
 
-TEST(Golden, LiveWithMarksHolesContoursAndAStylus) {
+TEST(Golden, LiveWithMarksHolesAndAStylus) {
   Shown shown;
   shown.versions = {part(0.05)};
   shown.marks = MarksOverlay::kShow;
   FrameInput input = frame(315, 40);
-  input.contours = Contours::kShow;
   input.titles = {"part"};
   input.overlays.rings = {{29, 19, 4, {1, 1, 1}, 2}};
   appendStylus({{12, 18, 4}, {12, 18, 3}, {0, 0, 2}, true, 1.0}, 1.0, input.overlays.lines);
   compareWithGolden("live_marks", shown, input);
+}
+
+// Without noise: how wide a line is drawn on noise hangs on which neighbours a fragment compares itself with.
+TEST(Golden, LiveContoursOnASmoothPart) {
+  Shown shown;
+  shown.versions = {part(0.0)};
+  FrameInput input = frame(330, 55);
+  input.contours = Contours::kShow;
+  input.map = ColourMap::kGrey;
+  compareWithGolden("live_contours", shown, input);
 }
 
 TEST(Golden, LiveDeviationInPerspectiveBesideTheOriginal) {

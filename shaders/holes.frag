@@ -1,0 +1,13 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// Nothing but where the surface is: its depth, left out over holes.
+#include "field.glsl"
+
+layout(location = 0) flat in ivec2 base;
+layout(location = 1) in vec3 place;
+
+void main() {
+  vec2 f;
+  if (cellIsHole(shadeCell(base, place.xy, f))) discard;
+}

@@ -1,0 +1,28 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+// The surface, shaded once a pixel from the depth of what is seen there: geometry costs no more than its depth, however
+// many triangles a pixel has.
+#include "shading.glsl"
+
+layout(constant_id = kSpecPerspective) const bool kPerspective = false;
+
+layout(set = 0, binding = kBindDepth) uniform texture2D depth_image;
+layout(location = 0) noperspective in vec4 at_no_depth;
+layout(location = 0) out vec4 colour;
+
+void main() {
+  const float depth = texelFetch(depth_image, ivec2(gl_FragCoord.xy), 0).x;
+  vec4 at = at_no_depth + viewUniforms().field_from_pixel[2] * depth;
+  if (kPerspective) at.xyz /= at.w;
+  const SurfacePoint p = surfacePoint(viewUniforms().origin.xy, at.xy, at.z);
+  // Between neighbours as they are seen: at the edge of something in front these tell nothing, but for that pixel alone.
+  const vec3 scene = vec3(at.xy * panel.placing.zw, at.z);
+  const vec3 facet = cross(dFdx(scene), dFdy(scene));
+  const float contour = kContours ? contourOf(p) : 0.0;
+  const float contour_width = kContours ? fwidth(contour) : 1.0;
+  vec3 c = surfaceColour(p, facet, contour, contour_width);
+  // The geometry keeps clear of holes but for rounding.
+  if (kHoles && p.hole) c = panel.no_data.rgb;
+  colour = vec4(c, 1.0);
+}

@@ -1,0 +1,121 @@
+// Colour of a point of the surface, from the exact samples (or every 2^shade.x-th) whatever the geometry's stride.
+#include "field.glsl"
+
+layout(constant_id = kSpecMarks) const bool kMarks = false;
+layout(constant_id = kSpecDeviation) const bool kDeviation = false;
+layout(constant_id = kSpecContours) const bool kContours = false;
+layout(constant_id = kSpecSmooth) const bool kSmooth = false;
+layout(constant_id = kSpecCell) const bool kCell = false;
+
+layout(set = 0, binding = kBindMarks) uniform utexture2DArray marks_image;
+layout(set = 0, binding = kBindOriginal) uniform utexture2DArray original_image;
+
+// Half the difference between the neighbours of `s` along `d`, or what one neighbour and the sample itself can
+// say; height units a step. `h` is the height at s.
+float slope(ivec2 s, ivec2 d, float h) {
+  const uint after = shadeHeight(s + d);
+  const uint before = shadeHeight(s - d);
+  const ivec2 last = shade_size - 1;
+  const bool has_after = !(kHoles && isHole(after)) && all(lessThanEqual(s + d, last));
+  const bool has_before = !(kHoles && isHole(before)) && all(greaterThanEqual(s - d, ivec2(0)));
+  const float a = has_after ? heightOf(after) : h;
+  const float b = has_before ? heightOf(before) : h;
+  return (a - b) / (has_after && has_before ? 2.0 : 1.0);
+}
+
+// Slope at a corner of the cell, of which `inward` is the slope along the cell's own edge: the mean of that and of the
+// slope to the sample outside, when there is one. `sign` is +1 when the outer sample lies after the corner.
+float cornerSlope(ivec2 outer, float at, float inward, float sign) {
+  const uint raw = shadeHeight(outer);
+  const bool inside = all(greaterThanEqual(outer, ivec2(0))) && all(lessThan(outer, shade_size));
+  return (kHoles && isHole(raw)) || !inside ? inward : 0.5 * (inward + sign * (heightOf(raw) - at));
+}
+
+// Slopes interpolated between the cell's corners from the samples around it: shading without facets.
+vec2 smoothSlopes(ivec2 c, vec2 f, vec4 h) {
+  const vec2 low = vec2(h.y - h.x, h.z - h.x), high = vec2(h.w - h.z, h.w - h.y);  // edges: (x at y0, y at x0), ...
+  const float x0 = mix(cornerSlope(c + ivec2(-1, 0), h.x, low.x, -1.0), cornerSlope(c + ivec2(2, 0), h.y, low.x, 1.0), f.x);
+  const float x1 = mix(cornerSlope(c + ivec2(-1, 1), h.z, high.x, -1.0), cornerSlope(c + ivec2(2, 1), h.w, high.x, 1.0), f.x);
+  const float y0 = mix(cornerSlope(c + ivec2(0, -1), h.x, low.y, -1.0), cornerSlope(c + ivec2(0, 2), h.z, low.y, 1.0), f.y);
+  const float y1 = mix(cornerSlope(c + ivec2(1, -1), h.y, high.y, -1.0), cornerSlope(c + ivec2(1, 2), h.w, high.y, 1.0), f.y);
+  return vec2(mix(x0, x1, f.y), mix(y0, y1, f.x));
+}
+
+vec3 mapped(float value) {
+  const float t = clamp((value - panel.colouring.x) * panel.colouring.y, 0.0, 1.0) * float(kColours - 1);
+  if (kCell) return panel.colours[int(t + 0.5)].rgb;
+  const int i = min(int(t), kColours - 2);
+  return mix(panel.colours[i].rgb, panel.colours[i + 1].rgb, t - float(i));
+}
+
+// A point of the surface as it is drawn, and what the samples say about it.
+struct SurfacePoint {
+  ivec2 cell;     // among the samples that colours come from
+  vec2 f;         // place in it, 0 .. 1
+  vec4 h;         // heights of its corners
+  bool hole;      // one of them is none
+  bool beside;    // drawn beside its place: see below
+  bool compared;  // there is something to compare with
+  float value;    // what the colours show
+};
+
+// The point `local` samples from sample `base`, drawn at scene z `drawn_z`.
+SurfacePoint surfacePoint(ivec2 base, vec2 local, float drawn_z) {
+  SurfacePoint p;
+  p.cell = shadeCell(base, local, p.f);
+  const uvec4 raw = cellHeights(p.cell);
+  p.hole = kHoles && (isHole(raw.x) || isHole(raw.y) || isHole(raw.z) || isHole(raw.w));
+  p.h = panel.relief.x * uintBitsToFloat(raw);
+  const float height = mix(mix(p.h.x, p.h.y, p.f.x), mix(p.h.z, p.h.w, p.f.x), p.f.y);
+  p.value = height;
+  p.compared = true;
+  if (kDeviation) {
+    uvec4 before;
+    before.x = texelFetch(original_image, originalTexelOf(p.cell), 0).x;
+    before.y = texelFetch(original_image, originalTexelOf(p.cell + ivec2(1, 0)), 0).x;
+    before.z = texelFetch(original_image, originalTexelOf(p.cell + ivec2(0, 1)), 0).x;
+    before.w = texelFetch(original_image, originalTexelOf(p.cell + ivec2(1, 1)), 0).x;
+    p.compared = !(isHole(before.x) || isHole(before.y) || isHole(before.z) || isHole(before.w));
+    // Corner by corner, so that equal samples give exactly zero.
+    const vec4 d = p.h - panel.limits.z * uintBitsToFloat(before);
+    p.value = mix(mix(d.x, d.y, p.f.x), mix(d.z, d.w, p.f.x), p.f.y);
+  }
+  // Where a coarse cell stands in for a wall, the drawn point is not over the sample's place but beside it: it shows the
+  // wall at its own height, so it takes colour and light from there. Else walls would be striped.
+  p.beside = abs(drawn_z - sceneZ(height)) > panel.seam.y;
+  if (!kDeviation && p.beside) p.value = panel.relief.y + drawn_z / panel.relief.z;
+  return p;
+}
+
+float contourOf(SurfacePoint p) { return p.value / panel.colouring.z; }
+
+// `facet`: normal of the geometry, looked at where the point is beside its place. `contour`: contourOf, and how much it
+// changes over a ray.
+vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_width) {
+  const ivec2 nearest = p.cell + ivec2(round(p.f));
+  vec2 g;
+  if (kSmooth) {
+    g = smoothSlopes(p.cell, p.f, p.h);
+  } else if (kCell) {
+    g = 0.5 * vec2(p.h.y - p.h.x + p.h.w - p.h.z, p.h.z - p.h.x + p.h.w - p.h.y);
+  } else {
+    const float at = p.f.y < 0.5 ? (p.f.x < 0.5 ? p.h.x : p.h.y) : (p.f.x < 0.5 ? p.h.z : p.h.w);
+    const int step = shade_difference;
+    g = vec2(slope(nearest, ivec2(step, 0), at), slope(nearest, ivec2(0, step), at)) / float(step);
+  }
+  vec3 normal = normalize(vec3(-g * panel.relief.z / (panel.placing.zw * float(1 << shade_log2)), 1.0));
+  if (p.beside && facet.z != 0.0) normal = normalize(facet * sign(facet.z));
+
+  vec3 c = p.compared ? mapped(p.value) : panel.no_data.rgb;
+  if (kMarks && texelFetch(marks_image, shadeTexelOf(nearest), 0).x != 0u)
+    c = mix(c, panel.marks_tint.rgb, panel.marks_tint.a);
+  // A level surface shows exactly its colour on the bar; slopes are lighter towards the light, darker away from it.
+  c *= panel.light.w + (1.0 - panel.light.w) * max(dot(normal, panel.light.xyz), 0.0) / panel.light.z;
+  if (kContours && p.compared) {
+    const float off = abs(fract(contour - 0.5) - 0.5) / max(contour_width, 1e-12);
+    // Lines closer than four rays would fill the surface: they fade out.
+    const float ink = (1.0 - smoothstep(0.6, 1.4, off)) * (1.0 - smoothstep(0.15, 0.3, contour_width));
+    c = mix(c, vec3(0.01), 0.7 * ink);
+  }
+  return min(c, vec3(1.0));
+}
