@@ -102,7 +102,33 @@ Camera Camera::fit(const View& view, const Box& shown, const Box& drawn, const R
   view_from_scene[3] = glm::dvec4(-(view_rotation * target), 1.0);
   camera.clip_from_scene_ = from_view * view_from_scene;
   camera.scene_from_clip_ = glm::inverse(camera.clip_from_scene_);
+  camera.distance_ = distance;
+  camera.across_ = from_view[0][0];
+  camera.target_ = target;
+  camera.perspective_ = view.projection == Projection::kPerspective;
   return camera;
+}
+
+Camera Camera::aside(double share, double window) const noexcept {
+  Camera eye = *this;
+  const double aside = share * distance_, at_window = window * distance_;
+  // How far a point is behind the window, over the window's distance, as a function of x, y, z, 1.
+  const glm::dvec4 behind =
+      glm::dvec4(-to_viewer_, distance_ - at_window + glm::dot(to_viewer_, target_)) / at_window;
+  // From the eye's place all points move by -aside; the frustum is sheared back so that those of the window
+  // stay: clip x grows by across * aside * (w / at_window - 1), w being the distance from the viewer. The
+  // parallel camera's is that shear alone.
+  for (int i = 0; i < 4; ++i) eye.clip_from_scene_[i][0] += across_ * aside * behind[i];
+  eye.scene_from_clip_ = glm::inverse(eye.clip_from_scene_);
+  return eye;
+}
+
+double Camera::asidePixels(double window) const noexcept {
+  return 0.5 * plot_.width * across_ * (perspective_ ? 1.0 / window : distance_);
+}
+
+double Camera::windowOf(const glm::dvec3& point) const noexcept {
+  return 1.0 - glm::dot(to_viewer_, point - target_) / distance_;
 }
 
 glm::dvec2 Camera::pixelOf(const glm::dvec3& point) const noexcept {

@@ -45,6 +45,16 @@ class Camera {
   [[nodiscard]] const glm::dvec3& up() const noexcept { return up_; }
   [[nodiscard]] const glm::dvec3& toViewer() const noexcept { return to_viewer_; }
 
+  /// The camera of an eye beside this one that looks through the same window: a plane square to the view at
+  /// `window` times the distance of the middle of what is shown, whose points both see at the same pixels
+  /// (Bourke 1999, "Calculating stereo pairs"). `share`: how far to the right it stands, as a share of that
+  /// distance. A parallel camera has no place; it is sheared as if it stood where the perspective one does.
+  [[nodiscard]] Camera aside(double share, double window) const noexcept;
+  /// Pixels that such an eye's picture of a point far behind the window is moved by, for a share of 1.
+  [[nodiscard]] double asidePixels(double window) const noexcept;
+  /// The `window` that a point lies on; > 0 before the viewer.
+  [[nodiscard]] double windowOf(const glm::dvec3& point) const noexcept;
+
   /// Pixels that a millimetre parallel to the picture takes, at the middle of what is shown.
   [[nodiscard]] double pixelsPerMm() const noexcept { return pixels_per_mm_; }
 
@@ -69,7 +79,11 @@ class Camera {
   glm::dmat4 scene_from_clip_{1.0};
   glm::dvec3 right_{1.0, 0.0, 0.0}, up_{0.0, 1.0, 0.0}, to_viewer_{0.0, 0.0, 1.0};
   double pixels_per_mm_ = 1.0;
-  double near_w_ = 1.0;  // clip w on the near plane; 1 when orthographic
+  double near_w_ = 1.0;    // clip w on the near plane; 1 when orthographic
+  double distance_ = 1.0;  // of the viewer from the target [mm]; imagined when orthographic
+  double across_ = 1.0;    // clip x of a millimetre to the right
+  glm::dvec3 target_{0.0};
+  bool perspective_ = false;
   Rectangle plot_;
 };
 
