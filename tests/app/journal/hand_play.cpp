@@ -138,6 +138,10 @@ std::string HandPlay::act() {
   return "go to a state";
 }
 
+void HandPlay::untilKept() {
+  while (keeper_.waiting() != 0) wait(1);
+}
+
 void HandPlay::settle() {
   press(u_, v_, false);
   while (filters_.computing() || filters_.applying()) wait(1);

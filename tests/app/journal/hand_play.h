@@ -22,6 +22,8 @@ class HandPlay {
   std::string act();
   /// Until nothing is under way: no stroke, no filter, every step handed over.
   void settle();
+  /// Until all that was done lies on the disk.
+  void untilKept();
   /// Things that went wrong and a person would read.
   [[nodiscard]] const std::vector<app::Notice>& notices() const { return notices_; }
 

@@ -7,7 +7,7 @@
 #include "app/journal/session_player.h"
 #include "app/view/open_document.h"
 #include "tests/app/journal/hand_play.h"
-#include "tests/haptic/support/fields.h"
+#include "tests/app/journal/part.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::tests {
@@ -19,17 +19,6 @@ using app::Touch;
 
 constexpr std::size_t kHistoryBytes = std::size_t{64} << 20;
 
-engine::Version roughPart() {
-  std::mt19937_64 random(42);
-  return fieldOf(
-      230, 180,
-      [&](int c, int r) {
-        if ((c / 60 + r / 50) % 5 == 4 && (c + r) % 7 == 0) return std::nan("");
-        return 0.4 * ((c / 30) % 2) + 0.02 * uniform(random, -1.0, 1.0);
-      },
-      0.1, 0.12);
-}
-
 Document fromField(const engine::Version& field, const std::string& name) {
   Document document;
   document.path = name;
@@ -40,10 +29,7 @@ Document fromField(const engine::Version& field, const std::string& name) {
 
 std::unique_ptr<Touch> touchOf(const Document& document, const engine::History& history,
                                SessionKeeper& keeper) {
-  haptic::Scene scene;
-  scene.brush_radius_samples = 4.0;
-  scene.mark_radius_samples = 2.0;
-  auto touch = Touch::start(history, document.original, scene, {}, &keeper);
+  auto touch = Touch::start(history, document.original, brushScene(), {}, &keeper);
   EXPECT_TRUE(touch) << (touch ? "" : touch.error().line());
   return touch ? std::move(*touch) : nullptr;
 }
