@@ -4,15 +4,41 @@
 
 #include <fmt/format.h>
 
+#include "engine/filter/region.h"
+
 namespace fettle::app {
 namespace {
 
 // Rounds of adoption: each leaves only what a hand edited in some milliseconds, so a still hand needs one.
 constexpr int kMostRounds = 50;
+constexpr std::chrono::milliseconds kSeenFirst{1000};
+constexpr std::int32_t kFarthestReach = 512;  // [samples]
 
 bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
   return a.kind == b.kind && a.window == b.window && a.sigma == b.sigma && a.passes == b.passes &&
          a.scope == b.scope && a.max_change == b.max_change;
+}
+
+// Filters what is seen and tells `done` after each part. Where that is most of the field, the second for
+// which it is worth doing twice is soon over.
+template <class Done>
+void filterSeen(const engine::Version& base, const engine::Version& original, const engine::FilterSpec& spec,
+                const std::vector<engine::TileRange>& seen, engine::JobControl& job, const Done& done) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  std::int64_t tiles = 0;
+  for (const engine::TileRange& range : seen) tiles += range.tiles();
+  // With a filter that reaches far, a part takes as long as the whole.
+  if (engine::reachOf(spec) > kFarthestReach) return;
+  const bool most = 2 * tiles > engine::allTiles(base.grid()).tiles();
+  engine::Version so_far = base;
+  for (const engine::TileRange& range : seen) {
+    if (job.cancelled() || (most && Clock::now() - begin > kSeenFirst)) return;
+    auto next = engine::filterRange(base, original, so_far, spec, range, job);
+    if (!next) return;  // the whole will say why
+    so_far = std::move(*next);
+    done(so_far);
+  }
 }
 
 }  // namespace
@@ -27,14 +53,23 @@ std::string filterName(const engine::FilterSpec& spec) {
   return text;
 }
 
-void FilterPreview::compute(const Touch& touch, Keep keep) {
+void FilterPreview::compute(Touch& touch, Keep keep, std::vector<engine::TileRange> seen_first) {
   keep_ = keep;
   apply_when_done_ = false;
-  computing_.start([base = touch.field(), original = touch.original(), what = spec,
+  so_far_ = std::make_shared<SoFar>();
+  so_far_->spec = spec;
+  seen_so_far_ = {};
+  computing_.start([base = touch.field(), id = touch.noteFilterBase(), so_far = so_far_,
+                    seen = std::move(seen_first), original = touch.original(), what = spec,
                     inverted = touch.scene().invert](engine::JobControl& job) -> engine::Result<Variant> {
-    auto result = engine::applyFilter(base, inverted ? original.inverted() : original, what, job);
+    const engine::Version limit = inverted ? original.inverted() : original;
+    filterSeen(base, limit, what, seen, job, [&](const engine::Version& part) {
+      const std::scoped_lock lock(so_far->mutex);
+      so_far->field = part;
+    });
+    auto result = engine::applyFilter(base, limit, what, job);
     if (!result) return tl::unexpected(result.error());
-    return Variant{what, base, std::move(*result)};
+    return Variant{what, base, std::move(*result), id};
   });
 }
 
@@ -49,7 +84,7 @@ void FilterPreview::apply(Touch& touch) {
 }
 
 void FilterPreview::adopt(Touch& touch, Variant variant) {
-  touch.nameAdoption(filterName(variant.spec));
+  touch.noteFilterBegun(variant.base_id, variant.spec, filterName(variant.spec));
   touch.allowPort();
   applying_.start([port = &touch, original = touch.original(), inverted = touch.scene().invert,
                    v = std::move(variant)](engine::JobControl& job) {
@@ -64,16 +99,39 @@ void FilterPreview::cancel(Touch& touch) {
   if (applying_.busy()) touch.closePort();
   apply_when_done_ = false;
   variants_.clear();
+  so_far_.reset();
+  seen_so_far_ = {};
 }
 
 void FilterPreview::drop(std::size_t variant) {
   if (variant < variants_.size()) variants_.erase(variants_.begin() + static_cast<std::ptrdiff_t>(variant));
 }
 
+std::vector<FilterPreview::Picture> FilterPreview::pictures() const {
+  std::vector<Picture> pictures;
+  const bool beside = seen_so_far_.empty() || keep_ == Keep::kBeside;
+  if (beside)
+    for (const Variant& variant : variants_)
+      pictures.push_back({variant.result.field, filterName(variant.spec)});
+  if (!seen_so_far_.empty()) pictures.push_back({seen_so_far_, filterName(so_far_->spec) + " ..."});
+  if (pictures.size() > kMostVariants)
+    pictures.erase(pictures.begin(), pictures.end() - static_cast<std::ptrdiff_t>(kMostVariants));
+  return pictures;
+}
+
 bool FilterPreview::poll(Touch& touch, std::vector<Notice>& notices) {
   bool changed = false;
+  if (so_far_) {
+    const std::scoped_lock lock(so_far_->mutex);
+    if (!(so_far_->field == seen_so_far_) && !computing_.cancelling()) {
+      seen_so_far_ = so_far_->field;
+      changed = true;
+    }
+  }
   if (auto done = computing_.take()) {
     changed = true;
+    so_far_.reset();
+    seen_so_far_ = {};
     if (*done) {
       if (keep_ == Keep::kReplace) variants_.clear();
       if (variants_.size() == kMostVariants) variants_.erase(variants_.begin());

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
 #include "app/view/background.h"
 #include "app/view/touch.h"
+#include "engine/field/tile_range.h"
 #include "engine/filter/filter.h"
 #include "haptic/loop/adopt_filtered.h"
 
@@ -23,14 +26,22 @@ class FilterPreview {
     engine::FilterSpec spec;
     engine::Version base;  ///< as felt when it was computed
     engine::Filtered result;
+    std::uint64_t base_id = 0;  ///< the base's in the journal (Touch::noteFilterBase)
   };
 
   /// What the panel edits.
   engine::FilterSpec spec;
 
+  /// A picture of a filter: what it made, or has made so far.
+  struct Picture {
+    engine::Version field;
+    std::string title;
+  };
+
   /// Computes `spec` on the field as it is now. `keep`: beside the variants there are; else in their place.
+  /// `seen_first`: what is filtered before all else (visiblePart), to be shown while the rest is worked on.
   enum class Keep : std::uint8_t { kReplace, kBeside };
-  void compute(const Touch& touch, Keep keep);
+  void compute(Touch& touch, Keep keep, std::vector<engine::TileRange> seen_first = {});
   /// Brings the newest variant into the field as one step; computes it first when there is none for `spec`.
   void apply(Touch& touch);
   void cancel(Touch& touch);
@@ -39,6 +50,8 @@ class FilterPreview {
 
   [[nodiscard]] const std::vector<Variant>& variants() const noexcept { return variants_; }
   void drop(std::size_t variant);
+  /// What is to be drawn beside the field.
+  [[nodiscard]] std::vector<Picture> pictures() const;
   [[nodiscard]] bool computing() const noexcept { return computing_.busy(); }
   [[nodiscard]] bool applying() const noexcept { return applying_.busy(); }
   [[nodiscard]] double progress() const noexcept {
@@ -50,6 +63,12 @@ class FilterPreview {
   [[nodiscard]] double seconds() const noexcept { return seconds_; }
 
  private:
+  // The worker's latest result in parts; the main thread looks at it once a frame.
+  struct SoFar {
+    std::mutex mutex;
+    engine::Version field;
+    engine::FilterSpec spec;
+  };
   void adopt(Touch& touch, Variant variant);
 
   std::vector<Variant> variants_;
@@ -57,6 +76,8 @@ class FilterPreview {
   bool apply_when_done_ = false;
   double seconds_ = 0.0;
   int applied_ = 0;
+  std::shared_ptr<SoFar> so_far_;
+  engine::Version seen_so_far_;
   Background<Variant> computing_;
   Background<haptic::AdoptionReport> applying_;
 };

@@ -31,13 +31,41 @@ enum class Action : std::uint8_t {
   kInvert,
   kShowMarks,
   kClearMarks,
+  kInvertMarks,
+  kLasso,
+  kBox,
+  kEdges,
+  kEdgesMore,
+  kEdgesFewer,
+  kEdgesThicker,
+  kEdgesThinner,
+  kEdgesCoarser,
+  kEdgesFiner,
+  kKeepWithin,
   kFilterNext,
   kFilterPreview,
+  kFilterBeside,
+  kFilterDrop,
   kFilterApply,
+  kWindowLarger,
+  kWindowSmaller,
+  kMorePasses,
+  kFewerPasses,
+  kFilterScope,
+  kFilterMaxChange,
   kDeviation,
   kContours,
   kNextMap,
   kSplitPreview,
+  kSplitLeft,
+  kSplitRight,
+  kLightLeft,
+  kLightRight,
+  kLightHigher,
+  kLightLower,
+  kTheme,
+  kFurniture,
+  kMouseHabits,
   kViewAll,
   kViewLastStroke,
   kViewFront,
@@ -61,11 +89,12 @@ enum class Action : std::uint8_t {
   kCalibrate,
   kShortcuts,
   kSidePanel,
+  kEnterPanels,
 };
 
 struct Shortcut {
   Action action;
-  std::string_view section;  ///< "File", "Edit", "Tool", "Filter", "View", "Device", "Help"
+  std::string_view section;  ///< "File", "Edit", "Tool", "Marks", "Filter", "View", "Device", "Help"
   std::string_view name;     ///< what it does, for menus and the list
   render::Key key = render::Key::kNone;
   render::Modifiers modifiers{};

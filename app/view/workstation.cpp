@@ -70,12 +70,12 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
 
 engine::Result<Report> Workstation::run(engine::JobControl& job) {
   const auto begin = std::chrono::steady_clock::now();
-  while (!quit_) {
+  while (!quit_ && !quit_unasked_) {
     goRound();
     if (!end_) return tl::unexpected(end_.error());
     if (window_->closeAsked()) {
       window_->refuseClose();
-      askToQuit();
+      act(Action::kQuit);
     }
     const double lived = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
@@ -97,7 +97,7 @@ bool Workstation::active() const {
 // What a person chose is written when it has changed, at most once in some seconds.
 void Workstation::rememberLayout() {
   constexpr std::uint64_t kFrames = 120;
-  if (!quit_ && frames_ % kFrames != 0) return;
+  if (!quit_ && !quit_unasked_ && frames_ % kFrames != 0) return;
   Settings now = settings_;
   now.display = display_;
   now.habits = habits_;
@@ -108,7 +108,8 @@ void Workstation::rememberLayout() {
 }
 
 void Workstation::goRound() {
-  const bool working = mark_edit_.busy() || edges_.busy() || loading_.busy() || saving_.busy() || filters_.computing() || filters_.applying();
+  const bool working = mark_edit_.busy() || edges_.busy() || loading_.busy() || saving_.busy() ||
+                       filters_.computing() || filters_.applying();
   window_->poll(active() ? 0.0 : working ? kBusy_s : kIdle_s);
   whileWaiting();
   countHands();
@@ -171,7 +172,7 @@ void Workstation::takeResults() {
       notices_.push_back({older->error().what, older->error().remedy});
     }
   }
-  noteForSession();
+  lookAfterSession();
   if (filters_.poll(*touch_, notices_)) stale_ = true;
   pollMarking();
   for (Notice& notice : touch_->takeNotices()) notices_.push_back(std::move(notice));

@@ -123,7 +123,7 @@ class Workstation {
   void load(const std::string& path, Recovery recovery);
   void takeDocument(Document document);
   void closeDocument(SessionKeeper::Afterwards afterwards);
-  void noteForSession();
+  void lookAfterSession();
   void save();
   void startSaving(const std::string& path, Keeping keeping);
   void takeSaved();
@@ -187,6 +187,7 @@ class Workstation {
   Keeping keeping_ = Keeping::kCopy;
   bool embeds_ = true;  // the scan goes into a session saved as
   std::chrono::steady_clock::time_point noted_;
+  bool keeping_fails_ = false;  // and the user was told
   engine::Version measured_;  // what measuring_ works on, or deviation_ is of
   std::optional<engine::Deviation> deviation_;
   FilterPreview filters_;
@@ -222,7 +223,8 @@ class Workstation {
   // Marks drawn at once, and what the work changed so far.
   MarkEdit mark_edit_;
   Lasso lasso_;
-  bool lasso_drawn_ = false;  // by hand, since the button went down
+  engine::Version marking_original_;  // of the field these are about
+  bool lasso_drawn_ = false;          // by hand, since the button went down
   EdgeTool edges_;
   LiveChange change_;
 
@@ -237,6 +239,7 @@ class Workstation {
   double adjust_from_ = 0.0, adjust_x_ = 0.0;
   std::string typed_;
   double press_mm_ = 0.0;
+  double most_change_ = 0.05;                // [height unit], for limits that are switched on again
   std::optional<haptic::Tool> turned_tool_;  // chosen, while Ctrl turned it into its opposite
 
   // Panels.
@@ -252,6 +255,7 @@ class Workstation {
   float side_width_ = 0.0F;
   bool enter_panels_ = false;  // the keyboard goes to the panels with the next frame
   bool quit_ = false;
+  bool quit_unasked_ = false;  // with what is not saved, which is kept
   std::vector<float> force_plot_;
   engine::Status end_;
   std::string status_text_;

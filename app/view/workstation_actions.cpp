@@ -14,8 +14,27 @@ constexpr double kLargestBrush = 64.0;  // [samples], see Scene
 
 }  // namespace
 
+// Ctrl turns a tool into its opposite for one stroke.
+Tool Workstation::toolFor(const render::Modifiers& modifiers) const {
+  const Tool tool = turned_tool_.value_or(touch_->tool());
+  if (!modifiers.control) return tool;
+  switch (tool) {
+    case Tool::kFeel:
+      return Tool::kSmooth;
+    case Tool::kSmooth:
+      return Tool::kFeel;
+    case Tool::kMark:
+      return Tool::kUnmark;
+    case Tool::kUnmark:
+      break;
+  }
+  return Tool::kMark;
+}
+
 void Workstation::chooseTool(std::optional<Tool> tool) {
   tool_on_ = tool.has_value();
+  turned_tool_.reset();
+  lasso_.leave();
   if (!touch_) return;
   touch_->setTool(tool.value_or(Tool::kFeel));
   if (touch_->mouse() == nullptr) return;
@@ -51,25 +70,6 @@ void Workstation::setPressDepth(double depth_mm) {
   mouse.wheel((mouse.pressMm() - depth_mm) / step);
 }
 
-void Workstation::clearMarks() {
-  const engine::Version before = touch_->upright();
-  engine::LiveField field(before, engine::Growth::kAllowed);
-  const engine::FieldReader reader = before.reader();
-  for (std::int32_t tr = 0; tr < reader.tileRows(); ++tr)
-    for (std::int32_t tc = 0; tc < reader.tileColumns(); ++tc) {
-      const engine::Tile& old = reader.tile(tc, tr);
-      if (old.marked_samples == 0) continue;
-      for (int r = 0; r < engine::kTileSide; ++r)
-        for (int c = 0; c < engine::kTileSide; ++c)
-          if (old.marked(c, r) &&
-              !field.setMark(tc * engine::kTileSide + c, tr * engine::kTileSide + r, false)) {
-            message("memory ran out", "close other programs");
-            return;
-          }
-    }
-  if (!(field.snapshot() == before)) touch_->replaceMarks(before, field.snapshot(), "Clear marks");
-}
-
 void Workstation::act(Action action) {
   stale_ = true;
   // What needs no field.
@@ -80,7 +80,24 @@ void Workstation::act(Action action) {
       dialog_path_ = path_;
       return;
     case Action::kQuit:
-      askToQuit();
+      // Without the question nothing is lost either: it is there when the scan is opened again.
+      if (settings_.ask_before_quitting || !unsaved())
+        askToQuit();
+      else
+        quit_unasked_ = true;
+      return;
+    case Action::kMouseHabits:
+      habits_ = static_cast<Habits>((static_cast<int>(habits_) + 1) % 3);
+      return;
+    case Action::kTheme:
+      display_.theme = display_.theme == render::Theme::kDark ? render::Theme::kLight : render::Theme::kDark;
+      return;
+    case Action::kFurniture:
+      display_.furniture = !display_.furniture;
+      return;
+    case Action::kEnterPanels:
+      side_panel_ = true;
+      enter_panels_ = true;
       return;
     case Action::kShortcuts:
       dialog_ = Dialog::kShortcuts;
@@ -118,7 +135,11 @@ void Workstation::act(Action action) {
       touch_->redo();
       break;
     case Action::kNavigate:
-      if (!filters_.variants().empty() || filters_.computing() || filters_.applying())
+      if (mark_edit_.busy())
+        mark_edit_.cancel();
+      else if (edges_.on())
+        edges_.drop();
+      else if (!filters_.variants().empty() || filters_.computing() || filters_.applying())
         filters_.cancel(*touch_);
       else
         chooseTool(std::nullopt);
@@ -130,10 +151,10 @@ void Workstation::act(Action action) {
       chooseTool(Tool::kSmooth);
       break;
     case Action::kMark:
-      chooseTool(Tool::kMark);
-      break;
     case Action::kUnmark:
-      chooseTool(Tool::kUnmark);
+      // To paint over a suggestion is to take it first.
+      (void)edges_.accept(*touch_);
+      chooseTool(action == Action::kMark ? Tool::kMark : Tool::kUnmark);
       break;
     case Action::kBrushRadius:
     case Action::kBrushStrength:
@@ -161,18 +182,84 @@ void Workstation::act(Action action) {
       display_.marks = !display_.marks;
       break;
     case Action::kClearMarks:
-      clearMarks();
+      mark_edit_.ask("Clear marks", engine::clearMarks);
       break;
+    case Action::kInvertMarks:
+      mark_edit_.ask("Invert marks", engine::invertMarks);
+      break;
+    case Action::kLasso:
+    case Action::kBox:
+      beginLasso(action == Action::kLasso ? Lasso::Shape::kFree : Lasso::Shape::kBox);
+      break;
+    case Action::kEdges:
+    case Action::kEdgesMore:
+    case Action::kEdgesFewer:
+    case Action::kEdgesThicker:
+    case Action::kEdgesThinner:
+    case Action::kEdgesCoarser:
+    case Action::kEdgesFiner:
+      actOnEdges(action);
+      break;
+    case Action::kKeepWithin: {
+      haptic::Scene scene = touch_->scene();
+      if (scene.max_change) most_change_ = *scene.max_change;
+      scene.max_change = scene.max_change ? std::nullopt : std::optional(most_change_);
+      touch_->setScene(scene);
+      break;
+    }
     case Action::kFilterNext:
       filters_.spec.kind = filters_.spec.kind == engine::FilterKind::kBox ? engine::FilterKind::kGaussian
                            : filters_.spec.kind == engine::FilterKind::kGaussian ? engine::FilterKind::kMedian
                                                                                  : engine::FilterKind::kBox;
       break;
     case Action::kFilterPreview:
-      filters_.compute(*touch_, FilterPreview::Keep::kReplace);
+      filters_.compute(*touch_, FilterPreview::Keep::kReplace, seenPart());
+      break;
+    case Action::kFilterBeside:
+      filters_.compute(*touch_, FilterPreview::Keep::kBeside, seenPart());
+      break;
+    case Action::kFilterDrop:
+      if (!filters_.variants().empty()) filters_.drop(filters_.variants().size() - 1);
       break;
     case Action::kFilterApply:
+      if (edges_.accept(*touch_)) break;
       if (!filters_.variants().empty()) filters_.apply(*touch_);
+      break;
+    case Action::kWindowLarger:
+    case Action::kWindowSmaller:
+      filters_.spec.window = std::clamp(filters_.spec.window + (action == Action::kWindowLarger ? 2 : -2), 1,
+                                        engine::FilterSpec::kMaxWindow);
+      break;
+    case Action::kMorePasses:
+    case Action::kFewerPasses:
+      filters_.spec.passes = std::clamp(filters_.spec.passes + (action == Action::kMorePasses ? 1 : -1), 1,
+                                        engine::FilterSpec::kMaxPasses);
+      break;
+    case Action::kFilterScope:
+      filters_.spec.scope = filters_.spec.scope == engine::FilterScope::kKeepMarks
+                                ? engine::FilterScope::kOnlyMarks
+                                : engine::FilterScope::kKeepMarks;
+      break;
+    case Action::kFilterMaxChange: {
+      std::optional<double>& most = filters_.spec.max_change;
+      if (most) most_change_ = *most;
+      most = most ? std::nullopt : std::optional(most_change_);
+      break;
+    }
+    case Action::kSplitLeft:
+    case Action::kSplitRight:
+      display_.split_at =
+          std::clamp(display_.split_at + (action == Action::kSplitLeft ? -0.02 : 0.02), 0.02, 0.98);
+      break;
+    case Action::kLightLeft:
+    case Action::kLightRight:
+      display_.light_azimuth_deg =
+          std::fmod(display_.light_azimuth_deg + (action == Action::kLightLeft ? 10.0F : 350.0F), 360.0F);
+      break;
+    case Action::kLightHigher:
+    case Action::kLightLower:
+      display_.light_elevation_deg = std::clamp(
+          display_.light_elevation_deg + (action == Action::kLightHigher ? 5.0F : -5.0F), 5.0F, 90.0F);
       break;
     case Action::kSplitPreview:
       display_.split = !display_.split;

@@ -32,6 +32,7 @@ void Workstation::toStylus(const InputEvent& event) {
   if (!touch_ || touch_->mouse() == nullptr) return;
   haptic::MouseStylus& mouse = *touch_->mouse();
   using Button = haptic::MouseStylus::Button;
+  if (lasso_.active()) return;
   if (!tool_on_ || dialog_ != Dialog::kNone) {
     mouse.setButton(Button::kReleased);
     mouse.leave();
@@ -41,6 +42,7 @@ void Workstation::toStylus(const InputEvent& event) {
   if (event.kind == InputKind::kButtonUp && event.button == MouseButton::kLeft) {
     mouse.setButton(Button::kReleased);
     stylus_held_ = false;
+    if (turned_tool_) touch_->setTool(*std::exchange(turned_tool_, std::nullopt));
     return;
   }
   if (event.kind == InputKind::kLeave) {
@@ -61,6 +63,10 @@ void Workstation::toStylus(const InputEvent& event) {
   if (event.kind == InputKind::kButtonDown && event.button == MouseButton::kLeft && !event.modifiers.alt &&
       under_cursor_) {
     stylus_held_ = true;
+    if (const haptic::Tool tool = toolFor(event.modifiers); tool != touch_->tool()) {
+      turned_tool_ = touch_->tool();
+      touch_->setTool(tool);
+    }
     mouse.setButton(Button::kHeld);
   }
 }
@@ -96,6 +102,7 @@ Drag Workstation::dragOf(const InputEvent& event) const {
 
 void Workstation::handle(const InputEvent& event) {
   if (adjusting_ != Adjusting::kNothing && handleAdjusting(event)) return;
+  if (touch_ && lasso_.active() && dialog_ == Dialog::kNone && handleLasso(event)) return;
   if (event.kind == InputKind::kKeyDown) {
     handleKey(event);
     return;

@@ -15,7 +15,6 @@ namespace {
 using haptic::Tool;
 
 constexpr float kSide_px = 320.0F;
-constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
 
 }  // namespace
 
@@ -25,7 +24,8 @@ void Workstation::panels() {
   const float top = ImGui::GetFrameHeight();
   const float bottom = ImGui::GetFrameHeight();
   const float width = ImGui::GetIO().DisplaySize.x, height = ImGui::GetIO().DisplaySize.y;
-  if (side_width_ <= 0.0F) side_width_ = kSide_px * scale;
+  if (side_width_ <= 0.0F)
+    side_width_ = (settings_.side_width > 0.0F ? settings_.side_width : kSide_px) * scale;
   side_width_ = std::clamp(side_width_, 160.0F * scale, std::max(0.6F * width, 161.0F * scale));
   const float side = side_panel_ && touch_ ? side_width_ : 0.0F;
   if (side > 0.0F) {
@@ -52,6 +52,7 @@ void Workstation::panels() {
     ImGui::End();
   }
   splitLine();
+  drawLasso();
   dialogs();
 }
 
@@ -96,6 +97,19 @@ void Workstation::statusBar() {
         fmt::format("{} {}: move or type, Enter or left button keeps it, Esc or right button leaves it", now,
                     typed_.empty() ? "" : "[" + typed_ + "]")
             .c_str());
+  } else if (lasso_.active()) {
+    ImGui::TextUnformatted(
+        lasso_.shape() == Lasso::Shape::kBox
+            ? "box: drag, or corners with arrows and Space; Enter marks, Ctrl+Enter unmarks, Esc leaves"
+            : "lasso: draw, or corners by click or arrows and Space; Enter or right button marks, with Ctrl "
+              "unmarks; Esc leaves");
+  } else if (edges_.suggestion() != nullptr) {
+    ImGui::TextUnformatted(
+        fmt::format(
+            "suggested: {} lines; Enter takes them, Ctrl+[ and Ctrl+] fewer and more, M and U paint over "
+            "them, Esc drops them",
+            edges_.suggestion()->lines)
+            .c_str());
   } else if (saving_.busy()) {
     ImGui::ProgressBar(static_cast<float>(saving_.progress()), ImVec2(240.0F, 0.0F), "saving");
     ImGui::SameLine();
@@ -126,11 +140,25 @@ void Workstation::statusBar() {
   ImGui::PopStyleVar(2);
 }
 
+// A part of the panels that can be folded away, and is found as it was left.
+bool Workstation::section(const char* name, bool open_at_first) {
+  const auto known = settings_.panels.find(name);
+  ImGui::SetNextItemOpen(known != settings_.panels.end() ? known->second : open_at_first, ImGuiCond_Once);
+  const bool open = ImGui::CollapsingHeader(name);
+  settings_.panels[name] = open;
+  return open;
+}
+
 void Workstation::sidePanel() {
   ImGui::Begin("Panels", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
                    ImGuiWindowFlags_NoBringToFrontOnFocus);
   side_width_ = ImGui::GetWindowSize().x;
+  settings_.side_width = side_width_ / static_cast<float>(window_->scale());
+  if (std::exchange(enter_panels_, false)) {
+    ImGui::SetWindowFocus();
+    ImGui::SetKeyboardFocusHere();
+  }
   for (const Notice& notice : notices_) {
     ImGui::PushTextWrapPos(0.0F);
     ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s%s%s", notice.what.c_str(),
@@ -138,13 +166,14 @@ void Workstation::sidePanel() {
     ImGui::PopTextWrapPos();
   }
   if (!notices_.empty() && ImGui::SmallButton("Understood")) notices_.clear();
-  if (ImGui::CollapsingHeader("Tool", kOpen)) toolPanel();
-  if (ImGui::CollapsingHeader("Status", kOpen)) statusPanel();
-  if (ImGui::CollapsingHeader("Filters", kOpen)) filterPanel();
-  if (ImGui::CollapsingHeader("Steps", kOpen)) historyPanel();
-  if (ImGui::CollapsingHeader("Display")) displayPanel();
-  if (ImGui::CollapsingHeader("Change since the scan", kOpen)) deviationPanel();
-  if (ImGui::CollapsingHeader("Haptics")) hapticsPanel();
+  if (section("Tool", true)) toolPanel();
+  if (section("Edges", false)) edgePanel();
+  if (section("Filters", true)) filterPanel();
+  if (section("Steps", true)) historyPanel();
+  if (section("Change since the scan", true)) deviationPanel();
+  if (section("Display", false)) displayPanel();
+  if (section("Status", true)) statusPanel();
+  if (section("Haptics", false)) hapticsPanel();
   ImGui::End();
 }
 

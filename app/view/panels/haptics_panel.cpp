@@ -1,5 +1,4 @@
-#include "app/view/workstation.h"
-
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -7,8 +6,54 @@
 #include <imgui.h>
 
 #include "app/view/panels/widgets.h"
+#include "app/view/workstation.h"
 
 namespace fettle::app {
+namespace {
+
+// Late ticks by how late: octaves from a microsecond to four milliseconds, bars by the logarithm of the
+// count.
+void drawLateness(const haptic::TimingHistogram& lateness) {
+  constexpr int kOctaves = 12;
+  std::array<std::uint64_t, kOctaves> counts{};
+  std::uint64_t most = 1;
+  for (int i = 0; i < kOctaves; ++i) {
+    const std::int64_t low = std::int64_t{1000} << i;
+    const std::uint64_t above = lateness.countAbove(low), far = lateness.countAbove(2 * low);
+    counts[static_cast<std::size_t>(i)] = above > far ? above - far : 0;
+    most = std::max(most, counts[static_cast<std::size_t>(i)]);
+  }
+  const float height = 4.0F * ImGui::GetTextLineHeight();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 64.0F), bar = width / kOctaves;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton("##lateness", ImVec2(width, height));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(corner, ImVec2(corner.x + width, corner.y + height),
+                     ImGui::GetColorU32(ImGuiCol_FrameBg), 3.0F);
+  for (int i = 0; i < kOctaves; ++i) {
+    const auto n = static_cast<double>(counts[static_cast<std::size_t>(i)]);
+    const auto share = static_cast<float>(std::log1p(n) / std::log1p(static_cast<double>(most)));
+    const float x = corner.x + static_cast<float>(i) * bar;
+    list.AddRectFilled(ImVec2(x, corner.y + height * (1.0F - share)),
+                       ImVec2(x + bar - 2.0F, corner.y + height), ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+  }
+  const int pointed = static_cast<int>((ImGui::GetIO().MousePos.x - corner.x) / bar);
+  if (ImGui::IsItemHovered() && pointed >= 0 && pointed < kOctaves)
+    ImGui::SetTooltip("%s", fmt::format("{} to {} us late: {} ticks", 1 << pointed, 2 << pointed,
+                                        counts[static_cast<std::size_t>(pointed)])
+                                .c_str());
+  const float left = ImGui::GetStyle().WindowPadding.x;
+  const auto mark = [&](int octave, const char* text) {
+    if (octave > 0) ImGui::SameLine(left + bar * static_cast<float>(octave));
+    ImGui::TextDisabled("%s", text);
+  };
+  mark(0, "1 us");
+  mark(3, "8");
+  mark(6, "64");
+  mark(9, "0.5 ms");
+}
+
+}  // namespace
 
 void Workstation::hapticsPanel() {
   const haptic::LoopState state = touch_->state();
@@ -19,32 +64,60 @@ void Workstation::hapticsPanel() {
                                                                   : "not plugged in");
   figure("safety", std::string(haptic::name(state.safety)));
   if (ImGui::Button("Arm")) act(Action::kArm);
+  tip(Action::kArm);
   ImGui::SameLine();
   if (ImGui::Button("Disarm")) act(Action::kDisarm);
+  tip(Action::kDisarm);
   ImGui::SameLine();
   if (ImGui::Button("Calibrate")) act(Action::kCalibrate);
+  tip(Action::kCalibrate);
+  const auto limit = static_cast<float>(touch_->scene().force_limit_n);
   if (!force_plot_.empty())
-    ImGui::PlotLines("##force", force_plot_.data(), static_cast<int>(force_plot_.size()), 0, "force [N]",
-                     0.0F, static_cast<float>(touch_->scene().force_limit_n), ImVec2(-1.0F, 60.0F));
-  // Lateness in octaves: how many ticks came that late.
-  std::array<float, 12> classes{};
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    const std::int64_t low = std::int64_t{1000} << i;
-    const auto above = touch_->timing().lateness.countAbove(low);
-    const auto far = touch_->timing().lateness.countAbove(2 * low);
-    classes[i] = std::log10(1.0F + static_cast<float>(above - far));
-  }
-  ImGui::PlotHistogram("##late", classes.data(), static_cast<int>(classes.size()), 0,
-                       "lateness 1 us .. 4 ms, by octaves, log count", 0.0F, 6.0F, ImVec2(-1.0F, 60.0F));
+    ImGui::PlotLines("##force", force_plot_.data(), static_cast<int>(force_plot_.size()), 0,
+                     fmt::format("force, 0 to {:.3g} N", limit).c_str(), 0.0F, limit,
+                     ImVec2(-1.0F, 4.0F * ImGui::GetTextLineHeight()));
   const haptic::TimingFigures compute = touch_->timing().compute.figures();
-  figure("a tick takes p50, p99",
-         fmt::format("{:.1f}, {:.1f} us", microseconds(compute.p50_ns), microseconds(compute.p99_ns)));
-  figure("stiffness", fmt::format("{:.3g} N/mm", touch_->scene().stiffness_n_per_mm));
-  std::string effects;
-  for (const haptic::EffectKind kind : touch_->scene().effects)
-    effects += (effects.empty() ? "" : ", ") + std::string(haptic::effectName(kind));
+  const haptic::TimingFigures late = touch_->timing().lateness.figures();
+  figure("ticks", fmt::format("{:.0f} of {:.0f} a second", touch_->measuredRate(), touch_->rate()));
+  figure("a tick takes",
+         fmt::format("{:.1f} us, p99 {:.1f}", microseconds(compute.p50_ns), microseconds(compute.p99_ns)));
+  figure("ticks late by",
+         fmt::format("{:.0f} us, p99 {:.0f}", microseconds(late.p50_ns), microseconds(late.p99_ns)));
+  drawLateness(touch_->timing().lateness);
+  haptic::Scene scene = touch_->scene();
+  const auto take = [&] {
+    // Effects stand on each other: what cannot be is said and not done.
+    if (const auto problem = haptic::sceneProblem(scene))
+      notices_.push_back({*problem, ""});
+    else
+      touch_->setScene(scene);
+  };
+  beginFields();
+  if (field("stiffness",
+            [&] { return typeNumber("##stiffness", scene.stiffness_n_per_mm, 1e-6, 1000.0, "%.4g N/mm"); }))
+    take();
+  if (field("force limit",
+            [&] { return typeNumber("##limit", scene.force_limit_n, 1e-3, 1000.0, "%.3g N"); }))
+    take();
+  endFields();
+  ImGui::TextDisabled("effects");
+  for (int i = 0; i < haptic::kEffectKinds; ++i) {
+    const auto kind = static_cast<haptic::EffectKind>(i);
+    const auto listed = std::find(scene.effects.begin(), scene.effects.end(), kind);
+    bool on = listed != scene.effects.end();
+    if (i % 2 != 0) ImGui::SameLine(0.5F * ImGui::GetWindowWidth());
+    std::string name(haptic::effectName(kind));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    if (!ImGui::Checkbox(name.c_str(), &on)) continue;
+    if (!on)
+      scene.effects.erase(listed);
+    else if (kind == haptic::EffectKind::kSpring)
+      scene.effects.insert(scene.effects.begin(), kind);  // before those that stand on it
+    else
+      scene.effects.push_back(kind);
+    take();
+  }
   ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextDisabled("%s", effects.c_str());
   for (const std::string& missing : touch_->realTime().missing)
     ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s", missing.c_str());
   ImGui::PopTextWrapPos();

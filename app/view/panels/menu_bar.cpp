@@ -32,16 +32,27 @@ void Workstation::menuBar() {
     menuItem(Action::kSave, field);
     menuItem(Action::kSaveAs, field);
     menuItem(Action::kExport, field);
+    if (ImGui::MenuItem("Ask before quitting with unsaved work", nullptr, settings_.ask_before_quitting))
+      settings_.ask_before_quitting = !settings_.ask_before_quitting;
     menuItem(Action::kQuit);
     ImGui::EndMenu();
   }
   if (ImGui::BeginMenu("Edit")) {
     menuItem(Action::kUndo, field && touch_->canUndo());
     menuItem(Action::kRedo, field && touch_->canRedo());
+    ImGui::EndMenu();
+  }
+  if (ImGui::BeginMenu("Filter")) {
+    for (const Action a : {Action::kFilterNext, Action::kWindowLarger, Action::kWindowSmaller,
+                           Action::kMorePasses, Action::kFewerPasses})
+      menuItem(a, field);
+    menuItem(Action::kFilterScope, field, filters_.spec.scope == engine::FilterScope::kOnlyMarks);
+    menuItem(Action::kFilterMaxChange, field, filters_.spec.max_change.has_value());
     ImGui::Separator();
-    menuItem(Action::kFilterNext, field);
     menuItem(Action::kFilterPreview, field);
-    menuItem(Action::kFilterApply, field && !filters_.variants().empty());
+    menuItem(Action::kFilterBeside, field);
+    menuItem(Action::kFilterDrop, field && !filters_.variants().empty());
+    menuItem(Action::kFilterApply, field && (!filters_.variants().empty() || edges_.suggestion() != nullptr));
     menuItem(Action::kSplitPreview, field, display_.split);
     ImGui::EndMenu();
   }
@@ -53,17 +64,32 @@ void Workstation::menuBar() {
     menuItem(Action::kMark, field, on(Tool::kMark));
     menuItem(Action::kUnmark, field, on(Tool::kUnmark));
     ImGui::Separator();
-    for (const Action a : {Action::kBrushRadius, Action::kBrushStrength, Action::kBrushSmaller,
-                           Action::kBrushLarger, Action::kClearMarks})
+    for (const Action a :
+         {Action::kBrushRadius, Action::kBrushStrength, Action::kBrushSmaller, Action::kBrushLarger})
       menuItem(a, field);
-    menuItem(Action::kShowMarks, field, display_.marks);
+    menuItem(Action::kKeepWithin, field, field && touch_->scene().max_change.has_value());
     menuItem(Action::kInvert, field, field && touch_->scene().invert);
+    ImGui::EndMenu();
+  }
+  if (ImGui::BeginMenu("Marks")) {
+    menuItem(Action::kLasso, field, lasso_.active() && lasso_.shape() == Lasso::Shape::kFree);
+    menuItem(Action::kBox, field, lasso_.active() && lasso_.shape() == Lasso::Shape::kBox);
+    ImGui::Separator();
+    for (const Action a : {Action::kEdges, Action::kEdgesMore, Action::kEdgesFewer, Action::kEdgesThicker,
+                           Action::kEdgesThinner, Action::kEdgesCoarser, Action::kEdgesFiner})
+      menuItem(a, field);
+    ImGui::Separator();
+    menuItem(Action::kShowMarks, field, display_.marks);
+    menuItem(Action::kInvertMarks, field);
+    menuItem(Action::kClearMarks, field);
     ImGui::EndMenu();
   }
   if (ImGui::BeginMenu("View")) {
     menuItem(Action::kDeviation, field, display_.deviation);
     menuItem(Action::kContours, field, display_.contours);
     menuItem(Action::kNextMap, field);
+    menuItem(Action::kTheme, field, display_.theme == render::Theme::kLight);
+    menuItem(Action::kFurniture, field, display_.furniture);
     ImGui::Separator();
     for (const Action a : {Action::kViewAll, Action::kViewLastStroke, Action::kViewFront, Action::kViewBack,
                            Action::kViewRight, Action::kViewLeft, Action::kViewTop, Action::kProjection,
@@ -80,6 +106,7 @@ void Workstation::menuBar() {
       ImGui::EndMenu();
     }
     menuItem(Action::kSidePanel, true, side_panel_);
+    menuItem(Action::kEnterPanels, field);
     ImGui::EndMenu();
   }
   if (ImGui::BeginMenu("Device")) {

@@ -1,5 +1,3 @@
-#include "app/view/workstation.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -7,62 +5,92 @@
 #include <imgui.h>
 
 #include "app/view/panels/widgets.h"
+#include "app/view/workstation.h"
 
 namespace fettle::app {
 namespace {
 
 using haptic::Tool;
 
+constexpr double kLargestBrush = 64.0;  // [samples], see Scene
+
 }  // namespace
 
 void Workstation::toolPanel() {
+  // As many buttons in a line as there is room for.
+  bool first = true;
   const auto button = [&](const char* name, Action action, bool on) {
+    const float wide = ImGui::CalcTextSize(name).x + 2.0F * ImGui::GetStyle().FramePadding.x;
+    if (!first) {
+      ImGui::SameLine();
+      if (ImGui::GetContentRegionAvail().x < wide) ImGui::NewLine();
+    }
+    first = false;
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
     if (ImGui::Button(name)) act(action);
     if (on) ImGui::PopStyleColor();
-    if (ImGui::IsItemHovered())
-      ImGui::SetTooltip("%s", keyText(shortcutOf(action).key, shortcutOf(action).modifiers).c_str());
-    ImGui::SameLine();
+    tip(action);
   };
   const Tool tool = touch_->tool();
-  button("View", Action::kNavigate, !tool_on_);
+  const bool lasso = lasso_.active();
+  button("View", Action::kNavigate, !tool_on_ && !lasso);
   button("Feel", Action::kFeel, tool_on_ && tool == Tool::kFeel);
   button("Smooth", Action::kSmooth, tool_on_ && tool == Tool::kSmooth);
   button("Mark", Action::kMark, tool_on_ && tool == Tool::kMark);
   button("Unmark", Action::kUnmark, tool_on_ && tool == Tool::kUnmark);
-  ImGui::NewLine();
+  button("Lasso", Action::kLasso, lasso && lasso_.shape() == Lasso::Shape::kFree);
+  button("Box", Action::kBox, lasso && lasso_.shape() == Lasso::Shape::kBox);
+
+  const engine::Grid& grid = touch_->field().grid();
+  const double cell = std::max(grid.spacingXMm(), grid.spacingYMm());
   const bool marking = tool == Tool::kMark || tool == Tool::kUnmark;
-  auto radius = static_cast<float>(marking ? touch_->scene().mark_radius_samples
-                                           : touch_->scene().brush_radius_samples);
-  if (ImGui::SliderFloat("radius", &radius, 0.0F, 64.0F, "%.0f samples")) setBrushRadius(std::round(radius));
+  const double samples = marking ? touch_->scene().mark_radius_samples : touch_->scene().brush_radius_samples;
+  beginFields();
+  auto radius = static_cast<float>(samples);
+  if (field("radius", [&] {
+        return ImGui::SliderFloat("##radius", &radius, 0.0F, static_cast<float>(kLargestBrush),
+                                  "%.0f samples", ImGuiSliderFlags_AlwaysClamp);
+      }))
+    setBrushRadius(std::round(static_cast<double>(radius)));
+  double radius_mm = samples * cell;
+  if (field("", [&] { return typeNumber("##radius_mm", radius_mm, 0.0, kLargestBrush * cell, "%.4g mm"); }))
+    setBrushRadius(radius_mm / cell);
   if (touch_->mouse() != nullptr) {
-    const engine::Grid& grid = touch_->field().grid();
-    const double cell = std::max(grid.spacingXMm(), grid.spacingYMm());
     auto depth = static_cast<float>(touch_->mouse()->pressMm() / cell);
-    if (ImGui::SliderFloat("depth", &depth, 0.0F, 4.0F, "%.2f cells")) setPressDepth(depth * cell);
+    if (field("depth", [&] {
+          return ImGui::SliderFloat("##depth", &depth, 0.0F, 4.0F, "%.2f cells",
+                                    ImGuiSliderFlags_AlwaysClamp);
+        }))
+      setPressDepth(static_cast<double>(depth) * cell);
   }
-  bool limited = touch_->scene().max_change.has_value();
   haptic::Scene scene = touch_->scene();
-  if (ImGui::Checkbox("keep within", &limited)) {
-    scene.max_change = limited ? std::optional<double>(0.05) : std::nullopt;
-    touch_->setScene(scene);
-  }
-  if (limited && scene.max_change) {
+  bool limited = scene.max_change.has_value();
+  (void)field("keep within", [&] {
+    if (ImGui::Checkbox("##within", &limited)) act(Action::kKeepWithin);
+    tip(Action::kKeepWithin);
+    if (!scene.max_change) return false;
     ImGui::SameLine();
-    double most = *scene.max_change;
-    const std::string unit = "%.4g " + touch_->field().grid().height_unit.name;
-    if (ImGui::InputDouble("##most", &most, 0.0, 0.0, unit.c_str(), ImGuiInputTextFlags_EnterReturnsTrue) &&
-        most >= 0.0) {
-      scene.max_change = most;
+    ImGui::SetNextItemWidth(-1.0F);
+    if (typeNumber("##most", *scene.max_change, 0.0, 1e9, "%.4g " + grid.height_unit.name))
       touch_->setScene(scene);
-    }
-  }
+    return false;
+  });
+  endFields();
   bool marks = display_.marks, inverted = touch_->scene().invert;
   if (ImGui::Checkbox("marks", &marks)) act(Action::kShowMarks);
+  tip(Action::kShowMarks);
   ImGui::SameLine();
   if (ImGui::Checkbox("upside down", &inverted)) act(Action::kInvert);
+  tip(Action::kInvert);
+  if (ImGui::Button("Clear marks")) act(Action::kClearMarks);
+  tip(Action::kClearMarks);
   ImGui::SameLine();
-  if (ImGui::SmallButton("Clear marks")) act(Action::kClearMarks);
+  if (ImGui::Button("Invert marks")) act(Action::kInvertMarks);
+  tip(Action::kInvertMarks);
+  if (mark_edit_.busy()) {
+    ImGui::SameLine();
+    ImGui::ProgressBar(static_cast<float>(mark_edit_.progress()), ImVec2(-1.0F, 0.0F), "marking");
+  }
 }
 
 }  // namespace fettle::app

@@ -1,14 +1,63 @@
 #include "app/view/panels/widgets.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
-#include <imgui.h>
 
 namespace fettle::app {
+namespace {
+
+constexpr float kNames = 0.36F;  // of a panel's width, for the names of fields and figures
+
+}  // namespace
 
 void figure(const char* name, const std::string& value) {
+  const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   ImGui::TextDisabled("%s", name);
-  ImGui::SameLine(0.5F * ImGui::GetContentRegionAvail().x);
+  const float column = left + kNames * width;
+  ImGui::SameLine(std::max(column, left + ImGui::CalcTextSize(name).x + ImGui::GetStyle().ItemSpacing.x));
+  const float room = ImGui::GetContentRegionAvail().x;
+  if (ImGui::CalcTextSize(value.c_str()).x <= room) {
+    ImGui::TextUnformatted(value.c_str());
+    return;
+  }
+  ImGui::PushTextWrapPos(0.0F);
   ImGui::TextUnformatted(value.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+void tip(Action action) {
+  if (!ImGui::IsItemHovered()) return;
+  const Shortcut& s = shortcutOf(action);
+  ImGui::SetTooltip("%s", fmt::format("{}: {}", s.name, keyText(s.key, s.modifiers)).c_str());
+}
+
+void beginFields() {
+  ImGui::PushItemWidth(-1.0F);
+}
+
+void endFields() {
+  ImGui::PopItemWidth();
+}
+
+void fieldName(const char* name) {
+  const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", name);
+  ImGui::SameLine(left + kNames * width);
+}
+
+bool typeNumber(const char* id, double& value, double low, double high, const std::string& format) {
+  double typed = value;
+  if (!ImGui::InputDouble(id, &typed, 0.0, 0.0, format.c_str(),
+                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll) ||
+      !std::isfinite(typed))
+    return false;
+  typed = std::clamp(typed, low, high);
+  if (typed == value) return false;
+  value = typed;
+  return true;
 }
 
 std::string bytesText(double bytes) {

@@ -3,10 +3,34 @@
 #include <cstdint>
 #include <string>
 
+#include <imgui.h>
+
+#include "app/view/shortcuts.h"
+
 namespace fettle::app {
 
-/// "name      value" on one line of a panel.
+/// "name      value" on one line of a panel; values too long for it are cut, and shown whole under the
+/// cursor.
 void figure(const char* name, const std::string& value);
+
+/// The keys of an action, under the cursor of the last item.
+void tip(Action action);
+
+/// Fields under each other, names to the left: between beginFields() and endFields(), field() gives the rest
+/// of the line to what `edit` puts there and returns what it returns.
+void beginFields();
+void endFields();
+void fieldName(const char* name);
+template <class Edit>
+bool field(const char* name, const Edit& edit) {
+  fieldName(name);
+  return edit();
+}
+
+/// A number to be typed in, with its unit: true when it was changed and confirmed, never to what is not
+/// finite.
+[[nodiscard]] bool typeNumber(const char* id, double& value, double low, double high,
+                              const std::string& format);
 
 /// "17.2 kB".
 [[nodiscard]] std::string bytesText(double bytes);
