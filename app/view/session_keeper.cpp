@@ -180,7 +180,7 @@ engine::SessionStatus SessionKeeper::status() const {
 }
 
 std::size_t SessionKeeper::waiting() const {
-  return waiting_.size() + (writer_ ? writer_->status().waiting : 0);
+  return waiting_.size() + (making_.busy() ? 1 : 0) + (writer_ ? writer_->status().waiting : 0);
 }
 
 std::optional<engine::Error> SessionKeeper::error() const {

@@ -59,7 +59,7 @@ class SessionKeeper final : public SessionSink {
   [[nodiscard]] bool named() const noexcept { return named_; }
   /// Where it is written to; empty before the first step.
   [[nodiscard]] std::string path() const;
-  /// Steps and moves that are not on the disk yet.
+  /// Steps and moves that are not on the disk yet; the file itself while it is being made.
   [[nodiscard]] std::size_t waiting() const;
   /// Why they cannot be written; they are kept in memory.
   [[nodiscard]] std::optional<engine::Error> error() const;
