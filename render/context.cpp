@@ -195,7 +195,14 @@ void Context::startDevice(const vk::raii::PhysicalDevice& physical, std::uint32_
                           const std::vector<const char*>& extensions) {
   const float priority = 1.0F;
   const vk::DeviceQueueCreateInfo queue{{}, family, 1, &priority};
+  const bool multiview =
+      physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features>()
+          .get<vk::PhysicalDeviceVulkan11Features>()
+          .multiview != VK_FALSE;
+  vk::PhysicalDeviceVulkan11Features views;
+  views.multiview = multiview;
   vk::PhysicalDeviceVulkan13Features features;
+  features.pNext = &views;
   features.dynamicRendering = VK_TRUE;
   features.synchronization2 = VK_TRUE;
   vk::DeviceCreateInfo device_info;
@@ -205,6 +212,7 @@ void Context::startDevice(const vk::raii::PhysicalDevice& physical, std::uint32_
   queue_ = vk::raii::Queue(device, family, 0);
   device_ = std::move(device);
   family_ = family;
+  multiview_ = multiview;
 }
 
 void Context::run(const std::function<void(const vk::raii::CommandBuffer&)>& record) {

@@ -62,6 +62,8 @@ class Context {
   [[nodiscard]] const vk::raii::Instance& instance() const noexcept { return instance_; }
   [[nodiscard]] const vk::raii::Queue& queue() const noexcept { return queue_; }
   [[nodiscard]] std::uint32_t queueFamily() const noexcept { return family_; }
+  /// Whether a pass can draw several views at once (every device of Vulkan 1.1 up should).
+  [[nodiscard]] bool multiview() const noexcept { return multiview_; }
   /// The window's; null without a wish.
   [[nodiscard]] vk::SurfaceKHR surface() const noexcept { return *surface_; }
 
@@ -84,6 +86,7 @@ class Context {
   vk::raii::DebugUtilsMessengerEXT messenger_ = nullptr;
   vk::raii::SurfaceKHR surface_ = nullptr;
   std::uint32_t family_ = 0;
+  bool multiview_ = false;
   vk::raii::PhysicalDevice physical_ = nullptr;
   vk::PhysicalDeviceLimits limits_;
   vk::PhysicalDeviceMemoryProperties memory_;

@@ -93,7 +93,7 @@ class Changes {
         .setSrcQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
         .setDstQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
         .setImage(image)
-        .setSubresourceRange({aspect, 0, 1, 0, 1});
+        .setSubresourceRange({aspect, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS});
     steps_.push_back(step);
   }
   void record(const vk::raii::CommandBuffer& commands) const {
@@ -138,8 +138,12 @@ bool seen(const LivePanel& p) {
 
 }  // namespace
 
-LiveFrame::LiveFrame(Context& context, vk::Format colour)
-    : context_(context), colour_(colour), pipelines_(context, colour) {
+LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views)
+    : context_(context),
+      colour_(colour),
+      layers_(views == Pipelines::Views::kBoth ? 2 : 1),
+      view_mask_(views == Pipelines::Views::kBoth ? gpu::kBothViews : 0),
+      pipelines_(context, colour, views) {
   constexpr auto kSlots = static_cast<std::uint32_t>(Submissions::kInFlight);
   constexpr std::uint32_t kSets = kSlots * (5 * kMostPanels + 1);
   const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, kSets},
@@ -198,10 +202,11 @@ void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent) {
   // The frame in flight draws with the old ones.
   submissions.finish();
   using Usage = vk::ImageUsageFlagBits;
-  depth_ = GpuImage(context_, kDepthFormat, extent, 1, GpuImage::Kind::kPlane,
+  const GpuImage::Kind kind = layers_ == 1 ? GpuImage::Kind::kPlane : GpuImage::Kind::kArray;
+  depth_ = GpuImage(context_, kDepthFormat, extent, layers_, kind,
                     Usage::eDepthStencilAttachment | Usage::eSampled, kDepth);
-  base_ = GpuImage(context_, colour_, extent, 1, GpuImage::Kind::kPlane,
-                   Usage::eColorAttachment | Usage::eTransferSrc, kColour);
+  base_ = GpuImage(context_, colour_, extent, layers_, kind, Usage::eColorAttachment | Usage::eTransferSrc,
+                   kColour);
 }
 
 void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture) {
@@ -284,7 +289,10 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
       attachment(depth_.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eClear,
                  vk::ClearDepthStencilValue{1.0F, 0});
   vk::RenderingInfo rendering;
-  rendering.setRenderArea({{0, 0}, depth_.extent()}).setLayerCount(1).setPDepthAttachment(&depth);
+  rendering.setRenderArea({{0, 0}, depth_.extent()})
+      .setLayerCount(1)
+      .setViewMask(view_mask_)
+      .setPDepthAttachment(&depth);
   commands.beginRendering(rendering);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
@@ -317,6 +325,7 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
       attachment(depth_.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
   rendering.setRenderArea({{0, 0}, base_.extent()})
       .setLayerCount(1)
+      .setViewMask(view_mask_)
       .setColorAttachments(cleared)
       .setPDepthAttachment(&read);
   commands.beginRendering(rendering);
@@ -375,8 +384,8 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
 void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
                              std::span<const LivePanel> panels, const LiveTarget& target) {
   vk::ImageCopy copy;
-  copy.setSrcSubresource({kColour, 0, 0, 1})
-      .setDstSubresource({kColour, 0, 0, 1})
+  copy.setSrcSubresource({kColour, 0, 0, layers_})
+      .setDstSubresource({kColour, 0, 0, layers_})
       .setExtent({target.extent.width, target.extent.height, 1});
   commands.copyImage(base_.image(), ImageLayout::eTransferSrcOptimal, target.image,
                      ImageLayout::eTransferDstOptimal, copy);
@@ -398,7 +407,10 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
   const vk::RenderingAttachmentInfo depth =
       attachment(depth_.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
   vk::RenderingInfo rendering;
-  rendering.setRenderArea({{0, 0}, target.extent}).setLayerCount(1).setColorAttachments(colour);
+  rendering.setRenderArea({{0, 0}, target.extent})
+      .setLayerCount(1)
+      .setViewMask(view_mask_)
+      .setColorAttachments(colour);
   if (lines) {
     rendering.setPDepthAttachment(&depth);
     commands.beginRendering(rendering);

@@ -45,7 +45,8 @@ class LiveFrame {
  public:
   static constexpr std::size_t kMostPanels = 4;
 
-  LiveFrame(Context& context, vk::Format colour);
+  /// kBoth: targets have two layers, one for each eye of PanelUniforms::views.
+  LiveFrame(Context& context, vk::Format colour, Pipelines::Views views = Pipelines::Views::kOne);
 
   /// Records into submissions.commands(). `staging` carries new letters.
   void record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
@@ -82,6 +83,8 @@ class LiveFrame {
 
   Context& context_;
   vk::Format colour_;
+  std::uint32_t layers_;     // of depth_, base_ and targets
+  std::uint32_t view_mask_;  // 0: there is one
   Pipelines pipelines_;
   vk::raii::DescriptorPool pool_ = nullptr;
   std::array<Slot, Submissions::kInFlight> slots_;

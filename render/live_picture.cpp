@@ -16,6 +16,7 @@
 #include "render/live_view.h"
 #include "render/page_demand.h"
 #include "render/pick.h"
+#include "render/stereo_compose.h"
 
 namespace fettle::render {
 namespace {
@@ -56,6 +57,32 @@ int fixedLevel(const engine::Grid& grid, const PagePool& pool, std::size_t textu
              .count())
     ++level;
   return level;
+}
+
+// A line of sight in field coordinates: where it comes from and where it goes.
+Ray inField(const PanelPlan& p, const Ray& ray) {
+  const double unit = p.field.grid().height_unit.mm;
+  const auto field = [&](const glm::dvec3& s) {
+    return glm::dvec3(glm::dvec2(s) - p.placing.first, (s.z / p.mm_per_unit + p.reference) * unit);
+  };
+  const glm::dvec3 from = field(ray.from);
+  return {from, field(ray.from + ray.along) - from};
+}
+glm::dvec3 inScene(const PanelPlan& p, const glm::dvec3& field_mm) {
+  const double unit = p.field.grid().height_unit.mm;
+  return {p.placing.first + glm::dvec2(field_mm), (field_mm.z / unit - p.reference) * p.mm_per_unit};
+}
+
+// Where the window stands that the surface in the middle of the plot lies on (Stereo::screen_distance).
+double windowAtMiddle(const PanelPlan& p) {
+  const glm::dvec2 middle(p.plot.x + 0.5 * p.plot.width, p.plot.y + 0.5 * p.plot.height);
+  const Ray ray = inField(p, p.camera.rayAt(middle));
+  const auto hit = meetSurface(p.field.reader(), ray.from, ray.along);
+  if (!hit) return 1.0;
+  glm::dvec3 at = inScene(p, hit->position_mm);
+  // Heights are drawn cut.
+  at.z = std::clamp(at.z, p.floor_z, p.cut_z);
+  return std::clamp(p.camera.windowOf(at), 0.1, 10.0);
 }
 
 std::uint64_t largestHeap(const vk::raii::PhysicalDevice& device) {
@@ -115,7 +142,12 @@ struct LivePicture::Impl {
   Glyphs glyphs;
   Submissions submissions;
   StagingRing staging;
+  vk::Format colour_format;
   LiveFrame frame;
+  // For two eyes: made when first asked for.
+  std::unique_ptr<StereoCompose> compose;
+  std::unique_ptr<LiveFrame> both_eyes;  // in one pass
+  std::unique_ptr<LiveFrame> right_eye;  // in a pass of its own; the left one is `frame`
 
   Shown shown;
   struct Field {
@@ -133,6 +165,9 @@ struct LivePicture::Impl {
   struct Seen {
     PicturePlan plan;
     std::vector<Rectangle> visible;
+    std::vector<std::array<Camera, 2>> eyes;  // of each panel; none unless in stereo
+    StereoMode stereo = StereoMode::kOff;
+    int eye_width = 0;  // of one eye's picture [px]
   };
   std::optional<Seen> seen;
   bool broken = false;  // an upload was left half done
@@ -144,6 +179,7 @@ struct LivePicture::Impl {
         glyphs(std::move(g)),
         submissions(context),
         staging(context, kStagingBytes),
+        colour_format(colour),
         frame(context, colour) {
     max_side = context.limits().maxImageDimension2D;
     if (o.max_image_side > 0)
@@ -159,6 +195,9 @@ struct LivePicture::Impl {
   engine::Result<PicturePlan> plan(const FrameInput& input);
   engine::Result<FrameStatistics> draw(const FrameInput& input, const LiveTarget& target);
   void drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats, PicturePlan plan);
+  void recordStereo(const Stereo& stereo, std::vector<LivePanel>& panels,
+                    const std::vector<gpu::Quad>& furniture, const glm::vec3& ground,
+                    const LiveTarget& target);
   void bringPages(PageDemand& demand, std::int64_t bytes_left, FrameStatistics& stats);
   std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLine::Depth depth,
                                  const PanelPlan& panel) const;
@@ -336,6 +375,14 @@ std::vector<gpu::Line> LivePicture::Impl::linesOf(const std::vector<OverlayLine>
 engine::Result<FrameStatistics> LivePicture::Impl::draw(const FrameInput& input, const LiveTarget& target) {
   if (shown.versions.empty() || broken)
     return engine::inputError("there is no field to draw", "picture", "give it a version first");
+  if (input.stereo.mode == StereoMode::kSideBySide &&
+      input.view.width == static_cast<int>(target.extent.width)) {
+    // Each eye's picture is laid out for its half.
+    FrameInput eye = input;
+    eye.view.width = static_cast<int>(StereoCompose::eyeExtent(input.stereo.mode, target.extent).width);
+    return draw(eye, target);
+  }
+  if (engine::Status ok = check(input.stereo); !ok) return tl::unexpected(ok.error());
   engine::Result<PicturePlan> planned = plan(input);
   if (!planned) return tl::unexpected(planned.error());
   for (const Rectangle& plot : planned->layout.plots)
@@ -364,6 +411,25 @@ void LivePicture::Impl::bringPages(PageDemand& demand, std::int64_t bytes_left, 
   r.pages_loaded = outcome.loaded;
   r.pages_waiting = outcome.waiting;
   r.pages_beyond = outcome.beyond;
+}
+
+void LivePicture::Impl::recordStereo(const Stereo& stereo, std::vector<LivePanel>& panels,
+                                     const std::vector<gpu::Quad>& furniture, const glm::vec3& ground,
+                                     const LiveTarget& target) {
+  const bool one_pass = context.multiview() && !stereo.two_passes;
+  if (!compose) compose = std::make_unique<StereoCompose>(context, colour_format);
+  compose->begin(submissions, StereoCompose::eyeExtent(stereo.mode, target.extent),
+                 one_pass ? StereoCompose::Layers::kOneImage : StereoCompose::Layers::kTwoImages);
+  if (one_pass) {
+    if (!both_eyes) both_eyes = std::make_unique<LiveFrame>(context, colour_format, Pipelines::Views::kBoth);
+    both_eyes->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft));
+  } else {
+    frame.record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft));
+    for (LivePanel& panel : panels) panel.uniforms.views[0] = panel.uniforms.views[1];
+    if (!right_eye) right_eye = std::make_unique<LiveFrame>(context, colour_format);
+    right_eye->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kRight));
+  }
+  compose->record(submissions.commands(), stereo.mode, target);
 }
 
 void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats,
@@ -402,6 +468,12 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   std::vector<LivePanel> panels(count_panels);
   PageDemand demand;
   Seen now;
+  const bool stereo = input.stereo.mode != StereoMode::kOff;
+  now.stereo = input.stereo.mode;
+  now.eye_width = input.view.width;
+  const double window = !stereo                              ? 1.0
+                        : input.stereo.screen_distance > 0.0 ? input.stereo.screen_distance
+                                                             : windowAtMiddle(plan.panels.front());
   std::vector<OverlayLine> lines = input.overlays.lines;
   for (const Overlays::Ring& ring : input.overlays.rings)
     appendRing(shown.versions.front().reader(), ring, lines);
@@ -421,6 +493,11 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     q.reader = p.field.reader();
     q.placing = p.placing;
     q.camera = p.camera;
+    if (stereo) {
+      now.eyes.push_back(eyesOf(p.camera, input.stereo, window));
+      q.camera = now.eyes[i][0];
+      q.other_eye = now.eyes[i][1];
+    }
     q.mm_per_unit = p.mm_per_unit;
     q.reference = p.reference;
     q.lowest = p.lowest;
@@ -449,7 +526,8 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
           1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::ldexp(std::min(px.x, px.y), shift)))));
     }
     u.seam.x = kSeamPx;
-    u.views[0] = viewOf(p.camera, p.placing, p.plot);
+    u.views[0] = viewOf(q.camera, p.placing, p.plot);
+    if (q.other_eye) u.views[1] = viewOf(*q.other_eye, p.placing, p.plot);
     u.ground = glm::vec4(plan.palette.ground, 1.0F);
     const Paging& paging = panel.field->paging();
     u.paging.x = paging.log2_columns;
@@ -509,7 +587,10 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     line.fill = glm::ivec4(gpu::kFillSolid, 1, 0, 0);
     furniture.push_back(line);
   }
-  frame.record(submissions, staging, panels, furniture, plan.palette.ground, glyphs, target);
+  if (stereo)
+    recordStereo(input.stereo, panels, furniture, plan.palette.ground, target);
+  else
+    frame.record(submissions, staging, panels, furniture, plan.palette.ground, glyphs, target);
   submissions.submit({target.free,
                       vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
                       target.done});
@@ -636,31 +717,35 @@ engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, Image
 
 std::optional<Picked> LivePicture::pick(double x, double y) const {
   if (!impl_->seen) return std::nullopt;
-  for (std::size_t i = 0; i < impl_->seen->visible.size(); ++i) {
-    const Rectangle& r = impl_->seen->visible[i];
+  const Impl::Seen& seen = *impl_->seen;
+  const bool halves = seen.stereo == StereoMode::kSideBySide;
+  const bool right = halves && x >= seen.eye_width;
+  if (right) x -= seen.eye_width;
+  for (std::size_t i = 0; i < seen.visible.size(); ++i) {
+    const Rectangle& r = seen.visible[i];
     if (x < r.x || y < r.y || x >= r.x + r.width || y >= r.y + r.height) continue;
-    const PanelPlan& p = impl_->seen->plan.panels[i];
-    const double unit = p.field.grid().height_unit.mm;
-    const Ray ray = p.camera.rayAt({x, y});
-    const auto field = [&](const glm::dvec3& s) {
-      return glm::dvec3(glm::dvec2(s) - p.placing.first, (s.z / p.mm_per_unit + p.reference) * unit);
-    };
-    const glm::dvec3 from = field(ray.from);
-    const auto hit = meetSurface(p.field.reader(), from, field(ray.from + ray.along) - from);
+    const PanelPlan& p = seen.plan.panels[i];
+    const Camera& camera = halves ? seen.eyes[i][right ? 1 : 0] : p.camera;
+    const Ray ray = inField(p, camera.rayAt({x, y}));
+    const auto hit = meetSurface(p.field.reader(), ray.from, ray.along);
     if (!hit) return std::nullopt;
     return Picked{static_cast<int>(i), hit->position_mm, hit->column, hit->row};
   }
   return std::nullopt;
 }
 
-std::optional<std::pair<double, double>> LivePicture::pixelOf(int panel, const glm::dvec3& field_mm) const {
+std::optional<std::pair<double, double>> LivePicture::pixelOf(int panel, const glm::dvec3& field_mm,
+                                                              Eye eye) const {
   if (!impl_->seen || panel < 0 || static_cast<std::size_t>(panel) >= impl_->seen->visible.size())
     return std::nullopt;
-  const PanelPlan& p = impl_->seen->plan.panels[static_cast<std::size_t>(panel)];
-  const double unit = p.field.grid().height_unit.mm;
-  const glm::dvec2 at = p.camera.pixelOf(
-      glm::dvec3(p.placing.first + glm::dvec2(field_mm), (field_mm.z / unit - p.reference) * p.mm_per_unit));
-  return std::pair{at.x, at.y};
+  const Impl::Seen& seen = *impl_->seen;
+  const auto i = static_cast<std::size_t>(panel);
+  const PanelPlan& p = seen.plan.panels[i];
+  const bool stereo = seen.stereo != StereoMode::kOff;
+  const Camera& camera = stereo ? seen.eyes[i][static_cast<std::size_t>(eye)] : p.camera;
+  const glm::dvec2 at = camera.pixelOf(inScene(p, field_mm));
+  const bool right = seen.stereo == StereoMode::kSideBySide && eye == Eye::kRight;
+  return std::pair{at.x + (right ? seen.eye_width : 0), at.y};
 }
 
 void LivePicture::refreshRanges() {

@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/field/version.h"
 #include "render/picture.h"
+#include "render/stereo.h"
 
 namespace fettle::render {
 
@@ -89,6 +90,8 @@ struct FrameInput {
   double light_azimuth_deg = 135.0;
   double light_elevation_deg = 45.0;
   Overlays overlays;
+  /// A picture for each eye. Off: nothing of it is made. Bounds hold for each eye's picture.
+  Stereo stereo;
   /// Screen error wanted [px], > 0. What is reached is in FrameStatistics::bound_px.
   double error_px = 1.0;
   /// Vertices a frame may cost, all panels together, 4096 .. 2^24.
@@ -204,11 +207,14 @@ class LivePicture {
 
   /// What lies under pixel (x, y) of the last frame: (0, 0) is the top left corner of the picture. By walking
   /// the min/max pyramid along the ray and meeting the bilinear patches exactly, in double precision; works
-  /// on the versions given to update(), not on what is uploaded. Empty: ground, hole, or no frame yet.
+  /// on the versions given to update(), not on what is uploaded. Empty: ground, hole, or no frame yet. Side
+  /// by side, each half is its own eye's; in an anaglyph the place is that on the window, as seen from
+  /// between the eyes.
   [[nodiscard]] std::optional<Picked> pick(double x, double y) const;
   /// Where a point of the field is seen in panel `panel` of the last frame [px]; the inverse of pick but for
-  /// what hides it. Empty: no such panel.
-  [[nodiscard]] std::optional<std::pair<double, double>> pixelOf(int panel, const glm::dvec3& field_mm) const;
+  /// what hides it. Empty: no such panel. In stereo: as the left eye's picture shows it.
+  [[nodiscard]] std::optional<std::pair<double, double>> pixelOf(int panel, const glm::dvec3& field_mm,
+                                                                 Eye eye = Eye::kLeft) const;
 
   /// Works out the colours' and the camera's ranges anew at the next frame.
   void refreshRanges();

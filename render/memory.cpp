@@ -71,8 +71,8 @@ void change(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::
 void change(const vk::raii::CommandBuffer& commands, vk::Image image, vk::ImageLayout from,
             vk::ImageLayout to, vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access,
             vk::PipelineStageFlags2 after, vk::AccessFlags2 after_access) {
-  barrier(commands, image, {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}, from, to, before, before_access,
-          after, after_access);
+  barrier(commands, image, {vk::ImageAspectFlagBits::eColor, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS}, from, to,
+          before, before_access, after, after_access);
 }
 
 }  // namespace fettle::render

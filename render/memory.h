@@ -55,7 +55,7 @@ class GpuImage {
 };
 
 /// A barrier on all of an image: what came before has written, what comes after may read or write. The second
-/// form is for colour images of one layer that others own, such as a swap chain's.
+/// form is for colour images that others own, such as a swap chain's.
 void change(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::ImageLayout from,
             vk::ImageLayout to, vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access,
             vk::PipelineStageFlags2 after, vk::AccessFlags2 after_access);

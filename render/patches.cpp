@@ -77,6 +77,15 @@ engine::HeightBounds PatchTree::heights(glm::ivec2 first, glm::ivec2 last) const
   return all;
 }
 
+bool PatchTree::misses(const Box& box) const noexcept {
+  return q_.camera.misses(box) && (!q_.other_eye || q_.other_eye->misses(box));
+}
+
+double PatchTree::movesAtMost(const glm::dvec3& step, const Box& box) const noexcept {
+  const double px = q_.camera.movesAtMost(step, box);
+  return q_.other_eye ? std::max(px, q_.other_eye->movesAtMost(step, box)) : px;
+}
+
 // Appends a patch; -1 when there is nothing to draw.
 std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
   const std::int32_t side = DetailMeasure::side(level);
@@ -98,7 +107,7 @@ std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
           {b.x, b.y, (drawn_high - q_.reference) * q_.mm_per_unit}};
   Box seen = box;
   if (rim || holed) seen.low.z = std::min(seen.low.z, q_.floor_z);
-  if (q_.camera.misses(seen)) return -1;
+  if (misses(seen)) return -1;
 
   Node n;
   n.level = level;
@@ -109,15 +118,13 @@ std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
   if (level > 0) {
     const bool cut = raw.min < q_.lowest || raw.max > q_.highest;
     const double upright = cut ? drawn_high - drawn_low : error.deviation;
-    n.error_px =
-        upright < 1e30 ? q_.camera.movesAtMost({0.0, 0.0, upright * q_.mm_per_unit}, box) : kInfinity;
+    n.error_px = upright < 1e30 ? movesAtMost({0.0, 0.0, upright * q_.mm_per_unit}, box) : kInfinity;
     if (n.error_px > q_.error_px && !holed) {
       const double stride = std::ldexp(1.0, level);
       const glm::dvec3 along_x{q_.placing.spacing.x, 0.0, 0.0}, along_y{0.0, q_.placing.spacing.y, 0.0};
-      const double sideways =
-          q_.camera.movesAtMost(stride * along_x, box) + q_.camera.movesAtMost(stride * along_y, box);
-      n.error_px = std::min(n.error_px,
-                            sideways + q_.camera.movesAtMost({0.0, 0.0, error.excess * q_.mm_per_unit}, box));
+      const double sideways = movesAtMost(stride * along_x, box) + movesAtMost(stride * along_y, box);
+      n.error_px =
+          std::min(n.error_px, sideways + movesAtMost({0.0, 0.0, error.excess * q_.mm_per_unit}, box));
     }
   }
   nodes_.push_back(n);
@@ -197,11 +204,11 @@ bool PatchTree::mayShowHole(const Node& n) const {
 }
 
 // Which sides of the field turn their wall to the viewer.
-std::array<bool, 4> PatchTree::wallsSeen() const {
+std::array<bool, 4> PatchTree::wallsSeen(const Camera& camera) const {
   // The viewer's place, or the way to it when it is infinitely far. Each side of the field is one plane.
-  glm::dvec4 eye = glm::inverse(q_.camera.clipFromScene()) * glm::dvec4(0.0, 0.0, 1.0, 0.0);
+  glm::dvec4 eye = glm::inverse(camera.clipFromScene()) * glm::dvec4(0.0, 0.0, 1.0, 0.0);
   eye = std::abs(eye.w) > 1e-12 * glm::length(glm::dvec3(eye)) ? eye / eye.w
-                                                               : glm::dvec4(q_.camera.toViewer(), 0.0);
+                                                               : glm::dvec4(camera.toViewer(), 0.0);
   const glm::dvec2 low = q_.placing.first, high = low + q_.placing.extent();
   // Through a hole the inner side of a wall may be seen.
   const bool holed = q_.reader.root().holed_children != 0;
@@ -213,7 +220,11 @@ PatchChoice PatchTree::list() const {
   PatchChoice choice;
   choice.within_budget = within_budget_;
   const glm::ivec2 end = q_.placing.size - 1;
-  const std::array<bool, 4> walls_seen = wallsSeen();
+  std::array<bool, 4> walls_seen = wallsSeen(q_.camera);
+  if (q_.other_eye) {
+    const std::array<bool, 4> other = wallsSeen(*q_.other_eye);
+    for (std::size_t k = 0; k < 4; ++k) walls_seen[k] = walls_seen[k] || other[k];
+  }
   std::vector<std::int32_t> leaves = sorted();
   const auto holed = std::stable_partition(leaves.begin(), leaves.end(),
                                            [this](std::int32_t leaf) { return !mayShowHole(node(leaf)); });

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "render/detail.h"
@@ -16,6 +17,7 @@ struct PatchQuestion {
   engine::FieldReader reader;
   Placing placing;
   Camera camera;
+  std::optional<Camera> other_eye;     ///< of a picture for two eyes: what holds, holds for both
   double mm_per_unit = 1.0;            ///< scene mm, exaggeration included, a height unit; > 0
   double reference = 0.0;              ///< height at scene z 0 [height_unit]
   double lowest = 0.0, highest = 0.0;  ///< heights that are drawn; others are cut to these [height_unit]
@@ -88,7 +90,9 @@ class PatchTree {
   [[nodiscard]] engine::HeightBounds heights(glm::ivec2 first, glm::ivec2 last) const;
   std::int32_t add(int level, std::int32_t x, std::int32_t y);
   [[nodiscard]] bool mayShowHole(const Node& n) const;
-  [[nodiscard]] std::array<bool, 4> wallsSeen() const;
+  [[nodiscard]] std::array<bool, 4> wallsSeen(const Camera& camera) const;
+  [[nodiscard]] bool misses(const Box& box) const noexcept;
+  [[nodiscard]] double movesAtMost(const glm::dvec3& step, const Box& box) const noexcept;
   [[nodiscard]] int levelAt(int level, std::int32_t x, std::int32_t y) const;
   [[nodiscard]] std::vector<std::int32_t> sorted() const;
   bool prune(std::int32_t at, const std::function<bool(const PatchLeaf&)>& drawable);

@@ -4,25 +4,31 @@
 #include <span>
 
 #include "floor.frag.h"
+#include "floor.vert.eyes.h"
 #include "floor.vert.h"
 #include "holes.frag.h"
 #include "line.frag.h"
+#include "line.vert.eyes.h"
 #include "line.vert.h"
 #include "quad.frag.h"
 #include "quad.vert.h"
+#include "seam.vert.eyes.h"
 #include "seam.vert.h"
+#include "shade.frag.eyes.h"
 #include "shade.frag.h"
+#include "shade.vert.eyes.h"
 #include "shade.vert.h"
 #include "shaders/layout.h"
 #include "surface.frag.h"
+#include "surface.vert.eyes.h"
 #include "surface.vert.h"
 #include "wall.frag.h"
+#include "wall.vert.eyes.h"
 #include "wall.vert.h"
 
 namespace fettle::render {
 namespace {
 
-using Words = std::span<const std::uint32_t>;
 using Stage = vk::ShaderStageFlagBits;
 
 vk::DescriptorSetLayoutBinding binding(int number, vk::DescriptorType type) {
@@ -43,7 +49,8 @@ struct Pipelines::Recipe {
   std::array<vk::Bool32, gpu::kSpecCount> constants{};  // by constant_id
 };
 
-Pipelines::Pipelines(const Context& context, vk::Format colour) : context_(context), colour_(colour) {
+Pipelines::Pipelines(const Context& context, vk::Format colour, Views views)
+    : context_(context), colour_(colour), views_(views) {
   nearest_ = vk::raii::Sampler(context.device(), vk::SamplerCreateInfo{}
                                                      .setAddressModeU(vk::SamplerAddressMode::eClampToEdge)
                                                      .setAddressModeV(vk::SamplerAddressMode::eClampToEdge));
@@ -71,6 +78,10 @@ Pipelines::Pipelines(const Context& context, vk::Format colour) : context_(conte
                                            layout.setSetLayouts(*scene_set_).setPushConstantRanges(push));
   picture_layout_ = vk::raii::PipelineLayout(context.device(),
                                              layout.setSetLayouts(*picture_set_).setPushConstantRanges(push));
+}
+
+Pipelines::Words Pipelines::one(Words for_one, Words for_both) const noexcept {
+  return views_ == Views::kBoth ? for_both : for_one;
 }
 
 vk::raii::Pipeline Pipelines::make(const Recipe& recipe) {
@@ -117,6 +128,7 @@ vk::raii::Pipeline Pipelines::make(const Recipe& recipe) {
   vk::PipelineDynamicStateCreateInfo dynamic;
   dynamic.setDynamicStates(dynamic_states);
   vk::PipelineRenderingCreateInfo rendering;
+  rendering.setViewMask(views_ == Views::kBoth ? gpu::kBothViews : 0);
   if (recipe.colour == Recipe::Colour::kYes) rendering.setColorAttachmentFormats(colour_);
   if (recipe.depth != Recipe::Depth::kNone) rendering.setDepthAttachmentFormat(kDepthFormat);
   vk::GraphicsPipelineCreateInfo info;
@@ -159,10 +171,11 @@ vk::Pipeline Pipelines::surface(const SurfaceVariant& variant) {
 vk::Pipeline Pipelines::depth(const Geometry& geometry) {
   const auto found = depths_.find(geometry);
   if (found != depths_.end()) return *found->second;
-  Recipe recipe{
-      .vertex = geometry.kind == Geometry::Kind::kSeams ? Words(seam_vert_spirv) : surface_vert_spirv,
-      .layout = *scene_layout_,
-      .colour = Recipe::Colour::kNone};
+  Recipe recipe{.vertex = geometry.kind == Geometry::Kind::kSeams
+                              ? one(seam_vert_spirv, seam_vert_eyes_spirv)
+                              : one(surface_vert_spirv, surface_vert_eyes_spirv),
+                .layout = *scene_layout_,
+                .colour = Recipe::Colour::kNone};
   if (geometry.holes == Holes::kYes) recipe.fragment = holes_frag_spirv;
   recipe.constants[gpu::kSpecPaged] = geometry.paged == Paged::kYes;
   recipe.constants[gpu::kSpecByNeed] = geometry.paged == Paged::kByNeed;
@@ -173,8 +186,8 @@ vk::Pipeline Pipelines::depth(const Geometry& geometry) {
 vk::Pipeline Pipelines::shade(const SurfaceVariant& variant) {
   const auto found = shades_.find(variant);
   if (found != shades_.end()) return *found->second;
-  Recipe recipe{.vertex = shade_vert_spirv,
-                .fragment = shade_frag_spirv,
+  Recipe recipe{.vertex = one(shade_vert_spirv, shade_vert_eyes_spirv),
+                .fragment = one(shade_frag_spirv, shade_frag_eyes_spirv),
                 .layout = *scene_layout_,
                 .depth = Recipe::Depth::kBehind};
   recipe.constants = constantsOf(variant);
@@ -184,7 +197,7 @@ vk::Pipeline Pipelines::shade(const SurfaceVariant& variant) {
 vk::Pipeline Pipelines::lines(Lines depth) {
   const auto found = lines_.find(depth);
   if (found != lines_.end()) return *found->second;
-  const Recipe recipe{.vertex = line_vert_spirv,
+  const Recipe recipe{.vertex = one(line_vert_spirv, line_vert_eyes_spirv),
                       .fragment = line_frag_spirv,
                       .layout = *scene_layout_,
                       .depth = depth == Lines::kInScene ? Recipe::Depth::kTest : Recipe::Depth::kIgnore,
@@ -195,7 +208,9 @@ vk::Pipeline Pipelines::lines(Lines depth) {
 vk::Pipeline Pipelines::wall(Paged paged, Holes holes) {
   const auto found = walls_.find({paged, holes});
   if (found != walls_.end()) return *found->second;
-  Recipe recipe{.vertex = wall_vert_spirv, .fragment = wall_frag_spirv, .layout = *scene_layout_};
+  Recipe recipe{.vertex = one(wall_vert_spirv, wall_vert_eyes_spirv),
+                .fragment = wall_frag_spirv,
+                .layout = *scene_layout_};
   recipe.constants[gpu::kSpecPaged] = paged == Paged::kYes;
   recipe.constants[gpu::kSpecHoles] = holes == Holes::kYes;
   recipe.constants[gpu::kSpecByNeed] = paged == Paged::kByNeed;
@@ -204,7 +219,9 @@ vk::Pipeline Pipelines::wall(Paged paged, Holes holes) {
 
 vk::Pipeline Pipelines::floor() {
   if (!*floor_)
-    floor_ = make({.vertex = floor_vert_spirv, .fragment = floor_frag_spirv, .layout = *scene_layout_});
+    floor_ = make({.vertex = one(floor_vert_spirv, floor_vert_eyes_spirv),
+                   .fragment = floor_frag_spirv,
+                   .layout = *scene_layout_});
   return *floor_;
 }
 

@@ -2,6 +2,7 @@
 
 #include <compare>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "render/target.h"
@@ -27,8 +28,12 @@ struct SurfaceVariant {
 /// The pipelines, made when first asked for and kept. Throws vk::SystemError.
 class Pipelines {
  public:
+  enum class Views {
+    kOne,
+    kBoth,  ///< passes draw for both eyes at once, to two layers; not for surface(), nor without multiview
+  };
   /// For pictures of this format.
-  explicit Pipelines(const Context& context, vk::Format colour = kColourFormat);
+  explicit Pipelines(const Context& context, vk::Format colour = kColourFormat, Views views = Views::kOne);
 
   /// Shades every triangle of the surface: colour and depth.
   [[nodiscard]] vk::Pipeline surface(const SurfaceVariant& variant);
@@ -60,10 +65,13 @@ class Pipelines {
 
  private:
   struct Recipe;
+  using Words = std::span<const std::uint32_t>;
+  [[nodiscard]] Words one(Words for_one, Words for_both) const noexcept;
   [[nodiscard]] vk::raii::Pipeline make(const Recipe& recipe);
 
   const Context& context_;
   vk::Format colour_;
+  Views views_;
   vk::raii::Sampler nearest_ = nullptr;
   vk::raii::DescriptorSetLayout scene_set_ = nullptr, picture_set_ = nullptr;
   vk::raii::PipelineLayout scene_layout_ = nullptr, picture_layout_ = nullptr;

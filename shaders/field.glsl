@@ -1,4 +1,7 @@
 // How shaders look into a field.
+#ifdef FETTLE_EYES
+#extension GL_EXT_multiview : require
+#endif
 #include "layout.h"
 
 layout(constant_id = kSpecPaged) const bool kPaged = false;
@@ -46,9 +49,12 @@ uint rawByNeed(ivec2 s, int log2_step) {
 }
 layout(set = 0, binding = kBindNearest) uniform sampler nearest;
 
-// The eye that is drawn for. Where a pass draws for several at once this is views[gl_ViewIndex], and nothing else
-// in the shaders has to change.
+// The eye that is drawn for. FETTLE_EYES: a pass draws for both at once.
+#ifdef FETTLE_EYES
+ViewUniforms viewUniforms() { return panel.views[gl_ViewIndex]; }
+#else
 ViewUniforms viewUniforms() { return panel.views[0]; }
+#endif
 
 // Where sample `s` of the virtual field lies in an image array. Pages are powers of two so that this is shifts.
 ivec3 texelOf(ivec2 s) {

@@ -56,6 +56,11 @@ FETTLE_CONST kBindGlyphs = 1;  // texture2D, coverage
 FETTLE_CONST kBindQuads = 2;   // buffer of Quad
 FETTLE_CONST kBindMap = 3;     // uniform PanelUniforms, for its colours
 
+// Bindings of descriptor set 0 of the pass that puts two eyes' pictures into one, and its one constant.
+FETTLE_CONST kBindLeftEye = 0;   // texture2D
+FETTLE_CONST kBindRightEye = 1;  // texture2D
+FETTLE_CONST kSpecAnaglyph = 0;
+
 // Specialisation constants of the surface: what a picture leaves out is not in its code.
 FETTLE_CONST kSpecPaged = 0;
 FETTLE_CONST kSpecMarks = 1;
@@ -91,6 +96,7 @@ struct PageHead {
 
 // Eyes that one panel may be drawn for. Everything that differs between two of them is in ViewUniforms.
 FETTLE_CONST kMostViews = 2;
+FETTLE_CONST kBothViews = 3;  // mask of them
 
 // One eye. A pass that draws for several at once reads the one of its gl_ViewIndex (viewUniforms() in
 // field.glsl).

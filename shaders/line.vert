@@ -1,5 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#ifdef FETTLE_EYES
+#extension GL_EXT_multiview : require
+#endif
 // Lines of a width in pixels: a rectangle round each, coloured by the distance to the line.
 #include "layout.h"
 
@@ -13,7 +16,12 @@ layout(location = 2) flat out float run;            // length of the line [px]
 
 void main() {
   const Line l = lines[gl_InstanceIndex];
-  vec4 a = panel.views[0].clip_from_scene * vec4(l.from.xyz, 1.0), b = panel.views[0].clip_from_scene * vec4(l.to.xyz, 1.0);
+#ifdef FETTLE_EYES
+  const mat4 clip_from_scene = panel.views[gl_ViewIndex].clip_from_scene;
+#else
+  const mat4 clip_from_scene = panel.views[0].clip_from_scene;
+#endif
+  vec4 a = clip_from_scene * vec4(l.from.xyz, 1.0), b = clip_from_scene * vec4(l.to.xyz, 1.0);
   index = gl_InstanceIndex;
   // What lies before the near plane is cut off, or its projection would turn round.
   if (a.z < 0.0 && b.z < 0.0) {

@@ -7,12 +7,18 @@
 
 layout(constant_id = kSpecPerspective) const bool kPerspective = false;
 
+#ifdef FETTLE_EYES
+layout(set = 0, binding = kBindDepth) uniform texture2DArray depth_image;
+#define FETTLE_DEPTH_AT(pixel) ivec3(pixel, gl_ViewIndex)
+#else
 layout(set = 0, binding = kBindDepth) uniform texture2D depth_image;
+#define FETTLE_DEPTH_AT(pixel) (pixel)
+#endif
 layout(location = 0) noperspective in vec4 at_no_depth;
 layout(location = 0) out vec4 colour;
 
 void main() {
-  const float depth = texelFetch(depth_image, ivec2(gl_FragCoord.xy), 0).x;
+  const float depth = texelFetch(depth_image, FETTLE_DEPTH_AT(ivec2(gl_FragCoord.xy)), 0).x;
   vec4 at = at_no_depth + viewUniforms().field_from_pixel[2] * depth;
   if (kPerspective) at.xyz /= at.w;
   const SurfacePoint p = surfacePoint(viewUniforms().origin.xy, at.xy, at.z);

@@ -7,6 +7,7 @@
 #include "app/scan_options.h"
 #include "app/terminal.h"
 #include "engine/io/marks.h"
+#include "render/live_picture.h"
 #include "render/picture.h"
 
 namespace fettle::app {
@@ -32,6 +33,8 @@ struct Options {
   bool bare = false;
   bool invert = false;
   bool validate = false;
+  std::string stereo = "off";
+  render::Stereo eyes;
   ScanOptions reading;
 };
 
@@ -90,6 +93,63 @@ engine::Result<render::PictureSpec> picture(const Options& options, engine::JobC
   return spec;
 }
 
+// A picture for each eye. Drawn as the window draws it: one ray a pixel, every point within a quarter of a
+// pixel.
+engine::Result<Report> renderEyes(const Options& options, const render::PictureSpec& spec) {
+  render::LiveOptions live;
+  if (options.validate) live.validation = render::Validation::kOn;
+  const auto picture = render::LivePicture::create(live);
+  if (!picture) return tl::unexpected(picture.error());
+  render::Shown shown;
+  shown.versions = {spec.field};
+  if (spec.compare) shown.versions.push_back(*spec.compare);
+  shown.original = spec.deviation_from;
+  shown.marks = spec.marks;
+  if (auto status = (*picture)->update(shown); !status) return tl::unexpected(status.error());
+  render::FrameInput input;
+  input.view = spec.view;
+  input.contours = spec.contours;
+  input.marks_opacity = spec.marks_opacity;
+  input.map = spec.map;
+  input.theme = spec.theme;
+  input.decoration = spec.decoration;
+  input.titles = {spec.title_left, spec.title_right};
+  input.titles.resize(shown.versions.size());
+  input.range = spec.range;
+  input.stereo = options.eyes;
+  input.stereo.mode =
+      options.stereo == "anaglyph" ? render::StereoMode::kAnaglyph : render::StereoMode::kSideBySide;
+  input.error_px = 0.25;
+  input.vertex_budget = std::int64_t{1} << 22;
+  render::Image image;
+  render::FrameStatistics frame;
+  std::int64_t tiles = 0, bytes = 0;
+  double upload_ms = 0.0;
+  // A field that the device does not hold at once is there after some frames.
+  do {
+    const auto drawn = (*picture)->draw(input, image);
+    if (!drawn) return tl::unexpected(drawn.error());
+    frame = *drawn;
+    tiles += frame.upload.tiles;
+    bytes += frame.upload.bytes;
+    upload_ms += frame.upload.ms;
+  } while (frame.upload.pending_tiles > 0 || frame.residency.pages_loaded > 0);
+  for (const std::string& message : (*picture)->validationMessages()) warn("validation: " + message);
+  if (auto status = render::writePng(image, options.png); !status) return tl::unexpected(status.error());
+  return Report{{"width", image.width},
+                {"height", image.height},
+                {"frame_ms", frame.device_ms},
+                {"upload_ms", upload_ms},
+                {"device", (*picture)->device()},
+                {"tiles_uploaded", tiles},
+                {"bytes_uploaded", bytes},
+                {"vertices", frame.vertices},
+                {"range_low", frame.range.low},
+                {"range_high", frame.range.high},
+                {"vertical_exaggeration", frame.vertical_exaggeration},
+                {"stereo", options.stereo}};
+}
+
 engine::Result<Report> render(const Options& options, engine::JobControl& job) {
   if (auto status = checkOutputs({{options.png, OutputKind::kPicture}},
                                  {options.scan, options.compare, options.deviation, options.marks});
@@ -97,6 +157,7 @@ engine::Result<Report> render(const Options& options, engine::JobControl& job) {
     return tl::unexpected(status.error());
   const auto spec = picture(options, job);
   if (!spec) return tl::unexpected(spec.error());
+  if (options.stereo != "off") return renderEyes(options, *spec);
   render::RendererOptions renderer_options;
   if (options.validate) renderer_options.validation = render::Validation::kOn;
   const auto renderer = render::Renderer::create(renderer_options);
@@ -155,6 +216,20 @@ void addRender(CLI::App& root, Chosen& chosen) {
   command->add_option("--title", options->title, "Title; the file's name by default");
   command->add_option("--compare-title", options->compare_title, "Title of the second scan");
   command->add_flag("--perspective", options->perspective, "Perspective instead of parallel projection");
+  command
+      ->add_option("--stereo", options->stereo,
+                   "A picture for each eye: in two halves, or for red - cyan glasses")
+      ->check(CLI::IsMember({"off", "side-by-side", "anaglyph"}))
+      ->capture_default_str();
+  command
+      ->add_option("--eye-separation", options->eyes.eye_separation,
+                   "Between the eyes, as a share of their distance from the field")
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--screen-distance", options->eyes.screen_distance,
+          "Where both eyes see the same, as a share of that distance; 0: at the middle of the picture")
+      ->capture_default_str();
   command->add_flag("--contours", options->contours, "Contour lines at the steps of the colour bar");
   command->add_flag("--dark", options->dark, "Light text on a dark ground");
   command->add_flag("--bare", options->bare, "The surface alone: no titles, bars or legend");

@@ -154,5 +154,221 @@ TEST(StereoCamera, ValuesOutOfRangeAreRefused) {
   EXPECT_TRUE(refused([](Stereo& s) { s.screen_distance = 0.01; }));
 }
 
+// Slopes, walls, holes.
+engine::Version part(bool holes) {
+  return fieldOf(
+      gridOf(500, 400, 0.1, 0.1),
+      [&](int c, int r) {
+        if (holes && (std::hypot(c - 300.0, r - 150.0) < 20 || (c > 480 && r > 370))) return double{kNan};
+        const double x = 0.1 * c, y = 0.1 * r;
+        return 0.05 * x + 1.5 * std::sin(0.4 * x) * std::cos(0.3 * y) + (y > 15 && y < 19 ? -3.0 : 0.0) +
+               (std::hypot(x - 15, y - 28) < 6 ? 4.0 : 0.0);
+      },
+      [](int c, int r) { return (c + r) % 120 < 6; });
+}
+
+std::unique_ptr<LivePicture> makePicture(std::int64_t memory = 0) {
+  LiveOptions options;
+  options.validation = Validation::kOn;
+  options.memory_budget_bytes = memory;
+  auto picture = LivePicture::create(options);
+  if (!picture) ADD_FAILURE() << picture.error().line();
+  return picture ? *std::move(picture) : nullptr;
+}
+
+FrameInput frameOf(StereoMode mode, int width = 640, int height = 240) {
+  FrameInput input;
+  input.view.width = width;
+  input.view.height = height;
+  input.view.projection = Projection::kPerspective;
+  input.view.elevation_deg = 35;
+  input.view.vertical_exaggeration = 1.0;
+  input.range = ValueRange{-4, 8};
+  input.stereo.mode = mode;
+  return input;
+}
+
+Image shoot(LivePicture& picture, const FrameInput& input, FrameStatistics* out = nullptr) {
+  Image image;
+  // Until all pages are there, where they come by need.
+  for (int i = 0; i < 50; ++i) {
+    const auto stats = picture.draw(input, image);
+    if (!stats) {
+      ADD_FAILURE() << stats.error().line();
+      return image;
+    }
+    if (out != nullptr) *out = *stats;
+    if (stats->upload.pending_tiles == 0 && stats->residency.pages_loaded == 0) break;
+  }
+  for (const std::string& message : picture.validationMessages()) ADD_FAILURE() << message;
+  return image;
+}
+
+std::size_t differing(const Image& a, const Image& b) {
+  if (a.rgba.size() != b.rgba.size()) return a.rgba.size();
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); i += 4)
+    n += !std::equal(a.rgba.begin() + static_cast<std::ptrdiff_t>(i),
+                     a.rgba.begin() + static_cast<std::ptrdiff_t>(i) + 4,
+                     b.rgba.begin() + static_cast<std::ptrdiff_t>(i));
+  return n;
+}
+
+Image half(const Image& whole, int which) {
+  Image image;
+  image.width = whole.width / 2;
+  image.height = whole.height;
+  for (int y = 0; y < image.height; ++y) {
+    const std::uint8_t* from = pixel(whole, which * image.width, y);
+    image.rgba.insert(image.rgba.end(), from, from + std::ptrdiff_t{4} * image.width);
+  }
+  return image;
+}
+
+TEST(StereoPicture, OnePassForBothEyesDrawsWhatTwoPassesDoBitForBit) {
+  for (const bool by_need : {false, true}) {
+    // By need: 0.8 MB of heights and 0.2 MB of marks for each of three states do not fit.
+    auto picture = makePicture(by_need ? 1300000 : 0);
+    ASSERT_TRUE(picture);
+    Shown shown;
+    shown.versions = {part(true)};
+    shown.marks = MarksOverlay::kShow;
+    for (const int what : {0, 1, 2}) {
+      SCOPED_TRACE(testing::Message() << (by_need ? "by need " : "whole ") << what);
+      if (what == 1) shown.versions = {part(true), part(false)};
+      if (what == 2) shown.original = part(false);
+      ASSERT_TRUE(picture->update(shown));
+      for (const StereoMode mode : {StereoMode::kSideBySide, StereoMode::kAnaglyph}) {
+        FrameInput input = frameOf(mode);
+        if (what == 1) input.view.projection = Projection::kOrthographic;
+        if (what == 2) input.range.reset();
+        input.contours = what == 0 ? Contours::kShow : Contours::kHide;
+        input.overlays.rings = {{20, 22, 5, {1, 1, 1}, 2}};
+        appendStylus({{12, 18, 9}, {12, 18, 5}, {0, 0, 2}, true, 1.0}, 1.0, input.overlays.lines);
+        const Image one = shoot(*picture, input);
+        input.stereo.two_passes = true;
+        EXPECT_EQ(differing(shoot(*picture, input), one), 0U);
+        EXPECT_GT(differing(half(one, 0), half(one, 1)), 1000U);
+      }
+    }
+  }
+}
+
+TEST(StereoPicture, EyesAtOnePlaceSeeThePictureOfOneEye) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture);
+  ASSERT_TRUE(picture->update(part(true)));
+  FrameInput input = frameOf(StereoMode::kOff, 320);
+  const Image mono = shoot(*picture, input);
+  FrameInput both = frameOf(StereoMode::kSideBySide, 640);
+  // So close that no coordinate differs in single precision.
+  both.stereo.eye_separation = 1e-14;
+  const Image pair = shoot(*picture, both);
+  EXPECT_EQ(differing(half(pair, 0), mono), 0U);
+  EXPECT_EQ(differing(half(pair, 1), mono), 0U);
+  // And what follows is as if there had been no stereo.
+  EXPECT_EQ(differing(shoot(*picture, input), mono), 0U);
+}
+
+TEST(StereoPicture, AnAnaglyphIsMadeOfTheTwoEyesPictures) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture);
+  ASSERT_TRUE(picture->update(part(true)));
+  const Image eyes = shoot(*picture, frameOf(StereoMode::kSideBySide, 640));
+  const Image anaglyph = shoot(*picture, frameOf(StereoMode::kAnaglyph, 320));
+  // Dubois 2001, as in shaders/stereo.frag; rows are red, green, blue of the anaglyph.
+  constexpr double kLeft[3][3] = {{0.4561, 0.500484, 0.176381},
+                                  {-0.0400822, -0.0378246, -0.0157589},
+                                  {-0.0152161, -0.0205971, -0.00546856}};
+  constexpr double kRight[3][3] = {{-0.0434706, -0.0879388, -0.00155529},
+                                   {0.378476, 0.73364, -0.0184503},
+                                   {-0.0721527, -0.112961, 1.2264}};
+  const auto linear = [](std::uint8_t code) {
+    const double c = code / 255.0;
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  };
+  double worst = 0.0;
+  for (int y = 0; y < 240; ++y)
+    for (int x = 0; x < 320; ++x) {
+      const std::uint8_t *l = pixel(eyes, x, y), *r = pixel(eyes, x + 320, y), *a = pixel(anaglyph, x, y);
+      for (int k = 0; k < 3; ++k) {
+        double c = 0.0;
+        for (int j = 0; j < 3; ++j) c += kLeft[k][j] * linear(l[j]) + kRight[k][j] * linear(r[j]);
+        c = std::clamp(c, 0.0, 1.0);
+        // Linear light that the code above and the one below stand for.
+        const double below = linear(static_cast<std::uint8_t>(std::max(0, a[k] - 1)));
+        const double above = linear(static_cast<std::uint8_t>(std::min(255, a[k] + 1)));
+        worst = std::max({worst, below - c, c - above});
+      }
+    }
+  // Besides that code, a device's own conversion from sRGB may be off by as much as half a code near the top,
+  // which is 1/220 in linear light there, and so may the matrices' products be.
+  EXPECT_LE(worst, 1.0 / 220.0);
+}
+
+TEST(StereoPicture, BothEyesPickThePointTheyShowAndADiscIsDrawnThere) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture);
+  ASSERT_TRUE(picture->update(part(false)));
+  for (const Projection projection : {Projection::kPerspective, Projection::kOrthographic}) {
+    FrameInput input = frameOf(StereoMode::kSideBySide);
+    input.view.projection = projection;
+    input.decoration = Decoration::kNone;
+    (void)shoot(*picture, input);
+    int agreed = 0, hidden = 0;
+    glm::dvec3 shown{0.0};
+    for (int y = 30; y < 220; y += 17)
+      for (int x = 20; x < 300; x += 23) {
+        const auto left = picture->pick(x, y);
+        if (!left) continue;
+        const auto at = picture->pixelOf(0, left->position_mm, Eye::kRight);
+        ASSERT_TRUE(at);
+        EXPECT_NEAR(at->second, y, 1e-6);
+        const auto right = picture->pick(at->first, at->second);
+        // What is before it for the right eye alone hides it.
+        const bool same = right && glm::length(right->position_mm - left->position_mm) < 1e-6;
+        ++(same ? agreed : hidden);
+        if (same && agreed == 20) shown = left->position_mm;
+      }
+    EXPECT_GT(agreed, 45);
+    EXPECT_LT(hidden, agreed / 10);
+    input.overlays.lines = {{shown, shown, {1, 0, 0}, 1.0F, 9.0F}};
+    const Image image = shoot(*picture, input);
+    for (const Eye eye : {Eye::kLeft, Eye::kRight}) {
+      const auto at = picture->pixelOf(0, shown, eye);
+      ASSERT_TRUE(at);
+      const std::uint8_t* p = pixel(image, static_cast<int>(at->first), static_cast<int>(at->second));
+      EXPECT_EQ(p[0], 255);
+      EXPECT_EQ(p[1], 0);
+    }
+  }
+}
+
+TEST(StereoPicture, TheWindowStandsAtTheSurfaceInTheMiddleUnlessSaidOtherwise) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture);
+  ASSERT_TRUE(picture->update(part(false)));
+  FrameInput input = frameOf(StereoMode::kSideBySide);
+  input.decoration = Decoration::kNone;
+  input.view.zoom = 6.0;
+  const auto parallax = [&] {
+    (void)shoot(*picture, input);
+    const auto middle = picture->pick(160, 120);
+    EXPECT_TRUE(middle);
+    const auto left = picture->pixelOf(0, middle->position_mm, Eye::kLeft);
+    return picture->pixelOf(0, middle->position_mm, Eye::kRight)->first - 320 - left->first;
+  };
+  EXPECT_NEAR(parallax(), 0.0, 0.5);
+  input.stereo.screen_distance = 1.2;
+  EXPECT_LT(parallax(), -2.0);
+  input.stereo.screen_distance = 0.8;
+  EXPECT_GT(parallax(), 2.0);
+  input.stereo.screen_distance = -1.0;
+  Image image;
+  const auto refused = picture->draw(input, image);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, engine::ErrorKind::kInput);
+}
+
 }  // namespace
 }  // namespace fettle::render
