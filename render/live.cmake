@@ -1,7 +1,7 @@
 # The picture that is drawn many times a second.
 set(LIVE_CPU
-  detail.cpp detail_tile.cpp live_overlay.cpp live_view.cpp page_table.cpp patches.cpp pick.cpp residency.cpp
-  stereo.cpp tile_copy.cpp)
+  damage.cpp detail.cpp detail_tile.cpp live_overlay.cpp live_view.cpp page_table.cpp patches.cpp pick.cpp
+  residency.cpp stereo.cpp tile_copy.cpp)
 set(LIVE_VULKAN
   live_frame.cpp live_picture.cpp live_texture.cpp page_demand.cpp page_pool.cpp page_set.cpp stereo_compose.cpp
   submissions.cpp)

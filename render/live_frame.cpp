@@ -77,6 +77,10 @@ class Writes {
   std::vector<vk::WriteDescriptorSet> writes_;
 };
 
+vk::AttachmentLoadOp loadOf(LiveFrame::Redraw redraw) {
+  return redraw == LiveFrame::Redraw::kAll ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad;
+}
+
 // Several images change at once: a device may stop for each barrier.
 class Changes {
  public:
@@ -132,8 +136,18 @@ Pipelines::Holes holesOf(const LivePanel& p) {
   return p.variant.holes ? Pipelines::Holes::kYes : Pipelines::Holes::kNo;
 }
 
-bool seen(const LivePanel& p) {
-  return p.visible.width > 0 && p.visible.height > 0;
+bool empty(const Rectangle& r) {
+  return r.width <= 0 || r.height <= 0;
+}
+
+const Rectangle& partOf(const LivePanel& p, LiveFrame::Redraw redraw) {
+  return redraw == LiveFrame::Redraw::kAll ? p.visible : p.redraw;
+}
+
+// Sets a part of the attachment of the rendering under way back to where nothing is drawn.
+void clear(const vk::raii::CommandBuffer& commands, vk::ImageAspectFlags aspect, const vk::ClearValue& value,
+           const Rectangle& part) {
+  commands.clearAttachments(vk::ClearAttachment{aspect, 0, value}, vk::ClearRect{rectOf(part), 0, 1});
 }
 
 }  // namespace
@@ -264,12 +278,13 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
   writes.apply(context_.device());
 }
 
-void LiveFrame::beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel) {
+void LiveFrame::beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel,
+                           const Rectangle& part) {
   const vk::Rect2D plot = rectOf(panel.plot);
   commands.setViewport(0, vk::Viewport{static_cast<float>(plot.offset.x), static_cast<float>(plot.offset.y),
                                        static_cast<float>(plot.extent.width),
                                        static_cast<float>(plot.extent.height), 0.0F, 1.0F});
-  commands.setScissor(0, rectOf(panel.visible));
+  commands.setScissor(0, rectOf(part));
   const gpu::vec4 size{plot.extent.width, plot.extent.height, plot.offset.x, plot.offset.y};
   commands.pushConstants<gpu::vec4>(pipelines_.sceneLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
 }
@@ -283,11 +298,10 @@ void LiveFrame::instances(const vk::raii::CommandBuffer& commands, vk::Pipeline 
 }
 
 void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                            std::span<const LivePanel> panels) {
+                            std::span<const LivePanel> panels, Redraw redraw) {
   using Geometry = Pipelines::Geometry;
-  const vk::RenderingAttachmentInfo depth =
-      attachment(depth_.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eClear,
-                 vk::ClearDepthStencilValue{1.0F, 0});
+  const vk::RenderingAttachmentInfo depth = attachment(depth_.view(), ImageLayout::eDepthAttachmentOptimal,
+                                                       loadOf(redraw), vk::ClearDepthStencilValue{1.0F, 0});
   vk::RenderingInfo rendering;
   rendering.setRenderArea({{0, 0}, depth_.extent()})
       .setLayerCount(1)
@@ -296,8 +310,10 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
   commands.beginRendering(rendering);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
-    if (!seen(p)) continue;
-    beginPanel(commands, p);
+    const Rectangle& part = partOf(p, redraw);
+    if (empty(part)) continue;
+    beginPanel(commands, p, part);
+    if (redraw == Redraw::kParts) clear(commands, kDepth, vk::ClearDepthStencilValue{1.0F, 0}, part);
     const PanelSets& sets = slot.panels[i];
     const auto paged = pagedOf(p);
     const std::size_t all = p.choice->patches.size(), whole = p.variant.holes ? p.choice->whole : all;
@@ -316,10 +332,10 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
 
 void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
                            std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
-                           const glm::vec3& ground) {
+                           const glm::vec3& ground, Redraw redraw) {
+  const vk::ClearColorValue nothing(std::array<float, 4>{ground.x, ground.y, ground.z, 1.0F});
   const vk::RenderingAttachmentInfo cleared =
-      attachment(base_.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eClear,
-                 vk::ClearColorValue(std::array<float, 4>{ground.x, ground.y, ground.z, 1.0F}));
+      attachment(base_.view(), ImageLayout::eColorAttachmentOptimal, loadOf(redraw), nothing);
   vk::RenderingInfo rendering;
   const vk::RenderingAttachmentInfo read =
       attachment(depth_.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
@@ -330,8 +346,10 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
       .setPDepthAttachment(&read);
   commands.beginRendering(rendering);
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    if (!seen(panels[i])) continue;
-    beginPanel(commands, panels[i]);
+    const Rectangle& part = partOf(panels[i], redraw);
+    if (empty(part)) continue;
+    beginPanel(commands, panels[i], part);
+    if (redraw == Redraw::kParts) clear(commands, kColour, nothing, part);
     instances(commands, pipelines_.shade(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
   }
   commands.endRendering();
@@ -351,8 +369,9 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
   commands.beginRendering(rendering);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
-    if (!seen(p)) continue;
-    beginPanel(commands, p);
+    const Rectangle& part = partOf(p, redraw);
+    if (empty(part)) continue;
+    beginPanel(commands, p, part);
     // The plate is seen through holes alone.
     if (p.variant.holes) instances(commands, pipelines_.floor(), *slot.panels[i].surface, 4, 0, 1);
     if (!p.choice->walls.empty())
@@ -377,7 +396,14 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
   const gpu::vec4 size{extent.width, extent.height, 0, 0};
   commands.pushConstants<gpu::vec4>(pipelines_.pictureLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
   commands.bindDescriptorSets(kGraphics, pipelines_.pictureLayout(), 0, *slot.picture, {});
-  commands.draw(4, static_cast<std::uint32_t>(furniture.size()), 0, 0);
+  const auto quads = static_cast<std::uint32_t>(furniture.size());
+  if (redraw == Redraw::kAll) commands.draw(4, quads, 0, 0);
+  // Drawn over what is new alone: over what is there already its soft edges would grow.
+  for (const LivePanel& p : panels)
+    if (redraw == Redraw::kParts && !empty(p.redraw)) {
+      commands.setScissor(0, rectOf(p.redraw));
+      commands.draw(4, quads, 0, 0);
+    }
   commands.endRendering();
 }
 
@@ -390,7 +416,7 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
   commands.copyImage(base_.image(), ImageLayout::eTransferSrcOptimal, target.image,
                      ImageLayout::eTransferDstOptimal, copy);
   const bool lines = std::any_of(panels.begin(), panels.end(), [](const LivePanel& p) {
-    return seen(p) && !(p.in_scene.empty() && p.on_top.empty());
+    return !empty(p.visible) && !(p.in_scene.empty() && p.on_top.empty());
   });
   const bool copied = target.leaves_as == ImageLayout::eTransferSrcOptimal;
   const vk::PipelineStageFlags2 next = copied ? Stage::eCopy : Stage::eBottomOfPipe;
@@ -416,8 +442,8 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
     commands.beginRendering(rendering);
     for (std::size_t i = 0; i < panels.size(); ++i) {
       const LivePanel& p = panels[i];
-      if (!seen(p)) continue;
-      beginPanel(commands, p);
+      if (empty(p.visible)) continue;
+      beginPanel(commands, p, p.visible);
       if (!p.in_scene.empty())
         instances(commands, pipelines_.lines(Pipelines::Lines::kInScene), *slot.panels[i].in_scene, 4, 0,
                   p.in_scene.size());
@@ -443,31 +469,39 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
 
 void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
                        const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
-                       const LiveTarget& target) {
+                       const LiveTarget& target, Redraw redraw) {
   const vk::raii::CommandBuffer& commands = submissions.commands();
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
   if (!furniture.empty()) bringGlyphs(commands, staging, submissions.next(), glyphs);
   makeLayers(submissions, target.extent);
   fill(slot, panels, furniture);
 
-  // The frame before may still draw lines against this depth, and copy out of that base.
-  Changes begin;
-  begin.add(depth_.image(), kDepth, ImageLayout::eUndefined, ImageLayout::eDepthAttachmentOptimal,
-            kDepthStages, Access::eDepthStencilAttachmentWrite, kDepthStages, kDepthAccess);
-  begin.record(commands);
-  recordDepth(commands, slot, panels);
-  Changes shade;
-  shade.add(depth_.image(), kDepth, ImageLayout::eDepthAttachmentOptimal, ImageLayout::eDepthReadOnlyOptimal,
-            kDepthStages, Access::eDepthStencilAttachmentWrite, kDepthStages | Stage::eFragmentShader,
-            Access::eDepthStencilAttachmentRead | Access::eShaderRead);
-  shade.add(base_.image(), kColour, ImageLayout::eUndefined, ImageLayout::eColorAttachmentOptimal,
-            Stage::eCopy, Access::eTransferRead, Stage::eColorAttachmentOutput, kColourAccess);
-  shade.record(commands);
-  recordBase(commands, slot, panels, furniture, ground);
+  const bool all = redraw == Redraw::kAll;
+  const bool anew =
+      all || std::any_of(panels.begin(), panels.end(), [](const LivePanel& p) { return !empty(p.redraw); });
   Changes compose;
-  compose.add(base_.image(), kColour, ImageLayout::eColorAttachmentOptimal, ImageLayout::eTransferSrcOptimal,
-              Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eCopy,
-              Access::eTransferRead);
+  if (anew) {
+    // The frame before may still draw lines against this depth, and copy out of that base.
+    Changes begin;
+    begin.add(depth_.image(), kDepth, all ? ImageLayout::eUndefined : ImageLayout::eDepthAttachmentOptimal,
+              ImageLayout::eDepthAttachmentOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite,
+              kDepthStages, kDepthAccess);
+    begin.record(commands);
+    recordDepth(commands, slot, panels, redraw);
+    Changes shade;
+    shade.add(depth_.image(), kDepth, ImageLayout::eDepthAttachmentOptimal,
+              ImageLayout::eDepthReadOnlyOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite,
+              kDepthStages | Stage::eFragmentShader,
+              Access::eDepthStencilAttachmentRead | Access::eShaderRead);
+    shade.add(base_.image(), kColour, all ? ImageLayout::eUndefined : ImageLayout::eTransferSrcOptimal,
+              ImageLayout::eColorAttachmentOptimal, Stage::eCopy, Access::eTransferRead,
+              Stage::eColorAttachmentOutput, kColourAccess);
+    shade.record(commands);
+    recordBase(commands, slot, panels, furniture, ground, redraw);
+    compose.add(base_.image(), kColour, ImageLayout::eColorAttachmentOptimal,
+                ImageLayout::eTransferSrcOptimal, Stage::eColorAttachmentOutput,
+                Access::eColorAttachmentWrite, Stage::eCopy, Access::eTransferRead);
+  }
   // The acquired image is waited for at these stages: the change of layout comes after it.
   compose.add(target.image, kColour, ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal,
               Stage::eColorAttachmentOutput | Stage::eCopy, {}, Stage::eCopy, Access::eTransferWrite);

@@ -18,6 +18,7 @@ namespace fettle::render {
 struct LivePanel {
   Rectangle plot;     ///< where the camera's picture lies [px]
   Rectangle visible;  ///< the part of it that is drawn
+  Rectangle redraw;   ///< the part of that which is drawn anew; `choice` needs to cover no more
   gpu::PanelUniforms uniforms{};
   const PatchChoice* choice = nullptr;
   const LiveTexture* field = nullptr;
@@ -48,10 +49,19 @@ class LiveFrame {
   /// kBoth: targets have two layers, one for each eye of PanelUniforms::views.
   LiveFrame(Context& context, vk::Format colour, Pipelines::Views views = Pipelines::Views::kOne);
 
+  /// Whether the layers are of this size, and whether furniture would be drawn with these very letters.
+  [[nodiscard]] bool holds(vk::Extent2D extent) const noexcept { return depth_.extent() == extent; }
+  [[nodiscard]] bool holds(const Glyphs& glyphs) const noexcept {
+    return glyph_generation_ == glyphs.generation();
+  }
+  enum class Redraw {
+    kAll,    ///< every layer, whatever LivePanel::redraw says
+    kParts,  ///< of depth_ and base_ what the panels ask for; the rest stays as it is
+  };
   /// Records into submissions.commands(). `staging` carries new letters.
   void record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
               const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
-              const LiveTarget& target);
+              const LiveTarget& target, Redraw redraw);
 
   [[nodiscard]] const Pipelines& pipelines() const noexcept { return pipelines_; }
 
@@ -70,14 +80,14 @@ class LiveFrame {
                    const Glyphs& glyphs);
   void makeLayers(Submissions& submissions, vk::Extent2D extent);
   void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture);
-  void beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel);
+  void beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel, const Rectangle& part);
   void instances(const vk::raii::CommandBuffer& commands, vk::Pipeline pipeline, vk::DescriptorSet set,
                  std::uint32_t vertices, std::size_t first, std::size_t count) const;
   void recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                   std::span<const LivePanel> panels);
+                   std::span<const LivePanel> panels, Redraw redraw);
   void recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
                   std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
-                  const glm::vec3& ground);
+                  const glm::vec3& ground, Redraw redraw);
   void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
                     std::span<const LivePanel> panels, const LiveTarget& target);
 

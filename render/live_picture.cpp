@@ -11,6 +11,7 @@
 
 #include "engine/field/difference.h"
 #include "render/capture.h"
+#include "render/damage.h"
 #include "render/live_frame.h"
 #include "render/live_overlay.h"
 #include "render/live_view.h"
@@ -170,6 +171,22 @@ struct LivePicture::Impl {
     int eye_width = 0;  // of one eye's picture [px]
   };
   std::optional<Seen> seen;
+  // What the layers of `frame` show: another frame that differs in the fields alone is drawn in parts.
+  struct Drawn {
+    struct Panel {
+      engine::Version field;
+      gpu::PanelUniforms uniforms;
+      SurfaceVariant variant;
+      int shade_level = 0;
+      Rectangle plot, visible;
+      PatchChoice choice;
+    };
+    std::vector<Panel> panels;
+    std::vector<gpu::Quad> furniture;
+    glm::vec3 ground{0.0F};
+    engine::Version original;
+  };
+  std::optional<Drawn> drawn;
   bool broken = false;  // an upload was left half done
 
   Impl(std::unique_ptr<Context> owned, Context& used, vk::Format colour, const LiveOptions& o, Glyphs g)
@@ -199,6 +216,10 @@ struct LivePicture::Impl {
                     const std::vector<gpu::Quad>& furniture, const glm::vec3& ground,
                     const LiveTarget& target);
   void bringPages(PageDemand& demand, std::int64_t bytes_left, FrameStatistics& stats);
+  bool onlyFieldsDiffer(const Drawn& before, const Drawn& now) const;
+  std::vector<PatchChoice> cutToDamage(const Drawn& before, const Drawn& now,
+                                       std::span<const PatchQuestion> questions,
+                                       std::vector<LivePanel>& panels) const;
   std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLine::Depth depth,
                                  const PanelPlan& panel) const;
 };
@@ -422,14 +443,61 @@ void LivePicture::Impl::recordStereo(const Stereo& stereo, std::vector<LivePanel
                  one_pass ? StereoCompose::Layers::kOneImage : StereoCompose::Layers::kTwoImages);
   if (one_pass) {
     if (!both_eyes) both_eyes = std::make_unique<LiveFrame>(context, colour_format, Pipelines::Views::kBoth);
-    both_eyes->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft));
+    both_eyes->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft),
+                      LiveFrame::Redraw::kAll);
   } else {
-    frame.record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft));
+    frame.record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft),
+                 LiveFrame::Redraw::kAll);
     for (LivePanel& panel : panels) panel.uniforms.views[0] = panel.uniforms.views[1];
     if (!right_eye) right_eye = std::make_unique<LiveFrame>(context, colour_format);
-    right_eye->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kRight));
+    right_eye->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kRight),
+                      LiveFrame::Redraw::kAll);
   }
   compose->record(submissions.commands(), stereo.mode, target);
+}
+
+bool LivePicture::Impl::onlyFieldsDiffer(const Drawn& before, const Drawn& now) const {
+  // Pages that come and go change the surface without any change to the field.
+  if (pool || before.panels.size() != now.panels.size() || before.ground != now.ground ||
+      !(before.original == now.original) || before.furniture.size() != now.furniture.size())
+    return false;
+  // Plain numbers without gaps, and equal bits draw equal pictures.
+  if (!now.furniture.empty() && std::memcmp(before.furniture.data(), now.furniture.data(),
+                                            now.furniture.size() * sizeof(gpu::Quad)) != 0)
+    return false;
+  for (std::size_t i = 0; i < now.panels.size(); ++i) {
+    const Drawn::Panel &a = before.panels[i], &b = now.panels[i];
+    const auto same = [](const Rectangle& x, const Rectangle& y) {
+      return x.x == y.x && x.y == y.y && x.width == y.width && x.height == y.height;
+    };
+    if (!related(a.field, b.field) || a.variant != b.variant || a.shade_level != b.shade_level ||
+        !same(a.plot, b.plot) || !same(a.visible, b.visible) ||
+        std::memcmp(&a.uniforms, &b.uniforms, sizeof(a.uniforms)) != 0)
+      return false;
+  }
+  return true;
+}
+
+// Sets what of each panel is to be drawn anew, and lets the panels' choices be cut down to that.
+std::vector<PatchChoice> LivePicture::Impl::cutToDamage(const Drawn& before, const Drawn& now,
+                                                        std::span<const PatchQuestion> questions,
+                                                        std::vector<LivePanel>& panels) const {
+  std::vector<PatchChoice> parts(panels.size());
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const std::vector<engine::TileChange> tiles =
+        engine::changedTiles(before.panels[i].field, now.panels[i].field);
+    DamageQuestion q;
+    q.now = questions[i];
+    q.before = before.panels[i].field.reader();
+    q.tiles = tiles;
+    q.chosen_before = &before.panels[i].choice;
+    q.chosen_after = panels[i].choice;
+    q.visible = panels[i].visible;
+    panels[i].redraw = damageOf(q);
+    parts[i] = within(*panels[i].choice, questions[i], panels[i].redraw);
+    panels[i].choice = &parts[i];
+  }
+  return parts;
 }
 
 void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats,
@@ -464,6 +532,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   const bool split = input.arrangement == Arrangement::kSplit && fields.size() >= 2;
   const std::size_t count_panels = split ? 2 : plan.panels.size();
   std::vector<PatchTree> trees;
+  std::vector<PatchQuestion> questions;
   std::vector<PatchChoice> choices(count_panels);
   std::vector<LivePanel> panels(count_panels);
   PageDemand demand;
@@ -506,10 +575,13 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     q.error_px = input.error_px;
     q.vertex_budget = input.vertex_budget / static_cast<std::int64_t>(count_panels);
     trees.emplace_back(q);
+    questions.push_back(q);
 
     panel.plot = panel.visible = p.plot;
     if (split) {
-      const int at = static_cast<int>(std::lround(input.split * p.plot.width));
+      // On an even column of the picture: no square of two by two fragments belongs to both sides.
+      const int wanted = static_cast<int>(std::lround(input.split * p.plot.width));
+      const int at = std::min(wanted + ((p.plot.x + wanted) & 1), p.plot.width);
       if (i == 0)
         panel.visible.width = at;
       else
@@ -573,7 +645,6 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     stats.bound_px = std::max(stats.bound_px, choices[i].bound_px);
     stats.within_budget = stats.within_budget && choices[i].within_budget;
   }
-  stats.select_ms = msSince(select_start);
 
   std::vector<std::string> warnings;
   if (glyphs.used() > Glyphs::kSide / 2) glyphs.clear();
@@ -587,13 +658,40 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     line.fill = glm::ivec4(gpu::kFillSolid, 1, 0, 0);
     furniture.push_back(line);
   }
+
+  Drawn layers;
+  for (std::size_t i = 0; i < count_panels; ++i) {
+    const LivePanel& panel = panels[i];
+    layers.panels.push_back({fields[i].texture.version(), panel.uniforms, panel.variant, panel.shade_level,
+                             panel.plot, panel.visible, *panel.choice});
+  }
+  layers.furniture = furniture;
+  layers.ground = plan.palette.ground;
+  layers.original = original.version();
+  std::optional<Drawn> before;
+  before.swap(drawn);  // until this frame is handed over, nobody knows what the layers hold
+  std::vector<PatchChoice> parts;
+  const bool some = !stereo && input.redraw == FrameInput::Redraw::kChanged && before &&
+                    stats.upload.pending_tiles == 0 && frame.holds(target.extent) &&
+                    (furniture.empty() || frame.holds(glyphs)) && onlyFieldsDiffer(*before, layers);
+  if (some) parts = cutToDamage(*before, layers, questions, panels);
+  double plots_px = 0.0, redrawn_px = 0.0;
+  for (const LivePanel& panel : panels) {
+    plots_px += static_cast<double>(panel.visible.width) * panel.visible.height;
+    redrawn_px += static_cast<double>(panel.redraw.width) * panel.redraw.height;
+  }
+  if (some) stats.redrawn = redrawn_px / std::max(1.0, plots_px);
+  stats.select_ms = msSince(select_start);
+
   if (stereo)
     recordStereo(input.stereo, panels, furniture, plan.palette.ground, target);
   else
-    frame.record(submissions, staging, panels, furniture, plan.palette.ground, glyphs, target);
+    frame.record(submissions, staging, panels, furniture, plan.palette.ground, glyphs, target,
+                 some ? LiveFrame::Redraw::kParts : LiveFrame::Redraw::kAll);
   submissions.submit({target.free,
                       vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
                       target.done});
+  if (!stereo && stats.upload.pending_tiles == 0) drawn = std::move(layers);
   stats.device_ms = submissions.lastMs();
   stats.range = plan.range;
   stats.vertical_exaggeration = plan.exaggeration;

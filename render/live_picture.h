@@ -94,6 +94,9 @@ struct FrameInput {
   Stereo stereo;
   /// Screen error wanted [px], > 0. What is reached is in FrameStatistics::bound_px.
   double error_px = 1.0;
+  /// Whether what cannot have changed since the last frame is left as it is: the picture is the same either
+  /// way, to the bit.
+  enum class Redraw { kChanged, kAll } redraw = Redraw::kChanged;
   /// Vertices a frame may cost, all panels together, 4096 .. 2^24.
   std::int64_t vertex_budget = 65536;
 };
@@ -127,6 +130,7 @@ struct FrameStatistics {
   /// On the screen, no point of the surface at full resolution lies farther than this from the surface drawn,
   /// nor the other way round [px]. At most error_px where the budget allowed it. See render/detail.h.
   double bound_px = 0.0;
+  double redrawn = 1.0;       ///< share of the plots that was drawn anew, 0 .. 1
   bool within_budget = true;  ///< false: refining stopped because of vertex_budget, bound_px > error_px
   UploadStatistics upload;    ///< since the last frame
   ResidencyStatistics residency;
@@ -174,6 +178,10 @@ struct LiveOptions {
 /// it was, the next one as it is. Only the rectangle of each changed tile moves, with copies of every 4th,
 /// 16th and 64th sample (7 % more) that far views are drawn from, so that memory traffic follows the screen
 /// as well.
+///
+/// While camera and options stand still, a frame draws anew only the rectangle of each panel that what
+/// changed in the field can be seen in (render/damage.h), and overlays alone move over the shaded surface for
+/// nothing.
 ///
 /// Threading: one thread at a time, the same as whoever presents. Determinism: as Renderer.
 class LivePicture {

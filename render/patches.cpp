@@ -21,6 +21,25 @@ constexpr std::int64_t kVerticesAPatch = gpu::kPatchVertices + 2 * gpu::kSeamVer
 
 }  // namespace
 
+engine::HeightBounds heightsWithin(const engine::FieldReader& reader, glm::ivec2 first, glm::ivec2 last) {
+  int level = 0;
+  std::int32_t side = engine::kBlockSide;
+  while (side * 4 < std::max(last.x - first.x, last.y - first.y) && level < reader.topLevel()) {
+    side *= 8;
+    ++level;
+  }
+  const glm::ivec2 end(reader.width() - 1, reader.height() - 1);
+  engine::HeightBounds all{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+  for (std::int32_t y = std::min(first.y, end.y) / side; y <= std::min(last.y, end.y) / side; ++y)
+    for (std::int32_t x = std::min(first.x, end.x) / side; x <= std::min(last.x, end.x) / side; ++x) {
+      const engine::HeightBounds b = reader.bounds(level, x, y);
+      if (b.empty()) continue;
+      all.min = std::min(all.min, b.min);
+      all.max = std::max(all.max, b.max);
+    }
+  return all;
+}
+
 PatchTree::PatchTree(const PatchQuestion& question) : q_(question) {
   if (add(q_.measure->topLevel(), 0, 0) >= 0) refine();
 }
@@ -57,26 +76,6 @@ void PatchTree::refine() {
   }
 }
 
-// The heights of the closed square of a patch, from squares of the pyramid a quarter as large or so.
-engine::HeightBounds PatchTree::heights(glm::ivec2 first, glm::ivec2 last) const {
-  int level = 0;
-  std::int32_t side = engine::kBlockSide;
-  while (side * 4 < last.x - first.x && level < q_.reader.topLevel()) {
-    side *= 8;
-    ++level;
-  }
-  const glm::ivec2 end(q_.reader.width() - 1, q_.reader.height() - 1);
-  engine::HeightBounds all{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-  for (std::int32_t y = std::min(first.y, end.y) / side; y <= std::min(last.y, end.y) / side; ++y)
-    for (std::int32_t x = std::min(first.x, end.x) / side; x <= std::min(last.x, end.x) / side; ++x) {
-      const engine::HeightBounds b = q_.reader.bounds(level, x, y);
-      if (b.empty()) continue;
-      all.min = std::min(all.min, b.min);
-      all.max = std::max(all.max, b.max);
-    }
-  return all;
-}
-
 bool PatchTree::misses(const Box& box) const noexcept {
   return q_.camera.misses(box) && (!q_.other_eye || q_.other_eye->misses(box));
 }
@@ -92,7 +91,7 @@ std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
   const glm::ivec2 first = glm::ivec2(x, y) * side;
   if (first.x >= q_.placing.size.x - 1 || first.y >= q_.placing.size.y - 1) return -1;
   const glm::ivec2 last = glm::min(first + side, q_.placing.size - 1);
-  const engine::HeightBounds raw = heights(first, last);
+  const engine::HeightBounds raw = heightsWithin(q_.reader, first, last);
   if (raw.empty()) return -1;
   const double low = std::clamp<double>(raw.min, q_.lowest, q_.highest);
   const double high = std::clamp<double>(raw.max, q_.lowest, q_.highest);

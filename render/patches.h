@@ -87,7 +87,6 @@ class PatchTree {
   }
   [[nodiscard]] Node& node(std::int32_t i) noexcept { return nodes_[static_cast<std::size_t>(i)]; }
   void refine();
-  [[nodiscard]] engine::HeightBounds heights(glm::ivec2 first, glm::ivec2 last) const;
   std::int32_t add(int level, std::int32_t x, std::int32_t y);
   [[nodiscard]] bool mayShowHole(const Node& n) const;
   [[nodiscard]] std::array<bool, 4> wallsSeen(const Camera& camera) const;
@@ -102,6 +101,11 @@ class PatchTree {
   std::vector<Node> nodes_;
   bool within_budget_ = true;
 };
+
+/// Bounds on the heights of a rectangle of virtual samples, last ones included, from squares of the pyramid a
+/// quarter as large or so. Empty where there are only holes.
+[[nodiscard]] engine::HeightBounds heightsWithin(const engine::FieldReader& reader, glm::ivec2 first,
+                                                 glm::ivec2 last);
 
 [[nodiscard]] PatchChoice choosePatches(const PatchQuestion& question);
 
