@@ -213,6 +213,9 @@ void Context::startDevice(const vk::raii::PhysicalDevice& physical, std::uint32_
   device_ = std::move(device);
   family_ = family;
   multiview_ = multiview;
+  llvmpipe_ = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>()
+                  .get<vk::PhysicalDeviceDriverProperties>()
+                  .driverID == vk::DriverId::eMesaLlvmpipe;
 }
 
 void Context::run(const std::function<void(const vk::raii::CommandBuffer&)>& record) {

@@ -64,6 +64,10 @@ class Context {
   [[nodiscard]] std::uint32_t queueFamily() const noexcept { return family_; }
   /// Whether a pass can draw several views at once (every device of Vulkan 1.1 up should).
   [[nodiscard]] bool multiview() const noexcept { return multiview_; }
+  /// Whether all of them come out right. Mesa's llvmpipe puts primitives that it has to clip into one view,
+  /// those of all views (seen with 22.3.6): what crosses the plot's edge is missing in one eye and too much
+  /// in the other.
+  [[nodiscard]] bool multiviewWorks() const noexcept { return multiview_ && !llvmpipe_; }
   /// The window's; null without a wish.
   [[nodiscard]] vk::SurfaceKHR surface() const noexcept { return *surface_; }
 
@@ -86,7 +90,7 @@ class Context {
   vk::raii::DebugUtilsMessengerEXT messenger_ = nullptr;
   vk::raii::SurfaceKHR surface_ = nullptr;
   std::uint32_t family_ = 0;
-  bool multiview_ = false;
+  bool multiview_ = false, llvmpipe_ = false;
   vk::raii::PhysicalDevice physical_ = nullptr;
   vk::PhysicalDeviceLimits limits_;
   vk::PhysicalDeviceMemoryProperties memory_;

@@ -437,7 +437,9 @@ void LivePicture::Impl::bringPages(PageDemand& demand, std::int64_t bytes_left, 
 void LivePicture::Impl::recordStereo(const Stereo& stereo, std::vector<LivePanel>& panels,
                                      const std::vector<gpu::Quad>& furniture, const glm::vec3& ground,
                                      const LiveTarget& target) {
-  const bool one_pass = context.multiview() && !stereo.two_passes;
+  const bool one_pass = stereo.passes == Stereo::Passes::kBest  ? context.multiviewWorks()
+                        : stereo.passes == Stereo::Passes::kOne ? context.multiview()
+                                                                : false;
   if (!compose) compose = std::make_unique<StereoCompose>(context, colour_format);
   compose->begin(submissions, StereoCompose::eyeExtent(stereo.mode, target.extent),
                  one_pass ? StereoCompose::Layers::kOneImage : StereoCompose::Layers::kTwoImages);

@@ -32,9 +32,13 @@ struct Stereo {
   /// Where the window stands, whose points both eyes see at the same place: as a share of the eyes' distance
   /// from the middle of what is shown, 0.1 .. 10. 0: at the surface in the middle of the picture.
   double screen_distance = 0.0;
-  /// Two passes over the scene even where the device draws both eyes' pictures in one (multiview). The
-  /// pictures are the same, bit for bit.
-  bool two_passes = false;
+  /// Passes over the scene. One for both eyes, where the device has that (multiview), and two give the same
+  /// pictures, bit for bit.
+  enum class Passes {
+    kBest,  ///< one, unless the driver gets it wrong: Context::multiviewWorks
+    kOne,   ///< one, wherever the device claims to draw several views at once
+    kTwo,
+  } passes = Passes::kBest;
 };
 
 /// Errors (kInput): a value outside the ranges above.
