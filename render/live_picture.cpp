@@ -309,8 +309,11 @@ engine::Status LivePicture::Impl::update(const Shown& next) {
     const auto state = want(fields[i].texture, v, next.marks);
     if (!state) return tl::unexpected(state.error());
     if (*state != LiveTexture::Freshness::kFresh) {
-      if (!shown.versions.empty() && fields[i].texture.pending() > 0 && next.marks != shown.marks)
+      if (!shown.versions.empty() && fields[i].texture.pending() > 0 && next.marks != shown.marks) {
+        const std::vector<glm::ivec2> tiles = fields[i].texture.pendingTiles();
         bringAll(fields[i].texture);
+        fields[i].measure.refresh(v.reader(), tiles);
+      }
       fields[i].measured = v;
       continue;
     }
@@ -626,7 +629,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
                          std::min(p.placing.true_size.x, p.placing.true_size.y) > 1 << shift,
                      input.view.projection == Projection::kPerspective};
     if (pool)
-      demand.want(trees[i].leaves(), fields[i].texture, panel.original != nullptr ? &original : nullptr,
+      demand.want(trees[i], fields[i].texture, panel.original != nullptr ? &original : nullptr,
                   panel.shade_level, u.paging.w, submissions.next());
     panel.in_scene = linesOf(lines, OverlayLine::Depth::kInScene, p);
     panel.on_top = linesOf(lines, OverlayLine::Depth::kOnTop, p);

@@ -23,12 +23,15 @@ void PageDemand::ask(LiveTexture& texture, const LevelSpan& span, std::uint64_t 
   }
 }
 
-void PageDemand::want(std::span<const PatchLeaf> leaves, LiveTexture& field, LiveTexture* original,
-                      int shade_level, int step, std::uint64_t frame) {
-  for (const PatchLeaf& leaf : leaves) {
+void PageDemand::want(const PatchTree& patches, LiveTexture& field, LiveTexture* original, int shade_level,
+                      int step, std::uint64_t frame) {
+  for (const PatchLeaf& leaf : patches.leaves()) {
     ask(field, geometrySpan(leaf.level, leaf.patch, false), frame);
     if (looksAround(leaf)) ask(field, geometrySpan(leaf.level, leaf.patch, true), frame);
-    const LevelSpan shade = shadeSpan(leaf.level, leaf.patch, shade_level, step);
+  }
+  const int log2_page = field.pages()->grid().log2Side() + dataShift(shade_level);
+  for (const PatchLeaf& part : patches.parts(log2_page)) {
+    const LevelSpan shade = shadeSpan(part.level, part.patch, shade_level, step);
     ask(field, shade, frame);
     if (original != nullptr) ask(*original, shade, frame);
   }

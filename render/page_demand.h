@@ -19,10 +19,11 @@ namespace fettle::render {
 /// Threading: as Context. Throws vk::SystemError.
 class PageDemand {
  public:
-  /// Asks for what patches (PatchTree::leaves) need: heights for their vertices, and for their colours data
-  /// level `shade_level` of both textures, with differences over `step` samples. `original` may be null.
-  void want(std::span<const PatchLeaf> leaves, LiveTexture& field, LiveTexture* original, int shade_level,
-            int step, std::uint64_t frame);
+  /// Asks for what a panel needs: heights for the vertices of its patches, and for the colours of what can be
+  /// seen of them data level `shade_level` of both textures, with differences over `step` samples. `original`
+  /// may be null.
+  void want(const PatchTree& patches, LiveTexture& field, LiveTexture* original, int shade_level, int step,
+            std::uint64_t frame);
 
   struct Outcome {
     std::int64_t asked = 0;

@@ -160,6 +160,41 @@ std::vector<PatchLeaf> PatchTree::leaves() const {
   return all;
 }
 
+std::vector<PatchLeaf> PatchTree::parts(int log2_side) const {
+  int level = 0;
+  while (DetailMeasure::side(level + 1) <= 1 << log2_side) ++level;
+  std::vector<PatchLeaf> all;
+  for (const PatchLeaf& leaf : leaves()) {
+    // The surface drawn over a part may be as high as the vertices of the whole patch.
+    const glm::ivec2 first = leaf.patch * DetailMeasure::side(leaf.level);
+    const engine::HeightBounds raw = heightsWithin(
+        q_.reader, first, glm::min(first + DetailMeasure::side(leaf.level), q_.placing.size - 1));
+    const auto z = [&](double height) {
+      return (std::clamp(height, q_.lowest, q_.highest) - q_.reference) * q_.mm_per_unit;
+    };
+    split(leaf, std::min(q_.floor_z, z(leaf.holed ? q_.lowest : raw.min)),
+          z(leaf.holed ? q_.highest : raw.max), level, all);
+  }
+  return all;
+}
+
+void PatchTree::split(const PatchLeaf& leaf, double low_z, double high_z, int lowest_level,
+                      std::vector<PatchLeaf>& out) const {
+  const glm::ivec2 first = leaf.patch * DetailMeasure::side(leaf.level);
+  if (first.x >= q_.placing.size.x - 1 || first.y >= q_.placing.size.y - 1) return;
+  const glm::ivec2 last = glm::min(first + DetailMeasure::side(leaf.level), q_.placing.size - 1);
+  const glm::dvec2 a = q_.placing.first + q_.placing.spacing * glm::dvec2(first);
+  const glm::dvec2 b = q_.placing.first + q_.placing.spacing * glm::dvec2(last);
+  if (misses({{a.x, a.y, low_z}, {b.x, b.y, high_z}})) return;
+  if (leaf.level <= lowest_level) {
+    out.push_back(leaf);
+    return;
+  }
+  for (int i = 0; i < 4; ++i)
+    split({leaf.level - 1, 2 * leaf.patch + glm::ivec2(i & 1, i >> 1), leaf.holed}, low_z, high_z,
+          lowest_level, out);
+}
+
 void PatchTree::prune(const std::function<bool(const PatchLeaf&)>& drawable) {
   if (nodes_.empty() || prune(0, drawable)) return;
   drop(0);

@@ -67,6 +67,9 @@ class PatchTree {
   explicit PatchTree(const PatchQuestion& question);
   /// What was chosen, near ones first.
   [[nodiscard]] std::vector<PatchLeaf> leaves() const;
+  /// What can be seen of them: as patches of at most 2^log2_side samples a side, those outside the plot left
+  /// out.
+  [[nodiscard]] std::vector<PatchLeaf> parts(int log2_side) const;
   /// Draws a coarser patch in the place of those of which one is not `drawable`: bound_px grows to what is
   /// drawn then. The coarsest patch is drawn in any case.
   void prune(const std::function<bool(const PatchLeaf&)>& drawable);
@@ -94,6 +97,8 @@ class PatchTree {
   [[nodiscard]] double movesAtMost(const glm::dvec3& step, const Box& box) const noexcept;
   [[nodiscard]] int levelAt(int level, std::int32_t x, std::int32_t y) const;
   [[nodiscard]] std::vector<std::int32_t> sorted() const;
+  void split(const PatchLeaf& leaf, double low_z, double high_z, int lowest_level,
+             std::vector<PatchLeaf>& out) const;
   bool prune(std::int32_t at, const std::function<bool(const PatchLeaf&)>& drawable);
   void drop(std::int32_t at);
 
