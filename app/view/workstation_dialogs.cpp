@@ -46,13 +46,14 @@ void Workstation::pathDialog(const char* title, const char* button) {
     ImGui::EndChild();
   } else {
     std::error_code error;
+    ImGui::PushTextWrapPos(0.0F);
     ImGui::TextDisabled(
-        "%s",
-        dialog_ == Dialog::kSaveAs
-            ? ".fettle keeps everything, every step as it is made; .tif .asc .xyz .ply .png the field alone, "
-              "marks beside "
-              "it as NAME_marks.png"
-            : "format by extension: .tif .asc .xyz .ply .png .fettle; marks go beside it as NAME_marks.png");
+        "%s", dialog_ == Dialog::kSaveAs
+                  ? "NAME.fettle keeps everything, each step as it is made. Other formats, by extension "
+                    ".tif .asc .xyz .ply .png, keep the field, with its marks beside it as NAME_marks.png"
+                  : "format by extension: .tif .asc .xyz .ply .png .fettle; marks go beside it as "
+                    "NAME_marks.png");
+    ImGui::PopTextWrapPos();
     if (dialog_ == Dialog::kSaveAs && isSessionPath(dialog_path_))
       ImGui::Checkbox("put the scan itself into the session", &embeds_);
     if (fs::exists(dialog_path_, error))

@@ -17,8 +17,8 @@ double rounded(double value) {
 
 // Keys are stable. Lengths are pixels of the frame, "cursor" and "picture" from its upper left corner.
 Report Workstation::told() const {
-  static constexpr const char* kDialogs[] = {"none",    "open",      "save as", "export",
-                                             "unsaved", "shortcuts", "message"};
+  static constexpr const char* kDialogs[] = {"none",    "open",    "save as",   "export",
+                                             "unsaved", "recover", "shortcuts", "message"};
   static constexpr const char* kTools[] = {"feel", "smooth", "mark", "unmark"};
   const render::Rectangle& area = window_->pictureArea();
   Report r{{"keys", hands_.keys},
@@ -35,7 +35,7 @@ Report Workstation::told() const {
            {"status", status_text_},
            {"device_losses", device_losses_},
            {"loading", loading_.busy()},
-           {"saving", saving_.busy()},
+           {"saving", saving_.busy() || (keeper_ && keeper_->saving())},
            {"path", path_},
            {"save_path", save_path_}};
   Report notices = Report::array();
@@ -50,6 +50,9 @@ Report Workstation::told() const {
     r["steps"] = touch_->history().number();
     r["last_step"] = touch_->history().last();
     r["unsaved"] = unsaved();
+    r["session"] = keeper_->path();
+    r["session_named"] = keeper_->named();
+    r["session_waiting"] = keeper_->waiting();
     r["inverted"] = scene.invert;
     r["brush"] = rounded(scene.brush_radius_samples);
     r["mark_brush"] = rounded(scene.mark_radius_samples);
