@@ -45,6 +45,7 @@ CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, co
 void addInfo(CLI::App& root, Chosen& chosen);
 void addSynth(CLI::App& root, Chosen& chosen);
 void addFilter(CLI::App& root, Chosen& chosen);
+void addMark(CLI::App& root, Chosen& chosen);
 void addReplay(CLI::App& root, Chosen& chosen);
 void addRecord(CLI::App& root, Chosen& chosen);
 void addRender(CLI::App& root, Chosen& chosen);

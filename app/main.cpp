@@ -6,6 +6,7 @@ int main(int argc, char** argv) {
     addInfo(root, chosen);
     addSynth(root, chosen);
     addFilter(root, chosen);
+    addMark(root, chosen);
     addReplay(root, chosen);
     addRecord(root, chosen);
     addRender(root, chosen);

@@ -179,7 +179,9 @@ void bottomLine(Pen& pen, const Layout& layout, const View& view, const Furnitur
                 std::vector<std::string>& warnings) {
   const double s = layout.scale;
   const Rectangle& plot = layout.plots.front();
-  const double middle = std::round(plot.y + plot.height + (view.height - plot.y - plot.height) * 0.5);
+  // Under the lowest row of panels.
+  const Rectangle& lowest = layout.plots.back();
+  const double middle = std::round(lowest.y + lowest.height + (view.height - lowest.y - lowest.height) * 0.5);
   const double base = middle + layout.text_px * 0.36;
   double x = plot.x;
 

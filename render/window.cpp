@@ -160,6 +160,13 @@ struct Window::Impl {
       if (started) glfwTerminate();
     }
   } glfw;
+  double scale_asked = 0.0;  // 0: the display's
+  [[nodiscard]] double scale() const {
+    if (scale_asked > 0.0) return scale_asked;
+    float x = 1.0F, y = 1.0F;
+    glfwGetWindowContentScale(glfw.window, &x, &y);
+    return std::clamp(static_cast<double>(x), 0.5, 4.0);
+  }
   SurfaceWish wish;
   RendererOptions device;
   std::string device_name;            // outlives the context
@@ -333,10 +340,8 @@ engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& opti
   };
   impl->device.validation = options.validation;
   impl->device.device = options.device;
-  float scale_x = 1.0F, scale_y = 1.0F;
-  glfwGetWindowContentScale(impl->glfw.window, &scale_x, &scale_y);
-  impl->ui = std::make_unique<UiLayer>(impl->glfw.window, std::clamp(static_cast<double>(scale_x), 0.5, 4.0),
-                                       options.layout_file);
+  impl->scale_asked = options.scale;
+  impl->ui = std::make_unique<UiLayer>(impl->glfw.window, impl->scale(), options.layout_file);
   if (const auto entered = impl->enterDevice(); !entered) return tl::unexpected(entered.error());
   return std::unique_ptr<Window>(new Window(std::move(impl)));
 }
@@ -395,9 +400,7 @@ int Window::height() const {
   return static_cast<int>(impl_->frameSize().height);
 }
 double Window::scale() const {
-  float x = 1.0F, y = 1.0F;
-  glfwGetWindowContentScale(impl_->glfw.window, &x, &y);
-  return std::clamp(static_cast<double>(x), 0.5, 4.0);
+  return impl_->scale();
 }
 void Window::setTitle(const std::string& title) {
   glfwSetWindowTitle(impl_->glfw.window, title.c_str());

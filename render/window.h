@@ -82,6 +82,7 @@ struct WindowOptions {
   int height = 800;
   Validation validation = Validation::kOff;
   std::string device;  ///< as RendererOptions::device
+  double scale = 0.0;  ///< factor on sizes of text and panels, 0.5 .. 4; 0: the display's
   /// Where the layout of the panels is remembered; empty: nowhere.
   std::string layout_file;
 };

@@ -60,6 +60,10 @@ void addView(CLI::App& root, Chosen& chosen) {
       ->check(CLI::Range(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
       ->capture_default_str();
   command->add_option("--size", options->size, "Pixels of the window, WIDTHxHEIGHT")->capture_default_str();
+  command
+      ->add_option("--ui-scale", options->view.window.scale,
+                   "Factor on the size of text and panels, 0.5 to 4; without it, what the display says")
+      ->check(within(0.5, 4.0));
   command->add_option("--seconds", options->view.seconds, "End after so long")
       ->check(CLI::Range(1e-3, 86400.0));
   command

@@ -13,12 +13,12 @@ void Workstation::statusPanel() {
   const haptic::LoopState state = touch_->state();
   const haptic::TimingFigures edit = touch_->latency().figures();
   figure("loop", fmt::format("{:.0f} of {:.0f} Hz", touch_->measuredRate(), touch_->rate()));
-  figure("lateness p50, p99",
+  figure("late p50, p99",
          fmt::format("{:.0f}, {:.0f} us", microseconds(late.p50_ns), microseconds(late.p99_ns)));
   figure("missed ticks", fmt::format("{}", touch_->timing().missed.load(std::memory_order_relaxed)));
   figure("force", fmt::format("{:.2f} N{}", glm::length(state.force_n), state.contact ? ", touching" : ""));
-  figure("frame", fmt::format("{:.1f} ms on the GPU, {:.1f} ms", figures_.device_ms, frame_ms_));
-  figure("surface", fmt::format("{} triangles, error {:.2f} px", figures_.triangles, figures_.bound_px));
+  figure("frame", fmt::format("GPU {:.1f} ms, CPU {:.1f}", figures_.device_ms, frame_ms_));
+  figure("surface", fmt::format("{} triangles, {:.2f} px", figures_.triangles, figures_.bound_px));
   figure("uploaded",
          fmt::format("{} tiles, {}", tiles_uploaded_, bytesText(static_cast<double>(bytes_uploaded_))));
   figure("last upload",

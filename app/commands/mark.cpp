@@ -1,0 +1,91 @@
+#include <chrono>
+#include <memory>
+
+#include "app/command.h"
+#include "app/scan_options.h"
+#include "engine/io/marks.h"
+#include "engine/marks/edge_suggestion.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct Options {
+  std::string in;
+  std::string out;
+  std::string add;
+  bool edges = false;
+  double scale = engine::EdgeMap::kUsualSigma;
+  engine::EdgeChoice choice;
+  bool invert = false;
+  ScanOptions reading;
+};
+
+engine::Result<Report> mark(const Options& options, engine::JobControl& job) {
+  if (!options.edges && !options.invert)
+    return engine::inputError("nothing is said of what to mark", "mark", "give --edges or --invert");
+  if (auto status = checkOutputs({{options.out, OutputKind::kMarks}}, {options.in, options.add}); !status)
+    return tl::unexpected(status.error());
+  auto imported = loadScan(options.in, options.reading, job);
+  if (!imported) return tl::unexpected(imported.error());
+  engine::Version field = imported->field;
+  if (!options.add.empty()) {
+    auto marked = engine::importMarks(field, options.add);
+    if (!marked) return tl::unexpected(marked.error());
+    field = *std::move(marked);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  Report report;
+  if (options.edges) {
+    const auto map = engine::findEdges(field, options.scale, job);
+    if (!map) return tl::unexpected(map.error());
+    auto found = engine::suggestMarks(field, *map, options.choice, job);
+    if (!found) return tl::unexpected(found.error());
+    field = std::move(found->field);
+    report["scale"] = options.scale;
+    report["sensitivity"] = options.choice.sensitivity;
+    report["thickness"] = options.choice.thickness;
+    report["lines"] = found->lines;
+    report["line_samples"] = found->samples;
+    report["step_noise"] = map->step_noise;
+    report["crease_noise"] = map->crease_noise;
+  }
+  if (options.invert) {
+    auto inverted = engine::invertMarks(field, job);
+    if (!inverted) return tl::unexpected(inverted.error());
+    field = *std::move(inverted);
+  }
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (auto status = engine::exportMarks(field, options.out); !status) return tl::unexpected(status.error());
+  report["marked"] = engine::summarize(field).marked;
+  report["seconds"] = seconds;
+  return report;
+}
+
+}  // namespace
+
+void addMark(CLI::App& root, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = addCommand(root, chosen, "mark", "Mark what filters must not change",
+                                 [options](engine::JobControl& job) { return mark(*options, job); });
+  command->add_option("SCAN", options->in, "The scan to read")->required();
+  command->add_option("MARKS", options->out, "Picture of marks to write: .png, .tif")->required();
+  command->add_flag("--edges", options->edges,
+                    "Mark the sharp edges of the part, as the window suggests them");
+  command
+      ->add_option("--scale", options->scale,
+                   "Edges: scale of the search in samples, 0.7 to 8; larger finds fainter ones")
+      ->capture_default_str();
+  command
+      ->add_option("--sensitivity", options->choice.sensitivity,
+                   "Edges: 0 takes the strongest alone, 1 all that stand out of the noise")
+      ->capture_default_str();
+  command->add_option("--thickness", options->choice.thickness, "Edges: marked to this distance, in samples")
+      ->capture_default_str();
+  command->add_option("--add", options->add, "Picture of marks to begin with");
+  command->add_flag("--invert", options->invert,
+                    "Afterwards, mark what is not marked and the other way round");
+  addScanOptions(command, options->reading);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,19 @@
+#include "app/view/filter_preview.h"
+
+#include <gtest/gtest.h>
+
+namespace fettle::app {
+namespace {
+
+TEST(FilterName, says_what_the_filter_does) {
+  engine::FilterSpec spec;
+  spec.window = 5;
+  EXPECT_EQ(filterName(spec), "Box 5 x 5");
+  spec.kind = engine::FilterKind::kMedian;
+  spec.passes = 3;
+  spec.scope = engine::FilterScope::kOnlyMarks;
+  EXPECT_EQ(filterName(spec), "Median 5 x 5, 3 passes, only marks");
+}
+
+}  // namespace
+}  // namespace fettle::app

@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include "engine/io/import.h"
+#include "engine/io/marks.h"
+#include "engine/marks/edge_suggestion.h"
+#include "tests/end_to_end/program.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+class MarkCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(fettle({"synth", scan, "--size", "300x240", "--seed", "3"}).status, 0);
+    engine::JobControl job;
+    auto imported = engine::importField(scan, {}, job);
+    ASSERT_TRUE(imported) << imported.error().line();
+    field = imported->field;
+  }
+  [[nodiscard]] engine::Version read(const std::string& path) const {
+    auto marked = engine::importMarks(field, path);
+    EXPECT_TRUE(marked);
+    return marked.value_or(field);
+  }
+
+  TempFolder folder;
+  std::string scan = (folder.path() / "scan.tif").string();
+  std::string marks = (folder.path() / "marks.png").string();
+  engine::Version field;
+};
+
+TEST_F(MarkCommand, edges_are_those_that_the_window_suggests) {
+  const auto report = fettleJson(
+      {"mark", scan, marks, "--edges", "--scale", "2", "--sensitivity", "0.6", "--thickness", "1.5"});
+  engine::JobControl job;
+  const auto map = engine::findEdges(field, 2.0, job);
+  ASSERT_TRUE(map);
+  const auto expected = engine::suggestMarks(field, *map, {0.6, 1.5, 0}, job);
+  ASSERT_TRUE(expected);
+  EXPECT_GT(expected->lines, 3);
+  EXPECT_EQ(engine::contentHash(read(marks)), engine::contentHash(expected->field));
+  EXPECT_EQ(report["lines"], expected->lines);
+  EXPECT_EQ(report["marked"], engine::summarize(expected->field).marked);
+}
+
+TEST_F(MarkCommand, marks_can_be_added_to_and_inverted) {
+  ASSERT_EQ(fettle({"mark", scan, marks, "--edges"}).status, 0);
+  const std::string inverted = (folder.path() / "inverted.tif").string();
+  ASSERT_EQ(fettle({"mark", scan, inverted, "--add", marks, "--invert"}).status, 0);
+  const engine::FieldSummary a = engine::summarize(read(marks)), b = engine::summarize(read(inverted));
+  EXPECT_EQ(a.marked + b.marked, 300 * 240 - a.no_data);
+}
+
+TEST_F(MarkCommand, what_cannot_be_done_is_refused) {
+  expectRefused(fettle({"mark", scan, marks}), "--edges");
+  expectRefused(fettle({"mark", scan, marks, "--edges", "--scale", "99"}), "scale");
+  expectRefused(fettle({"mark", scan, marks, "--edges", "--sensitivity", "nan"}), "sensitivity");
+  expectRefused(fettle({"mark", scan, (folder.path() / "marks.txt").string(), "--edges"}), "marks.txt");
+}
+
+}  // namespace
+}  // namespace fettle::tests
