@@ -44,7 +44,7 @@ struct LivePanel {
 /// Threading: as Context. Throws vk::SystemError.
 class LiveFrame {
  public:
-  static constexpr std::size_t kMostPanels = 4;
+  static constexpr std::size_t kMostPanels = 5;
 
   /// kBoth: targets have two layers, one for each eye of PanelUniforms::views.
   LiveFrame(Context& context, vk::Format colour, Pipelines::Views views = Pipelines::Views::kOne);

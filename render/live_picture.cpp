@@ -108,7 +108,7 @@ struct Canvas {
   }
 };
 
-// Where the panels lie: as layOut has them in a row, or two rows of two.
+// Where the panels lie: as layOut has them in a row, or two rows of two or three.
 render::Layout arranged(const FrameInput& input, int versions) {
   const bool titled =
       std::any_of(input.titles.begin(), input.titles.end(), [](const auto& t) { return !t.empty(); });
@@ -119,7 +119,7 @@ render::Layout arranged(const FrameInput& input, int versions) {
     return layout;
   }
   if (versions < 4) return layOut(input.view, input.decoration, versions, titles);
-  render::Layout layout = layOut(input.view, input.decoration, 2, titles);
+  render::Layout layout = layOut(input.view, input.decoration, (versions + 1) / 2, titles);
   const std::vector<Rectangle> columns = layout.plots;
   const int gap = static_cast<int>(std::lround((titled ? 40 : 16) * layout.scale));
   layout.plots.clear();

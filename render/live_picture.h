@@ -21,7 +21,7 @@ struct LiveTarget;  // render/live_target.h: an image to draw to and who waits f
 
 /// How several versions share the picture. One camera serves them all.
 enum class Arrangement {
-  kSideBySide,  ///< each in a plot of its own: a row of up to three, or two rows of two
+  kSideBySide,  ///< each in a plot of its own: a row of up to three, or two rows
   kSplit,       ///< the first two in one plot, a line between them: the first to the left of it
 };
 
@@ -66,7 +66,7 @@ void appendStylus(const StylusState& state, double mm_per_newton, std::vector<Ov
 
 /// What the panels show. A version that grew out of the one shown before costs only what differs.
 struct Shown {
-  std::vector<engine::Version> versions;    ///< 1 .. 4, not empty, of one width and height
+  std::vector<engine::Version> versions;    ///< 1 .. 5, not empty, of one width and height
   std::optional<engine::Version> original;  ///< colours show version - original; same width and height
   MarksOverlay marks = MarksOverlay::kHide;
 };

@@ -20,7 +20,7 @@ namespace fettle::app {
 /// Threading: main.
 class FilterPreview {
  public:
-  static constexpr std::size_t kMostVariants = 3;  // and the field itself: four pictures
+  static constexpr std::size_t kMostVariants = 4;  // and the field itself: five pictures
 
   struct Variant {
     engine::FilterSpec spec;
