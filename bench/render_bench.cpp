@@ -3,12 +3,18 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <optional>
+#include <thread>
+
+#include <fmt/format.h>
 
 #include "bench/machine.h"
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
+#include "haptic/loop/loop_bench.h"
 #include "render/live_picture.h"
 
 namespace fettle::bench {
@@ -69,12 +75,25 @@ std::uint64_t hashOf(const render::Image& image) {
 }
 
 enum class Brush { kRests, kWorks };
+enum class Camera { kGoesRound, kStands };
 
-engine::Result<RenderBenchRow> run(render::LivePicture& picture, const render::Shown& shown,
-                                   render::FrameInput input, const std::string& name, Brush brush,
+// One row of the report: what is shown, and what happens meanwhile.
+struct Scene {
+  std::string name;
+  render::Shown shown;
+  render::FrameInput input;
+  Camera camera = Camera::kGoesRound;
+  Brush brush = Brush::kRests;
+  bool stylus = false;  // moves
+};
+
+engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& scene,
                                    const RenderBenchOptions& options, engine::JobControl& job) {
+  const render::Shown& shown = scene.shown;
+  render::FrameInput input = scene.input;
+  const bool works = scene.brush == Brush::kWorks;
   RenderBenchRow row;
-  row.name = name;
+  row.name = scene.name;
   row.samples = shown.versions.front().grid().samples();
   if (auto ok = picture.update(shown); !ok) return tl::unexpected(ok.error());
   // The first frames bring over what is pending and compile shaders.
@@ -85,17 +104,23 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const render::S
   }
   engine::LiveField live(shown.versions.front(), engine::Growth::kAllowed);
   const std::int32_t side = live.grid().width;
-  std::vector<double> frames, uploads;
-  double cpu = 0.0;
+  std::vector<double> frames, uploads, edits;
+  double cpu = 0.0, redrawn = 0.0;
   std::int64_t bytes = 0, changed = 0;
   std::vector<float> patch(31 * 31);
   for (int i = 0; i < options.frames; ++i) {
     if (job.cancelled()) return engine::cancelled();
-    input.view.azimuth_deg = 315.0 + 360.0 * i / options.frames;
-    const double cpu_before = cpuMs();
-    const auto start = Clock::now();
+    if (scene.camera == Camera::kGoesRound) input.view.azimuth_deg = 315.0 + 360.0 * i / options.frames;
+    if (scene.stylus) {
+      input.overlays.lines.clear();
+      const double x = 16.0 + 32.0 * i / options.frames;
+      render::appendStylus({{x, 20.0, 8.0}, {x, 20.0, 6.0}, {0.0, 0.0, 1.0}, true, 0.0}, 4.0,
+                           input.overlays.lines);
+    }
+    double cpu_before = cpuMs();
+    auto start = Clock::now();
     double update_ms = 0.0;
-    if (brush == Brush::kWorks) {
+    if (works) {
       const auto at = static_cast<std::int32_t>(side / 4 + (side / 2 - 40) * i / options.frames);
       live.reader().readHeights(at, at, 31, 31, patch.data(), 31);
       for (float& z : patch) z += 0.01F;
@@ -104,16 +129,22 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const render::S
             engine::failure("memory is exhausted", "benchmark", "use smaller fields").value());
       render::Shown next = shown;
       next.versions = {live.snapshot()};
-      const auto update_start = Clock::now();
+      // The edit is the haptic side's work.
+      cpu_before = cpuMs();
+      start = Clock::now();
+      const auto update_start = start;
       if (auto ok = picture.update(next); !ok) return tl::unexpected(ok.error());
       update_ms = msSince(update_start);
     }
     const auto stats = picture.drawAndWait(input);
     if (!stats) return tl::unexpected(stats.error());
     frames.push_back(msSince(start));
+    if (works) edits.push_back(frames.back());
+    redrawn += stats->redrawn;
     cpu += cpuMs() - cpu_before;
-    uploads.push_back(brush == Brush::kWorks ? std::max(update_ms, stats->upload.ms) : 0.0);
+    uploads.push_back(works ? std::max(update_ms, stats->upload.ms) : 0.0);
     bytes += stats->upload.bytes;
+    row.tiles += stats->upload.tiles;
     changed += stats->upload.changed_samples;
     row.stalls += stats->upload.stalls;
     row.vertices = stats->vertices;
@@ -125,12 +156,83 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const render::S
   row.p99_ms = percentile(frames, 0.99);
   row.worst_ms = percentile(frames, 1.0);
   row.cpu_ms = cpu / options.frames;
+  row.redrawn = redrawn / options.frames;
+  row.bytes = bytes;
+  if (works) {
+    row.edit_p50_ms = percentile(edits, 0.5);
+    row.edit_p99_ms = percentile(edits, 0.99);
+  }
   row.upload_ms = percentile(uploads, 0.5);
   row.upload_ratio = changed > 0 ? static_cast<double>(bytes) / (4.0 * static_cast<double>(changed)) : 0.0;
   render::Image image;
   if (const auto last = picture.draw(input, image); !last) return tl::unexpected(last.error());
   row.hash = hashOf(image);
   return row;
+}
+
+// Frames from all round while the loop runs on a thread of its own.
+engine::Status beside(render::LivePicture& picture, const Scene& scene, double seconds,
+                      RenderBesideLoop& out) {
+  if (auto ok = picture.update(scene.shown); !ok) return ok;
+  haptic::LoopBenchOptions options;
+  options.seconds = seconds;
+  engine::JobControl quiet;
+  std::optional<engine::Result<haptic::LoopBenchReport>> loop;
+  std::atomic<bool> ended{false};
+  std::thread hand([&] {
+    loop = haptic::benchLoop(options, quiet);
+    ended.store(true, std::memory_order_release);  // publishes `loop`
+  });
+  std::vector<double> frames;
+  engine::Status failed;
+  render::FrameInput input = scene.input;
+  while (!ended.load(std::memory_order_acquire)) {
+    input.view.azimuth_deg = 315.0 + 3.0 * static_cast<double>(frames.size() % 120);
+    const auto start = Clock::now();
+    if (const auto stats = picture.drawAndWait(input); !stats) {
+      failed = tl::unexpected(stats.error());
+      quiet.cancel();
+      break;
+    }
+    frames.push_back(msSince(start));
+  }
+  hand.join();
+  if (!failed) return failed;
+  if (!*loop) return tl::unexpected(loop->error());
+  const haptic::LoopBenchReport& report = **loop;
+  out.ran = !frames.empty();
+  if (!out.ran) return {};
+  out.frame_p50_ms = percentile(frames, 0.5);
+  out.frame_p99_ms = percentile(frames, 0.99);
+  const haptic::TimingFigures& late = report.loop.lateness;
+  out.late_p50_us = 1e-3 * static_cast<double>(late.p50_ns);
+  out.late_p99_us = 1e-3 * static_cast<double>(late.p99_ns);
+  out.late_p999_us = 1e-3 * static_cast<double>(late.p999_ns);
+  out.p99_ratio = report.p99_ratio;
+  out.p999_ratio = report.p999_ratio;
+  return {};
+}
+
+// The budgets' figures (shared budgets, "Picture"), of this run.
+std::vector<RenderTarget> targetsOf(const RenderBenchReport& report) {
+  constexpr double kFrame_ms = 1000.0 / 60.0;
+  std::vector<RenderTarget> targets;
+  for (const RenderBenchRow& row : report.rows) {
+    const std::string at = fmt::format("{:.0f}M", static_cast<double>(row.samples) / 1e6);
+    if (row.name == "plain") {
+      targets.push_back({at + " frame from all round, p50 ms", row.p50_ms, 16.0});
+      targets.push_back({at + " frame from all round, p99 ms", row.p99_ms, 33.0});
+    }
+    if (row.name == "brush, still") {
+      targets.push_back({at + " edit to pixel p99, frames of 1/60 s", row.edit_p99_ms / kFrame_ms, 2.0});
+      targets.push_back({at + " bytes moved over changed", row.upload_ratio, 1.2});
+    }
+  }
+  if (report.loop.ran) {
+    targets.push_back({"loop lateness p99 over cyclictest", report.loop.p99_ratio, 1.2});
+    targets.push_back({"loop lateness p99.9 over cyclictest", report.loop.p999_ratio, 1.2});
+  }
+  return targets;
 }
 
 }  // namespace
@@ -140,8 +242,10 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     return engine::inputError("the number of frames or sides is out of range", "bench render",
                               "give 10 to 100000 frames and a side or more");
   for (const std::int32_t side : options.sides)
-    if (side < 64 || side > 16384)
-      return engine::inputError("a side is out of range", "bench render", "give 64 to 16384 samples");
+    if (side < 64 || side > 32768)
+      return engine::inputError("a side is out of range", "bench render", "give 64 to 32768 samples");
+  if (!(options.loop_seconds >= 0.0 && options.loop_seconds <= 600.0))
+    return engine::inputError("the time beside the loop is out of range", "bench render", "give 0 to 600 s");
   RenderBenchReport report;
   report.machine = machine();
   auto picture = render::LivePicture::create();
@@ -152,36 +256,52 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
   plain.view.height = options.height;
   plain.error_px = options.error_px;
   plain.vertex_budget = options.vertex_budget;
-  const std::size_t effects_at = std::min<std::size_t>(1, options.sides.size() - 1);
-  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (2 * options.sides.size() + 3));
+  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (6 * options.sides.size() + 4));
   for (std::size_t i = 0; i < options.sides.size(); ++i) {
     const auto field = partOf(options.sides[i]);
     if (!field) return tl::unexpected(field.error());
-    render::Shown shown;
-    shown.versions = {*field};
+    Scene all_round{"plain", {{*field}, std::nullopt, render::MarksOverlay::kHide}, plain};
     const auto start = Clock::now();
-    if (auto ok = (*picture)->update(shown); !ok) return tl::unexpected(ok.error());
+    if (auto ok = (*picture)->update(all_round.shown); !ok) return tl::unexpected(ok.error());
     (*picture)->finish();
     report.first_ms.push_back(msSince(start));
-    const auto add = [&](const render::Shown& what, const render::FrameInput& input, const std::string& name,
-                         Brush brush) -> engine::Status {
-      auto row = run(**picture, what, input, name, brush, options, job);
+
+    std::vector<Scene> scenes(6, all_round);
+    scenes[1].name = "empty";
+    scenes[1].input.view.zoom = 1e-3;
+    scenes[2].name = "brush";
+    scenes[3].name = "brush, still";
+    scenes[4].name = "brush, whole";
+    scenes[4].input.redraw = render::FrameInput::Redraw::kAll;
+    for (const std::size_t k : {2, 3, 4}) scenes[k].brush = Brush::kWorks;
+    scenes[5].name = "stylus, still";
+    scenes[5].stylus = true;
+    for (const std::size_t k : {3, 4, 5}) scenes[k].camera = Camera::kStands;
+    if (i == 0) {
+      scenes.insert(scenes.end(), 3, all_round);
+      scenes[6].name = "contours";
+      scenes[6].input.contours = render::Contours::kShow;
+      scenes[7].name = "deviation";
+      scenes[7].shown.original = *field;
+      scenes[8].name = "marks";
+      scenes[8].shown.marks = render::MarksOverlay::kShow;
+      scenes.push_back(all_round);
+      scenes[9].name = "two eyes";
+      scenes[9].input.stereo.mode = render::StereoMode::kAnaglyph;
+    }
+    double plain_cpu_ms = 0.0;
+    for (const Scene& scene : scenes) {
+      auto row = run(**picture, scene, options, job);
       if (!row) return tl::unexpected(row.error());
+      if (scene.name == "plain") plain_cpu_ms = row->cpu_ms;
+      row->of_plain = plain_cpu_ms > 0.0 ? row->cpu_ms / plain_cpu_ms : 0.0;
       report.rows.push_back(*std::move(row));
-      return {};
-    };
-    if (auto ok = add(shown, plain, "plain", Brush::kRests); !ok) return tl::unexpected(ok.error());
-    if (auto ok = add(shown, plain, "brush works", Brush::kWorks); !ok) return tl::unexpected(ok.error());
-    if (i != effects_at) continue;
-    render::FrameInput contours = plain;
-    contours.contours = render::Contours::kShow;
-    render::Shown marks = shown, deviation = shown;
-    marks.marks = render::MarksOverlay::kShow;
-    deviation.original = *field;
-    if (auto ok = add(shown, contours, "contours", Brush::kRests); !ok) return tl::unexpected(ok.error());
-    if (auto ok = add(deviation, plain, "deviation", Brush::kRests); !ok) return tl::unexpected(ok.error());
-    if (auto ok = add(marks, plain, "marks", Brush::kRests); !ok) return tl::unexpected(ok.error());
+    }
+    if (i == 0 && options.loop_seconds > 0.0)
+      if (auto ok = beside(**picture, all_round, options.loop_seconds, report.loop); !ok)
+        return tl::unexpected(ok.error());
   }
+  report.targets = targetsOf(report);
   return report;
 }
 

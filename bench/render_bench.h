@@ -10,15 +10,16 @@
 namespace fettle::bench {
 
 struct RenderBenchOptions {
-  std::vector<std::int32_t> sides{1024, 4096, 10240};  ///< samples along each side of the fields, 64 .. 16384
-  int frames = 120;                                    ///< of each row, 10 .. 100000
-  int width = 1280;                                    ///< of the picture [px]
+  std::vector<std::int32_t> sides{1024, 4096};  ///< samples along each side of the fields, 64 .. 32768
+  int frames = 120;                             ///< of each row, 10 .. 100000
+  int width = 1280;                             ///< of the picture [px]
   int height = 800;
   double error_px = 1.0;
   std::int64_t vertex_budget = 65536;
+  double loop_seconds = 8.0;  ///< drawing beside a haptic loop at 1 kHz, at the first size; 0: not; .. 600
 };
 
-/// One way of drawing, `frames` times from a camera that goes round, every frame waited for.
+/// One way of drawing, `frames` times, every frame waited for.
 struct RenderBenchRow {
   std::string name;
   std::int64_t samples = 0;
@@ -26,10 +27,29 @@ struct RenderBenchRow {
   double cpu_ms = 0.0;                       ///< processor time a frame, all threads: what others cannot slow
   std::int64_t vertices = 0, triangles = 0;  ///< of the last frame
   double bound_px = 0.0;                     ///< the largest
-  double upload_ms = 0.0;                    ///< median a frame, on the calling thread
-  double upload_ratio = 0.0;                 ///< bytes moved over bytes of the changed rectangles; 0: none
+  double of_plain = 0.0;  ///< processor time over that of the plain row of this size; 0: there is none
+  double redrawn = 1.0;   ///< mean share of the plot that was drawn anew
+  double edit_p50_ms = 0.0,
+         edit_p99_ms = 0.0;           ///< from a version handed over to the frame that shows it done
+  std::int64_t tiles = 0, bytes = 0;  ///< moved in all
+  double upload_ms = 0.0;             ///< median a frame, on the calling thread
+  double upload_ratio = 0.0;          ///< bytes moved over bytes of the changed rectangles; 0: none
   std::int64_t stalls = 0;
   std::uint64_t hash = 0;  ///< of the last picture
+};
+
+/// Drawing while a hand presses and smooths at 1 kHz (haptic/loop/loop_bench.h), both measured.
+struct RenderBesideLoop {
+  bool ran = false;
+  double frame_p50_ms = 0.0, frame_p99_ms = 0.0;
+  double late_p50_us = 0.0, late_p99_us = 0.0, late_p999_us = 0.0;  ///< of the loop's wake-ups
+  double p99_ratio = 0.0, p999_ratio = 0.0;                         ///< over cyclictest's beside it
+};
+
+/// A figure of shared budgets against what was measured.
+struct RenderTarget {
+  std::string name;
+  double value = 0.0, limit = 0.0;  ///< met when value <= limit
 };
 
 struct RenderBenchReport {
@@ -37,12 +57,15 @@ struct RenderBenchReport {
   std::string device;
   std::vector<RenderBenchRow> rows;
   std::vector<double> first_ms;  ///< of each field: from a version to everything on the device
+  RenderBesideLoop loop;
+  std::vector<RenderTarget> targets;
 };
 
-/// A machined, noisy part drawn from all round: at each size plain, and while a brush of 31 x 31 samples
-/// works; at the second size (or the only one) each render effect alone as well, beside the plain row, so
-/// that an effect left out can be seen to cost nothing. Errors: kInput for options out of range, kCancelled,
-/// those of LivePicture. Thread: any; blocks.
+/// A machined, noisy part. At each size: an empty frame (ground and furniture, the yardstick); from all
+/// round, plain and while a brush of 31 x 31 samples works; from one side, the brush with frames drawn in
+/// parts and as a whole, and a stylus that moves over the surface. At the first size each render effect alone
+/// as well, beside the plain row, so that an effect left out can be seen to cost nothing. Errors: kInput for
+/// options out of range, kCancelled, those of LivePicture. Thread: any; blocks.
 [[nodiscard]] engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
                                                             engine::JobControl& job);
 

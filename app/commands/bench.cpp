@@ -201,24 +201,58 @@ engine::Result<Report> picture(const bench::RenderBenchOptions& options, engine:
                               {"vertices", row.vertices},
                               {"triangles", row.triangles},
                               {"bound_px", row.bound_px},
+                              {"of_plain", row.of_plain},
+                              {"redrawn", row.redrawn},
+                              {"edit_p50_ms", row.edit_p50_ms},
+                              {"edit_p99_ms", row.edit_p99_ms},
+                              {"tiles", row.tiles},
+                              {"bytes", row.bytes},
                               {"upload_ms", row.upload_ms},
                               {"upload_ratio", row.upload_ratio},
                               {"stalls", row.stalls},
                               {"hash", fmt::format("{:016x}", row.hash)}});
+  if (result->loop.ran)
+    report["beside_loop"] = {{"frame_p50_ms", result->loop.frame_p50_ms},
+                             {"frame_p99_ms", result->loop.frame_p99_ms},
+                             {"late_p50_us", result->loop.late_p50_us},
+                             {"late_p99_us", result->loop.late_p99_us},
+                             {"late_p999_us", result->loop.late_p999_us}};
+  report["targets"] = Report::array();
+  for (const bench::RenderTarget& t : result->targets)
+    report["targets"].push_back(
+        {{"name", t.name}, {"value", t.value}, {"limit", t.limit}, {"met", t.value <= t.limit}});
   return report;
 }
 
 void printPicture(const Report& report) {
-  fmt::print("{}\n{}\n\n{:<13}{:>8}{:>9}{:>9}{:>9}{:>9}{:>10}{:>9}{:>11}{:>8}  {}\n",
+  fmt::print("{}\n{}\n\n{:<14}{:>8}{:>8}{:>8}{:>8}{:>8}{:>7}{:>9}{:>7}{:>8}{:>9}{:>9}{:>7}{:>9}{:>7}  {}\n",
              report["machine"].get<std::string>(), report["device"].get<std::string>(), "", "Msample",
-             "p50 ms", "p99 ms", "worst", "cpu ms", "vertices", "bound px", "upload ms", "ratio", "hash");
+             "p50 ms", "p99 ms", "worst", "cpu ms", "plain", "vertices", "bound", "redrawn", "edit p50",
+             "edit p99", "tiles", "bytes", "ratio", "hash");
   for (const Report& row : report["rows"])
-    fmt::print("{:<13}{:>8.1f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>10}{:>9.2f}{:>11.3f}{:>8.3f}  {}\n",
-               row["name"].get<std::string>(), row["samples"].get<double>() / 1e6,
-               row["p50_ms"].get<double>(), row["p99_ms"].get<double>(), row["worst_ms"].get<double>(),
-               row["cpu_ms"].get<double>(), row["vertices"].get<std::int64_t>(),
-               row["bound_px"].get<double>(), row["upload_ms"].get<double>(),
-               row["upload_ratio"].get<double>(), row["hash"].get<std::string>());
+    fmt::print(
+        "{:<14}{:>8.1f}{:>8.2f}{:>8.2f}{:>8.2f}{:>8.2f}{:>7.2f}{:>9}{:>7.2f}{:>8.3f}{:>9.2f}{:>9.2f}{:>7}{:>"
+        "9}"
+        "{:>7.3f}  {}\n",
+        row["name"].get<std::string>(), row["samples"].get<double>() / 1e6, row["p50_ms"].get<double>(),
+        row["p99_ms"].get<double>(), row["worst_ms"].get<double>(), row["cpu_ms"].get<double>(),
+        row["of_plain"].get<double>(), row["vertices"].get<std::int64_t>(), row["bound_px"].get<double>(),
+        row["redrawn"].get<double>(), row["edit_p50_ms"].get<double>(), row["edit_p99_ms"].get<double>(),
+        row["tiles"].get<std::int64_t>(), row["bytes"].get<std::int64_t>(), row["upload_ratio"].get<double>(),
+        row["hash"].get<std::string>());
+  if (report.contains("beside_loop")) {
+    const Report& loop = report["beside_loop"];
+    fmt::print(
+        "\nbeside a loop at 1 kHz: frames p50 {:.2f} ms, p99 {:.2f} ms; the loop late p50 {:.0f} us, p99 "
+        "{:.0f} us, p99.9 {:.0f} us\n",
+        loop["frame_p50_ms"].get<double>(), loop["frame_p99_ms"].get<double>(),
+        loop["late_p50_us"].get<double>(), loop["late_p99_us"].get<double>(),
+        loop["late_p999_us"].get<double>());
+  }
+  fmt::print("\n");
+  for (const Report& t : report["targets"])
+    fmt::print("{:<42}{:>9.2f}  target {:>6.2f}  {}\n", t["name"].get<std::string>(),
+               t["value"].get<double>(), t["limit"].get<double>(), t["met"].get<bool>() ? "met" : "MISSED");
 }
 
 }  // namespace
@@ -275,7 +309,11 @@ void addBench(CLI::App& root, Chosen& chosen) {
   CLI::App* drawing = addCommand(
       *bench, chosen, "render", "Frames of a field that changes: time, vertices, screen error, uploads",
       [render_options](engine::JobControl& job) { return picture(*render_options, job); }, printPicture);
-  drawing->add_option("--side", render_options->sides, "Samples along each side, one field each");
+  drawing->add_option("--side", render_options->sides,
+                      "Samples along each side, one field each (10240: 100M, 31623: 1G)");
+  drawing
+      ->add_option("--loop", render_options->loop_seconds, "Seconds of drawing beside a haptic loop; 0: none")
+      ->capture_default_str();
   drawing->add_option("--frames", render_options->frames, "Frames of each row")->capture_default_str();
   drawing->add_option("--error", render_options->error_px, "Screen error wanted, px")->capture_default_str();
   drawing->add_option("--vertices", render_options->vertex_budget, "Vertices a frame at most")
