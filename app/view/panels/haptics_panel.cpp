@@ -75,7 +75,7 @@ void Workstation::hapticsPanel() {
   if (!force_plot_.empty())
     ImGui::PlotLines("##force", force_plot_.data(), static_cast<int>(force_plot_.size()), 0,
                      fmt::format("force, 0 to {:.3g} N", limit).c_str(), 0.0F, limit,
-                     ImVec2(-1.0F, 4.0F * ImGui::GetTextLineHeight()));
+                     ImVec2(ImGui::GetContentRegionAvail().x, 4.0F * ImGui::GetTextLineHeight()));
   const haptic::TimingFigures compute = touch_->timing().compute.figures();
   const haptic::TimingFigures late = touch_->timing().lateness.figures();
   figure("ticks", fmt::format("{:.0f} of {:.0f} a second", touch_->measuredRate(), touch_->rate()));
