@@ -210,8 +210,14 @@ void Workstation::leave() {
   quit_ = true;
 }
 
-// Texts that a session is opened with again.
-void Workstation::noteForSession() {
+// Says once that the work cannot be kept, with the way out; texts that a session is opened with again.
+void Workstation::lookAfterSession() {
+  const auto error = keeper_ ? keeper_->error() : std::nullopt;
+  if (error && !keeping_fails_ && dialog_ == Dialog::kNone)
+    message(fmt::format("The work cannot be kept: {}", error->line()),
+            "Nothing is lost while the program runs, and it tries again by itself. Save somewhere else: "
+            "Ctrl+Shift+S.");
+  if (!error || dialog_ == Dialog::kMessage) keeping_fails_ = error.has_value();
   const auto now = std::chrono::steady_clock::now();
   if (!touch_ || now - noted_ < kNoteEvery) return;
   noted_ = now;
