@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
@@ -48,7 +49,6 @@ UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_fil
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = layout_file_.empty() ? nullptr : layout_file_.c_str();
-  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
   makeStyle(scale);
   ImFontConfig font;
@@ -115,6 +115,8 @@ void UiLayer::makeStyle(double scale) const {
   style.FrameRounding = 3.0F;
   style.GrabRounding = 3.0F;
   style.WindowBorderSize = 0.0F;
+  // What lies behind a question goes dark; ImGui's own light grey takes the colours from the picture.
+  style.Colors[ImGuiCol_ModalWindowDimBg] = ImVec4(0.0F, 0.0F, 0.0F, 0.45F);
   style.ScaleAllSizes(static_cast<float>(scale));
 }
 
@@ -137,9 +139,21 @@ void UiLayer::fit(vk::Extent2D extent) {
 }
 
 void UiLayer::beginFrame() {
+  // In dialogs and menus the arrows go from field to field; elsewhere they turn the view, and must not fold
+  // and press what they happen to stand on in the panels.
+  ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsMouseClicked(0) && !io.WantCaptureMouse) leavePanels();
+  if (entered_ || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel))
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  else
+    io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
+}
+
+void UiLayer::leavePanels() noexcept {
+  if (std::exchange(entered_, false)) ImGui::SetWindowFocus(nullptr);
 }
 
 void UiLayer::endFrame() {

@@ -31,6 +31,10 @@ class UiLayer {
 
   void fit(vk::Extent2D extent);
   void beginFrame();
+  /// Whether the panels have the keyboard beyond text fields, dialogs and menus; and from when to when.
+  [[nodiscard]] bool entered() const noexcept { return entered_; }
+  void enterPanels() noexcept { entered_ = true; }
+  void leavePanels() noexcept;
   /// Ends the frame's panels and keeps what they draw.
   void endFrame();
 
@@ -44,6 +48,7 @@ class UiLayer {
   void makeStyle(double scale) const;
 
   Context* context_ = nullptr;
+  bool entered_ = false;
   std::string layout_file_;  // ImGui keeps a pointer to its text
   vk::raii::DescriptorPool descriptors_ = nullptr;
   vk::raii::RenderPass pass_ = nullptr;

@@ -193,7 +193,7 @@ struct Window::Impl {
     event.x = x * width / std::max(window_width, 1);
     event.y = y * height / std::max(window_height, 1);
     const ImGuiIO& io = ImGui::GetIO();
-    event.panels_key = io.WantTextInput;
+    event.panels_key = io.WantTextInput || ui->entered();
     event.panels_mouse = io.WantCaptureMouse;
     input.push_back(event);
   }
@@ -260,7 +260,10 @@ void Window::Impl::listen() {
     event.key = keyOf(key, scancode);
     event.modifiers = modifiersOf(mods);
     event.repeat = action == GLFW_REPEAT;
-    if (event.key != Key::kNone) of(w).note(event);
+    if (event.key == Key::kNone) return;
+    of(w).note(event);
+    // Of a key this short ImGui may see nothing.
+    if (event.key == Key::kEscape) of(w).ui->leavePanels();
   });
   glfwSetMouseButtonCallback(glfw.window, [](GLFWwindow* w, int button, int action, int mods) {
     InputEvent event;
@@ -424,6 +427,9 @@ std::vector<PanelText> Window::texts() const {
   return drawn != nullptr ? textsOf(*drawn) : std::vector<PanelText>{};
 }
 
+void Window::enterPanels() {
+  impl_->ui->enterPanels();
+}
 void Window::beginFrame() {
   impl_->ui->beginFrame();
 }

@@ -133,6 +133,9 @@ class Window {
   [[nodiscard]] double scale() const;
   void setTitle(const std::string& title);
 
+  /// Gives the keyboard to the panels until Esc or a click beside them: arrows then go from field to field.
+  /// Otherwise only dialogs, menus and text fields take keys.
+  void enterPanels();
   /// Starts the panels of a frame; ImGui may be called until present().
   void beginFrame();
   /// Where in the frame the picture is [pixels]; the panels have the rest, and may lie over it.

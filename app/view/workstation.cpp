@@ -126,6 +126,7 @@ void Workstation::goRound() {
   }
   if (window_->minimised()) {
     // Nothing to draw, everything else goes on.
+    tell();
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     return;
   }

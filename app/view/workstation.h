@@ -145,7 +145,7 @@ class Workstation {
   void panels();
   void menuBar();
   void menuItem(Action action, bool enabled = true, bool ticked = false);
-  void sidePanel();
+  float sidePanel();
   void toolPanel();
   void statusPanel();
   void historyPanel();
@@ -212,13 +212,15 @@ class Workstation {
   int device_losses_ = 0;
   int renewals_ = 0;
   std::chrono::steady_clock::time_point renew_at_;
-  std::chrono::steady_clock::time_point renewed_at_;
+  std::uint64_t renewed_frame_ = 0;
 
   // For whoever drives the window: what hands did so far.
   EventLog events_;
   struct Hands {
     std::uint64_t keys = 0, buttons = 0, wheels = 0, drops = 0;
   } hands_;
+  Dialog told_dialog_ = Dialog::kNone;
+  std::uint64_t told_dialog_since_ = 0;  // frame
 
   // Marks drawn at once, and what the work changed so far.
   MarkEdit mark_edit_;

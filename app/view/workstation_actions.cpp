@@ -98,6 +98,7 @@ void Workstation::act(Action action) {
     case Action::kEnterPanels:
       side_panel_ = true;
       enter_panels_ = true;
+      window_->enterPanels();
       return;
     case Action::kShortcuts:
       dialog_ = Dialog::kShortcuts;

@@ -10,7 +10,6 @@
 #include "app/terminal.h"
 #include "app/view/workstation.h"
 #include "engine/io/export.h"
-#include "engine/io/marks.h"
 
 namespace fettle::app {
 namespace {
@@ -19,9 +18,10 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 // Before each try to come back: a driver that restarts takes a second or two.
-constexpr std::array<std::chrono::milliseconds, 6> kPauses{0ms, 100ms, 300ms, 1000ms, 2000ms, 3000ms};
-constexpr auto kStands = 10s;  // a picture that long after a loss has come back for good
-constexpr auto kStep = 5ms;    // between two looks at touch while there is nothing to draw with
+constexpr std::array<std::chrono::milliseconds, 6> kPauses{0ms, 100ms, 300ms, 800ms, 1500ms, 2500ms};
+constexpr std::uint64_t kStands =
+    3;                       // frames shown after a loss: it has come back, and the next loss is another
+constexpr auto kStep = 5ms;  // between two looks at touch while there is nothing to draw with
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void Workstation::losePicture(const engine::Error& why) {
   drag_ = Drag::kNone;
   dragging_split_ = false;
   const auto now = Clock::now();
-  if (now - renewed_at_ > kStands) renewals_ = 0;
+  if (frames_ >= renewed_frame_ + kStands) renewals_ = 0;
   if (window_->displayLost() || static_cast<std::size_t>(renewals_) >= kPauses.size()) {
     engine::Error end = why;
     end.remedy = keepWork() + end.remedy;
@@ -63,39 +63,51 @@ void Workstation::renewPicture() {
     return;
   }
   const std::string before = window_->device();
-  renewed_at_ = Clock::now();
+  renewed_frame_ = frames_;
   engine::Status done = window_->renew();
   if (done) done = makePicture();
   if (!done) {
     losePicture(done.error());
     return;
   }
+  std::erase_if(notices_, [](const Notice& n) { return n.what.starts_with("the graphics device was lost"); });
   notices_.push_back({before == window_->device()
                           ? std::string("the graphics device was lost and has come back")
                           : fmt::format("the graphics device was lost; {} draws now", window_->device()),
                       "the field, its marks and its steps were not touched"});
 }
 
-// Nobody can be asked any more. What to read about it, as the beginning of a remedy; empty when all was
-// saved.
+// Nobody can be asked any more. What to read about the work, as the beginning of a remedy; empty when there
+// is nothing to say. Of no use afterwards: the document is closed.
 std::string Workstation::keepWork() {
-  if (!unsaved()) return {};
-  namespace fs = std::filesystem;
-  const fs::path scan(path_);
-  const std::string stem = (scan.parent_path() / (scan.stem().string() + "_rescued")).string();
-  std::error_code error;
-  std::string path = stem + ".tif";
-  for (int n = 2; fs::exists(path, error); ++n) path = fmt::format("{}_{}.tif", stem, n);
-  engine::JobControl job;
+  if (!touch_) return {};
+  const bool had_unsaved = unsaved();
+  const std::string session = keeper_->named() ? keeper_->path() : std::string();
+  filters_.cancel(*touch_);
+  touch_->finish();  // a stroke that runs is a step yet
   const engine::Version field = touch_->upright();
-  auto kept = engine::exportField(field, path, {}, job);
-  if (!kept) return fmt::format("what was not saved is gone ({}); ", kept.error().line());
-  if (field.reader().root().marked_children != 0) {
-    const std::string marks = fs::path(path).replace_extension().string() + "_marks.png";
-    if (const auto written = engine::exportMarks(field, marks); !written)
-      return fmt::format("the field was kept in {}, its marks are gone ({}); ", path, written.error().line());
+  const auto closed = keeper_->close(SessionKeeper::Afterwards::kKeep);
+  touch_.reset();
+  keeper_.reset();
+  if (closed && !session.empty()) return fmt::format("everything is kept in {}; ", session);
+  if (closed)
+    return had_unsaved ? fmt::format("what was not saved is kept for when {} is opened again; ", path_) : "";
+
+  // The session cannot be written where it is: the field, at least, goes beside the scan or to where programs
+  // may write.
+  namespace fs = std::filesystem;
+  std::string why = closed.error().line();
+  for (const fs::path& folder :
+       {fs::path(path_).parent_path(), fs::path(settingsFolder()), fs::path("/tmp")}) {
+    const std::string stem = (folder / (fs::path(path_).stem().string() + "_rescued")).string();
+    std::error_code error;
+    std::string path = stem + ".fettle";
+    for (int n = 2; fs::exists(path, error); ++n) path = fmt::format("{}_{}.fettle", stem, n);
+    engine::JobControl job;
+    if (engine::exportField(field, path, {}, job))
+      return fmt::format("{}; the field with its marks is kept in {}; ", why, path);
   }
-  return fmt::format("what was not saved was kept in {}; ", path);
+  return fmt::format("{}; what was not saved is gone; ", why);
 }
 
 }  // namespace fettle::app

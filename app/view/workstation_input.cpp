@@ -50,6 +50,7 @@ void Workstation::toStylus(const InputEvent& event) {
     return;
   }
   if (event.kind != InputKind::kMove && event.kind != InputKind::kButtonDown) return;
+  if (!picture_) return;  // the device is lost: the stylus stays where it is
   if (drag_ != Drag::kNone || adjusting_ != Adjusting::kNothing) return;
   if (!inPicture(event.x, event.y) || (event.panels_mouse && !stylus_held_)) {
     mouse.leave();

@@ -2,6 +2,8 @@
 // drive it by keys and mouse and have to know when what they did is on the screen.
 #include <cmath>
 
+#include <imgui.h>
+
 #include "app/view/workstation.h"
 #include "haptic/safety/safety.h"
 
@@ -28,20 +30,27 @@ Report Workstation::told() const {
            {"cursor", {std::lround(last_x_), std::lround(last_y_)}},
            {"frame", {window_->width(), window_->height()}},
            {"picture", {area.x, area.y, area.width, area.height}},
+           {"minimised", window_->minimised()},
            {"scale", rounded(window_->scale())},
            {"dialog", kDialogs[static_cast<std::size_t>(dialog_)]},
            {"dialog_path", dialog_path_},
+           {"text_field", ImGui::GetIO().WantTextInput},
            {"message", dialog_ == Dialog::kMessage ? message_.what : ""},
            {"status", status_text_},
            {"device_losses", device_losses_},
            {"loading", loading_.busy()},
            {"saving", saving_.busy() || (keeper_ && keeper_->saving())},
            {"path", path_},
-           {"save_path", save_path_}};
+           {"save_path", keeper_ && keeper_->named() ? keeper_->path() : save_path_}};
   Report notices = Report::array();
   for (const Notice& notice : notices_) notices.push_back(notice.what);
   r["notices"] = notices;
-  bool settled = !active() && input_.empty() && !loading_.busy() && !saving_.busy();
+  // A dialog is laid out anew each frame, and seen from its second one on.
+  const bool moves = dialog_ == Dialog::kNone
+                         ? active()
+                         : stylus_held_ || drag_ != Drag::kNone || figures_.upload.pending_tiles > 0 ||
+                               told_dialog_ != dialog_ || frames_ < told_dialog_since_ + 3;
+  bool settled = !moves && input_.empty() && !loading_.busy() && r["saving"] == false;
   if (touch_) {
     const haptic::LoopState& drawn = drawn_state_;
     const haptic::LoopState now = touch_->state();
@@ -53,6 +62,7 @@ Report Workstation::told() const {
     r["session"] = keeper_->path();
     r["session_named"] = keeper_->named();
     r["session_waiting"] = keeper_->waiting();
+    r["kept"] = keeper_->waiting() == 0 && !keeper_->error();
     r["inverted"] = scene.invert;
     r["brush"] = rounded(scene.brush_radius_samples);
     r["mark_brush"] = rounded(scene.mark_radius_samples);
@@ -108,9 +118,19 @@ void Workstation::countHands() {
 
 void Workstation::tell() {
   if (!events_.listens()) return;
-  events_.tell(told(), [this] {
+  if (std::exchange(told_dialog_, dialog_) != dialog_) told_dialog_since_ = frames_;
+  // What is written changes without any of the above: a menu opens, a header closes. Figures change all the
+  // time.
+  const std::vector<render::PanelText> written = window_->texts();
+  std::size_t words = written.size();
+  for (const render::PanelText& text : written)
+    for (const char c : text.text)
+      if (c < '0' || c > '9') words = 31 * words + static_cast<unsigned char>(c);
+  Report state = told();
+  state["words"] = words;
+  events_.tell(std::move(state), [&] {
     Report texts = Report::array();
-    for (const render::PanelText& text : window_->texts())
+    for (const render::PanelText& text : written)
       texts.push_back(
           {{"text", text.text},
            {"at",

@@ -1,6 +1,7 @@
 #include "app/view/workstation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -26,13 +27,17 @@ void Workstation::panels() {
   const float width = ImGui::GetIO().DisplaySize.x, height = ImGui::GetIO().DisplaySize.y;
   if (side_width_ <= 0.0F)
     side_width_ = (settings_.side_width > 0.0F ? settings_.side_width : kSide_px) * scale;
-  side_width_ = std::clamp(side_width_, 160.0F * scale, std::max(0.6F * width, 161.0F * scale));
-  const float side = side_panel_ && touch_ ? side_width_ : 0.0F;
+  // A small window narrows the panels for as long as it is small.
+  const float fits = std::clamp(side_width_, 160.0F * scale, std::max(0.6F * width, 161.0F * scale));
+  const float side = side_panel_ && touch_ ? fits : 0.0F;
   if (side > 0.0F) {
     ImGui::SetNextWindowPos(ImVec2(width - side, top));
     ImGui::SetNextWindowSize(ImVec2(side, height - top - bottom));
     ImGui::SetNextWindowSizeConstraints(ImVec2(160.0F * scale, 0.0F), ImVec2(width, height));
-    sidePanel();
+    // ImGui rounds sizes, and has its own ideas about a window of no size: only a hand sets the width.
+    const float drawn = sidePanel();
+    if (std::abs(drawn - side) > 1.5F && ImGui::IsMouseDown(ImGuiMouseButton_Left)) side_width_ = drawn;
+    settings_.side_width = side_width_ / scale;
   }
   statusBar();
   window_->setPictureArea(
@@ -149,12 +154,12 @@ bool Workstation::section(const char* name, bool open_at_first) {
   return open;
 }
 
-void Workstation::sidePanel() {
+// Its width: what it was given, or what the user pulled it to.
+float Workstation::sidePanel() {
   ImGui::Begin("Panels", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
                    ImGuiWindowFlags_NoBringToFrontOnFocus);
-  side_width_ = ImGui::GetWindowSize().x;
-  settings_.side_width = side_width_ / static_cast<float>(window_->scale());
+  const float width = ImGui::GetWindowSize().x;
   if (std::exchange(enter_panels_, false)) {
     ImGui::SetWindowFocus();
     ImGui::SetKeyboardFocusHere();
@@ -175,6 +180,7 @@ void Workstation::sidePanel() {
   if (section("Status", true)) statusPanel();
   if (section("Haptics", false)) hapticsPanel();
   ImGui::End();
+  return width;
 }
 
 }  // namespace fettle::app

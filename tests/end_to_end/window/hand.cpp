@@ -1,0 +1,193 @@
+#include "tests/end_to_end/window/hand.h"
+
+#include <cstdlib>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "render/picture.h"
+
+namespace fettle::tests {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kGlance = 20ms;  // between two looks at the screen: the server draws it, and tells nobody
+
+bool rests(const Hand::State& s) {
+  return s.value("settled", false);
+}
+
+}  // namespace
+
+Hand::Hand(const Display& display, ViewProgram& program, std::string name)
+    : display_(display), program_(program), name_(std::move(name)) {}
+
+std::uint64_t Hand::told(const char* counter) {
+  const State now = program_.now();
+  return now.is_object() ? now.value(counter, std::uint64_t{0}) : 0;
+}
+
+Hand::State Hand::press(const std::string& name) {
+  const std::uint64_t before = told("keys");
+  display_.hands({"key", name});
+  return waitFor("key " + name, [&](const State& s) { return s["keys"] > before; });
+}
+
+Hand::State Hand::key(const std::string& name) {
+  const std::uint64_t before = told("keys");
+  display_.hands({"key", name});
+  return waitFor("key " + name, [&](const State& s) { return s["keys"] > before && rests(s); });
+}
+
+void Hand::type(const std::string& text) {
+  (void)waitFor("a place to type",
+                [](const State& s) { return s["text_field"] == true || s["adjusting"] != ""; });
+  display_.hands({"type", "--delay", "0", text});
+  (void)waitFor("typed " + text,
+                [&](const State& s) { return s["dialog_path"] == text || s["typed"] == text; });
+}
+
+void Hand::at(Place place) {
+  display_.hands({"mousemove", std::to_string(place.x), std::to_string(place.y)});
+  (void)waitFor(fmt::format("cursor at {}, {}", place.x, place.y), [&](const State& s) {
+    return s["cursor"] == State{place.x, place.y};
+  });
+}
+
+void Hand::down(int button) {
+  const std::uint64_t before = told("buttons");
+  display_.hands({"mousedown", std::to_string(button)});
+  (void)waitFor("button down", [&](const State& s) { return s["buttons"] > before; });
+}
+
+void Hand::up(int button) {
+  const std::uint64_t before = told("buttons");
+  display_.hands({"mouseup", std::to_string(button)});
+  (void)waitFor("button up", [&](const State& s) { return s["buttons"] > before; });
+}
+
+Hand::State Hand::wheel(int steps) {
+  const std::uint64_t wanted = told("wheels") + static_cast<std::uint64_t>(std::abs(steps));
+  display_.hands(
+      {"click", "--repeat", std::to_string(std::abs(steps)), "--delay", "1", steps > 0 ? "4" : "5"});
+  return waitFor("wheel", [&](const State& s) { return s["wheels"] >= wanted && rests(s); });
+}
+
+Hand::State Hand::drag(int button, Place from, Place to, int steps, const std::string& modifier) {
+  at(from);
+  if (!modifier.empty()) display_.hands({"keydown", modifier});
+  down(button);
+  for (int i = 1; i <= steps; ++i)
+    at({from.x + (to.x - from.x) * i / steps, from.y + (to.y - from.y) * i / steps});
+  up(button);
+  if (!modifier.empty()) display_.hands({"keyup", modifier});
+  return rest("after a drag");
+}
+
+Hand::State Hand::stroke(Place from, Place to, int steps) {
+  // The stylus follows the cursor with a lag; two cells off is there.
+  const auto follow = [&](bool pressed) {
+    (void)waitFor("the stylus at the cursor", [&](const State& s) {
+      return s["under_cursor"].is_array() && s["stroke"] == pressed && s["touching"] == pressed &&
+             std::abs(s["under_cursor"][0].get<int>() - s["stylus_at"][0].get<int>()) <= 2 &&
+             std::abs(s["under_cursor"][1].get<int>() - s["stylus_at"][1].get<int>()) <= 2;
+    });
+  };
+  at(from);
+  follow(false);
+  down(1);
+  follow(true);
+  for (int i = 1; i <= steps; ++i) {
+    at({from.x + (to.x - from.x) * i / steps, from.y + (to.y - from.y) * i / steps});
+    follow(true);
+  }
+  up(1);
+  return rest("after a stroke");
+}
+
+Hand::State Hand::click(const std::string& text, int count) {
+  const State now = program_.now();
+  for (const State& t : now["texts"])
+    if (t["text"] == text) {
+      const State& box = t["at"];
+      at({box[0].get<int>() + box[2].get<int>() / 2, box[1].get<int>() + box[3].get<int>() / 2});
+      for (int i = 0; i < count; ++i) {
+        down(1);
+        up(1);
+      }
+      return rest("after a click on " + text);
+    }
+  ADD_FAILURE() << name_ << ": nothing to read there: " << text << "\n" << now["texts"].dump();
+  return now;
+}
+
+Hand::State Hand::rest(const std::string& what) {
+  program_.forget();
+  return waitFor(what, rests);
+}
+
+bool Hand::reads(const std::string& text) {
+  const State now = program_.now();
+  for (const State& t : now["texts"])
+    if (t["text"].get<std::string>().find(text) != std::string::npos) return true;
+  return false;
+}
+
+Part Hand::surface() {
+  const State area = program_.now()["picture"];
+  const int x = area[0], y = area[1], width = area[2], height = area[3];
+  // The colour bar stands at the right, the scale below.
+  return {x + 4, y + 20, width - 130, height - 90};
+}
+
+void Hand::keep(const Screen& screen, const std::string& what) {
+  const char* folder = std::getenv("FETTLE_WINDOW_SHOTS");
+  if (folder == nullptr || screen.width == 0) return;
+  std::filesystem::create_directories(folder);
+  render::Image image{screen.width, screen.height, {}};
+  for (std::size_t i = 0; i < screen.rgb.size(); ++i) {
+    image.rgba.push_back(screen.rgb[i]);
+    if (i % 3 == 2) image.rgba.push_back(255);
+  }
+  std::string file = fmt::format("{}_{:02}_{}.png", name_, ++shots_, what);
+  for (char& c : file) c = c == ' ' || c == '/' ? '_' : c;
+  const auto written = render::writePng(image, (std::filesystem::path(folder) / file).string());
+  EXPECT_TRUE(written);
+}
+
+Screen Hand::until(const std::string& what, const std::function<bool(const Screen&)>& is) {
+  const auto end = std::chrono::steady_clock::now() + ViewProgram::kPatience;
+  const Part part = surface();
+  Screen before = display_.screen();
+  while (std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(kGlance);
+    Screen now = display_.screen();
+    if (now.width > 0 && now.width == before.width && differing(now, before, part, 2) == 0 && is(now)) {
+      keep(now, what);
+      return now;
+    }
+    before = std::move(now);
+  }
+  keep(before, "instead of " + what);
+  ADD_FAILURE() << name_ << ": never seen: " << what;
+  return before;
+}
+
+Screen Hand::look(const std::string& what) {
+  return until(what, [](const Screen&) { return true; });
+}
+Screen Hand::changed(const std::string& what, const Screen& before, int pixels) {
+  const Part part = surface();
+  return until(what, [&](const Screen& now) { return differing(before, now, part) >= pixels; });
+}
+Screen Hand::same(const std::string& what, const Screen& as) {
+  const Part part = surface();
+  return until(what, [&](const Screen& now) { return differing(as, now, part) == 0; });
+}
+
+}  // namespace fettle::tests

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "tests/end_to_end/window/display.h"
+#include "tests/end_to_end/window/view_program.h"
+#include "tests/end_to_end/window/x_client.h"
+
+namespace fettle::tests {
+
+/// A person at the window: presses, moves, reads what is written and looks at the picture. Whatever is done
+/// is waited for until the window says that it took it in and that what came of it is on the screen.
+class Hand {
+ public:
+  using State = ViewProgram::State;
+  struct Place {
+    int x = 0, y = 0;
+  };
+
+  /// `name`: of the pictures that are kept when $FETTLE_WINDOW_SHOTS names a folder.
+  Hand(const Display& display, ViewProgram& program, std::string name);
+
+  /// A key with its modifiers ("ctrl+shift+s"), until the window rests again.
+  State key(const std::string& name);
+  /// The same, but only until the window has taken it in.
+  State press(const std::string& name);
+  /// Text into the field that has the keyboard, in place of what is selected there.
+  void type(const std::string& text);
+  void at(Place place);
+  void down(int button);
+  void up(int button);
+  State wheel(int steps);  ///< up: positive
+  /// From place to place with a button held, in so many steps, until the window rests.
+  State drag(int button, Place from, Place to, int steps, const std::string& modifier = "");
+  /// A stroke of the stylus: as drag() with the left button, waiting at each place until the stylus is there.
+  State stroke(Place from, Place to, int steps);
+  /// Clicks on what reads `text`, until the window rests.
+  State click(const std::string& text, int count = 1);
+  /// Until nothing moves any more and everything asked for was done.
+  State rest(const std::string& what = "rest");
+  /// Whether a text is on the panels.
+  [[nodiscard]] bool reads(const std::string& text);
+
+  /// The surface of the picture without the colour bar and the status line.
+  [[nodiscard]] Part surface();
+  /// What is on the screen, at rest. Kept as a picture called `what` when pictures are kept.
+  Screen look(const std::string& what);
+  /// Looks until the screen is as asked for and stays so.
+  Screen until(const std::string& what, const std::function<bool(const Screen&)>& is);
+  /// Looks until the surface differs from `before` in at least `pixels` pixels.
+  Screen changed(const std::string& what, const Screen& before, int pixels = 30);
+  /// Looks until the surface is as in `as`.
+  Screen same(const std::string& what, const Screen& as);
+
+  ViewProgram& program() { return program_; }
+
+ private:
+  void keep(const Screen& screen, const std::string& what);
+  [[nodiscard]] State waitFor(const std::string& what, const std::function<bool(const State&)>& is) {
+    return program_.until(name_ + ": " + what, is);
+  }
+  [[nodiscard]] std::uint64_t told(const char* counter);
+
+  const Display& display_;
+  ViewProgram& program_;
+  std::string name_;
+  int shots_ = 0;
+};
+
+}  // namespace fettle::tests

@@ -1,0 +1,163 @@
+// A graphics device that is lost, in every place where a driver can say so: the picture comes back, and
+// nothing else was ever gone.
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/end_to_end/window/window_fixture.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = Hand::State;
+
+class LossTest : public WindowTest {
+ protected:
+  // The program with the layer that takes devices away, with a smoothed and a marked band.
+  std::unique_ptr<ViewProgram> startWithWork() {
+    auto program = start({scan}, {{"VK_ADD_LAYER_PATH", FETTLE_LAYER_FOLDER},
+                                  {"VK_INSTANCE_LAYERS", "VK_LAYER_FETTLE_lose_device"},
+                                  {"FETTLE_LOSE_DEVICE", orders_path}});
+    Hand hand(display, *program, "loss");
+    (void)opened(*program);
+    (void)hand.key("7");
+    (void)hand.key("s");
+    (void)hand.stroke({240, 360}, {400, 360}, 5);
+    (void)hand.key("m");
+    (void)hand.stroke({590, 320}, {590, 410}, 5);
+    (void)hand.key("Escape");
+    hand.at({20, 790});
+    (void)hand.rest();
+    return program;
+  }
+  void order(const std::string& lines) const {
+    const std::string beside = orders_path + ".all";
+    std::ofstream(beside) << lines;
+    std::filesystem::rename(beside, orders_path);
+  }
+  static State lost(ViewProgram& program, int times) {
+    return program.until("the device was lost and has come back",
+                         [&](const State& s) { return s["device_losses"] == times && s["settled"] == true; });
+  }
+
+  std::string orders_path = folder.file("orders.txt");
+};
+
+TEST_F(LossTest, a_lost_device_comes_back_with_everything_in_its_place) {
+  const auto program = startWithWork();
+  Hand hand(display, *program, "loss");
+  const Screen marked = hand.look("with marks");
+  const State before = program->now();
+  (void)hand.key("ctrl+z");
+  const Screen unmarked = hand.changed("without marks", marked);
+  (void)hand.key("ctrl+shift+z");
+  int losses = 0;
+  for (const char* where : {"surface", "upload", "panels", "acquire", "present"}) {
+    // Undo brings tiles over, so that each of these places is come by.
+    order(std::string("lose ") + where + "\n");
+    (void)hand.press("ctrl+z");
+    const State after = lost(*program, ++losses);
+    EXPECT_EQ(after["view"], before["view"]) << where;
+    EXPECT_EQ(after["steps"], 1) << where;
+    EXPECT_TRUE(hand.reads("graphics device was lost")) << where;
+    (void)hand.same(std::string("unmarked after the loss at ") + where, unmarked);
+    (void)hand.key("ctrl+shift+z");
+    (void)hand.same(std::string("marked after the loss at ") + where, marked);
+  }
+  (void)hand.look("after five losses");
+  // A second loss right away, in the middle of the first uploads; then two refusals to start.
+  order("lose surface\nlose upload\nlose present\nrefuse\nrefuse\n");
+  (void)hand.press("Left");
+  (void)lost(*program, losses + 5);
+  (void)hand.changed("turned after losses in a row", marked, 2000);
+  (void)hand.key("7");
+  (void)hand.same("marked after losses in a row", marked);
+
+  // A stroke that runs when the device goes is one stroke.
+  (void)hand.key("s");
+  hand.at({410, 660});
+  hand.down(1);
+  hand.at({430, 660});
+  order("lose surface\n");
+  hand.at({450, 660});
+  program->until("lost in a stroke", [&](const State& s) { return s["device_losses"] == losses + 6; });
+  hand.at({500, 660});
+  hand.up(1);
+  EXPECT_EQ(hand.rest()["steps"], 3);
+  (void)hand.key("Escape");
+  hand.at({20, 790});
+  (void)hand.changed("smoothed across a loss", marked);
+
+  (void)hand.press("ctrl+q");
+  program->until("a question", [](const State& s) { return s["dialog"] == "unsaved"; });
+  (void)hand.press("d");
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  EXPECT_EQ(program->report()["steps"], 3);
+  expectSilence(*program);
+}
+
+TEST_F(LossTest, a_device_that_stays_away_ends_the_program_with_the_work_kept) {
+  const auto program = startWithWork();
+  Hand hand(display, *program, "gone");
+  order("lose present\ngone\n");
+  display.hands({"key", "Left"});
+  EXPECT_EQ(program->wait(), 1);
+  EXPECT_EQ(program->err().rfind("fettle: error: ", 0), 0U) << program->err();
+  EXPECT_EQ(std::count(program->err().begin(), program->err().end(), '\n'), 1) << program->err();
+  EXPECT_NE(program->err().find("what was not saved is kept"), std::string::npos) << program->err();
+
+  // With the device back the work is where it was left.
+  order("");
+  const auto again = start({scan});
+  again->until("a question", [](const State& s) { return s["dialog"] == "recover" && s["settled"] == true; });
+  Hand later(display, *again, "gone");
+  (void)later.look("work is found again");
+  (void)later.press("Return");
+  EXPECT_EQ(opened(*again)["steps"], 2);
+  (void)later.look("gone on with");
+  again->signal(SIGTERM);
+  EXPECT_EQ(again->wait(), 0) << again->err();
+  expectSilence(*again);
+}
+
+TEST_F(LossTest, too_little_memory_for_a_preview_costs_the_preview_alone) {
+  const auto program = startWithWork();
+  Hand hand(display, *program, "memory");
+  const Screen before = hand.look("before");
+  order("memory\n");
+  (void)hand.press("p");
+  program->until("a message",
+                 [](const State& s) { return s["dialog"] == "message" && s["settled"] == true; });
+  (void)hand.look("message");
+  (void)hand.press("Return");
+  program->until("no message", [](const State& s) { return s["dialog"] == "none"; });
+  (void)hand.key("Escape");
+  (void)hand.same("the field", before);
+  EXPECT_EQ(program->now()["device_losses"], 0);
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0);
+  expectSilence(*program);
+}
+
+TEST_F(LossTest, a_swap_chain_that_no_longer_fits_is_made_anew) {
+  const auto program = startWithWork();
+  Hand hand(display, *program, "swapchain");
+  const Screen before = hand.look("before");
+  for (const char* what :
+       {"outdated acquire", "suboptimal acquire", "outdated present", "suboptimal present"}) {
+    order(std::string(what) + "\n");
+    (void)hand.key("c");
+    (void)hand.changed(std::string("contours after ") + what, before, 300);
+    (void)hand.key("c");
+    (void)hand.same(std::string("the field after ") + what, before);
+    EXPECT_EQ(std::filesystem::file_size(orders_path), 0U) << what;
+  }
+  EXPECT_EQ(program->now()["device_losses"], 0);
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0);
+  expectSilence(*program);
+}
+
+}  // namespace
+}  // namespace fettle::tests

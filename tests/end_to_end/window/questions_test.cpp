@@ -1,0 +1,100 @@
+// What the window asks before work is lost, and each answer.
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+
+#include "tests/end_to_end/window/window_fixture.h"
+#include "tests/support/process.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = Hand::State;
+
+bool asks(const State& s) {
+  return s["dialog"] == "unsaved" && s["settled"] == true;
+}
+
+class QuestionTest : public WindowTest {
+ protected:
+  // A scan with a mark that is not saved.
+  Screen mark(Hand& hand) {
+    (void)opened(hand.program());
+    (void)hand.key("7");
+    const Screen before = hand.look("opened");
+    (void)hand.key("m");
+    (void)hand.stroke({240, 360}, {340, 360}, 4);
+    (void)hand.key("Escape");
+    hand.at({20, 790});
+    return hand.changed("marked", before);
+  }
+};
+
+TEST_F(QuestionTest, work_is_not_lost_without_a_question) {
+  const std::string second = folder.file("second.tif"), third = folder.file("saved by Enter.tif");
+  std::filesystem::copy_file(scan, second);
+  const auto program = start({second});
+  Hand hand(display, *program, "ask");
+  (void)opened(*program);
+  // What was opened last is first in the list of recent files.
+  const std::uint32_t window = other.windowOf("fettle");
+  EXPECT_EQ(other.drop(window, {scan}), "");
+  program->until("the other scan", [&](const State& s) { return s["path"] == scan && s["settled"] == true; });
+  const Screen marked = mark(hand);
+
+  // Going back leaves everything as it is.
+  (void)hand.press("ctrl+q");
+  program->until("a question", asks);
+  const Screen asked = hand.changed("the question", marked, 1000);
+  (void)hand.key("Escape");
+  (void)hand.same("as before the question", marked);
+  // Opening another scan asks as well: by drop, and by its number among the recent files.
+  EXPECT_EQ(other.drop(window, {second}), "");
+  program->until("a question", asks);
+  (void)hand.key("Escape");
+  (void)hand.press("ctrl+2");
+  program->until("a question", asks);
+  // Save (Enter) asks where to, and goes on to what was wanted.
+  (void)hand.press("Return");
+  program->until("where to", [](const State& s) { return s["dialog"] == "save as" && s["settled"] == true; });
+  hand.type(third);
+  (void)hand.press("Return");
+  const State next = program->until(
+      "the second scan", [&](const State& s) { return s["path"] == second && s["settled"] == true; });
+  EXPECT_EQ(next["steps"], 0);
+  EXPECT_EQ(next["unsaved"], false);
+  EXPECT_TRUE(std::filesystem::exists(third));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("saved by Enter_marks.png")));
+
+  // Discarding ends it.
+  (void)mark(hand);
+  (void)hand.press("ctrl+q");
+  program->until("a question", asks);
+  (void)hand.press("d");
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  EXPECT_EQ(program->report()["unsaved_changes"], true);
+  expectSilence(*program);
+}
+
+TEST_F(QuestionTest, a_display_that_closes_keeps_the_work_and_ends_the_program_with_a_word) {
+  const auto program = start({scan});
+  Hand hand(display, *program, "display");
+  (void)mark(hand);
+  display.close();
+  EXPECT_EQ(program->wait(), 1);
+  EXPECT_EQ(program->err().rfind("fettle: error: the connection to the display was lost", 0), 0U)
+      << program->err();
+  EXPECT_EQ(std::count(program->err().begin(), program->err().end(), '\n'), 1) << program->err();
+  EXPECT_NE(program->err().find("what was not saved is kept"), std::string::npos) << program->err();
+}
+
+TEST(NoWindowTest, without_a_display_the_program_says_so) {
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  const Outcome outcome = runProcess({FETTLE_PROGRAM, "view"});
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("there is no display"), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+}  // namespace fettle::tests

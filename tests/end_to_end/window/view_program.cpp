@@ -1,0 +1,138 @@
+#include "tests/end_to_end/window/view_program.h"
+
+#include <csignal>
+#include <cstdlib>
+
+#include <array>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace fettle::tests {
+namespace {
+
+constexpr int kEvents = 9;  // the program's descriptor for what it tells
+
+std::array<int, 2> makePipe() {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe failed");
+  return ends;
+}
+
+}  // namespace
+
+ViewProgram::ViewProgram(std::vector<std::string> arguments,
+                         const std::map<std::string, std::string>& environment) {
+  arguments.insert(arguments.begin(), {FETTLE_PROGRAM, "view"});
+  arguments.insert(arguments.end(),
+                   {"--events", "/dev/fd/" + std::to_string(kEvents), "--json", "--validate"});
+  const auto out = makePipe(), err = makePipe(), events = makePipe();
+  pid_ = fork();
+  if (pid_ < 0) throw std::runtime_error("fork failed");
+  if (pid_ == 0) {
+    dup2(out[1], STDOUT_FILENO);
+    dup2(err[1], STDERR_FILENO);
+    if (events[1] == kEvents)
+      fcntl(kEvents, F_SETFD, 0);
+    else
+      dup2(events[1], kEvents);
+    for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
+    std::vector<char*> argv;
+    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+    argv.push_back(nullptr);
+    execvp(argv[0], argv.data());
+    _exit(127);
+  }
+  for (const int end : {out[1], err[1], events[1]}) close(end);
+  out_end_ = out[0];
+  err_end_ = err[0];
+  events_end_ = events[0];
+  listener_ = std::jthread([this] { listen(); });
+}
+
+ViewProgram::~ViewProgram() {
+  if (status_ < 0) {
+    kill(pid_, SIGKILL);
+    (void)wait();
+  }
+}
+
+void ViewProgram::listen() {
+  std::array<pollfd, 3> ends{{{out_end_, POLLIN, 0}, {err_end_, POLLIN, 0}, {events_end_, POLLIN, 0}}};
+  std::string line;
+  for (int open = 3; open > 0;) {
+    poll(ends.data(), ends.size(), -1);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (ends[i].fd < 0 || ends[i].revents == 0) continue;
+      std::array<char, 65536> bytes;
+      const ssize_t n = read(ends[i].fd, bytes.data(), bytes.size());
+      if (n <= 0) {
+        close(ends[i].fd);
+        ends[i].fd = -1;
+        --open;
+      } else if (i < 2) {
+        (i == 0 ? out_ : err_).append(bytes.data(), static_cast<std::size_t>(n));
+      } else {
+        line.append(bytes.data(), static_cast<std::size_t>(n));
+        for (std::size_t end; (end = line.find('\n')) != std::string::npos; line.erase(0, end + 1)) {
+          State state = State::parse(line.substr(0, end));
+          const std::scoped_lock lock(mutex_);
+          states_.push_back(std::move(state));
+          told_.notify_all();
+        }
+      }
+    }
+  }
+  const std::scoped_lock lock(mutex_);
+  ended_ = true;
+  told_.notify_all();
+}
+
+ViewProgram::State ViewProgram::until(const std::string& what, const std::function<bool(const State&)>& is) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    for (; seen_ < states_.size(); ++seen_)
+      if (is(states_[seen_])) return states_[seen_];
+    if (ended_) throw std::runtime_error("the program ended before: " + what + "\n" + err_);
+    if (told_.wait_until(lock, end) == std::cv_status::timeout) {
+      State last = states_.empty() ? State() : states_.back();
+      if (last.is_object()) last.erase("texts");
+      throw std::runtime_error("never told: " + what + "\nlast told: " + last.dump());
+    }
+  }
+}
+
+ViewProgram::State ViewProgram::now() {
+  const std::scoped_lock lock(mutex_);
+  return states_.empty() ? State() : states_.back();
+}
+
+void ViewProgram::forget() {
+  const std::scoped_lock lock(mutex_);
+  seen_ = states_.empty() ? 0 : states_.size() - 1;
+}
+
+void ViewProgram::signal(int number) const {
+  kill(pid_, number);
+}
+
+int ViewProgram::wait() {
+  if (status_ < 0) {
+    listener_.join();  // its streams are closed: it has ended, or soon has
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  return status_;
+}
+
+ViewProgram::State ViewProgram::report() const {
+  return out_.empty() ? State::object() : State::parse(out_);
+}
+
+}  // namespace fettle::tests

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <sys/types.h>
+#include <nlohmann/json.hpp>
+
+namespace fettle::tests {
+
+/// `fettle view` while it runs: what it tells (--events) is taken in as it comes. Ends it with this object.
+/// Threading: one thread; a thread of its own reads.
+class ViewProgram {
+ public:
+  using State = nlohmann::json;
+  /// Far beyond what a busy machine needs: a test that waits this long has failed.
+  static constexpr std::chrono::seconds kPatience{60};
+
+  /// Starts `fettle view` with these arguments besides --events, --json and --validate. `environment` is set
+  /// for it alone.
+  explicit ViewProgram(std::vector<std::string> arguments,
+                       const std::map<std::string, std::string>& environment = {});
+  ~ViewProgram();
+  ViewProgram(const ViewProgram&) = delete;
+  ViewProgram& operator=(const ViewProgram&) = delete;
+
+  /// Waits until the program has told a state that is so, looking at every one since the last that was waited
+  /// for, that one included. Throws when it does not come: nothing after it makes sense.
+  State until(const std::string& what, const std::function<bool(const State&)>& is);
+  /// The newest state told; null before the first.
+  [[nodiscard]] State now();
+  /// Forgets what was told up to now: until() looks at what comes from here on, beginning with the newest.
+  void forget();
+
+  void signal(int number) const;
+  /// Waits for its end. Exit status; 128 + signal when a signal ended it.
+  int wait();
+  [[nodiscard]] pid_t pid() const { return pid_; }
+  [[nodiscard]] const std::string& err() const { return err_; }  ///< after wait()
+  [[nodiscard]] const std::string& out() const { return out_; }
+  /// Its report, after wait(); an empty object when it printed none.
+  [[nodiscard]] State report() const;
+
+ private:
+  void listen();
+
+  pid_t pid_ = -1;
+  int status_ = -1;
+  int out_end_ = -1, err_end_ = -1, events_end_ = -1;
+  std::string out_, err_;
+  std::mutex mutex_;
+  std::condition_variable told_;
+  std::vector<State> states_;  // guarded by mutex_
+  bool ended_ = false;         // guarded by mutex_
+  std::size_t seen_ = 0;
+  std::jthread listener_;
+};
+
+}  // namespace fettle::tests

@@ -1,0 +1,80 @@
+#include "tests/end_to_end/window/window_fixture.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include <algorithm>
+
+#include "engine/io/import.h"
+#include "tests/support/process.h"
+
+namespace fettle::tests {
+
+engine::Version load(const std::string& path) {
+  engine::JobControl job;
+  auto field = engine::importField(path, {}, job);
+  if (!field) {
+    ADD_FAILURE() << field.error().line();
+    std::abort();
+  }
+  return field->field;
+}
+
+Differences compare(const engine::Version& a, const engine::Version& b) {
+  Differences d;
+  const engine::FieldReader x = a.reader(), y = b.reader();
+  for (std::int32_t r = 0; r < x.height(); ++r)
+    for (std::int32_t c = 0; c < x.width(); ++c) {
+      const float p = x.heightAt(c, r), q = y.heightAt(c, r);
+      const bool differs = !(p == q || (std::isnan(p) && std::isnan(q)));
+      d.marked += y.markedAt(c, r);
+      if (!differs) continue;
+      ++d.changed;
+      d.changed_marked += y.markedAt(c, r);
+      d.most = std::max(d.most, std::abs(static_cast<double>(p) - static_cast<double>(q)));
+      if (d.first_row < 0) d.first_row = r;
+      d.last_row = r;
+      d.first_column = d.first_column < 0 ? c : std::min(d.first_column, c);
+      d.last_column = std::max(d.last_column, c);
+    }
+  return d;
+}
+
+WindowTest::WindowTest(int width, int height)
+    : display(width, height, folder.path()), other(display.name()), width_(width), height_(height) {}
+
+void WindowTest::SetUp() {
+  if (!display.works()) GTEST_SKIP() << "no Xvfb";
+  setenv("DISPLAY", display.name().c_str(), 1);
+  setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
+  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", scan, "--size", "320x320", "--seed", "5"});
+  ASSERT_EQ(made.status, 0) << made.err;
+}
+
+std::unique_ptr<ViewProgram> WindowTest::start(std::vector<std::string> arguments,
+                                               const std::map<std::string, std::string>& environment) const {
+  if (std::find(arguments.begin(), arguments.end(), "--size") == arguments.end())
+    arguments.insert(arguments.end(), {"--size", std::to_string(width_) + "x" + std::to_string(height_)});
+  return std::make_unique<ViewProgram>(arguments, environment);
+}
+
+Hand::State WindowTest::opened(ViewProgram& program) {
+  return program.until("the scan is shown", [](const Hand::State& s) {
+    return s["loading"] == false && !s["path"].get<std::string>().empty() && s["settled"] == true;
+  });
+}
+
+Hand::State WindowTest::quit(Hand& hand) {
+  (void)hand.press("ctrl+q");
+  ViewProgram& program = hand.program();
+  EXPECT_EQ(program.wait(), 0) << program.err();
+  expectSilence(program);
+  return program.report();
+}
+
+void WindowTest::expectSilence(const ViewProgram& program) {
+  const Hand::State report = program.report();
+  EXPECT_EQ(report.value("validation_messages", Hand::State()), Hand::State::array());
+}
+
+}  // namespace fettle::tests

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/field/version.h"
+#include "tests/end_to_end/window/hand.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+
+/// A field from a file; ends the test program when there is none.
+[[nodiscard]] engine::Version load(const std::string& path);
+
+/// Where two fields of one size differ.
+struct Differences {
+  std::int64_t changed = 0;         ///< samples, bit for bit
+  std::int64_t changed_marked = 0;  ///< of those that are marked in the second
+  std::int64_t marked = 0;          ///< in the second
+  std::int32_t first_row = -1, last_row = -1;
+  std::int32_t first_column = -1, last_column = -1;
+  double most = 0.0;  ///< largest change [height unit]
+};
+[[nodiscard]] Differences compare(const engine::Version& a, const engine::Version& b);
+
+/// A virtual display, a simulated scan, and the real program on both; the validation layers watch it all.
+class WindowTest : public ::testing::Test {
+ protected:
+  WindowTest() : WindowTest(1100, 800) {}
+  WindowTest(int width, int height);
+  void SetUp() override;
+  /// Starts the program with these arguments, at the size of the display unless they say another.
+  std::unique_ptr<ViewProgram> start(std::vector<std::string> arguments,
+                                     const std::map<std::string, std::string>& environment = {}) const;
+  /// Waits until it shows the scan and rests.
+  static Hand::State opened(ViewProgram& program);
+  /// Ctrl+Q, and the end: exit status 0 and no word from the validation layers. Its report.
+  static Hand::State quit(Hand& hand);
+  static void expectSilence(const ViewProgram& program);
+
+  TempFolder folder;
+  Display display;
+  XClient other;
+  std::string scan = folder.file("part.tif");
+  int width_, height_;
+};
+
+}  // namespace fettle::tests
