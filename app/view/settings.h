@@ -5,6 +5,7 @@
 
 #include "app/view/navigation.h"
 #include "render/picture.h"
+#include "render/stereo.h"
 
 namespace fettle::app {
 
@@ -21,6 +22,9 @@ struct Display {
   float light_azimuth_deg = 135.0F;
   float light_elevation_deg = 45.0F;
   bool furniture = true;
+  // Not remembered: whoever comes next may have no glasses on.
+  render::StereoMode stereo = render::StereoMode::kOff;
+  float eye_separation = 1.0F / 30.0F;
 };
 
 /// What the window remembers about its user besides the files: a JSON file in the settings folder.

@@ -76,6 +76,7 @@ constexpr std::array kShortcuts{
     Shortcut{Action::kDeviation, "View", "Colours show the change since the scan", letter('D'), kPlain},
     Shortcut{Action::kContours, "View", "Contour lines", letter('C'), kPlain},
     Shortcut{Action::kNextMap, "View", "Next colour map", letter('K'), kPlain},
+    Shortcut{Action::kStereo, "View", "One eye, two side by side, red-cyan glasses", letter('G'), kShift},
     Shortcut{Action::kTheme, "View", "Light or dark background", letter('G'), kPlain},
     Shortcut{Action::kFurniture, "View", "Scale bar and colour bar", letter('J'), kPlain},
     Shortcut{Action::kLightLeft, "View", "Light from further left", Key::kLeft, kAlt},

@@ -56,6 +56,7 @@ enum class Action : std::uint8_t {
   kDeviation,
   kContours,
   kNextMap,
+  kStereo,
   kSplitPreview,
   kSplitLeft,
   kSplitRight,

@@ -246,6 +246,8 @@ void Workstation::drawPicture() {
   input.contours = display_.contours ? render::Contours::kShow : render::Contours::kHide;
   input.marks_opacity = display_.marks_opacity;
   input.map = display_.map;
+  input.stereo.mode = display_.stereo;
+  input.stereo.eye_separation = static_cast<double>(display_.eye_separation);
   input.theme = display_.theme;
   input.decoration = display_.furniture ? render::Decoration::kFull : render::Decoration::kNone;
   input.light_azimuth_deg = display_.light_azimuth_deg;

@@ -275,6 +275,9 @@ void Workstation::act(Action action) {
     case Action::kNextMap:
       display_.map = static_cast<render::ColourMap>((static_cast<int>(display_.map) + 1) % 5);
       break;
+    case Action::kStereo:
+      display_.stereo = static_cast<render::StereoMode>((static_cast<int>(display_.stereo) + 1) % 3);
+      break;
     case Action::kViewAll:
       Navigation::showAll(view_);
       break;

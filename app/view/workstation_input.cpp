@@ -116,8 +116,8 @@ void Workstation::handle(const InputEvent& event) {
   switch (event.kind) {
     case InputKind::kButtonDown:
       if (event.panels_mouse || !inPicture(event.x, event.y)) return;
-      if (display_.split && shown_.versions.size() == 2 && event.button == MouseButton::kLeft &&
-          std::abs(event.x - split_px) <= kSplitGrip_px) {
+      if (display_.split && display_.stereo == render::StereoMode::kOff && shown_.versions.size() == 2 &&
+          event.button == MouseButton::kLeft && std::abs(event.x - split_px) <= kSplitGrip_px) {
         dragging_split_ = true;
         return;
       }

@@ -23,6 +23,10 @@ void Workstation::displayPanel() {
   int map = static_cast<int>(display_.map);
   if (field("colours", [&] { return ImGui::Combo("##colours", &map, maps, 5); }))
     display_.map = static_cast<render::ColourMap>(map);
+  const char* eyes[] = {"one eye", "two, side by side", "two, red-cyan glasses"};
+  int mode = static_cast<int>(display_.stereo);
+  if (field("eyes", [&] { return ImGui::Combo("##eyes", &mode, eyes, 3); }))
+    display_.stereo = static_cast<render::StereoMode>(mode);
   constexpr ImGuiSliderFlags kClamp = ImGuiSliderFlags_AlwaysClamp;
   (void)field("marks", [&] {
     return ImGui::SliderFloat("##opacity", &display_.marks_opacity, 0.0F, 1.0F, "opacity %.2f", kClamp);
@@ -33,6 +37,11 @@ void Workstation::displayPanel() {
   (void)field("light above", [&] {
     return ImGui::SliderFloat("##elevation", &display_.light_elevation_deg, 5.0F, 90.0F, "%.0f deg", kClamp);
   });
+  if (display_.stereo != render::StereoMode::kOff)
+    (void)field("depth", [&] {
+      return ImGui::SliderFloat("##eye_separation", &display_.eye_separation, 0.005F, 0.1F, "eyes %.3f apart",
+                                kClamp);
+    });
   (void)field("heights", [&] {
     return typeNumber("##exaggeration", view_.vertical_exaggeration, 0.0, 1e6,
                       view_.vertical_exaggeration > 0.0 ? "%.3g times" : "0: automatic");

@@ -73,7 +73,7 @@ render::Rectangle Workstation::plot() const {
 }
 
 void Workstation::splitLine() {
-  if (!display_.split || shown_.versions.size() != 2) return;
+  if (!display_.split || shown_.versions.size() != 2 || display_.stereo != render::StereoMode::kOff) return;
   const render::Rectangle area = plot();
   const auto x = static_cast<float>(area.x + display_.split_at * area.width);
   const auto y = static_cast<float>(area.y + area.height / 2);

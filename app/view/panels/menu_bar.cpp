@@ -88,6 +88,7 @@ void Workstation::menuBar() {
     menuItem(Action::kDeviation, field, display_.deviation);
     menuItem(Action::kContours, field, display_.contours);
     menuItem(Action::kNextMap, field);
+    menuItem(Action::kStereo, field, display_.stereo != render::StereoMode::kOff);
     menuItem(Action::kTheme, field, display_.theme == render::Theme::kLight);
     menuItem(Action::kFurniture, field, display_.furniture);
     ImGui::Separator();
