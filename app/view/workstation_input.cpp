@@ -53,6 +53,8 @@ void Workstation::toStylus(const InputEvent& event) {
   if (!picture_) return;  // the device is lost: the stylus stays where it is
   if (drag_ != Drag::kNone || adjusting_ != Adjusting::kNothing) return;
   if (!inPicture(event.x, event.y) || (event.panels_mouse && !stylus_held_)) {
+    // The panels say in the next frame only that a cursor has left them in one leap.
+    look_again_ = inPicture(event.x, event.y);
     mouse.leave();
     return;
   }
@@ -73,6 +75,14 @@ void Workstation::toStylus(const InputEvent& event) {
 }
 
 void Workstation::handleInput() {
+  if (look_again_ && input_.empty() && !ImGui::GetIO().WantCaptureMouse) {
+    look_again_ = false;
+    InputEvent here;
+    here.x = last_x_;
+    here.y = last_y_;
+    toStylus(here);
+    stale_ = true;
+  }
   for (const auto& [event, stylus_has_it] : std::exchange(input_, {})) {
     if (!stylus_has_it) toStylus(event);
     if (event.kind != InputKind::kMove || !event.panels_mouse || ImGui::IsAnyMouseDown()) stale_ = true;

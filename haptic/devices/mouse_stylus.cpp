@@ -62,10 +62,6 @@ DeviceInput MouseStylus::readAt(std::int64_t now_ns) noexcept {
     input_.position_mm = wish.surface_mm + glm::dvec3{0.0, 0.0, feel_.hover_mm};
     placed_ = true;
   }
-  // A stroke begins where the cursor points, however far the tip has yet to come: on the way there it would draw
-  // a line that nobody asked for.
-  if (pressing && !pressing_) input_.position_mm = wish.surface_mm + glm::dvec3{0.0, 0.0, feel_.hover_mm};
-  pressing_ = pressing;
   // First-order follow, exact for any step: stable however late the loop is.
   input_.position_mm += (target_ - input_.position_mm) * -std::expm1(-passed / feel_.follow_s);
   input_.buttons = pressing ? kPrimaryButton : 0;

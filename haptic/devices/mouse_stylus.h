@@ -68,7 +68,6 @@ class MouseStylus final : public Device {
   glm::dvec3 target_{0.0};
   std::int64_t last_read_ns_ = 0;
   bool placed_ = false;
-  bool pressing_ = false;
 };
 
 }  // namespace fettle::haptic

@@ -154,20 +154,6 @@ TEST(MouseStylus, TipHoversPressesAndLiftsWithItsTimeConstant) {
   EXPECT_EQ(in.sequence, 4U);
 }
 
-TEST(MouseStylus, AStrokeBeginsWhereTheCursorPointsHoweverFarTheTipHasYetToCome) {
-  MouseStylus mouse;
-  mouse.setCursor({10.0, 20.0, 5.0});
-  static_cast<void>(mouse.readAt(1 * kMs));
-  mouse.setCursor({90.0, 20.0, 7.0});
-  mouse.setButton(MouseStylus::Button::kHeld);
-  const DeviceInput in = mouse.readAt(2 * kMs);
-  EXPECT_EQ(in.buttons, kPrimaryButton);
-  EXPECT_EQ(in.position_mm.x, 90.0);
-  EXPECT_GT(in.position_mm.z, 7.0);
-  // From there on it follows.
-  mouse.setCursor({91.0, 20.0, 7.0});
-  EXPECT_NEAR(mouse.readAt(22 * kMs).position_mm.x, 91.0 - std::exp(-1.0), 1e-12);
-}
 TEST(MouseStylus, WheelSetsTheDepthWithinItsBounds) {
   MouseStylus mouse;
   mouse.wheel(-4);
