@@ -188,7 +188,7 @@ class Workstation {
   bool embeds_ = true;  // the scan goes into a session saved as
   std::chrono::steady_clock::time_point noted_;
   bool keeping_fails_ = false;  // and the user was told
-  engine::Version measured_;  // what measuring_ works on, or deviation_ is of
+  engine::Version measured_;    // what measuring_ works on, or deviation_ is of
   std::optional<engine::Deviation> deviation_;
   FilterPreview filters_;
   std::vector<Notice> notices_;

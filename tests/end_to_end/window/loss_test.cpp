@@ -74,8 +74,8 @@ TEST_F(LossTest, a_lost_device_comes_back_with_everything_in_its_place) {
   (void)hand.key("7");
   (void)hand.same("marked after losses in a row", marked);
 
-  // A stroke that runs when the device goes is kept. The leap of the cursor while nothing can be pointed at may make
-  // two of it.
+  // A stroke that runs when the device goes is kept. The leap of the cursor while nothing can be pointed at
+  // may make two of it.
   (void)hand.key("s");
   hand.at({410, 660});
   hand.down(1);

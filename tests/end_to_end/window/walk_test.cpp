@@ -101,8 +101,8 @@ TEST_F(WindowTest, a_dropped_scan_is_looked_at_from_all_sides) {
   EXPECT_EQ(report["unsaved_changes"], false);
 }
 
-// Off: its last pictures (everything undone, everything redone) are not the same to the pixel as when they were first
-// seen; the steps before pass.
+// Off: now and then a stroke of it is not seen on the screen within the test's patience, and not always the
+// same one; why is not known.
 TEST_F(WindowTest, DISABLED_a_scan_is_smoothed_marked_filtered_and_saved_by_hand) {
   const std::string smoothed_path = folder.file("smoothed.tif");
   const std::string filtered_path = folder.file("filtered.tif");
