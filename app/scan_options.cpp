@@ -38,6 +38,12 @@ void addScanOptions(CLI::App* command, ScanOptions& options) {
   command->add_option("--cell-rule", options.cell_rule, "Point clouds: height of a cell with several points")
       ->check(CLI::IsMember({"median", "mean", "highest"}))
       ->group(group);
+  command
+      ->add_option("--depth-camera", options.depth_camera,
+                   "PNG, TIFF: distances from a camera with FX,FY,CX,CY in pixels, kept in its perspective")
+      ->delimiter(',')
+      ->expected(4)
+      ->group(group);
 }
 
 engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options) {
@@ -46,6 +52,8 @@ engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options) 
   if (!options.spacing.empty()) import.spacing = {options.spacing.front(), options.spacing.back()};
   import.z_scale = options.z_scale;
   import.cell_size = options.cell_size;
+  if (const auto& camera = options.depth_camera; camera.size() == 4)
+    import.depth_camera = engine::DepthCamera{camera[0], camera[1], camera[2], camera[3]};
   if (options.cell_rule == "mean") import.cell_rule = engine::CellRule::kMean;
   if (options.cell_rule == "highest") import.cell_rule = engine::CellRule::kHighest;
   if (!options.unit.empty()) {

@@ -25,6 +25,7 @@ struct ScanOptions {
   std::string unit;
   std::optional<double> cell_size;
   std::string cell_rule;
+  std::vector<double> depth_camera;  ///< fx, fy, cx, cy [pixels]; empty = none
 };
 void addScanOptions(CLI::App* command, ScanOptions& options);
 

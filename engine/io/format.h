@@ -59,6 +59,15 @@ struct Format {
 [[nodiscard]] Result<Exported> writeXyz(const Version&, const std::string&, const ExportOptions&,
                                         JobControl&);
 
+[[nodiscard]] bool looksLikePcd(std::string_view head, std::string_view extension);
+[[nodiscard]] Result<Imported> readPcd(const InputFile&, const ImportOptions&, JobControl&);
+
+[[nodiscard]] bool looksLikeLas(std::string_view head, std::string_view extension);
+[[nodiscard]] Result<Imported> readLas(const InputFile&, const ImportOptions&, JobControl&);
+
+[[nodiscard]] bool looksLikeSur(std::string_view head, std::string_view extension);
+[[nodiscard]] Result<Imported> readSur(const InputFile&, const ImportOptions&, JobControl&);
+
 // In engine/session.
 [[nodiscard]] bool looksLikeSession(std::string_view head, std::string_view extension);
 [[nodiscard]] Result<Imported> readSession(const InputFile&, const ImportOptions&, JobControl&);

@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/io/perspective.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -17,6 +19,9 @@ using namespace std::string_view_literals;
 
 constexpr std::array kTiff{".tif"sv, ".tiff"sv};
 constexpr std::array kPng{".png"sv};
+constexpr std::array kPcd{".pcd"sv};
+constexpr std::array kLas{".las"sv, ".laz"sv};
+constexpr std::array kSur{".sur"sv};
 constexpr std::array kAscii{".asc"sv, ".agr"sv, ".grd"sv};
 constexpr std::array kPly{".ply"sv};
 constexpr std::array kSession{".fettle"sv};
@@ -27,6 +32,9 @@ constexpr std::array kTable{
     Format{{"GTiff", "GeoTIFF and TIFF", kTiff, true, true}, looksLikeTiff, readTiff, writeTiff},
     Format{{"PNG", "16-bit grey PNG", kPng, true, true}, looksLikePng, readPng, writePng},
     Format{{"PLY", "PLY point cloud", kPly, true, true}, looksLikePly, readPly, writePly},
+    Format{{"PCD", "PCD point cloud", kPcd, true, false}, looksLikePcd, readPcd, nullptr},
+    Format{{"LAS", "LAS points", kLas, true, false}, looksLikeLas, readLas, nullptr},
+    Format{{"SUR", "Digital Surf topography", kSur, true, false}, looksLikeSur, readSur, nullptr},
     Format{{"AAIGrid", "ESRI ASCII grid", kAscii, true, true},
            looksLikeAsciiGrid,
            readAsciiGrid,
@@ -53,10 +61,35 @@ Status checkOptions(const ImportOptions& options) {
                       "give a number other than 0");
   if (options.unit && !positive(options.unit->mm))
     return inputError(fmt::format("a unit of {} mm cannot be", options.unit->mm), "--unit");
+  if (options.depth_camera) {
+    const DepthCamera& camera = *options.depth_camera;
+    if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx) ||
+        !std::isfinite(camera.cy))
+      return inputError("the camera cannot be", "--depth-camera", "give fx,fy,cx,cy in pixels");
+    if (options.spacing)
+      return inputError("a depth camera has no spacing of its own", "--spacing",
+                        "give either --spacing or --depth-camera");
+  }
   if (options.cell_size && !positive(*options.cell_size))
     return inputError(fmt::format("a cell size of {} cannot be", *options.cell_size), "--cell-size",
                       "give a positive length");
   return {};
+}
+
+// Depth images are read as any picture of numbers, and then given the grid of their camera.
+Result<Imported> readDepthImage(const Format& format, const InputFile& file, ImportOptions options,
+                                JobControl& job) {
+  if (format.info.name != "PNG" && format.info.name != "GTiff")
+    return inputError(fmt::format("{} is no picture of distances", format.info.description), file.path(),
+                      "--depth-camera is for PNG and TIFF");
+  const bool assumed = !options.no_data;
+  if (assumed) options.no_data = 0.0;
+  options.spacing = std::pair{1.0, 1.0};  // no guess is to be warned of
+  Result<Imported> image = format.read(file, options, job);
+  if (!image) return image;
+  if (assumed) image->warnings.emplace_back("0 taken for no distance: --no-data says otherwise");
+  placeInPerspective(*image, *options.depth_camera);
+  return image;
 }
 
 Result<Imported> import(const std::string& path, const ImportOptions& options, JobControl& job) {
@@ -69,7 +102,8 @@ Result<Imported> import(const std::string& path, const ImportOptions& options, J
   head.resize(*got);
   for (const Format& format : formatTable())
     if (format.recognises != nullptr && format.recognises(head, file->extension()))
-      return format.read(*file, options, job);
+      return options.depth_camera ? readDepthImage(format, *file, options, job)
+                                  : format.read(*file, options, job);
   return inputError("the file is in no format that is known", path,
                     "known are " + extensionsOf(&FormatInfo::reads));
 }

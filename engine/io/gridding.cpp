@@ -161,8 +161,11 @@ double heightOf(double* first, double* last, CellRule rule) {
 
 void PointCloud::add(double px, double py, double pz) {
   if (!std::isfinite(px) || !std::isfinite(py) || !std::isfinite(pz)) {
-    ++not_finite;
-    return;
+    if (!organized) {
+      ++not_finite;
+      return;
+    }
+    px = py = pz = std::numeric_limits<double>::quiet_NaN();
   }
   x.push_back(px);
   y.push_back(py);
@@ -192,7 +195,9 @@ Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options, st
         fmt::format("{} points have a coordinate that is not finite and were left out", cloud.not_finite));
   Grid grid;
   StatedUnits units;
+  grid.crs_wkt = std::move(cloud.crs_wkt);
   units.lateral = cloud.unit;
+  units.height = cloud.height_unit;
   units.spacing = std::pair{1.0, 1.0};  // settled below, from the points themselves
   ImportOptions unit_only;
   unit_only.unit = options.unit;

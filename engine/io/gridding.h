@@ -13,7 +13,10 @@ namespace fettle::engine {
 struct PointCloud {
   std::vector<double> x, y, z;
   std::int64_t not_finite = 0;  ///< points left out because a coordinate is no finite number
-  std::optional<LengthUnit> unit;
+  bool organized = false;  ///< points that are not finite stay in their place, as NaN, and are not counted
+  std::optional<LengthUnit> unit;         ///< of x, y and, unless height_unit says otherwise, z
+  std::optional<LengthUnit> height_unit;  ///< of z
+  std::string crs_wkt;                    ///< coordinate system of x and y; empty if none
   std::vector<std::string> warnings;
 
   /// Takes a point, or counts it as not finite.

@@ -22,6 +22,12 @@ enum class CellRule {
   kHighest,  ///< as a laser from above would see it
 };
 
+/// A pinhole camera: pixel (column u, row v from the top) at distance Z along its axis sees what lies
+/// (u - cx) * Z / fx to the right of the axis and (cy - v) * Z / fy above it. All in pixels; fx, fy > 0.
+struct DepthCamera {
+  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
+};
+
 /// What the user says about a file that the file itself cannot. Whatever is given wins over the file, and a
 /// warning says so where the two differ.
 struct ImportOptions {
@@ -40,6 +46,10 @@ struct ImportOptions {
   /// on, else estimated from their density. Given, no lattice is looked for.
   std::optional<double> cell_size;
   CellRule cell_rule = CellRule::kMedian;
+  /// PNG and TIFF: the samples are distances from this camera. They stay pixels in its perspective and stay
+  /// distances; spacing and origin come from the camera (a warning says which). 0 is a hole unless no_data
+  /// says otherwise. Not together with spacing; fx, fy positive, all finite.
+  std::optional<DepthCamera> depth_camera;
 };
 
 /// How a cloud of points became a field.

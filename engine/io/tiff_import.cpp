@@ -267,7 +267,7 @@ Result<Imported> readTiff(const InputFile& file, const ImportOptions& options, J
   if (!grid.crs_wkt.empty())
     unitsOfCrs(grid.crs_wkt, grid.origin_y + 0.5 * height * (units.spacing ? units.spacing->second : 0.0),
                units, warnings);
-  readOwnMetadata(dataset.get(), units, grid.height_per_count);
+  readOwnMetadata(dataset.get(), units, grid, units.spacing.value_or(std::pair{1.0, 1.0}));
   settleUnits(grid, units, options, warnings);
 
   int has = 0;

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/geo_reference.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -15,6 +17,12 @@ namespace {
 constexpr const char* kLateral = "FETTLE_LATERAL_UNIT";
 constexpr const char* kHeight = "FETTLE_HEIGHT_UNIT";
 constexpr const char* kPerCount = "FETTLE_HEIGHT_PER_COUNT";
+constexpr const char* kOrigin = "FETTLE_ORIGIN";
+
+// The rounding of a corner and of its way back to the sample, a few ulp of whichever is larger.
+double roundingOf(double origin, double extent) {
+  return 0x1p-49 * std::fmax(std::abs(origin), extent);
+}
 
 std::optional<double> positiveNumber(std::string_view text) {
   double value = 0.0;
@@ -44,13 +52,34 @@ void writeOwnMetadata(GDALDatasetH dataset, const Grid& grid, bool lateral_unit_
   GDALSetMetadataItem(dataset, kHeight, text(grid.height_unit).c_str(), nullptr);
   if (grid.height_per_count > 0.0)
     GDALSetMetadataItem(dataset, kPerCount, fmt::format("{}", grid.height_per_count).c_str(), nullptr);
+  const auto there = placementOf(geoTransformOf(grid), grid.width, grid.height, {});
+  if (!there || there->origin_x != grid.origin_x || there->origin_y != grid.origin_y)
+    GDALSetMetadataItem(dataset, kOrigin, fmt::format("{} {}", grid.origin_x, grid.origin_y).c_str(),
+                        nullptr);
 }
 
-void readOwnMetadata(GDALDatasetH dataset, StatedUnits& units, double& height_per_count) {
+void readOwnMetadata(GDALDatasetH dataset, StatedUnits& units, Grid& grid,
+                     std::pair<double, double> spacing) {
   if (auto unit = unitItem(dataset, kLateral)) units.lateral = unit;
   if (auto unit = unitItem(dataset, kHeight)) units.height = unit;
   if (const char* item = GDALGetMetadataItem(dataset, kPerCount, nullptr); item != nullptr)
-    height_per_count = positiveNumber(item).value_or(height_per_count);
+    grid.height_per_count = positiveNumber(item).value_or(grid.height_per_count);
+  if (const char* item = GDALGetMetadataItem(dataset, kOrigin, nullptr); item != nullptr) {
+    double x = 0.0, y = 0.0;
+    const char* const end = item + std::strlen(item);
+    const char* at = item;
+    const auto number = [&](double& value) {
+      const auto [stop, error] = std::from_chars(at, end, value);
+      at = stop;
+      return error == std::errc{};
+    };
+    if (number(x) && at < end && *at++ == ' ' && number(y) && at == end &&
+        std::abs(x - grid.origin_x) <= roundingOf(grid.origin_x, grid.width * spacing.first) &&
+        std::abs(y - grid.origin_y) <= roundingOf(grid.origin_y, grid.height * spacing.second)) {
+      grid.origin_x = x;
+      grid.origin_y = y;
+    }
+  }
 }
 
 }  // namespace fettle::engine

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include <gdal.h>
 
 #include "engine/field/grid.h"
@@ -11,9 +13,12 @@ namespace fettle::engine {
 ///   FETTLE_LATERAL_UNIT     "name mm", where the coordinate system does not say it
 ///   FETTLE_HEIGHT_UNIT      "name mm", beside the band's unit type, which has no size
 ///   FETTLE_HEIGHT_PER_COUNT Grid::height_per_count
+///   FETTLE_ORIGIN           "x y", where no corner of a pixel leads to the origin's last digit
 void writeOwnMetadata(GDALDatasetH dataset, const Grid& grid, bool lateral_unit_is_stated);
 
-/// Items that are missing or damaged change nothing.
-void readOwnMetadata(GDALDatasetH dataset, StatedUnits& units, double& height_per_count);
+/// Items that are missing or damaged change nothing. `grid` has its sides and the origin that the file's
+/// reference gives, `spacing` that of the file; FETTLE_ORIGIN is taken only where it is the same place but
+/// for rounding, so that a raster that was moved since stays where it was moved to.
+void readOwnMetadata(GDALDatasetH dataset, StatedUnits& units, Grid& grid, std::pair<double, double> spacing);
 
 }  // namespace fettle::engine

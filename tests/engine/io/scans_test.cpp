@@ -230,10 +230,89 @@ TEST(Scans, BinaryPointsFallOnTheirAnisotropicRaster) {
   EXPECT_EQ(static_cast<float>(s.max), 31.322727F);
 }
 
+TEST(Scans, OrganisedCloudOfAStereoCameraStaysItsPixels) {
+  FETTLE_SCAN_OR_SKIP(path, "mug_stereo_organized.pcd");
+  ImportOptions options;
+  options.unit = lengthUnitFromName("m");
+  FETTLE_LOAD(scan, path, options);
+  EXPECT_EQ(scan.format, "PCD");
+  EXPECT_EQ(scan.field.grid().width, 640);
+  EXPECT_EQ(scan.field.grid().height, 480);
+  EXPECT_TRUE(warned(scan.warnings, "perspective"));
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 97920);
+  EXPECT_NEAR(s.min, 0.69001, 5e-6);
+  EXPECT_NEAR(s.max, 2.5927, 5e-5);
+  EXPECT_NEAR(stored(scan.field, 120, 213), 2.0287, 5e-5);
+  EXPECT_NEAR(stored(scan.field, 240, 320), 0.94408, 5e-6);
+  EXPECT_NEAR(stored(scan.field, 360, 426), 0.76524, 5e-6);
+}
+
+TEST(Scans, AirbornePointsInFeet) {
+  FETTLE_SCAN_OR_SKIP(path, "autzen_park.las");
+  FETTLE_LOAD(scan, path);
+  const Grid& grid = scan.field.grid();
+  EXPECT_EQ(scan.format, "LAS");
+  EXPECT_EQ(grid.lateral_unit.name, "ft");
+  EXPECT_EQ(grid.height_unit.name, "ft");
+  EXPECT_NE(grid.crs_wkt.find("HARN"), std::string::npos);
+  ASSERT_TRUE(scan.gridding.has_value());
+  EXPECT_EQ(scan.gridding->points, 110000);
+  EXPECT_NEAR(grid.origin_x, 636001.76, 5e-3);
+  EXPECT_NEAR(grid.origin_y, 848935.20, 5e-3);
+  // The outermost points lie within half a cell of the outermost samples.
+  EXPECT_NEAR(grid.origin_x + (grid.width - 1) * grid.spacing_x, 637179.22, 0.51 * grid.spacing_x);
+  EXPECT_NEAR(grid.origin_y + (grid.height - 1) * grid.spacing_y, 849497.90, 0.51 * grid.spacing_y);
+  ImportOptions highest;
+  highest.cell_rule = CellRule::kHighest;
+  FETTLE_LOAD(from_above, path, highest);
+  EXPECT_NEAR(summarize(from_above.field).max, 520.51, 5e-3);
+  EXPECT_GE(summarize(from_above.field).min, 406.26 - 5e-3);
+}
+
+TEST(Scans, DigitalSurfWithMissingPoints) {
+  FETTLE_SCAN_OR_SKIP(path, "scratched_surface.sur");
+  FETTLE_LOAD(scan, path);
+  const Grid& grid = scan.field.grid();
+  EXPECT_EQ(scan.format, "SUR");
+  EXPECT_EQ(grid.width, 563);
+  EXPECT_EQ(grid.height, 484);
+  EXPECT_NEAR(grid.spacingXMm(), 3.484e-3, 1e-9);
+  EXPECT_NEAR(grid.spacingYMm(), 3.484e-3, 1e-9);
+  const double per_count = 1e-7 / grid.height_unit.mm;  // 0.1 nm
+  EXPECT_NEAR(grid.height_per_count, per_count, 1e-9 * per_count);
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 117);
+  const auto counts = [&](double height) { return height / grid.height_per_count; };
+  EXPECT_NEAR(counts(s.min), 89120, 5e-3);
+  EXPECT_NEAR(counts(s.max), 103880, 5e-3);
+  EXPECT_NEAR(counts(s.mean), 101573.76, 5e-3);
+  EXPECT_NEAR(counts(stored(scan.field, 121, 187)), 101624, 5e-3);
+  EXPECT_NEAR(counts(stored(scan.field, 242, 281)), 101589, 5e-3);
+  EXPECT_NEAR(counts(stored(scan.field, 363, 375)), 101660, 5e-3);
+}
+
+TEST(Scans, DepthImageInThePerspectiveOfItsCamera) {
+  FETTLE_SCAN_OR_SKIP(path, "kinect_boxes_depth_u16.tif");
+  ImportOptions options;
+  options.depth_camera = DepthCamera{525.0, 525.0, 319.5, 239.5};
+  FETTLE_LOAD(scan, path, options);
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 35625);
+  EXPECT_EQ(s.min, 671.0);
+  EXPECT_EQ(s.max, 1713.0);
+  EXPECT_STORED(scan.field, 120, 213, 1241);
+  // 1 mm to 2 mm a pixel at about a metre.
+  EXPECT_GT(scan.field.grid().spacing_x, 671.0 / 525.0);
+  EXPECT_LT(scan.field.grid().spacing_x, 1713.0 / 525.0);
+  EXPECT_TRUE(warned(scan.warnings, "perspective"));
+}
+
 TEST(Scans, EveryScanSurvivesTheWayThroughGeoTiffBitForBit) {
-  for (const char* name :
-       {"dsm_ahn_buildings.tif", "dsm_village_sjtsk.tif", "shapes_plate_u16.png", "tray_bags_aniso_u16.tif",
-        "tidal_marsh.asc", "chip_confocal_points.xyz", "cylinders_cloud_le.ply", "afm_line_noise_f32.tif"}) {
+  for (const char* name : {"dsm_ahn_buildings.tif", "dsm_village_sjtsk.tif", "shapes_plate_u16.png",
+                           "tray_bags_aniso_u16.tif", "tidal_marsh.asc", "chip_confocal_points.xyz",
+                           "cylinders_cloud_le.ply", "afm_line_noise_f32.tif", "kinect_boxes_depth_u16.tif",
+                           "mug_stereo_organized.pcd", "autzen_park.las", "scratched_surface.sur"}) {
     FETTLE_SCAN_OR_SKIP(path, name);
     FETTLE_LOAD(scan, path);
     const std::string copy = ::testing::TempDir() + "fettle_scan_copy.tif";

@@ -1,0 +1,386 @@
+// Files of instruments, made here byte by byte as their specifications have them: .sur, .las, .pcd and the
+// pictures of depth cameras.
+
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <liblzf/lzf.h>
+#include <zlib.h>
+
+#include "tests/engine/io/io_support.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::engine {
+namespace {
+
+using tests::TempFolder;
+
+Result<Imported> loadBytes(const std::string& name, const std::string& bytes, const ImportOptions& o = {}) {
+  const TempFolder folder;
+  writeBytes(folder.file(name), bytes);
+  return load(folder.file(name), o);
+}
+
+#define FETTLE_LOAD_BYTES(var, ...)             \
+  const auto var##_ = loadBytes(__VA_ARGS__);   \
+  ASSERT_TRUE(var##_) << var##_.error().line(); \
+  [[maybe_unused]] const Imported& var = *var##_
+
+std::string refused(const std::string& name, const std::string& bytes) {
+  const auto scan = loadBytes(name, bytes);
+  EXPECT_FALSE(scan) << name;
+  if (scan) return {};
+  EXPECT_EQ(scan.error().kind, ErrorKind::kInput) << scan.error().line();
+  return scan.error().what;
+}
+
+template <class T>
+void put(std::string& bytes, std::size_t at, T value) {
+  if (bytes.size() < at + sizeof(T)) bytes.resize(at + sizeof(T), '\0');
+  std::memcpy(bytes.data() + at, &value, sizeof(T));
+}
+template <class T>
+void append(std::string& bytes, T value) {
+  put(bytes, bytes.size(), value);
+}
+
+// A surface of 3 x 2 numbers; the last one of the first row is the mark of a missing point.
+template <class T>
+std::string sur(bool packed) {
+  std::string h(512, ' ');
+  h.replace(0, 12, packed ? "DSCOMPRESSED" : "DIGITAL SURF");
+  put<std::int16_t>(h, 12, 0);
+  put<std::int16_t>(h, 14, 1);
+  put<std::int16_t>(h, 18, 2);
+  put<std::int16_t>(h, 86, 1);
+  put<std::int16_t>(h, 98, 8 * sizeof(T));
+  put<std::int32_t>(h, 100, -300);
+  put<std::int32_t>(h, 108, 3);
+  put<std::int32_t>(h, 112, 2);
+  put<std::int32_t>(h, 116, 6);
+  put<float>(h, 120, 0.25F);
+  put<float>(h, 124, 0.1F);
+  put<float>(h, 128, 0.01F);
+  for (const std::size_t at : {180, 196}) h.replace(at, 3, std::string("mm\0", 3));
+  h.replace(212, 4, std::string("\xb5m\0\0", 4));
+  put<std::int16_t>(h, 334, 7);
+  put<std::int16_t>(h, 336, 3);
+  put<float>(h, 466, 5.5F);
+  put<float>(h, 470, -2.0F);
+  put<float>(h, 474, 1.0F);
+  h += "comment___";
+  std::string rows;
+  for (const T v : {T{-300}, T{7}, T{-302}, T{100}, T{200}, T{300}}) append(rows, v);
+  if (!packed) return h + rows;
+  // Two streams, cut in the middle of a row.
+  const std::size_t cut = 2 * sizeof(T);
+  std::string body;
+  append<std::uint32_t>(h, 2);
+  for (const std::string& part : {rows.substr(0, cut), rows.substr(cut)}) {
+    std::string out(100, '\0');
+    uLongf size = out.size();
+    EXPECT_EQ(compress(reinterpret_cast<Bytef*>(out.data()), &size,
+                       reinterpret_cast<const Bytef*>(part.data()), part.size()),
+              Z_OK);
+    append<std::uint32_t>(h, static_cast<std::uint32_t>(part.size()));
+    append<std::uint32_t>(h, static_cast<std::uint32_t>(size));
+    body += out.substr(0, size);
+  }
+  return h + body;
+}
+
+TEST(Sur, SixteenAndThirtyTwoBitsPlainAndPackedGiveTheSameSurface) {
+  for (const std::string& bytes : {sur<std::int16_t>(false), sur<std::int16_t>(true),
+                                   sur<std::int32_t>(false), sur<std::int32_t>(true)}) {
+    FETTLE_LOAD_BYTES(scan, "a.sur", bytes);
+    EXPECT_EQ(scan.format, "SUR");
+    const Grid& grid = scan.field.grid();
+    ASSERT_EQ(grid.width, 3);
+    ASSERT_EQ(grid.height, 2);
+    EXPECT_EQ(grid.spacing_x, 0.25);
+    EXPECT_EQ(grid.spacing_y, 0.1);
+    EXPECT_EQ(grid.origin_x, 5.5);
+    EXPECT_EQ(grid.origin_y, -2.0);
+    EXPECT_EQ(grid.lateral_unit.name, "mm");
+    EXPECT_EQ(grid.height_unit, (LengthUnit{"um", 1e-3}));
+    EXPECT_EQ(grid.height_per_count, 0.01);
+    EXPECT_EQ(stored(scan.field, 0, 0), static_cast<float>(-300 * 0.01 + 1.0));
+    EXPECT_TRUE(std::isnan(stored(scan.field, 0, 2)));
+    EXPECT_EQ(stored(scan.field, 1, 2), static_cast<float>(300 * 0.01 + 1.0));
+    EXPECT_TRUE(scan.warnings.empty()) << scan.warnings.front();
+  }
+}
+
+TEST(Sur, LyingHeadersAndCutFilesAreRefused) {
+  const std::string whole = sur<std::int32_t>(false);
+  EXPECT_NE(refused("a.sur", whole.substr(0, 300)).find("cut short"), std::string::npos);
+  EXPECT_NE(refused("a.sur", whole.substr(0, whole.size() - 1)).find("ends before"), std::string::npos);
+  const auto lying = [](std::string bytes, std::size_t at, auto value) {
+    put(bytes, at, value);
+    return bytes;
+  };
+  EXPECT_NE(refused("a.sur", lying(whole, 18, std::int16_t{1})).find("no surface"), std::string::npos);
+  EXPECT_NE(refused("a.sur", lying(whole, 14, std::int16_t{4})).find("4 surfaces"), std::string::npos);
+  EXPECT_NE(refused("a.sur", lying(whole, 98, std::int16_t{7})).find("7 bits"), std::string::npos);
+  EXPECT_NE(refused("a.sur", lying(whole, 12, std::int16_t{1})).find("byte order"), std::string::npos);
+  refused("a.sur", lying(whole, 108, std::int32_t{-3}));
+  refused("a.sur", lying(whole, 120, std::numeric_limits<float>::quiet_NaN()));
+  // 2^31 samples, agreeing with each other.
+  for (const bool packed : {false, true}) {
+    std::string huge = sur<std::int32_t>(packed);
+    put<std::int32_t>(huge, 108, 46340);
+    put<std::int32_t>(huge, 112, 46340);
+    put<std::int32_t>(huge, 116, 46340 * 46340);
+    refused("a.sur", huge);
+  }
+  const std::string packed = sur<std::int16_t>(true);
+  refused("a.sur", lying(packed, 522, std::uint32_t{0xffffffffU}));  // streams
+  refused("a.sur", lying(packed, 526, std::uint32_t{0xffffffffU}));  // bytes of the first
+  for (std::size_t bytes = 0; bytes < packed.size(); bytes += 3) refused("a.sur", packed.substr(0, bytes));
+}
+
+struct LasPoint {
+  std::int32_t x, y, z;
+};
+
+std::string las(int minor, int format, int point_bytes, const std::vector<LasPoint>& points,
+                const std::string& wkt = {}) {
+  const std::uint16_t header = minor >= 4 ? 375 : minor == 3 ? 235 : 227;
+  std::string h(header, '\0');
+  h.replace(0, 4, "LASF");
+  h[24] = 1;
+  h[25] = static_cast<char>(minor);
+  put<std::uint16_t>(h, 94, header);
+  put<std::uint32_t>(h, 96, header + static_cast<std::uint32_t>(wkt.empty() ? 0 : 54 + wkt.size()));
+  put<std::uint32_t>(h, 100, wkt.empty() ? 0 : 1);
+  h[104] = static_cast<char>(format);
+  put<std::uint16_t>(h, 105, static_cast<std::uint16_t>(point_bytes));
+  // From format 6 on the old count stays 0.
+  put<std::uint32_t>(h, 107, format >= 6 ? 0 : static_cast<std::uint32_t>(points.size()));
+  if (minor >= 4) put<std::uint64_t>(h, 247, points.size());
+  for (int k = 0; k < 3; ++k) {
+    put<double>(h, 131 + 8 * k, k == 2 ? 0.001 : 0.5);
+    put<double>(h, 155 + 8 * k, k == 1 ? -4000000.0 : 0.0);
+  }
+  if (!wkt.empty()) {
+    std::string record(54, '\0');
+    record.replace(2, 15, "LASF_Projection");
+    put<std::uint16_t>(record, 18, 2112);
+    put<std::uint16_t>(record, 20, static_cast<std::uint16_t>(wkt.size()));
+    h += record + wkt;
+  }
+  for (const LasPoint& p : points) {
+    std::string body(static_cast<std::size_t>(point_bytes), '\x7f');
+    put(body, 0, p.x);
+    put(body, 4, p.y);
+    put(body, 8, p.z);
+    h += body;
+  }
+  return h;
+}
+
+const std::vector<LasPoint> kFourPoints{{0, 0, 1000}, {1, 0, -2000}, {0, 1, 3000}, {1, 1, 4001}};
+
+TEST(Las, VersionsAndPointFormatsGiveTheSameField) {
+  for (const auto& [minor, format, bytes] :
+       {std::tuple{2, 0, 20}, {2, 3, 34}, {3, 1, 31}, {4, 6, 30}, {4, 8, 40}}) {
+    FETTLE_LOAD_BYTES(scan, "a.las", las(minor, format, bytes, kFourPoints));
+    EXPECT_EQ(scan.format, "LAS");
+    EXPECT_EQ(heightsOf(scan.field), (std::vector<float>{1.0F, -2.0F, 3.0F, 4.001F}));
+    EXPECT_EQ(scan.field.grid().spacing_x, 0.5);
+    EXPECT_EQ(scan.field.grid().origin_y, -4000000.0);
+    EXPECT_TRUE(warned(scan.warnings, "states no unit"));
+  }
+}
+
+TEST(Las, TheCoordinateSystemComesAlong) {
+  const std::string wkt =
+      R"(PROJCS["test",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],)"
+      R"(PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],)"
+      R"(PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],)"
+      R"(PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["foot",0.3048]])";
+  FETTLE_LOAD_BYTES(scan, "a.las", las(4, 6, 30, kFourPoints, wkt));
+  EXPECT_EQ(scan.field.grid().crs_wkt, wkt);
+  EXPECT_EQ(scan.field.grid().lateral_unit.name, "ft");
+  EXPECT_TRUE(scan.warnings.empty()) << scan.warnings.front();
+  FETTLE_LOAD_BYTES(nonsense, "a.las", las(4, 6, 30, kFourPoints, "PROJCS[[[nothing"));
+  EXPECT_TRUE(nonsense.field.grid().crs_wkt.empty());
+  EXPECT_TRUE(warned(nonsense.warnings, "states no unit"));
+}
+
+TEST(Las, PackedPointsAreRefusedByName) {
+  const TempFolder folder;
+  writeBytes(folder.file("a.laz"), las(2, 0x80 | 3, 34, kFourPoints));
+  const auto scan = load(folder.file("a.laz"));
+  ASSERT_FALSE(scan);
+  EXPECT_NE(scan.error().what.find("LAZ"), std::string::npos);
+  EXPECT_NE(scan.error().remedy.find("las2las"), std::string::npos);
+}
+
+TEST(Las, LyingHeadersAreRefused) {
+  const std::string whole = las(4, 6, 30, kFourPoints);
+  const auto lying = [&](std::size_t at, auto value) {
+    std::string bytes = whole;
+    put(bytes, at, value);
+    return bytes;
+  };
+  for (std::size_t bytes = 4; bytes < whole.size(); bytes += 13) refused("a.las", whole.substr(0, bytes));
+  refused("a.las", lying(247, std::uint64_t{1} << 63));
+  refused("a.las", lying(247, std::uint64_t{0}));
+  refused("a.las", lying(105, std::uint16_t{0}));
+  refused("a.las", lying(104, std::uint8_t{11}));
+  refused("a.las", lying(96, std::uint32_t{0xffffffffU}));
+  refused("a.las", lying(96, std::uint32_t{0}));
+  refused("a.las", lying(131, 0.0));
+  refused("a.las", lying(131, std::numeric_limits<double>::infinity()));
+  refused("a.las", lying(25, std::uint8_t{9}));
+}
+
+// Fields x, y, z among others, in another order; as rows of doubles per point: label, z, x, normal[2], y.
+std::string pcd(const std::string& data, const std::vector<std::array<double, 3>>& points, int width) {
+  std::string h = fmt::format(
+      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS label z x normal y\nSIZE 1 4 8 4 8\n"
+      "TYPE U F F F F\nCOUNT 1 1 1 2 1\nWIDTH {}\nHEIGHT {}\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\nDATA {}\n",
+      width, points.size() / static_cast<std::size_t>(width), points.size(), data);
+  if (data == "ascii") {
+    for (const auto& p : points)
+      h += fmt::format("7 {} {} 0.5 nan {}\n", static_cast<float>(p[2]), p[0], p[1]);
+    return h;
+  }
+  std::string body;
+  if (data == "binary") {
+    for (const auto& p : points) {
+      append<std::uint8_t>(body, 7);
+      append(body, static_cast<float>(p[2]));
+      append(body, p[0]);
+      append(body, 0.5F);
+      append(body, 0.5F);
+      append(body, p[1]);
+    }
+    return h + body;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) append<std::uint8_t>(body, 7);
+  for (const auto& p : points) append(body, static_cast<float>(p[2]));
+  for (const auto& p : points) append(body, p[0]);
+  for (std::size_t i = 0; i < 2 * points.size(); ++i) append(body, 0.5F);
+  for (const auto& p : points) append(body, p[1]);
+  std::string packed(2 * body.size() + 64, '\0');
+  const unsigned size = lzf_compress(body.data(), static_cast<unsigned>(body.size()), packed.data(),
+                                     static_cast<unsigned>(packed.size()));
+  EXPECT_GT(size, 0U);
+  append<std::uint32_t>(h, size);
+  append<std::uint32_t>(h, static_cast<std::uint32_t>(body.size()));
+  return h + packed.substr(0, size);
+}
+
+TEST(Pcd, EveryEncodingAndOrderOfFieldsGivesTheSameField) {
+  std::vector<std::array<double, 3>> points;
+  for (int r = 0; r < 7; ++r)
+    for (int c = 0; c < 9; ++c) points.push_back({5000000.0 + 0.25 * c, -3.0 + 0.1 * r, c * 0.3 - r * r});
+  for (const std::string data : {"ascii", "binary", "binary_compressed"})
+    for (const int width : {63, 9}) {  // a heap of points, and rows of them
+      FETTLE_LOAD_BYTES(scan, "a.pcd", pcd(data, points, width));
+      EXPECT_EQ(scan.format, "PCD");
+      const Grid& grid = scan.field.grid();
+      ASSERT_EQ(grid.width, 9) << data << width;
+      ASSERT_EQ(grid.height, 7);
+      EXPECT_EQ(grid.spacing_x, 0.25);
+      EXPECT_EQ(grid.spacing_y, 0.1);
+      EXPECT_EQ(grid.origin_x, 5000000.0);
+      EXPECT_TRUE(scan.gridding->lattice);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        ASSERT_EQ(heightsOf(scan.field)[i], static_cast<float>(points[i][2]));
+    }
+}
+
+TEST(Pcd, RowsOfACameraStayItsPixels) {
+  const DepthCamera camera{500.0, 510.0, 15.5, 9.0};
+  std::vector<std::array<double, 3>> points;
+  for (int v = 0; v < 20; ++v)
+    for (int u = 0; u < 30; ++u) {
+      const double z = u == 3 ? double{kNan} : 1.0 + 0.01 * ((u * 7 + v * 3) % 11);
+      points.push_back({(u - camera.cx) * z / camera.fx, (v - camera.cy) * z / camera.fy, z});
+    }
+  FETTLE_LOAD_BYTES(scan, "a.pcd", pcd("binary_compressed", points, 30));
+  ASSERT_EQ(scan.field.grid().width, 30);
+  ASSERT_EQ(scan.field.grid().height, 20);
+  EXPECT_TRUE(warned(scan.warnings, "perspective"));
+  EXPECT_TRUE(warned(scan.warnings, "fx 500, fy 510, cx 15.5, cy 9"));
+  for (int v = 0; v < 20; ++v)
+    for (int u = 0; u < 30; ++u) {
+      const auto z = static_cast<float>(points[static_cast<std::size_t>(v * 30 + u)][2]);
+      if (std::isnan(z))
+        ASSERT_TRUE(std::isnan(stored(scan.field, v, u)));
+      else
+        ASSERT_EQ(stored(scan.field, v, u), z);
+    }
+  EXPECT_NEAR(scan.field.grid().spacing_x, 1.05 / 500.0, 1e-4);
+  // Asked for cells, it is gridded from above like any cloud.
+  ImportOptions cells;
+  cells.cell_size = 0.01;
+  FETTLE_LOAD_BYTES(above, "a.pcd", pcd("binary", points, 30), cells);
+  EXPECT_TRUE(above.gridding.has_value());
+  EXPECT_FALSE(warned(above.warnings, "perspective"));
+}
+
+TEST(Pcd, LyingHeadersAreRefused) {
+  const std::vector<std::array<double, 3>> points{{0, 0, 1}, {1, 0, 2}};
+  const auto with = [&](const std::string& data, const std::string& what, const std::string& by) {
+    std::string bytes = pcd(data, points, 2);
+    bytes.replace(bytes.find(what), what.size(), by);
+    return bytes;
+  };
+  for (const std::string data : {"ascii", "binary", "binary_compressed"}) {
+    refused("a.pcd", with(data, "POINTS 2", "POINTS 2147483648"));
+    refused("a.pcd", with(data, "POINTS 2", "POINTS 18446744073709551615"));
+    refused("a.pcd", with(data, "POINTS 2", "POINTS -2"));
+    refused("a.pcd", with(data, "COUNT 1 1 1 2 1", "COUNT 1 1 1 99999999999 1"));
+    refused("a.pcd", with(data, "SIZE 1 4 8 4 8", "SIZE 1 4 8 4"));
+    refused("a.pcd", with(data, "SIZE 1 4 8 4 8", "SIZE 1 3 8 4 8"));
+    refused("a.pcd", with(data, "label z x", "label w x"));
+    refused("a.pcd", with(data, "DATA", "DATUM"));
+    const std::string whole = pcd(data, points, 2);
+    refused("a.pcd", whole.substr(0, whole.size() - 6));
+  }
+  // A packing that promises 4 GB.
+  std::string bomb = with("binary_compressed", "POINTS 2", "POINTS 143165576");
+  put<std::uint32_t>(bomb, bomb.find("binary_compressed\n") + 22, 4294967280U);
+  refused("a.pcd", bomb);
+}
+
+TEST(DepthCamera, APictureKeepsItsDistancesAndGetsThePitchOfItsPixels) {
+  const TempFolder folder;
+  std::vector<float> counts;
+  for (int i = 0; i < 40 * 30; ++i)
+    counts.push_back(i % 17 == 0 ? kNan : 1000.0F + static_cast<float>(i % 3));
+  Grid grid = gridOf(40, 30);
+  grid.height_per_count = 1.0;
+  for (const std::string name : {"depth.png", "depth.tif"}) {
+    ASSERT_TRUE(save(makeField(grid, counts), folder.file(name)));
+    ImportOptions options;
+    options.depth_camera = DepthCamera{500.0, 250.0, 19.5, 10.0};
+    FETTLE_LOAD(scan, folder.file(name), options);
+    EXPECT_EQ(scan.field.grid().spacing_x, 1001.0 / 500.0) << name;
+    EXPECT_EQ(scan.field.grid().spacing_y, 1001.0 / 250.0);
+    EXPECT_DOUBLE_EQ(scan.field.grid().origin_x, -19.5 * 1001.0 / 500.0);
+    EXPECT_DOUBLE_EQ(scan.field.grid().origin_y, (10.0 - 29.0) * 1001.0 / 250.0);
+    EXPECT_EQ(contentHash(scan.field), contentHash(makeField(grid, counts)));
+    EXPECT_TRUE(warned(scan.warnings, "perspective"));
+    options.spacing = std::pair{1.0, 1.0};
+    const auto both = load(folder.file(name), options);
+    ASSERT_FALSE(both);
+    EXPECT_EQ(both.error().where, "--spacing");
+    options.spacing.reset();
+    options.depth_camera->fx = 0.0;
+    EXPECT_FALSE(load(folder.file(name), options));
+  }
+  writeBytes(folder.file("a.xyz"), "1 2 3\n2 2 3\n");
+  ImportOptions options;
+  options.depth_camera = DepthCamera{500.0, 250.0, 19.5, 10.0};
+  EXPECT_FALSE(load(folder.file("a.xyz"), options));
+}
+
+}  // namespace
+}  // namespace fettle::engine
