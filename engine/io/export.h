@@ -29,6 +29,8 @@ struct Exported {
 ///   .xyz        text, one "x y z" a sample that is no hole, world coordinates, shortest exact digits
 ///   .ply        binary little-endian points, double x and y, float z, world coordinates
 ///   .png        16-bit grey, 0 = hole, quantised: the warning says count and largest error
+///   .x3p        ISO 25178-72, metres: float32 where the field is in metres, else float64, and every digit of
+///               units, spacing and origin in an entry of its own, so that each float comes back
 ///   .fettle     a session (engine/session) that begins with this field, marks and sign included, bit for bit
 ///
 /// Other formats take no marks: these go to their own file (marks.h). The file appears whole or not at all

@@ -70,6 +70,15 @@ Status checkPromise(std::uint64_t raw_bytes, std::uint64_t stored_bytes, double 
                     path, "the file is cut short or damaged");
 }
 
+Status checkPacking(std::uint64_t raw_bytes, std::uint64_t stored_bytes, const std::string& path) {
+  constexpr std::uint64_t kTrusted = std::uint64_t{240} << 20;
+  constexpr std::uint64_t kMostPacked = 200;
+  if (raw_bytes <= kTrusted || raw_bytes / kMostPacked <= stored_bytes) return {};
+  return inputError(
+      fmt::format("the file promises {} MB of heights out of {} bytes", raw_bytes >> 20, stored_bytes), path,
+      "the file is damaged or made to fill memory");
+}
+
 void describeTally(const HeightTally& tally, const std::string& unit, std::vector<std::string>& warnings) {
   if (tally.infinite > 0)
     warnings.push_back(

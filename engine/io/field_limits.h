@@ -24,6 +24,12 @@ namespace fettle::engine {
 [[nodiscard]] Status checkPromise(std::uint64_t raw_bytes, std::uint64_t stored_bytes, double ratio,
                                   const std::string& path);
 
+/// Refuses a file of `stored_bytes` that promises so many `raw_bytes` of heights that it must be made to fill
+/// memory: over 240 MB and 200 to 1. Deflate packs zeros 1032 to 1; heights of a scan, holes and all, never
+/// come near.
+[[nodiscard]] Status checkPacking(std::uint64_t raw_bytes, std::uint64_t stored_bytes,
+                                  const std::string& path);
+
 /// Builds the field, refuses one without any height, and puts the tally's warnings in place.
 [[nodiscard]] Result<Imported> finishImport(FieldBuilder&& builder, const HeightTally& tally,
                                             std::string format, std::vector<std::string> warnings,

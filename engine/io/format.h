@@ -68,6 +68,11 @@ struct Format {
 [[nodiscard]] bool looksLikeSur(std::string_view head, std::string_view extension);
 [[nodiscard]] Result<Imported> readSur(const InputFile&, const ImportOptions&, JobControl&);
 
+[[nodiscard]] bool looksLikeX3p(std::string_view head, std::string_view extension);
+[[nodiscard]] Result<Imported> readX3p(const InputFile&, const ImportOptions&, JobControl&);
+[[nodiscard]] Result<Exported> writeX3p(const Version&, const std::string&, const ExportOptions&,
+                                        JobControl&);
+
 // In engine/session.
 [[nodiscard]] bool looksLikeSession(std::string_view head, std::string_view extension);
 [[nodiscard]] Result<Imported> readSession(const InputFile&, const ImportOptions&, JobControl&);

@@ -22,6 +22,7 @@ constexpr std::array kPng{".png"sv};
 constexpr std::array kPcd{".pcd"sv};
 constexpr std::array kLas{".las"sv, ".laz"sv};
 constexpr std::array kSur{".sur"sv};
+constexpr std::array kX3p{".x3p"sv};
 constexpr std::array kAscii{".asc"sv, ".agr"sv, ".grd"sv};
 constexpr std::array kPly{".ply"sv};
 constexpr std::array kSession{".fettle"sv};
@@ -35,6 +36,7 @@ constexpr std::array kTable{
     Format{{"PCD", "PCD point cloud", kPcd, true, false}, looksLikePcd, readPcd, nullptr},
     Format{{"LAS", "LAS points", kLas, true, false}, looksLikeLas, readLas, nullptr},
     Format{{"SUR", "Digital Surf topography", kSur, true, false}, looksLikeSur, readSur, nullptr},
+    Format{{"X3P", "x3p surface (ISO 25178-72)", kX3p, true, true}, looksLikeX3p, readX3p, writeX3p},
     Format{{"AAIGrid", "ESRI ASCII grid", kAscii, true, true},
            looksLikeAsciiGrid,
            readAsciiGrid,

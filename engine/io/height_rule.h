@@ -90,8 +90,9 @@ struct HeightRule {
         ++tally.holes;
         continue;
       }
-      const double height = scale == 1.0 && offset == 0.0 ? static_cast<double>(numbers[i])
-                                                          : static_cast<double>(numbers[i]) * scale + offset;
+      double height = static_cast<double>(numbers[i]);
+      if (scale != 1.0) height *= scale;
+      if (offset != 0.0) height += offset;  // nothing is added to -0, or it would lose its sign
       const float rounded = toFloat(height);
       if (std::isfinite(rounded)) {
         if constexpr (sizeof(T) > 2 && !std::is_same_v<T, float>)

@@ -292,6 +292,48 @@ TEST(Scans, DigitalSurfWithMissingPoints) {
   EXPECT_NEAR(counts(stored(scan.field, 363, 375)), 101660, 5e-3);
 }
 
+TEST(Scans, X3pInAFolderWithAMaskAndNoNameSpace) {
+  FETTLE_SCAN_OR_SKIP(path, "bullet_land.x3p");
+  FETTLE_LOAD(scan, path);
+  const Grid& grid = scan.field.grid();
+  EXPECT_EQ(scan.format, "X3P");
+  EXPECT_EQ(grid.width, 918);
+  EXPECT_EQ(grid.height, 256);
+  EXPECT_EQ(grid.spacing_x, 2.58e-6);
+  EXPECT_EQ(grid.spacing_y, 2.58e-6);
+  EXPECT_EQ(grid.height_unit.name, "m");
+  EXPECT_TRUE(warned(scan.warnings, "mask"));
+  EXPECT_FALSE(warned(scan.warnings, "heights are not"));
+  EXPECT_FALSE(warned(scan.warnings, "metres?"));
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 25292);
+  EXPECT_NEAR(s.min, -7.947348e-05, 1e-11);
+  EXPECT_NEAR(s.max, 5.249858e-05, 1e-11);
+  EXPECT_NEAR(s.mean, -5.352e-07, 1e-10);
+  EXPECT_NEAR(stored(scan.field, 64, 306), 2.974762e-05, 1e-11);
+  EXPECT_NEAR(stored(scan.field, 128, 459), 4.136096e-05, 1e-11);
+  EXPECT_NEAR(stored(scan.field, 192, 612), 1.760770e-05, 1e-11);
+}
+
+TEST(Scans, X3pWithAnisotropicIncrementsAndOffsets) {
+  FETTLE_SCAN_OR_SKIP(path, "ground_surface_aniso.x3p");
+  FETTLE_LOAD(scan, path);
+  const Grid& grid = scan.field.grid();
+  EXPECT_EQ(grid.width, 650);
+  EXPECT_EQ(grid.height, 650);
+  EXPECT_EQ(grid.spacing_x, 1.27656509837346e-7);
+  EXPECT_EQ(grid.spacing_y, 3.14582113527746e-7);
+  EXPECT_EQ(grid.origin_x, 7.65614218798151e-5);
+  EXPECT_FALSE(warned(scan.warnings, "heights are not"));
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 0);
+  EXPECT_NEAR(s.min, -3.144207e-07, 1e-13);
+  EXPECT_NEAR(s.max, 2.399155e-07, 1e-13);
+  EXPECT_NEAR(stored(scan.field, 162, 216), -4.583059e-08, 1e-14);
+  EXPECT_NEAR(stored(scan.field, 325, 325), 6.183361e-08, 1e-14);
+  EXPECT_NEAR(stored(scan.field, 487, 433), -7.206429e-08, 1e-14);
+}
+
 TEST(Scans, DepthImageInThePerspectiveOfItsCamera) {
   FETTLE_SCAN_OR_SKIP(path, "kinect_boxes_depth_u16.tif");
   ImportOptions options;
@@ -308,24 +350,27 @@ TEST(Scans, DepthImageInThePerspectiveOfItsCamera) {
   EXPECT_TRUE(warned(scan.warnings, "perspective"));
 }
 
-TEST(Scans, EveryScanSurvivesTheWayThroughGeoTiffBitForBit) {
-  for (const char* name : {"dsm_ahn_buildings.tif", "dsm_village_sjtsk.tif", "shapes_plate_u16.png",
-                           "tray_bags_aniso_u16.tif", "tidal_marsh.asc", "chip_confocal_points.xyz",
-                           "cylinders_cloud_le.ply", "afm_line_noise_f32.tif", "kinect_boxes_depth_u16.tif",
-                           "mug_stereo_organized.pcd", "autzen_park.las", "scratched_surface.sur"}) {
+TEST(Scans, EveryScanSurvivesTheWayThroughGeoTiffAndX3pBitForBit) {
+  for (const char* name :
+       {"dsm_ahn_buildings.tif", "dsm_village_sjtsk.tif", "shapes_plate_u16.png", "tray_bags_aniso_u16.tif",
+        "tidal_marsh.asc", "chip_confocal_points.xyz", "cylinders_cloud_le.ply", "afm_line_noise_f32.tif",
+        "kinect_boxes_depth_u16.tif", "mug_stereo_organized.pcd", "autzen_park.las", "scratched_surface.sur",
+        "bullet_land.x3p", "ground_surface_aniso.x3p"}) {
     FETTLE_SCAN_OR_SKIP(path, name);
     FETTLE_LOAD(scan, path);
-    const std::string copy = ::testing::TempDir() + "fettle_scan_copy.tif";
-    const auto written = save(scan.field, copy);
-    ASSERT_TRUE(written) << written.error().line();
-    FETTLE_LOAD(again, copy);
-    EXPECT_EQ(contentHash(again.field), contentHash(scan.field)) << name;
-    Grid expected = scan.field.grid();
-    Grid got = again.field.grid();
-    EXPECT_EQ(expected.crs_wkt.empty(), got.crs_wkt.empty()) << name;
-    expected.crs_wkt = got.crs_wkt = "";  // the same system may come back in other words
-    EXPECT_EQ(expected, got) << name;
-    std::remove(copy.c_str());
+    for (const char* extension : {".tif", ".x3p"}) {
+      const std::string copy = ::testing::TempDir() + "fettle_scan_copy" + extension;
+      const auto written = save(scan.field, copy);
+      ASSERT_TRUE(written) << written.error().line();
+      FETTLE_LOAD(again, copy);
+      EXPECT_EQ(contentHash(again.field), contentHash(scan.field)) << name << extension;
+      Grid expected = scan.field.grid();
+      Grid got = again.field.grid();
+      EXPECT_EQ(expected.crs_wkt.empty(), got.crs_wkt.empty()) << name;
+      expected.crs_wkt = got.crs_wkt = "";  // the same system may come back in other words
+      EXPECT_EQ(expected, got) << name << extension;
+      std::remove(copy.c_str());
+    }
   }
 }
 

@@ -1,0 +1,68 @@
+#include "engine/io/grid_notes.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include <fmt/format.h>
+
+namespace fettle::engine {
+
+namespace {
+
+std::optional<double> numberOf(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+std::string gridNotes(const Grid& grid) {
+  // A unit's name and a coordinate system may come from anywhere: one line each.
+  const auto line = [](std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    return text;
+  };
+  return fmt::format(
+      "lateral_unit = {}\nlateral_mm = {}\nheight_unit = {}\nheight_mm = {}\nspacing_x = {}\nspacing_y = {}\n"
+      "origin_x = {}\norigin_y = {}\nheight_per_count = {}\ncrs = {}\n",
+      line(grid.lateral_unit.name), grid.lateral_unit.mm, line(grid.height_unit.name), grid.height_unit.mm,
+      grid.spacing_x, grid.spacing_y, grid.origin_x, grid.origin_y, grid.height_per_count,
+      line(grid.crs_wkt));
+}
+
+std::optional<Grid> gridOfNotes(const std::string& text) {
+  std::map<std::string, std::string> values;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::size_t equals = text.find(" = ", at);
+    if (equals < end) values[text.substr(at, equals - at)] = text.substr(equals + 3, end - equals - 3);
+    at = end + 1;
+  }
+  Grid grid;
+  grid.lateral_unit.name = values["lateral_unit"];
+  grid.height_unit.name = values["height_unit"];
+  grid.crs_wkt = values["crs"];
+  bool sound = !grid.lateral_unit.name.empty() && !grid.height_unit.name.empty();
+  const auto take = [&](const char* key, double& out, double above) {
+    const auto value = numberOf(values[key]);
+    sound = sound && value && *value > above;
+    if (sound) out = *value;
+  };
+  constexpr double kAny = -HUGE_VAL;
+  take("lateral_mm", grid.lateral_unit.mm, 0.0);
+  take("height_mm", grid.height_unit.mm, 0.0);
+  take("spacing_x", grid.spacing_x, 0.0);
+  take("spacing_y", grid.spacing_y, 0.0);
+  take("origin_x", grid.origin_x, kAny);
+  take("origin_y", grid.origin_y, kAny);
+  take("height_per_count", grid.height_per_count, -0x1p-1000);
+  if (!sound) return std::nullopt;
+  return grid;
+}
+
+}  // namespace fettle::engine
