@@ -73,6 +73,11 @@ struct Format {
 [[nodiscard]] Result<Exported> writeX3p(const Version&, const std::string&, const ExportOptions&,
                                         JobControl&);
 
+[[nodiscard]] bool looksLikeExr(std::string_view head, std::string_view extension);
+[[nodiscard]] Result<Imported> readExr(const InputFile&, const ImportOptions&, JobControl&);
+[[nodiscard]] Result<Exported> writeExr(const Version&, const std::string&, const ExportOptions&,
+                                        JobControl&);
+
 // In engine/session.
 [[nodiscard]] bool looksLikeSession(std::string_view head, std::string_view extension);
 [[nodiscard]] Result<Imported> readSession(const InputFile&, const ImportOptions&, JobControl&);

@@ -22,6 +22,7 @@ constexpr std::array kPng{".png"sv};
 constexpr std::array kPcd{".pcd"sv};
 constexpr std::array kLas{".las"sv, ".laz"sv};
 constexpr std::array kSur{".sur"sv};
+constexpr std::array kExr{".exr"sv};
 constexpr std::array kX3p{".x3p"sv};
 constexpr std::array kAscii{".asc"sv, ".agr"sv, ".grd"sv};
 constexpr std::array kPly{".ply"sv};
@@ -37,6 +38,7 @@ constexpr std::array kTable{
     Format{{"LAS", "LAS points", kLas, true, false}, looksLikeLas, readLas, nullptr},
     Format{{"SUR", "Digital Surf topography", kSur, true, false}, looksLikeSur, readSur, nullptr},
     Format{{"X3P", "x3p surface (ISO 25178-72)", kX3p, true, true}, looksLikeX3p, readX3p, writeX3p},
+    Format{{"EXR", "OpenEXR", kExr, true, true}, looksLikeExr, readExr, writeExr},
     Format{{"AAIGrid", "ESRI ASCII grid", kAscii, true, true},
            looksLikeAsciiGrid,
            readAsciiGrid,

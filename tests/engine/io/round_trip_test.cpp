@@ -96,7 +96,7 @@ TEST_P(Lossless, OriginsAndSpacingsKeepEveryDigit) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, Lossless, ::testing::Values(".tif", ".asc", ".x3p"));
+INSTANTIATE_TEST_SUITE_P(Formats, Lossless, ::testing::Values(".tif", ".asc", ".x3p", ".exr"));
 
 TEST(RoundTrip, CoordinatesOfFilesComeBackDigitByDigit) {
   // What files hold: corners with few digits. Read, written and read again nothing may move.
@@ -140,7 +140,7 @@ TEST(RoundTrip, UnitsAndCountsComeBack) {
   grid.lateral_unit = {"um", 1e-3};
   grid.height_unit = {"nm", 1e-6};
   grid.height_per_count = 0.02;
-  for (const char* name : {"units.tif", "units.x3p"}) {
+  for (const char* name : {"units.tif", "units.x3p", "units.exr"}) {
     ASSERT_TRUE(save(makeField(grid, {1, 2, 3, 4, 5, 6}), folder.file(name)));
     FETTLE_LOAD(again, folder.file(name));
     EXPECT_EQ(again.field.grid(), grid) << name;
@@ -150,7 +150,7 @@ TEST(RoundTrip, UnitsAndCountsComeBack) {
 TEST(RoundTrip, TheSameFieldGivesTheSameFile) {
   const TempFolder folder;
   const Version field = makeField(gridOf(700, 600), anyFloats(700 * 600, 3));
-  for (const std::string extension : {".tif", ".asc", ".xyz", ".ply", ".x3p"}) {
+  for (const std::string extension : {".tif", ".asc", ".xyz", ".ply", ".x3p", ".exr"}) {
     ASSERT_TRUE(save(field, folder.file("a" + extension)));
     ASSERT_TRUE(save(field, folder.file("b" + extension)));
     EXPECT_EQ(readBytes(folder.file("a" + extension)), readBytes(folder.file("b" + extension))) << extension;
@@ -226,7 +226,7 @@ RC_GTEST_PROP(RoundTrip, AnySmallFieldSurvivesTiffAndAscii, ()) {
   auto z = anyFloats(static_cast<std::size_t>(w) * h, *rc::gen::arbitrary<std::uint32_t>());
   z[0] = 1.0F;
   const Version field = makeField(gridOf(w, h), z);
-  for (const std::string extension : {".tif", ".asc", ".x3p"}) {
+  for (const std::string extension : {".tif", ".asc", ".x3p", ".exr"}) {
     RC_ASSERT(save(field, folder.file("f" + extension)).has_value());
     const auto again = load(folder.file("f" + extension));
     RC_ASSERT(again.has_value());

@@ -334,6 +334,25 @@ TEST(Scans, X3pWithAnisotropicIncrementsAndOffsets) {
   EXPECT_NEAR(stored(scan.field, 487, 433), -7.206429e-08, 1e-14);
 }
 
+TEST(Scans, ExrWithTransparencyEverywhereOne) {
+  FETTLE_SCAN_OR_SKIP(path, "lunar_ridge.exr");
+  ImportOptions options;
+  options.spacing = std::pair{200.0, 200.0};
+  options.unit = lengthUnitFromName("m");
+  FETTLE_LOAD(scan, path, options);
+  EXPECT_EQ(scan.format, "EXR");
+  EXPECT_EQ(scan.field.grid().width, 256);
+  EXPECT_EQ(scan.field.grid().height, 256);
+  const FieldSummary s = summarize(scan.field);
+  EXPECT_EQ(s.no_data, 0);
+  EXPECT_NEAR(s.min, 0.3224838, 5e-8);
+  EXPECT_NEAR(s.max, 0.5936717, 5e-8);
+  EXPECT_NEAR(stored(scan.field, 64, 85), 0.4288903, 5e-8);
+  EXPECT_NEAR(stored(scan.field, 128, 128), 0.5508972, 5e-8);
+  EXPECT_NEAR(stored(scan.field, 192, 170), 0.4970673, 5e-8);
+  EXPECT_TRUE(scan.warnings.empty()) << scan.warnings.front();
+}
+
 TEST(Scans, DepthImageInThePerspectiveOfItsCamera) {
   FETTLE_SCAN_OR_SKIP(path, "kinect_boxes_depth_u16.tif");
   ImportOptions options;
@@ -350,15 +369,15 @@ TEST(Scans, DepthImageInThePerspectiveOfItsCamera) {
   EXPECT_TRUE(warned(scan.warnings, "perspective"));
 }
 
-TEST(Scans, EveryScanSurvivesTheWayThroughGeoTiffAndX3pBitForBit) {
+TEST(Scans, EveryScanSurvivesTheWayThroughEveryLosslessFormatBitForBit) {
   for (const char* name :
        {"dsm_ahn_buildings.tif", "dsm_village_sjtsk.tif", "shapes_plate_u16.png", "tray_bags_aniso_u16.tif",
         "tidal_marsh.asc", "chip_confocal_points.xyz", "cylinders_cloud_le.ply", "afm_line_noise_f32.tif",
         "kinect_boxes_depth_u16.tif", "mug_stereo_organized.pcd", "autzen_park.las", "scratched_surface.sur",
-        "bullet_land.x3p", "ground_surface_aniso.x3p"}) {
+        "bullet_land.x3p", "ground_surface_aniso.x3p", "lunar_ridge.exr"}) {
     FETTLE_SCAN_OR_SKIP(path, name);
     FETTLE_LOAD(scan, path);
-    for (const char* extension : {".tif", ".x3p"}) {
+    for (const char* extension : {".tif", ".x3p", ".exr"}) {
       const std::string copy = ::testing::TempDir() + "fettle_scan_copy" + extension;
       const auto written = save(scan.field, copy);
       ASSERT_TRUE(written) << written.error().line();
