@@ -13,6 +13,8 @@ struct Options {
   std::string in;
   std::string out;
   ScanOptions reading;
+  engine::ExportOptions writing;
+  std::string max_error;
 };
 
 engine::Result<Report> convert(const Options& options, engine::JobControl& job) {
@@ -20,7 +22,13 @@ engine::Result<Report> convert(const Options& options, engine::JobControl& job) 
     return tl::unexpected(status.error());
   const auto imported = loadScan(options.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  auto written = engine::exportField(imported->field, options.out, {}, job);
+  engine::ExportOptions writing = options.writing;
+  if (!options.max_error.empty()) {
+    const auto error = parseHeight(options.max_error, imported->field.grid(), "--max-error");
+    if (!error) return tl::unexpected(error.error());
+    writing.max_error = *error;
+  }
+  auto written = engine::exportField(imported->field, options.out, writing, job);
   if (!written) return tl::unexpected(written.error());
   if (imported->field.reader().root().marked_children != 0 && written->format != "Fettle")
     written->warnings.push_back("the marks of the session are not kept, the format has none");
@@ -37,6 +45,17 @@ void addConvert(CLI::App& root, Chosen& chosen) {
                  [options](engine::JobControl& job) { return convert(*options, job); });
   command->add_option("IN", options->in, "The scan to read")->required();
   command->add_option("OUT", options->out, "The file to write")->required();
+  const std::string group = "Writing";
+  command->add_flag("--mesh", options->writing.mesh, "PLY: triangles instead of points (STL always)")
+      ->group(group);
+  command
+      ->add_option("--max-error", options->max_error,
+                   "Mesh: as few triangles as keep every sample within this height, e.g. 0.5 or 20um")
+      ->group(group);
+  command
+      ->add_flag("--cloud-optimised", options->writing.cloud_optimised,
+                 "TIFF: laid out for reading parts over a network, with overviews")
+      ->group(group);
   addScanOptions(command, options->reading);
 }
 

@@ -14,6 +14,13 @@ struct ExportOptions {
   /// 16-bit PNG: height of one count [height_unit], finite and > 0. Without it Grid::height_per_count, and
   /// where that is 0 or the heights do not fit it, the range of the field spread over 1 .. 65535.
   std::optional<double> height_per_count;
+  /// PLY: the surface as triangles instead of points. STL is always triangles.
+  bool mesh = false;
+  /// Mesh: as few triangles as keep every sample within this of the surface [height_unit], finite, >= 0;
+  /// without it two a cell. Implies mesh.
+  std::optional<double> max_error;
+  /// TIFF: laid out for reading parts over a network, with overviews (means of 2 x 2, 4 x 4 ... samples).
+  bool cloud_optimised = false;
 };
 
 struct Exported {
@@ -28,11 +35,14 @@ struct Exported {
 ///               number (ESRI readers know no NaN); anisotropic spacing as dx, dy
 ///   .xyz        text, one "x y z" a sample that is no hole, world coordinates, shortest exact digits
 ///   .ply        binary little-endian points, double x and y, float z, world coordinates
+///               with ExportOptions::mesh the surface: cells without a hole as triangles
+///   .stl        the surface as triangles, binary; x and y from the field's corner, float32, lateral unit
 ///   .png        16-bit grey, 0 = hole, quantised: the warning says count and largest error
 ///   .x3p        ISO 25178-72, metres: float32 where the field is in metres, else float64, and every digit of
 ///               units, spacing and origin in an entry of its own, so that each float comes back
-///   .exr        OpenEXR, channel Y, float32, holes = NaN; units, spacing and origin as an attribute of its own
-///   .fettle     a session (engine/session) that begins with this field, marks and sign included, bit for bit
+///   .exr        OpenEXR, channel Y, float32, holes = NaN; units, spacing and origin as an attribute of its
+///   own .fettle     a session (engine/session) that begins with this field, marks and sign included, bit for
+///   bit
 ///
 /// Other formats take no marks: these go to their own file (marks.h). The file appears whole or not at all
 /// (atomic_file.h). Errors: kInput for an unknown extension, a path that cannot be written, a full disk;

@@ -68,6 +68,11 @@ struct Format {
 [[nodiscard]] bool looksLikeSur(std::string_view head, std::string_view extension);
 [[nodiscard]] Result<Imported> readSur(const InputFile&, const ImportOptions&, JobControl&);
 
+[[nodiscard]] bool looksLikeStl(std::string_view head, std::string_view extension);
+[[nodiscard]] Result<Imported> readStl(const InputFile&, const ImportOptions&, JobControl&);
+[[nodiscard]] Result<Exported> writeStl(const Version&, const std::string&, const ExportOptions&,
+                                        JobControl&);
+
 [[nodiscard]] bool looksLikeX3p(std::string_view head, std::string_view extension);
 [[nodiscard]] Result<Imported> readX3p(const InputFile&, const ImportOptions&, JobControl&);
 [[nodiscard]] Result<Exported> writeX3p(const Version&, const std::string&, const ExportOptions&,

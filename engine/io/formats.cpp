@@ -23,6 +23,7 @@ constexpr std::array kPcd{".pcd"sv};
 constexpr std::array kLas{".las"sv, ".laz"sv};
 constexpr std::array kSur{".sur"sv};
 constexpr std::array kExr{".exr"sv};
+constexpr std::array kStl{".stl"sv};
 constexpr std::array kX3p{".x3p"sv};
 constexpr std::array kAscii{".asc"sv, ".agr"sv, ".grd"sv};
 constexpr std::array kPly{".ply"sv};
@@ -33,12 +34,13 @@ constexpr std::array kXyz{".xyz"sv, ".txt"sv, ".csv"sv, ".pts"sv, ".dat"sv};
 constexpr std::array kTable{
     Format{{"GTiff", "GeoTIFF and TIFF", kTiff, true, true}, looksLikeTiff, readTiff, writeTiff},
     Format{{"PNG", "16-bit grey PNG", kPng, true, true}, looksLikePng, readPng, writePng},
-    Format{{"PLY", "PLY point cloud", kPly, true, true}, looksLikePly, readPly, writePly},
+    Format{{"PLY", "PLY points or mesh", kPly, true, true}, looksLikePly, readPly, writePly},
     Format{{"PCD", "PCD point cloud", kPcd, true, false}, looksLikePcd, readPcd, nullptr},
     Format{{"LAS", "LAS points", kLas, true, false}, looksLikeLas, readLas, nullptr},
     Format{{"SUR", "Digital Surf topography", kSur, true, false}, looksLikeSur, readSur, nullptr},
     Format{{"X3P", "x3p surface (ISO 25178-72)", kX3p, true, true}, looksLikeX3p, readX3p, writeX3p},
     Format{{"EXR", "OpenEXR", kExr, true, true}, looksLikeExr, readExr, writeExr},
+    Format{{"STL", "STL mesh", kStl, true, true}, looksLikeStl, readStl, writeStl},
     Format{{"AAIGrid", "ESRI ASCII grid", kAscii, true, true},
            looksLikeAsciiGrid,
            readAsciiGrid,
@@ -140,7 +142,13 @@ Result<Exported> exportField(const Version& field, const std::string& path, cons
   if (options.height_per_count &&
       !(std::isfinite(*options.height_per_count) && *options.height_per_count > 0.0))
     return inputError(fmt::format("{} cannot be the height of a count", *options.height_per_count), path);
+  if (options.max_error && !(std::isfinite(*options.max_error) && *options.max_error >= 0.0))
+    return inputError(fmt::format("{} cannot be the error of a mesh", *options.max_error), path);
   const std::string extension = extensionOf(path);
+  if ((options.mesh || options.max_error) && extension != ".ply" && extension != ".stl")
+    return inputError("only .ply and .stl hold a mesh", path, "write one of these or leave --mesh out");
+  if (options.cloud_optimised && extension != ".tif" && extension != ".tiff")
+    return inputError("only .tif can be cloud-optimised", path, "write that or leave the option out");
   try {
     for (const Format& format : formatTable())
       if (format.write != nullptr &&

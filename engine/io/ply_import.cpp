@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "engine/io/format.h"
-#include "engine/io/gridding.h"
+#include "engine/io/mesh_sampling.h"
 #include "engine/io/ply_header.h"
 #include "engine/io/text_reader.h"
 
@@ -18,12 +18,32 @@ class PlyBody {
   PlyBody(const InputFile& file, const PlyHeader& header, JobControl& job)
       : file_(file), header_(header), text_(file, header.body), job_(job) {}
 
-  Status read(PointCloud& cloud) {
+  // Points, and triangles where there are faces. Elements behind the last of the two are not looked at.
+  Status read(TriangleMesh& mesh) {
+    const PlyElement* const faces = faceElement(header_);
+    mesh.corners.organized = faces != nullptr;  // faces count them
+    bool vertices_read = false;
     for (const PlyElement& element : header_.elements) {
-      if (element.name == "vertex") return readVertices(element, cloud);
-      if (Status status = skipElement(element); !status) return status;
+      Status status;
+      if (element.name == "vertex" && !vertices_read) {
+        status = readVertices(element, mesh.corners);
+        vertices_read = true;
+      } else {
+        status = &element == faces ? readFaces(element, mesh) : skipElement(element);
+      }
+      if (!status) return status;
+      if (vertices_read && (faces == nullptr || &element == faces)) return {};
     }
+    if (vertices_read) return {};  // the faces came first
     return inputError("the file holds no vertices", file_.path(), "is this a file of points?");
+  }
+
+  // The element with faces, null if there is none or it is empty.
+  static const PlyElement* faceElement(const PlyHeader& header) {
+    for (const PlyElement& element : header.elements)
+      if (element.name == "face" && element.count > 0 && cornerList(element) < element.properties.size())
+        return &element;
+    return nullptr;
   }
 
  private:
@@ -47,6 +67,93 @@ class PlyBody {
     const std::uint64_t least = leastBytes(element);
     // The last line of a text needs no end; an item without properties takes nothing.
     return least != 0 && element.count > (left() + 1) / least;
+  }
+
+  static std::size_t cornerList(const PlyElement& element) {
+    std::size_t i = 0;
+    while (
+        i < element.properties.size() &&
+        !(element.properties[i].count_type && element.properties[i].type < PlyType::kFloat32 &&
+          (element.properties[i].name == "vertex_indices" || element.properties[i].name == "vertex_index")))
+      ++i;
+    return i;
+  }
+
+  // A polygon as a fan of triangles round its first corner, corner by corner.
+  class Fan {
+   public:
+    explicit Fan(TriangleMesh& mesh) : mesh_(mesh) {}
+    // False for what cannot be the number of a corner.
+    bool add(double index) {
+      if (!(index >= 0.0 && index < 4294967295.0)) return false;
+      const auto corner = static_cast<std::uint32_t>(index);
+      if (corners_ == 0) first_ = corner;
+      if (corners_ >= 2) mesh_.triangles.push_back({first_, last_, corner});
+      last_ = corner;
+      ++corners_;
+      return true;
+    }
+
+   private:
+    TriangleMesh& mesh_;
+    std::uint32_t first_ = 0, last_ = 0;
+    std::uint64_t corners_ = 0;
+  };
+
+  Status readFaces(const PlyElement& element, TriangleMesh& mesh) {
+    if (promisesTooMuch(element)) return endsEarly();
+    const std::size_t list = cornerList(element);
+    const auto damaged = [&](std::uint64_t i) {
+      return inputError(fmt::format("face {} does not hold the numbers that the header says", i + 1),
+                        file_.path(), "the file is damaged or cut short");
+    };
+    std::string_view line;
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      if (ascii() && !nextLine(line)) return endsEarly();
+      const bool read =
+          ascii() ? readAsciiFace(line, element, list, mesh) : readBinaryFace(element, list, mesh);
+      if (!read) return text_.status() ? Status(damaged(i)) : text_.status();
+      if (Status s = step(i); !s) return s;
+    }
+    return {};
+  }
+
+  bool readBinaryFace(const PlyElement& element, std::size_t list, TriangleMesh& mesh) {
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      if (p != list) {
+        if (!skipBinary(property)) return false;
+        continue;
+      }
+      const char* raw = text_.bytes(bytesOf(*property.count_type));
+      if (raw == nullptr) return false;
+      const double items = decodePly(raw, *property.count_type, header_.encoding);
+      Fan fan(mesh);
+      for (double k = 0.0; k < items; k += 1.0) {
+        raw = text_.bytes(bytesOf(property.type));
+        if (raw == nullptr || !fan.add(decodePly(raw, property.type, header_.encoding))) return false;
+      }
+    }
+    return true;
+  }
+
+  static bool readAsciiFace(std::string_view line, const PlyElement& element, std::size_t list,
+                            TriangleMesh& mesh) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    const auto next = [&](double& value) {
+      while (at < end && (*at == ' ' || *at == '\t')) ++at;
+      return parseNumber(at, end, value);
+    };
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      double value = 0.0, item = 0.0;
+      if (!next(value)) return false;
+      if (!element.properties[p].count_type) continue;
+      Fan fan(mesh);
+      for (double k = 0.0; k < value; k += 1.0)
+        if (!next(item) || (p == list && !fan.add(item))) return false;
+    }
+    return true;
   }
 
   Status skipElement(const PlyElement& element) {
@@ -213,10 +320,11 @@ Result<Imported> readPly(const InputFile& file, const ImportOptions& options, Jo
   const Result<PlyHeader> header = readPlyHeader(file);
   if (!header) return tl::unexpected(header.error());
   job.begin("reading", file.size());
-  PointCloud cloud;
-  cloud.unit = header->unit;
-  if (Status status = PlyBody(file, *header, job).read(cloud); !status) return tl::unexpected(status.error());
-  return gridPoints(std::move(cloud), options, "PLY", file.path(), job);
+  TriangleMesh mesh;
+  mesh.corners.unit = header->unit;
+  if (Status status = PlyBody(file, *header, job).read(mesh); !status) return tl::unexpected(status.error());
+  return mesh.corners.organized ? sampleMesh(std::move(mesh), options, "PLY", file.path(), job)
+                                : gridPoints(std::move(mesh.corners), options, "PLY", file.path(), job);
 }
 
 }  // namespace fettle::engine

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "engine/io/format.h"
+#include "engine/io/mesh_export.h"
 #include "engine/io/text_writer.h"
 
 namespace fettle::engine {
@@ -83,8 +84,9 @@ Result<Exported> writeXyz(const Version& field, const std::string& path, const E
   return Exported{"XYZ", whatIsLost(field)};
 }
 
-Result<Exported> writePly(const Version& field, const std::string& path, const ExportOptions&,
+Result<Exported> writePly(const Version& field, const std::string& path, const ExportOptions& options,
                           JobControl& job) {
+  if (options.mesh || options.max_error) return writePlyMesh(field, path, options, job);
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   TextWriter out{*file};

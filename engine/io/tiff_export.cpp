@@ -62,12 +62,8 @@ Status describe(GDALDatasetH dataset, const Grid& grid, const GdalSession& gdal,
   return {};
 }
 
-}  // namespace
-
-Result<Exported> writeTiff(const Version& field, const std::string& path, const ExportOptions&,
-                           JobControl& job) {
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return tl::unexpected(file.error());
+Status writePlain(const Version& field, const std::string& temporary, const std::string& path,
+                  JobControl& job) {
   const FieldReader reader = field.reader();
   const Grid& grid = field.grid();
 
@@ -85,11 +81,10 @@ Result<Exported> writeTiff(const Version& field, const std::string& path, const 
                                    {"BLOCKYSIZE", block.c_str()}})
     creation.reset(CSLSetNameValue(creation.release(), key, value));
   if (tiled) creation.reset(CSLSetNameValue(creation.release(), "BLOCKXSIZE", block.c_str()));
-  DatasetPtr dataset(GDALCreate(GDALGetDriverByName("GTiff"), file->temporaryPath().c_str(), grid.width,
-                                grid.height, 1, GDT_Float32, creation.get()));
+  DatasetPtr dataset(GDALCreate(GDALGetDriverByName("GTiff"), temporary.c_str(), grid.width, grid.height, 1,
+                                GDT_Float32, creation.get()));
   if (!dataset) return cannotWrite(gdal, path);
-  if (Status status = describe(dataset.get(), grid, gdal, path); !status)
-    return tl::unexpected(status.error());
+  if (Status status = describe(dataset.get(), grid, gdal, path); !status) return status;
 
   GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
   // A few blocks at a time, flushed at once: left in the cache, all blocks would be compressed in one last
@@ -117,6 +112,64 @@ Result<Exported> writeTiff(const Version& field, const std::string& path, const 
   dataset.reset();
   if (gdal.failed()) return cannotWrite(gdal, path);
   if (job.cancelled()) return cancelled();
+  return {};
+}
+
+// The same samples in the order in which they are wanted over a network, with overviews. Means: what lies
+// between two samples of an overview is in it.
+Status writeCloudOptimised(const std::string& from, const std::string& to, const GdalSession& gdal,
+                           const std::string& path, JobControl& job) {
+  const std::array<const char*, 2> drivers{"GTiff", nullptr};
+  const DatasetPtr source(
+      GDALOpenEx(from.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), nullptr, nullptr));
+  if (!source) return cannotWrite(gdal, path);
+  std::unique_ptr<char*, FreeList> creation;
+  for (const auto& [key, value] : {std::pair{"COMPRESS", "DEFLATE"},
+                                   {"PREDICTOR", "FLOATING_POINT"},
+                                   {"LEVEL", "6"},
+                                   {"BLOCKSIZE", "256"},
+                                   {"OVERVIEWS", "IGNORE_EXISTING"},
+                                   {"OVERVIEW_RESAMPLING", "AVERAGE"},
+                                   {"BIGTIFF", "IF_SAFER"},
+                                   {"NUM_THREADS", "ALL_CPUS"}})
+    creation.reset(CSLSetNameValue(creation.release(), key, value));
+  job.begin("overviews", 100);
+  struct Told {
+    JobControl& job;
+    std::uint64_t percent = 0;
+  } told{job};
+  const auto progress = [](double done, const char*, void* self) {
+    auto& at = *static_cast<Told*>(self);
+    const auto percent = static_cast<std::uint64_t>(done * 100.0);
+    if (percent > at.percent) at.job.advance(percent - std::exchange(at.percent, percent));
+    return at.job.cancelled() ? 0 : 1;
+  };
+  const DatasetPtr copy(GDALCreateCopy(GDALGetDriverByName("COG"), to.c_str(), source.get(), FALSE,
+                                       creation.get(), progress, &told));
+  if (job.cancelled()) return cancelled();
+  if (!copy || gdal.failed()) return cannotWrite(gdal, path);
+  return {};
+}
+
+}  // namespace
+
+Result<Exported> writeTiff(const Version& field, const std::string& path, const ExportOptions& options,
+                           JobControl& job) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  if (options.cloud_optimised) {
+    // An ordinary file first, beside the final one and never committed: gone at the end of this scope.
+    Result<AtomicFile> plain = AtomicFile::create(path);
+    if (!plain) return tl::unexpected(plain.error());
+    if (Status status = writePlain(field, plain->temporaryPath(), path, job); !status)
+      return tl::unexpected(status.error());
+    const GdalSession gdal;
+    if (Status status = writeCloudOptimised(plain->temporaryPath(), file->temporaryPath(), gdal, path, job);
+        !status)
+      return tl::unexpected(status.error());
+  } else if (Status status = writePlain(field, file->temporaryPath(), path, job); !status) {
+    return tl::unexpected(status.error());
+  }
   if (Status status = file->commit(); !status) return tl::unexpected(status.error());
   return Exported{"GTiff", {}};
 }

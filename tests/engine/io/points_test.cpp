@@ -152,7 +152,7 @@ RC_GTEST_PROP(Ply, AnyEncodingAndOrderOfPropertiesGiveTheSameField, ()) {
                                                    : "float") +
             " " + name + end;
   if (list) text += "property list uint8 int32 near" + end;
-  text += "element face 1" + end + "property list uchar int vertex_indices" + end + "end_header" + end;
+  text += "element tristrips 1" + end + "property list uchar int vertex_indices" + end + "end_header" + end;
   const auto put = [&](auto value) {
     if (encoding == "ascii")
       text += fmt::format("{} ", value);

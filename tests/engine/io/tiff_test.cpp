@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <thread>
 
@@ -374,6 +375,48 @@ TEST(Tiff, PicturesAreRefusedGreyWithAlphaIsTaken) {
   FETTLE_LOAD(alpha, folder.file("t.tif"));
   EXPECT_TRUE(warned(alpha.warnings, "transparency"));
   EXPECT_EQ(stored(alpha.field, 0, 1), 2.0F);
+}
+
+TEST(Tiff, ACloudOptimisedFileHasOverviewsAndEveryBit) {
+  const TempFolder folder;
+  std::vector<float> z;
+  for (int i = 0; i < 1100 * 700; ++i)
+    z.push_back(i % 1000 == 3 ? kNan : static_cast<float>(i % 977) * 0.37F);
+  Grid grid = gridOf(1100, 700);
+  grid.spacing_x = grid.spacing_y = 0.5;
+  grid.origin_x = 73410.25;
+  grid.lateral_unit = {"um", 1e-3};
+  grid.height_unit = {"nm", 1e-6};
+  const Version field = makeField(grid, z);
+  ExportOptions options;
+  options.cloud_optimised = true;
+  const auto written = save(field, folder.file("a.tif"), options);
+  ASSERT_TRUE(written) << written.error().line();
+  FETTLE_LOAD(again, folder.file("a.tif"));
+  EXPECT_EQ(contentHash(again.field), contentHash(field));
+  EXPECT_EQ(again.field.grid(), grid);
+  GDALRegister_GTiff();
+  GDALDatasetH dataset = GDALOpen(folder.file("a.tif").c_str(), GA_ReadOnly);
+  ASSERT_NE(dataset, nullptr);
+  EXPECT_STREQ(GDALGetMetadataItem(dataset, "LAYOUT", "IMAGE_STRUCTURE"), "COG");
+  GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
+  EXPECT_GE(GDALGetOverviewCount(band), 2);
+  // The mean of four samples; the one at row 0, column 3 is a hole and left out.
+  float mean = 0.0F;
+  EXPECT_EQ(GDALRasterIO(GDALGetOverview(band, 0), GF_Read, 1, 0, 1, 1, &mean, 1, 1, GDT_Float32, 0, 0),
+            CE_None);
+  double sum = 0.0;
+  int count = 0;
+  for (const auto& [r, c] : {std::pair{0, 2}, {0, 3}, {1, 2}, {1, 3}})
+    if (const float height = stored(field, r, c); !std::isnan(height)) {
+      sum += static_cast<double>(height);
+      ++count;
+    }
+  EXPECT_NEAR(static_cast<double>(mean), sum / count, 1e-3);
+  GDALClose(dataset);
+  // Nothing is left beside it.
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+  EXPECT_FALSE(save(field, folder.file("a.png"), options));
 }
 
 TEST(Tiff, NoFileIsWrittenBesideTheUsersFile) {
