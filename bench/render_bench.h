@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "render/live_picture.h"
 
 namespace fettle::bench {
 
@@ -16,6 +17,10 @@ struct RenderBenchOptions {
   int height = 800;
   double error_px = 1.0;
   std::int64_t vertex_budget = 65536;
+  std::vector<std::string> scenes;  ///< rows by name; none: all
+  /// How frames are drawn while the camera moves, beside the loop and for the targets. kFull: the rows that
+  /// are half as sharp are left out.
+  render::Sharpness in_motion = render::Sharpness::kHalf;
   double loop_seconds = 8.0;  ///< drawing beside a haptic loop at 1 kHz, at the first size; 0: not; .. 600
 };
 
@@ -35,6 +40,9 @@ struct RenderBenchRow {
   double upload_ms = 0.0;             ///< median a frame, on the calling thread
   double upload_ratio = 0.0;          ///< bytes moved over bytes of the changed rectangles; 0: none
   std::int64_t stalls = 0;
+  /// Of a row that is half as sharp, against the sharp picture of the same view, from twelve sides: largest
+  /// difference of a pixel's channels [codes, 0 .. 255], its mean, its maximum, share of pixels above 16.
+  double off_mean = 0.0, off_max = 0.0, off_share = 0.0;
   std::uint64_t hash = 0;  ///< of the last picture
 };
 
@@ -62,10 +70,11 @@ struct RenderBenchReport {
 };
 
 /// A machined, noisy part. At each size: an empty frame (ground and furniture, the yardstick); from all
-/// round, plain and while a brush of 31 x 31 samples works; from one side, the brush with frames drawn in
-/// parts and as a whole, and a stylus that moves over the surface. At the first size each render effect alone
-/// as well, beside the plain row, so that an effect left out can be seen to cost nothing. Errors: kInput for
-/// options out of range, kCancelled, those of LivePicture. Thread: any; blocks.
+/// round, plain, half as sharp ("moving", as the window does it) and while a brush of 31 x 31 samples works;
+/// from one side, the brush with frames drawn in parts and as a whole, and a stylus that moves over the
+/// surface. At the first size each render effect alone as well, beside the plain row, so that an effect left
+/// out can be seen to cost nothing. Errors: kInput for options out of range, kCancelled, those of
+/// LivePicture. Thread: any; blocks.
 [[nodiscard]] engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
                                                             engine::JobControl& job);
 

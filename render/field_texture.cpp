@@ -1,4 +1,5 @@
 #include "render/field_texture.h"
+#include "render/barrier.h"
 
 #include <algorithm>
 #include <bit>

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstring>
 
+#include "render/barrier.h"
 #include "render/pieces.h"
 
 namespace fettle::render {

@@ -1,4 +1,6 @@
 #include "render/live_frame.h"
+#include "render/barrier.h"
+#include "render/descriptor_writes.h"
 
 #include <algorithm>
 #include <cstring>
@@ -10,8 +12,6 @@ using ImageLayout = vk::ImageLayout;
 using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 constexpr auto kGraphics = vk::PipelineBindPoint::eGraphics;
-// As large as any device asks offsets into buffers to be multiples of (Vulkan 1.3, limits).
-constexpr vk::DeviceSize kAlign = 256;
 
 vk::Rect2D rectOf(const Rectangle& r) {
   return {
@@ -19,102 +19,37 @@ vk::Rect2D rectOf(const Rectangle& r) {
       {static_cast<std::uint32_t>(std::max(0, r.width)), static_cast<std::uint32_t>(std::max(0, r.height))}};
 }
 
-// What one frame's buffer is to hold, before it is known where.
-class Packing {
- public:
-  template <class T>
-  std::pair<vk::DeviceSize, vk::DeviceSize> add(std::span<const T> items) {
-    const vk::DeviceSize at = bytes_;
-    parts_.push_back({at, items.data(), items.size_bytes()});
-    // A buffer of no bytes cannot be bound.
-    const vk::DeviceSize size = std::max<vk::DeviceSize>(items.size_bytes(), sizeof(T));
-    bytes_ = (bytes_ + size + kAlign - 1) / kAlign * kAlign;
-    return {at, size};
-  }
-  [[nodiscard]] vk::DeviceSize bytes() const noexcept { return bytes_; }
-  void write(std::byte* out) const {
-    for (const Part& p : parts_)
-      if (p.bytes > 0) std::memcpy(out + p.at, p.data, p.bytes);
-  }
-
- private:
-  struct Part {
-    vk::DeviceSize at;
-    const void* data;
-    std::size_t bytes;
-  };
-  std::vector<Part> parts_;
-  vk::DeviceSize bytes_ = 0;
-};
-
-// Descriptor writes point at infos that must stay put until they are applied.
-class Writes {
- public:
-  void image(vk::DescriptorSet set, int binding, vk::ImageView view,
-             ImageLayout layout = ImageLayout::eShaderReadOnlyOptimal) {
-    images_.push_back({nullptr, view, layout});
-    add(set, binding, vk::DescriptorType::eSampledImage, &images_.back(), nullptr);
-  }
-  void buffer(vk::DescriptorSet set, int binding, vk::DescriptorType type, const Buffer& buffer,
-              std::pair<vk::DeviceSize, vk::DeviceSize> block) {
-    buffers_.push_back({*buffer.handle(), block.first, block.second});
-    add(set, binding, type, nullptr, &buffers_.back());
-  }
-  void texels(vk::DescriptorSet set, int binding, vk::BufferView view) {
-    views_.push_back(view);
-    add(set, binding, vk::DescriptorType::eUniformTexelBuffer, nullptr, nullptr, &views_.back());
-  }
-  void apply(const vk::raii::Device& device) const { device.updateDescriptorSets(writes_, {}); }
-
- private:
-  void add(vk::DescriptorSet set, int binding, vk::DescriptorType type, const vk::DescriptorImageInfo* image,
-           const vk::DescriptorBufferInfo* buffer, const vk::BufferView* view = nullptr) {
-    writes_.push_back({set, static_cast<std::uint32_t>(binding), 0, 1, type, image, buffer, view});
-  }
-  std::deque<vk::DescriptorImageInfo> images_;
-  std::deque<vk::DescriptorBufferInfo> buffers_;
-  std::deque<vk::BufferView> views_;
-  std::vector<vk::WriteDescriptorSet> writes_;
-};
-
 vk::AttachmentLoadOp loadOf(LiveFrame::Redraw redraw) {
   return redraw == LiveFrame::Redraw::kAll ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad;
 }
-
-// Several images change at once: a device may stop for each barrier.
-class Changes {
- public:
-  void add(vk::Image image, vk::ImageAspectFlags aspect, ImageLayout from, ImageLayout to,
-           vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access, vk::PipelineStageFlags2 after,
-           vk::AccessFlags2 after_access) {
-    vk::ImageMemoryBarrier2 step;
-    step.setSrcStageMask(before)
-        .setSrcAccessMask(before_access)
-        .setDstStageMask(after)
-        .setDstAccessMask(after_access)
-        .setOldLayout(from)
-        .setNewLayout(to)
-        .setSrcQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
-        .setDstQueueFamilyIndex(VK_QUEUE_FAMILY_IGNORED)
-        .setImage(image)
-        .setSubresourceRange({aspect, 0, 1, 0, VK_REMAINING_ARRAY_LAYERS});
-    steps_.push_back(step);
-  }
-  void record(const vk::raii::CommandBuffer& commands) const {
-    vk::DependencyInfo dependency;
-    dependency.setImageMemoryBarriers(steps_);
-    commands.pipelineBarrier2(dependency);
-  }
-
- private:
-  std::vector<vk::ImageMemoryBarrier2> steps_;
-};
 
 constexpr auto kColour = vk::ImageAspectFlagBits::eColor;
 constexpr auto kDepth = vk::ImageAspectFlagBits::eDepth;
 constexpr auto kDepthStages = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
 constexpr auto kDepthAccess = Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite;
 constexpr auto kColourAccess = Access::eColorAttachmentRead | Access::eColorAttachmentWrite;
+const Barriers::Access kColourWritten{ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
+                                      Access::eColorAttachmentWrite};
+const Barriers::Access kColourUsed{ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
+                                   kColourAccess};
+
+// The same bytes without a curve between them and amounts of light.
+vk::Format codesOf(vk::Format colour) {
+  switch (colour) {
+    case vk::Format::eR8G8B8A8Srgb:
+      return vk::Format::eR8G8B8A8Unorm;
+    case vk::Format::eB8G8R8A8Srgb:
+      return vk::Format::eB8G8R8A8Unorm;
+    default:
+      return colour;
+  }
+}
+
+// The pixels of half the size that a part of the picture has a share in.
+Rectangle halved(const Rectangle& r) {
+  const int x = r.x / 2, y = r.y / 2;
+  return {x, y, (r.x + r.width + 1) / 2 - x, (r.y + r.height + 1) / 2 - y};
+}
 
 vk::RenderingAttachmentInfo attachment(vk::ImageView view, ImageLayout layout, vk::AttachmentLoadOp load,
                                        vk::ClearValue clear = {}) {
@@ -171,7 +106,7 @@ LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views
     vk::DescriptorSetAllocateInfo wanted{*pool_};
     return std::move(vk::raii::DescriptorSets(context.device(), wanted.setSetLayouts(layout)).front());
   };
-  no_pages_ = Buffer(context, kAlign, vk::BufferUsageFlagBits::eUniformTexelBuffer);
+  no_pages_ = Buffer(context, Packing::kAlign, vk::BufferUsageFlagBits::eUniformTexelBuffer);
   no_pages_view_ = vk::raii::BufferView(context.device(),
                                         {{}, *no_pages_.handle(), vk::Format::eR32Uint, 0, VK_WHOLE_SIZE});
   for (Slot& slot : slots_) {
@@ -211,22 +146,35 @@ void LiveFrame::bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing
          Stage::eCopy, Access::eTransferWrite, Stage::eFragmentShader, Access::eShaderRead);
 }
 
-void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent) {
-  if (depth_.extent() == extent) return;
+void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness) {
+  const bool half = sharpness == Sharpness::kHalf;
+  if (whole_.extent == extent && (!half || half_.extent == extent)) return;
   // The frame in flight draws with the old ones.
   submissions.finish();
   using Usage = vk::ImageUsageFlagBits;
   const GpuImage::Kind kind = layers_ == 1 ? GpuImage::Kind::kPlane : GpuImage::Kind::kArray;
-  depth_ = GpuImage(context_, kDepthFormat, extent, layers_, kind,
-                    Usage::eDepthStencilAttachment | Usage::eSampled, kDepth);
-  base_ = GpuImage(context_, colour_, extent, layers_, kind, Usage::eColorAttachment | Usage::eTransferSrc,
-                   kColour);
+  // Of even size, so that one pixel of half_ is two of whole_ each way, and copied as code values.
+  const vk::Extent2D small{(extent.width + 1) / 2, (extent.height + 1) / 2};
+  const auto make = [&](Layers& layers, vk::Extent2D base) {
+    layers.extent = extent;
+    layers.depth = GpuImage(context_, kDepthFormat, &layers == &half_ ? base : extent, layers_, kind,
+                            Usage::eDepthStencilAttachment | Usage::eSampled, kDepth);
+    layers.base = GpuImage(context_, codesOf(colour_), base, layers_, kind,
+                           Usage::eColorAttachment | Usage::eTransferSrc | Usage::eSampled, kColour, colour_);
+  };
+  if (whole_.extent != extent) make(whole_, {2 * small.width, 2 * small.height});
+  half_.scale = 0.5F;
+  if (!half) return;
+  make(half_, small);
+  if (!enlarge_) enlarge_ = std::make_unique<Enlarge>(context_, vk::Format::eB8G8R8A8Unorm);
+  enlarge_->set(half_.base, whole_.base, layers_);
 }
 
-void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture) {
+void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+                     const Layers& layers) {
   Packing packing;
   struct Blocks {
-    std::pair<vk::DeviceSize, vk::DeviceSize> uniforms, patches, seams, walls, in_scene, on_top, pages;
+    Packing::Block uniforms, patches, seams, walls, in_scene, on_top, pages;
   };
   std::vector<Blocks> blocks;
   for (const LivePanel& p : panels)
@@ -241,7 +189,7 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
                             vk::BufferUsageFlagBits::eUniformTexelBuffer);
   packing.write(slot.arena.data());
 
-  Writes writes;
+  DescriptorWrites writes;
   constexpr auto kUniform = vk::DescriptorType::eUniformBuffer, kStorage = vk::DescriptorType::eStorageBuffer;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
@@ -262,7 +210,7 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
       writes.buffer(set, gpu::kBindPatches, kStorage, slot.arena, list);
       writes.texels(set, gpu::kBindPages, p.variant.by_need ? *sets.pages : *no_pages_view_);
     }
-    writes.image(*sets.surface, gpu::kBindDepth, depth_.view(), ImageLayout::eDepthReadOnlyOptimal);
+    writes.image(*sets.surface, gpu::kBindDepth, layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal);
     for (const auto& [set, list] :
          {std::pair{*sets.in_scene, blocks[i].in_scene}, {*sets.on_top, blocks[i].on_top}}) {
       writes.buffer(set, gpu::kBindPanel, kUniform, slot.arena, blocks[i].uniforms);
@@ -278,13 +226,15 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
   writes.apply(context_.device());
 }
 
+// Shaders count pixels of the whole picture, whatever the scale.
 void LiveFrame::beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel,
-                           const Rectangle& part) {
+                           const Rectangle& part, float scale) {
   const vk::Rect2D plot = rectOf(panel.plot);
-  commands.setViewport(0, vk::Viewport{static_cast<float>(plot.offset.x), static_cast<float>(plot.offset.y),
-                                       static_cast<float>(plot.extent.width),
-                                       static_cast<float>(plot.extent.height), 0.0F, 1.0F});
-  commands.setScissor(0, rectOf(part));
+  commands.setViewport(
+      0, vk::Viewport{scale * static_cast<float>(plot.offset.x), scale * static_cast<float>(plot.offset.y),
+                      scale * static_cast<float>(plot.extent.width),
+                      scale * static_cast<float>(plot.extent.height), 0.0F, 1.0F});
+  commands.setScissor(0, rectOf(scale == 1.0F ? part : halved(part)));
   const gpu::vec4 size{plot.extent.width, plot.extent.height, plot.offset.x, plot.offset.y};
   commands.pushConstants<gpu::vec4>(pipelines_.sceneLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
 }
@@ -298,12 +248,13 @@ void LiveFrame::instances(const vk::raii::CommandBuffer& commands, vk::Pipeline 
 }
 
 void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                            std::span<const LivePanel> panels, Redraw redraw) {
+                            std::span<const LivePanel> panels, const Layers& layers, Redraw redraw) {
   using Geometry = Pipelines::Geometry;
-  const vk::RenderingAttachmentInfo depth = attachment(depth_.view(), ImageLayout::eDepthAttachmentOptimal,
-                                                       loadOf(redraw), vk::ClearDepthStencilValue{1.0F, 0});
+  const vk::RenderingAttachmentInfo depth =
+      attachment(layers.depth.view(), ImageLayout::eDepthAttachmentOptimal, loadOf(redraw),
+                 vk::ClearDepthStencilValue{1.0F, 0});
   vk::RenderingInfo rendering;
-  rendering.setRenderArea({{0, 0}, depth_.extent()})
+  rendering.setRenderArea({{0, 0}, layers.depth.extent()})
       .setLayerCount(1)
       .setViewMask(view_mask_)
       .setPDepthAttachment(&depth);
@@ -312,7 +263,7 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
     const LivePanel& p = panels[i];
     const Rectangle& part = partOf(p, redraw);
     if (empty(part)) continue;
-    beginPanel(commands, p, part);
+    beginPanel(commands, p, part, layers.scale);
     if (redraw == Redraw::kParts) clear(commands, kDepth, vk::ClearDepthStencilValue{1.0F, 0}, part);
     const PanelSets& sets = slot.panels[i];
     const auto paged = pagedOf(p);
@@ -331,15 +282,15 @@ void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot&
 }
 
 void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                           std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
-                           const glm::vec3& ground, Redraw redraw) {
+                           std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
+                           Redraw redraw) {
   const vk::ClearColorValue nothing(std::array<float, 4>{ground.x, ground.y, ground.z, 1.0F});
   const vk::RenderingAttachmentInfo cleared =
-      attachment(base_.view(), ImageLayout::eColorAttachmentOptimal, loadOf(redraw), nothing);
+      attachment(layers.base.view(), ImageLayout::eColorAttachmentOptimal, loadOf(redraw), nothing);
   vk::RenderingInfo rendering;
   const vk::RenderingAttachmentInfo read =
-      attachment(depth_.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
-  rendering.setRenderArea({{0, 0}, base_.extent()})
+      attachment(layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
+  rendering.setRenderArea({{0, 0}, layers.depth.extent()})
       .setLayerCount(1)
       .setViewMask(view_mask_)
       .setColorAttachments(cleared)
@@ -348,47 +299,79 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const Rectangle& part = partOf(panels[i], redraw);
     if (empty(part)) continue;
-    beginPanel(commands, panels[i], part);
+    beginPanel(commands, panels[i], part, layers.scale);
     if (redraw == Redraw::kParts) clear(commands, kColour, nothing, part);
     instances(commands, pipelines_.shade(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
   }
   commands.endRendering();
 
-  Changes again;
-  again.add(depth_.image(), kDepth, ImageLayout::eDepthReadOnlyOptimal, ImageLayout::eDepthAttachmentOptimal,
-            kDepthStages | Stage::eFragmentShader, Access::eShaderRead, kDepthStages, kDepthAccess);
-  again.add(base_.image(), kColour, ImageLayout::eColorAttachmentOptimal,
-            ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
-            Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput, kColourAccess);
+  Barriers again;
+  again.add(layers.depth.image(), kDepth,
+            {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader, Access::eShaderRead},
+            {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
+  again.add(layers.base.image(), kColour, kColourWritten, kColourUsed);
   again.record(commands);
   const vk::RenderingAttachmentInfo colour =
-      attachment(base_.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+      attachment(layers.base.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
   const vk::RenderingAttachmentInfo depth =
-      attachment(depth_.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+      attachment(layers.depth.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
   rendering.setColorAttachments(colour).setPDepthAttachment(&depth);
   commands.beginRendering(rendering);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
     const Rectangle& part = partOf(p, redraw);
     if (empty(part)) continue;
-    beginPanel(commands, p, part);
+    beginPanel(commands, p, part, layers.scale);
     // The plate is seen through holes alone.
     if (p.variant.holes) instances(commands, pipelines_.floor(), *slot.panels[i].surface, 4, 0, 1);
     if (!p.choice->walls.empty())
       instances(commands, pipelines_.wall(pagedOf(p), holesOf(p)), *slot.panels[i].walls, gpu::kWallVertices,
                 0, p.choice->walls.size());
   }
+  // Else they are drawn over the copy, so that they move without the surface being shaded again.
+  if (layers.scale != 1.0F) recordLines(commands, slot, panels, Pipelines::Lines::kInScene, layers.scale);
   commands.endRendering();
-  if (furniture.empty()) return;
+}
 
-  Changes over;
-  over.add(base_.image(), kColour, ImageLayout::eColorAttachmentOptimal, ImageLayout::eColorAttachmentOptimal,
-           Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput,
-           kColourAccess);
+void LiveFrame::recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                            std::span<const LivePanel> panels, Pipelines::Lines depth, float scale) {
+  const bool in_scene = depth == Pipelines::Lines::kInScene;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const LivePanel& p = panels[i];
+    const std::vector<gpu::Line>& lines = in_scene ? p.in_scene : p.on_top;
+    if (empty(p.visible) || lines.empty()) continue;
+    beginPanel(commands, p, p.visible, scale);
+    instances(commands, pipelines_.lines(depth), in_scene ? *slot.panels[i].in_scene : *slot.panels[i].on_top,
+              4, 0, lines.size());
+  }
+}
+
+void LiveFrame::recordEnlarged(const vk::raii::CommandBuffer& commands) {
+  Barriers before;
+  before.add(half_.base.image(), kColour, kColourWritten,
+             {ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader, Access::eShaderRead});
+  before.add(whole_.base.image(), kColour, {ImageLayout::eUndefined, Stage::eCopy, Access::eTransferRead},
+             kColourUsed);
+  before.record(commands);
+  enlarge_->record(commands);
+}
+
+void LiveFrame::recordFurniture(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                                std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+                                Redraw redraw) {
+  if (furniture.empty()) return;
+  Barriers over;
+  over.add(whole_.base.image(), kColour, kColourWritten, kColourUsed);
   over.record(commands);
-  rendering.setPDepthAttachment(nullptr);
+  const vk::Extent2D extent = whole_.extent;
+  const vk::RenderingAttachmentInfo colour =
+      attachment(whole_.base.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  vk::RenderingInfo rendering;
+  rendering.setRenderArea({{0, 0}, extent})
+      .setLayerCount(1)
+      .setViewMask(view_mask_)
+      .setColorAttachments(colour);
   commands.beginRendering(rendering);
-  const vk::Extent2D extent = base_.extent();
   commands.setViewport(0, vk::Viewport{0.0F, 0.0F, static_cast<float>(extent.width),
                                        static_cast<float>(extent.height), 0.0F, 1.0F});
   commands.setScissor(0, vk::Rect2D{{0, 0}, extent});
@@ -408,15 +391,17 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
 }
 
 void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                             std::span<const LivePanel> panels, const LiveTarget& target) {
+                             std::span<const LivePanel> panels, const LiveTarget& target,
+                             Sharpness sharpness) {
+  const bool in_scene = sharpness == Sharpness::kFull;  // lines of that kind are still to be drawn
   vk::ImageCopy copy;
   copy.setSrcSubresource({kColour, 0, 0, layers_})
       .setDstSubresource({kColour, 0, 0, layers_})
       .setExtent({target.extent.width, target.extent.height, 1});
-  commands.copyImage(base_.image(), ImageLayout::eTransferSrcOptimal, target.image,
+  commands.copyImage(whole_.base.image(), ImageLayout::eTransferSrcOptimal, target.image,
                      ImageLayout::eTransferDstOptimal, copy);
-  const bool lines = std::any_of(panels.begin(), panels.end(), [](const LivePanel& p) {
-    return !empty(p.visible) && !(p.in_scene.empty() && p.on_top.empty());
+  const bool lines = std::any_of(panels.begin(), panels.end(), [&](const LivePanel& p) {
+    return !empty(p.visible) && ((in_scene && !p.in_scene.empty()) || !p.on_top.empty());
   });
   const bool copied = target.leaves_as == ImageLayout::eTransferSrcOptimal;
   const vk::PipelineStageFlags2 next = copied ? Stage::eCopy : Stage::eBottomOfPipe;
@@ -430,27 +415,23 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
          Stage::eCopy, Access::eTransferWrite, Stage::eColorAttachmentOutput, kColourAccess);
   const vk::RenderingAttachmentInfo colour =
       attachment(target.view, ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  // At half sharpness nothing is in it, and lines on top do not look.
   const vk::RenderingAttachmentInfo depth =
-      attachment(depth_.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+      attachment(whole_.depth.view(), ImageLayout::eDepthAttachmentOptimal,
+                 in_scene ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eDontCare);
   vk::RenderingInfo rendering;
   rendering.setRenderArea({{0, 0}, target.extent})
       .setLayerCount(1)
       .setViewMask(view_mask_)
       .setColorAttachments(colour);
   if (lines) {
+    if (!in_scene)
+      change(commands, whole_.depth, ImageLayout::eUndefined, ImageLayout::eDepthAttachmentOptimal,
+             kDepthStages, kDepthAccess, kDepthStages, kDepthAccess);
     rendering.setPDepthAttachment(&depth);
     commands.beginRendering(rendering);
-    for (std::size_t i = 0; i < panels.size(); ++i) {
-      const LivePanel& p = panels[i];
-      if (empty(p.visible)) continue;
-      beginPanel(commands, p, p.visible);
-      if (!p.in_scene.empty())
-        instances(commands, pipelines_.lines(Pipelines::Lines::kInScene), *slot.panels[i].in_scene, 4, 0,
-                  p.in_scene.size());
-      if (!p.on_top.empty())
-        instances(commands, pipelines_.lines(Pipelines::Lines::kOnTop), *slot.panels[i].on_top, 4, 0,
-                  p.on_top.size());
-    }
+    if (in_scene) recordLines(commands, slot, panels, Pipelines::Lines::kInScene, 1.0F);
+    recordLines(commands, slot, panels, Pipelines::Lines::kOnTop, 1.0F);
     commands.endRendering();
   }
   if (target.over) {
@@ -469,44 +450,51 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
 
 void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
                        const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
-                       const LiveTarget& target, Redraw redraw) {
+                       const LiveTarget& target, Redraw redraw, Sharpness sharpness) {
   const vk::raii::CommandBuffer& commands = submissions.commands();
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
   if (!furniture.empty()) bringGlyphs(commands, staging, submissions.next(), glyphs);
-  makeLayers(submissions, target.extent);
-  fill(slot, panels, furniture);
+  makeLayers(submissions, target.extent, sharpness);
+  const bool half = sharpness == Sharpness::kHalf;
+  const Layers& layers = half ? half_ : whole_;
+  fill(slot, panels, furniture, layers);
 
   const bool all = redraw == Redraw::kAll;
   const bool anew =
       all || std::any_of(panels.begin(), panels.end(), [](const LivePanel& p) { return !empty(p.redraw); });
-  Changes compose;
+  const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};
+  const Barriers::Access enlarged{ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader,
+                                  Access::eShaderRead};
+  Barriers compose;
   if (anew) {
     // The frame before may still draw lines against this depth, and copy out of that base.
-    Changes begin;
-    begin.add(depth_.image(), kDepth, all ? ImageLayout::eUndefined : ImageLayout::eDepthAttachmentOptimal,
-              ImageLayout::eDepthAttachmentOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite,
-              kDepthStages, kDepthAccess);
+    Barriers begin;
+    begin.add(layers.depth.image(), kDepth,
+              {all ? ImageLayout::eUndefined : ImageLayout::eDepthAttachmentOptimal, kDepthStages,
+               Access::eDepthStencilAttachmentWrite},
+              {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
     begin.record(commands);
-    recordDepth(commands, slot, panels, redraw);
-    Changes shade;
-    shade.add(depth_.image(), kDepth, ImageLayout::eDepthAttachmentOptimal,
-              ImageLayout::eDepthReadOnlyOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite,
-              kDepthStages | Stage::eFragmentShader,
-              Access::eDepthStencilAttachmentRead | Access::eShaderRead);
-    shade.add(base_.image(), kColour, all ? ImageLayout::eUndefined : ImageLayout::eTransferSrcOptimal,
-              ImageLayout::eColorAttachmentOptimal, Stage::eCopy, Access::eTransferRead,
-              Stage::eColorAttachmentOutput, kColourAccess);
+    recordDepth(commands, slot, panels, layers, redraw);
+    Barriers shade;
+    shade.add(layers.depth.image(), kDepth,
+              {ImageLayout::eDepthAttachmentOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite},
+              {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
+               Access::eDepthStencilAttachmentRead | Access::eShaderRead});
+    Barriers::Access before = half ? enlarged : copied;
+    if (all) before.layout = ImageLayout::eUndefined;
+    shade.add(layers.base.image(), kColour, before, kColourUsed);
     shade.record(commands);
-    recordBase(commands, slot, panels, furniture, ground, redraw);
-    compose.add(base_.image(), kColour, ImageLayout::eColorAttachmentOptimal,
-                ImageLayout::eTransferSrcOptimal, Stage::eColorAttachmentOutput,
-                Access::eColorAttachmentWrite, Stage::eCopy, Access::eTransferRead);
+    recordBase(commands, slot, panels, ground, layers, redraw);
+    if (half) recordEnlarged(commands);
+    recordFurniture(commands, slot, panels, furniture, redraw);
+    compose.add(whole_.base.image(), kColour, kColourWritten, copied);
   }
   // The acquired image is waited for at these stages: the change of layout comes after it.
-  compose.add(target.image, kColour, ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal,
-              Stage::eColorAttachmentOutput | Stage::eCopy, {}, Stage::eCopy, Access::eTransferWrite);
+  compose.add(target.image, kColour,
+              {ImageLayout::eUndefined, Stage::eColorAttachmentOutput | Stage::eCopy, {}},
+              {ImageLayout::eTransferDstOptimal, Stage::eCopy, Access::eTransferWrite});
   compose.record(commands);
-  recordTarget(commands, slot, panels, target);
+  recordTarget(commands, slot, panels, target, sharpness);
 }
 
 }  // namespace fettle::render

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "render/enlarge.h"
 #include "render/glyphs.h"
 #include "render/live_target.h"
 #include "render/live_texture.h"
@@ -31,12 +33,15 @@ struct LivePanel {
 
 /// Records a frame in three layers, each of which is left alone while nothing in it changes:
 ///
-///   depth_   of the surface, its seams, rim walls and plate: geometry, drawn without a colour
-///   base_    the surface shaded from that depth, once a pixel (shaders/shade.frag); then what is shaded
+///   depth    of the surface, its seams, rim walls and plate: geometry, drawn without a colour
+///   base     the surface shaded from that depth, once a pixel (shaders/shade.frag); then what is shaded
 ///            triangle by triangle, plate and walls; then the furniture
-///   target   a copy of base_; then overlay lines; then whatever the target wants over it
+///   target   a copy of base; then overlay lines; then whatever the target wants over it
 ///
-/// A second eye (stereo) is a second layer of depth_ and base_ and a second element of
+/// At Sharpness::kHalf depth, shading and the lines hidden by the surface go to layers of half the size each
+/// way; base is those enlarged, then the furniture as ever.
+///
+/// A second eye (stereo) is a second layer of depth and base and a second element of
 /// PanelUniforms::views; the passes are the same, drawn with a view mask.
 ///
 /// What a frame in flight reads is kept until its turn comes round.
@@ -49,19 +54,21 @@ class LiveFrame {
   /// kBoth: targets have two layers, one for each eye of PanelUniforms::views.
   LiveFrame(Context& context, vk::Format colour, Pipelines::Views views = Pipelines::Views::kOne);
 
-  /// Whether the layers are of this size, and whether furniture would be drawn with these very letters.
-  [[nodiscard]] bool holds(vk::Extent2D extent) const noexcept { return depth_.extent() == extent; }
+  /// Whether the layers hold a sharp picture of this size, and whether furniture would be drawn with these
+  /// very letters.
+  [[nodiscard]] bool holds(vk::Extent2D extent) const noexcept { return whole_.extent == extent; }
   [[nodiscard]] bool holds(const Glyphs& glyphs) const noexcept {
     return glyph_generation_ == glyphs.generation();
   }
   enum class Redraw {
     kAll,    ///< every layer, whatever LivePanel::redraw says
-    kParts,  ///< of depth_ and base_ what the panels ask for; the rest stays as it is
+    kParts,  ///< of depth and base what the panels ask for; the rest stays as it is. kFull alone, after a
+             ///< frame of kFull
   };
   /// Records into submissions.commands(). `staging` carries new letters.
   void record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
               const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
-              const LiveTarget& target, Redraw redraw);
+              const LiveTarget& target, Redraw redraw, Sharpness sharpness);
 
   [[nodiscard]] const Pipelines& pipelines() const noexcept { return pipelines_; }
 
@@ -76,20 +83,34 @@ class LiveFrame {
     std::array<PanelSets, kMostPanels> panels;
     vk::raii::DescriptorSet picture = nullptr;
   };
+  // What the surface is drawn to.
+  struct Layers {
+    vk::Extent2D extent;  // of the picture they are for
+    float scale = 1.0F;   // their pixels a pixel of that
+    GpuImage depth, base;
+  };
   void bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging, std::uint64_t submission,
                    const Glyphs& glyphs);
-  void makeLayers(Submissions& submissions, vk::Extent2D extent);
-  void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture);
-  void beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel, const Rectangle& part);
+  void makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness);
+  void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+            const Layers& layers);
+  void beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel, const Rectangle& part,
+                  float scale = 1.0F);
   void instances(const vk::raii::CommandBuffer& commands, vk::Pipeline pipeline, vk::DescriptorSet set,
                  std::uint32_t vertices, std::size_t first, std::size_t count) const;
   void recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                   std::span<const LivePanel> panels, Redraw redraw);
+                   std::span<const LivePanel> panels, const Layers& layers, Redraw redraw);
   void recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                  std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
-                  const glm::vec3& ground, Redraw redraw);
+                  std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
+                  Redraw redraw);
+  void recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                   std::span<const LivePanel> panels, Pipelines::Lines depth, float scale);
+  void recordFurniture(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                       std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+                       Redraw redraw);
+  void recordEnlarged(const vk::raii::CommandBuffer& commands);
   void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                    std::span<const LivePanel> panels, const LiveTarget& target);
+                    std::span<const LivePanel> panels, const LiveTarget& target, Sharpness sharpness);
 
   Context& context_;
   vk::Format colour_;
@@ -100,7 +121,8 @@ class LiveFrame {
   std::array<Slot, Submissions::kInFlight> slots_;
   Buffer no_pages_;  // what is bound where the shader does not look
   vk::raii::BufferView no_pages_view_ = nullptr;
-  GpuImage depth_, base_;
+  Layers whole_, half_;  // half_: made when first asked for
+  std::unique_ptr<Enlarge> enlarge_;
   GpuImage glyphs_;
   std::uint64_t glyph_generation_ = 0;
 };

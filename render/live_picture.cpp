@@ -212,7 +212,7 @@ struct LivePicture::Impl {
   engine::Result<PicturePlan> plan(const FrameInput& input);
   engine::Result<FrameStatistics> draw(const FrameInput& input, const LiveTarget& target);
   void drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats, PicturePlan plan);
-  void recordStereo(const Stereo& stereo, std::vector<LivePanel>& panels,
+  void recordStereo(const Stereo& stereo, Sharpness sharpness, std::vector<LivePanel>& panels,
                     const std::vector<gpu::Quad>& furniture, const glm::vec3& ground,
                     const LiveTarget& target);
   void bringPages(PageDemand& demand, std::int64_t bytes_left, FrameStatistics& stats);
@@ -437,9 +437,9 @@ void LivePicture::Impl::bringPages(PageDemand& demand, std::int64_t bytes_left, 
   r.pages_beyond = outcome.beyond;
 }
 
-void LivePicture::Impl::recordStereo(const Stereo& stereo, std::vector<LivePanel>& panels,
-                                     const std::vector<gpu::Quad>& furniture, const glm::vec3& ground,
-                                     const LiveTarget& target) {
+void LivePicture::Impl::recordStereo(const Stereo& stereo, Sharpness sharpness,
+                                     std::vector<LivePanel>& panels, const std::vector<gpu::Quad>& furniture,
+                                     const glm::vec3& ground, const LiveTarget& target) {
   const bool one_pass = stereo.passes == Stereo::Passes::kBest  ? context.multiviewWorks()
                         : stereo.passes == Stereo::Passes::kOne ? context.multiview()
                                                                 : false;
@@ -449,14 +449,14 @@ void LivePicture::Impl::recordStereo(const Stereo& stereo, std::vector<LivePanel
   if (one_pass) {
     if (!both_eyes) both_eyes = std::make_unique<LiveFrame>(context, colour_format, Pipelines::Views::kBoth);
     both_eyes->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft),
-                      LiveFrame::Redraw::kAll);
+                      LiveFrame::Redraw::kAll, sharpness);
   } else {
     frame.record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft),
-                 LiveFrame::Redraw::kAll);
+                 LiveFrame::Redraw::kAll, sharpness);
     for (LivePanel& panel : panels) panel.uniforms.views[0] = panel.uniforms.views[1];
     if (!right_eye) right_eye = std::make_unique<LiveFrame>(context, colour_format);
     right_eye->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kRight),
-                      LiveFrame::Redraw::kAll);
+                      LiveFrame::Redraw::kAll, sharpness);
   }
   compose->record(submissions.commands(), stereo.mode, target);
 }
@@ -543,6 +543,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   PageDemand demand;
   Seen now;
   const bool stereo = input.stereo.mode != StereoMode::kOff;
+  const bool half = input.sharpness == Sharpness::kHalf;
   now.stereo = input.stereo.mode;
   now.eye_width = input.view.width;
   const double window = !stereo                              ? 1.0
@@ -602,7 +603,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
       u.paging.w = std::max(
           1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::ldexp(std::min(px.x, px.y), shift)))));
     }
-    u.seam.x = kSeamPx;
+    u.seam.x = half ? 2.0F * kSeamPx : kSeamPx;
     u.views[0] = viewOf(q.camera, p.placing, p.plot);
     if (q.other_eye) u.views[1] = viewOf(*q.other_eye, p.placing, p.plot);
     u.ground = glm::vec4(plan.palette.ground, 1.0F);
@@ -676,7 +677,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   std::optional<Drawn> before;
   before.swap(drawn);  // until this frame is handed over, nobody knows what the layers hold
   std::vector<PatchChoice> parts;
-  const bool some = !stereo && input.redraw == FrameInput::Redraw::kChanged && before &&
+  const bool some = !stereo && !half && input.redraw == FrameInput::Redraw::kChanged && before &&
                     stats.upload.pending_tiles == 0 && frame.holds(target.extent) &&
                     (furniture.empty() || frame.holds(glyphs)) && onlyFieldsDiffer(*before, layers);
   if (some) parts = cutToDamage(*before, layers, questions, panels);
@@ -689,14 +690,14 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   stats.select_ms = msSince(select_start);
 
   if (stereo)
-    recordStereo(input.stereo, panels, furniture, plan.palette.ground, target);
+    recordStereo(input.stereo, input.sharpness, panels, furniture, plan.palette.ground, target);
   else
     frame.record(submissions, staging, panels, furniture, plan.palette.ground, glyphs, target,
-                 some ? LiveFrame::Redraw::kParts : LiveFrame::Redraw::kAll);
+                 some ? LiveFrame::Redraw::kParts : LiveFrame::Redraw::kAll, input.sharpness);
   submissions.submit({target.free,
                       vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
                       target.done});
-  if (!stereo && stats.upload.pending_tiles == 0) drawn = std::move(layers);
+  if (!stereo && !half && stats.upload.pending_tiles == 0) drawn = std::move(layers);
   stats.device_ms = submissions.lastMs();
   stats.range = plan.range;
   stats.vertical_exaggeration = plan.exaggeration;

@@ -71,6 +71,14 @@ struct Shown {
   MarksOverlay marks = MarksOverlay::kHide;
 };
 
+/// How finely the surface is drawn.
+enum class Sharpness {
+  kFull,  ///< every pixel
+  kHalf,  ///< every second pixel each way, in between interpolated: while the camera moves. Furniture and
+          ///< overlay lines on top are as sharp as ever, and the next frame of kFull is the same to the bit
+          ///< as if this one had not been
+};
+
 /// What may change every frame without anything being uploaded.
 struct FrameInput {
   View view;  ///< width and height are the target's
@@ -94,6 +102,7 @@ struct FrameInput {
   Stereo stereo;
   /// Screen error wanted [px], > 0. What is reached is in FrameStatistics::bound_px.
   double error_px = 1.0;
+  Sharpness sharpness = Sharpness::kFull;
   /// Whether what cannot have changed since the last frame is left as it is: the picture is the same either
   /// way, to the bit.
   enum class Redraw { kChanged, kAll } redraw = Redraw::kChanged;

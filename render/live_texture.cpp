@@ -1,4 +1,5 @@
 #include "render/live_texture.h"
+#include "render/barrier.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "render/context.h"
@@ -33,10 +34,11 @@ template <class T>
 class GpuImage {
  public:
   GpuImage() = default;
-  /// One mip level; a 2D image, or an array of `layers` of them when `array` asks for a view as such. Throws.
+  /// One mip level; a 2D image, or an array of `layers` of them when `array` asks for a view as such.
+  /// `viewed_as`: the view's format when it is another of the same size. Throws.
   enum class Kind { kPlane, kArray };
   GpuImage(const Context& context, vk::Format format, vk::Extent2D extent, std::uint32_t layers, Kind kind,
-           vk::ImageUsageFlags usage, vk::ImageAspectFlags aspect);
+           vk::ImageUsageFlags usage, vk::ImageAspectFlags aspect, std::optional<vk::Format> viewed_as = {});
   [[nodiscard]] vk::Image image() const noexcept { return *image_; }
   [[nodiscard]] vk::ImageView view() const noexcept { return *view_; }
   [[nodiscard]] vk::Extent2D extent() const noexcept { return extent_; }
@@ -53,15 +55,6 @@ class GpuImage {
   std::uint32_t layers_ = 1;
   vk::ImageAspectFlags aspect_;
 };
-
-/// A barrier on all of an image: what came before has written, what comes after may read or write. The second
-/// form is for colour images that others own, such as a swap chain's.
-void change(const vk::raii::CommandBuffer& commands, const GpuImage& image, vk::ImageLayout from,
-            vk::ImageLayout to, vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access,
-            vk::PipelineStageFlags2 after, vk::AccessFlags2 after_access);
-void change(const vk::raii::CommandBuffer& commands, vk::Image image, vk::ImageLayout from,
-            vk::ImageLayout to, vk::PipelineStageFlags2 before, vk::AccessFlags2 before_access,
-            vk::PipelineStageFlags2 after, vk::AccessFlags2 after_access);
 
 template <class T>
 Buffer bufferOf(const Context& context, std::span<const T> items, vk::BufferUsageFlags usage) {

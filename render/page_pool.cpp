@@ -1,4 +1,5 @@
 #include "render/page_pool.h"
+#include "render/barrier.h"
 
 #include <algorithm>
 

@@ -38,6 +38,7 @@ struct View {
   /// Factor on heights in the picture (never on the numbers); > 0, or 0 to choose a round factor that makes
   /// the relief readable. The factor used is written into the picture unless it is 1.
   double vertical_exaggeration = 0.0;
+  friend bool operator==(const View&, const View&) = default;
 };
 
 /// Colours of heights or deviations. Every map states its source in render/colour_map.h.

@@ -1,4 +1,6 @@
 #include "render/stereo_compose.h"
+#include "render/barrier.h"
+#include "render/picture_pipeline.h"
 
 #include <algorithm>
 
@@ -109,9 +111,7 @@ void StereoCompose::record(const vk::raii::CommandBuffer& commands, StereoMode m
   vk::RenderingInfo rendering;
   rendering.setRenderArea({{0, 0}, target.extent}).setLayerCount(1).setColorAttachments(colour);
   commands.beginRendering(rendering);
-  commands.setViewport(0, vk::Viewport{0.0F, 0.0F, static_cast<float>(target.extent.width),
-                                       static_cast<float>(target.extent.height), 0.0F, 1.0F});
-  commands.setScissor(0, vk::Rect2D{{0, 0}, target.extent});
+  coverAll(commands, target.extent);
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipeline(mode));
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, *layout_, 0, *set_, {});
   commands.draw(3, 1, 0, 0);
@@ -127,47 +127,16 @@ void StereoCompose::record(const vk::raii::CommandBuffer& commands, StereoMode m
 vk::Pipeline StereoCompose::pipeline(StereoMode mode) {
   const auto found = pipelines_.find(mode);
   if (found != pipelines_.end()) return *found->second;
-  const auto module = [&](std::span<const std::uint32_t> words) {
-    vk::ShaderModuleCreateInfo info;
-    return vk::raii::ShaderModule(context_.device(),
-                                  info.setCodeSize(words.size_bytes()).setPCode(words.data()));
-  };
-  const vk::raii::ShaderModule vertex = module(stereo_vert_spirv), fragment = module(stereo_frag_spirv);
   const vk::Bool32 anaglyph = mode == StereoMode::kAnaglyph;
   const vk::SpecializationMapEntry entry{gpu::kSpecAnaglyph, 0, sizeof(anaglyph)};
   const vk::SpecializationInfo constants{1, &entry, sizeof(anaglyph), &anaglyph};
-  const std::array stages{
-      vk::PipelineShaderStageCreateInfo{{}, vk::ShaderStageFlagBits::eVertex, *vertex, "main"},
-      vk::PipelineShaderStageCreateInfo{
-          {}, vk::ShaderStageFlagBits::eFragment, *fragment, "main", &constants}};
-  const vk::PipelineVertexInputStateCreateInfo no_vertices;
-  const vk::PipelineInputAssemblyStateCreateInfo assembly{{}, vk::PrimitiveTopology::eTriangleList};
-  const vk::PipelineViewportStateCreateInfo viewport{{}, 1, nullptr, 1, nullptr};
-  vk::PipelineRasterizationStateCreateInfo raster;
-  raster.setCullMode(vk::CullModeFlagBits::eNone).setLineWidth(1.0F);
-  const vk::PipelineMultisampleStateCreateInfo one_sample{{}, vk::SampleCountFlagBits::e1};
-  vk::PipelineColorBlendAttachmentState write;
-  using Channel = vk::ColorComponentFlagBits;
-  write.setColorWriteMask(Channel::eR | Channel::eG | Channel::eB | Channel::eA);
-  vk::PipelineColorBlendStateCreateInfo blending;
-  blending.setAttachments(write);
-  const std::array dynamic_states{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
-  vk::PipelineDynamicStateCreateInfo dynamic;
-  dynamic.setDynamicStates(dynamic_states);
-  vk::PipelineRenderingCreateInfo rendering;
-  rendering.setColorAttachmentFormats(colour_);
-  vk::GraphicsPipelineCreateInfo info;
-  info.setStages(stages)
-      .setPVertexInputState(&no_vertices)
-      .setPInputAssemblyState(&assembly)
-      .setPViewportState(&viewport)
-      .setPRasterizationState(&raster)
-      .setPMultisampleState(&one_sample)
-      .setPColorBlendState(&blending)
-      .setPDynamicState(&dynamic)
-      .setLayout(*layout_)
-      .setPNext(&rendering);
-  return *pipelines_.emplace(mode, vk::raii::Pipeline(context_.device(), nullptr, info)).first->second;
+  return *pipelines_
+              .emplace(mode, makePipeline(context_, {.vertex = stereo_vert_spirv,
+                                                     .fragment = stereo_frag_spirv,
+                                                     .colour = colour_,
+                                                     .layout = *layout_,
+                                                     .constants = &constants}))
+              .first->second;
 }
 
 }  // namespace fettle::render

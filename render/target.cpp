@@ -1,4 +1,5 @@
 #include "render/target.h"
+#include "render/barrier.h"
 
 namespace fettle::render {
 namespace {

@@ -1,4 +1,5 @@
 #include "render/ui_layer.h"
+#include "render/barrier.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,5 @@
 #include "render/window.h"
+#include "render/barrier.h"
 
 #include <algorithm>
 #include <atomic>

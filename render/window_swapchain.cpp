@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/barrier.h"
 #include "render/memory.h"
 
 namespace fettle::render {

@@ -209,6 +209,9 @@ engine::Result<Report> picture(const bench::RenderBenchOptions& options, engine:
                               {"bytes", row.bytes},
                               {"upload_ms", row.upload_ms},
                               {"upload_ratio", row.upload_ratio},
+                              {"off_mean", row.off_mean},
+                              {"off_max", row.off_max},
+                              {"off_share", row.off_share},
                               {"stalls", row.stalls},
                               {"hash", fmt::format("{:016x}", row.hash)}});
   if (result->loop.ran)
@@ -240,6 +243,14 @@ void printPicture(const Report& report) {
         row["redrawn"].get<double>(), row["edit_p50_ms"].get<double>(), row["edit_p99_ms"].get<double>(),
         row["tiles"].get<std::int64_t>(), row["bytes"].get<std::int64_t>(), row["upload_ratio"].get<double>(),
         row["hash"].get<std::string>());
+  for (const Report& row : report["rows"])
+    if (row["off_max"].get<double>() > 0.0)
+      fmt::print(
+          "\n{}, {:.1f}M: off the sharp picture by {:.2f} codes in the mean, {:.0f} at most; {:.2f} % of the "
+          "pixels by more than 16",
+          row["name"].get<std::string>(), row["samples"].get<double>() / 1e6, row["off_mean"].get<double>(),
+          row["off_max"].get<double>(), 1e2 * row["off_share"].get<double>());
+  fmt::print("\n");
   if (report.contains("beside_loop")) {
     const Report& loop = report["beside_loop"];
     fmt::print(
@@ -314,6 +325,10 @@ void addBench(CLI::App& root, Chosen& chosen) {
   drawing
       ->add_option("--loop", render_options->loop_seconds, "Seconds of drawing beside a haptic loop; 0: none")
       ->capture_default_str();
+  drawing->add_option("--scene", render_options->scenes, "Rows to measure, by name; none: all");
+  drawing->add_flag_callback(
+      "--sharp", [render_options] { render_options->in_motion = render::Sharpness::kFull; },
+      "Draw every pixel while the camera moves, too");
   drawing->add_option("--frames", render_options->frames, "Frames of each row")->capture_default_str();
   drawing->add_option("--error", render_options->error_px, "Screen error wanted, px")->capture_default_str();
   drawing->add_option("--vertices", render_options->vertex_budget, "Vertices a frame at most")

@@ -64,6 +64,8 @@ void addView(CLI::App& root, Chosen& chosen) {
       ->add_option("--ui-scale", options->view.window.scale,
                    "Factor on the size of text and panels, 0.5 to 4; without it, what the display says")
       ->check(within(0.5, 4.0));
+  command->add_flag("--sharp-motion", options->view.sharp_motion,
+                    "Draw every pixel while the view moves, too; without it, every second one each way");
   command->add_option("--seconds", options->view.seconds, "End after so long")
       ->check(CLI::Range(1e-3, 86400.0));
   command

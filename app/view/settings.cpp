@@ -50,6 +50,7 @@ std::string Settings::text() const {
               {"light_azimuth", d.light_azimuth_deg},
               {"light_elevation", d.light_elevation_deg},
               {"furniture", d.furniture},
+              {"half_in_motion", d.half_in_motion},
               {"mouse", kHabits[static_cast<std::size_t>(habits)]},
               {"side_panel", side_panel},
               {"side_width", side_width},
@@ -77,6 +78,7 @@ Settings Settings::load(const std::string& path) {
   take(file, "light_azimuth", 0.0F, 360.0F, d.light_azimuth_deg);
   take(file, "light_elevation", 5.0F, 90.0F, d.light_elevation_deg);
   take(file, "furniture", d.furniture);
+  take(file, "half_in_motion", d.half_in_motion);
   take(file, "mouse", kHabits, settings.habits);
   take(file, "side_panel", settings.side_panel);
   take(file, "side_width", 0.0F, 4096.0F, settings.side_width);

@@ -22,6 +22,7 @@ struct Display {
   float light_azimuth_deg = 135.0F;
   float light_elevation_deg = 45.0F;
   bool furniture = true;
+  bool half_in_motion = true;  ///< the picture is half as sharp while the view moves (CameraMotion)
   // Not remembered: whoever comes next may have no glasses on.
   render::StereoMode stereo = render::StereoMode::kOff;
   float eye_separation = 1.0F / 30.0F;

@@ -91,7 +91,8 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
 }
 
 bool Workstation::active() const {
-  return stale_ || stylus_held_ || drag_ != Drag::kNone || figures_.upload.pending_tiles > 0;
+  return stale_ || camera_motion_.owesSharp() || stylus_held_ || drag_ != Drag::kNone ||
+         figures_.upload.pending_tiles > 0;
 }
 
 // What a person chose is written when it has changed, at most once in some seconds.
@@ -235,6 +236,10 @@ void Workstation::drawPicture() {
     shown_ = std::move(shown);
     stale_ = true;
   }
+  const bool owed = camera_motion_.owesSharp();
+  const render::Sharpness sharpness =
+      camera_motion_.see(view_, drag_ != Drag::kNone, CameraMotion::Clock::now());
+  if (owed && !camera_motion_.owesSharp()) stale_ = true;
   if (!stale_ && figures_.upload.pending_tiles == 0) return;
   stale_ = false;
 
@@ -249,6 +254,7 @@ void Workstation::drawPicture() {
   input.stereo.mode = display_.stereo;
   input.stereo.eye_separation = static_cast<double>(display_.eye_separation);
   input.theme = display_.theme;
+  if (display_.half_in_motion && !options_.sharp_motion) input.sharpness = sharpness;
   input.decoration = display_.furniture ? render::Decoration::kFull : render::Decoration::kNone;
   input.light_azimuth_deg = display_.light_azimuth_deg;
   input.light_elevation_deg = display_.light_elevation_deg;

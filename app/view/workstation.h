@@ -9,6 +9,7 @@
 #include "app/command.h"
 #include "app/scan_options.h"
 #include "app/view/background.h"
+#include "app/view/camera_motion.h"
 #include "app/view/edge_tool.h"
 #include "app/view/event_log.h"
 #include "app/view/filter_preview.h"
@@ -35,7 +36,8 @@ struct ViewOptions {
   ScanOptions reading;
   render::WindowOptions window;
   double seconds = 0.0;  ///< ends after so long; 0 = not by itself
-  std::string events;    ///< where to tell what happens (EventLog); empty: nowhere
+  bool sharp_motion = false;  ///< whatever the settings say, no Sharpness::kHalf while the view moves
+  std::string events;         ///< where to tell what happens (EventLog); empty: nowhere
 };
 
 /// `fettle view`: one window, one field, one loop. The main thread goes round: take input, take in what loop
@@ -195,6 +197,7 @@ class Workstation {
 
   // The picture.
   render::View view_;
+  CameraMotion camera_motion_;
   Display display_;
   Habits habits_ = Habits::kBlender;
   Settings settings_, saved_settings_;  // panels; as the file has them

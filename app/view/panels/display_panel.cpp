@@ -18,6 +18,9 @@ void Workstation::displayPanel() {
   bool light = display_.theme == render::Theme::kLight;
   if (ImGui::Checkbox("light background", &light)) act(Action::kTheme);
   tip(Action::kTheme);
+  ImGui::Checkbox("half as sharp while it moves", &display_.half_in_motion);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip("While the view moves, every second pixel is drawn each way, so that it follows the hand.");
   beginFields();
   const char* maps[] = {"automatic", "viridis", "cividis", "grey", "diverging"};
   int map = static_cast<int>(display_.map);

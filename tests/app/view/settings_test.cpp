@@ -18,6 +18,7 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.display.map = render::ColourMap::kCividis;
   settings.display.theme = render::Theme::kLight;
   settings.display.light_azimuth_deg = 20.0F;
+  settings.display.half_in_motion = false;
   settings.habits = Habits::kMeshLab;
   settings.side_panel = false;
   settings.side_width = 401.0F;
