@@ -1,6 +1,6 @@
 #include "render/ui_layer.h"
-#include "render/barrier.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -8,7 +8,9 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
+#include <imgui_internal.h>  // windows and their rectangles
 
+#include "render/barrier.h"
 #include "render/font_data.h"
 
 namespace fettle::render {
@@ -155,6 +157,18 @@ void UiLayer::beginFrame() {
 
 void UiLayer::leavePanels() noexcept {
   if (std::exchange(entered_, false)) ImGui::SetWindowFocus(nullptr);
+}
+
+bool UiLayer::panelsHaveMouse(double x, double y) const noexcept {
+  // What was pressed in a panel stays its own wherever it is dragged.
+  if (ImGui::IsAnyMouseDown() && ImGui::GetIO().WantCaptureMouse) return true;
+  if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel)) return true;
+  const ImVec2 at(static_cast<float>(x), static_cast<float>(y));
+  const ImVector<ImGuiWindow*>& windows = ImGui::GetCurrentContext()->Windows;
+  return std::any_of(windows.begin(), windows.end(), [&](const ImGuiWindow* window) {
+    return window->Active && !window->Hidden && (window->Flags & ImGuiWindowFlags_NoMouseInputs) == 0 &&
+           window->OuterRectClipped.Contains(at);
+  });
 }
 
 void UiLayer::endFrame() {

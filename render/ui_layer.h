@@ -35,6 +35,9 @@ class UiLayer {
   [[nodiscard]] bool entered() const noexcept { return entered_; }
   void enterPanels() noexcept { entered_ = true; }
   void leavePanels() noexcept;
+  /// Whether a panel, or a menu that waits for a click outside it, has the mouse at this place of the window
+  /// (GLFW's coordinates): where the cursor is now, not where it was when the last frame began.
+  [[nodiscard]] bool panelsHaveMouse(double x, double y) const noexcept;
   /// Ends the frame's panels and keeps what they draw.
   void endFrame();
 

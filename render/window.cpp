@@ -1,5 +1,4 @@
 #include "render/window.h"
-#include "render/barrier.h"
 
 #include <algorithm>
 #include <atomic>
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "render/barrier.h"
 #include "render/capture.h"
 #include "render/live_target.h"
 #include "render/target.h"
@@ -195,7 +195,7 @@ struct Window::Impl {
     event.y = y * height / std::max(window_height, 1);
     const ImGuiIO& io = ImGui::GetIO();
     event.panels_key = io.WantTextInput || ui->entered();
-    event.panels_mouse = io.WantCaptureMouse;
+    event.panels_mouse = ui->panelsHaveMouse(x, y);
     input.push_back(event);
   }
   static Impl& of(GLFWwindow* window) { return *static_cast<Impl*>(glfwGetWindowUserPointer(window)); }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <cstdlib>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <thread>
@@ -158,6 +159,8 @@ engine::Result<std::unique_ptr<Touch>> Touch::start(engine::History history, con
   settings.options.limits = sessionLimits(profile);
   settings.options.edit_rule =
       profile.gives_force ? haptic::EditRule::kWhileForceIsGiven : haptic::EditRule::kAnytime;
+  // One drag, one step: off the surface the mouse's tip lifts, and its button stays held.
+  if (touch->mouse_ != nullptr) settings.options.stroke_gap_ticks = std::numeric_limits<std::uint32_t>::max();
   // A view of a large field keeps the main thread away for longer than a frame at times.
   settings.options.event_capacity = 1024;
   settings.options.command_capacity = 1024;

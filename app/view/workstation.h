@@ -236,7 +236,6 @@ class Workstation {
   // The hand.
   bool tool_on_ = false;  // the left button is the stylus
   bool stylus_held_ = false;
-  bool look_again_ = false;  // where the cursor is, once the panels know that it is not over them
   Drag drag_ = Drag::kNone;
   bool dragging_split_ = false;
   double last_x_ = 0.0, last_y_ = 0.0;

@@ -39,7 +39,7 @@ void Workstation::chooseTool(std::optional<Tool> tool) {
   touch_->setTool(tool.value_or(Tool::kFeel));
   if (touch_->mouse() == nullptr) return;
   if (!tool_on_) {
-    touch_->mouse()->setButton(haptic::MouseStylus::Button::kReleased);
+    touch_->mouse()->release();
     touch_->mouse()->leave();
     stylus_held_ = false;
     return;

@@ -31,16 +31,15 @@ std::optional<render::Picked> Workstation::pick(double x, double y) const {
 void Workstation::toStylus(const InputEvent& event) {
   if (!touch_ || touch_->mouse() == nullptr) return;
   haptic::MouseStylus& mouse = *touch_->mouse();
-  using Button = haptic::MouseStylus::Button;
   if (lasso_.active()) return;
   if (!tool_on_ || dialog_ != Dialog::kNone) {
-    mouse.setButton(Button::kReleased);
+    mouse.release();
     mouse.leave();
     stylus_held_ = false;
     return;
   }
   if (event.kind == InputKind::kButtonUp && event.button == MouseButton::kLeft) {
-    mouse.setButton(Button::kReleased);
+    mouse.release();
     stylus_held_ = false;
     if (turned_tool_) touch_->setTool(*std::exchange(turned_tool_, std::nullopt));
     return;
@@ -53,8 +52,6 @@ void Workstation::toStylus(const InputEvent& event) {
   if (!picture_) return;  // the device is lost: the stylus stays where it is
   if (drag_ != Drag::kNone || adjusting_ != Adjusting::kNothing) return;
   if (!inPicture(event.x, event.y) || (event.panels_mouse && !stylus_held_)) {
-    // The panels say in the next frame only that a cursor has left them in one leap.
-    look_again_ = inPicture(event.x, event.y);
     mouse.leave();
     return;
   }
@@ -66,22 +63,23 @@ void Workstation::toStylus(const InputEvent& event) {
   if (event.kind == InputKind::kButtonDown && event.button == MouseButton::kLeft && !event.modifiers.alt &&
       under_cursor_) {
     stylus_held_ = true;
-    if (const haptic::Tool tool = toolFor(event.modifiers); tool != touch_->tool()) {
+    const haptic::Tool tool = toolFor(event.modifiers);
+    if (tool != touch_->tool()) {
       turned_tool_ = touch_->tool();
       touch_->setTool(tool);
     }
-    mouse.setButton(Button::kHeld);
+    mouse.press(tool);
   }
 }
 
 void Workstation::handleInput() {
-  if (look_again_ && input_.empty() && !ImGui::GetIO().WantCaptureMouse) {
-    look_again_ = false;
+  // What is under a cursor at rest sinks while it is smoothed: the stylus goes with it.
+  if (stylus_held_ && input_.empty()) {
     InputEvent here;
+    here.kind = InputKind::kMove;
     here.x = last_x_;
     here.y = last_y_;
     toStylus(here);
-    stale_ = true;
   }
   for (const auto& [event, stylus_has_it] : std::exchange(input_, {})) {
     if (!stylus_has_it) toStylus(event);

@@ -100,8 +100,9 @@ Report Workstation::told() const {
     r["under_cursor"] =
         under_cursor_ ? cell(under_cursor_->position_mm.x, under_cursor_->position_mm.y) : Report();
     r["stylus_at"] = cell(drawn.endpoint_mm.x, drawn.endpoint_mm.y);
-    settled = settled && !filters_.computing() && !filters_.applying() &&
-              shown_.versions.front() == touch_->field() && touch_->history().current() == touch_->upright();
+    settled = settled && (touch_->mouse() == nullptr || !touch_->mouse()->busy()) && !filters_.computing() &&
+              !filters_.applying() && shown_.versions.front() == touch_->field() &&
+              touch_->history().current() == touch_->upright();
   }
   r["settled"] = settled;
   return r;

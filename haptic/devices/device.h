@@ -48,7 +48,7 @@ inline constexpr std::uint32_t kSecondaryButton = 1U << 1U;
 /// The newest a device has said.
 struct DeviceInput {
   /// In the frame of the profile. Finite from the drivers of hardware; a replayed stroke hands on the NaN of
-  /// a recorded dropout. Held while disconnected.
+  /// a recorded dropout, and a mouse gives one where a stylus is lifted off. Held while disconnected.
   glm::dvec3 position_mm{0.0};
   std::uint32_t buttons = 0;  ///< bit mask of the buttons held
   /// One more for each input; never goes back. The same as last time: nothing new arrived. A change of `link`

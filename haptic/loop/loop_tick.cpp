@@ -19,6 +19,10 @@ bool hasAnswer(CommandKind kind) noexcept {
          kind == CommandKind::kRestore;
 }
 
+bool finite(const glm::dvec3& p) noexcept {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
+
 bool edits(const Scene& scene, Tool tool) noexcept {
   if (tool == Tool::kSmooth)
     return std::find(scene.effects.begin(), scene.effects.end(), EffectKind::kSmoothing) !=
@@ -228,7 +232,11 @@ void LoopTick::record(const StrokeSample& input, const ForceSample& force, std::
 
 void LoopTick::noteVelocity(const DeviceInput& input) noexcept {
   if (has_input_ && input.sequence == last_input_.sequence) return;
-  if (has_input_ && input.link == LinkState::kConnected && last_input_.link == LinkState::kConnected) {
+  // A stylus that was lifted off has no place, and comes back without having been moved there.
+  const auto placed = [](const DeviceInput& i) {
+    return i.link == LinkState::kConnected && finite(i.position_mm);
+  };
+  if (has_input_ && placed(input) && placed(last_input_)) {
     const double dt_s =
         std::max(1e-9 * static_cast<double>(input.arrival_ns - last_input_.arrival_ns), kShortestInput_s);
     velocity_ = (input.position_mm - last_input_.position_mm) / dt_s;
@@ -352,8 +360,10 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   publish();
 
   state_.time_ns = now_ns;
-  state_.endpoint_mm = tip_mm;
-  state_.proxy_mm = force.contact ? force.proxy_mm : tip_mm;
+  if (finite(tip_mm)) {
+    state_.endpoint_mm = tip_mm;
+    state_.proxy_mm = force.contact ? force.proxy_mm : tip_mm;
+  }
   state_.force_n = force.force_n;
   state_.given_n = given;
   state_.contact = force.contact;

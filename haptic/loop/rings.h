@@ -18,8 +18,8 @@ namespace fettle::haptic {
 /// the correctness of multiprocess programs" (1977); the cached counters: Lee, Bu, Chandranmenon, "A
 /// lock-free, cache-efficient shared ring buffer" (2010).
 ///
-/// Threading: one producer thread (push, freePlaces), one consumer thread (pop); all wait-free, noexcept,
-/// nothing allocates but the constructor. Construct and destroy while nobody uses it.
+/// Threading: one producer thread (push, freePlaces), one consumer thread (pop, waiting); all wait-free,
+/// noexcept, nothing allocates but the constructor. Construct and destroy while nobody uses it.
 template <class T>
 class SpscRing {
   static_assert(std::is_nothrow_move_assignable_v<T> && std::is_default_constructible_v<T>);
@@ -66,6 +66,12 @@ class SpscRing {
     // Release: the place is empty for push's acquire.
     popped_.store(at + 1, std::memory_order_release);
     return true;
+  }
+
+  /// Consumer: records that as many pops are sure to give.
+  [[nodiscard]] std::size_t waiting() noexcept {
+    pushed_seen_ = pushed_.load(std::memory_order_acquire);
+    return pushed_seen_ - popped_.load(std::memory_order_relaxed);
   }
 
  private:

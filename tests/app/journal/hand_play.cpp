@@ -9,7 +9,6 @@
 
 namespace fettle::tests {
 
-using haptic::MouseStylus;
 using haptic::Tool;
 
 void HandPlay::wait(std::uint64_t ticks) {
@@ -34,7 +33,10 @@ void HandPlay::press(double u, double v, bool held) {
   field.reader().readHeights(column, row, 1, 1, &height, 1);
   touch_.mouse()->setCursor({column * grid.spacingXMm(), row * grid.spacingYMm(),
                              std::isfinite(height) ? height * grid.height_unit.mm : 0.0});
-  touch_.mouse()->setButton(held ? MouseStylus::Button::kHeld : MouseStylus::Button::kReleased);
+  if (held)
+    touch_.mouse()->press(touch_.tool());
+  else
+    touch_.mouse()->release();
 }
 
 std::string HandPlay::stroke(bool ends) {

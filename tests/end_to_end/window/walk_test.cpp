@@ -101,9 +101,7 @@ TEST_F(WindowTest, a_dropped_scan_is_looked_at_from_all_sides) {
   EXPECT_EQ(report["unsaved_changes"], false);
 }
 
-// Off: now and then a stroke of it is not seen on the screen within the test's patience, and not always the
-// same one; why is not known.
-TEST_F(WindowTest, DISABLED_a_scan_is_smoothed_marked_filtered_and_saved_by_hand) {
+TEST_F(WindowTest, a_scan_is_smoothed_marked_filtered_and_saved_by_hand) {
   const std::string smoothed_path = folder.file("smoothed.tif");
   const std::string filtered_path = folder.file("filtered.tif");
   const std::string exported_path = folder.file("exported.tif");
@@ -144,7 +142,8 @@ TEST_F(WindowTest, DISABLED_a_scan_is_smoothed_marked_filtered_and_saved_by_hand
   (void)hand.press("f");
   hand.type("6");
   (void)hand.key("Return");
-  EXPECT_EQ(hand.stroke({240, 360}, {440, 360}, 8)["steps"], 1);
+  // Along the ends of two ribs, where smoothing is seen.
+  EXPECT_EQ(hand.stroke({240, 332}, {440, 332}, 8)["steps"], 1);
   (void)hand.look("after smoothing");
   EXPECT_EQ(hand.key("Escape")["tool"], "view");
   hand.at({20, 790});
@@ -161,7 +160,7 @@ TEST_F(WindowTest, DISABLED_a_scan_is_smoothed_marked_filtered_and_saved_by_hand
   (void)hand.key("Escape");
   hand.at({20, 790});
   const Screen marked = hand.changed("marked", smoothed);
-  EXPECT_EQ(differing(smoothed, marked, {4, 60, 470, 650}), 0) << "marks where no stroke was";
+  EXPECT_EQ(differing(smoothed, marked, {4, 60, 560, 650}), 0) << "marks where no stroke was";
   (void)hand.key("h");
   (void)hand.same("marks hidden", smoothed);
   (void)hand.key("h");

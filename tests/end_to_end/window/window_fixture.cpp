@@ -47,6 +47,7 @@ void WindowTest::SetUp() {
   if (!display.works()) GTEST_SKIP() << "no Xvfb";
   setenv("DISPLAY", display.name().c_str(), 1);
   setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
+  setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
   const Outcome made = runProcess({FETTLE_PROGRAM, "synth", scan, "--size", "320x320", "--seed", "5"});
   ASSERT_EQ(made.status, 0) << made.err;
 }

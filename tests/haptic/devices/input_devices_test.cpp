@@ -133,25 +133,161 @@ TEST(HidKind, SpaceMiceAreKnownByIdAndTheirKeyboardInterfaceIsNotTaken) {
   EXPECT_EQ(hidKind(keyboard), HidKind::kNone);
 }
 
-TEST(MouseStylus, TipHoversPressesAndLiftsWithItsTimeConstant) {
+// A loop that reads the mouse once a millisecond.
+class MouseLoop {
+ public:
+  DeviceInput tick() { return mouse.readAt(++ms_ * kMs); }
+  DeviceInput ticks(int n) {
+    for (int i = 1; i < n; ++i) static_cast<void>(tick());
+    return tick();
+  }
+  // The inputs of a stroke: from the first with the button to the last.
+  std::vector<DeviceInput> stroke(int most = 1000) {
+    std::vector<DeviceInput> inputs;
+    for (int i = 0; i < most; ++i) {
+      const DeviceInput input = tick();
+      if (input.buttons != 0)
+        inputs.push_back(input);
+      else if (!inputs.empty())
+        break;
+    }
+    return inputs;
+  }
+  MouseStylus mouse;
+
+ private:
+  std::int64_t ms_ = 0;
+};
+
+TEST(MouseStylus, TipHoversAndFollowsWithItsTimeConstant) {
   MouseStylus mouse;
   EXPECT_EQ(mouse.readAt(0).link, LinkState::kDisconnected);
   mouse.setCursor({10.0, 20.0, 5.0});
   DeviceInput in = mouse.readAt(1 * kMs);
   EXPECT_EQ(in.link, LinkState::kConnected);
   EXPECT_EQ(in.position_mm, (glm::dvec3{10.0, 20.0, 6.0}));
-  mouse.setButton(MouseStylus::Button::kHeld);
+  mouse.setCursor({10.0, 30.0, 4.0});
   in = mouse.readAt(21 * kMs);
-  // One time constant: 1 - 1/e of the way from hover (+1) to press (-0.3).
-  EXPECT_NEAR(in.position_mm.z, 6.0 - 1.3 * (1.0 - std::exp(-1.0)), 1e-12);
-  EXPECT_EQ(in.buttons, kPrimaryButton);
-  in = mouse.readAt(2000 * kMs);
-  EXPECT_NEAR(in.position_mm.z, 4.7, 1e-9);
-  mouse.leave();
-  in = mouse.readAt(4000 * kMs);
-  EXPECT_NEAR(in.position_mm.z, 6.0, 1e-9);
+  // One time constant: 1 - 1/e of the way.
+  EXPECT_NEAR(in.position_mm.y, 20.0 + 10.0 * (1.0 - std::exp(-1.0)), 1e-12);
+  EXPECT_NEAR(in.position_mm.z, 6.0 - (1.0 - std::exp(-1.0)), 1e-12);
   EXPECT_EQ(in.buttons, 0U);
-  EXPECT_EQ(in.sequence, 4U);
+  EXPECT_EQ(in.sequence, 2U);
+}
+
+TEST(MouseStylus, AStrokeBeginsWhereTheButtonWasPressedAndEndsWhereItWasLetGo) {
+  MouseLoop loop;
+  loop.mouse.setCursor({0.0, 0.0, 0.0});
+  EXPECT_EQ(loop.ticks(100).position_mm, (glm::dvec3{0.0, 0.0, 1.0}));
+  // The cursor leaps across the field, and the button is down at once.
+  loop.mouse.setCursor({300.0, 40.0, 2.0});
+  loop.mouse.press(Tool::kMark);
+  loop.mouse.setCursor({305.0, 40.0, 2.0});
+  loop.mouse.setCursor({310.0, 40.0, 2.0});
+  loop.mouse.release();
+  // First nowhere: no way from where it was to where it comes down, so no contact on it.
+  const DeviceInput lifted = loop.tick();
+  EXPECT_TRUE(std::isnan(lifted.position_mm.x));
+  EXPECT_EQ(lifted.buttons, 0U);
+  EXPECT_EQ(lifted.link, LinkState::kConnected);
+  EXPECT_TRUE(loop.mouse.busy());
+  const std::vector<DeviceInput> stroke = loop.stroke();
+  ASSERT_FALSE(stroke.empty());
+  EXPECT_NEAR(stroke.front().position_mm.z, 2.0 + 1.0 - 1.3 * -std::expm1(-1.0 / 3.0), 1e-12);
+  bool down = false;
+  for (const DeviceInput& input : stroke) {
+    EXPECT_EQ(input.tool, Tool::kMark);
+    EXPECT_GE(input.position_mm.x, 300.0);
+    EXPECT_LE(input.position_mm.x, 310.0);
+    // It does not move on before it is down: the stroke's beginning is on the surface.
+    EXPECT_TRUE(input.position_mm.x == 300.0 || input.position_mm.z < 2.0 - 0.2) << input.position_mm.z;
+    down = down || input.position_mm.z < 2.0 - 0.2;
+  }
+  EXPECT_TRUE(down);
+  EXPECT_NEAR(stroke.back().position_mm.x, 310.0, 0.05);
+  const DeviceInput after = loop.ticks(500);
+  EXPECT_FALSE(loop.mouse.busy());
+  EXPECT_EQ(after.buttons, 0U);
+  EXPECT_FALSE(after.tool.has_value());
+  EXPECT_NEAR(after.position_mm.z, 3.0, 1e-9);
+}
+
+TEST(MouseStylus, APressBetweenTwoTicksIsAStroke) {
+  MouseLoop loop;
+  loop.mouse.setCursor({1.0, 2.0, 3.0});
+  static_cast<void>(loop.tick());
+  for (int i = 0; i < 3; ++i) {
+    loop.mouse.press(Tool::kSmooth);
+    loop.mouse.release();
+  }
+  for (int i = 0; i < 3; ++i) {
+    const std::vector<DeviceInput> stroke = loop.stroke();
+    ASSERT_FALSE(stroke.empty()) << i;
+    EXPECT_LT(stroke.back().position_mm.z, 3.0 - 0.2) << i;
+  }
+  EXPECT_TRUE(loop.stroke().empty());
+}
+
+TEST(MouseStylus, OffTheSurfaceTheTipLiftsAndTheStrokeGoesOn) {
+  MouseLoop loop;
+  loop.mouse.setCursor({0.0, 0.0, 0.0});
+  static_cast<void>(loop.tick());
+  loop.mouse.press(Tool::kSmooth);
+  EXPECT_NEAR(loop.ticks(200).position_mm.z, -0.3, 1e-3);
+  loop.mouse.leave();
+  DeviceInput in = loop.ticks(200);
+  EXPECT_NEAR(in.position_mm.z, 1.0, 1e-3);
+  EXPECT_EQ(in.buttons, kPrimaryButton);
+  loop.mouse.setCursor({5.0, 0.0, 0.0});
+  in = loop.ticks(200);
+  EXPECT_NEAR(in.position_mm.z, -0.3, 1e-3);
+  EXPECT_EQ(in.buttons, kPrimaryButton);
+  // Let go in the air, it has nowhere to go first.
+  loop.mouse.leave();
+  loop.mouse.release();
+  EXPECT_EQ(loop.ticks(3).buttons, 0U);
+}
+
+TEST(MouseStylus, AStrokeKeepsItsToolAndTheDepthItIsGiven) {
+  MouseLoop loop;
+  loop.mouse.setCursor({0.0, 0.0, 0.0});
+  static_cast<void>(loop.tick());
+  loop.mouse.press(Tool::kSmooth);
+  static_cast<void>(loop.ticks(200));
+  loop.mouse.wheel(-4);
+  loop.mouse.press(Tool::kMark);
+  const DeviceInput in = loop.ticks(200);
+  EXPECT_NEAR(in.position_mm.z, -0.5, 1e-3);
+  EXPECT_EQ(in.tool, Tool::kSmooth);
+}
+
+TEST(MouseStylus, AFramesBunchOfPlacesIsFollowedAlongItsWay) {
+  // Round a corner within one frame of a slow window: half the places along x, half along y.
+  MouseLoop loop;
+  loop.mouse.setCursor({0.0, 0.0, 0.0});
+  static_cast<void>(loop.tick());
+  loop.mouse.press(Tool::kSmooth);
+  static_cast<void>(loop.ticks(200));
+  for (int i = 1; i <= 20; ++i) loop.mouse.setCursor({0.5 * i, 0.0, 0.0});
+  for (int i = 1; i <= 20; ++i) loop.mouse.setCursor({10.0, 0.5 * i, 0.0});
+  loop.mouse.release();
+  double nearest = 1e9;
+  for (const DeviceInput& in : loop.stroke())
+    nearest = std::min(nearest, std::hypot(in.position_mm.x - 10.0, in.position_mm.y));
+  // What is cut off the corner; a tip that only knew the last place would keep 7.1 mm off.
+  EXPECT_LT(nearest, 6.0);
+}
+
+TEST(MouseStylus, AWindowThatOutrunsAStoppedLoopLosesPlacesNotButtons) {
+  MouseLoop loop;
+  loop.mouse.setCursor({0.0, 0.0, 0.0});
+  static_cast<void>(loop.tick());
+  for (int i = 0; i < 20000; ++i) loop.mouse.setCursor({1e-3 * i, 0.0, 0.0});
+  loop.mouse.press(Tool::kSmooth);
+  loop.mouse.release();
+  const std::vector<DeviceInput> stroke = loop.stroke();
+  ASSERT_FALSE(stroke.empty());
+  EXPECT_NEAR(stroke.back().position_mm.x, 20.0, 0.05);
 }
 
 TEST(MouseStylus, WheelSetsTheDepthWithinItsBounds) {
