@@ -17,6 +17,14 @@ if(FETTLE_SANITIZE)
   target_link_options(fettle_options INTERFACE -fsanitize=${FETTLE_SANITIZE})
 endif()
 
+# clang, for scripts/fuzz alone: the project's warnings are gcc's.
+option(FETTLE_FUZZ "Build for coverage-guided fuzzing" OFF)
+if(FETTLE_FUZZ)
+  target_compile_options(fettle_options INTERFACE
+    -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -w)
+  target_link_options(fettle_options INTERFACE -fsanitize=address,undefined)
+endif()
+
 # fettle_room(name LINKS targets...): a room's library; its folders add sources with target_sources.
 function(fettle_room name)
   cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})

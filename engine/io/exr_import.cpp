@@ -21,6 +21,8 @@
 #include "engine/io/field_limits.h"
 #include "engine/io/format.h"
 #include "engine/io/grid_notes.h"
+#include "engine/io/little_endian.h"
+#include "engine/io/text_reader.h"
 #include "engine/io/units.h"
 
 namespace fettle::engine {
@@ -44,6 +46,69 @@ class ExrSource : public Imf::IStream {
  private:
   const InputFile& file_;
   std::uint64_t at_ = 0;
+};
+
+// Sizes of the header's attributes, before the library takes memory for them: it believes any up to 2 GB.
+// Layout: "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.html
+class HeaderCheck {
+ public:
+  explicit HeaderCheck(const InputFile& file) : text_(file, 4) {}
+
+  [[nodiscard]] bool sound(std::uint64_t file_bytes) {
+    const char* version = text_.bytes(4);
+    if (version == nullptr) return false;
+    const bool parts = (little<std::uint32_t>(version) & 0x1000U) != 0;
+    for (int headers = 0; headers < kMostParts; ++headers) {
+      bool empty = true;
+      std::string name, type;
+      while (word(name) && !name.empty()) {
+        empty = false;
+        const char* size = word(type) ? text_.bytes(4) : nullptr;
+        if (size == nullptr) return false;
+        const auto bytes = little<std::uint32_t>(size);
+        if (bytes > file_bytes - text_.offset() || bytes > kLongestAttribute || !inside(type, bytes))
+          return false;
+      }
+      if (!text_.status() || broken_) return false;
+      if (empty || !parts) return true;  // an empty header ends those of parts
+    }
+    return false;
+  }
+
+ private:
+  static constexpr int kMostParts = 1000;
+  static constexpr std::uint32_t kLongestAttribute = TextReader::kLongest;
+
+  bool word(std::string& out) {
+    out.clear();
+    for (const char* c = text_.bytes(1); c != nullptr; c = text_.bytes(1)) {
+      if (*c == '\0') return true;
+      if (out.size() > 255) break;
+      out += *c;
+    }
+    broken_ = true;
+    return false;
+  }
+  // Values that hold sizes of their own.
+  bool inside(const std::string& type, std::uint32_t bytes) {
+    const char* value = bytes == 0 ? nullptr : text_.bytes(bytes);
+    if (bytes != 0 && value == nullptr) return false;
+    if (type == "preview")
+      return bytes >= 8 && (std::uint64_t{little<std::uint32_t>(value)} * little<std::uint32_t>(value + 4) <=
+                            std::uint64_t{bytes - 8} / 4);
+    if (type != "stringvector") return true;
+    for (std::uint32_t at = 0; at < bytes;) {
+      if (bytes - at < 4) return false;
+      const auto length = little<std::uint32_t>(value + at);
+      at += 4;
+      if (length > bytes - at) return false;
+      at += length;
+    }
+    return true;
+  }
+
+  TextReader text_;
+  bool broken_ = false;
 };
 
 // The library's words: one line, no path (its own prefix names the stream).
@@ -156,6 +221,9 @@ Result<Imported> readPicture(const InputFile& file, const ImportOptions& options
   const std::string& path = file.path();
   Imf::Header::setMaxImageSize(Grid::kMaxSide, Grid::kMaxSide);
   Imf::Header::setMaxTileSize(kLargestTile, kLargestTile);
+  if (!HeaderCheck(file).sound(file.size()))
+    return inputError("the header's attributes lead out of the file", path,
+                      "the file is cut short or damaged");
   ExrSource source(file);
   // A table of lines that a crash of the writer left empty is not mended by guessing.
   Imf::MultiPartInputFile picture(source, 0, false);

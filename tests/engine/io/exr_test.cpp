@@ -82,6 +82,22 @@ TEST(Exr, WhatIsTransparentIsAHole) {
   EXPECT_FALSE(warned(scan.warnings, "channels"));
 }
 
+TEST(Exr, AttributesOfTwoGigabytesAreRefusedBeforeMemoryIsTaken) {
+  const TempFolder folder;
+  Grid grid = gridOf(3, 2);
+  ASSERT_TRUE(save(makeField(grid, {1, 2, 3, 4, 5, 6}), folder.file("a.exr")));
+  const std::string whole = readBytes(folder.file("a.exr"));
+  const std::string name("fettle\0string\0", 14);
+  const std::size_t at = whole.find(name);
+  ASSERT_NE(at, std::string::npos);
+  std::string lying = whole;
+  lying.replace(at + name.size(), 4, "\xff\xff\xff\x7f");
+  writeBytes(folder.file("lying.exr"), lying);
+  const auto scan = load(folder.file("lying.exr"));
+  ASSERT_FALSE(scan);
+  EXPECT_NE(scan.error().what.find("attributes"), std::string::npos) << scan.error().line();
+}
+
 TEST(Exr, DamagedAndLyingPicturesAreRefused) {
   const TempFolder folder;
   for (const bool tiled : {false, true}) {
