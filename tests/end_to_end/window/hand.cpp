@@ -17,6 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kGlance = 20ms;  // between two looks at the screen: the server draws it, and tells nobody
+constexpr int kLine = 20;       // pixels, about a line of a panel
 
 bool rests(const Hand::State& s) {
   return s.value("settled", false);
@@ -110,20 +111,48 @@ Hand::State Hand::stroke(Place from, Place to, int steps) {
   return rest("after a stroke");
 }
 
-Hand::State Hand::click(const std::string& text, int count) {
+std::optional<Hand::Place> Hand::readable(const std::string& text) {
   const State now = program_.now();
-  for (const State& t : now["texts"])
-    if (t["text"] == text) {
-      const State& box = t["at"];
-      at({box[0].get<int>() + box[2].get<int>() / 2, box[1].get<int>() + box[3].get<int>() / 2});
-      for (int i = 0; i < count; ++i) {
-        down(1);
-        up(1);
-      }
-      return rest("after a click on " + text);
+  for (const State& t : now["texts"]) {
+    if (t["text"] != text) continue;
+    const State& box = t["at"];
+    const Place middle{box[0].get<int>() + box[2].get<int>() / 2, box[1].get<int>() + box[3].get<int>() / 2};
+    const State& picture = now["picture"];
+    const bool in_panels = middle.x >= picture[0].get<int>() + picture[2].get<int>();
+    // A line at the panels' lower edge may show half of itself, with its middle below the edge.
+    if (in_panels && middle.y > picture[1].get<int>() + picture[3].get<int>() - kLine) continue;
+    return middle;
+  }
+  return std::nullopt;
+}
+
+std::optional<Hand::Place> Hand::scrolledTo(const std::string& text) {
+  if (const auto place = readable(text)) return place;
+  const State picture = program_.now()["picture"];
+  at({picture[0].get<int>() + picture[2].get<int>() + kLine,
+      picture[1].get<int>() + picture[3].get<int>() / 2});
+  for (const int notch : {-1, 1})  // to the panels' end, then back to their top
+    for (State before; before != program_.now()["texts"];) {
+      before = program_.now()["texts"];
+      (void)wheel(notch);
+      if (const auto place = readable(text)) return place;
     }
-  ADD_FAILURE() << name_ << ": nothing to read there: " << text << "\n" << now["texts"].dump();
-  return now;
+  return std::nullopt;
+}
+
+Hand::State Hand::click(const std::string& text, int count) {
+  const auto place = scrolledTo(text);
+  if (!place) {
+    const State now = program_.now();
+    ADD_FAILURE() << name_ << ": nothing to read there: " << text << "\n" << now["texts"].dump();
+    return now;
+  }
+  at(*place);
+  for (int i = 0; i < count; ++i) {
+    down(1);
+    up(1);
+  }
+  return rest("after a click on " + text);
 }
 
 Hand::State Hand::rest(const std::string& what) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "tests/end_to_end/window/display.h"
@@ -35,7 +36,7 @@ class Hand {
   State drag(int button, Place from, Place to, int steps, const std::string& modifier = "");
   /// A stroke of the stylus: as drag() with the left button, waiting at each place until the stylus is there.
   State stroke(Place from, Place to, int steps);
-  /// Clicks on what reads `text`, until the window rests.
+  /// Clicks on what reads `text`, until the window rests. Panels are scrolled for it where they have to be.
   State click(const std::string& text, int count = 1);
   /// Until nothing moves any more and everything asked for was done.
   State rest(const std::string& what = "rest");
@@ -56,6 +57,10 @@ class Hand {
   ViewProgram& program() { return program_; }
 
  private:
+  /// The middle of what reads `text`, where the mouse can take it.
+  [[nodiscard]] std::optional<Place> readable(const std::string& text);
+  /// The same, after scrolling the panels as far as that takes.
+  [[nodiscard]] std::optional<Place> scrolledTo(const std::string& text);
   void keep(const Screen& screen, const std::string& what);
   [[nodiscard]] State waitFor(const std::string& what, const std::function<bool(const State&)>& is) {
     return program_.until(name_ + ": " + what, is);
