@@ -1,12 +1,20 @@
 #include <cmath>
 #include <cstdio>
 
+#include <algorithm>
 #include <memory>
+#include <numbers>
+#include <numeric>
 
 #include <fmt/format.h>
 
 #include "app/command.h"
 #include "app/scan_options.h"
+#include "app/terminal.h"
+#include "engine/inspect/histogram.h"
+#include "engine/inspect/noise.h"
+#include "engine/inspect/steepest.h"
+#include "render/picture.h"
 
 namespace fettle::app {
 
@@ -16,6 +24,8 @@ struct Options {
   std::string scan;
   ScanOptions reading;
   std::vector<std::string> at;
+  std::string picture;
+  int bins = 20;
 };
 
 // The shortest decimal that reads back to the same float: 9.792, where its exact value is 9.79199981689453.
@@ -24,14 +34,66 @@ double shortest(double height) {
   return std::isnan(height) ? height : std::stod(fmt::format("{}", stored));
 }
 
+// One bar a bin, the longest kLongest wide; a bin that is not empty shows at least a dot.
+void printHistogram(const Report& histogram, const std::string& unit) {
+  constexpr double kLongest = 50.0;
+  const auto counts = histogram["counts"].get<std::vector<std::int64_t>>();
+  const std::int64_t most = *std::max_element(counts.begin(), counts.end());
+  const auto all = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}));
+  const double low = histogram["low"], high = histogram["high"];
+  fmt::print("histogram  from, {}\n", unit);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const double share = static_cast<double>(counts[i]) / static_cast<double>(most);
+    const auto length = static_cast<std::size_t>(std::lround(share * kLongest));
+    const std::string bar = length == 0 && counts[i] > 0 ? "." : std::string(length, '#');
+    const double from = low + (high - low) * static_cast<double>(i) / static_cast<double>(counts.size());
+    fmt::print("{:>14.6g}  {:<51}{:>7.3f} %\n", from, bar, 100.0 * static_cast<double>(counts[i]) / all);
+  }
+}
+
 // A coordinate system's text runs to pages; people want its name.
 void print(Report report) {
+  const Report histogram = report["histogram"];
+  report.erase("histogram");
   if (report["crs"].is_string()) {
     const std::string wkt = report["crs"];
     const std::size_t open = wkt.find('"');
     if (open != std::string::npos) report["crs"] = wkt.substr(open + 1, wkt.find('"', open + 1) - open - 1);
   }
   printReport(report);
+  printHistogram(histogram, report["unit"]);
+}
+
+// Where a cell is, as the file counts: rows from the top.
+engine::Result<Report> steepest(const engine::Version& field, engine::JobControl& job) {
+  const auto cell = engine::findSteepest(field, job);
+  if (!cell) return tl::unexpected(cell.error());
+  if (std::isnan(cell->slope)) return Report();
+  const engine::Grid& grid = field.grid();
+  return Report{{"slope", cell->slope},
+                {"degrees", std::atan(cell->slope) * 180.0 / std::numbers::pi},
+                {"row", grid.height - 2 - cell->row},
+                {"column", cell->column},
+                {"x", grid.origin_x + (cell->column + 0.5) * grid.spacing_x},
+                {"y", grid.origin_y + (cell->row + 0.5) * grid.spacing_y}};
+}
+
+// A thumbnail: the surface and its colours alone.
+engine::Status draw(const engine::Version& field, const std::string& path, engine::JobControl& job) {
+  render::PictureSpec spec;
+  spec.view.width = 320;
+  spec.view.height = 240;
+  spec.cell_px = kStillCellPx;
+  spec.decoration = render::Decoration::kNone;
+  spec.field = field;
+  const auto renderer = render::Renderer::create();
+  if (!renderer) return tl::unexpected(renderer.error());
+  render::Image image;
+  const auto report = (*renderer)->render(spec, image, job);
+  if (!report) return tl::unexpected(report.error());
+  if (job.cancelled()) return engine::cancelled();
+  for (const std::string& warning : report->warnings) warn(warning);
+  return render::writePng(image, path);
 }
 
 engine::Result<Report> samplesAt(const engine::FieldReader& field, const std::vector<std::string>& places) {
@@ -55,12 +117,23 @@ engine::Result<Report> samplesAt(const engine::FieldReader& field, const std::ve
 }
 
 engine::Result<Report> info(const Options& options, engine::JobControl& job) {
+  if (auto status = checkOutputs({{options.picture, OutputKind::kPicture}}, {options.scan}); !status)
+    return tl::unexpected(status.error());
   const auto imported = loadScan(options.scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const engine::Grid& grid = imported->field.grid();
   const engine::FieldSummary summary = engine::summarize(imported->field);
   auto samples = samplesAt(imported->field.reader(), options.at);
   if (!samples) return tl::unexpected(samples.error());
+  const auto noise = engine::estimateNoise(imported->field, job);
+  if (!noise) return tl::unexpected(noise.error());
+  const auto steep = steepest(imported->field, job);
+  if (!steep) return tl::unexpected(steep.error());
+  const auto histogram = engine::countHeights(imported->field, options.bins, job);
+  if (!histogram) return tl::unexpected(histogram.error());
+  if (!options.picture.empty())
+    if (auto status = draw(imported->field, options.picture, job); !status)
+      return tl::unexpected(status.error());
 
   Report report{
       {"width", grid.width},
@@ -76,6 +149,13 @@ engine::Result<Report> info(const Options& options, engine::JobControl& job) {
       {"mean", summary.mean},
       {"no_data", summary.no_data},
       {"no_data_share", static_cast<double>(summary.no_data) / static_cast<double>(grid.samples())},
+      {"noise", std::isnan(noise->sigma) ? Report() : Report(noise->sigma)},
+      {"noise_windows", noise->windows},
+      {"steepest", *steep},
+      {"histogram",
+       {{"low", shortest(histogram->low)},
+        {"high", shortest(histogram->high)},
+        {"counts", histogram->counts}}},
       {"format", imported->format},
       {"spacing_x_mm", grid.spacingXMm()},
       {"spacing_y_mm", grid.spacingYMm()},
@@ -90,6 +170,7 @@ engine::Result<Report> info(const Options& options, engine::JobControl& job) {
                           {"multiple_cells", imported->gridding->multiple_cells},
                           {"lattice", imported->gridding->lattice}};
   if (!options.at.empty()) report["at"] = *samples;
+  if (!options.picture.empty()) report["picture"] = options.picture;
   return report;
 }
 
@@ -98,13 +179,27 @@ engine::Result<Report> info(const Options& options, engine::JobControl& job) {
 void addInfo(CLI::App& root, Chosen& chosen) {
   auto options = std::make_shared<Options>();
   CLI::App* command = addCommand(
-      root, chosen, "info", "What a scan holds: size, spacing, units, heights, holes",
+      root, chosen, "info", "What a scan holds: size, spacing, units, heights, holes, noise, steepest cell",
       [options](engine::JobControl& job) { return info(*options, job); }, print);
+  command->footer(
+      "noise: standard deviation of the finest detail, in the height unit: 1.4826 median(|d|) / 6 of d, the\n"
+      "  second difference along rows and columns over 3 x 3 samples without a hole. Planes, steps along "
+      "rows\n"
+      "  or columns, single spikes and holes do not count. Right for noise that differs from sample to "
+      "sample;\n"
+      "  noise that neighbours share is not seen, a rough surface is taken for noise.\n"
+      "steepest: the cell that rises most, height over distance; ROW,COLUMN of its upper left sample, and "
+      "its\n"
+      "  middle in the file's coordinates.");
   command->add_option("SCAN", options->scan, "The scan")->required();
   command
       ->add_option("--at", options->at,
                    "Also the height at ROW,COLUMN of the file, both from 0; may be repeated")
       ->allow_extra_args(false);
+  command->add_option("--picture", options->picture, "Also a thumbnail, PNG of 320 x 240 pixels");
+  command->add_option("--bins", options->bins, "Bins of the histogram, from the lowest to the highest sample")
+      ->check(CLI::Range(1, engine::kMostBins))
+      ->capture_default_str();
   addScanOptions(command, options->reading);
 }
 

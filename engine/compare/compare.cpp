@@ -1,7 +1,6 @@
 #include "engine/compare/compare.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "engine/compare/plane.h"
+#include "engine/compare/tile_select.h"
 #include "engine/compare/tile_sums.h"
 
 namespace fettle::engine {
@@ -132,54 +132,6 @@ Third thirdPass(const Pair& pair, const Plane& a, const Plane& b, JobControl& jo
   return all;
 }
 
-// The rank-th smallest |b - a| (from 0), exactly, without a copy of the field: the bits of doubles >= 0 are
-// ordered as the numbers are, so four passes settle 16 bits each by counting (radix selection; Knuth, The Art
-// of Computer Programming 3, section 5.2.5). Counts are integers: their sum knows no order.
-constexpr int kSelectPasses = 4;
-
-double selectDifference(const Pair& pair, std::int64_t rank, JobControl& job) {
-  constexpr int kBits = 16;
-  // One table of counts for each strip of tile rows, few and large, so that memory stays bounded.
-  constexpr std::int64_t kStrips = 16;
-  std::uint64_t prefix = 0;
-  for (int shift = 64 - kBits; shift >= 0; shift -= kBits) {
-    std::vector<std::vector<std::int64_t>> counts(kStrips);
-    const std::int64_t tiles = static_cast<std::int64_t>(tileCount(pair.a));
-    tbb::parallel_for(std::int64_t{0}, kStrips, [&](std::int64_t strip) {
-      std::vector<std::int64_t>& count = counts[static_cast<std::size_t>(strip)];
-      count.assign(std::size_t{1} << kBits, 0);
-      for (std::int64_t i = tiles * strip / kStrips; i < tiles * (strip + 1) / kStrips; ++i) {
-        if (job.cancelled()) return;
-        TileRect rect;
-        rect.column = static_cast<std::int32_t>(i % pair.a.tileColumns()) * kTileSide;
-        rect.row = static_cast<std::int32_t>(i / pair.a.tileColumns()) * kTileSide;
-        rect.columns = std::min(kTileSide, pair.a.width() - rect.column);
-        rect.rows = std::min(kTileSide, pair.a.height() - rect.row);
-        pair.forEach(rect, [&](std::int32_t, std::int32_t, double za, double zb) {
-          const double d = std::abs(zb - za);
-          if (std::isnan(d)) return;
-          const auto bits = std::bit_cast<std::uint64_t>(d);
-          // What lies above the present digit must be the prefix found so far.
-          if (shift + kBits < 64 && (bits >> (shift + kBits)) != (prefix >> (shift + kBits))) return;
-          ++count[static_cast<std::size_t>((bits >> shift) & ((1U << kBits) - 1))];
-        });
-        job.advance();
-      }
-    });
-    if (job.cancelled()) return kNone;
-    for (std::size_t digit = 0; digit < (std::size_t{1} << kBits); ++digit) {
-      std::int64_t here = 0;
-      for (const std::vector<std::int64_t>& count : counts) here += count[digit];
-      if (rank < here) {
-        prefix |= static_cast<std::uint64_t>(digit) << shift;
-        break;
-      }
-      rank -= here;
-    }
-  }
-  return std::bit_cast<double>(prefix);
-}
-
 double ratio(double sum, std::int64_t samples) noexcept {
   return samples > 0 ? sum / static_cast<double>(samples) : kNone;
 }
@@ -219,8 +171,14 @@ Result<Deviation> compareFields(const Version& a, const Version& b, JobControl& 
   result.p99 = kNone;
   if (first.samples > 0) {
     // Nearest rank ceil(0.99 n), in integers: 0.99 is no double.
-    const std::int64_t rank = (99 * first.samples + 99) / 100;
-    result.p99 = selectDifference(pair, rank - 1, job);
+    result.p99 = selectFromTiles(
+                     pair.a, job, [](std::int64_t n) { return (99 * n + 99) / 100 - 1; },
+                     [&](const TileRect& rect, auto&& take) {
+                       pair.forEach(rect, [&](std::int32_t, std::int32_t, double za, double zb) {
+                         take(std::abs(zb - za));
+                       });
+                     })
+                     .value;
     if (job.cancelled()) return cancelled();
   }
   return result;

@@ -42,22 +42,26 @@ struct TileRect {
   int rows = 0;
 };
 
+/// The samples of tile `index`, counted row-major from 0.
+[[nodiscard]] inline TileRect tileRect(const FieldReader& field, std::int64_t index) noexcept {
+  TileRect rect;
+  rect.column = static_cast<std::int32_t>(index % field.tileColumns()) * kTileSide;
+  rect.row = static_cast<std::int32_t>(index / field.tileColumns()) * kTileSide;
+  rect.columns = std::min(kTileSide, field.width() - rect.column);
+  rect.rows = std::min(kTileSide, field.height() - rect.row);
+  return rect;
+}
+
 /// Calls f(rect, part) for every tile on all workers of the arena, each with a part of its own, and gives the
 /// parts back in tile order (row-major), so that folding them is the same for any thread count. Parts of
 /// tiles after a cancel are as constructed: look at job.cancelled(). Advances the job by one a tile.
 template <class Part, class F>
 [[nodiscard]] std::vector<Part> forEachTile(const FieldReader& field, JobControl& job, const F& f) {
-  const std::int64_t across = field.tileColumns();
-  const std::int64_t tiles = across * field.tileRows();
+  const std::int64_t tiles = std::int64_t{field.tileColumns()} * field.tileRows();
   std::vector<Part> parts(static_cast<std::size_t>(tiles));
   tbb::parallel_for(tbb::blocked_range<std::int64_t>(0, tiles), [&](const auto& range) {
     for (std::int64_t i = range.begin(); i < range.end() && !job.cancelled(); ++i) {
-      TileRect rect;
-      rect.column = static_cast<std::int32_t>(i % across) * kTileSide;
-      rect.row = static_cast<std::int32_t>(i / across) * kTileSide;
-      rect.columns = std::min(kTileSide, field.width() - rect.column);
-      rect.rows = std::min(kTileSide, field.height() - rect.row);
-      f(rect, parts[static_cast<std::size_t>(i)]);
+      f(tileRect(field, i), parts[static_cast<std::size_t>(i)]);
       job.advance();
     }
   });

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "engine/io/perspective.h"
+#include "engine/io/unit_doubt.h"
 
 namespace fettle::engine {
 
@@ -107,9 +108,13 @@ Result<Imported> import(const std::string& path, const ImportOptions& options, J
   if (!got) return tl::unexpected(got.error());
   head.resize(*got);
   for (const Format& format : formatTable())
-    if (format.recognises != nullptr && format.recognises(head, file->extension()))
-      return options.depth_camera ? readDepthImage(format, *file, options, job)
-                                  : format.read(*file, options, job);
+    if (format.recognises != nullptr && format.recognises(head, file->extension())) {
+      Result<Imported> imported = options.depth_camera ? readDepthImage(format, *file, options, job)
+                                                       : format.read(*file, options, job);
+      // A session's units were settled when its scan was imported.
+      if (imported && imported->format != "Fettle") doubtUnits(imported->field, options, imported->warnings);
+      return imported;
+    }
   return inputError("the file is in no format that is known", path,
                     "known are " + extensionsOf(&FormatInfo::reads));
 }

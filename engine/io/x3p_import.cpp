@@ -21,6 +21,7 @@
 #include "engine/io/grid_notes.h"
 #include "engine/io/md5.h"
 #include "engine/io/text_reader.h"
+#include "engine/io/unit_doubt.h"
 #include "engine/io/units.h"
 #include "engine/io/zip_archive.h"
 
@@ -416,17 +417,6 @@ void checkMainXml(XmlStream& xml, const Surface& surface, const std::string& fol
     warnings.emplace_back("main.xml is not what its checksum says: it was changed after it was written");
 }
 
-// A surface of centimetres and more is no surface texture: micrometres or millimetres written as they were.
-void doubtMetres(const Grid& grid, const HeightBounds& bounds, std::vector<std::string>& warnings) {
-  const double range = (static_cast<double>(bounds.max) - bounds.min) * grid.height_unit.mm / 1000.0;
-  const double extent = std::max(grid.width * grid.spacingXMm(), grid.height * grid.spacingYMm()) / 1000.0;
-  if (range > 1.0 || grid.spacingXMm() > 100.0 || extent > 100.0)
-    warnings.push_back(fmt::format(
-        "heights in micrometres in a file whose standard says metres? They span {:.3g} m over {:.3g} m: if "
-        "so, give --unit um",
-        range, extent));
-}
-
 }  // namespace
 
 bool looksLikeX3p(std::string_view head, std::string_view) {
@@ -532,8 +522,7 @@ Result<Imported> readX3p(const InputFile& file, const ImportOptions& options, Jo
   if (surface->z.type == 'L' && tally.rounding < 0.5 * std::abs(rule.scale)) tally.rounding = 0.0;
   Result<Imported> imported =
       finishImport(std::move(*builder), tally, "X3P", std::move(warnings), file.path());
-  if (imported && !own && !options.unit)
-    doubtMetres(imported->field.grid(), imported->field.reader().bounds(), imported->warnings);
+  if (imported && !own && !options.unit) doubtTexture(imported->field, "metres", imported->warnings);
   return imported;
 }
 

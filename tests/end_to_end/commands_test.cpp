@@ -44,6 +44,49 @@ TEST_F(Commands, InfoTellsSizeSpacingHeightsAndHoles) {
   EXPECT_EQ(info["format"], "GTiff");
 }
 
+TEST_F(Commands, InfoTellsNoiseSteepestCellAndHistogram) {
+  // The simulated noise is known from the truth. Counts of 0.01 mm tell the estimate to 0.0025 mm; what
+  // lines have in common is in the one figure and not in the other.
+  ASSERT_EQ(fettle({"synth", file("noisy.tif"), "--size", "256x192", "--seed", "5", "--truth",
+                    file("smooth.tif"), "--part", "plate"})
+                .status,
+            0);
+  const auto info = fettleJson({"info", file("noisy.tif"), "--bins", "7"});
+  const double sigma = fettleJson({"compare", file("smooth.tif"), file("noisy.tif")})["rms"];
+  EXPECT_NEAR(info["noise"], sigma, 0.0025);
+  EXPECT_EQ(fettleJson({"info", file("smooth.tif")})["noise"], 0.0);
+  EXPECT_EQ(info["noise_windows"], 254 * 190);
+  EXPECT_EQ(info["histogram"]["low"], info["min"]);
+  EXPECT_EQ(info["histogram"]["high"], info["max"]);
+  ASSERT_EQ(info["histogram"]["counts"].size(), 7U);
+  std::int64_t counted = 0;
+  for (const auto& count : info["histogram"]["counts"]) counted += count.get<std::int64_t>();
+  EXPECT_EQ(counted, 256 * 192);
+  EXPECT_NEAR(info["steepest"]["degrees"],
+              57.29577951308232 * std::atan(info["steepest"]["slope"].get<double>()), 1e-9);
+
+  // A grid whose steepest cell is known: rows as in the file, spacing 2, so that it rises by 8 / 2.
+  std::ofstream(file("steep.asc")) << "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 2\n"
+                                   << "0 0 0\n0 0 8\n0 0 8\n";
+  const auto steep = fettleJson({"info", file("steep.asc"), "--unit", "mm"})["steepest"];
+  EXPECT_NEAR(steep["slope"], std::hypot(4.0, 4.0), 1e-12);
+  EXPECT_EQ(steep["row"], 0);
+  EXPECT_EQ(steep["column"], 1);
+  EXPECT_EQ(steep["x"], 4.0);
+  EXPECT_EQ(steep["y"], 4.0);
+}
+
+TEST_F(Commands, InfoDrawsBarsForPeopleAndAThumbnail) {
+  std::ofstream(file("bars.asc")) << "ncols 4\nnrows 1\ncellsize 1\nxllcorner 0\nyllcorner 0\n0 0 0 2\n";
+  const Outcome told = fettle({"info", file("bars.asc"), "--bins", "2", "--picture", file("thumb.png")});
+  ASSERT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find(std::string(50, '#') + "  75.000 %"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find(std::string(17, '#') + std::string(35, ' ') + "25.000 %"), std::string::npos)
+      << told.out;
+  EXPECT_GT(std::filesystem::file_size(file("thumb.png")), 500U);
+  expectRefused(fettle({"info", file("bars.asc"), "--picture", file("bars.asc")}), ".png");
+}
+
 TEST_F(Commands, SynthIsTheSameForTheSameSeedAndDifferentForAnother) {
   const auto again = [](const std::string& seed, const std::string& name) {
     return fettleJson({"synth", file(name), "--size", "256x192", "--seed", seed, "--outliers", "0.05",

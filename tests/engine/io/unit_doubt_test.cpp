@@ -1,0 +1,124 @@
+// Units that cannot be right are doubted, whatever the format; those of real scans never.
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/io/io_support.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::engine {
+namespace {
+
+using tests::TempFolder;
+
+// A surface that rises by `step` [height unit] at most from sample to sample.
+Version rough(Grid grid, double step) {
+  grid.width = grid.height = 40;
+  std::vector<float> z;
+  for (int i = 0; i < 1600; ++i) z.push_back(static_cast<float>(step * ((i * 7919) % 101) / 101.0));
+  return makeField(grid, z);
+}
+
+std::vector<std::string> doubts(const Version& field, const ImportOptions& options = {},
+                                const std::string& name = "f.tif") {
+  const TempFolder folder;
+  EXPECT_TRUE(save(field, folder.file(name)));
+  const auto scan = load(folder.file(name), options);
+  EXPECT_TRUE(scan) << scan.error().line();
+  std::vector<std::string> doubts;
+  for (const std::string& warning : scan->warnings)
+    if (warning.find('?') != std::string::npos) doubts.push_back(warning);
+  return doubts;
+}
+
+TEST(UnitDoubt, HeightsAThousandTimesTooLargeForTheirSpacingName) {
+  Grid grid;
+  grid.lateral_unit = {"m", 1000.0};
+  grid.height_unit = {"m", 1000.0};
+  EXPECT_TRUE(doubts(rough(grid, 0.5)).empty());
+  const auto told = doubts(rough(grid, 500.0));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_TRUE(told[0].starts_with("heights in mm where m is said or assumed, or a spacing that is not in m?"))
+      << told[0];
+  EXPECT_TRUE(told[0].ends_with("give --z-scale 0.001 or --spacing")) << told[0];
+  // Doing so ends it; so does a spacing, which says that both were thought of.
+  ImportOptions scaled;
+  scaled.z_scale = 0.001;
+  EXPECT_TRUE(doubts(rough(grid, 500.0), scaled).empty());
+  ImportOptions spaced;
+  spaced.spacing = std::pair{1.0, 1.0};
+  EXPECT_TRUE(doubts(rough(grid, 500.0), spaced).empty());
+  for (const char* name : {"f.asc", "f.x3p", "f.exr", "f.xyz", "f.ply"})
+    EXPECT_FALSE(doubts(rough(grid, 500.0), {}, name).empty()) << name;
+}
+
+TEST(UnitDoubt, AFewNeighboursProveNothing) {
+  Grid grid;
+  grid.width = 4;
+  grid.height = 2;
+  EXPECT_TRUE(doubts(makeField(grid, {0, 500, 0, 500, 500, 0, 500, 0})).empty());
+}
+
+TEST(UnitDoubt, NoUnitFitsHeightsThatAreCounts) {
+  Grid grid;
+  grid.height_unit = {"nm", 1e-6};
+  const auto told = doubts(rough(grid, 1e9));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_TRUE(told[0].starts_with("heights that are no lengths in nm?")) << told[0];
+}
+
+TEST(UnitDoubt, WhatIsSmallerThanAtomsOrLargerThanPlanets) {
+  Grid grid;
+  grid.height_unit = {"nm", 1e-6};
+  const auto small = doubts(rough(grid, 1e-3));
+  ASSERT_EQ(small.size(), 1U);
+  EXPECT_NE(small[0].find("less than an atom"), std::string::npos) << small[0];
+  EXPECT_TRUE(doubts(rough(grid, 0.0)).empty());  // flat is no doubt
+
+  Grid wide;
+  wide.lateral_unit = wide.height_unit = {"m", 1000.0};
+  wide.spacing_x = wide.spacing_y = 1e5;
+  const auto high = doubts(rough(wide, 2e5));
+  ASSERT_EQ(high.size(), 1U);
+  EXPECT_NE(high[0].find("more than on any planet"), std::string::npos) << high[0];
+  wide.spacing_x = wide.spacing_y = 2e6;
+  const auto far = doubts(rough(wide, 1.0));
+  ASSERT_EQ(far.size(), 1U);
+  EXPECT_NE(far[0].find("km long"), std::string::npos) << far[0];
+
+  Grid close;
+  close.height_unit = close.lateral_unit = {"nm", 1e-6};
+  close.spacing_x = close.spacing_y = 1e-4;
+  const auto near = doubts(rough(close, 2e-4));
+  EXPECT_TRUE(warned(near, "nm apart"));
+}
+
+TEST(UnitDoubt, RealScansAreNotDoubted) {
+  struct Case {
+    const char* name;
+    ImportOptions options;
+  };
+  std::vector<Case> cases;
+  for (const char* name :
+       {"dsm_ahn_buildings.tif", "dsm_village_sjtsk.tif", "shapes_plate_u16.png", "tray_bags_aniso_u16.tif",
+        "kinect_boxes_depth_u16.tif", "tidal_marsh.asc", "chip_confocal_points.xyz", "cylinders_cloud_le.ply",
+        "mug_stereo_organized.pcd", "autzen_park.las", "bullet_land.x3p", "ground_surface_aniso.x3p",
+        "lunar_ridge.exr", "scratched_surface.sur", "afm_line_noise_f32.tif"}) {
+    cases.push_back({name, {}});
+    cases.push_back({name, {}});
+    cases.back().options.no_data = 0.0;
+    cases.push_back({name, {}});
+    cases.back().options.unit = lengthUnitFromName("m");
+  }
+  for (const Case& c : cases) {
+    FETTLE_SCAN_OR_SKIP(path, c.name);
+    FETTLE_LOAD(scan, path, c.options);
+    for (const std::string& warning : scan.warnings)
+      EXPECT_EQ(warning.find('?'), std::string::npos) << c.name << ": " << warning;
+  }
+}
+
+}  // namespace
+}  // namespace fettle::engine
