@@ -64,14 +64,17 @@ CLI::Validator within(double lowest, double highest) {
 
 CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
                      std::function<engine::Result<Report>(engine::JobControl&)> run,
-                     std::function<void(const Report&)> print, Progress progress) {
+                     std::function<void(const Report&)> print, Progress progress,
+                     std::function<int(const Report&)> status) {
   CLI::App* command = root.add_subcommand(name, description);
   command->add_flag("--json", chosen.json, "Print one JSON object on stdout instead of text");
-  command->callback([&chosen, run = std::move(run), print = std::move(print), progress] {
-    chosen.run = run;
-    chosen.print = print;
-    chosen.progress = progress;
-  });
+  command->callback(
+      [&chosen, run = std::move(run), print = std::move(print), progress, status = std::move(status)] {
+        chosen.run = run;
+        chosen.print = print;
+        chosen.progress = progress;
+        chosen.status = status;
+      });
   return command;
 }
 

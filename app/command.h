@@ -26,6 +26,7 @@ enum class Progress : std::uint8_t {
 struct Chosen {
   std::function<engine::Result<Report>(engine::JobControl&)> run;
   std::function<void(const Report&)> print;
+  std::function<int(const Report&)> status;  ///< exit status of what `run` reported; empty: 0
   Progress progress = Progress::kLine;
   bool json = false;
 };
@@ -37,7 +38,7 @@ void printReport(const Report& report);
 CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
                      std::function<engine::Result<Report>(engine::JobControl&)> run,
                      std::function<void(const Report&)> print = printReport,
-                     Progress progress = Progress::kLine);
+                     Progress progress = Progress::kLine, std::function<int(const Report&)> status = {});
 
 /// For CLI::Option::check: a number from `lowest` to `highest`. CLI::Range lets NaN through.
 [[nodiscard]] CLI::Validator within(double lowest, double highest);

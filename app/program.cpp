@@ -44,7 +44,7 @@ int runChosen(const Chosen& chosen) {
     fmt::print("{}\n", result->dump(2, ' ', false, Report::error_handler_t::replace));
   else
     chosen.print(*result);
-  return finish(0);
+  return finish(chosen.status ? chosen.status(*result) : 0);
 }
 
 // `--keep "$MARKS"` with MARKS unset would mean "no marks": the protection that was asked for, silently gone.

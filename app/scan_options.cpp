@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -118,14 +119,14 @@ engine::Result<std::pair<int, int>> parseSize(const std::string& text, const std
   return std::pair{width, height};
 }
 
-namespace {
-
 std::string extensionOf(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
 }
+
+namespace {
 
 std::vector<std::string> extensionsFor(OutputKind kind) {
   if (kind == OutputKind::kMarks) return {".png", ".tif", ".tiff"};
@@ -170,21 +171,18 @@ engine::Status checkOutput(const Output& output) {
 }  // namespace
 
 engine::Status checkOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
-  std::vector<std::filesystem::path> taken;
+  enum class Use : std::uint8_t { kInput, kOutput };
+  std::map<std::filesystem::path, Use> taken;
   for (const std::string& input : inputs)
-    if (!input.empty()) taken.push_back(placeOf(input));
-  const std::size_t first_output = taken.size();
+    if (!input.empty()) taken.emplace(placeOf(input), Use::kInput);
   for (const Output& output : outputs) {
     if (output.path.empty()) continue;
     if (auto status = checkOutput(output); !status) return status;
-    const std::filesystem::path place = placeOf(output.path);
-    const auto same = std::find(taken.begin(), taken.end(), place);
-    if (same != taken.end())
-      return engine::inputError(static_cast<std::size_t>(same - taken.begin()) < first_output
-                                    ? "the output would replace an input"
-                                    : "two outputs are in the same place",
+    const auto [earlier, fresh] = taken.emplace(placeOf(output.path), Use::kOutput);
+    if (!fresh)
+      return engine::inputError(earlier->second == Use::kInput ? "the output would replace an input"
+                                                               : "two outputs are in the same place",
                                 output.path, "name another file");
-    taken.push_back(place);
   }
   return {};
 }

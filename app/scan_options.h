@@ -60,6 +60,9 @@ inline constexpr SideRange kPictureSides{16, 16384};
 /// What is wrong with a seed as typed; empty when nothing is. For CLI::Option::check.
 [[nodiscard]] std::string seedProblem(const std::string& text);
 
+/// The extension with its dot, lower case; empty without one.
+[[nodiscard]] std::string extensionOf(const std::string& path);
+
 /// What a command writes, for the checks that need no scan.
 enum class OutputKind {
   kField,    ///< extension of a format that can be written

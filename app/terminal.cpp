@@ -3,6 +3,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <string>
@@ -29,6 +30,11 @@ void toStderr(const std::string& text) {
   std::fputs(text.c_str(), stderr);
 }
 
+// A line of its own, also where a progress line stands.
+void lineToStderr(const std::string& text) {
+  toStderr((isatty(STDERR_FILENO) != 0 ? "\r\x1b[K" : "") + text + "\n");
+}
+
 }  // namespace
 
 InterruptGuard::InterruptGuard(engine::JobControl& job) {
@@ -45,7 +51,27 @@ InterruptGuard::~InterruptGuard() {
   interrupted_job.store(nullptr);
 }
 
-ProgressLine::ProgressLine(const engine::JobControl& job) : job_(job) {
+std::string progressText(const engine::JobControl& job, const BatchState* batch) {
+  const auto bar = [](std::uint64_t done, std::uint64_t total) {
+    constexpr std::uint64_t kWidth = 30;
+    const std::uint64_t filled = total == 0 ? 0 : done * kWidth / total;
+    return std::string(filled, '#') + std::string(kWidth - filled, '.');
+  };
+  const std::uint64_t total = job.total();
+  const std::uint64_t done = std::min(job.done(), total);
+  const std::uint64_t percent = total == 0 ? 0 : 100 * done / total;
+  const char* stopping = job.cancelled() ? "  stopping" : "";
+  if (batch == nullptr)
+    return fmt::format("{} [{}] {:3d} %{}", job.stage(), bar(done, total), percent, stopping);
+  // Relaxed, as the job's own numbers: they only feed this line.
+  const std::uint64_t behind = std::min(batch->done.load(std::memory_order_relaxed), batch->count);
+  return fmt::format("[{}] {} of {}, {} {:3d} %{}", bar(behind, batch->count),
+                     std::min(behind + 1, std::uint64_t{batch->count}), batch->count, job.stage(), percent,
+                     stopping);
+}
+
+ProgressLine::ProgressLine(const engine::JobControl& job, const BatchState* batch)
+    : job_(job), batch_(batch) {
   if (isatty(STDERR_FILENO) != 0) thread_ = std::thread([this] { show(); });
 }
 
@@ -64,13 +90,7 @@ void ProgressLine::show() {
   std::unique_lock lock(mutex_);
   if (wake_.wait_for(lock, 1s, [this] { return ended_; })) return;
   do {
-    const std::uint64_t total = job_.total();
-    const std::uint64_t done = std::min(job_.done(), total);
-    const int percent = total == 0 ? 0 : static_cast<int>(100 * done / total);
-    constexpr int kWidth = 30;
-    const int filled = percent * kWidth / 100;
-    toStderr(fmt::format("\r\x1b[K{} [{}{}] {:3d} %{}", job_.stage(), std::string(filled, '#'),
-                         std::string(kWidth - filled, '.'), percent, job_.cancelled() ? "  stopping" : ""));
+    toStderr("\r\x1b[K" + progressText(job_, batch_));
     std::fflush(stderr);
   } while (!wake_.wait_for(lock, 100ms, [this] { return ended_; }));
   toStderr("\r\x1b[K");
@@ -78,12 +98,12 @@ void ProgressLine::show() {
 }
 
 int report(const engine::Error& error) {
-  toStderr(fmt::format("fettle: error: {}\n", error.line()));
+  lineToStderr("fettle: error: " + error.line());
   return error.kind == engine::ErrorKind::kInput ? 2 : 1;
 }
 
 void warn(const std::string& text) {
-  toStderr(fmt::format("fettle: warning: {}\n", text));
+  lineToStderr("fettle: warning: " + text);
 }
 
 }  // namespace fettle::app

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "engine/base/error.h"
@@ -19,11 +21,21 @@ class InterruptGuard {
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 };
 
+/// How far a command with many files is. Threading: as JobControl.
+struct BatchState {
+  std::atomic<std::size_t> done{0};  ///< files that are behind it, failed ones too
+  std::size_t count = 0;             ///< not changed while a ProgressLine looks on; >= 1
+};
+
+/// What the progress line says: the job's stage, its bar and its share; with a batch the bar is that of the
+/// files, and stage and share are those of the file at work.
+[[nodiscard]] std::string progressText(const engine::JobControl& job, const BatchState* batch);
+
 /// For its lifetime, shows the job's progress as one line on stderr - but only when stderr is a terminal, and
 /// only once the job has taken a second. The line is wiped at the end.
 class ProgressLine {
  public:
-  explicit ProgressLine(const engine::JobControl& job);
+  explicit ProgressLine(const engine::JobControl& job, const BatchState* batch = nullptr);
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -32,6 +44,7 @@ class ProgressLine {
   void show();
 
   const engine::JobControl& job_;
+  const BatchState* batch_;
   std::mutex mutex_;
   std::condition_variable wake_;
   bool ended_ = false;  // guarded by mutex_

@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "app/batch.h"
 #include "app/command.h"
 #include "app/scan_options.h"
 #include "app/terminal.h"
@@ -10,17 +11,14 @@ namespace fettle::app {
 namespace {
 
 struct Options {
-  std::string in;
-  std::string out;
+  BatchOptions files;
   ScanOptions reading;
   engine::ExportOptions writing;
   std::string max_error;
 };
 
-engine::Result<Report> convert(const Options& options, engine::JobControl& job) {
-  if (auto status = checkOutputs({{options.out, OutputKind::kField}}, {options.in}); !status)
-    return tl::unexpected(status.error());
-  const auto imported = loadScan(options.in, options.reading, job);
+engine::Result<Report> convertOne(const Options& options, const BatchTask& task, engine::JobControl& job) {
+  const auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   engine::ExportOptions writing = options.writing;
   if (!options.max_error.empty()) {
@@ -28,23 +26,34 @@ engine::Result<Report> convert(const Options& options, engine::JobControl& job) 
     if (!error) return tl::unexpected(error.error());
     writing.max_error = *error;
   }
-  auto written = engine::exportField(imported->field, options.out, writing, job);
+  auto written = engine::exportField(imported->field, task.out, writing, job);
   if (!written) return tl::unexpected(written.error());
   if (imported->field.reader().root().marked_children != 0 && written->format != "Fettle")
     written->warnings.push_back("the marks of the session are not kept, the format has none");
-  for (const std::string& warning : written->warnings) warn(options.out + ": " + warning);
+  for (const std::string& warning : written->warnings) warn(task.out + ": " + warning);
   return Report{{"format", written->format}, {"from", imported->format}, {"warnings", written->warnings}};
+}
+
+engine::Result<Report> convert(const Options& options, engine::JobControl& job) {
+  if (options.files.many() && options.files.extension.empty())
+    return engine::inputError("the format to write is not said", "--to", "give it as extension: --to tif");
+  const auto tasks = batchTasks(options.files, {});
+  if (!tasks) return tl::unexpected(tasks.error());
+  const auto one = [&](const BatchTask& task, engine::JobControl& j) { return convertOne(options, task, j); };
+  if (options.files.many()) return runBatch(*tasks, job, one);
+  const ProgressLine progress(job);
+  return one(tasks->front(), job);
 }
 
 }  // namespace
 
 void addConvert(CLI::App& root, Chosen& chosen) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      addCommand(root, chosen, "convert", "Write a scan in another format, named by the extension",
-                 [options](engine::JobControl& job) { return convert(*options, job); });
-  command->add_option("IN", options->in, "The scan to read")->required();
-  command->add_option("OUT", options->out, "The file to write")->required();
+  CLI::App* command = addCommand(
+      root, chosen, "convert", "Write scans in another format, named by the extension",
+      [options](engine::JobControl& job) { return convert(*options, job); }, printBatch, Progress::kOwn,
+      batchStatus);
+  addBatchOptions(command, options->files);
   const std::string group = "Writing";
   command->add_flag("--mesh", options->writing.mesh, "PLY: triangles instead of points (STL always)")
       ->group(group);

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include "app/batch.h"
 #include "app/command.h"
 #include "app/scan_options.h"
+#include "app/terminal.h"
 #include "engine/filter/filter.h"
 #include "engine/io/marks.h"
 
@@ -13,8 +15,7 @@ namespace fettle::app {
 namespace {
 
 struct Options {
-  std::string in;
-  std::string out;
+  BatchOptions files;
   std::string filter;
   int window = 3;
   double sigma = 0.0;
@@ -26,7 +27,7 @@ struct Options {
   ScanOptions reading;
 };
 
-engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
+engine::Result<engine::FilterSpec> specOf(const Options& options) {
   engine::FilterSpec spec;
   spec.kind = *engine::filterKindFromName(options.filter);
   spec.window = options.window;
@@ -35,12 +36,12 @@ engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
   spec.threads = options.threads;
   spec.scope = options.only.empty() ? engine::FilterScope::kKeepMarks : engine::FilterScope::kOnlyMarks;
   if (auto status = engine::validate(spec); !status) return tl::unexpected(status.error());
-  if (auto status =
-          checkOutputs({{options.out, OutputKind::kField}}, {options.in, options.keep, options.only});
-      !status)
-    return tl::unexpected(status.error());
+  return spec;
+}
 
-  auto imported = loadScan(options.in, options.reading, job);
+engine::Result<Report> filterOne(const Options& options, engine::FilterSpec spec, const BatchTask& task,
+                                 engine::JobControl& job) {
+  auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   engine::Version field = imported->field;
   if (const std::string& marks = options.only.empty() ? options.keep : options.only; !marks.empty()) {
@@ -57,8 +58,7 @@ engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
   const auto filtered = engine::applyFilter(field, imported->field, spec, job);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!filtered) return tl::unexpected(filtered.error());
-  if (auto status = saveField(filtered->field, options.out, job); !status)
-    return tl::unexpected(status.error());
+  if (auto status = saveField(filtered->field, task.out, job); !status) return tl::unexpected(status.error());
 
   const double samples = static_cast<double>(field.grid().samples()) * spec.passes;
   return Report{{"filter", options.filter},
@@ -74,14 +74,28 @@ engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
                 {"hash", fmt::format("{:016x}", engine::contentHash(filtered->field))}};
 }
 
+engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
+  const auto spec = specOf(options);
+  if (!spec) return tl::unexpected(spec.error());
+  const auto tasks = batchTasks(options.files, {options.keep, options.only});
+  if (!tasks) return tl::unexpected(tasks.error());
+  const auto one = [&](const BatchTask& task, engine::JobControl& j) {
+    return filterOne(options, *spec, task, j);
+  };
+  if (options.files.many()) return runBatch(*tasks, job, one);
+  const ProgressLine progress(job);
+  return one(tasks->front(), job);
+}
+
 }  // namespace
 
 void addFilter(CLI::App& root, Chosen& chosen) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = addCommand(root, chosen, "filter", "Filter a whole scan, around what is marked",
-                                 [options](engine::JobControl& job) { return filter(*options, job); });
-  command->add_option("IN", options->in, "The scan to read")->required();
-  command->add_option("OUT", options->out, "The file to write, format by extension")->required();
+  CLI::App* command = addCommand(
+      root, chosen, "filter", "Filter whole scans, around what is marked",
+      [options](engine::JobControl& job) { return filter(*options, job); }, printBatch, Progress::kOwn,
+      batchStatus);
+  addBatchOptions(command, options->files);
   command->add_option("--filter", options->filter, "box, gaussian or median")
       ->required()
       ->check(CLI::IsMember({"box", "gaussian", "median"}));
