@@ -6,6 +6,7 @@
 #include "app/scan_options.h"
 #include "app/terminal.h"
 #include "engine/compare/compare.h"
+#include "engine/compare/deviation_field.h"
 #include "engine/io/marks.h"
 
 namespace fettle::app {
@@ -17,6 +18,7 @@ struct Options {
   std::string b;
   std::string truth;
   std::string edges;
+  std::string deviation;
   ScanOptions reading;
 };
 
@@ -38,6 +40,10 @@ void warnOfDifferentGrids(const Options& options, const engine::Grid& a, const e
 engine::Result<Report> compare(const Options& options, engine::JobControl& job) {
   if (!options.edges.empty() && options.truth.empty())
     return engine::inputError("edges say nothing without a truth", "--edges", "give --truth too");
+  if (auto status = checkOutputs({{options.deviation, OutputKind::kField}},
+                                 {options.a, options.b, options.truth, options.edges});
+      !status)
+    return tl::unexpected(status.error());
   const auto a = loadScan(options.a, options.reading, job);
   if (!a) return tl::unexpected(a.error());
   const auto b = loadScan(options.b, options.reading, job);
@@ -58,6 +64,13 @@ engine::Result<Report> compare(const Options& options, engine::JobControl& job) 
                 {"sa_a", deviation->sa_a},
                 {"only_a", deviation->only_a},
                 {"only_b", deviation->only_b}};
+  if (!options.deviation.empty()) {
+    const auto difference = engine::deviationField(a->field, b->field, job);
+    if (!difference) return tl::unexpected(difference.error());
+    if (auto status = saveField(*difference, options.deviation, job); !status)
+      return tl::unexpected(status.error());
+    report["deviation"] = options.deviation;
+  }
   if (options.truth.empty()) return report;
 
   const auto truth = loadScan(options.truth, options.reading, job);
@@ -90,6 +103,8 @@ void addCompare(CLI::App& root, Chosen& chosen) {
                       "The true surface: adds RMSE overall, on flats and near edges");
   command->add_option("--edges", options->edges,
                       "Picture of the true edges, non-zero = edge: adds the edge width");
+  command->add_option("--deviation", options->deviation,
+                      "Also write B - A as a scan of its own, in A's height unit, format by extension");
   addScanOptions(command, options->reading);
 }
 

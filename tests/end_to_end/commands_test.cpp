@@ -130,6 +130,20 @@ TEST_F(Commands, CompareAgainstTheTruthJudgesFlatsAndEdges) {
     EXPECT_TRUE(after[key].is_number()) << key;
 }
 
+TEST_F(Commands, CompareWritesTheDeviationAsAScan) {
+  ASSERT_EQ(fettle({"filter", scan(), file("dev_b.tif"), "--filter", "median", "--window", "5"}).status, 0);
+  for (const char* name : {"dev.tif", "dev.asc", "dev.x3p", "dev.exr", "dev.xyz", "dev.ply", "dev.fettle"}) {
+    const auto report = fettleJson({"compare", scan(), file("dev_b.tif"), "--deviation", file(name)});
+    const auto written = fettleJson({"info", file(name)});
+    EXPECT_NEAR(std::max(std::abs(written["min"].get<double>()), std::abs(written["max"].get<double>())),
+                report["max_abs"].get<double>(), 1e-7 * report["max_abs"].get<double>())
+        << name;
+    EXPECT_NEAR(written["mean"], report["mean"], 1e-9) << name;
+  }
+  expectRefused(fettle({"compare", scan(), truth(), "--deviation", truth()}), "replace an input");
+  expectRefused(fettle({"compare", scan(), truth(), "--deviation", file("d.docx")}), "docx");
+}
+
 TEST_F(Commands, ReplaySmoothsMarksAndReportsForces) {
   // Down onto the middle row, along 40 columns a tenth of a millimetre deep with the smooth tool, then a
   // little way with the mark tool. Files count rows from the top: row 95 of 192 is row 96 of the field.
