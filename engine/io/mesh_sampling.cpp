@@ -31,6 +31,7 @@ struct Extent {
 
 struct Axes {
   AxisLattice x, y;
+  bool raster = false;  // every corner is one of its points but for the rounding of its coordinates
 };
 
 AxisLattice cellsOver(const Extent& extent, double size) {
@@ -72,7 +73,7 @@ Result<Axes> chooseAxes(const PointCloud& corners, const ImportOptions& options,
   if (x && y && x->count > 1 && y->count > 1 &&
       static_cast<double>(x->count) * static_cast<double>(y->count) <=
           std::max(kSmallGrid, kMostCellsACorner * count))
-    return Axes{*x, *y};
+    return Axes{*x, *y, true};
   const double size = twoDigits(std::sqrt(width / count) * std::sqrt(height));
   warnings.push_back(fmt::format(
       "the corners lie on no raster, sampled from above every {} {}: --cell-size sets it", size, unit));
@@ -116,6 +117,9 @@ class Sampler {
     for (std::int64_t row = box.low; row <= box.high; ++row)
       for (std::int64_t column = box.left; column <= box.right; ++column) {
         const double px = static_cast<double>(column), py = static_cast<double>(row);
+        // Its own corners are set without rounding, once all is drawn.
+        const auto here = [&](const Corner& corner) { return corner.x == px && corner.y == py; };
+        if (here(a) || here(b) || here(c)) continue;
         const double wb = ((px - a.x) * (c.y - a.y) - (c.x - a.x) * (py - a.y)) / area;
         const double wc = ((b.x - a.x) * (py - a.y) - (px - a.x) * (b.y - a.y)) / area;
         if (wb < -kOnSide || wc < -kOnSide || wb + wc > 1.0 + kOnSide) continue;
@@ -193,6 +197,9 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
   grid.origin_y = axes->y.origin;
 
   const auto corner = [&](std::uint32_t i) {
+    if (axes->raster)
+      return Corner{static_cast<double>(axes->x.indexOf(corners.x[i])),
+                    static_cast<double>(axes->y.indexOf(corners.y[i])), corners.z[i]};
     return Corner{(corners.x[i] - grid.origin_x) / grid.spacing_x,
                   (corners.y[i] - grid.origin_y) / grid.spacing_y, corners.z[i]};
   };
