@@ -107,7 +107,7 @@ Result<Exported> writePng(const Version& field, const std::string& path, const E
   if (Status status = file->commit(); !status) return tl::unexpected(status.error());
   exported.warnings.push_back(fmt::format("{}; largest error {:.3g} {}", rule, worst, unit));
   exported.warnings.push_back(
-      fmt::format("PNG keeps no spacing ({} x {} {}), origin or coordinate system: they are "
+      fmt::format("PNG keeps no spacing ({} x {} {}), units, origin or coordinate system: they are "
                   "in the picture's description only",
                   grid.spacing_x, grid.spacing_y, grid.lateral_unit.name));
   return exported;
