@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/command.h"
+#include "app/commands/bench_import.h"
 #include "bench/effects_bench.h"
 #include "bench/haptic_bench.h"
 #include "bench/machine.h"
@@ -315,6 +316,8 @@ void addBench(CLI::App& root, Chosen& chosen) {
   sweep->add_option("--mass", sweep_options->mass_kg, "Moving mass, kg")->capture_default_str();
   sweep->add_option("--press", sweep_options->press_n, "Constant press, N")->capture_default_str();
   sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
+
+  addBenchImport(*bench, chosen);
 
   auto render_options = std::make_shared<bench::RenderBenchOptions>();
   CLI::App* drawing = addCommand(

@@ -1,0 +1,60 @@
+#include "app/commands/bench_import.h"
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "bench/import_bench.h"
+
+namespace fettle::app {
+
+namespace {
+
+engine::Result<Report> measure(const bench::ImportBenchOptions& options, engine::JobControl& job) {
+  const auto measured = bench::benchImport(options, job);
+  if (!measured) return tl::unexpected(measured.error());
+  Report report{{"machine", measured->machine}, {"repeats", options.repeats}, {"rows", Report::array()}};
+  for (const bench::ImportBenchRow& row : measured->rows)
+    report["rows"].push_back({{"name", row.name},
+                              {"format", row.format},
+                              {"bytes", row.bytes},
+                              {"samples", row.samples},
+                              {"bytes_per_second", row.median},
+                              {"slowest", row.slowest},
+                              {"fastest", row.fastest},
+                              {"plain_bytes_per_second", row.plain},
+                              {"share_of_plain", row.median / row.plain},
+                              {"samples_per_second", row.median * static_cast<double>(row.samples) /
+                                                         static_cast<double>(row.bytes)},
+                              {"hash", fmt::format("{:016x}", row.hash)}});
+  return report;
+}
+
+void print(const Report& report) {
+  fmt::print("{}\nmedian of {} imports; plain: the same file read into a buffer, in the same run\n\n",
+             report["machine"].get<std::string>(), report["repeats"].get<int>());
+  fmt::print("{:<26}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>12}  hash\n", "", "MB", "MB/s", "slowest", "fastest",
+             "plain", "share", "Msamples/s");
+  for (const Report& row : report["rows"])
+    fmt::print("{:<26}{:>9.2f}{:>9.1f}{:>9.1f}{:>9.1f}{:>9.0f}{:>9.4f}{:>12.2f}  {}\n",
+               row["name"].get<std::string>(), row["bytes"].get<double>() * 1e-6,
+               row["bytes_per_second"].get<double>() * 1e-6, row["slowest"].get<double>() * 1e-6,
+               row["fastest"].get<double>() * 1e-6, row["plain_bytes_per_second"].get<double>() * 1e-6,
+               row["share_of_plain"].get<double>(), row["samples_per_second"].get<double>() * 1e-6,
+               row["hash"].get<std::string>());
+}
+
+}  // namespace
+
+void addBenchImport(CLI::App& bench, Chosen& chosen) {
+  auto options = std::make_shared<bench::ImportBenchOptions>();
+  CLI::App* command = addCommand(
+      bench, chosen, "import", "How fast each format becomes a field, beside plain reading of the same file",
+      [options](engine::JobControl& job) { return measure(*options, job); }, print);
+  command->add_option("SCANS", options->files, "Files to read; none: one field written in every format");
+  command->add_option("--side", options->side, "Samples along each side of that field")
+      ->capture_default_str();
+  command->add_option("--repeats", options->repeats, "Imports of each file")->capture_default_str();
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,164 @@
+#include "bench/import_bench.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <utility>
+
+#include "bench/hand_stroke.h"
+#include "bench/import_files.h"
+#include "bench/machine.h"
+#include "engine/io/export.h"
+#include "engine/io/import.h"
+
+namespace fettle::bench {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Seconds = std::chrono::duration<double>;
+
+constexpr double kSpacingMm = 0.05;
+
+// A folder that goes when the run ends.
+class Folder {
+ public:
+  [[nodiscard]] static engine::Result<Folder> create() {
+    std::error_code error;
+    std::string name = (fs::temp_directory_path(error) / "fettle-bench-XXXXXX").string();
+    if (error || mkdtemp(name.data()) == nullptr)
+      return engine::inputError("no temporary folder can be made", name, "set TMPDIR to one with free space");
+    return Folder(name);
+  }
+  Folder(Folder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  Folder& operator=(Folder&&) = delete;
+  ~Folder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
+
+ private:
+  explicit Folder(fs::path path) : path_(std::move(path)) {}
+  fs::path path_;
+};
+
+struct Case {
+  std::string name;
+  std::string path;
+};
+
+engine::Result<std::vector<Case>> makeFiles(const fs::path& folder, std::int32_t side,
+                                            engine::JobControl& job) {
+  const engine::Version field = workpiece(side, kSpacingMm);
+  std::vector<Case> cases;
+  engine::Status status;
+  const auto add = [&](const std::string& name, const std::string& file, const auto& write) {
+    if (!status) return;
+    cases.push_back({name, (folder / file).string()});
+    if (job.cancelled())
+      status = engine::cancelled();
+    else
+      status = write(cases.back().path);
+  };
+  const auto exported = [&](const engine::ExportOptions& options) {
+    return [&, options](const std::string& path) -> engine::Status {
+      const auto written = engine::exportField(field, path, options, job);
+      if (!written) return tl::unexpected(written.error());
+      return {};
+    };
+  };
+  engine::ExportOptions mesh;
+  mesh.mesh = true;
+  engine::ExportOptions cloud;
+  cloud.cloud_optimised = true;
+  add("GeoTIFF", "plain.tif", exported({}));
+  add("GeoTIFF, cloud-optimised", "cloud.tif", exported(cloud));
+  add("PNG", "counts.png", exported({}));
+  add("x3p", "surface.x3p", exported({}));
+  add("OpenEXR", "image.exr", exported({}));
+  add("Digital Surf", "surface.sur", [&](const std::string& path) { return writeSur(field, path); });
+  add("ESRI ASCII grid", "grid.asc", exported({}));
+  add("XYZ text", "points.xyz", exported({}));
+  add("PLY points", "points.ply", exported({}));
+  add("PCD binary", "points.pcd", [&](const std::string& path) { return writePcd(field, path); });
+  add("LAS", "points.las", [&](const std::string& path) { return writeLas(field, path); });
+  add("PLY mesh", "mesh.ply", exported(mesh));
+  add("STL mesh", "mesh.stl", exported({}));
+  add("session", "work.fettle", exported({}));
+  if (!status) return tl::unexpected(status.error());
+  return cases;
+}
+
+// Seconds to read the whole file; the bytes are looked at by nobody, as with `cat FILE > /dev/null`.
+engine::Result<double> readPlainly(const std::string& path) {
+  std::vector<char> buffer(std::size_t{1} << 20);
+  const auto start = std::chrono::steady_clock::now();
+  std::ifstream file;
+  file.rdbuf()->pubsetbuf(nullptr, 0);  // straight into ours
+  file.open(path, std::ios::binary);
+  while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()))) {
+  }
+  if (!file.eof()) return engine::inputError("the file cannot be read", path);
+  return Seconds(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+}  // namespace
+
+engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options, engine::JobControl& job) {
+  if (options.side < 16 || options.side > 8192 || options.repeats < 1 || options.repeats > 100)
+    return engine::inputError("an option of the benchmark is out of range", "bench import",
+                              "side 16 to 8192, repeats 1 to 100");
+  const auto folder = Folder::create();
+  if (!folder) return tl::unexpected(folder.error());
+  std::vector<Case> cases;
+  if (options.files.empty()) {
+    auto made = makeFiles(folder->path(), options.side, job);
+    if (!made) return tl::unexpected(made.error());
+    cases = *std::move(made);
+  } else {
+    for (const std::string& file : options.files) cases.push_back({fs::path(file).filename().string(), file});
+  }
+
+  job.begin("measuring", cases.size() * static_cast<std::size_t>(options.repeats));
+  ImportBenchReport report;
+  report.machine = machine();
+  report.rows.resize(cases.size());
+  std::vector<std::vector<double>> imports(cases.size()), plain(cases.size());
+  for (int i = 0; i < options.repeats; ++i)
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+      const auto read = readPlainly(cases[k].path);
+      if (!read) return tl::unexpected(read.error());
+      const auto start = std::chrono::steady_clock::now();
+      const auto imported = engine::importField(cases[k].path, {}, job);
+      const double seconds = Seconds(std::chrono::steady_clock::now() - start).count();
+      if (!imported) return tl::unexpected(imported.error());
+      const std::uint64_t hash = engine::contentHash(imported->field);
+      ImportBenchRow& row = report.rows[k];
+      if (i > 0 && hash != row.hash)
+        return engine::failure("two imports of the same file differ", cases[k].path, "please report this");
+      row.name = cases[k].name;
+      row.format = imported->format;
+      row.bytes = static_cast<std::int64_t>(fs::file_size(cases[k].path));
+      row.samples = imported->field.grid().samples();
+      row.hash = hash;
+      imports[k].push_back(static_cast<double>(row.bytes) / seconds);
+      plain[k].push_back(static_cast<double>(row.bytes) / *read);
+    }
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    ImportBenchRow& row = report.rows[k];
+    row.median = median(imports[k]);
+    row.slowest = *std::min_element(imports[k].begin(), imports[k].end());
+    row.fastest = *std::max_element(imports[k].begin(), imports[k].end());
+    row.plain = median(plain[k]);
+  }
+  return report;
+}
+
+}  // namespace fettle::bench

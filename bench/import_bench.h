@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+
+namespace fettle::bench {
+
+struct ImportBenchOptions {
+  std::int32_t side = 1024;  ///< samples along each side of the field that is written and read, 16 .. 8192
+  int repeats = 5;           ///< 1 .. 100
+  /// Files to read instead; with none the same field is written in every format.
+  std::vector<std::string> files;
+};
+
+/// How fast one file becomes a field. Rates in bytes of the file a second.
+struct ImportBenchRow {
+  std::string name;    ///< what was written, "PLY mesh"; of a file given, its name
+  std::string format;  ///< FormatInfo::name of the reader
+  std::int64_t bytes = 0;
+  std::int64_t samples = 0;  ///< of the field
+  double median = 0.0, slowest = 0.0, fastest = 0.0;
+  double plain = 0.0;      ///< median rate of reading the same file into a buffer, in the same run
+  std::uint64_t hash = 0;  ///< of the field; the same in every repeat
+};
+
+struct ImportBenchReport {
+  std::string machine;
+  std::vector<ImportBenchRow> rows;
+};
+
+/// Imports each file `repeats` times, going round all of them, each time after a plain reading of it (1 MB at
+/// a time), so that the file is in the page cache for both and a change of the machine's speed meets both.
+/// Files made here lie in a folder of their own under the system's temporary folder and are removed.
+/// Errors: kInput for options out of range and files that cannot be read or made, kFailed when two repeats
+/// differ in a bit, kCancelled. Thread: any; blocks.
+[[nodiscard]] engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options,
+                                                            engine::JobControl& job);
+
+}  // namespace fettle::bench
