@@ -18,7 +18,9 @@ namespace {
 
 constexpr double kMostCellsACorner = 400.0;  // a mesh of few triangles has few corners on its raster
 constexpr double kSmallGrid = 1e6;
-constexpr double kMostSamplings = 1e10;
+// How often each sample may be covered, in the mean: every layer of a part does so twice.
+constexpr double kMostLayers = 200.0;
+constexpr double kBenefitOfDoubt = 1e7;
 constexpr double kOnSide = 1e-9;  // share of a triangle by which a sample on its side may miss it
 
 struct Extent {
@@ -92,31 +94,32 @@ class Sampler {
         height_(height),
         heights_(static_cast<std::size_t>(width * height), -std::numeric_limits<double>::infinity()) {}
 
-  // Samples within the box of three corners; none where it lies between two.
-  struct Box {
-    std::int64_t left, right, low, high;
-    [[nodiscard]] double samples() const {
-      return left > right || low > high
-                 ? 0.0
-                 : static_cast<double>(right - left + 1) * static_cast<double>(high - low + 1);
-    }
-  };
-  [[nodiscard]] Box boxOf(const Corner& a, const Corner& b, const Corner& c) const {
-    const auto first = [](double v) { return static_cast<std::int64_t>(std::ceil(std::max(v, 0.0) - 1e-6)); };
-    const auto last = [](double v, std::int64_t count) {
-      return static_cast<std::int64_t>(std::floor(std::min(v, static_cast<double>(count - 1)) + 1e-6));
+  // Rows and samples that drawing looks at, but for a few a row.
+  [[nodiscard]] double costOf(const Corner& a, const Corner& b, const Corner& c) const {
+    const auto within = [](double v, std::int64_t count) {
+      return std::clamp(v, 0.0, static_cast<double>(count - 1));
     };
-    return {first(std::min({a.x, b.x, c.x})), last(std::max({a.x, b.x, c.x}), width_),
-            first(std::min({a.y, b.y, c.y})), last(std::max({a.y, b.y, c.y}), height_)};
+    const double rows =
+        within(std::max({a.y, b.y, c.y}), height_) - within(std::min({a.y, b.y, c.y}), height_);
+    const double area = std::abs((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)) / 2.0;
+    return std::min(area, rows * static_cast<double>(width_)) + rows + 1.0;
   }
 
   void draw(const Corner& a, const Corner& b, const Corner& c) {
     const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
     if (area == 0.0) return;  // upright: its sides belong to neighbours, its corners are set by themselves
-    const Box box = boxOf(a, b, c);
-    for (std::int64_t row = box.low; row <= box.high; ++row)
-      for (std::int64_t column = box.left; column <= box.right; ++column) {
-        const double px = static_cast<double>(column), py = static_cast<double>(row);
+    const std::int64_t low = first(std::min({a.y, b.y, c.y}));
+    const std::int64_t high = last(std::max({a.y, b.y, c.y}), height_);
+    for (std::int64_t row = low; row <= high; ++row) {
+      const double py = static_cast<double>(row);
+      Extent span;
+      addCrossing(a, b, py, span);
+      addCrossing(b, c, py, span);
+      addCrossing(c, a, py, span);
+      // A sample to each side: the test below decides.
+      const std::int64_t right = last(span.high + 1.0, width_);
+      for (std::int64_t column = first(span.low - 1.0); column <= right; ++column) {
+        const double px = static_cast<double>(column);
         // Its own corners are set without rounding, once all is drawn.
         const auto here = [&](const Corner& corner) { return corner.x == px && corner.y == py; };
         if (here(a) || here(b) || here(c)) continue;
@@ -125,6 +128,7 @@ class Sampler {
         if (wb < -kOnSide || wc < -kOnSide || wb + wc > 1.0 + kOnSide) continue;
         raise(column, row, a.z + wb * (b.z - a.z) + wc * (c.z - a.z));
       }
+    }
   }
 
   // A corner that lies on a sample is its height, to the last bit.
@@ -143,6 +147,26 @@ class Sampler {
   }
 
  private:
+  static constexpr double kBeside = 1e-6;  // samples by which a row may miss a corner and still touch it
+
+  static std::int64_t first(double v) {
+    return static_cast<std::int64_t>(std::ceil(std::max(v, 0.0) - kBeside));
+  }
+  static std::int64_t last(double v, std::int64_t count) {
+    return static_cast<std::int64_t>(std::floor(std::min(v, static_cast<double>(count - 1)) + kBeside));
+  }
+
+  // Where the row meets the side from p to q; all of it when it lies along the row.
+  static void addCrossing(const Corner& p, const Corner& q, double py, Extent& span) {
+    if (py < std::min(p.y, q.y) - kBeside || py > std::max(p.y, q.y) + kBeside) return;
+    if (std::abs(q.y - p.y) <= 2.0 * kBeside) {
+      span.add(p.x);
+      span.add(q.x);
+    } else {
+      span.add(p.x + (q.x - p.x) * std::clamp((py - p.y) / (q.y - p.y), 0.0, 1.0));
+    }
+  }
+
   void raise(std::int64_t column, std::int64_t row, double z) {
     double& height = at(column, row);
     height = std::max(height, z);
@@ -204,12 +228,14 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
                   (corners.y[i] - grid.origin_y) / grid.spacing_y, corners.z[i]};
   };
   Sampler sampler(grid.width, grid.height);
-  double samplings = 0.0;
-  for (const auto& t : mesh.triangles)
-    samplings += sampler.boxOf(corner(t[0]), corner(t[1]), corner(t[2])).samples();
-  if (samplings > kMostSamplings)
-    return inputError(fmt::format("the triangles cover {:.2g} samples", samplings), path,
-                      "give a larger cell with --cell-size");
+  double cost = 0.0;
+  for (const auto& t : mesh.triangles) cost += sampler.costOf(corner(t[0]), corner(t[1]), corner(t[2]));
+  const double most = kMostLayers * static_cast<double>(grid.samples() + grid.width + grid.height) +
+                      static_cast<double>(mesh.triangles.size()) + kBenefitOfDoubt;
+  if (!(cost <= most))
+    return inputError(fmt::format("the triangles lie {:.0f} deep over each sample, {:.0f} are taken",
+                                  cost / static_cast<double>(grid.samples()), kMostLayers),
+                      path, "is this a height field? Cut what lies underneath away");
   constexpr std::size_t kLook = 1024;
   job.begin("sampling", mesh.triangles.size() / kLook + 1);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -32,6 +32,7 @@ namespace {
 constexpr std::size_t kMostEntries = 10000;
 constexpr std::size_t kLongestXml = std::size_t{2} << 20;  // without the matrix
 constexpr std::size_t kLongestDatum = 512;
+constexpr std::size_t kLongestGap = std::size_t{1} << 16;  // between two heights: spaces, comments
 
 tl::unexpected<Error> damaged(std::string what, const InputFile& file) {
   return inputError(std::move(what), file.path(), "the file is damaged");
@@ -121,6 +122,7 @@ class XmlStream {
   // The text of the next Datum, empty for one without; false at the end of the matrix.
   bool datum(std::string& text) {
     std::string tag;
+    gap_ = 0;
     while (until('<', nullptr) && until('>', &tag)) {
       const bool single = !tag.empty() && tag.back() == '/';
       if (tag.front() == '/') {
@@ -163,6 +165,9 @@ class XmlStream {
       if (text != nullptr) text->append(from, count);
       if (text != nullptr && text->size() > kLongestDatum) return false;
       begin_ += count;
+      // A height's own text is at most kLongestDatum of it.
+      gap_ += count + 1;
+      if (gap_ > kLongestGap) return false;
       if (at != nullptr) {
         begin_ += keep ? 0 : 1;
         return text == nullptr || keep || !text->empty();
@@ -176,6 +181,7 @@ class XmlStream {
   bool has_matrix_ = false;
   std::string buffer_ = std::string(std::size_t{1} << 16, '\0');
   std::size_t begin_ = 0, end_ = 0;
+  std::size_t gap_ = 0;  // since the height before
   Md5 md5_;
   Status status_;
 };

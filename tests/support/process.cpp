@@ -73,7 +73,9 @@ Outcome runProcess(const std::vector<std::string>& arguments, const ProcessOptio
     if (watching && open_ends > 0) watching = !options.while_running(pid);
   }
   int status = 0;
-  waitpid(pid, &status, 0);
+  rusage usage{};
+  wait4(pid, &status, 0, &usage);
+  outcome.peak_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;
   close(out[0]);
   close(err[0]);
   outcome.seconds = std::chrono::steady_clock::now() - start;

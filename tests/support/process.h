@@ -14,6 +14,8 @@ struct Outcome {
   std::string out;
   std::string err;
   std::chrono::duration<double> seconds{};
+  std::size_t peak_bytes =
+      0;  ///< most memory it held at once (ru_maxrss); of a program with children, its own
 };
 
 struct ProcessOptions {
