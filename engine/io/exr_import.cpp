@@ -5,6 +5,7 @@
 #include <cmath>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -89,10 +90,52 @@ class HeaderCheck {
     broken_ = true;
     return false;
   }
+  // Bytes of the types whose values the library reads without a look at the size that is said: a size that is
+  // another would have it read what comes next from the wrong place. 0: any.
+  static std::uint32_t fixedSize(std::string_view type) {
+    static constexpr std::pair<std::string_view, std::uint32_t> kSizes[] = {{"box2f", 16},
+                                                                            {"box2i", 16},
+                                                                            {"chromaticities", 32},
+                                                                            {"compression", 1},
+                                                                            {"deepImageState", 1},
+                                                                            {"double", 8},
+                                                                            {"envmap", 1},
+                                                                            {"float", 4},
+                                                                            {"int", 4},
+                                                                            {"keycode", 28},
+                                                                            {"lineOrder", 1},
+                                                                            {"m33d", 72},
+                                                                            {"m33f", 36},
+                                                                            {"m44d", 128},
+                                                                            {"m44f", 64},
+                                                                            {"rational", 8},
+                                                                            {"tiledesc", 9},
+                                                                            {"timecode", 8},
+                                                                            {"v2d", 16},
+                                                                            {"v2f", 8},
+                                                                            {"v2i", 8},
+                                                                            {"v3d", 24},
+                                                                            {"v3f", 12},
+                                                                            {"v3i", 12}};
+    for (const auto& [name, size] : kSizes)
+      if (name == type) return size;
+    return 0;
+  }
+  // Channels: names, each with 16 bytes, and an empty one at the very end.
+  static bool channelsFill(std::string_view value) {
+    while (!value.empty() && value.front() != '\0') {
+      const std::size_t name = value.find('\0');
+      if (name == std::string_view::npos || value.size() - name < 17) return false;
+      value.remove_prefix(name + 17);
+    }
+    return value.size() == 1;
+  }
   // Values that hold sizes of their own.
   bool inside(const std::string& type, std::uint32_t bytes) {
+    if (const std::uint32_t size = fixedSize(type); size != 0 && bytes != size) return false;
     const char* value = bytes == 0 ? nullptr : text_.bytes(bytes);
     if (bytes != 0 && value == nullptr) return false;
+    if (type == "chlist") return channelsFill({value, bytes});
     if (type == "preview")
       return bytes >= 8 && (std::uint64_t{little<std::uint32_t>(value)} * little<std::uint32_t>(value + 4) <=
                             std::uint64_t{bytes - 8} / 4);

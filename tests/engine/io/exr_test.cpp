@@ -98,6 +98,28 @@ TEST(Exr, AttributesOfTwoGigabytesAreRefusedBeforeMemoryIsTaken) {
   EXPECT_NE(scan.error().what.find("attributes"), std::string::npos) << scan.error().line();
 }
 
+TEST(Exr, ValuesThatAreNotAsLongAsTheyAreSaidToBeAreRefused) {
+  // The library reads some by their type and others by the size that is said: between the two it would lose
+  // its place and take any four bytes for a size.
+  const TempFolder folder;
+  ASSERT_TRUE(save(makeField(gridOf(3, 2), {1, 2, 3, 4, 5, 6}), folder.file("a.exr")));
+  const std::string whole = readBytes(folder.file("a.exr"));
+  for (const std::string& name :
+       {std::string("channels\0chlist\0", 16), std::string("dataWindow\0box2i\0", 17),
+        std::string("compression\0compression\0", 24), std::string("screenWindowCenter\0v2f\0", 23)}) {
+    const std::size_t at = whole.find(name);
+    ASSERT_NE(at, std::string::npos) << name;
+    for (const int more : {-1, 1, 60}) {
+      std::string lying = whole;
+      lying[at + name.size()] = static_cast<char>(lying[at + name.size()] + more);
+      writeBytes(folder.file("lying.exr"), lying);
+      const auto scan = load(folder.file("lying.exr"));
+      ASSERT_FALSE(scan) << name << more;
+      EXPECT_NE(scan.error().what.find("attributes"), std::string::npos) << scan.error().line();
+    }
+  }
+}
+
 TEST(Exr, DamagedAndLyingPicturesAreRefused) {
   const TempFolder folder;
   for (const bool tiled : {false, true}) {
