@@ -54,6 +54,7 @@ void addCompare(CLI::App& root, Chosen& chosen);
 void addConvert(CLI::App& root, Chosen& chosen);
 void addDevices(CLI::App& root, Chosen& chosen);
 void addView(CLI::App& root, Chosen& chosen);
+void addAccuracy(CLI::App& root, Chosen& chosen);
 void addBench(CLI::App& root, Chosen& chosen);
 void addDemo(CLI::App& root, Chosen& chosen);
 

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
     addConvert(root, chosen);
     addDevices(root, chosen);
     addView(root, chosen);
+    addAccuracy(root, chosen);
     addDemo(root, chosen);
     addBench(root, chosen);
   });

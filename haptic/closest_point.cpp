@@ -26,7 +26,7 @@ class Descent {
         at_(at),
         last_(at) {}
 
-  [[gnu::always_inline]] inline SearchResult run() noexcept;
+  [[gnu::always_inline]] inline SearchResult run(int most_rounds) noexcept;
 
  private:
   // What a look around from the present point came to.
@@ -131,14 +131,14 @@ Descent::Look Descent::lookAround(const PatchView& p, int upper) noexcept {
   return Look::kRests;
 }
 
-SearchResult Descent::run() noexcept {
+SearchResult Descent::run(int most_rounds) noexcept {
   if (!surface_.patch(cell_, *here_)) return result_;
   const Pair zero{0.0, 0.0};
   const Pair one{1.0, 1.0};
   result_.cells = 1;
   result_.end = SearchEnd::kBound;
   bool settled = false;  // no step inside the patch is worth taking
-  for (int round = 0; round < kMaxRounds && result_.cells < kMaxCellsVisited; ++round) {
+  for (int round = 0; round < most_rounds && result_.cells < kMaxCellsVisited; ++round) {
     const Patch& s = *here_;
     const Pair e = Pair{endpoint_.x, endpoint_.y} - Pair{s.x0, s.y0};
     const double ez = endpoint_.z - s.a;
@@ -207,10 +207,10 @@ SearchResult Descent::run() noexcept {
 
 }  // namespace
 
-SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u,
-                           double v) noexcept {
+SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u, double v,
+                           int most_rounds) noexcept {
   Patch patches[2];
-  return Descent(surface, patches, endpoint, start, Pair{u, v}).run();
+  return Descent(surface, patches, endpoint, start, Pair{u, v}).run(most_rounds);
 }
 
 }  // namespace fettle::haptic

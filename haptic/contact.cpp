@@ -13,8 +13,8 @@ namespace fettle::haptic {
 namespace {
 
 SearchResult countedSearch(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u, double v,
-                           TickCounters& counters) noexcept {
-  const SearchResult result = searchClosest(surface, endpoint, start, u, v);
+                           int most_rounds, TickCounters& counters) noexcept {
+  const SearchResult result = searchClosest(surface, endpoint, start, u, v, most_rounds);
   counters.search_bound_hits += result.end == SearchEnd::kBound ? 1 : 0;
   counters.longest_search = std::max<std::int64_t>(counters.longest_search, result.cells);
   return result;
@@ -49,7 +49,7 @@ bool contactTest(Surface& surface, const SurfacePoint& proxy, const glm::dvec3& 
 
 bool ContactTracker::track(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters,
                            Contact& out) noexcept {
-  const SearchResult found = countedSearch(surface, endpoint, cell_, u_, v_, counters);
+  const SearchResult found = countedSearch(surface, endpoint, cell_, u_, v_, search_rounds_, counters);
   if (found.end == SearchEnd::kHole) {
     ++counters.lost_cell;
     return false;
@@ -63,7 +63,7 @@ bool ContactTracker::collide(Surface& surface, const glm::dvec3& endpoint, bool 
   const auto searchFrom = [&](CellIndex cell, const glm::dvec3& above) {
     const double u = std::clamp(above.x / surface.spacingX() - cell.column, 0.0, 1.0);
     const double v = std::clamp(above.y / surface.spacingY() - cell.row, 0.0, 1.0);
-    const SearchResult found = countedSearch(surface, endpoint, cell, u, v, counters);
+    const SearchResult found = countedSearch(surface, endpoint, cell, u, v, search_rounds_, counters);
     return touchesAt(surface, found, endpoint, counters, out);
   };
 

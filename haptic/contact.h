@@ -55,8 +55,8 @@ struct Contact {
 /// Threading: one thread; wait-free, noexcept, allocates nothing.
 class ContactTracker {
  public:
-  ContactTracker(ContactLevel level, int certified_radius_cells) noexcept
-      : level_(level), radius_cells_(certified_radius_cells) {}
+  ContactTracker(ContactLevel level, int certified_radius_cells, int search_rounds) noexcept
+      : level_(level), radius_cells_(certified_radius_cells), search_rounds_(search_rounds) {}
 
   /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt.
   /// `contact` is overwritten (in place, because it is 100 bytes a tick).
@@ -81,6 +81,7 @@ class ContactTracker {
 
   ContactLevel level_;
   int radius_cells_;
+  int search_rounds_;
   bool touching_ = false;
   bool has_previous_ = false;
   bool previous_over_cell_ = false;

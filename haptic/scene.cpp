@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "haptic/closest_point.h"
+
 namespace fettle::haptic {
 
 namespace {
@@ -202,6 +204,11 @@ class SceneReader {
         require(value, radius >= 1 && radius <= kMaxCertifiedRadius,
                 "certified_radius_cells must be a whole number from 1 to 64");
         if (!problem_) scene_.certified_radius_cells = static_cast<int>(radius);
+      } else if (key == "search_rounds") {
+        const auto rounds = value.is_integer() ? *value.value<std::int64_t>() : 0;
+        require(value, rounds >= 2 && rounds <= kMaxRounds,
+                "search_rounds must be a whole number from 2 to 2048");
+        if (!problem_) scene_.search_rounds = static_cast<int>(rounds);
       } else {
         return false;
       }
@@ -290,6 +297,8 @@ Scene defaultScene() {
 std::optional<std::string> sceneProblem(const Scene& scene) {
   if (scene.certified_radius_cells < 1 || scene.certified_radius_cells > kMaxCertifiedRadius)
     return fmt::format("the certified radius must be 1 to {} cells", kMaxCertifiedRadius);
+  if (scene.search_rounds < 2 || scene.search_rounds > kMaxRounds)
+    return fmt::format("the search must have 2 to {} rounds", kMaxRounds);
   if (scene.tip == TipShape::kSphere && !positiveUpTo(scene.tip_radius_mm, kMaxTipRadius))
     return fmt::format("the tip's radius must be above 0 and at most {} mm", kMaxTipRadius);
   if (!positiveUpTo(scene.stiffness_n_per_mm, kMaxStiffness))
@@ -339,13 +348,13 @@ std::string sceneText(const Scene& scene) {
   for (const EffectKind effect : scene.effects) effects.push_back(effectName(effect));
   std::string text = fmt::format(
       "tip = \"{}\"\ntip_radius_mm = {}\ninvert = {}\neffects = [{}{}{}]\n"
-      "[contact]\nlevel = \"{}\"\ncertified_radius_cells = {}\n"
+      "[contact]\nlevel = \"{}\"\ncertified_radius_cells = {}\nsearch_rounds = {}\n"
       "[force]\nstiffness_n_per_mm = {}\nlimit_n = {}\n"
       "[brush]\nradius_samples = {}\nmark_radius_samples = {}\n",
       scene.tip == TipShape::kSphere ? "sphere" : "point", scene.tip_radius_mm, scene.invert,
       effects.empty() ? "" : "\"", fmt::join(effects, "\", \""), effects.empty() ? "" : "\"",
-      levelName(scene.level), scene.certified_radius_cells, scene.stiffness_n_per_mm, scene.force_limit_n,
-      scene.brush_radius_samples, scene.mark_radius_samples);
+      levelName(scene.level), scene.certified_radius_cells, scene.search_rounds, scene.stiffness_n_per_mm,
+      scene.force_limit_n, scene.brush_radius_samples, scene.mark_radius_samples);
   if (scene.max_change) text += fmt::format("max_change = {}\n", *scene.max_change);
   EffectParams params = scene.params;
   std::string_view table;

@@ -58,6 +58,10 @@ struct Scene {
   /// larger spacing are searched, so the result is the true closest point of the whole field whenever it is
   /// nearer than that. [cells], 1 .. 64. Also the radius when a replay measures level paper.
   int certified_radius_cells = 2;
+  /// Level paper: rounds a search may take in one tick, 2 .. 2048; each looks at a patch and takes a step,
+  /// the last one only looks. As many as there are: to rest. Fewer bound the tick's time and lag behind a
+  /// fast hand.
+  int search_rounds = 2048;
 
   /// Spring: newtons a millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.
   double stiffness_n_per_mm = 1.0;

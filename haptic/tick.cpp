@@ -9,7 +9,7 @@ namespace fettle::haptic {
 Tick::Tick(const Scene& scene, engine::LiveField& field, const engine::Version& original)
     : field_(field),
       surface_(field.reader()),
-      tracker_(scene.level, scene.certified_radius_cells),
+      tracker_(scene.level, scene.certified_radius_cells, scene.search_rounds),
       sphere_(scene.tip == TipShape::kSphere
                   ? std::make_unique<SphereTracker>(scene.tip_radius_mm, field.reader().grid())
                   : nullptr),

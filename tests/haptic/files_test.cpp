@@ -130,6 +130,8 @@ TEST(SceneFile, RefusesUnknownKeysTypesAndRangesWithTheLine) {
                            "force = { stiffness = 1 }",
                            "force = { stiffness_n_per_mm = \"1\" }",
                            "contact = { certified_radius_cells = 1.5 }",
+                           "contact = { search_rounds = 1 }",
+                           "contact = { search_rounds = 2049 }",
                            "contact = { level = \"best\" }",
                            "brush = { max_change = -1 }",
                            "friction = { static = 3 }",

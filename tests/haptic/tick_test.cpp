@@ -172,6 +172,29 @@ TEST(Tick, MeanNormalThatPointsTheWrongWayIsOverruled) {
   EXPECT_EQ(counters.mean_normal_overruled, 1);
 }
 
+TEST(Search, MoreRoundsNeverEndFartherAndEnoughOfThemEndWhereAllDo) {
+  std::mt19937_64 random(22);
+  int stopped = 0;
+  for (int i = 0; i < 500; ++i) {
+    const engine::Version field = randomField(random, 16, 16, i % 6, 0.5, 1.0, 0.0);
+    Surface surface(field.reader());
+    const glm::dvec3 e{uniform(random, 0, 7.5), uniform(random, 0, 15), uniform(random, -6, 6)};
+    CellIndex own;
+    ASSERT_TRUE(surface.cellUnder(e, own));
+    const SearchResult all = searchClosest(surface, e, own, 0.5, 0.5);
+    double before = HUGE_VAL;
+    for (const int rounds : {2, 3, 5, 8, 13, 100, kMaxRounds}) {
+      const SearchResult some = searchClosest(surface, e, own, 0.5, 0.5, rounds);
+      // The point of the last round but one is kept where the last went astray, so equal is legal.
+      EXPECT_LE(some.point.distance2_mm2, before * (1 + 1e-9));
+      before = some.point.distance2_mm2;
+      stopped += some.end == SearchEnd::kBound;
+    }
+    EXPECT_EQ(before, all.point.distance2_mm2);
+  }
+  EXPECT_GT(stopped, 500);
+}
+
 TEST(Search, ProxyIsOnTheSurfaceAndNoSharingCellIsNearer) {
   std::mt19937_64 random(21);
   for (int i = 0; i < 1500; ++i) {

@@ -84,6 +84,7 @@ haptic::Scene anyScene(std::mt19937_64& random) {
   scene.tip_radius_mm = tests::uniform(random, 1e-9, 100);
   scene.level = random() % 2 == 0 ? haptic::ContactLevel::kPaper : haptic::ContactLevel::kCertified;
   scene.certified_radius_cells = 1 + static_cast<int>(random() % 64);
+  scene.search_rounds = 2 + static_cast<int>(random() % 2047);
   scene.stiffness_n_per_mm = tests::uniform(random, 1e-12, 1000);
   scene.force_limit_n = tests::uniform(random, 1e-12, 1000);
   scene.brush_radius_samples = tests::uniform(random, 0, 64);

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/accuracy/page.h"
+#include "app/accuracy/plot.h"
+#include "app/command.h"
+#include "app/scan_options.h"
+#include "bench/accuracy/studies.h"
+#include "bench/machine.h"
+#include "engine/io/atomic_file.h"
+
+namespace fettle::app {
+namespace {
+
+struct Options {
+  std::string folder;
+  std::string scan;
+  ScanOptions scan_options;
+  std::vector<std::string> only;
+  double effort = 1.0;
+};
+
+constexpr struct {
+  const char* id;
+  engine::Result<bench::Study> (*run)(const bench::AccuracyOptions&, engine::JobControl&);
+} kStudies[] = {
+    {"contact", bench::contactStudy},
+    {"surface", bench::surfaceStudy},
+    {"rate", bench::rateStudy},
+    {"detail", bench::detailStudy},
+    {"filter", bench::filterStudy},
+    {"upload", bench::uploadStudy},
+    {"restoration", bench::restorationStudy},
+};
+
+std::string studyNames() {
+  std::string names;
+  for (const auto& study : kStudies) names += fmt::format("{}{}", names.empty() ? "" : ", ", study.id);
+  return names;
+}
+
+engine::Result<Report> accuracy(const Options& options, engine::JobControl& job) {
+  for (const std::string& id : options.only)
+    if (std::none_of(std::begin(kStudies), std::end(kStudies), [&](const auto& s) { return s.id == id; }))
+      return engine::inputError("there is no study \"" + id + "\"", "--only", "name any of " + studyNames());
+  bench::AccuracyOptions studied;
+  studied.effort = options.effort;
+  if (!options.scan.empty()) {
+    auto scan = loadScan(options.scan, options.scan_options, job);
+    if (!scan) return tl::unexpected(scan.error());
+    studied.scan = {std::filesystem::path(options.scan).filename().string(), scan->field};
+  }
+  std::error_code error;
+  const std::filesystem::path folder(options.folder);
+  const bool made = std::filesystem::create_directories(folder, error);
+  if (error)
+    return engine::inputError("the folder cannot be made: " + error.message(), options.folder,
+                              "name a folder that you may write to");
+  const auto ended = [&](engine::Error problem) {
+    std::error_code ignored;
+    if (made && std::filesystem::is_empty(folder, ignored)) std::filesystem::remove(folder, ignored);
+    return tl::unexpected(std::move(problem));
+  };
+  std::vector<PlottedStudy> studies;
+  Report rows = Report::array(), answers = Report::object();
+  for (const auto& chosen : kStudies) {
+    if (!options.only.empty() &&
+        std::find(options.only.begin(), options.only.end(), chosen.id) == options.only.end())
+      continue;
+    auto study = chosen.run(studied, job);
+    if (!study) return ended(study.error());
+    auto svg = plotSvg(*study);
+    if (!svg) return ended(svg.error());
+    answers[study->id] = study->answer;
+    for (const bench::AccuracyRow& row : study->rows)
+      rows.push_back({{"study", study->id},
+                      {"subject", row.subject},
+                      {"method", row.method},
+                      {"cost", row.cost},
+                      {"cost_unit", study->cost_unit},
+                      {"error", row.error},
+                      {"error_p99", row.error_p99},
+                      {"error_worst", row.error_worst},
+                      {"error_unit", study->error_unit},
+                      {"wrong", row.wrong},
+                      {"hash", fmt::format("{:016x}", row.hash)},
+                      {"note", row.note}});
+    studies.push_back({*std::move(study), *std::move(svg)});
+  }
+  const std::string machine = bench::machine();
+  const std::string made_with = fmt::format(
+      "fettle accuracy, effort {:g}{}", options.effort,
+      options.scan.empty() ? "" : ", with " + std::filesystem::path(options.scan).filename().string());
+  const std::string page = (folder / "accuracy.html").string(), csv = (folder / "accuracy.csv").string();
+  if (auto ok = engine::writeFileAtomically(csv, accuracyCsv(studies)); !ok) return ended(ok.error());
+  for (const PlottedStudy& s : studies)
+    if (auto ok = engine::writeFileAtomically((folder / (s.study.id + ".svg")).string(), s.svg); !ok)
+      return ended(ok.error());
+  if (auto ok = engine::writeFileAtomically(page, accuracyPage(studies, machine, made_with)); !ok)
+    return ended(ok.error());
+  return Report{{"page", page},       {"csv", csv},  {"machine", machine}, {"effort", options.effort},
+                {"answers", answers}, {"rows", rows}};
+}
+
+void print(const Report& report) {
+  for (const auto& [study, answer] : report["answers"].items())
+    fmt::print("{}: {}\n\n", study, answer.get<std::string>());
+  fmt::print("{}\n{}\n", report["page"].get<std::string>(), report["csv"].get<std::string>());
+}
+
+}  // namespace
+
+void addAccuracy(CLI::App& root, Chosen& chosen) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = addCommand(
+      root, chosen, "accuracy", "What accuracy costs in time: a page of plots, tables and answers",
+      [options](engine::JobControl& job) { return accuracy(*options, job); }, print);
+  command->add_option("FOLDER", options->folder, "Where accuracy.html, accuracy.csv and the plots go")
+      ->required();
+  command->add_option("SCAN", options->scan, "A scan to study beside the made fields");
+  command->add_option("--only", options->only, "Studies to make: " + studyNames() + "; none: all");
+  command
+      ->add_option("--effort", options->effort,
+                   "Share of the full work, 0.01 to 1; less is quicker and coarser")
+      ->check(within(0.01, 1.0))
+      ->capture_default_str();
+  addScanOptions(command, options->scan_options);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bench/accuracy/study.h"
+
+namespace fettle::bench {
+
+/// Mean, 99th percentile (nearest rank) and largest of errors >= 0; zeros of none.
+void summarise(std::vector<double> errors, AccuracyRow& row);
+
+/// Median and largest of repeated times.
+void spread(std::vector<double> costs, AccuracyRow& row);
+
+/// FNV-1a over the bytes of doubles.
+[[nodiscard]] std::uint64_t hashOf(std::span<const double> values);
+
+/// The rows of one method or subject that an answer speaks of; the first with both names. Asserts that there
+/// is one.
+[[nodiscard]] const AccuracyRow& rowOf(const Study& study, const std::string& subject,
+                                       const std::string& method);
+
+}  // namespace fettle::bench

@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "bench/accuracy/measure.h"
+#include "bench/accuracy/studies.h"
+#include "bench/accuracy/subjects.h"
+#include "engine/field/live_field.h"
+#include "haptic/devices/simulated_hand.h"
+#include "haptic/loop/rt_thread.h"
+#include "haptic/tick.h"
+
+namespace fettle::bench {
+namespace {
+
+constexpr double kReferenceHz = 40'000.0;
+constexpr double kStiffness = 2.0;  // N/mm: what a good hand device holds at 1 kHz
+constexpr double kRates[] = {500.0, 1000.0, 2000.0, 5000.0, 10'000.0};
+
+struct Pressed {
+  std::vector<glm::dvec3> force_n;            // a tick
+  std::vector<haptic::StrokeSample> strokes;  // what the ticks were given
+  double work_mj = 0.0;                       // of the surface on the hand, from free air to free air
+};
+
+// From free air, a tap, a press and a slide of 5 mm, and back into free air.
+Pressed press(const engine::Version& field, double rate_hz, double seconds) {
+  haptic::Scene scene = haptic::defaultScene();
+  scene.effects = {haptic::EffectKind::kSpring};
+  scene.stiffness_n_per_mm = kStiffness;
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  haptic::Tick tick(scene, live, field);
+  haptic::HandSpec spec;
+  spec.rate_hz = rate_hz;
+  const double x = 0.25 * (field.grid().width - 1) * field.grid().spacingXMm();
+  const double y = 0.5 * (field.grid().height - 1) * field.grid().spacingYMm();
+  const double s = seconds;
+  haptic::SimulatedHand hand({{0.0, {x, y, 2.0}},
+                              {0.1 * s, {x, y, -1.0}},
+                              {0.2 * s, {x, y, 2.0}},
+                              {0.35 * s, {x, y, -1.0}},
+                              {0.75 * s, {x + 5.0, y + 0.4, -1.0}},
+                              {0.9 * s, {x + 5.0, y + 0.4, 4.0}},
+                              {s, {x + 5.0, y + 0.4, 4.0}}},
+                             spec);
+  Pressed out;
+  while (!hand.finished()) {
+    const glm::dvec3 at = hand.read().position_mm;
+    out.strokes.push_back({hand.seconds(), at, haptic::Tool::kFeel});
+    const haptic::ForceSample felt = tick.run(out.strokes.back());
+    hand.write(felt.force_n);
+    out.force_n.push_back(felt.force_n);
+  }
+  out.work_mj = hand.workOnHandMj();
+  return out;
+}
+
+// Nanoseconds a tick over what the hand did, without the hand.
+std::vector<double> times(const engine::Version& field, const Pressed& pressed) {
+  haptic::Scene scene = haptic::defaultScene();
+  scene.effects = {haptic::EffectKind::kSpring};
+  scene.stiffness_n_per_mm = kStiffness;
+  const haptic::DenormalScope as_in_the_loop;
+  std::vector<double> ns;
+  for (int i = 0; i < 5; ++i) {
+    engine::LiveField live(field, engine::Growth::kAllowed);
+    haptic::Tick tick(scene, live, field);
+    const auto begin = std::chrono::steady_clock::now();
+    for (const haptic::StrokeSample& s : pressed.strokes) (void)tick.run(s);
+    ns.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count() /
+                 static_cast<double>(pressed.strokes.size()));
+  }
+  return ns;
+}
+
+// Force between two ticks of the reference, as a hold of its last one.
+const glm::dvec3& heldAt(const Pressed& pressed, double t) {
+  const auto i = static_cast<std::size_t>(std::max(0.0, t * kReferenceHz + 1e-6));
+  return pressed.force_n[std::min(i, pressed.force_n.size() - 1)];
+}
+
+}  // namespace
+
+engine::Result<Study> rateStudy(const AccuracyOptions& options, engine::JobControl& job) {
+  Study study;
+  study.id = "rate";
+  study.title = "Rate: how often the surface answers";
+  study.question = "Is 1 kHz enough?";
+  study.cost_name = "share of a processor";
+  study.cost_unit = "%";
+  study.error_name = "mean force error";
+  study.error_unit = "N";
+  auto subjects = hardSubjects(256);
+  if (!subjects) return tl::unexpected(subjects.error());
+  const double seconds = std::max(0.5, 4.0 * options.effort);
+  job.begin("loop rates", subjects->size() * (std::size(kRates) + 1));
+  double check = 0.0;
+  for (const Subject& subject : *subjects) {
+    const Pressed reference = press(subject.field, kReferenceHz, seconds);
+    // Doubling the reference's own rate: what its answer still moves by.
+    if (subject.name == "flat") {
+      const Pressed doubled = press(subject.field, 2.0 * kReferenceHz, seconds);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < reference.force_n.size(); ++i)
+        sum +=
+            glm::length(reference.force_n[i] - doubled.force_n[std::min(2 * i, doubled.force_n.size() - 1)]);
+      check = sum / static_cast<double>(reference.force_n.size());
+    }
+    job.advance();
+    for (const double rate : kRates) {
+      if (job.cancelled()) return engine::cancelled();
+      const Pressed pressed = press(subject.field, rate, seconds);
+      AccuracyRow row;
+      row.subject = subject.name;
+      row.method = fmt::format("{:g} kHz", rate / 1000.0);
+      std::vector<double> shares = times(subject.field, pressed);
+      for (double& ns : shares) ns *= rate * 1e-9 * 100.0;
+      spread(std::move(shares), row);
+      std::vector<double> errors, flat;
+      for (std::size_t i = 0; i < pressed.strokes.size(); ++i) {
+        errors.push_back(glm::length(pressed.force_n[i] - heldAt(reference, pressed.strokes[i].t)));
+        flat.push_back(pressed.force_n[i].z);
+      }
+      summarise(std::move(errors), row);
+      row.hash = hashOf(flat);
+      row.wrong = std::numeric_limits<double>::quiet_NaN();
+      row.note = fmt::format("surface gave the hand {:+.3f} mJ in all; {:+.3f} at 40 kHz", pressed.work_mj,
+                             reference.work_mj);
+      study.rows.push_back(std::move(row));
+      job.advance();
+    }
+  }
+  study.reference = fmt::format(
+      "The same hand (0.15 kg on 0.3 N/mm, closed loop, {:g} N/mm surface) at {:g} kHz. Checked on the flat "
+      "by doubling "
+      "that once more: its force moves by {:.1e} N on average.",
+      kStiffness, kReferenceHz / 1000.0, check);
+  const AccuracyRow& usual = rowOf(study, "flat", "1 kHz");
+  const AccuracyRow& noise = rowOf(study, "noise", "1 kHz");
+  const AccuracyRow& fast = rowOf(study, "noise", "10 kHz");
+  study.answer = fmt::format(
+      "At 1 kHz the force of the whole movement is off by {:.3f} N on average on the flat and {:.3f} N on "
+      "noise of "
+      "20 um; 10 kHz brings the latter to {:.3f} N for {:.2f} % of a processor instead of {:.2f} %. Where "
+      "hand and "
+      "noise meet, two runs part as soon as one slides into another pit: errors there do not vanish with the "
+      "rate.",
+      usual.error, noise.error, fast.error, fast.cost, noise.cost);
+  return study;
+}
+
+}  // namespace fettle::bench

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/field/version.h"
+
+namespace fettle::bench {
+
+/// A field with a name, made to be hard in one way.
+struct Subject {
+  std::string name;
+  engine::Version field;
+};
+
+/// A field of side x side samples of `height(column, row)` [mm]; `spacing_mm` apart.
+[[nodiscard]] engine::Result<engine::Version> fieldOf(std::int32_t side, double spacing_mm,
+                                                      const std::function<double(int, int)>& height);
+
+/// "flat"; "step", a wall of 1 mm, slanted over the grid; "ridge", walls one sample wide, 0.5 mm high;
+/// "groove", concave corners of 90 degrees; "noise", white, sigma 20 um. 0.05 mm apart, `side` samples each
+/// way.
+[[nodiscard]] engine::Result<std::vector<Subject>> hardSubjects(std::int32_t side);
+
+/// White noise of sigma 1 at a sample, the same for the same `seed`.
+[[nodiscard]] double whiteNoise(std::uint64_t seed, int column, int row);
+
+}  // namespace fettle::bench

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "bench/accuracy/approximate_filters.h"
+#include "bench/accuracy/measure.h"
+#include "bench/accuracy/studies.h"
+#include "bench/accuracy/subjects.h"
+
+namespace fettle::bench {
+namespace {
+
+Plane planeOf(std::int32_t width, std::int32_t height, double (*z)(int, int)) {
+  Plane plane{width, height, {}};
+  for (std::int32_t r = 0; r < height; ++r)
+    for (std::int32_t c = 0; c < width; ++c) plane.z.push_back(z(c, r));
+  return plane;
+}
+
+double sumOf(const Plane& plane) {
+  double sum = 0.0;
+  for (const double z : plane.z) sum += z;
+  return sum;
+}
+
+double middleMedian(const Plane& in, std::int32_t c, std::int32_t r, int radius) {
+  std::vector<double> window;
+  for (std::int32_t y = std::max(0, r - radius); y <= std::min(in.height - 1, r + radius); ++y)
+    for (std::int32_t x = std::max(0, c - radius); x <= std::min(in.width - 1, c + radius); ++x)
+      window.push_back(in.at(x, y));
+  std::sort(window.begin(), window.end());
+  return window[(window.size() - 1) / 2];  // the lower one
+}
+
+TEST(ApproximateFilters, KeepAConstant) {
+  const Plane seven = planeOf(40, 23, [](int, int) { return 7.0; });
+  for (const Plane& out : {gaussianInFloat(seven, 2.0, 8), gaussianRecursive(seven, 2.0),
+                           medianSeparable(seven, 3), medianOfLevels(seven, 3, 256)})
+    for (const double z : out.z) EXPECT_NEAR(z, 7.0, 1e-5);
+}
+
+TEST(ApproximateFilters, SpreadASpikeAsAGaussianDoes) {
+  const Plane spike = planeOf(61, 61, [](int c, int r) { return c == 30 && r == 30 ? 1000.0 : 0.0; });
+  const double peak = 1000.0 / (2.0 * M_PI * 9.0);
+  for (const Plane& out : {gaussianInFloat(spike, 3.0, 18), gaussianRecursive(spike, 3.0)}) {
+    EXPECT_NEAR(sumOf(out), 1000.0, 0.5);
+    EXPECT_NEAR(out.at(30, 30), peak, 0.05 * peak);
+    for (int d = 0; d < 12; ++d) {
+      EXPECT_NEAR(out.at(30 + d, 30), out.at(30, 30 - d), 1e-3 * peak) << d;
+      EXPECT_NEAR(out.at(30 + d, 30), peak * std::exp(-d * d / 18.0), 0.06 * peak) << d;
+    }
+  }
+}
+
+TEST(ApproximateFilters, MedianOfWholeNumbersIsExactWithAsManyLevels) {
+  const Plane steps =
+      planeOf(37, 29, [](int c, int r) { return static_cast<double>((c * 7919 + r * 104729) % 256); });
+  const Plane out = medianOfLevels(steps, 4, 256);
+  for (std::int32_t r = 0; r < steps.height; ++r)
+    for (std::int32_t c = 0; c < steps.width; ++c)
+      ASSERT_NEAR(out.at(c, r), middleMedian(steps, c, r, 4), 1e-9) << c << ", " << r;
+}
+
+TEST(ApproximateFilters, SeparableMedianIsThatOfRowsThenColumns) {
+  const Plane noise = planeOf(20, 20, [](int c, int r) { return whiteNoise(5, c, r); });
+  const Plane out = medianSeparable(noise, 1);
+  std::vector<double> rows;
+  for (int r = 9; r <= 11; ++r) {
+    std::vector<double> three{noise.at(9, r), noise.at(10, r), noise.at(11, r)};
+    std::sort(three.begin(), three.end());
+    rows.push_back(three[1]);
+  }
+  std::sort(rows.begin(), rows.end());
+  EXPECT_EQ(out.at(10, 10), rows[1]);
+}
+
+TEST(Measure, SummarisesByNearestRank) {
+  AccuracyRow row;
+  std::vector<double> errors;
+  for (int i = 200; i >= 1; --i) errors.push_back(i);
+  summarise(errors, row);
+  EXPECT_EQ(row.error, 100.5);
+  EXPECT_EQ(row.error_p99, 198.0);
+  EXPECT_EQ(row.error_worst, 200.0);
+  summarise({}, row);
+  EXPECT_EQ(row.error_worst, 0.0);
+}
+
+// What the page says about contact rests on these.
+TEST(ContactStudy, CertifiedIsExactWithinItsRadiusAndMoreStepsAreNeverWorse) {
+  engine::JobControl job;
+  AccuracyOptions options;
+  options.effort = 0.02;
+  const auto study = contactStudy(options, job);
+  ASSERT_TRUE(study) << study.error().line();
+  for (const std::string subject : {"flat", "step", "ridge", "groove", "noise"}) {
+    const AccuracyRow& sure = rowOf(*study, subject, "certified, 8 cells");
+    // The presses go to 0.3 mm, six cells, plus half a step's height at a wall's foot.
+    EXPECT_LT(sure.error, subject == "step" ? 0.05 : 1e-12) << subject;
+    if (subject != "step") {
+      EXPECT_EQ(sure.wrong, 0.0) << subject;
+    }
+    EXPECT_LE(rowOf(*study, subject, "paper, to rest").wrong, 1.0);
+  }
+  const AccuracyRow& rest = rowOf(*study, "flat", "paper, to rest");
+  EXPECT_LT(rest.error_worst, 1e-9);
+  EXPECT_GT(rowOf(*study, "noise", "paper, to rest").wrong, 0.05);
+  EXPECT_GT(rowOf(*study, "flat", "paper, 1 Newton step a tick").error, rest.error);
+}
+
+// Of the note "0.12 um from the same in double".
+double offTwin(const AccuracyRow& row) {
+  return std::strtod(row.note.c_str(), nullptr);
+}
+
+TEST(SurfaceStudy, TrianglesAreAnotherSurfaceAndFloatLosesFarFromTheCorner) {
+  engine::JobControl job;
+  AccuracyOptions options;
+  options.effort = 0.02;
+  const auto study = surfaceStudy(options, job);
+  ASSERT_TRUE(study) << study.error().line();
+  EXPECT_EQ(rowOf(*study, "noise 20 um", "bilinear, all stationary points, double").error, 0.0);
+  EXPECT_GT(rowOf(*study, "noise 20 um", "two triangles").error, 1e-4);
+  // A float's last bit is 0.5 um at 8 m and some 1e-6 um beside the corner.
+  const AccuracyRow& far = rowOf(*study, "noise 20 um, 8 m away", "two triangles, float");
+  const AccuracyRow& near = rowOf(*study, "noise 20 um", "two triangles, float");
+  EXPECT_GT(offTwin(far), 0.1) << far.note;
+  EXPECT_LT(offTwin(near), 0.01) << near.note;
+}
+
+TEST(UploadStudy, RoundingStaysWithinHalfAStep) {
+  engine::JobControl job;
+  const auto study = uploadStudy({}, job);
+  ASSERT_TRUE(study) << study.error().line();
+  EXPECT_EQ(rowOf(*study, "milled part", "32-bit float (used)").error_worst, 0.0);
+  const AccuracyRow& whole = rowOf(*study, "milled part", "16 bits over the whole field's range");
+  const AccuracyRow& tiles = rowOf(*study, "milled part", "16 bits over each tile's range");
+  EXPECT_GT(whole.error_worst, 0.0);
+  EXPECT_LE(tiles.error_worst, whole.error_worst);
+  EXPECT_LT(whole.error_worst, 10.0);  // a part of some tens of millimetres over 65535 steps, halved
+}
+
+}  // namespace
+}  // namespace fettle::bench
