@@ -82,6 +82,8 @@ Key specialKey(int key) {
       return Key::kKeypadMinus;
     case GLFW_KEY_KP_ENTER:
       return Key::kKeypadEnter;
+    case GLFW_KEY_PAUSE:
+      return Key::kPause;
     default:
       break;
   }

@@ -46,6 +46,7 @@ enum class Key : std::uint16_t {
   kKeypadPlus,
   kKeypadMinus,
   kKeypadEnter,
+  kPause,
 };
 [[nodiscard]] constexpr Key letter(char c) noexcept {
   return static_cast<Key>(c);

@@ -77,7 +77,7 @@ class LiveSession {
     }
     tellStart();
     engine::Status written = work();
-    send(CommandKind::kDisarm);
+    loop_.disarm();
     std::this_thread::sleep_for(kFade);
     outcome_.field = loop_.stop();
     device_.stop();
@@ -157,10 +157,12 @@ class LiveSession {
   void press(char key) {
     switch (key) {
       case 'a':
-        send(CommandKind::kArm);
+        disarmed_ = false;
+        static_cast<void>(loop_.send(loop_.armCommand()));
         break;
       case 'd':
-        send(CommandKind::kDisarm);
+        disarmed_ = true;
+        loop_.disarm();
         break;
       case 'c':
         device_.calibrate();
@@ -186,10 +188,12 @@ class LiveSession {
   }
 
   void armByItself() {
+    // Who disarmed wants no force until they say otherwise.
+    if (disarmed_) return;
     const bool waits = now_.safety == SafetyState::kUncalibrated || now_.safety == SafetyState::kFault;
     if (!waits || now_.link != LinkState::kConnected || log_.seconds() - tried_at_ < kArmAgain_s) return;
     tried_at_ = log_.seconds();
-    send(CommandKind::kArm);
+    static_cast<void>(loop_.send(loop_.armCommand()));
   }
 
   // The one place that looks: what the slot hands out is valid until the next look.
@@ -230,6 +234,7 @@ class LiveSession {
   LoopState now_;              // as of the last look
   std::int64_t first_ns_ = 0;  // of the first tick seen
   double tried_at_ = -1.0;
+  bool disarmed_ = false;  // by the person, who did not arm since
   bool quit_ = false;
 };
 

@@ -106,7 +106,7 @@ constexpr std::array kShortcuts{
     Shortcut{Action::kSidePanel, "View", "Show or hide the panels", Key::kTab, kPlain},
     Shortcut{Action::kEnterPanels, "View", "Into the panels by keyboard (Esc leaves)", function(6), kPlain},
     Shortcut{Action::kArm, "Device", "Arm: allow force", letter('A'), kPlain},
-    Shortcut{Action::kDisarm, "Device", "Disarm", letter('A'), kShift},
+    Shortcut{Action::kDisarm, "Device", "Disarm (Pause too, even while typing)", letter('A'), kShift},
     Shortcut{Action::kCalibrate, "Device", "Calibrate in the home pose", letter('A'), kControlShift},
     Shortcut{Action::kShortcuts, "Help", "This list", function(1), kPlain},
 };
@@ -127,6 +127,11 @@ std::optional<Action> actionOf(Key key, Modifiers modifiers) {
   for (const Shortcut& s : kShortcuts)
     if ((s.key == key || s.other_key == key) && s.modifiers == modifiers) return s.action;
   return std::nullopt;
+}
+
+bool disarms(Key key, Modifiers modifiers, Typing typing) {
+  if (key == Key::kPause) return true;
+  return typing == Typing::kNo && actionOf(key, modifiers) == Action::kDisarm;
 }
 
 std::string keyText(Key key, Modifiers modifiers) {
@@ -179,6 +184,8 @@ std::string keyText(Key key, Modifiers modifiers) {
       return text + "keypad -";
     case Key::kKeypadEnter:
       return text + "keypad Enter";
+    case Key::kPause:
+      return text + "Pause";
     default:
       return text;
   }

@@ -106,6 +106,10 @@ struct Shortcut {
 [[nodiscard]] const Shortcut& shortcutOf(Action action);
 /// What a key stands for; nothing for keys without a meaning.
 [[nodiscard]] std::optional<Action> actionOf(render::Key key, render::Modifiers modifiers);
+/// Whether a key takes the force back, which no dialog and no tool may keep it from: that of Action::kDisarm,
+/// unless it is a letter being typed into a field, and Pause always.
+enum class Typing : std::uint8_t { kNo, kYes };
+[[nodiscard]] bool disarms(render::Key key, render::Modifiers modifiers, Typing typing);
 /// "Ctrl+Shift+S", "F1", "keypad 7".
 [[nodiscard]] std::string keyText(render::Key key, render::Modifiers modifiers);
 

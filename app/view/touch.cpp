@@ -201,7 +201,6 @@ Touch::~Touch() {
 void Touch::finish() {
   closePort();
   if (!loop_ || finished_) return;
-  finishing_ = true;
   disarm();
   const auto latest = std::chrono::steady_clock::now() + kLongestFade;
   while (device_->profile().gives_force && std::chrono::steady_clock::now() < latest) {
@@ -446,14 +445,12 @@ void Touch::noteFilterBegun(std::uint64_t base, const engine::FilterSpec& spec, 
 }
 
 void Touch::arm() {
-  LoopCommand command;
-  command.kind = CommandKind::kArm;
-  send(std::move(command));
+  disarmed_ = false;
+  send(loop_->armCommand());
 }
 void Touch::disarm() {
-  LoopCommand command;
-  command.kind = CommandKind::kDisarm;
-  send(std::move(command));
+  disarmed_ = true;
+  loop_->disarm();
 }
 void Touch::calibrate() {
   device_->calibrate();
@@ -525,7 +522,8 @@ void Touch::answerPort() {
 }
 
 void Touch::armByItself() {
-  if (finishing_) return;
+  // Who disarmed wants no force until they say otherwise, whatever the device does meanwhile.
+  if (disarmed_) return;
   // Only a device that cannot push: one that does is armed by the person who holds it.
   if (device_->profile().gives_force && options_.device.rfind("hand", 0) != 0) return;
   const haptic::LoopState state = loop_->state();

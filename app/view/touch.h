@@ -91,7 +91,10 @@ class Touch final : public haptic::AdoptionPort {
   /// Puts other marks in place as one step of kind kMark: `marked` is a version of the newest field
   /// (upright(), the same memory) with marks set and cleared. Strokes made since `marked` was taken are kept.
   void replaceMarks(const engine::Version& base, const engine::Version& marked, std::string name);
+  /// Allows force, as soon as the device is ready and the commanded force small (ForceGuard::arm). A device
+  /// that cannot push, and a simulated hand, are armed by themselves when they come and after a fault.
   void arm();
+  /// No force from the next tick on, past all that was sent before; and nothing arms again but arm().
   void disarm();
   void calibrate();
   /// The view turned or zoomed: "away" on the desk stays "into the picture". Devices in field coordinates
@@ -173,7 +176,8 @@ class Touch final : public haptic::AdoptionPort {
   std::vector<haptic::LoopCommand> unsent_;  // found the ring full
 
   SessionSink* sink_;
-  bool finishing_ = false, finished_ = false;
+  bool finished_ = false;
+  bool disarmed_ = false;  // by the user, who did not arm since
   Recorder recorder_;
   std::uint64_t recorded_ = 0;  // ticks, those lost included
   std::uint64_t lost_ = 0;

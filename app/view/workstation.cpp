@@ -142,6 +142,7 @@ void Workstation::whileWaiting() {
     const bool at_once = std::none_of(input_.begin(), input_.end(), [](const Pending& p) {
       return p.event.kind == render::InputKind::kKeyDown;
     });
+    disarmAtOnce(event);
     if (at_once) toStylus(event);
     input_.push_back({event, at_once});
   }

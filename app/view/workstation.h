@@ -97,6 +97,7 @@ class Workstation {
   void handleInput();
   void toStylus(const render::InputEvent& event);
   void handle(const render::InputEvent& event);
+  void disarmAtOnce(const render::InputEvent& event);
   void handleKey(const render::InputEvent& event);
   bool handleAdjusting(const render::InputEvent& event);
   void act(Action action);

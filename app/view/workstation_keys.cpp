@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include <imgui.h>
+
 namespace fettle::app {
 namespace {
 
@@ -16,6 +18,19 @@ constexpr double kRadius_px = 8.0;  // of the cursor's way for one sample of rad
 constexpr double kDepth_px = 20.0;  // ... for a tenth of the deepest press
 
 }  // namespace
+
+// Before the event waits for the frame under way, for a dialog or for a tool.
+void Workstation::disarmAtOnce(const InputEvent& event) {
+  if (!touch_ || event.kind != InputKind::kKeyDown) return;
+  // For two frames ImGui still says so of the field of a dialog that was closed.
+  const bool typing =
+      ImGui::GetIO().WantTextInput && (dialog_ != Dialog::kNone || frames_ > dialog_frame_ + 3);
+  if (!disarms(event.key, event.modifiers, typing ? Typing::kYes : Typing::kNo)) return;
+  touch_->disarm();
+  // What was pressed before and is not done yet must not arm after it.
+  for (Pending& before : input_)
+    if (actionOf(before.event.key, before.event.modifiers) == Action::kArm) before.event.key = Key::kNone;
+}
 
 void Workstation::handleKey(const InputEvent& event) {
   if (dialog_ != Dialog::kNone) {

@@ -50,6 +50,10 @@ class HapticLoop {
   [[nodiscard]] bool send(LoopCommand&& command) noexcept {
     return channels_.commands.push(std::move(command));
   }
+  /// LoopChannels::disarm(): at once, past all commands, never refused.
+  void disarm() noexcept { channels_.disarm(); }
+  /// LoopChannels::armCommand(), to be sent.
+  [[nodiscard]] LoopCommand armCommand() const noexcept { return channels_.armCommand(); }
   /// The oldest event that was not seen yet; false when there is none.
   [[nodiscard]] bool poll(LoopEvent& event) noexcept { return channels_.events.pop(event); }
   /// The oldest record of a tick that was not taken yet (LoopOptions::record_capacity); false when there is

@@ -215,9 +215,7 @@ class Measurement {
     if (!created) return tl::unexpected(created.error());
     HapticLoop& loop = **created;
     if (engine::Status started = loop.start(); !started) return started;
-    LoopCommand arm;
-    arm.kind = CommandKind::kArm;
-    static_cast<void>(loop.send(std::move(arm)));
+    static_cast<void>(loop.send(loop.armCommand()));
     const engine::Status done = wait(seconds, &loop);
     static_cast<void>(loop.stop());
     report_.loop.missing = loop.realTime().missing;

@@ -83,7 +83,15 @@ void LoopTick::send(LoopEvent&& event) noexcept {
   static_cast<void>(sent);
 }
 
+void LoopTick::takeDisarm(std::uint64_t times) noexcept {
+  if (times == disarms_) return;
+  disarms_ = times;
+  guard_.disarm();
+}
+
 void LoopTick::takeCommands() noexcept {
+  // Acquire: pairs with LoopChannels::disarm().
+  takeDisarm(channels_.disarms.load(std::memory_order_acquire));
   for (int i = 0; i < kMostCommands; ++i) {
     if (!has_waiting_ && !channels_.commands.pop(waiting_)) return;
     has_waiting_ = hasAnswer(waiting_.kind) && channels_.events.freePlaces() == 0;
@@ -108,10 +116,9 @@ void LoopTick::take(LoopCommand& command) noexcept {
       disturbance_ = Disturbance::kSurfaceReplaced;
       break;
     case CommandKind::kArm:
+      if (command.id < disarms_) break;  // overtaken
+      takeDisarm(command.id);            // it may know of one that came after this tick's look
       guard_.arm();
-      break;
-    case CommandKind::kDisarm:
-      guard_.disarm();
       break;
     case CommandKind::kScene:
       swapScene(command);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -45,16 +46,38 @@ struct LoopOptions {
 };
 
 /// The two rings and the slot between the loop and the main side. The loop never waits on any of them.
+///
+/// Disarming has a lane of its own, beside the ring of commands: it cannot find a ring full, waits behind no
+/// command whose answer has no place yet, and is there with the next tick. It overtakes what was sent before
+/// it, so an order to arm says how many times was disarmed when it was given, and is void when that is no
+/// longer true by the time the loop gets to it.
 struct LoopChannels {
   explicit LoopChannels(const LoopOptions& options)
       : commands(options.command_capacity),
         events(options.event_capacity),
         records(std::max<std::size_t>(options.record_capacity, 1)) {}
+
+  /// Main thread, wait-free, never refused: no force from the next tick on (ForceGuard::disarm), whatever was
+  /// ordered before.
+  void disarm() noexcept {
+    // Release: what was done before is seen by the tick that takes the force back.
+    disarms.fetch_add(1, std::memory_order_release);
+  }
+  /// Main thread: an order to arm, to be sent as any command; void once disarm() is called after it.
+  [[nodiscard]] LoopCommand armCommand() const noexcept {
+    LoopCommand command;
+    command.kind = CommandKind::kArm;
+    command.id = disarms.load(std::memory_order_relaxed);  // written by this thread alone
+    return command;
+  }
+
   SpscRing<LoopCommand> commands;
   SpscRing<LoopEvent> events;
   SpscRing<TickRecord> records;  ///< not used with a record_capacity of 0
   LatestSlot<LoopState> state;
+  std::atomic<std::uint64_t> disarms{0};
 };
+static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
 /// All that happens in one tick of the live loop, without the thread and the clock, so that tests and benches
 /// run the very code:
@@ -118,6 +141,7 @@ class LoopTick {
     std::int32_t column, row;
   };
 
+  void takeDisarm(std::uint64_t times) noexcept;
   void takeCommands() noexcept;
   void take(LoopCommand& command) noexcept;
   void swapScene(LoopCommand& command) noexcept;
@@ -149,6 +173,7 @@ class LoopTick {
   Tool tool_;
   LoopCommand waiting_;  // popped, but its answer has no place yet
   bool has_waiting_ = false;
+  std::uint64_t disarms_ = 0;  // of LoopChannels::disarms, done
   Disturbance disturbance_ = Disturbance::kNone;
 
   engine::Version published_;  // of the newest event; the next one carries it away

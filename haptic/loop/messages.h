@@ -53,15 +53,14 @@ enum class CommandKind : std::uint8_t {
   kSnapshot,   ///< answers kSnapshot: the base of a job that will be adopted
   kAdopt,      ///< go on from `version`, made from the newest kSnapshot; see LoopTick
   kRestore,    ///< go on from exactly `version` (undo, redo); answers kRestored
-  kArm,
-  kDisarm,
+  kArm,        ///< made by LoopChannels::armCommand(); disarming is no command: LoopChannels::disarm()
 };
 
 /// main -> loop. Every field but those its kind names is ignored.
 struct LoopCommand {
   CommandKind kind = CommandKind::kTool;
   Tool tool = Tool::kFeel;
-  std::uint64_t id = 0;  ///< comes back in the answer
+  std::uint64_t id = 0;  ///< comes back in the answer; kArm: how often was disarmed before it
   Workspace workspace;
   double scale = 1.0;     ///< see Workspace::setView
   double turn_rad = 0.0;  ///< see Workspace::setView

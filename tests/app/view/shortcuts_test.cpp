@@ -33,6 +33,17 @@ TEST(Shortcuts, no_key_stands_for_two_actions) {
     }
 }
 
+TEST(Shortcuts, disarming_gives_way_to_typing_alone_and_pause_to_nothing) {
+  const Shortcut& disarm = shortcutOf(Action::kDisarm);
+  EXPECT_TRUE(disarms(disarm.key, disarm.modifiers, Typing::kNo));
+  EXPECT_FALSE(disarms(disarm.key, disarm.modifiers, Typing::kYes));
+  for (const bool held : {false, true})
+    for (const Typing typing : {Typing::kNo, Typing::kYes})
+      EXPECT_TRUE(disarms(render::Key::kPause, {held, held, held}, typing));
+  for (const Shortcut& s : shortcuts())
+    EXPECT_EQ(disarms(s.key, s.modifiers, Typing::kNo), s.action == Action::kDisarm) << s.name;
+}
+
 TEST(Shortcuts, stand_together_by_section) {
   std::set<std::string_view> past;
   std::string_view section;

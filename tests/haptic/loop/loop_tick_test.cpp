@@ -287,6 +287,36 @@ TEST(LoopTick, SceneIsSwappedUnderTheTipWithTheFieldAsItIs) {
   EXPECT_EQ(bench.loop.scene().scene, stiff);
 }
 
+TEST(LoopTick, DisarmOvertakesEveryCommandAndTheArmingsBeforeIt) {
+  const engine::Version start = bumpy();
+  reserve(start);
+  LoopOptions options = testOptions(Tool::kFeel);
+  options.event_capacity = 8;
+  LoopBench bench(start, start, sceneWithBrush(1.0), options);
+  ASSERT_TRUE(bench.channels.commands.push(bench.channels.armCommand()));
+  bench.tickAt({50.0, 50.0, 5.0});
+  for (int i = 0; i < 500; ++i) bench.tickAt({50.0, 50.0, 1.0});
+  ASSERT_EQ(bench.loop.guard().state(), SafetyState::kActive);
+  // Nobody takes events: the ninth question holds up all that comes after it.
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(bench.send(CommandKind::kSnapshot));
+  ASSERT_TRUE(bench.channels.commands.push(bench.channels.armCommand()));
+  for (int i = 0; i < 30; ++i) bench.tickAt({50.0, 50.0, 1.0});
+  ASSERT_EQ(bench.channels.events.freePlaces(), 0U);
+  bench.channels.disarm();
+  bench.tickAt({50.0, 50.0, 1.0});
+  EXPECT_EQ(bench.loop.guard().state(), SafetyState::kUncalibrated);
+  // Once things move again the arming from before it comes up, and is void.
+  for (int i = 0; i < 50; ++i) {
+    static_cast<void>(bench.poll());
+    bench.tickAt({50.0, 50.0, 1.0});
+    ASSERT_EQ(bench.loop.guard().state(), SafetyState::kUncalibrated) << i;
+  }
+  // Who arms after it has it armed.
+  ASSERT_TRUE(bench.channels.commands.push(bench.channels.armCommand()));
+  bench.tickAt({50.0, 50.0, 1.0});
+  EXPECT_EQ(bench.loop.guard().state(), SafetyState::kRamping);
+}
+
 TEST(LoopTick, ClutchHoldsTheTipAndGivesNoForce) {
   const engine::Version start = bumpy();
   reserve(start);
