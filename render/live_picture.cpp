@@ -114,12 +114,13 @@ render::Layout arranged(const FrameInput& input, int versions) {
       std::any_of(input.titles.begin(), input.titles.end(), [](const auto& t) { return !t.empty(); });
   const Titles titles = titled ? Titles::kAbove : Titles::kNone;
   if (input.arrangement == Arrangement::kSplit && versions >= 2) {
-    render::Layout layout = layOut(input.view, input.decoration, 1, titles);
+    render::Layout layout = layOut(input.view, input.decoration, 1, titles, input.furniture_scale);
     layout.plots.push_back(layout.plots.front());
     return layout;
   }
-  if (versions < 4) return layOut(input.view, input.decoration, versions, titles);
-  render::Layout layout = layOut(input.view, input.decoration, (versions + 1) / 2, titles);
+  if (versions < 4) return layOut(input.view, input.decoration, versions, titles, input.furniture_scale);
+  render::Layout layout =
+      layOut(input.view, input.decoration, (versions + 1) / 2, titles, input.furniture_scale);
   const std::vector<Rectangle> columns = layout.plots;
   const int gap = static_cast<int>(std::lround((titled ? 40 : 16) * layout.scale));
   layout.plots.clear();
@@ -185,6 +186,7 @@ struct LivePicture::Impl {
     std::vector<gpu::Quad> furniture;
     glm::vec3 ground{0.0F};
     engine::Version original;
+    std::optional<engine::Version> accepted;
   };
   std::optional<Drawn> drawn;
   bool broken = false;  // an upload was left half done
@@ -284,7 +286,8 @@ engine::Status LivePicture::Impl::update(const Shown& next) {
            v.grid().height == next.versions.front().grid().height;
   };
   if (!std::all_of(next.versions.begin(), next.versions.end(), fits) ||
-      (next.original && !fits(*next.original)))
+      (next.original && !fits(*next.original)) ||
+      (next.accepted && !related(*next.accepted, next.versions.front())))
     return engine::inputError("the versions have different sizes, or one is empty", "picture",
                               "show states of one field");
   // Whatever is let go below may be read by frames in flight; and a field that fails halfway is forgotten.
@@ -300,13 +303,15 @@ engine::Status LivePicture::Impl::update(const Shown& next) {
   bool fresh = false;
   if (fields.size() > next.versions.size()) idle();
   fields.resize(next.versions.size());
-  const auto want = [&](LiveTexture& texture, const engine::Version& v, MarksOverlay marks) {
-    if (!pool) return texture.want(context, v, marks, max_side, idle);
-    return texture.want(*pool, fixedLevel(v.grid(), *pool, next.versions.size() + 1), v, idle);
+  const auto want = [&](LiveTexture& texture, const engine::Version& v, MarksOverlay marks,
+                        const engine::Version& accepted = {}) {
+    if (!pool) return texture.want(context, v, marks, max_side, idle, accepted);
+    return texture.want(*pool, fixedLevel(v.grid(), *pool, next.versions.size() + 1), v, idle, accepted);
   };
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const engine::Version& v = next.versions[i];
-    const auto state = want(fields[i].texture, v, next.marks);
+    const auto state = want(fields[i].texture, v, next.marks,
+                            i == 0 ? next.accepted.value_or(engine::Version()) : engine::Version());
     if (!state) return tl::unexpected(state.error());
     if (*state != LiveTexture::Freshness::kFresh) {
       if (!shown.versions.empty() && fields[i].texture.pending() > 0 && next.marks != shown.marks) {
@@ -374,7 +379,17 @@ engine::Result<PicturePlan> LivePicture::Impl::plan(const FrameInput& input) {
   if (!spans) spans = spansOf(shown.versions, shown.original);
   engine::Result<PicturePlan> plan =
       layPicture(spec, shown.versions, *spans, arranged(input, static_cast<int>(shown.versions.size())));
-  if (plan) plan->furniture.titles = input.titles;
+  if (plan) {
+    plan->furniture.titles = input.titles;
+    const auto anyMark = [](const engine::Version& v) { return v.reader().root().marked_children != 0; };
+    // The plan takes the suggested ones for marks.
+    if (shown.accepted)
+      plan->furniture.marks = shown.marks == MarksOverlay::kShow &&
+                              (anyMark(*shown.accepted) ||
+                               std::any_of(shown.versions.begin() + 1, shown.versions.end(), anyMark));
+    plan->furniture.suggested =
+        shown.marks == MarksOverlay::kShow && shown.accepted && !(*shown.accepted == shown.versions.front());
+  }
   return plan;
 }
 
@@ -464,7 +479,8 @@ void LivePicture::Impl::recordStereo(const Stereo& stereo, Sharpness sharpness,
 bool LivePicture::Impl::onlyFieldsDiffer(const Drawn& before, const Drawn& now) const {
   // Pages that come and go change the surface without any change to the field.
   if (pool || before.panels.size() != now.panels.size() || before.ground != now.ground ||
-      !(before.original == now.original) || before.furniture.size() != now.furniture.size())
+      !(before.original == now.original) || !(before.accepted == now.accepted) ||
+      before.furniture.size() != now.furniture.size())
     return false;
   // Plain numbers without gaps, and equal bits draw equal pictures.
   if (!now.furniture.empty() && std::memcmp(before.furniture.data(), now.furniture.data(),
@@ -674,6 +690,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   layers.furniture = furniture;
   layers.ground = plan.palette.ground;
   layers.original = original.version();
+  layers.accepted = shown.accepted;
   std::optional<Drawn> before;
   before.swap(drawn);  // until this frame is handed over, nobody knows what the layers hold
   std::vector<PatchChoice> parts;

@@ -69,6 +69,9 @@ struct Shown {
   std::vector<engine::Version> versions;    ///< 1 .. 5, not empty, of one width and height
   std::optional<engine::Version> original;  ///< colours show version - original; same width and height
   MarksOverlay marks = MarksOverlay::kHide;
+  /// Of the first version's marks those that this state of the same field lacks are only suggested, and drawn
+  /// in a colour of their own.
+  std::optional<engine::Version> accepted{};
 };
 
 /// How finely the surface is drawn.
@@ -89,6 +92,7 @@ struct FrameInput {
   ColourMap map = ColourMap::kAuto;
   Theme theme = Theme::kDark;
   Decoration decoration = Decoration::kFull;
+  double furniture_scale = 0.0;     ///< of its text and bars, see layOut; 0: by the picture's size
   std::vector<std::string> titles;  ///< one a version, or none
   /// Colours' range [height_unit]; empty: robust, worked out when a field or an original is first shown and
   /// kept until refreshRanges(), so that colours do not swim while a brush works.

@@ -38,7 +38,7 @@ void LiveTexture::clear() noexcept {
   order_.clear();
   hurried_.clear();
   front_ = 0;
-  version_ = {};
+  version_ = accepted_ = {};
   pages_.reset();
   fixed_left_ = 0;
   ++generation_;
@@ -51,7 +51,15 @@ void LiveTexture::add(std::int32_t column, std::int32_t row, TileKind kind, cons
   at->second.spans[static_cast<std::size_t>(kind)].join(span);
 }
 
-void LiveTexture::addChanges(const engine::Version& next) {
+void LiveTexture::addChanges(const engine::Version& next, const engine::Version& accepted) {
+  // Where suggested marks become accepted ones nothing else needs to change.
+  if (!(accepted_ == version_ && accepted == next))
+    for (const engine::TileChange& change : engine::changedTiles(accepted_, accepted)) {
+      const TileSpan span = changedMarks(*change.before, *change.after);
+      if (!has_marks_ || span.empty()) continue;
+      add(change.tile_column, change.tile_row, TileKind::kMarks, span);
+      if (pages_) pages_->forget({change.tile_column, change.tile_row});
+    }
   for (const engine::TileChange& change : engine::changedTiles(version_, next)) {
     add(change.tile_column, change.tile_row, TileKind::kHeights,
         changedHeights(*change.before, *change.after));
@@ -84,14 +92,18 @@ std::uint64_t LiveTexture::bytesOfWhole(const Context& context, const engine::Gr
 
 engine::Result<LiveTexture::Freshness> LiveTexture::want(PagePool& pool, int fixed_from,
                                                          const engine::Version& version,
-                                                         const std::function<void()>& idle) {
+                                                         const std::function<void()>& idle,
+                                                         const engine::Version& accepted) {
   const engine::Grid& grid = version.grid();
+  const engine::Version& sure = accepted.empty() ? version : accepted;
   const bool related = pages_ && &pages_->pool() == &pool && !version_.empty() &&
                        version_.memory() == version.memory() && version_.grid().width == grid.width &&
                        version_.grid().height == grid.height;
   if (related) {
-    if (!(version_ == version)) addChanges(version);
+    addChanges(version, sure);
     version_ = version;
+    accepted_ = sure;
+    pages_->setAccepted(sure == version ? engine::Version() : sure);
     return Freshness::kRelated;
   }
   idle();
@@ -109,14 +121,18 @@ engine::Result<LiveTexture::Freshness> LiveTexture::want(PagePool& pool, int fix
         "picture", "allow more memory, or show fewer versions at a time");
   }
   version_ = version;
+  accepted_ = sure;
+  pages_->setAccepted(sure == version ? engine::Version() : sure);
   ++generation_;
   return Freshness::kFresh;
 }
 
 engine::Result<LiveTexture::Freshness> LiveTexture::want(Context& context, const engine::Version& version,
                                                          MarksOverlay marks, std::uint32_t max_side,
-                                                         const std::function<void()>& idle) {
+                                                         const std::function<void()>& idle,
+                                                         const engine::Version& accepted) {
   const engine::Grid& grid = version.grid();
+  const engine::Version& sure = accepted.empty() ? version : accepted;
   const engine::FieldReader reader = version.reader();
   const bool related = !pages_ && !version_.empty() && version_.memory() == version.memory() &&
                        version_.grid().width == grid.width && version_.grid().height == grid.height;
@@ -149,8 +165,8 @@ engine::Result<LiveTexture::Freshness> LiveTexture::want(Context& context, const
               context.limits().maxImageArrayLayers),
           context.name(), "draw a part of it or a field with fewer samples");
     make(TileKind::kHeights, vk::Format::eR32Uint);
-  } else if (!(version_ == version)) {
-    addChanges(version);
+  } else {
+    addChanges(version, sure);
   }
   if (marks == MarksOverlay::kShow && !has_marks_) {
     if (related) idle();
@@ -158,6 +174,7 @@ engine::Result<LiveTexture::Freshness> LiveTexture::want(Context& context, const
     has_marks_ = true;
   }
   version_ = version;
+  accepted_ = sure;
   return related ? Freshness::kRelated : Freshness::kFresh;
 }
 
@@ -178,7 +195,7 @@ bool LiveTexture::copy(StagingRing& ring, std::uint64_t submission, glm::ivec2 t
     const TilePart& p = parts[level];
     if (p.empty()) continue;
     const int s = shift(level);
-    copyPart(data, kind, s, p, ring.buffer().data() + *at + offsets[level],
+    copyPart(data, acceptedTile(tile), kind, s, p, ring.buffer().data() + *at + offsets[level],
              static_cast<std::size_t>(p.columns) * bytesOf(kind));
     const std::uint32_t columns = paging_.columns >> s, rows = paging_.rows >> s;
     const std::uint32_t column = static_cast<std::uint32_t>(tile.x * (kSide >> s) + p.column);

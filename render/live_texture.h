@@ -44,16 +44,19 @@ class LiveTexture {
     kRelated,  ///< what differs is pending
     kFresh,    ///< new images, everything is pending
   };
-  /// From now on this version is wanted. Errors: a field larger than the device holds (kFailed); the texture
-  /// is empty then. Images are let go at once: nothing that reads them may be under way when a field that is
-  /// not related comes in; `idle` is called before that.
+  /// From now on this version is wanted. Marks that `accepted` lacks, a version of the same field, are
+  /// suggested ones; empty: none is. Errors: a field larger than the device holds (kFailed); the texture is
+  /// empty then. Images are let go at once: nothing that reads them may be under way when a field that is not
+  /// related comes in; `idle` is called before that.
   [[nodiscard]] engine::Result<Freshness> want(Context& context, const engine::Version& version,
                                                MarksOverlay marks, std::uint32_t max_side,
-                                               const std::function<void()>& idle);
+                                               const std::function<void()>& idle,
+                                               const engine::Version& accepted = {});
   /// The same by need, in a pool that outlives the texture; marks are brought when the pool has them. Pages
   /// of levels from `fixed_from` up are pending like everything else. Errors (kFailed): the pool holds fewer.
   [[nodiscard]] engine::Result<Freshness> want(PagePool& pool, int fixed_from, const engine::Version& version,
-                                               const std::function<void()>& idle);
+                                               const std::function<void()>& idle,
+                                               const engine::Version& accepted = {});
 
   /// Records copies of pending tiles, until `byte_budget` is spent or the ring has no room; whether any were.
   /// `moved` gets the tiles whose heights are on their way now.
@@ -90,7 +93,10 @@ class LiveTexture {
     bool hurried = false;
   };
   void add(std::int32_t column, std::int32_t row, TileKind kind, const TileSpan& span);
-  void addChanges(const engine::Version& next);
+  void addChanges(const engine::Version& next, const engine::Version& accepted);
+  [[nodiscard]] const engine::Tile* acceptedTile(glm::ivec2 tile) const {
+    return accepted_ == version_ ? nullptr : &accepted_.reader().tile(tile.x, tile.y);
+  }
   [[nodiscard]] bool copy(StagingRing& ring, std::uint64_t submission, glm::ivec2 tile, TileKind kind,
                           const TileSpan& span, std::vector<vk::BufferImageCopy> (&copies)[2][kLevels],
                           UploadStatistics& count) const;
@@ -99,7 +105,8 @@ class LiveTexture {
                                const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
                                UploadStatistics& count, std::vector<glm::ivec2>& moved);
 
-  engine::Version version_;  // what is wanted
+  engine::Version version_;   // what is wanted
+  engine::Version accepted_;  // marks beyond this one's are suggested; the same as version_ when none is
   Paging paging_;
   std::array<GpuImage, kLevels> images_[2];  // heights, marks
   bool has_marks_ = false;

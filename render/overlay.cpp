@@ -223,6 +223,7 @@ void bottomLine(Pen& pen, const Layout& layout, const View& view, const Furnitur
   };
   if (f.no_data) swatch(palette.no_data, "no data");
   if (f.marks) swatch(palette.marks, "marked");
+  if (f.suggested) swatch(palette.suggested, "suggested");
 }
 
 }  // namespace
@@ -237,12 +238,18 @@ Palette paletteOf(Theme theme, ColourMap map) {
   p.wall = rgb(light ? 0x8B9099 : 0x565B63);
   // Vermilion stands off viridis, cividis and grey; on blue-white-red it would be read as a value.
   p.marks = rgb(map == ColourMap::kDiverging ? 0x12A150 : 0xFF3B1F);
+  // As far from the maps as from the marks, for colour-blind eyes by its lightness.
+  p.suggested = rgb(map == ColourMap::kDiverging ? 0xB8860B : 0xFF9DF5);
   return p;
 }
 
-Layout layOut(const View& view, Decoration decoration, int panels, Titles titles) {
+Layout layOut(const View& view, Decoration decoration, int panels, Titles titles, double scale) {
   Layout layout;
-  layout.scale = std::clamp(std::min(view.width / 1280.0, view.height / 800.0), 0.6, 6.0);
+  // The margins below, at scale 1, are two fifths of these.
+  constexpr double kWidth = 2.5 * (20 + 116), kHeight = 2.5 * (48 + 46);
+  const double wanted = scale > 0.0 ? std::min({scale, view.width / kWidth, view.height / kHeight})
+                                    : std::min(view.width / 1280.0, view.height / 800.0);
+  layout.scale = std::clamp(wanted, 0.6, 6.0);
   layout.text_px = std::max(10, static_cast<int>(std::lround(15.0 * layout.scale)));
   const double s = layout.scale;
   // Below this the furniture would leave nothing for the surface.

@@ -66,12 +66,14 @@ void PageSet::forget(glm::ivec2 tile) {
 }
 
 void PageSet::name(const engine::FieldReader& reader) {
+  if (!accepted_.empty()) return;
   for (const int entry : nameless_)
     if (resident(entry)) pool_.slots().name(at(entry), entry, grid_.key(entry, reader));
   nameless_.clear();
 }
 
 bool PageSet::share(int entry, const engine::FieldReader& reader, std::uint64_t frame) {
+  if (!accepted_.empty()) return false;
   return pool_.slots().share(&slots_[static_cast<std::size_t>(entry)], holdOf(entry), entry,
                              grid_.key(entry, reader), frame);
 }
@@ -101,7 +103,10 @@ PageSet::Load PageSet::load(int entry, const engine::FieldReader& reader, Stagin
   if (!pool_.slots().take(slot, holdOf(entry), frame)) return Load::kNoSlot;
   fill(entry, reader, *at, ring.buffer().data());
   loaded_[static_cast<std::size_t>(entry)] = frame;
-  pool_.slots().name(*slot, entry, grid_.key(entry, reader));
+  if (accepted_.empty())
+    pool_.slots().name(*slot, entry, grid_.key(entry, reader));
+  else
+    nameless_.push_back(entry);
   bytes += static_cast<std::int64_t>(size);
   return Load::kDone;
 }
@@ -133,7 +138,8 @@ void PageSet::fill(int entry, const engine::FieldReader& reader, vk::DeviceSize 
     const std::size_t item = bytesOf(kind);
     for (int y = 0; y < tiles.y; ++y)
       for (int x = 0; x < tiles.x; ++x)
-        copyPart(reader.tile(first.x + x, first.y + y), kind, shift, part,
+        copyPart(reader.tile(first.x + x, first.y + y), acceptedTile(first + glm::ivec2(x, y)), kind, shift,
+                 part,
                  staging + offset +
                      (static_cast<std::size_t>(y * within) * columns + static_cast<std::size_t>(x * within)) *
                          item,
@@ -202,7 +208,8 @@ bool PageSet::write(glm::ivec2 tile, const TileSpan (&spans)[2], const engine::F
     const vk::DeviceSize offset = *at_ring + r.offset;
     const bool column = r.entry >= grid_.first(kDataLevels) && r.part.columns == 1;
     const auto columns = static_cast<std::size_t>(r.part.columns);
-    copyPart(data, r.kind, r.shift, r.part, ring.buffer().data() + offset, columns * bytesOf(r.kind));
+    copyPart(data, acceptedTile(tile), r.kind, r.shift, r.part, ring.buffer().data() + offset,
+             columns * bytesOf(r.kind));
     // The rim's column lies along a row of its page.
     pool_.add(r.kind, at(r.entry), r.place,
               column ? glm::ivec2(r.part.rows, 1) : glm::ivec2(r.part.columns, r.part.rows), offset);

@@ -41,6 +41,10 @@ class PageSet {
     return static_cast<std::int64_t>(bytesOfPage(entry));
   }
 
+  /// From now on marks that this version lacks are suggested ones; empty: none is. Pages that come while some
+  /// are cannot be told by what they hold, and are shared with nobody.
+  void setAccepted(const engine::Version& accepted) { accepted_ = accepted; }
+
   /// Points an entry at the slot of an equal page of somebody's. False when there is none.
   [[nodiscard]] bool share(int entry, const engine::FieldReader& reader, std::uint64_t frame);
   enum class Load { kDone, kNoSlot, kNoStaging };
@@ -68,6 +72,9 @@ class PageSet {
   void fill(int entry, const engine::FieldReader& reader, vk::DeviceSize at, std::byte* staging);
   [[nodiscard]] vk::DeviceSize bytesOfPage(int entry) const noexcept;
   [[nodiscard]] glm::ivec2 sizeOfPage(int entry) const noexcept;
+  [[nodiscard]] const engine::Tile* acceptedTile(glm::ivec2 tile) const {
+    return accepted_.empty() ? nullptr : &accepted_.reader().tile(tile.x, tile.y);
+  }
   // The pages that a tile lies on: of each level, and of the rim where it is at the field's end.
   template <class Visit>
   void over(glm::ivec2 tile, const Visit& visit) const;
@@ -80,6 +87,7 @@ class PageSet {
   std::vector<std::uint64_t> asked_;   // frame in which an entry was last asked for
   std::vector<std::uint64_t> loaded_;  // submission that brings or brought the whole page
   std::vector<int> nameless_;
+  engine::Version accepted_;
   std::uint32_t reserved_ = 0;
 };
 

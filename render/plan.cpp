@@ -219,6 +219,7 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
     u.light = glm::vec4(glm::dvec4(level * (away - right) + glm::dvec3(0.0, 0.0, kLightUp),
                                    spec.deviation_from ? kDeviationAmbient : kAmbient));
     u.marks_tint = vec4Of(plan.palette.marks, spec.marks_opacity);
+    u.suggested_tint = vec4Of(plan.palette.suggested, spec.marks_opacity);
     u.no_data = vec4Of(plan.palette.no_data, 1.0);
     u.wall = vec4Of(plan.palette.wall, 1.0);
     u.size = glm::ivec4(panel.placing.size, panel.placing.true_size);

@@ -3,18 +3,20 @@
 #include <bit>
 #include <cstring>
 
+#include "shaders/layout.h"
+
 namespace fettle::render {
 namespace {
 
 constexpr int kSide = engine::kTileSide;
 
 // Whether any of the 2^shift x 2^shift samples from `column`, `row` is marked.
-std::byte anyMark(const engine::Tile& tile, int column, int row, int shift) noexcept {
+bool anyMark(const engine::Tile& tile, int column, int row, int shift) noexcept {
   const int side = 1 << shift;
   const std::uint64_t mask = (side == kSide ? ~std::uint64_t{0} : (std::uint64_t{1} << side) - 1) << column;
   for (int r = row; r < row + side; ++r)
-    if ((tile.marks[static_cast<std::size_t>(r)] & mask) != 0) return std::byte{1};
-  return std::byte{0};
+    if ((tile.marks[static_cast<std::size_t>(r)] & mask) != 0) return true;
+  return false;
 }
 
 }  // namespace
@@ -48,12 +50,16 @@ TilePart partOf(const TileSpan& span, TileKind kind, int shift) noexcept {
   return {column, row, (span.last_column >> shift) - column + 1, (span.last_row >> shift) - row + 1};
 }
 
-void copyPart(const engine::Tile& tile, TileKind kind, int shift, const TilePart& part, std::byte* out,
-              std::size_t stride) noexcept {
+void copyPart(const engine::Tile& tile, const engine::Tile* accepted, TileKind kind, int shift,
+              const TilePart& part, std::byte* out, std::size_t stride) noexcept {
   for (int r = 0; r < part.rows; ++r, out += stride) {
     const int row = (part.row + r) << shift;
     if (kind == TileKind::kMarks) {
-      for (int c = 0; c < part.columns; ++c) out[c] = anyMark(tile, (part.column + c) << shift, row, shift);
+      for (int c = 0; c < part.columns; ++c) {
+        const int column = (part.column + c) << shift;
+        const bool sure = accepted == nullptr || anyMark(*accepted, column, row, shift);
+        out[c] = std::byte(!anyMark(tile, column, row, shift) ? 0 : sure ? gpu::kMarked : gpu::kSuggested);
+      }
       continue;
     }
     const float* from = tile.samples.data() + row * kSide;

@@ -43,8 +43,9 @@ struct TilePart {
 /// Of the level of every 2^shift-th sample, those that lie in the span; of marks, those whose square of
 /// samples meets it (a coarse mark is one when any sample of its square is marked). 0 <= shift <= 6.
 [[nodiscard]] TilePart partOf(const TileSpan& span, TileKind kind, int shift) noexcept;
-/// Writes a part to `out`, row by row, `stride` bytes from one row to the next.
-void copyPart(const engine::Tile& tile, TileKind kind, int shift, const TilePart& part, std::byte* out,
-              std::size_t stride) noexcept;
+/// Writes a part to `out`, row by row, `stride` bytes from one row to the next. Of marks: gpu::kMarked, and
+/// gpu::kSuggested for those that `accepted` lacks; null: it lacks none.
+void copyPart(const engine::Tile& tile, const engine::Tile* accepted, TileKind kind, int shift,
+              const TilePart& part, std::byte* out, std::size_t stride) noexcept;
 
 }  // namespace fettle::render

@@ -71,8 +71,8 @@ FETTLE_CONST kSpecSmooth = 4;
 FETTLE_CONST kSpecHoles = 5;  // there may be holes
 // For speed: slopes of the cell alone where kSpecSmooth is off, the nearest of 256 colours.
 FETTLE_CONST kSpecCell = 6;
-// Samples lie in pages that are on the device by need: heights_image, marks_image and original_image are pools
-// of them.
+// Samples lie in pages that are on the device by need: heights_image, marks_image and original_image are
+// pools of them.
 FETTLE_CONST kSpecByNeed = 7;
 // The samples that colours come from lie in one image layer, two or more each way: a cell's four are one
 // look-up.
@@ -91,7 +91,8 @@ FETTLE_CONST kFillDown = 5;     // triangle hanging from the quad's upper edge
 // How a page table is read (render/page_table.h): one entry a page, the field's, then the original's.
 struct PageHead {
   ivec4 level[kDataLevels];  // entry of a level's first page; pages across; columns, rows of samples
-  ivec4 pool;  // log2 of a page's side; the rim's first entry; number of its row's first sample; entries of a field
+  ivec4 pool;  // log2 of a page's side; the rim's first entry; number of its row's first sample; entries of a
+               // field
 };
 
 // Eyes that one panel may be drawn for. Everything that differs between two of them is in ViewUniforms.
@@ -127,15 +128,21 @@ struct PanelUniforms {
   ivec4 shade;   // 464: log2 of the step between samples that colours come from; -; columns, rows of those
   // Seam: how far seams overlap [px]; drawn so far from its sample, a point is beside it [scene mm]; -; -.
   vec4 seam;               // 480
-  vec4 colours[kColours];  // 496: linear red, green, blue
+  vec4 suggested_tint;     // 496: of marks that are suggested: linear red, green, blue; opacity
+  vec4 colours[kColours];  // 512: linear red, green, blue
   PageHead pages;          // where samples are on the device by need
 };
+
+// What the image of marks holds a sample; nothing is 0.
+FETTLE_CONST kMarked = 1;
+FETTLE_CONST kSuggested = 2;
 
 struct Patch {
   ivec4 place;  // first column, first row; log2 of the stride in columns, in rows
 };
 
-// An entry: the page's place in a layer of the pool [pages], and the layer; and whether colours may not be read there.
+// An entry: the page's place in a layer of the pool [pages], and the layer; and whether colours may not be
+// read there.
 FETTLE_CONST kEntryUpShift = 8;
 FETTLE_CONST kEntryLayerShift = 16;
 FETTLE_CONST kEntrySideMask = 0xff;
@@ -161,12 +168,13 @@ struct Quad {
 static_assert(sizeof(ViewUniforms) == 144);
 static_assert(offsetof(ViewUniforms, field_from_pixel) == 64);
 static_assert(offsetof(ViewUniforms, origin) == 128);
-static_assert(sizeof(PanelUniforms) == 496 + 16 * kColours + sizeof(PageHead));
+static_assert(sizeof(PanelUniforms) == 512 + 16 * kColours + sizeof(PageHead));
 static_assert(offsetof(PanelUniforms, placing) == 288);
 static_assert(offsetof(PanelUniforms, limits) == 320);
 static_assert(offsetof(PanelUniforms, size) == 432);
 static_assert(offsetof(PanelUniforms, shade) == 464);
-static_assert(offsetof(PanelUniforms, colours) == 496);
+static_assert(offsetof(PanelUniforms, suggested_tint) == 496);
+static_assert(offsetof(PanelUniforms, colours) == 512);
 static_assert(sizeof(Patch) == 16);
 static_assert(sizeof(PageHead) == 80);
 static_assert(sizeof(Line) == 48);

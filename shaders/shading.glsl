@@ -107,8 +107,11 @@ vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_widt
   if (p.beside && facet.z != 0.0) normal = normalize(facet * sign(facet.z));
 
   vec3 c = p.compared ? mapped(p.value) : panel.no_data.rgb;
-  if (kMarks && texelFetch(marks_image, shadeTexelOf(nearest), 0).x != 0u)
-    c = mix(c, panel.marks_tint.rgb, panel.marks_tint.a);
+  if (kMarks) {
+    const uint mark = texelFetch(marks_image, shadeTexelOf(nearest), 0).x;
+    const vec4 tint = mark == uint(kSuggested) ? panel.suggested_tint : panel.marks_tint;
+    if (mark != 0u) c = mix(c, tint.rgb, tint.a);
+  }
   // A level surface shows exactly its colour on the bar; slopes are lighter towards the light, darker away from it.
   c *= panel.light.w + (1.0 - panel.light.w) * max(dot(normal, panel.light.xyz), 0.0) / panel.light.z;
   if (kContours && p.compared) {

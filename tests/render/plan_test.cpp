@@ -1,6 +1,7 @@
 #include "render/plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -192,6 +193,26 @@ TEST(ColourMaps, EndsAndMiddleAreTheSourcesOwn) {
   EXPECT_EQ(code(colourTable(ColourMap::kCividis).front()), glm::ivec3(0, 34, 78));
   const glm::vec3 zero = mapped(colourTable(ColourMap::kDiverging), 0.0, {-3, 3});
   EXPECT_GT(std::min({zero.x, zero.y, zero.z}), 0.97F);
+}
+
+TEST(Plan, TextIsAsLargeAsTheDisplayAsksAndLeavesRoomForTheSurface) {
+  View view;
+  view.width = 1280;
+  view.height = 800;
+  EXPECT_EQ(layOut(view, Decoration::kFull, 1, Titles::kAbove).text_px, 15);
+  for (const double scale : {0.87, 1.0, 1.74, 2.5})
+    EXPECT_EQ(layOut(view, Decoration::kFull, 1, Titles::kAbove, scale).text_px, std::lround(15.0 * scale));
+  // The display says how large, not the picture: a larger one has the same text.
+  view.width = 2560;
+  view.height = 1600;
+  EXPECT_EQ(layOut(view, Decoration::kFull, 1, Titles::kAbove, 1.0).text_px, 15);
+  for (const auto& [w, h] : {std::pair{400, 1000}, {2000, 260}, {300, 200}}) {
+    view.width = w;
+    view.height = h;
+    const Layout layout = layOut(view, Decoration::kFull, 1, Titles::kAbove, 4.0);
+    EXPECT_GE(layout.plots[0].width, 0.5 * w) << w << " x " << h;
+    EXPECT_GE(layout.plots[0].height, 0.5 * h) << w << " x " << h;
+  }
 }
 
 }  // namespace

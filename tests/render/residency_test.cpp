@@ -7,6 +7,7 @@
 #include <random>
 
 #include "engine/field/live_field.h"
+#include "engine/marks/change_marks.h"
 #include "render/live_picture.h"
 #include "render/page_table.h"
 #include "tests/render/fields.h"
@@ -442,6 +443,53 @@ TEST(Residency, PreviewsAndTheOriginalShareEqualPagesAndShowWhatTheyShould) {
   shown.original.reset();
   input.range = ValueRange{-3, 9};
   (void)compare("back to one");
+}
+
+TEST(Residency, SuggestedMarksHaveAColourOfTheirOwnAndLoseItWhenAccepted) {
+  const engine::Version field = partField();
+  engine::JobControl job;
+  const auto inverted = engine::invertMarks(field, job);
+  ASSERT_TRUE(inverted);
+  for (const double zoom : {1.0, 9.0}) {
+    SCOPED_TRACE(zoom);
+    auto tight = makePicture({.budget = 3300000}), whole = makePicture();
+    const FrameInput input = bare(zoom);
+    // From pages as from a whole, and as if nothing had been shown before.
+    const auto seen = [&](const Shown& shown, const char* what) {
+      SCOPED_TRACE(what);
+      auto fresh = makePicture();
+      for (auto* picture : {&tight, &whole, &fresh}) EXPECT_TRUE((*picture)->update(shown));
+      const Frame a = settle(*tight, input), b = settle(*whole, input), c = settle(*fresh, input);
+      EXPECT_EQ(differing(a.image, b.image), 0U);
+      EXPECT_EQ(differing(b.image, c.image), 0U);
+      return b.image;
+    };
+    Shown shown;
+    shown.versions = {field};
+    shown.marks = MarksOverlay::kShow;
+    const Image before = seen(shown, "the marks there are");
+    shown.versions = {*inverted};
+    shown.accepted = field;
+    const Image suggested = seen(shown, "suggested");
+    EXPECT_GT(differing(before, suggested), 20000U);
+    // The very same version, and no tile of it changes.
+    shown.accepted = *inverted;
+    const Image taken = seen(shown, "taken");
+    EXPECT_GT(differing(suggested, taken), 20000U);
+    shown.accepted.reset();
+    EXPECT_EQ(differing(seen(shown, "marks like any others"), taken), 0U);
+    shown.accepted = field;
+    EXPECT_EQ(differing(seen(shown, "suggested again"), suggested), 0U);
+    shown.versions = {field};
+    shown.accepted.reset();
+    EXPECT_EQ(differing(seen(shown, "dropped"), before), 0U);
+  }
+  // Of another field it says nothing.
+  auto picture = makePicture();
+  Shown shown;
+  shown.versions = {field};
+  shown.accepted = partField();
+  EXPECT_FALSE(picture->update(shown));
 }
 
 TEST(Residency, MoreVersionsMayTurnAWholeFieldIntoOneByNeedAndMarksMayComeLater) {
