@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
@@ -47,7 +48,7 @@ vk::raii::RenderPass makePass(const vk::raii::Device& device) {
 }  // namespace
 
 UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_file)
-    : layout_file_(layout_file) {
+    : window_(window), layout_file_(layout_file) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -141,6 +142,27 @@ void UiLayer::fit(vk::Extent2D extent) {
   framebuffer_ = vk::raii::Framebuffer(context_->device(), info);
 }
 
+// As held at this frame's beginning: what was held at any time since the last one. Keys to be let go again.
+std::vector<int> UiLayer::holdShortPresses() {
+  ImGuiIO& io = ImGui::GetIO();
+  std::vector<int> brief;
+  const auto held = [&](int a, int b) {
+    return glfwGetKey(window_, a) == GLFW_PRESS || glfwGetKey(window_, b) == GLFW_PRESS;
+  };
+  io.KeyCtrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+  io.KeyShift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+  io.KeyAlt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+  for (const auto& [key, modifiers] : std::exchange(pressed_, {})) {
+    if (key < 0 || key >= IM_ARRAYSIZE(io.KeysDown) || io.KeysDown[key]) continue;
+    io.KeysDown[key] = true;
+    brief.push_back(key);
+    io.KeyCtrl = io.KeyCtrl || (modifiers & GLFW_MOD_CONTROL) != 0;
+    io.KeyShift = io.KeyShift || (modifiers & GLFW_MOD_SHIFT) != 0;
+    io.KeyAlt = io.KeyAlt || (modifiers & GLFW_MOD_ALT) != 0;
+  }
+  return brief;
+}
+
 void UiLayer::beginFrame() {
   // In dialogs and menus the arrows go from field to field; elsewhere they turn the view, and must not fold
   // and press what they happen to stand on in the panels.
@@ -152,7 +174,9 @@ void UiLayer::beginFrame() {
     io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
   ImGui_ImplVulkan_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  const std::vector<int> brief = holdShortPresses();
   ImGui::NewFrame();
+  for (const int key : brief) io.KeysDown[key] = false;
 }
 
 void UiLayer::leavePanels() noexcept {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "render/memory.h"
 
@@ -30,6 +31,9 @@ class UiLayer {
   void leave() noexcept;
 
   void fit(vk::Extent2D extent);
+  /// A key went down (GLFW's numbers). ImGui looks at what is held when a frame begins: with this it sees
+  /// keys that were let go by then, too, for one frame.
+  void notePress(int key, int modifiers) { pressed_.push_back({key, modifiers}); }
   void beginFrame();
   /// Whether the panels have the keyboard beyond text fields, dialogs and menus; and from when to when.
   [[nodiscard]] bool entered() const noexcept { return entered_; }
@@ -48,11 +52,17 @@ class UiLayer {
   [[nodiscard]] const GpuImage& image() const noexcept { return image_; }
 
  private:
+  struct Press {
+    int key, modifiers;
+  };
   void makeStyle(double scale) const;
+  [[nodiscard]] std::vector<int> holdShortPresses();
 
   Context* context_ = nullptr;
   bool entered_ = false;
-  std::string layout_file_;  // ImGui keeps a pointer to its text
+  GLFWwindow* window_;
+  std::vector<Press> pressed_;  // since the last frame began
+  std::string layout_file_;     // ImGui keeps a pointer to its text
   vk::raii::DescriptorPool descriptors_ = nullptr;
   vk::raii::RenderPass pass_ = nullptr;
   GpuImage image_;

@@ -258,6 +258,7 @@ void Window::Impl::listen() {
   glfwSetWindowUserPointer(glfw.window, this);
   glfwSetKeyCallback(glfw.window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
     if (action == GLFW_RELEASE) return;
+    of(w).ui->notePress(key, mods);
     InputEvent event;
     event.kind = InputKind::kKeyDown;
     event.key = keyOf(key, scancode);
@@ -265,7 +266,7 @@ void Window::Impl::listen() {
     event.repeat = action == GLFW_REPEAT;
     if (event.key == Key::kNone) return;
     of(w).note(event);
-    // Of a key this short ImGui may see nothing.
+    // Before the frame that ImGui sees it in.
     if (event.key == Key::kEscape) of(w).ui->leavePanels();
   });
   glfwSetMouseButtonCallback(glfw.window, [](GLFWwindow* w, int button, int action, int mods) {
