@@ -8,12 +8,11 @@ namespace fettle::app {
 void EdgeTool::search(const Touch& touch) {
   drop();
   using Found = std::shared_ptr<const engine::EdgeMap>;
-  searching_.start(
-      [field = touch.upright(), scale = sigma](engine::JobControl& job) -> engine::Result<Found> {
-        auto map = engine::findEdges(field, scale, job);
-        if (!map) return tl::unexpected(map.error());
-        return std::make_shared<const engine::EdgeMap>(std::move(*map));
-      });
+  searching_.start([field = touch.newest(), scale = sigma](engine::JobControl& job) -> engine::Result<Found> {
+    auto map = engine::findEdges(field, scale, job);
+    if (!map) return tl::unexpected(map.error());
+    return std::make_shared<const engine::EdgeMap>(std::move(*map));
+  });
 }
 
 void EdgeTool::redraw(const Touch& touch) {
@@ -24,7 +23,7 @@ void EdgeTool::redraw(const Touch& touch) {
   }
   draw_again_ = false;
   drawing_.start(
-      [base = touch.upright(), map = map_, what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
+      [base = touch.newest(), map = map_, what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
         auto suggestion = engine::suggestMarks(base, *map, what, job);
         if (!suggestion) return tl::unexpected(suggestion.error());
         return Drawn{base, std::move(*suggestion)};

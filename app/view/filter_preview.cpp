@@ -128,7 +128,11 @@ bool FilterPreview::poll(Touch& touch, std::vector<Notice>& notices) {
       changed = true;
     }
   }
-  if (auto done = computing_.take()) {
+  // What was cancelled may have been done by then.
+  const bool dropped = computing_.cancelling();
+  if (auto done = computing_.take(); done && dropped) {
+    changed = true;
+  } else if (done) {
     changed = true;
     so_far_.reset();
     seen_so_far_ = {};

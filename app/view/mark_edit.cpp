@@ -13,9 +13,13 @@ void MarkEdit::cancel() {
 
 bool MarkEdit::poll(Touch& touch, std::vector<Notice>& notices) {
   bool changed = false;
+  // What was cancelled may have been done by then.
+  const bool dropped = working_.cancelling();
   if (auto done = working_.take()) {
     changed = true;
-    if (!*done) {
+    if (dropped) {
+      // Nobody waits for it.
+    } else if (!*done) {
       if (done->error().kind != engine::ErrorKind::kCancelled)
         notices.push_back({done->error().what, done->error().remedy});
     } else if (!((*done)->base == (*done)->marked)) {
@@ -26,7 +30,7 @@ bool MarkEdit::poll(Touch& touch, std::vector<Notice>& notices) {
     Asked next = std::move(waiting_.front());
     waiting_.pop_front();
     name_ = std::move(next.name);
-    working_.start([base = touch.upright(),
+    working_.start([base = touch.newest(),
                     change = std::move(next.change)](engine::JobControl& job) -> engine::Result<Done> {
       auto marked = change(base, job);
       if (!marked) return tl::unexpected(marked.error());

@@ -15,6 +15,7 @@
 #include "app/journal/mark_codec.h"
 #include "app/live/placement.h"
 #include "haptic/devices/enumerate.h"
+#include "haptic/loop/pacer.h"
 #include "haptic/safety/last_resort.h"
 
 namespace fettle::app {
@@ -141,57 +142,121 @@ Touch::Touch(engine::History history, const engine::Version& original, const hap
 engine::Result<std::unique_ptr<Touch>> Touch::start(engine::History history, const engine::Version& original,
                                                     const haptic::Scene& scene, const TouchOptions& options,
                                                     SessionSink* sink) {
-  const engine::Grid& grid = original.grid();
   std::unique_ptr<Touch> touch(new Touch(std::move(history), original, scene, options, sink));
-  if (options.device == "mouse") {
-    auto mouse = std::make_unique<haptic::MouseStylus>(feelFor(grid));
-    touch->mouse_ = mouse.get();
-    touch->device_ = std::move(mouse);
-    if (options.fit_spring) touch->scene_ = fitted(scene, grid);
-  } else {
-    auto device = haptic::openDevice(options.device, options.rate_hz);
-    if (!device) return tl::unexpected(device.error());
-    touch->device_ = std::move(*device);
-  }
-  const haptic::DeviceProfile& profile = touch->device_->profile();
-  haptic::HapticLoop::Settings settings;
-  settings.rate_hz = options.rate_hz;
-  settings.options.limits = sessionLimits(profile);
-  settings.options.edit_rule =
-      profile.gives_force ? haptic::EditRule::kWhileForceIsGiven : haptic::EditRule::kAnytime;
-  // One drag, one step: off the surface the mouse's tip lifts, and its button stays held.
-  if (touch->mouse_ != nullptr) settings.options.stroke_gap_ticks = std::numeric_limits<std::uint32_t>::max();
-  // A view of a large field keeps the main thread away for longer than a frame at times.
-  settings.options.event_capacity = 1024;
-  settings.options.command_capacity = 1024;
-  settings.options.record_capacity = sink != nullptr ? kRecordedTicks : 0;
-  if (profile.space == haptic::DeviceSpace::kDesk) {
-    const glm::dvec3 middle{
-        0.5 * (grid.width - 1) * grid.spacingXMm(), 0.5 * (grid.height - 1) * grid.spacingYMm(),
-        touch->field_.reader().bounds().empty() ? 0.0
-                                                : touch->field_.reader().bounds().max * grid.height_unit.mm};
-    const double scale = fittedScale(profile, grid, touch->scene_.stiffness_n_per_mm);
-    settings.options.workspace = haptic::Workspace(scale, middle);
-    touch->scale_at_start_ = scale;
-  }
-  auto loop =
-      haptic::HapticLoop::create(touch->committed_, original, touch->scene_, *touch->device_, settings);
-  if (!loop) return tl::unexpected(loop.error());
-  touch->loop_ = std::move(*loop);
   if (auto status = haptic::LastResort::install(); !status) return tl::unexpected(status.error());
   // The way out when the display is lost (render/window.cpp).
   static const int at_quick_exit = std::at_quick_exit([] { haptic::LastResort::fire(); });
   static_cast<void>(at_quick_exit);
-  if (auto status = touch->device_->start(); !status) return tl::unexpected(status.error());
-  if (auto status = touch->loop_->start(); !status) {
-    touch->device_->stop();
-    touch->loop_.reset();
-    return tl::unexpected(status.error());
-  }
-  if (sink != nullptr) touch->recorder_.add(journal::Begin{touch->history_.number(), touch->scene_});
+  if (auto status = touch->openDevice(); !status) return tl::unexpected(status.error());
+  if (auto status = touch->startLoop(); !status) return tl::unexpected(status.error());
   for (const std::string& missing : touch->loop_->realTime().missing)
     touch->notices_.push_back({"the loop got less than it asked for", missing});
   return touch;
+}
+
+engine::Status Touch::openDevice() {
+  const engine::Grid& grid = original_.grid();
+  if (options_.device == "mouse") {
+    auto mouse = std::make_unique<haptic::MouseStylus>(feelFor(grid));
+    mouse_ = mouse.get();
+    device_ = std::move(mouse);
+    if (options_.fit_spring) scene_ = fitted(scene_, grid);
+    return {};
+  }
+  auto device = haptic::openDevice(options_.device, options_.rate_hz);
+  if (!device) return tl::unexpected(device.error());
+  device_ = std::move(*device);
+  return {};
+}
+
+// From the history's state on, with the device there is, which is started with the loop.
+engine::Status Touch::startLoop() {
+  const engine::Grid& grid = original_.grid();
+  const haptic::DeviceProfile& profile = device_->profile();
+  haptic::HapticLoop::Settings settings;
+  settings.rate_hz = options_.rate_hz;
+  settings.options.tool = tool_;
+  settings.options.limits = sessionLimits(profile);
+  settings.options.edit_rule =
+      profile.gives_force ? haptic::EditRule::kWhileForceIsGiven : haptic::EditRule::kAnytime;
+  // One drag, one step: off the surface the mouse's tip lifts, and its button stays held.
+  if (mouse_ != nullptr) settings.options.stroke_gap_ticks = std::numeric_limits<std::uint32_t>::max();
+  // A view of a large field keeps the main thread away for longer than a frame at times.
+  settings.options.event_capacity = 1024;
+  settings.options.command_capacity = 1024;
+  settings.options.record_capacity = sink_ != nullptr ? kRecordedTicks : 0;
+  if (profile.space == haptic::DeviceSpace::kDesk) {
+    const glm::dvec3 middle{
+        0.5 * (grid.width - 1) * grid.spacingXMm(), 0.5 * (grid.height - 1) * grid.spacingYMm(),
+        field_.reader().bounds().empty() ? 0.0 : field_.reader().bounds().max * grid.height_unit.mm};
+    const double scale = fittedScale(profile, grid, scene_.stiffness_n_per_mm);
+    settings.options.workspace = haptic::Workspace(scale, middle);
+    scale_at_start_ = scale;
+  }
+  auto loop = haptic::HapticLoop::create(committed_, original_, scene_, *device_, settings);
+  if (!loop) return tl::unexpected(loop.error());
+  if (auto status = device_->start(); !status) return status;
+  if (auto status = (*loop)->start(); !status) {
+    device_->stop();
+    return status;
+  }
+  loop_ = std::move(*loop);
+  finished_ = false;
+  if (sink_ != nullptr) recorder_.add(journal::Begin{history_.number(), scene_});
+  return {};
+}
+
+engine::Status Touch::setRate(double rate_hz) {
+  if (!loop_ || finished_ || rate_hz == options_.rate_hz) return {};
+  if (!(rate_hz >= haptic::Pacer::kLowestRate_hz && rate_hz <= haptic::Pacer::kHighestRate_hz))
+    return engine::inputError("a loop runs at 1000 to 10000 ticks a second", "rate");
+  const bool disarmed = disarmed_;
+  if (mouse_ != nullptr) {
+    mouse_->release();
+    mouse_->leave();
+  }
+  finish();
+  // All that belonged to the loop that ended.
+  committed_ = history_.current();
+  field_ = scene_.invert ? committed_.inverted() : committed_;
+  place_ = {};
+  unsent_.clear();
+  scenes_.clear();
+  restores_open_ = 0;
+  adoption_begun_ = false;
+  recorder_ = Recorder();
+  recorded_ = lost_ = last_event_tick_ = 0;
+  seen_ = {};
+  view_azimuth_deg_ = 0.0;
+  view_zoom_ = 1.0;
+  rate_tick_ = 0;
+  rate_ns_ = armed_try_ns_ = 0;
+  measured_rate_ = 0.0;
+  // The old loop and its device stay what one can look at should no other start.
+  const double before_hz = std::exchange(options_.rate_hz, rate_hz);
+  engine::Status status = restartLoop();
+  if (!status) {
+    options_.rate_hz = before_hz;
+    static_cast<void>(restartLoop());
+  }
+  disarmed_ = disarmed;
+  if (!finished_ && status && device_->profile().gives_force && !armsItself())
+    notices_.push_back(
+        {fmt::format("the loop runs at {:g} Hz now, without force", rate_hz), "press A to arm again"});
+  return status;
+}
+
+engine::Status Touch::restartLoop() {
+  std::unique_ptr<haptic::Device> before;  // outlives the old loop, which startLoop() replaces
+  // Its virtual time goes by the loop's ticks: another hand, at the beginning of its way.
+  if (options_.device.rfind("hand:", 0) == 0) {
+    auto device = haptic::openDevice(options_.device, options_.rate_hz);
+    if (!device) return tl::unexpected(device.error());
+    before = std::exchange(device_, std::move(*device));
+  }
+  engine::Status status = startLoop();
+  if (!status && before) device_ = std::move(before);
+  return status;
 }
 
 Touch::~Touch() {
@@ -521,11 +586,15 @@ void Touch::answerPort() {
   send(std::move(command));
 }
 
+// Only a device that cannot push: one that does is armed by the person who holds it.
+bool Touch::armsItself() const {
+  return !device_->profile().gives_force || options_.device.rfind("hand", 0) == 0;
+}
+
 void Touch::armByItself() {
   // Who disarmed wants no force until they say otherwise, whatever the device does meanwhile.
   if (disarmed_) return;
-  // Only a device that cannot push: one that does is armed by the person who holds it.
-  if (device_->profile().gives_force && options_.device.rfind("hand", 0) != 0) return;
+  if (!armsItself()) return;
   const haptic::LoopState state = loop_->state();
   const bool waits =
       state.safety == haptic::SafetyState::kUncalibrated || state.safety == haptic::SafetyState::kFault;

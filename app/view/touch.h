@@ -70,6 +70,11 @@ class Touch final : public haptic::AdoptionPort {
   /// As felt.
   [[nodiscard]] const engine::Version& field() const noexcept { return field_; }
   [[nodiscard]] engine::Version upright() const { return upright(field_); }
+  /// The right way up, with what the loop has been asked for and did not answer yet: after an undo the state
+  /// gone back to, else upright(). What work in the background begins with.
+  [[nodiscard]] engine::Version newest() const {
+    return restores_open_ > 0 ? history_.current() : upright(field_);
+  }
   [[nodiscard]] const engine::History& history() const noexcept { return history_; }
   [[nodiscard]] const engine::Version& original() const noexcept { return original_; }
   [[nodiscard]] const haptic::Scene& scene() const noexcept { return scene_; }
@@ -120,6 +125,14 @@ class Touch final : public haptic::AdoptionPort {
   [[nodiscard]] const haptic::LoopTiming& timing() const noexcept { return loop_->timing(); }
   [[nodiscard]] const haptic::RealTimeReport& realTime() const noexcept { return loop_->realTime(); }
   [[nodiscard]] double rate() const noexcept { return options_.rate_hz; }
+  /// Ends the loop as finish() does - the force fades to zero, a running stroke becomes a step - and starts
+  /// another at this rate [Hz], 1000 .. 10000, from the history's state: some 10 ms, 30 with a device that
+  /// gives force. A device that pushes is to be armed again; who had disarmed stays disarmed. Figures of the
+  /// timing begin anew, and so does the way of a simulated hand. A filter under way is cancelled, and results
+  /// computed before are not to be brought in afterwards: the journal has forgotten their base.
+  /// Errors: a rate out of range; those of start(), after which it runs at the old rate, or is finished().
+  [[nodiscard]] engine::Status setRate(double rate_hz);
+  [[nodiscard]] bool finished() const noexcept { return finished_; }
   /// Ticks a second, over the last second or so.
   [[nodiscard]] double measuredRate() const noexcept { return measured_rate_; }
   [[nodiscard]] std::vector<Notice> takeNotices() { return std::exchange(notices_, {}); }
@@ -145,6 +158,10 @@ class Touch final : public haptic::AdoptionPort {
   enum class Source : std::uint8_t { kLoop, kMarks };
   Touch(engine::History history, const engine::Version& original, const haptic::Scene& scene,
         const TouchOptions& options, SessionSink* sink);
+  [[nodiscard]] engine::Status openDevice();
+  [[nodiscard]] engine::Status startLoop();
+  [[nodiscard]] engine::Status restartLoop();
+  [[nodiscard]] bool armsItself() const;
   void takeRecords();
   void take(haptic::LoopEvent&& event);
   void journalAnswer(const haptic::LoopEvent& event);

@@ -60,7 +60,12 @@ TEST(SessionJournal, ReplaysToTheBitsThatHandsFiltersAndUndoMade) {
     auto touch = touchOf(document, history, keeper);
     ASSERT_TRUE(touch);
     HandPlay play(*touch, keeper, 1000 + life);
-    for (int i = 0; i < 14; ++i) ++did[play.act()];
+    for (int i = 0; i < 10; ++i) ++did[play.act()];
+    play.settle();
+    // Another loop in the same life.
+    const engine::Status other_rate = touch->setRate(life == 1 ? 1500.0 : 1000.0);
+    ASSERT_TRUE(other_rate) << other_rate.error().line();
+    for (int i = 0; i < 4; ++i) ++did[play.act()];
     play.settle();
     touch->finish();
     expected = engine::contentHash(touch->history().current());
@@ -76,7 +81,7 @@ TEST(SessionJournal, ReplaysToTheBitsThatHandsFiltersAndUndoMade) {
   EXPECT_EQ(engine::contentHash(session->history.current()), expected);
   const auto played = app::playSession(*session, job);
   ASSERT_TRUE(played) << played.error().line();
-  EXPECT_EQ(played->loops, 3);
+  EXPECT_EQ(played->loops, 4);
   EXPECT_EQ(played->state, number);
   EXPECT_EQ(engine::contentHash(played->field), expected);
   std::printf("%lld ticks, %lld steps, %lld filters, %zu entries\n", static_cast<long long>(played->ticks),
