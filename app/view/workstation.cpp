@@ -197,7 +197,8 @@ void Workstation::frame() {
   const std::optional<std::int64_t> edit = touch_ ? touch_->takeUnshownEdit() : std::nullopt;
   window_->beginFrame();
   panels();
-  if (touch_) drawPicture();
+  const bool announces = announcesPicture();
+  if (touch_ && !announces) drawPicture();
   const auto shown = window_->present();
   if (!shown) {
     losePicture(shown.error());
@@ -205,8 +206,29 @@ void Workstation::frame() {
   }
   if (touch_ && edit && shown->shown_ns > 0) touch_->noteShown(*edit, shown->shown_ns);
   ++frames_;
+  opening_.announced = opening_.announced || announces;
+  noteOpening();
   rememberLayout();
   tell();
+}
+
+double Workstation::Opening::sinceAsked() const {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - asked).count();
+}
+
+// The first picture of a large field takes the main thread some seconds: a frame before it says so.
+bool Workstation::announcesPicture() const {
+  constexpr std::int64_t kAtOnce = std::int64_t{1} << 20;  // samples
+  return touch_ && shown_.versions.empty() && !opening_.announced &&
+         touch_->field().grid().samples() > kAtOnce;
+}
+
+// After a frame was shown.
+void Workstation::noteOpening() {
+  if (!touch_ || shown_.versions.empty()) return;
+  if (opening_.seen_ms == 0.0) opening_.seen_ms = opening_.sinceAsked();
+  if (opening_.whole_ms == 0.0 && figures_.upload.pending_tiles == 0)
+    opening_.whole_ms = opening_.sinceAsked();
 }
 
 void Workstation::drawPicture() {
@@ -226,8 +248,9 @@ void Workstation::drawPicture() {
   if (display_.deviation)
     shown.original = touch_->scene().invert ? touch_->original().inverted() : touch_->original();
   shown.marks = display_.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
-  const bool same =
-      shown.versions == shown_.versions && shown.original == shown_.original && shown.marks == shown_.marks;
+  if (edges_.suggestion() != nullptr) shown.accepted = touch_->field();
+  const bool same = shown.versions == shown_.versions && shown.original == shown_.original &&
+                    shown.marks == shown_.marks && shown.accepted == shown_.accepted;
   if (!same) {
     if (const auto status = picture_->update(shown); !status) {
       // Of a lost device present() tells.
@@ -256,6 +279,7 @@ void Workstation::drawPicture() {
   input.stereo.eye_separation = static_cast<double>(display_.eye_separation);
   input.theme = display_.theme;
   if (display_.half_in_motion && !options_.sharp_motion) input.sharpness = sharpness;
+  input.furniture_scale = kFurniture * window_->scale();
   input.decoration = display_.furniture ? render::Decoration::kFull : render::Decoration::kNone;
   input.light_azimuth_deg = display_.light_azimuth_deg;
   input.light_elevation_deg = display_.light_elevation_deg;
@@ -315,6 +339,10 @@ Report Workstation::report() const {
   r["tiles_uploaded"] = tiles_uploaded_;
   r["bytes_uploaded"] = bytes_uploaded_;
   if (touch_) {
+    r["open_read_ms"] = opening_.read_ms;
+    r["open_touched_ms"] = opening_.touched_ms;
+    r["open_first_picture_ms"] = opening_.seen_ms;
+    r["open_whole_picture_ms"] = opening_.whole_ms;
     const haptic::TimingFigures late = touch_->timing().lateness.figures();
     const haptic::TimingFigures edit = touch_->latency().figures();
     r["ticks"] = late.count;

@@ -35,7 +35,7 @@ struct ViewOptions {
   TouchOptions touch;
   ScanOptions reading;
   render::WindowOptions window;
-  double seconds = 0.0;  ///< ends after so long; 0 = not by itself
+  double seconds = 0.0;       ///< ends after so long; 0 = not by itself
   bool sharp_motion = false;  ///< whatever the settings say, no Sharpness::kHalf while the view moves
   std::string events;         ///< where to tell what happens (EventLog); empty: nowhere
 };
@@ -89,6 +89,8 @@ class Workstation {
   [[nodiscard]] std::string keepWork();
 
   // workstation_told.cpp: what --events tells
+  [[nodiscard]] bool announcesPicture() const;
+  void noteOpening();
   void countHands();
   [[nodiscard]] Report told() const;
   void tell();
@@ -104,6 +106,10 @@ class Workstation {
   void chooseTool(std::optional<haptic::Tool> tool);
   void setBrushRadius(double samples);
   void setPressDepth(double mm);
+  void setRate(double hz);
+  // Text of the picture's furniture over that of a picture [render::layOut], at scale 1 of the display: 13
+  // pixels, a little smaller than that of the panels.
+  static constexpr double kFurniture = 0.87;
   [[nodiscard]] haptic::Tool toolFor(const render::Modifiers& modifiers) const;
   [[nodiscard]] bool takeDialogKey(render::Key key);
   [[nodiscard]] bool inPicture(double x, double y) const;
@@ -178,6 +184,7 @@ class Workstation {
   // The field and what is done to it.
   std::string path_;  // of the scan
   std::string loading_path_;
+  std::chrono::steady_clock::time_point load_asked_;
   std::string
       save_path_;  // where Ctrl+S writes the field to, without a session of the user's; empty until chosen
   std::string saving_path_;
@@ -211,6 +218,14 @@ class Workstation {
   std::int64_t tiles_uploaded_ = 0;
   std::int64_t bytes_uploaded_ = 0;
   std::uint64_t frames_ = 0;
+  // From asking for the newest scan on [ms]: it was read, it could be touched, it was seen, and all of it lay
+  // on the device; 0: not yet.
+  struct Opening {
+    std::chrono::steady_clock::time_point asked;
+    double read_ms = 0.0, touched_ms = 0.0, seen_ms = 0.0, whole_ms = 0.0;
+    bool announced = false;  // that the first picture is being made
+    [[nodiscard]] double sinceAsked() const;
+  } opening_;
   // Devices lost so far, tries to come back since the picture last stood for a while, and when the next one
   // is.
   int device_losses_ = 0;
@@ -257,6 +272,7 @@ class Workstation {
   Notice message_;
   AfterSaving after_saving_ = AfterSaving::kNothing;
   std::string open_next_;
+  bool stop_asking_ = false;  // ticked in the question at quitting
   bool side_panel_ = true;
   float side_width_ = 0.0F;
   bool enter_panels_ = false;  // the keyboard goes to the panels with the next frame

@@ -70,6 +70,21 @@ void Workstation::setPressDepth(double depth_mm) {
   mouse.wheel((mouse.pressMm() - depth_mm) / step);
 }
 
+void Workstation::setRate(double hz) {
+  if (!touch_) return;
+  // What was computed belongs to the loop that ends (Touch::setRate).
+  filters_.cancel(*touch_);
+  stylus_held_ = false;
+  const engine::Status set = touch_->setRate(hz);
+  options_.touch.rate_hz = touch_->rate();
+  // Without a loop there is nothing to work with; what was done is kept as at every end.
+  if (touch_->finished())
+    end_ = set;
+  else if (!set)
+    message(set.error().line(), "the loop runs on as before");
+  stale_ = true;
+}
+
 void Workstation::act(Action action) {
   stale_ = true;
   // What needs no field.

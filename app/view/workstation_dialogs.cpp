@@ -48,11 +48,13 @@ void Workstation::pathDialog(const char* title, const char* button) {
     std::error_code error;
     ImGui::PushTextWrapPos(0.0F);
     ImGui::TextDisabled(
-        "%s", dialog_ == Dialog::kSaveAs
-                  ? "NAME.fettle keeps everything, each step as it is made. Other formats, by extension "
-                    ".tif .asc .xyz .ply .png, keep the field, with its marks beside it as NAME_marks.png"
-                  : "format by extension: .tif .asc .xyz .ply .png .fettle; marks go beside it as "
-                    "NAME_marks.png");
+        "%s",
+        dialog_ == Dialog::kSaveAs
+            ? "NAME.fettle keeps everything, each step as it is made. Other formats, by extension "
+              ".tif .asc .xyz .ply .stl .x3p .exr .png, keep the field, with its marks beside it as "
+              "NAME_marks.png"
+            : "format by extension: .tif .asc .xyz .ply .stl .x3p .exr .png .fettle; marks go beside it as "
+              "NAME_marks.png");
     ImGui::PopTextWrapPos();
     if (dialog_ == Dialog::kSaveAs && isSessionPath(dialog_path_))
       ImGui::Checkbox("put the scan itself into the session", &embeds_);
@@ -130,10 +132,20 @@ void Workstation::dialogs() {
         const bool drops = ImGui::Button("Discard (D)") || takeDialogKey(render::letter('D'));
         ImGui::SameLine();
         const bool stays = ImGui::Button("Go back (Esc)") || escape();
+        if (after_saving_ == AfterSaving::kQuit) {
+          ImGui::Checkbox("Do not ask again (N)", &stop_asking_);
+          if (takeDialogKey(render::letter('N'))) stop_asking_ = !stop_asking_;
+          ImGui::TextDisabled(
+              "Unsaved work is then kept at the end, and offered when the scan is opened again.\n"
+              "The File menu and the Display panel turn the question on again.");
+        }
         if (writes || drops || stays) {
           dialog_ = Dialog::kNone;
           ImGui::CloseCurrentPopup();
         }
+        // Who goes back decided nothing.
+        if ((writes || drops) && after_saving_ == AfterSaving::kQuit && stop_asking_)
+          settings_.ask_before_quitting = false;
         if (writes) save();
         if (drops) goOn();
         if (stays) after_saving_ = AfterSaving::kNothing;

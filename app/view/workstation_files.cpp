@@ -113,6 +113,7 @@ void Workstation::askToQuit() {
     return;
   }
   after_saving_ = AfterSaving::kQuit;
+  stop_asking_ = false;
   dialog_ = Dialog::kUnsaved;
   dialog_fresh_ = true;
 }
@@ -138,12 +139,15 @@ void Workstation::open(const std::string& path) {
 
 void Workstation::load(const std::string& path, Recovery recovery) {
   loading_path_ = path;
+  load_asked_ = std::chrono::steady_clock::now();
   loading_.start([path, recovery, reading = options_.reading](engine::JobControl& job) {
     return openDocument(path, reading, recovery, kHistoryBytes, job);
   });
 }
 
 void Workstation::takeDocument(Document document) {
+  opening_ = {load_asked_};
+  opening_.read_ms = opening_.sinceAsked();
   const engine::Grid& grid = document.original.grid();
   TouchOptions options = options_.touch;
   options.fit_spring = !options_.scene.has_value();
@@ -172,6 +176,7 @@ void Workstation::takeDocument(Document document) {
     return;
   }
   touch_ = std::move(*touch);
+  opening_.touched_ms = opening_.sinceAsked();
   path_ = document.path;
   save_path_.clear();
   // What was recovered is still to be saved.

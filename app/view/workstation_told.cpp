@@ -37,6 +37,7 @@ Report Workstation::told() const {
            {"text_field", ImGui::GetIO().WantTextInput},
            {"message", dialog_ == Dialog::kMessage ? message_.what : ""},
            {"status", status_text_},
+           {"asks_before_quitting", settings_.ask_before_quitting},
            {"device_losses", device_losses_},
            {"loading", loading_.busy()},
            {"saving", saving_.busy() || (keeper_ && keeper_->saving())},
@@ -82,13 +83,21 @@ Report Workstation::told() const {
     Report variants = Report::array();
     for (const FilterPreview::Variant& v : filters_.variants()) variants.push_back(filterName(v.spec));
     r["filter"] = filterName(filters_.spec);
+    r["max_change"] = filters_.spec.max_change ? Report(*filters_.spec.max_change) : Report();
     r["variants"] = variants;
     r["filtering"] = filters_.computing();
+    r["suggested"] = edges_.suggestion() != nullptr ? edges_.suggestion()->samples : 0;
+    r["looking_for_edges"] = edges_.busy();
     r["applying"] = filters_.applying();
     r["filters_applied"] = filters_.applied();
     r["device"] = touch_->device().profile().name;
     r["connected"] = now.link == haptic::LinkState::kConnected;
     r["safety"] = std::string(haptic::name(now.safety));
+    Report effects = Report::array();
+    for (const haptic::EffectKind effect : scene.effects)
+      effects.push_back(std::string(haptic::effectName(effect)));
+    r["effects"] = effects;
+    r["rate_hz"] = touch_->rate();
     r["stroke"] = stylus_held_;
     r["touching"] = drawn.contact;
     // The cells that the cursor points at and that the stylus was drawn over: the same when it has followed.
@@ -101,7 +110,7 @@ Report Workstation::told() const {
         under_cursor_ ? cell(under_cursor_->position_mm.x, under_cursor_->position_mm.y) : Report();
     r["stylus_at"] = cell(drawn.endpoint_mm.x, drawn.endpoint_mm.y);
     settled = settled && (touch_->mouse() == nullptr || !touch_->mouse()->busy()) && !filters_.computing() &&
-              !filters_.applying() && shown_.versions.front() == touch_->field() &&
+              !filters_.applying() && shown_.accepted.value_or(shown_.versions.front()) == touch_->field() &&
               touch_->history().current() == touch_->upright();
   }
   r["settled"] = settled;

@@ -20,7 +20,13 @@ void Workstation::displayPanel() {
   tip(Action::kTheme);
   ImGui::Checkbox("half as sharp while it moves", &display_.half_in_motion);
   if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("While the view moves, every second pixel is drawn each way, so that it follows the hand.");
+    ImGui::SetTooltip(
+        "While the view moves, every second pixel is drawn each way, so that it follows the hand.");
+  ImGui::Checkbox("ask before quitting", &settings_.ask_before_quitting);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "With unsaved work. Without the question it is kept as well, and offered when the scan is "
+        "opened again.");
   beginFields();
   const char* maps[] = {"automatic", "viridis", "cividis", "grey", "diverging"};
   int map = static_cast<int>(display_.map);

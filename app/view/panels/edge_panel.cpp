@@ -48,14 +48,16 @@ void Workstation::edgePanel() {
     return;
   }
   const engine::EdgeSuggestion& found = *edges_.suggestion();
+  ImGui::PushTextWrapPos(0.0F);
   ImGui::TextUnformatted(
       fmt::format("{} lines, {} samples, not marked yet", found.lines, found.samples).c_str());
+  ImGui::PopTextWrapPos();
   if (ImGui::Button("Take")) act(Action::kFilterApply);
   tip(Action::kFilterApply);
   ImGui::SameLine();
   if (ImGui::Button("Drop")) act(Action::kNavigate);
   tip(Action::kNavigate);
-  ImGui::SameLine();
+  besideOrBelow("or paint over it");
   ImGui::TextDisabled("or paint over it");
 }
 

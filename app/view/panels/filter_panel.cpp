@@ -48,7 +48,7 @@ void Workstation::filterPanel() {
   endFields();
   int scope = static_cast<int>(spec.scope);
   ImGui::RadioButton("keep marks", &scope, 0);
-  ImGui::SameLine();
+  besideOrBelow("only marks", Beside::kTick);
   ImGui::RadioButton("only marks", &scope, 1);
   tip(Action::kFilterScope);
   spec.scope = static_cast<engine::FilterScope>(scope);
@@ -60,10 +60,10 @@ void Workstation::filterPanel() {
   } else {
     if (ImGui::Button("Preview")) act(Action::kFilterPreview);
     tip(Action::kFilterPreview);
-    ImGui::SameLine();
+    besideOrBelow("Beside");
     if (ImGui::Button("Beside")) act(Action::kFilterBeside);
     tip(Action::kFilterBeside);
-    ImGui::SameLine();
+    besideOrBelow("Apply");
     if (ImGui::Button("Apply")) filters_.apply(*touch_);
     tip(Action::kFilterApply);
   }
@@ -73,7 +73,8 @@ void Workstation::filterPanel() {
     if (ImGui::SmallButton(fmt::format("x##{}", i).c_str())) dropped = i;
     ImGui::SameLine();
     ImGui::PushTextWrapPos(0.0F);
-    ImGui::TextUnformatted(fmt::format("{}: {} changed, max {:.3g} {}", filterName(v.spec),
+    // Broken here, or a narrow panel would break a number at its point.
+    ImGui::TextUnformatted(fmt::format("{}\n{} changed, max {:.3g} {}", filterName(v.spec),
                                        v.result.report.changed, v.result.report.max_change,
                                        grid.height_unit.name)
                                .c_str());

@@ -42,12 +42,15 @@ void Workstation::panels() {
   statusBar();
   window_->setPictureArea(
       {0, static_cast<int>(top), static_cast<int>(width - side), static_cast<int>(height - top - bottom)});
-  if (!touch_) {
-    ImGui::SetNextWindowPos(ImVec2(0.5F * width, 0.45F * height), ImGuiCond_Always, ImVec2(0.5F, 0.5F));
+  if (const bool announces = announcesPicture(); !touch_ || announces) {
+    ImGui::SetNextWindowPos(ImVec2(0.5F * (width - side), 0.45F * height), ImGuiCond_Always,
+                            ImVec2(0.5F, 0.5F));
     ImGui::Begin("##empty", nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
                      ImGuiWindowFlags_NoSavedSettings);
-    if (loading_.busy()) {
+    if (announces) {
+      ImGui::Text("%s: making the first picture", std::filesystem::path(path_).filename().c_str());
+    } else if (loading_.busy()) {
       ImGui::Text("%s: %s", std::filesystem::path(loading_path_).filename().c_str(), loading_.stage());
       ImGui::ProgressBar(static_cast<float>(loading_.progress()), ImVec2(360.0F * scale, 0.0F));
       if (ImGui::Button("Cancel")) loading_.cancel();
@@ -65,7 +68,8 @@ render::Rectangle Workstation::plot() const {
   const render::Rectangle& area = window_->pictureArea();
   const auto layout =
       render::layOut(view_, display_.furniture ? render::Decoration::kFull : render::Decoration::kNone, 1,
-                     shown_.versions.size() > 1 ? render::Titles::kAbove : render::Titles::kNone);
+                     shown_.versions.size() > 1 ? render::Titles::kAbove : render::Titles::kNone,
+                     kFurniture * window_->scale());
   render::Rectangle rectangle = layout.plots.front();
   rectangle.x += area.x;
   rectangle.y += area.y;

@@ -53,24 +53,34 @@ void drawLateness(const haptic::TimingHistogram& lateness) {
   mark(9, "0.5 ms");
 }
 
+std::string rateText(double hz) {
+  return fmt::format("{:g} kHz", 1e-3 * hz);
+}
+
 }  // namespace
 
 void Workstation::hapticsPanel() {
   const haptic::LoopState state = touch_->state();
   const haptic::DeviceProfile& profile = touch_->device().profile();
   figure("device", profile.name + (profile.gives_force ? "" : ", no force"));
-  figure("link", state.link == haptic::LinkState::kConnected      ? "connected"
-                 : state.link == haptic::LinkState::kUncalibrated ? "not calibrated"
-                                                                  : "not plugged in");
-  figure("safety", std::string(haptic::name(state.safety)));
+  // A mouse is no device to plug in or to fear.
+  const bool mouse = touch_->mouse() != nullptr;
+  figure("link",
+         mouse ? (state.link == haptic::LinkState::kConnected ? "on the surface" : "no tool on the surface")
+         : state.link == haptic::LinkState::kConnected    ? "connected"
+         : state.link == haptic::LinkState::kUncalibrated ? "not calibrated"
+                                                          : "not plugged in");
+  figure("safety", mouse ? "no force to guard" : std::string(haptic::name(state.safety)));
+  ImGui::BeginDisabled(mouse);
   if (ImGui::Button("Arm")) act(Action::kArm);
   tip(Action::kArm);
-  ImGui::SameLine();
+  besideOrBelow("Disarm");
   if (ImGui::Button("Disarm")) act(Action::kDisarm);
   tip(Action::kDisarm);
-  ImGui::SameLine();
+  besideOrBelow("Calibrate");
   if (ImGui::Button("Calibrate")) act(Action::kCalibrate);
   tip(Action::kCalibrate);
+  ImGui::EndDisabled();
   const auto limit = static_cast<float>(touch_->scene().force_limit_n);
   if (!force_plot_.empty())
     ImGui::PlotLines("##force", force_plot_.data(), static_cast<int>(force_plot_.size()), 0,
@@ -93,6 +103,14 @@ void Workstation::hapticsPanel() {
       touch_->setScene(scene);
   };
   beginFields();
+  (void)field("rate", [&] {
+    const double now_hz = touch_->rate();
+    if (!ImGui::BeginCombo("##rate", rateText(now_hz).c_str())) return false;
+    for (int khz = 1; khz <= 10; ++khz)
+      if (const double hz = 1000.0 * khz; ImGui::Selectable(rateText(hz).c_str(), hz == now_hz)) setRate(hz);
+    ImGui::EndCombo();
+    return false;
+  });
   if (field("stiffness",
             [&] { return typeNumber("##stiffness", scene.stiffness_n_per_mm, 1e-6, 1000.0, "%.4g N/mm"); }))
     take();
@@ -105,9 +123,11 @@ void Workstation::hapticsPanel() {
     const auto kind = static_cast<haptic::EffectKind>(i);
     const auto listed = std::find(scene.effects.begin(), scene.effects.end(), kind);
     bool on = listed != scene.effects.end();
-    if (i % 2 != 0) ImGui::SameLine(0.5F * ImGui::GetWindowWidth());
     std::string name(haptic::effectName(kind));
     std::replace(name.begin(), name.end(), '_', ' ');
+    // In two columns, in one where the panels are narrow.
+    const float half = 0.5F * ImGui::GetWindowWidth();
+    if (i % 2 != 0 && half > 8.0F * ImGui::GetFontSize()) ImGui::SameLine(half);
     if (!ImGui::Checkbox(name.c_str(), &on)) continue;
     if (!on)
       scene.effects.erase(listed);

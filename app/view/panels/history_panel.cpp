@@ -14,10 +14,10 @@ void Workstation::historyPanel() {
   if (ImGui::Button("Undo")) act(Action::kUndo);
   ImGui::SameLine();
   if (ImGui::Button("Redo")) act(Action::kRedo);
-  ImGui::SameLine();
-  ImGui::TextDisabled(
-      "%s",
-      fmt::format("{} steps, {}", history.last(), bytesText(static_cast<double>(history.bytes()))).c_str());
+  const std::string held = fmt::format("{} step{}, {}", history.last(), history.last() == 1 ? "" : "s",
+                                       bytesText(static_cast<double>(history.bytes())));
+  besideOrBelow(held.c_str());
+  ImGui::TextDisabled("%s", held.c_str());
   const float lines = static_cast<float>(std::clamp<std::int64_t>(history.last() + 1, 3, 8));
   if (ImGui::BeginChild("steps", ImVec2(0.0F, lines * ImGui::GetTextLineHeightWithSpacing() + 8.0F), true)) {
     std::int64_t wanted = -1;

@@ -24,6 +24,8 @@ void Workstation::statusPanel() {
   figure("last upload",
          fmt::format("{} tiles, {}, {:.2f} ms", figures_.upload.tiles,
                      bytesText(static_cast<double>(figures_.upload.bytes)), figures_.upload.ms));
+  figure("first picture",
+         fmt::format("{:.1f} s, read in {:.1f}", 1e-3 * opening_.seen_ms, 1e-3 * opening_.read_ms));
   figure("edit to pixel",
          edit.count == 0 ? std::string("-")
                          : fmt::format("{:.0f} ms; p50 {:.0f}, p99 {:.0f}", touch_->lastLatencyMs(),

@@ -20,11 +20,7 @@ void Workstation::toolPanel() {
   // As many buttons in a line as there is room for.
   bool first = true;
   const auto button = [&](const char* name, Action action, bool on) {
-    const float wide = ImGui::CalcTextSize(name).x + 2.0F * ImGui::GetStyle().FramePadding.x;
-    if (!first) {
-      ImGui::SameLine();
-      if (ImGui::GetContentRegionAvail().x < wide) ImGui::NewLine();
-    }
+    if (!first) besideOrBelow(name);
     first = false;
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
     if (ImGui::Button(name)) act(action);
@@ -79,16 +75,16 @@ void Workstation::toolPanel() {
   bool marks = display_.marks, inverted = touch_->scene().invert;
   if (ImGui::Checkbox("marks", &marks)) act(Action::kShowMarks);
   tip(Action::kShowMarks);
-  ImGui::SameLine();
+  besideOrBelow("upside down", Beside::kTick);
   if (ImGui::Checkbox("upside down", &inverted)) act(Action::kInvert);
   tip(Action::kInvert);
   if (ImGui::Button("Clear marks")) act(Action::kClearMarks);
   tip(Action::kClearMarks);
-  ImGui::SameLine();
+  besideOrBelow("Invert marks");
   if (ImGui::Button("Invert marks")) act(Action::kInvertMarks);
   tip(Action::kInvertMarks);
   if (mark_edit_.busy()) {
-    ImGui::SameLine();
+    besideOrBelow("marking ...");
     ImGui::ProgressBar(static_cast<float>(mark_edit_.progress()), ImVec2(-1.0F, 0.0F), "marking");
   }
 }

@@ -33,6 +33,14 @@ void tip(Action action) {
   ImGui::SetTooltip("%s", fmt::format("{}: {}", s.name, keyText(s.key, s.modifiers)).c_str());
 }
 
+void besideOrBelow(const char* text, Beside what) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float beside = what == Beside::kButton ? style.FramePadding.x * 2.0F
+                                               : ImGui::GetFrameHeight() + style.ItemInnerSpacing.x;
+  ImGui::SameLine();
+  if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(text).x + beside) ImGui::NewLine();
+}
+
 void beginFields() {
   ImGui::PushItemWidth(-1.0F);
 }
@@ -45,7 +53,8 @@ void fieldName(const char* name) {
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
   ImGui::AlignTextToFramePadding();
   ImGui::TextDisabled("%s", name);
-  ImGui::SameLine(left + kNames * width);
+  const float room = kNames * width - ImGui::GetStyle().ItemInnerSpacing.x;
+  if (ImGui::CalcTextSize(name).x <= room) ImGui::SameLine(left + kNames * width);
 }
 
 bool typeNumber(const char* id, double& value, double low, double high, const std::string& format) {

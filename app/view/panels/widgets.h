@@ -16,8 +16,14 @@ void figure(const char* name, const std::string& value);
 /// The keys of an action, under the cursor of the last item.
 void tip(Action action);
 
+/// Puts the next button or tick box, which reads `text`, beside the last item where there is room for it,
+/// else below.
+enum class Beside : std::uint8_t { kButton, kTick };
+void besideOrBelow(const char* text, Beside what = Beside::kButton);
+
 /// Fields under each other, names to the left: between beginFields() and endFields(), field() gives the rest
-/// of the line to what `edit` puts there and returns what it returns.
+/// of the line to what `edit` puts there and returns what it returns. A name too long for its column has a
+/// line of its own.
 void beginFields();
 void endFields();
 void fieldName(const char* name);

@@ -91,6 +91,11 @@ Hand::State Hand::drag(int button, Place from, Place to, int steps, const std::s
 }
 
 Hand::State Hand::stroke(Place from, Place to, int steps) {
+  draw(from, to, steps);
+  return rest("after a stroke");
+}
+
+void Hand::draw(Place from, Place to, int steps) {
   // The stylus follows the cursor with a lag; two cells off is there.
   const auto follow = [&](bool pressed) {
     (void)waitFor("the stylus at the cursor", [&](const State& s) {
@@ -108,7 +113,6 @@ Hand::State Hand::stroke(Place from, Place to, int steps) {
     follow(true);
   }
   up(1);
-  return rest("after a stroke");
 }
 
 std::optional<Hand::Place> Hand::readable(const std::string& text) {
@@ -140,14 +144,41 @@ std::optional<Hand::Place> Hand::scrolledTo(const std::string& text) {
   return std::nullopt;
 }
 
-Hand::State Hand::click(const std::string& text, int count) {
+bool Hand::pointAt(const std::string& text) {
   const auto place = scrolledTo(text);
-  if (!place) {
-    const State now = program_.now();
-    ADD_FAILURE() << name_ << ": nothing to read there: " << text << "\n" << now["texts"].dump();
-    return now;
+  if (place)
+    at(*place);
+  else
+    ADD_FAILURE() << name_ << ": nothing to read there: " << text << "\n" << program_.now()["texts"].dump();
+  return place.has_value();
+}
+
+void Hand::tap(const std::string& text) {
+  if (!pointAt(text)) return;
+  down(1);
+  up(1);
+}
+
+Hand::State Hand::enter(const std::string& name, const std::string& value) {
+  if (!pointAt(name)) return program_.now();
+  const State now = program_.now();
+  const int left = now["picture"][0].get<int>() + now["picture"][2].get<int>();
+  const int width = now["frame"][0].get<int>() - left;
+  // Right of the names and of a tick before the number, left of the buttons behind it.
+  at({left + 6 * width / 10, now["cursor"][1]});
+  for (int i = 0; i < 2; ++i) {
+    down(1);
+    up(1);
   }
-  at(*place);
+  (void)waitFor("a field to type " + name + " in", [](const State& s) { return s["text_field"] == true; });
+  (void)press("ctrl+a");
+  display_.hands({"type", "--delay", "0", value});
+  (void)press("Return");
+  return waitFor("after typing " + name, [](const State& s) { return s["text_field"] == false && rests(s); });
+}
+
+Hand::State Hand::click(const std::string& text, int count) {
+  if (!pointAt(text)) return program_.now();
   for (int i = 0; i < count; ++i) {
     down(1);
     up(1);

@@ -36,8 +36,14 @@ class Hand {
   State drag(int button, Place from, Place to, int steps, const std::string& modifier = "");
   /// A stroke of the stylus: as drag() with the left button, waiting at each place until the stylus is there.
   State stroke(Place from, Place to, int steps);
+  /// The same without waiting for the rest at its end: while something else goes on.
+  void draw(Place from, Place to, int steps);
   /// Clicks on what reads `text`, until the window rests. Panels are scrolled for it where they have to be.
   State click(const std::string& text, int count = 1);
+  /// One click on what reads `text`, taken in by the window; whatever it began goes on.
+  void tap(const std::string& text);
+  /// Types into the field to the right of the name that reads `name`, confirmed, until the window rests.
+  State enter(const std::string& name, const std::string& value);
   /// Until nothing moves any more and everything asked for was done.
   State rest(const std::string& what = "rest");
   /// Whether a text is on the panels.
@@ -61,6 +67,8 @@ class Hand {
   [[nodiscard]] std::optional<Place> readable(const std::string& text);
   /// The same, after scrolling the panels as far as that takes.
   [[nodiscard]] std::optional<Place> scrolledTo(const std::string& text);
+  /// Whether there is such a text; the cursor is on it then.
+  [[nodiscard]] bool pointAt(const std::string& text);
   void keep(const Screen& screen, const std::string& what);
   [[nodiscard]] State waitFor(const std::string& what, const std::function<bool(const State&)>& is) {
     return program_.until(name_ + ": " + what, is);

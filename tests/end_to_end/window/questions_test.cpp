@@ -76,6 +76,52 @@ TEST_F(QuestionTest, work_is_not_lost_without_a_question) {
   expectSilence(*program);
 }
 
+TEST_F(QuestionTest, the_question_at_quitting_is_turned_off_and_on_again_and_no_work_is_lost) {
+  {
+    const auto program = start({scan});
+    Hand hand(display, *program, "stop asking");
+    (void)mark(hand);
+    EXPECT_EQ(program->now()["asks_before_quitting"], true);
+    // Who goes back decided nothing.
+    (void)hand.press("ctrl+q");
+    program->until("a question", asks);
+    (void)hand.click("Do not ask again (N)");
+    (void)hand.look("the question, ticked");
+    EXPECT_EQ(hand.key("Escape")["asks_before_quitting"], true);
+    (void)hand.press("ctrl+q");
+    program->until("a question", asks);
+    (void)hand.click("Do not ask again (N)");
+    hand.at({20, 790});
+    (void)hand.press("d");
+    EXPECT_EQ(program->wait(), 0) << program->err();
+    expectSilence(*program);
+  }
+  {
+    const auto program = start({scan});
+    Hand hand(display, *program, "not asked");
+    (void)mark(hand);
+    EXPECT_EQ(program->now()["asks_before_quitting"], false);
+    (void)hand.press("ctrl+q");
+    EXPECT_EQ(program->wait(), 0) << program->err();
+    EXPECT_NE(program->err().find("what was not saved is kept"), std::string::npos) << program->err();
+    expectSilence(*program);
+  }
+  const auto program = start({scan});
+  Hand hand(display, *program, "ask again");
+  program->until("the work is offered",
+                 [](const State& s) { return s["dialog"] == "recover" && s["settled"] == true; });
+  (void)hand.press("Return");
+  EXPECT_EQ(opened(*program)["steps"], 1);
+  for (const char* header : {"Filters", "Display"}) (void)hand.click(header);
+  EXPECT_EQ(hand.click("ask before quitting")["asks_before_quitting"], true);
+  (void)hand.look("asks again");
+  (void)hand.press("ctrl+q");
+  program->until("a question", asks);
+  (void)hand.press("d");
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
 TEST_F(QuestionTest, a_display_that_closes_keeps_the_work_and_ends_the_program_with_a_word) {
   const auto program = start({scan});
   Hand hand(display, *program, "display");

@@ -1,5 +1,7 @@
 // Sizes of the window, of its text, and no size at all.
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -16,6 +18,23 @@ class SizeTest : public WindowTest {
 
   void resize(std::uint32_t window, int width, int height) const {
     display.hands({"windowsize", std::to_string(window), std::to_string(width), std::to_string(height)});
+  }
+  // Rows of the first line written at the picture's right end [pixels].
+  static int titleHeight(const Screen& seen, const State& picture) {
+    const int left = picture[0].get<int>() + 4 * picture[2].get<int>() / 5;
+    const int right = picture[0].get<int>() + picture[2].get<int>();
+    const auto written = [&](int y) {
+      for (int x = left; x < right; ++x) {
+        const std::uint8_t* p = seen.at(x, y);
+        if (p[0] > 120 && std::abs(p[0] - p[1]) < 12 && std::abs(p[1] - p[2]) < 12) return true;
+      }
+      return false;
+    };
+    int top = picture[1];
+    while (top < seen.height && !written(top)) ++top;
+    int end = top;
+    while (end < seen.height && written(end)) ++end;
+    return end - top;
   }
   static State sized(ViewProgram& program, int width, int height) {
     return program.until(fmt::format("{} x {}", width, height), [&](const State& s) {
@@ -79,8 +98,60 @@ TEST_F(SizeTest, text_and_panels_grow_with_the_display) {
     const State shown = opened(*program);
     EXPECT_NEAR(shown["scale"].get<double>(), scale, 0.01);
     const Screen seen = hand.look("opened");
-    (void)seen;
+    // The title of the colour bar, in 13 pixels at scale 1: from the top of the h to the foot of the g is the
+    // size of the letters (DejaVu: 0.760 above the line, 0.236 below), rounded at both ends.
+    EXPECT_NEAR(titleHeight(seen, shown["picture"]), 13.0 * scale, 1.5) << dpi;
     for (const State& text : shown["texts"]) EXPECT_EQ(text["cut"], false) << dpi << " dpi: " << text.dump();
+    program->signal(SIGTERM);
+    EXPECT_EQ(program->wait(), 0);
+    expectSilence(*program);
+  }
+}
+
+// Of two texts in the panels neither lies on the other.
+TEST_F(SizeTest, nothing_in_the_panels_overlaps_however_narrow_they_are) {
+  for (const int side : {160, 320}) {
+    const std::filesystem::path settings = std::filesystem::path(folder.path()) / "fettle";
+    std::filesystem::create_directories(settings);
+    std::ofstream(settings / "window.json") << State{{"side_width", side},
+                                                     {"panels",
+                                                      {{"Tool", true},
+                                                       {"Edges", true},
+                                                       {"Filters", true},
+                                                       {"Steps", true},
+                                                       {"Change since the scan", true},
+                                                       {"Display", true},
+                                                       {"Status", true},
+                                                       {"Haptics", true}}}};
+    const auto program = start({scan, "--size", "1100x990"});
+    Hand hand(display, *program, fmt::format("panels {}", side));
+    (void)opened(*program);
+    (void)hand.key("shift+x");
+    (void)hand.key("x");
+    const State shown = hand.rest();
+    const int left = shown["picture"][0].get<int>() + shown["picture"][2].get<int>();
+    EXPECT_NEAR(shown["frame"][0].get<int>() - left, side, 2);
+    // Seen in parts, from top to bottom.
+    hand.at({left + side / 2, 500});
+    constexpr int kParts = 6;  // with some to spare
+    for (int part = 0; part < kParts; ++part) {
+      const State before = program->now()["texts"];
+      (void)hand.look("part");
+      for (std::size_t i = 0; i < before.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k) {
+          const State &a = before[i]["at"], &b = before[k]["at"];
+          if (a[0] < left || b[0] < left) continue;
+          const auto shared = [&](int from, int size) {
+            return std::min(a[from].get<int>() + a[size].get<int>(),
+                            b[from].get<int>() + b[size].get<int>()) -
+                   std::max(a[from].get<int>(), b[from].get<int>());
+          };
+          EXPECT_FALSE(shared(0, 2) > 1 && shared(1, 3) > 2)
+              << side << ": " << before[i].dump() << " on " << before[k].dump();
+        }
+      (void)hand.wheel(-8);
+    }
+    EXPECT_TRUE(hand.reads("effects")) << "not seen to the end";
     program->signal(SIGTERM);
     EXPECT_EQ(program->wait(), 0);
     expectSilence(*program);

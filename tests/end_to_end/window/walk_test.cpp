@@ -1,9 +1,7 @@
 // A day's work on the real program, by mouse and keys, on a display of its own; what is on the screen is
 // compared before and after each step, what is saved with what the engine makes of the same.
-#include <cmath>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 
 #include "engine/filter/filter.h"
 #include "engine/io/marks.h"
@@ -252,31 +250,6 @@ TEST_F(WindowTest, a_scan_is_smoothed_marked_filtered_and_saved_by_hand) {
   EXPECT_EQ(median_made.changed_marked, 0);
   EXPECT_GT(median_made.changed, 10000);
   EXPECT_EQ(compare(filtered_field, load(exported_path)).changed, 0);
-}
-
-// A simulated hand has its own way over the field, and force: armed and disarmed by keys.
-TEST_F(WindowTest, a_device_is_armed_and_disarmed) {
-  const std::string strokes = folder.file("strokes.csv");
-  {
-    std::ofstream out(strokes);
-    out << "t,x,y,z,tool\n";
-    // Down on the plate (8 mm), and along it for as long as the test may take.
-    for (int i = 0; i < 60000; ++i)
-      out << 0.001 * i << ',' << 60.0 + 10.0 * std::sin(0.002 * i) << ",51," << (i < 300 ? 12.0 : 7.6)
-          << ",mark\n";
-  }
-  const auto program = start({scan, "--device", "hand:" + strokes});
-  Hand hand(display, *program, "device");
-  program->until("the hand",
-                 [](const State& s) { return s.value("device", "") != "" && s["connected"] == true; });
-  (void)hand.press("a");
-  program->until("force", [](const State& s) { return s["safety"] == "active" && s["touching"] == true; });
-  (void)hand.press("shift+a");
-  program->until("no force",
-                 [](const State& s) { return s["safety"] != "active" && s["safety"] != "ramping"; });
-  program->signal(SIGTERM);
-  EXPECT_EQ(program->wait(), 0) << program->err();
-  expectSilence(*program);
 }
 
 }  // namespace

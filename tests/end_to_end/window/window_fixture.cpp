@@ -65,6 +65,19 @@ Hand::State WindowTest::opened(ViewProgram& program) {
   });
 }
 
+void WindowTest::saveAs(Hand& hand, const std::string& path) {
+  ViewProgram& program = hand.program();
+  (void)hand.press("ctrl+shift+s");
+  program.until("a dialog",
+                [](const Hand::State& s) { return s["dialog"] == "save as" && s["settled"] == true; });
+  hand.type(path);
+  (void)hand.press("Return");
+  program.until("written", [&](const Hand::State& s) {
+    return s["dialog"] == "none" && s["saving"] == false &&
+           s["status"].get<std::string>().find(path) != std::string::npos;
+  });
+}
+
 Hand::State WindowTest::quit(Hand& hand) {
   (void)hand.press("ctrl+q");
   ViewProgram& program = hand.program();

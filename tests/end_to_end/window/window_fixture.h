@@ -38,6 +38,8 @@ class WindowTest : public ::testing::Test {
                                      const std::map<std::string, std::string>& environment = {}) const;
   /// Waits until it shows the scan and rests.
   static Hand::State opened(ViewProgram& program);
+  /// Ctrl+Shift+S to a path, until it is written.
+  static void saveAs(Hand& hand, const std::string& path);
   /// Ctrl+Q, and the end: exit status 0 and no word from the validation layers. Its report.
   static Hand::State quit(Hand& hand);
   static void expectSilence(const ViewProgram& program);

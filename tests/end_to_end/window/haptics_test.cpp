@@ -1,0 +1,169 @@
+// Force in the window: a device armed and disarmed by keys and by mouse, the panel that shows it, its rate,
+// and the effects of the scene.
+#include <cmath>
+#include <csignal>
+#include <fstream>
+
+#include "tests/end_to_end/window/window_fixture.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = Hand::State;
+
+constexpr double kPi = 3.14159265358979;
+
+bool givesForce(const State& s) {
+  return s["safety"] == "active" && s["touching"] == true;
+}
+
+class HapticsTest : public WindowTest {
+ protected:
+  // A simulated hand that lands on the plate (8 mm) and lifts again, every two seconds: who is armed late
+  // feels nothing until it has come out.
+  std::unique_ptr<ViewProgram> startHand() {
+    const std::string strokes = folder.file("strokes.csv");
+    std::ofstream out(strokes);
+    out << "t,x,y,z,tool\n";
+    for (int i = 0; i < 12000; ++i) {
+      const double t = 0.01 * i;
+      out << t << ',' << 60.0 + 10.0 * std::sin(2.0 * t) << ",51," << 9.0 + 1.4 * std::cos(kPi * t)
+          << ",feel\n";
+    }
+    out.close();
+    auto program = start({scan, "--device", "hand:" + strokes});
+    program->until("the hand",
+                   [](const State& s) { return s.value("device", "") != "" && s["connected"] == true; });
+    return program;
+  }
+  // Through two landings of the hand there is no force, and nothing arms.
+  static void staysWithoutForce(ViewProgram& program) {
+    program.until("no force", [](const State& s) { return s["safety"] == "uncalibrated"; });
+    int landings = 0;
+    bool touched = true;
+    std::string otherwise;
+    program.until("two landings", [&](const State& s) {
+      if (s["safety"] != "uncalibrated") otherwise = s["safety"];
+      const bool touches = s["touching"];
+      landings += touches && !touched;
+      touched = touches;
+      return landings == 2;
+    });
+    EXPECT_EQ(otherwise, "");
+  }
+  // Pixels of a colour in the panels.
+  int inPanels(Hand& hand, const std::string& what, int red, int green, int blue) {
+    const State now = hand.program().now();
+    const int left = now["picture"][0].get<int>() + now["picture"][2].get<int>();
+    int found = 0;
+    const Screen seen = hand.look(what);
+    for (int y = 0; y < seen.height; ++y)
+      for (int x = left; x < seen.width; ++x) {
+        const std::uint8_t* p = seen.at(x, y);
+        found += std::abs(p[0] - red) < 12 && std::abs(p[1] - green) < 12 && std::abs(p[2] - blue) < 12;
+      }
+    return found;
+  }
+};
+
+TEST_F(HapticsTest, disarming_by_key_lasts_until_armed_and_no_dialog_stands_in_its_way) {
+  const auto program = startHand();
+  Hand hand(display, *program, "keys");
+  program->until("force", givesForce);
+  (void)hand.press("shift+a");
+  staysWithoutForce(*program);
+  (void)hand.press("a");
+  program->until("force again", givesForce);
+  // A list of keys is open.
+  (void)hand.press("F1");
+  program->until("a dialog", [](const State& s) { return s["dialog"] == "shortcuts"; });
+  (void)hand.press("shift+a");
+  program->until("no force", [](const State& s) { return s["safety"] == "uncalibrated"; });
+  (void)hand.press("Escape");
+  program->until("no dialog", [](const State& s) { return s["dialog"] == "none"; });
+  (void)hand.press("a");
+  program->until("force again", givesForce);
+  // A path is being typed: a capital A belongs to it, Pause does not.
+  (void)hand.press("ctrl+o");
+  program->until("a dialog", [](const State& s) { return s["dialog"] == "open" && s["text_field"] == true; });
+  (void)hand.press("shift+a");
+  EXPECT_EQ(program->until("force while typing", givesForce)["dialog"], "open");
+  (void)hand.press("Pause");
+  staysWithoutForce(*program);
+  EXPECT_EQ(program->now()["dialog"], "open");
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+TEST_F(HapticsTest, the_panel_shows_the_device_arms_it_and_sets_its_rate) {
+  const auto program = startHand();
+  Hand hand(display, *program, "panel");
+  program->until("force", givesForce);
+  for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)hand.click(header);
+  (void)hand.click("Haptics");
+  for (const char* text : {"simulated hand", "connected", "force, 0 to", "a second", "0.5 ms"})
+    EXPECT_TRUE(hand.reads(text)) << text;
+  // The force as a grey line, late ticks as yellow bars.
+  EXPECT_GT(inPanels(hand, "force", 156, 156, 156), 60);
+  EXPECT_GT(inPanels(hand, "lateness", 230, 179, 0), 60);
+
+  hand.tap("Disarm");
+  staysWithoutForce(*program);
+  EXPECT_TRUE(hand.reads("uncalibrated"));
+  // Who disarmed stays disarmed at another rate.
+  hand.tap("1 kHz");
+  program->until("rates",
+                 [](const State& s) { return s["texts"].dump().find("\"3 kHz\"") != std::string::npos; });
+  hand.tap("3 kHz");
+  program->until("another rate",
+                 [](const State& s) { return s["rate_hz"] == 3000 && s["connected"] == true; });
+  staysWithoutForce(*program);
+  hand.tap("Arm");
+  program->until("force", givesForce);
+  EXPECT_TRUE(hand.reads("of 3000 a second"));
+  // And who is armed is so again: the loop begins without force.
+  hand.tap("3 kHz");
+  program->until("rates",
+                 [](const State& s) { return s["texts"].dump().find("\"1 kHz\"") != std::string::npos; });
+  hand.tap("1 kHz");
+  program->until("the first rate",
+                 [](const State& s) { return s["rate_hz"] == 1000 && s["safety"] != "active"; });
+  program->until("force", givesForce);
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+TEST_F(HapticsTest, effects_are_ticked_off_and_on_again) {
+  const auto program = start({scan});
+  Hand hand(display, *program, "effects");
+  const State opened_with = opened(*program);
+  const auto has = [](const State& s, const char* effect) {
+    for (const State& e : s["effects"])
+      if (e == effect) return true;
+    return false;
+  };
+  ASSERT_TRUE(has(opened_with, "smoothing"));
+  ASSERT_FALSE(has(opened_with, "friction"));
+  (void)hand.key("7");
+  for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)hand.click(header);
+  (void)hand.click("Haptics");
+  EXPECT_TRUE(has(hand.click("friction"), "friction"));
+  EXPECT_TRUE(has(hand.click("edge snap"), "edge_snap"));
+  EXPECT_FALSE(has(hand.click("friction"), "friction"));
+  // Without its effect the tool does nothing; ticked again it does.
+  EXPECT_FALSE(has(hand.click("smoothing"), "smoothing"));
+  (void)hand.key("s");
+  EXPECT_EQ(hand.stroke({240, 332}, {340, 332}, 3)["steps"], 0);
+  EXPECT_TRUE(has(hand.click("smoothing"), "smoothing"));
+  EXPECT_EQ(hand.stroke({240, 332}, {340, 332}, 3)["steps"], 1);
+  EXPECT_EQ(program->now()["notices"], State::array());
+  (void)hand.look("smoothed");
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+}  // namespace
+}  // namespace fettle::tests
