@@ -153,12 +153,13 @@ std::vector<int> UiLayer::holdShortPresses() {
   io.KeyShift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
   io.KeyAlt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
   for (const auto& [key, modifiers] : std::exchange(pressed_, {})) {
-    if (key < 0 || key >= IM_ARRAYSIZE(io.KeysDown) || io.KeysDown[key]) continue;
-    io.KeysDown[key] = true;
-    brief.push_back(key);
     io.KeyCtrl = io.KeyCtrl || (modifiers & GLFW_MOD_CONTROL) != 0;
     io.KeyShift = io.KeyShift || (modifiers & GLFW_MOD_SHIFT) != 0;
     io.KeyAlt = io.KeyAlt || (modifiers & GLFW_MOD_ALT) != 0;
+    // One that is held yet may have lost its modifiers already.
+    if (key < 0 || key >= IM_ARRAYSIZE(io.KeysDown) || io.KeysDown[key]) continue;
+    io.KeysDown[key] = true;
+    brief.push_back(key);
   }
   return brief;
 }
