@@ -146,30 +146,17 @@ Ray Camera::rayAt(const glm::dvec2& pixel) const noexcept {
   return {from, glm::normalize(glm::dvec3(far) / far.w - from)};
 }
 
-double Camera::movesAtMost(std::span<const glm::dvec3> steps, const Box& box) const noexcept {
+double Camera::movesAtMost(const glm::dvec3& step, const Box& box) const noexcept {
+  const glm::dvec4 move = clip_from_scene_ * glm::dvec4(step, 0.0);
   double w = std::numeric_limits<double>::infinity();
   for (const glm::dvec3& corner : corners(box))
     w = std::min(w, (clip_from_scene_ * glm::dvec4(corner, 1.0)).w);
   // (x + dx) / (w + dw) - x / w = (dx - (x / w) dw) / (w + dw), and |x / w| <= 1 for what is seen. The end of
   // the move is in the box or a step from it, hence the smaller w.
-  double move_px = 0.0, nearer = 0.0;
-  for (const glm::dvec3& step : steps) {
-    const glm::dvec4 move = clip_from_scene_ * glm::dvec4(step, 0.0);
-    move_px = std::max(move_px, std::hypot((std::abs(move.x) + std::abs(move.w)) * 0.5 * plot_.width,
-                                           (std::abs(move.y) + std::abs(move.w)) * 0.5 * plot_.height));
-    nearer = std::max(nearer, std::abs(move.w));
-  }
-  return move_px / std::max(w - nearer, near_w_);
-}
-
-double Camera::movesAtMost(const glm::dvec3& step, const Box& box) const noexcept {
-  return movesAtMost(std::span(&step, 1), box);
-}
-
-double Camera::movesAtMost(const glm::dvec3& along, const glm::dvec3& across, const Box& box) const noexcept {
-  // What a move takes in the picture, and how much nearer it comes, are convex in it: both are largest at
-  // corners, and opposite ones are alike.
-  return movesAtMost(std::array{along + across, along - across}, box);
+  w = std::max(w - std::abs(move.w), near_w_);
+  return std::hypot((std::abs(move.x) + std::abs(move.w)) * 0.5 * plot_.width,
+                    (std::abs(move.y) + std::abs(move.w)) * 0.5 * plot_.height) /
+         w;
 }
 
 double Camera::depthOf(const glm::dvec3& point) const noexcept {

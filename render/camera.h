@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <span>
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
@@ -68,9 +67,6 @@ class Camera {
   /// How far a point of the box can move in the picture when it moves by at most `step` in the scene, as a
   /// bound [px]; of points and moves whose visible part counts: what lies before the near plane does not.
   [[nodiscard]] double movesAtMost(const glm::dvec3& step, const Box& box) const noexcept;
-  /// The same of a move by any a * along + b * across, a and b within -1 .. 1.
-  [[nodiscard]] double movesAtMost(const glm::dvec3& along, const glm::dvec3& across,
-                                   const Box& box) const noexcept;
 
   /// Distance from the viewer, for sorting: grows away from it.
   [[nodiscard]] double depthOf(const glm::dvec3& point) const noexcept;
@@ -79,9 +75,6 @@ class Camera {
   [[nodiscard]] bool misses(const Box& box) const noexcept;
 
  private:
-  // By any of these, or less far.
-  [[nodiscard]] double movesAtMost(std::span<const glm::dvec3> steps, const Box& box) const noexcept;
-
   glm::dmat4 clip_from_scene_{1.0};
   glm::dmat4 scene_from_clip_{1.0};
   glm::dvec3 right_{1.0, 0.0, 0.0}, up_{0.0, 1.0, 0.0}, to_viewer_{0.0, 0.0, 1.0};

@@ -85,14 +85,6 @@ double PatchTree::movesAtMost(const glm::dvec3& step, const Box& box) const noex
   return q_.other_eye ? std::max(px, q_.other_eye->movesAtMost(step, box)) : px;
 }
 
-// Of a move anywhere within a cell.
-double PatchTree::movesSidewaysAtMost(double stride, const Box& box) const noexcept {
-  const glm::dvec3 along_x{stride * q_.placing.spacing.x, 0.0, 0.0};
-  const glm::dvec3 along_y{0.0, stride * q_.placing.spacing.y, 0.0};
-  const double px = q_.camera.movesAtMost(along_x, along_y, box);
-  return q_.other_eye ? std::max(px, q_.other_eye->movesAtMost(along_x, along_y, box)) : px;
-}
-
 // Appends a patch; -1 when there is nothing to draw.
 std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
   const std::int32_t side = DetailMeasure::side(level);
@@ -127,7 +119,9 @@ std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
     const double upright = cut ? drawn_high - drawn_low : error.deviation;
     n.error_px = upright < 1e30 ? movesAtMost({0.0, 0.0, upright * q_.mm_per_unit}, box) : kInfinity;
     if (n.error_px > q_.error_px && !holed) {
-      const double sideways = movesSidewaysAtMost(std::ldexp(1.0, level), box);
+      const double stride = std::ldexp(1.0, level);
+      const glm::dvec3 along_x{q_.placing.spacing.x, 0.0, 0.0}, along_y{0.0, q_.placing.spacing.y, 0.0};
+      const double sideways = movesAtMost(stride * along_x, box) + movesAtMost(stride * along_y, box);
       n.error_px =
           std::min(n.error_px, sideways + movesAtMost({0.0, 0.0, error.excess * q_.mm_per_unit}, box));
     }

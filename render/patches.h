@@ -95,7 +95,6 @@ class PatchTree {
   [[nodiscard]] std::array<bool, 4> wallsSeen(const Camera& camera) const;
   [[nodiscard]] bool misses(const Box& box) const noexcept;
   [[nodiscard]] double movesAtMost(const glm::dvec3& step, const Box& box) const noexcept;
-  [[nodiscard]] double movesSidewaysAtMost(double stride, const Box& box) const noexcept;
   [[nodiscard]] int levelAt(int level, std::int32_t x, std::int32_t y) const;
   [[nodiscard]] std::vector<std::int32_t> sorted() const;
   void split(const PatchLeaf& leaf, double low_z, double high_z, int lowest_level,
