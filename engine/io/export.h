@@ -40,9 +40,9 @@ struct Exported {
 ///   .png        16-bit grey, 0 = hole, quantised: the warning says count and largest error
 ///   .x3p        ISO 25178-72, metres: float32 where the field is in metres, else float64, and every digit of
 ///               units, spacing and origin in an entry of its own, so that each float comes back
-///   .exr        OpenEXR, channel Y, float32, holes = NaN; units, spacing and origin as an attribute of its
-///   own .fettle     a session (engine/session) that begins with this field, marks and sign included, bit for
-///   bit
+///   .exr        OpenEXR, channel Y, float32, holes = NaN; units, spacing, origin: an attribute of its own
+///   .fettle     a session (engine/session) that begins with this field, marks and sign included, bit for
+///               bit
 ///
 /// Other formats take no marks: these go to their own file (marks.h). The file appears whole or not at all
 /// (atomic_file.h). Errors: kInput for an unknown extension, a path that cannot be written, a full disk;
