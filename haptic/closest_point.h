@@ -41,8 +41,9 @@ inline constexpr int kMaxRounds = 2048;
 /// do, 138 of them ended farther and 88 nearer than the source's, at the same mean distance
 /// (tests/haptic/tick_test.cpp). To cross a cell this takes 1 to 3 rounds instead of 5 to 10.
 ///
-/// `most_rounds`, 2 .. kMaxRounds, the last of which only looks: fewer than it needs to come to rest is a cheaper level, whose error
-/// `fettle accuracy` measures; the next tick goes on from where this one stopped (SearchEnd::kBound).
+/// `most_rounds`, 2 .. kMaxRounds, the last of which only looks: fewer than it needs to come to rest is a
+/// cheaper level, whose error `fettle accuracy` measures; the next tick goes on from where this one stopped
+/// (SearchEnd::kBound).
 ///
 /// Source: Potter, Johnson, Cohen, DETC2004-57539, "Haptic Rendering"; projected Newton steps: Nocedal and
 /// Wright, "Numerical Optimization" (2006), section 16.7. Guarantee: wait-free, noexcept.
