@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -134,7 +135,10 @@ std::string scriptOf(const bench::Study& study) {
 class ScratchFile {
  public:
   ScratchFile() {
-    path_ = (std::filesystem::temp_directory_path() / "fettle-plot-XXXXXX").string();
+    std::error_code problem;
+    const std::filesystem::path folder = std::filesystem::temp_directory_path(problem);
+    if (problem) return;
+    path_ = (folder / "fettle-plot-XXXXXX").string();
     const int descriptor = mkstemp(path_.data());
     if (descriptor < 0) {
       path_.clear();
@@ -153,6 +157,22 @@ class ScratchFile {
   std::string path_;
 };
 
+// All that gnuplot prints, errors included.
+engine::Result<std::string> gnuplot(const std::string& arguments) {
+  std::FILE* pipe = popen(("gnuplot " + arguments + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return engine::failure("gnuplot cannot be started", "accuracy report", "free memory");
+  std::string said;
+  char buffer[4096];
+  for (std::size_t got; (got = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) said.append(buffer, got);
+  const int status = pclose(pipe);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+    return engine::failure("gnuplot is missing", "plots of the accuracy report", "install gnuplot-nox");
+  if (status != 0)
+    return engine::failure("gnuplot refuses: " + said.substr(0, 200), "accuracy report",
+                           "please report this");
+  return said;
+}
+
 }  // namespace
 
 int methodNumber(const bench::Study& study, const std::string& method) {
@@ -164,24 +184,23 @@ int methodNumber(const bench::Study& study, const std::string& method) {
   return static_cast<int>(std::find(names.begin(), names.end(), method) - names.begin()) + 1;
 }
 
+engine::Status plotsCanBeMade() {
+  const auto said = gnuplot("--version");
+  if (!said) return tl::unexpected(said.error());
+  return {};
+}
+
 engine::Result<std::string> plotSvg(const bench::Study& study) {
   const ScratchFile script;
-  if (script.path().empty())
-    return engine::failure("no file can be made for a plot", std::filesystem::temp_directory_path().string(),
-                           "free space there, or set TMPDIR");
-  std::ofstream(script.path()) << scriptOf(study);
-  std::FILE* pipe = popen(("gnuplot '" + script.path() + "' 2>&1").c_str(), "r");
-  if (pipe == nullptr) return engine::failure("gnuplot cannot be started", study.id, "free memory");
-  std::string said;
-  char buffer[4096];
-  for (std::size_t got; (got = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) said.append(buffer, got);
-  const int status = pclose(pipe);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
-    return engine::failure("gnuplot is missing", "plots of the accuracy report", "install gnuplot-nox");
-  const std::size_t begin = said.find("<svg");
-  if (status != 0 || begin == std::string::npos)
-    return engine::failure("gnuplot refuses: " + said.substr(0, 200), study.id, "please report this");
-  return said.substr(begin);
+  if (script.path().empty() || !(std::ofstream(script.path()) << scriptOf(study)).flush())
+    return engine::failure("no file can be written for a plot", "the folder of temporary files",
+                           "free space there, or set TMPDIR to another folder");
+  auto said = gnuplot("'" + script.path() + "'");
+  if (!said) return said;
+  const std::size_t begin = said->find("<svg");
+  if (begin == std::string::npos)
+    return engine::failure("gnuplot draws nothing: " + said->substr(0, 200), study.id, "please report this");
+  return said->substr(begin);
 }
 
 }  // namespace fettle::app

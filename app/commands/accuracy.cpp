@@ -46,6 +46,7 @@ engine::Result<Report> accuracy(const Options& options, engine::JobControl& job)
   for (const std::string& id : options.only)
     if (std::none_of(std::begin(kStudies), std::end(kStudies), [&](const auto& s) { return s.id == id; }))
       return engine::inputError("there is no study \"" + id + "\"", "--only", "name any of " + studyNames());
+  if (auto ready = plotsCanBeMade(); !ready) return tl::unexpected(ready.error());
   bench::AccuracyOptions studied;
   studied.effort = options.effort;
   if (!options.scan.empty()) {

@@ -1,6 +1,10 @@
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -41,6 +45,47 @@ TEST(Accuracy, AStudyThatIsNoneIsRefusedBeforeAnythingIsMade) {
   const Outcome outcome = fettle({"accuracy", folder.file("out"), "--only", "speed"});
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("there is no study \"speed\""), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+// Its own environment is what a started program inherits.
+class WithVariable {
+ public:
+  WithVariable(const char* name, const std::string& value) : name_(name) {
+    const char* before = std::getenv(name);
+    had_ = before != nullptr;
+    if (had_) before_ = before;
+    setenv(name, value.c_str(), 1);
+  }
+  ~WithVariable() {
+    if (had_)
+      setenv(name_, before_.c_str(), 1);
+    else
+      unsetenv(name_);
+  }
+  WithVariable(const WithVariable&) = delete;
+  WithVariable& operator=(const WithVariable&) = delete;
+
+ private:
+  const char* name_;
+  std::string before_;
+  bool had_ = false;
+};
+
+TEST(Accuracy, WithoutGnuplotOrRoomForItsScriptNothingIsLeftAndALineSaysWhy) {
+  const TempFolder folder;
+  const std::vector<std::string> command{"accuracy", folder.file("out"), "--only",
+                                         "upload",   "--effort",         "0.01"};
+  {
+    const WithVariable nothing_there("PATH", folder.file("nowhere"));
+    const Outcome outcome = fettle(command);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find("install gnuplot-nox"), std::string::npos) << outcome.err;
+  }
+  const WithVariable no_room("TMPDIR", folder.file("nowhere"));
+  const Outcome outcome = fettle(command);
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("set TMPDIR"), std::string::npos) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
