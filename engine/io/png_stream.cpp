@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <csetjmp>
+#include <cstdlib>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -44,6 +45,14 @@ struct PngReader::State {
     if (!pull(static_cast<State*>(png_get_io_ptr(png)), out, bytes))
       png_error(png, "the file ends too early");
   }
+  // A chunk that says it is longer than libpng's own limit is only warned of, and its buffer asked for all
+  // the same. Rows take 4 bytes a sample at most, and nothing else that is read is held whole.
+  static constexpr png_alloc_size_t kMostBytes = 16U << 20;
+  static_assert(kMostBytes > 4ULL * Grid::kMaxSide + 4096);
+  static png_voidp allocate(png_structp, png_alloc_size_t bytes) {
+    return bytes > kMostBytes ? nullptr : std::malloc(bytes);
+  }
+  static void release(png_structp, png_voidp memory) { std::free(memory); }
   [[nodiscard]] tl::unexpected<Error> damaged() const {
     return inputError("the PNG cannot be read: " + message, file->path(), "the file is cut short or damaged");
   }
@@ -90,7 +99,8 @@ PngReader::~PngReader() = default;
 Result<PngReader> PngReader::open(const InputFile& file) {
   auto state = std::make_unique<State>();
   state->file = &file;
-  state->png = png_create_read_struct(PNG_LIBPNG_VER_STRING, state.get(), State::fail, keepQuiet);
+  state->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, state.get(), State::fail, keepQuiet, nullptr,
+                                        State::allocate, State::release);
   if (state->png != nullptr) state->info = png_create_info_struct(state->png);
   if (state->info == nullptr) return failure("memory for reading the PNG could not be had", file.path());
   png_set_read_fn(state->png, state.get(), State::read);
