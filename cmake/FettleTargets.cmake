@@ -49,6 +49,12 @@ function(fettle_test name)
     endif()
     add_dependencies(concurrency_tests ${name})
   endif()
+  if(ARG_LABELS STREQUAL "numeric")
+    if(NOT TARGET numeric_tests)
+      add_custom_target(numeric_tests)  # what is run without optimisation; see scripts/test
+    endif()
+    add_dependencies(numeric_tests ${name})
+  endif()
   # Only properties with a value, and no more than one label: CTest's script is made from a flat list, in which an
   # empty value swallows the name of the next property and a second label is taken for one.
   set(properties TIMEOUT ${ARG_TIMEOUT})
