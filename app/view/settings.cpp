@@ -51,6 +51,7 @@ std::string Settings::text() const {
               {"light_elevation", d.light_elevation_deg},
               {"furniture", d.furniture},
               {"half_in_motion", d.half_in_motion},
+              {"vertices", d.vertices},
               {"mouse", kHabits[static_cast<std::size_t>(habits)]},
               {"side_panel", side_panel},
               {"side_width", side_width},
@@ -79,6 +80,7 @@ Settings Settings::load(const std::string& path) {
   take(file, "light_elevation", 5.0F, 90.0F, d.light_elevation_deg);
   take(file, "furniture", d.furniture);
   take(file, "half_in_motion", d.half_in_motion);
+  take(file, "vertices", std::int64_t{4096}, std::int64_t{1} << 22, d.vertices);
   take(file, "mouse", kHabits, settings.habits);
   take(file, "side_panel", settings.side_panel);
   take(file, "side_width", 0.0F, 4096.0F, settings.side_width);

@@ -109,7 +109,7 @@ void Workstation::rememberLayout() {
 }
 
 void Workstation::goRound() {
-  const bool working = mark_edit_.busy() || edges_.busy() || loading_.busy() || saving_.busy() ||
+  const bool working = mark_edit_.busy() || edges_.busy() || costs_.busy() || loading_.busy() || saving_.busy() ||
                        filters_.computing() || filters_.applying();
   window_->poll(active() ? 0.0 : working ? kBusy_s : kIdle_s);
   whileWaiting();
@@ -181,6 +181,7 @@ void Workstation::takeResults() {
   for (Notice& notice : touch_->takeNotices()) notices_.push_back(std::move(notice));
   while (notices_.size() > 6) notices_.erase(notices_.begin());
   if (change_.poll(*touch_)) stale_ = true;
+  for (const engine::Error& error : costs_.poll()) notices_.push_back({error.line(), ""});
   if (auto done = measuring_.take(); done && *done) deviation_ = **done;
   const engine::Version now = touch_->upright();
   if (!measuring_.busy() && !(measured_ == now) && !stylus_held_) {
@@ -269,6 +270,7 @@ void Workstation::drawPicture() {
 
   render::FrameInput input;
   input.view = view_;
+  input.vertex_budget = display_.vertices;
   input.arrangement = display_.split && shown_.versions.size() == 2 ? render::Arrangement::kSplit
                                                                     : render::Arrangement::kSideBySide;
   input.split = display_.split_at;

@@ -10,6 +10,7 @@
 #include "app/scan_options.h"
 #include "app/view/background.h"
 #include "app/view/camera_motion.h"
+#include "app/view/choice_costs.h"
 #include "app/view/edge_tool.h"
 #include "app/view/event_log.h"
 #include "app/view/filter_preview.h"
@@ -161,6 +162,8 @@ class Workstation {
   void filterPanel();
   void displayPanel();
   void hapticsPanel();
+  void contactChooser();
+  void detailChooser();
   void edgePanel();
   void deviationPanel();
   [[nodiscard]] bool section(const char* name, bool open_at_first);
@@ -201,6 +204,7 @@ class Workstation {
   engine::Version measured_;    // what measuring_ works on, or deviation_ is of
   std::optional<engine::Deviation> deviation_;
   FilterPreview filters_;
+  ChoiceCosts costs_;
   std::vector<Notice> notices_;
 
   // The picture.

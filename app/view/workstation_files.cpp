@@ -203,6 +203,7 @@ void Workstation::closeDocument(SessionKeeper::Afterwards afterwards) {
   if (!touch_) return;
   filters_.cancel(*touch_);
   measuring_.cancel();
+  costs_.forget();
   // A stroke that runs is a step yet.
   touch_->finish();
   if (const auto closed = keeper_->close(afterwards); !closed)

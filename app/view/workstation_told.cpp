@@ -78,6 +78,10 @@ Report Workstation::told() const {
     r["marks"] = display_.marks;
     r["deviation"] = display_.deviation;
     r["contours"] = display_.contours;
+    r["vertices"] = display_.vertices;
+    r["contact_level"] =
+        scene.tip == haptic::TipShape::kSphere ? "ball" : std::string(haptic::levelName(scene.level));
+    r["measured"] = {!costs_.contact().empty(), !costs_.detail().empty()};
     r["map"] = static_cast<int>(display_.map);
     r["light"] = {std::lround(display_.light_azimuth_deg), std::lround(display_.light_elevation_deg)};
     Report variants = Report::array();

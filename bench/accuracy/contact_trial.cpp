@@ -36,6 +36,7 @@ constexpr ContactChoice kChoices[] = {
     {"certified, 1 cell", ContactLevel::kCertified, 2048, 1},
     {"certified, 2 cells", ContactLevel::kCertified, 2048, 2},
     {"certified, 4 cells", ContactLevel::kCertified, 2048, 4},
+    {"certified, 6 cells", ContactLevel::kCertified, 2048, 6},  // what the window has for a mouse
     {"certified, 8 cells", ContactLevel::kCertified, 2048, 8},
     {"ball, radius 1 cell", ContactLevel::kPaper, 2048, 2, 1.0},
     {"ball, radius 2 cells", ContactLevel::kPaper, 2048, 2, 2.0},

@@ -1,11 +1,9 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
 
 #include <fmt/format.h>
 
+#include "bench/accuracy/detail_trial.h"
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "engine/scanner/scanner.h"
@@ -15,23 +13,17 @@ namespace fettle::bench {
 namespace {
 
 constexpr std::int64_t kAllVertices = std::int64_t{1} << 24;
+constexpr render::Sharpness kFull = render::Sharpness::kFull;
 
-struct Setting {
-  const char* name;
-  double error_px;
-  std::int64_t vertices;
-  render::Sharpness sharpness;
-};
-
-constexpr Setting kSettings[] = {
-    {"bound 8 px", 8.0, kAllVertices, render::Sharpness::kFull},
-    {"bound 4 px", 4.0, kAllVertices, render::Sharpness::kFull},
-    {"bound 2 px", 2.0, kAllVertices, render::Sharpness::kFull},
-    {"bound 1 px", 1.0, kAllVertices, render::Sharpness::kFull},
-    {"bound 0.5 px", 0.5, kAllVertices, render::Sharpness::kFull},
-    {"16 k vertices", 1.0, 16384, render::Sharpness::kFull},
-    {"32 k vertices", 1.0, 32768, render::Sharpness::kFull},
-    {"64 k vertices", 1.0, 65536, render::Sharpness::kFull},
+constexpr DetailChoice kChoices[] = {
+    {"bound 8 px", 8.0, kAllVertices, kFull},
+    {"bound 4 px", 4.0, kAllVertices, kFull},
+    {"bound 2 px", 2.0, kAllVertices, kFull},
+    {"bound 1 px", 1.0, kAllVertices, kFull},
+    {"bound 0.5 px", 0.5, kAllVertices, kFull},
+    {"16 k vertices", 1.0, 16384, kFull},
+    {"32 k vertices", 1.0, 32768, kFull},
+    {"64 k vertices", 1.0, 65536, kFull},
     {"64 k vertices, half as sharp", 1.0, 65536, render::Sharpness::kHalf},
 };
 
@@ -55,7 +47,7 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
   if (options.scan) subjects.push_back(*options.scan);
   const int views = std::max(2, static_cast<int>(std::lround(12 * options.effort)));
   job.begin("level of detail",
-            subjects.size() * static_cast<std::size_t>(views) * (std::size(kSettings) + 1));
+            subjects.size() * static_cast<std::size_t>(views) * (std::size(kChoices) + 1));
 
   auto created = render::LivePicture::create();
   if (!created) return tl::unexpected(created.error());
@@ -68,70 +60,25 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
     render::FrameInput input;
     input.view.width = 1280;
     input.view.height = 800;
-    input.redraw = render::FrameInput::Redraw::kAll;
+    input.view.azimuth_deg = 315.0;
     input.decoration = render::Decoration::kNone;
-    struct Seen {
-      std::vector<double> ms, off;
-      double bound_px = 0.0;
-      std::int64_t vertices = 0;
-      std::uint64_t hash = 0;
-    };
-    std::vector<Seen> seen(std::size(kSettings));
-    Seen all;
-    for (int view = 0; view < views; ++view) {
-      input.view.azimuth_deg = 315.0 + 360.0 * view / views;
-      const auto draw = [&](const Setting& setting, render::Image& image, Seen& out) -> engine::Status {
-        input.error_px = setting.error_px;
-        input.vertex_budget = setting.vertices;
-        input.sharpness = setting.sharpness;
-        // Once to bring over what is missing and compile, then timed.
-        for (int i = 0; i < 200; ++i) {
-          const auto warm = picture.drawAndWait(input);
-          if (!warm) return tl::unexpected(warm.error());
-          if (warm->upload.pending_tiles == 0) break;
-        }
-        const auto begin = std::chrono::steady_clock::now();
-        const auto stats = picture.drawAndWait(input);
-        if (!stats) return tl::unexpected(stats.error());
-        out.ms.push_back(
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-        out.bound_px = std::max(out.bound_px, stats->bound_px);
-        out.vertices = std::max(out.vertices, stats->vertices);
-        if (const auto shown = picture.draw(input, image); !shown) return tl::unexpected(shown.error());
-        return {};
-      };
-      render::Image full;
-      if (auto ok = draw({"every sample", 1e-6, kAllVertices, render::Sharpness::kFull}, full, all); !ok)
-        return tl::unexpected(ok.error());
-      job.advance();
-      for (std::size_t k = 0; k < std::size(kSettings); ++k) {
-        if (job.cancelled()) return engine::cancelled();
-        render::Image image;
-        if (auto ok = draw(kSettings[k], image, seen[k]); !ok) return tl::unexpected(ok.error());
-        for (std::size_t i = 0; i < full.rgba.size(); i += 4) {
-          int off = 0;
-          for (std::size_t c = i; c < i + 3; ++c) off = std::max(off, std::abs(full.rgba[c] - image.rgba[c]));
-          seen[k].off.push_back(off);
-        }
-        job.advance();
-      }
-    }
-    const auto finish = [&](const std::string& method, Seen& s) {
+    const auto figures = measureDetail(picture, input, views, kChoices, everySample(), job);
+    if (!figures) return tl::unexpected(figures.error());
+    for (std::size_t k = 0; k < figures->size(); ++k) {
+      const DetailFigures& f = (*figures)[k];
       AccuracyRow row;
       row.subject = subject.name;
-      row.method = method;
-      row.hash = hashOf(s.off);
-      spread(s.ms, row);
-      row.wrong = s.off.empty() ? 0.0
-                                : static_cast<double>(std::count_if(s.off.begin(), s.off.end(),
-                                                                    [](double off) { return off > 16; })) /
-                                      static_cast<double>(s.off.size());
-      summarise(std::move(s.off), row);
-      row.note = fmt::format("geometry within {:.2f} px, {} vertices", s.bound_px, s.vertices);
+      row.method = k < std::size(kChoices) ? kChoices[k].name : everySample().name;
+      row.cost = f.ms;
+      row.cost_worst = f.ms_worst;
+      row.error = f.mean_codes;
+      row.error_p99 = f.p99_codes;
+      row.error_worst = f.worst_codes;
+      row.wrong = f.far_off;
+      row.hash = f.hash;
+      row.note = fmt::format("geometry within {:.2f} px, {} vertices", f.bound_px, f.vertices);
       study.rows.push_back(std::move(row));
-    };
-    for (std::size_t k = 0; k < std::size(kSettings); ++k) finish(kSettings[k].name, seen[k]);
-    finish("every sample", all);
+    }
   }
   study.reference = fmt::format(
       "The picture of every sample, drawn by the same shaders on {}, 1280 x 800, from {} sides. The "

@@ -28,6 +28,7 @@ void Workstation::displayPanel() {
         "With unsaved work. Without the question it is kept as well, and offered when the scan is "
         "opened again.");
   beginFields();
+  detailChooser();
   const char* maps[] = {"automatic", "viridis", "cividis", "grey", "diverging"};
   int map = static_cast<int>(display_.map);
   if (field("colours", [&] { return ImGui::Combo("##colours", &map, maps, 5); }))

@@ -111,6 +111,7 @@ void Workstation::hapticsPanel() {
     ImGui::EndCombo();
     return false;
   });
+  contactChooser();
   if (field("stiffness",
             [&] { return typeNumber("##stiffness", scene.stiffness_n_per_mm, 1e-6, 1000.0, "%.4g N/mm"); }))
     take();

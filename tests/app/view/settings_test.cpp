@@ -19,6 +19,7 @@ TEST(Settings, come_back_as_they_were_saved) {
   settings.display.theme = render::Theme::kLight;
   settings.display.light_azimuth_deg = 20.0F;
   settings.display.half_in_motion = false;
+  settings.display.vertices = 131072;
   settings.habits = Habits::kMeshLab;
   settings.side_panel = false;
   settings.side_width = 401.0F;
@@ -34,7 +35,7 @@ TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
   const std::string path = (folder.path() / "window.json").string();
   EXPECT_EQ(Settings::load(path), Settings());
   for (const char* text : {"", "no json", "[1, 2]",
-                           "{\"split_at\": 7, \"light_elevation\": -3, \"marks\": 3, \"mouse\": \"cat\"}",
+                           "{\"split_at\": 7, \"light_elevation\": -3, \"marks\": 3, \"vertices\": 12, \"mouse\": \"cat\"}",
                            "{\"panels\": {\"Tool\": 5}, \"side_width\": \"wide\", \"colours\": 4}"}) {
     std::ofstream(path) << text;
     EXPECT_EQ(Settings::load(path), Settings()) << text;

@@ -1,0 +1,67 @@
+// Where accuracy is chosen: what each choice costs and gives away is measured on the scan that is open, when
+// the list is opened, and the choice is felt and seen.
+#include <csignal>
+
+#include "tests/end_to_end/window/window_fixture.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = Hand::State;
+
+// Entries of an open list whose figures end like this: " N", " ms".
+int figuresIn(const State& s, const std::string& unit) {
+  int found = 0;
+  for (const State& t : s["texts"]) {
+    const auto text = t["text"].get<std::string>();
+    found += text.size() > unit.size() + 1 && text.ends_with(" " + unit);
+  }
+  return found;
+}
+
+TEST_F(WindowTest, levels_of_contact_and_detail_are_chosen_by_what_they_cost_on_this_scan) {
+  const auto program = start({scan});
+  Hand hand(display, *program, "choices");
+  const State opened_with = opened(*program);
+  EXPECT_EQ(opened_with["contact_level"], "certified");
+  EXPECT_EQ(opened_with["measured"], (State{false, false})) << "nothing is measured before it is asked for";
+  for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)hand.click(header);
+  (void)hand.click("Haptics");
+  hand.tap("certified, 6 cells");
+  program->until("figures of contact", [](const State& s) { return s["measured"][0] == true; });
+  // Twelve choices, each with a distance.
+  program->until("figures in the list",
+                 [](const State& s) { return figuresIn(s, "um") + figuresIn(s, "mm") >= 12; });
+  (void)hand.look("contact list");
+  hand.tap("paper, to rest");
+  program->until("paper", [](const State& s) { return s["contact_level"] == "paper"; });
+  program->until("what it costs", [](const State& s) {
+    return s["texts"].dump().find("point felt is off") != std::string::npos;
+  });
+  (void)hand.look("contact chosen");
+  hand.tap("paper, to rest");
+  hand.tap("ball, radius 2 cells");
+  program->until("a ball", [](const State& s) { return s["contact_level"] == "ball"; });
+
+  (void)hand.click("Haptics");
+  (void)hand.click("Display");
+  hand.tap("64 k vertices");
+  program->until("figures of detail", [](const State& s) { return s["measured"][1] == true; });
+  program->until("figures in the list", [](const State& s) { return figuresIn(s, "ms") >= 5; });
+  (void)hand.look("detail list");
+  hand.tap("16 k vertices");
+  program->until("fewer vertices",
+                 [](const State& s) { return s["vertices"] == 16384 && s["settled"] == true; });
+  program->until("what it costs", [](const State& s) {
+    return s["texts"].dump().find("of 255 off") != std::string::npos &&
+           s["texts"].dump().find("256 k") == std::string::npos;
+  });
+  (void)hand.look("detail chosen");
+  EXPECT_EQ(program->now()["notices"], State::array());
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+}  // namespace
+}  // namespace fettle::tests
