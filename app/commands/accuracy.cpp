@@ -30,6 +30,7 @@ constexpr struct {
     {"contact", bench::contactStudy},
     {"surface", bench::surfaceStudy},
     {"rate", bench::rateStudy},
+    {"energy", bench::energyStudy},
     {"detail", bench::detailStudy},
     {"filter", bench::filterStudy},
     {"upload", bench::uploadStudy},

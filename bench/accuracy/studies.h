@@ -35,9 +35,12 @@ struct AccuracyOptions {
 [[nodiscard]] engine::Result<Study> surfaceStudy(const AccuracyOptions& options, engine::JobControl& job);
 
 /// The loop's rate, 0.5 to 10 kHz, in closed loop with a simulated hand that taps, presses and slides: force
-/// error against 40 kHz, energy given out by the surface, share of a processor. Not on the scan: a hand is of
+/// error against 40 kHz, share of a processor. Not on the scan: a hand is of
 /// millimetres, whatever the scan is of.
 [[nodiscard]] engine::Result<Study> rateStudy(const AccuracyOptions& options, engine::JobControl& job);
+
+/// The same rates and hand: what the surface, a spring, gives out where it should give nothing.
+[[nodiscard]] engine::Result<Study> energyStudy(const AccuracyOptions& options, engine::JobControl& job);
 
 /// The picture's level of detail: difference from the picture of every sample, over frame time.
 [[nodiscard]] engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobControl& job);
