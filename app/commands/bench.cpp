@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/command.h"
+#include "app/commands/bench_filters.h"
 #include "app/commands/bench_import.h"
 #include "bench/effects_bench.h"
 #include "bench/haptic_bench.h"
@@ -318,6 +319,7 @@ void addBench(CLI::App& root, Chosen& chosen) {
   sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
 
   addBenchImport(*bench, chosen);
+  addBenchFilters(*bench, chosen);
 
   auto render_options = std::make_shared<bench::RenderBenchOptions>();
   CLI::App* drawing = addCommand(

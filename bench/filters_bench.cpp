@@ -1,0 +1,280 @@
+#include "bench/filters_bench.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <ctime>
+#include <limits>
+#include <map>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include "bench/machine.h"
+#include "engine/field/builder.h"
+
+namespace fettle::bench {
+
+namespace {
+
+constexpr std::int32_t kProbeSide = 512;
+
+/// Seconds by the clock on the wall and by that of the processors that worked for this process.
+struct Seconds {
+  double wall = 0.0;
+  double cpu = 0.0;
+};
+
+double processorSeconds() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
+}
+
+template <class Work>
+Seconds timed(Work&& work) {
+  const double cpu = processorSeconds();
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  return {wall.count(), processorSeconds() - cpu};
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+// Steele, Lea, Flood 2014, SplitMix64: a good hash of a counter, so that any sample can be made by itself.
+std::uint64_t mixed(std::uint64_t x) noexcept {
+  x += 0x9e3779b97f4a7c15;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+  return x ^ (x >> 31);
+}
+
+// A dropout of 3 to 18 samples radius in every third tile or so, and one lost sample in two thousand.
+bool dropped(std::int32_t column, std::int32_t row) noexcept {
+  const auto tile =
+      mixed((static_cast<std::uint64_t>(row >> 6) << 32) | static_cast<std::uint32_t>(column >> 6));
+  const auto x = static_cast<int>(tile % 64) - (column & 63);
+  const auto y = static_cast<int>(tile / 64 % 64) - (row & 63);
+  const auto radius = static_cast<int>(tile / 4096 % 16) + 3;
+  if ((tile >> 32) % 4 != 0) return false;
+  if (x * x + y * y < radius * radius) return true;
+  return mixed((static_cast<std::uint64_t>(row) << 32) | static_cast<std::uint32_t>(column)) % 2000 == 0;
+}
+
+engine::Result<engine::Version> ground(std::int32_t side, FilterGround kind,
+                                       const std::shared_ptr<engine::FieldMemory>& memory) {
+  engine::Grid grid;
+  grid.width = grid.height = side;
+  grid.spacing_x = grid.spacing_y = 0.05;
+  auto builder = engine::FieldBuilder::create(grid, memory, "bench filters");
+  if (!builder) return tl::unexpected(builder.error());
+  const auto samples = static_cast<std::size_t>(side);
+  std::vector<double> along(samples);
+  std::vector<float> heights(samples);
+  for (std::size_t c = 0; c < samples; ++c) along[c] = std::sin(static_cast<double>(c) * 0.013);
+  for (std::int32_t r = 0; r < side; ++r) {
+    const double across = std::cos(r * 0.011);
+    for (std::int32_t c = 0; c < side; ++c) {
+      const auto at = static_cast<std::size_t>(c);
+      const std::uint64_t bits = mixed((static_cast<std::uint64_t>(r) << 32) | static_cast<std::uint32_t>(c));
+      const double noise = static_cast<double>(bits >> 11) * 0x1p-53 - 0.5;
+      heights[at] = static_cast<float>(2.0 * across * along[at] + 0.3 * noise);
+      if (kind == FilterGround::kHoles && dropped(c, r))
+        heights[at] = std::numeric_limits<float>::quiet_NaN();
+    }
+    builder->writeHeights(0, r, side, 1, heights.data(), side);
+    if (kind == FilterGround::kMarks && r % engine::kTileSide == engine::kTileSide / 2) {
+      const std::vector<std::uint8_t> line(samples, 1);
+      builder->writeMarks(0, r, side, 1, line.data(), side);
+    }
+  }
+  return std::move(*builder).build();
+}
+
+/// Fields made when first asked for, all in one memory.
+class Grounds {
+ public:
+  engine::Result<engine::Version> get(std::int32_t side, FilterGround kind) {
+    const auto key = std::pair(side, kind);
+    if (const auto at = made_.find(key); at != made_.end()) return at->second;
+    auto field = ground(side, kind, memory_);
+    if (field) made_.emplace(key, *field);
+    return field;
+  }
+
+ private:
+  std::shared_ptr<engine::FieldMemory> memory_ = std::make_shared<engine::FieldMemory>();
+  std::map<std::pair<std::int32_t, FilterGround>, engine::Version> made_;
+};
+
+/// What the memory allows: floats copied from one array to another, each thread a part of its own.
+class Copy {
+ public:
+  explicit Copy(std::size_t samples) : from_(samples, 1.0F), to_(samples, 0.0F) {}
+
+  Seconds run(int threads) {
+    const auto parts = static_cast<std::size_t>(threads);
+    const auto part = [&](std::size_t i) {
+      const std::size_t begin = from_.size() * i / parts;
+      const std::size_t end = from_.size() * (i + 1) / parts;
+      std::memcpy(to_.data() + begin, from_.data() + begin, (end - begin) * sizeof(float));
+    };
+    return timed([&] {
+      std::vector<std::jthread> others;
+      for (std::size_t i = 1; i < parts; ++i) others.emplace_back(part, i);
+      part(0);
+    });
+  }
+
+  [[nodiscard]] double samples() const noexcept { return static_cast<double>(from_.size()); }
+
+ private:
+  std::vector<float> from_, to_;
+};
+
+engine::FilterSpec specOf(const FiltersBenchRow& row) {
+  engine::FilterSpec spec;
+  spec.kind = row.kind;
+  spec.window = row.window;
+  spec.threads = row.threads;
+  return spec;
+}
+
+struct Run {
+  Seconds seconds;
+  std::uint64_t hash = 0;
+};
+
+engine::Result<Run> runOnce(const FiltersBenchRow& row, const engine::Version& field,
+                            engine::JobControl& job) {
+  engine::JobControl own;  // applyFilter begins a stage of its own
+  engine::Result<engine::Filtered> result;
+  if (job.cancelled()) return engine::cancelled();
+  Run run;
+  run.seconds = timed([&] { result = engine::applyFilter(field, field, specOf(row), own); });
+  if (!result) return tl::unexpected(result.error());
+  run.hash = engine::contentHash(result->field);
+  return run;
+}
+
+engine::Status checked(const FiltersBenchOptions& options) {
+  const auto within = [](const auto& values, int low, int high) {
+    return !values.empty() &&
+           std::ranges::all_of(values, [&](int value) { return value >= low && value <= high; });
+  };
+  const bool odd = std::ranges::all_of(options.windows, [](int window) { return window % 2 == 1; });
+  if (options.side < 64 || options.side > 32768 || options.repeats < 1 || options.repeats > 100 || !odd ||
+      !within(options.windows, 3, engine::FilterSpec::kMaxWindow) ||
+      !within(options.threads, 1, engine::FilterSpec::kMaxThreads) || options.kinds.empty() ||
+      options.grounds.empty() || !(options.limit_s > 0.0 && options.limit_s <= 1e6))
+    return engine::inputError("an option of the benchmark is out of range", "bench filters",
+                              "side 64 to 32768, windows odd and 3 to 1001, threads 1 to 1024, repeats 1 to "
+                              "100, limit above 0");
+  return {};
+}
+
+// The largest halving of the side with which all repeats take no longer than the limit.
+engine::Result<std::int32_t> sideFor(const FiltersBenchRow& row, const FiltersBenchOptions& options,
+                                     Grounds& grounds, engine::JobControl& job) {
+  const std::int32_t probe = std::min(options.side, kProbeSide);
+  const auto field = grounds.get(probe, row.ground);
+  if (!field) return tl::unexpected(field.error());
+  const auto run = runOnce(row, *field, job);
+  if (!run) return tl::unexpected(run.error());
+  std::int32_t side = options.side;
+  const auto estimate = [&] {
+    const double ratio = static_cast<double>(side) / probe;
+    return run->seconds.wall * ratio * ratio * (options.repeats + 1);
+  };
+  while (side > probe && estimate() > options.limit_s) side /= 2;
+  return std::max(side, probe);
+}
+
+}  // namespace
+
+std::string groundName(FilterGround ground) {
+  switch (ground) {
+    case FilterGround::kPlain:
+      return "plain";
+    case FilterGround::kHoles:
+      return "holes";
+    case FilterGround::kMarks:
+      return "marks";
+  }
+  return {};
+}
+
+engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& options, engine::JobControl& job) {
+  if (engine::Status valid = checked(options); !valid) return tl::unexpected(valid.error());
+  FiltersBenchReport report;
+  report.machine = machine();
+  for (const engine::FilterKind kind : options.kinds)
+    for (const int window : options.windows)
+      for (const FilterGround ground : options.grounds)
+        for (const int threads : options.threads) {
+          FiltersBenchRow row;
+          row.kind = kind;
+          row.window = window;
+          row.threads = threads;
+          row.ground = ground;
+          report.rows.push_back(row);
+        }
+  job.begin("measuring", report.rows.size() * (static_cast<std::size_t>(options.repeats) + 1));
+
+  Grounds grounds;
+  std::vector<engine::Version> fields;
+  for (FiltersBenchRow& row : report.rows) {
+    const auto side = sideFor(row, options, grounds, job);
+    if (!side) return tl::unexpected(side.error());
+    row.side = *side;
+    const auto field = grounds.get(row.side, row.ground);
+    if (!field) return tl::unexpected(field.error());
+    fields.push_back(*field);
+    const auto warm_up = runOnce(row, *field, job);
+    if (!warm_up) return tl::unexpected(warm_up.error());
+    row.hash = warm_up->hash;
+    job.advance(1);
+  }
+
+  std::vector<std::vector<double>> wall(report.rows.size());
+  std::vector<std::vector<double>> cpu(report.rows.size());
+  std::map<int, std::vector<double>> copy_wall, copy_cpu;
+  Copy copy(static_cast<std::size_t>(options.side) * static_cast<std::size_t>(options.side));
+  for (int i = 0; i < options.repeats; ++i) {
+    for (const int threads : options.threads) {
+      const Seconds seconds = copy.run(threads);
+      copy_wall[threads].push_back(copy.samples() / seconds.wall);
+      copy_cpu[threads].push_back(copy.samples() / std::max(seconds.cpu, 1e-9));
+    }
+    for (std::size_t k = 0; k < report.rows.size(); ++k) {
+      const FiltersBenchRow& row = report.rows[k];
+      const auto run = runOnce(row, fields[k], job);
+      if (!run) return tl::unexpected(run.error());
+      if (run->hash != row.hash)
+        return engine::failure("two runs of the same filter differ",
+                               std::string(engine::name(row.kind)) + " " + std::to_string(row.window),
+                               "please report this");
+      const double samples = static_cast<double>(row.side) * row.side;
+      wall[k].push_back(samples / run->seconds.wall);
+      cpu[k].push_back(samples / std::max(run->seconds.cpu, 1e-9));
+      job.advance(1);
+    }
+  }
+  for (std::size_t k = 0; k < report.rows.size(); ++k) {
+    FiltersBenchRow& row = report.rows[k];
+    row.median = median(wall[k]);
+    row.slowest = *std::ranges::min_element(wall[k]);
+    row.fastest = *std::ranges::max_element(wall[k]);
+    row.cpu = median(cpu[k]);
+    row.copy = median(copy_wall[row.threads]);
+    row.copy_cpu = median(copy_cpu[row.threads]);
+  }
+  return report;
+}
+
+}  // namespace fettle::bench

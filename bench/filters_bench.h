@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/filter/filter.h"
+
+namespace fettle::bench {
+
+/// What the field of a row holds beside its heights.
+enum class FilterGround {
+  kPlain,  ///< neither hole nor mark
+  kHoles,  ///< round dropouts and single ones, about 1 % of the samples, in about a third of the tiles
+  kMarks,  ///< a line of kept samples through every tile
+};
+
+struct FiltersBenchOptions {
+  std::int32_t side = 8192;  ///< samples along each side of the field, 64 .. 32768
+  std::vector<engine::FilterKind> kinds = {engine::FilterKind::kBox, engine::FilterKind::kGaussian,
+                                           engine::FilterKind::kMedian};
+  std::vector<int> windows = {3, 5, 11, 31, 101};  ///< [samples], odd, 3 .. FilterSpec::kMaxWindow
+  std::vector<int> threads = {1, 2};               ///< each 1 .. FilterSpec::kMaxThreads
+  std::vector<FilterGround> grounds = {FilterGround::kPlain, FilterGround::kHoles, FilterGround::kMarks};
+  int repeats = 5;        ///< 1 .. 100
+  double limit_s = 10.0;  ///< a row that would take longer gets a smaller field, > 0 .. 1e6
+};
+
+/// One filter over one field: all of applyFilter, its report included. Rates in samples a second.
+struct FiltersBenchRow {
+  engine::FilterKind kind = engine::FilterKind::kBox;
+  int window = 0;
+  int threads = 0;
+  FilterGround ground = FilterGround::kPlain;
+  std::int32_t side = 0;  ///< of this row's field; less than the option's where limit_s was met
+  double median = 0.0, slowest = 0.0, fastest = 0.0;
+  double cpu = 0.0;   ///< median of samples per second of processor time: what a busy machine leaves alone
+  double copy = 0.0;  ///< median rate of plain copying of floats by as many threads, in the same run
+  double copy_cpu = 0.0;   ///< the same per second of processor time
+  std::uint64_t hash = 0;  ///< of the result; the same in every repeat
+};
+
+struct FiltersBenchReport {
+  std::string machine;
+  std::vector<FiltersBenchRow> rows;
+};
+
+/// Filters synthetic relief with noise, `repeats` times each row, going round all rows, with a plain copy of
+/// an array of as many floats each time round. A first run of each row, which fetches memory from the system,
+/// is not counted. Errors: kInput for options out of range, kFailed when two repeats differ in a bit,
+/// kCancelled. Memory: fields of all grounds and one result, 4.2 bytes a sample each, and two arrays to copy.
+/// Thread: any; blocks.
+[[nodiscard]] engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& options,
+                                                              engine::JobControl& job);
+
+/// "plain", "holes", "marks" and back; throws nothing, empty for none.
+[[nodiscard]] std::string groundName(FilterGround ground);
+
+}  // namespace fettle::bench

@@ -1,0 +1,73 @@
+// What the filter benchmark prints is about the filter, the window and the ground that the row names.
+#include "bench/filters_bench.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <tuple>
+
+namespace fettle::bench {
+namespace {
+
+using engine::FilterKind;
+
+TEST(FiltersBench, HasARowForEachKindWindowGroundAndNumberOfThreadsAndAHashThatThreadsDoNotChange) {
+  FiltersBenchOptions options;
+  options.side = 200;
+  options.windows = {3, 11};
+  options.repeats = 2;
+  engine::JobControl job;
+  const auto report = benchFilters(options, job);
+  ASSERT_TRUE(report) << report.error().line();
+  ASSERT_EQ(report->rows.size(), 3U * 2U * 3U * 2U);
+  std::set<std::uint64_t> hashes;
+  std::set<std::tuple<FilterKind, int, FilterGround, int>> rows;
+  for (const FiltersBenchRow& row : report->rows) {
+    rows.insert({row.kind, row.window, row.ground, row.threads});
+    hashes.insert(row.hash);
+    EXPECT_EQ(row.side, 200);
+    EXPECT_GT(row.slowest, 0.0);
+    EXPECT_LE(row.slowest, row.median);
+    EXPECT_LE(row.median, row.fastest);
+    EXPECT_GT(row.cpu, 0.0);
+    EXPECT_GT(row.copy, 0.0);
+    EXPECT_GT(row.copy_cpu, 0.0);
+  }
+  EXPECT_EQ(rows.size(), report->rows.size());
+  EXPECT_EQ(hashes.size(), report->rows.size() / 2);
+}
+
+TEST(FiltersBench, MeasuresASmallerFieldWhereTheLimitLeavesNoTimeForTheWhole) {
+  FiltersBenchOptions options;
+  options.side = 2048;
+  options.kinds = {FilterKind::kBox};
+  options.windows = {3};
+  options.grounds = {FilterGround::kHoles};
+  options.threads = {1};
+  options.repeats = 1;
+  options.limit_s = 1e-9;
+  engine::JobControl job;
+  const auto report = benchFilters(options, job);
+  ASSERT_TRUE(report) << report.error().line();
+  EXPECT_EQ(report->rows.front().side, 512);
+}
+
+TEST(FiltersBench, OptionsOutOfRangeAreRefused) {
+  const auto refused = [](auto&& spoil) {
+    FiltersBenchOptions options;
+    spoil(options);
+    engine::JobControl job;
+    const auto report = benchFilters(options, job);
+    return !report && report.error().kind == engine::ErrorKind::kInput;
+  };
+  EXPECT_TRUE(refused([](FiltersBenchOptions& o) { o.side = 63; }));
+  EXPECT_TRUE(refused([](FiltersBenchOptions& o) { o.windows = {4}; }));
+  EXPECT_TRUE(refused([](FiltersBenchOptions& o) { o.windows = {1003}; }));
+  EXPECT_TRUE(refused([](FiltersBenchOptions& o) { o.windows.clear(); }));
+  EXPECT_TRUE(refused([](FiltersBenchOptions& o) { o.threads = {0}; }));
+  EXPECT_TRUE(refused([](FiltersBenchOptions& o) { o.repeats = 0; }));
+  EXPECT_TRUE(refused([](FiltersBenchOptions& o) { o.limit_s = 0.0; }));
+}
+
+}  // namespace
+}  // namespace fettle::bench
