@@ -27,36 +27,6 @@ constexpr std::array<std::pair<FilterKind, std::string_view>, 3> kNames{{
     {FilterKind::kMedian, "median"},
 }};
 
-struct TileReport {
-  std::int64_t changed = 0;
-  double max_change = 0.0;
-  double squares = 0.0;
-};
-
-// Sums go to one of 16 places by column, so that their order is fixed and they can be taken side by side.
-FETTLE_EACH_CPU TileReport reportTile(const float* before, const float* after) noexcept {
-  constexpr int kAbreast = 16;
-  double squares[kAbreast] = {};
-  double most[kAbreast] = {};
-  std::int32_t changed[kAbreast] = {};
-  for (int i = 0; i < kTileSamples; i += kAbreast)
-    for (int k = 0; k < kAbreast; ++k) {
-      const double difference = static_cast<double>(after[i + k]) - static_cast<double>(before[i + k]);
-      const double d = difference == difference ? difference : 0.0;  // a hole stays a hole
-      const double size = std::fabs(d);
-      changed[k] += d != 0.0 ? 1 : 0;
-      most[k] = size > most[k] ? size : most[k];
-      squares[k] += d * d;
-    }
-  TileReport report;
-  for (int k = 0; k < kAbreast; ++k) {
-    report.changed += changed[k];
-    report.max_change = std::max(report.max_change, most[k]);
-    report.squares += squares[k];
-  }
-  return report;
-}
-
 std::int64_t samplesThatAreNotHoles(const Version& version) noexcept {
   const FieldReader reader = version.reader();
   std::int64_t n = 0;
@@ -66,27 +36,34 @@ std::int64_t samplesThatAreNotHoles(const Version& version) noexcept {
   return n;
 }
 
-// Compares the result with the input, and shares again what came back to where it was: over several passes a
-// tile may. The sums are taken tile by tile in a fixed order.
-Result<Filtered> report(const Version& input, Version result) {
+// The reports of tiles put together, in their order.
+FilterReport total(const std::vector<TileReport>& tiles, std::int64_t samples) noexcept {
+  FilterReport report;
+  double squares = 0.0;
+  for (const TileReport& tile : tiles) {
+    report.changed += tile.changed;
+    report.max_change = std::max(report.max_change, tile.max_change);
+    squares += tile.squares;
+  }
+  if (samples > 0) report.rms_change = std::sqrt(squares / static_cast<double>(samples));
+  return report;
+}
+
+// Compares the result of several passes with the input, and shares again the tiles that came back to what
+// they were.
+Result<Filtered> compared(const Version& input, Version result) {
   const std::vector<TileChange> changes = changedTiles(input, result);
   std::vector<TileReport> reports(changes.size());
+  const CpuLevel level = bestCpuLevel();
   tbb::parallel_for(std::size_t{0}, changes.size(), [&](std::size_t i) {
-    reports[i] = reportTile(changes[i].before->samples.data(), changes[i].after->samples.data());
+    reports[i] = compareTiles(*changes[i].before, *changes[i].after, level);
   });
 
   Filtered filtered;
-  double squares = 0.0;
+  filtered.report = total(reports, samplesThatAreNotHoles(input));
   std::vector<TileChange> undone;
-  for (std::size_t i = 0; i < changes.size(); ++i) {
-    filtered.report.changed += reports[i].changed;
-    filtered.report.max_change = std::max(filtered.report.max_change, reports[i].max_change);
-    squares += reports[i].squares;
+  for (std::size_t i = 0; i < changes.size(); ++i)
     if (reports[i].changed == 0) undone.push_back(changes[i]);
-  }
-  const std::int64_t samples = samplesThatAreNotHoles(input);
-  if (samples > 0) filtered.report.rms_change = std::sqrt(squares / static_cast<double>(samples));
-
   if (undone.size() == changes.size()) {
     filtered.field = input;
   } else {
@@ -144,12 +121,15 @@ Result<Filtered> applyFilter(const Version& input, const Version& original, cons
     tbb::task_arena arena(spec.threads == 0 ? tbb::task_arena::automatic : spec.threads);
     return arena.execute([&]() -> Result<Filtered> {
       Version state = input;
+      PassResult last;
       for (int pass = 0; pass < spec.passes; ++pass) {
-        Result<Version> next = filterOnce(state, original, spec, tuning.block_side, job);
+        Result<PassResult> next = filterOnce(state, original, spec, tuning.block_side, job);
         if (!next) return tl::unexpected(std::move(next.error()));
-        state = std::move(*next);
+        last = std::move(*next);
+        state = last.field;
       }
-      return report(input, std::move(state));
+      if (spec.passes > 1) return compared(input, std::move(state));
+      return Filtered{std::move(state), total(last.reports, samplesThatAreNotHoles(input))};
     });
   } catch (const std::bad_alloc&) {
     return failure("memory for filtering could not be had", "filter",

@@ -1,10 +1,12 @@
 #include "engine/filter/pass.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -17,6 +19,7 @@
 #include "engine/field/live_field.h"
 #include "engine/filter/block.h"
 #include "engine/filter/limit_change.h"
+#include "engine/filter/merge.h"
 
 namespace fettle::engine {
 
@@ -31,11 +34,13 @@ struct Scratch {
   std::unique_ptr<BlockFilter> filter;
   std::vector<float> heights, out;
   std::ptrdiff_t out_stride = 0;
+  alignas(64) std::array<float, kTileSamples> one_tile;
 };
 
 struct NewTile {
   std::int32_t column, row;
   TileRef tile;
+  TileReport report;
 };
 
 std::unique_ptr<BlockFilter> makeFilter(const FilterSpec& spec) {
@@ -48,26 +53,6 @@ std::unique_ptr<BlockFilter> makeFilter(const FilterSpec& spec) {
       return makeMedianFilter(spec);
   }
   return nullptr;
-}
-
-// after = result where it differs from `old`, which keeps its bits where it does not, and where it is a hole;
-// a new zero is the positive one. The number of samples that differ.
-FETTLE_EACH_CPU int takeChanged(const float* __restrict old, const float* __restrict result, int n,
-                                float* __restrict after) noexcept {
-  int changed = 0;
-  for (int c = 0; c < n; ++c) {
-    // Both sides of every choice are worked out, and no `&&`: so the loop has no branch.
-    const float fresh = result[c] + 0.0F;
-    const bool differs = static_cast<bool>((result[c] != old[c]) & (old[c] == old[c]));
-    after[c] = differs ? fresh : old[c];
-    changed += differs ? 1 : 0;
-  }
-  return changed;
-}
-
-FETTLE_EACH_CPU void applySign(const float* __restrict result, float sign, int n,
-                               float* __restrict signed_result) noexcept {
-  for (int c = 0; c < n; ++c) signed_result[c] = sign * result[c];
 }
 
 class Pass {
@@ -90,7 +75,7 @@ class Pass {
         if (!mayChange(tc, tr)) continue;
         const float* results = scratch.out.data() + (tr - rect.row0) * kTileSide * scratch.out_stride +
                                (tc - rect.column0) * kTileSide;
-        if (!merge(tc, tr, results, scratch.out_stride, made)) return false;
+        if (!merge(tc, tr, results, scratch, made)) return false;
       }
     return true;
   }
@@ -188,48 +173,46 @@ class Pass {
   }
 
   // Puts the results of one tile together with what must stay, and makes a tile of it if any bit changed.
-  bool merge(std::int32_t tc, std::int32_t tr, const float* results, std::ptrdiff_t stride,
+  bool merge(std::int32_t tc, std::int32_t tr, const float* results, Scratch& scratch,
              std::vector<NewTile>& made) {
     const Tile& before = reader_.tile(tc, tr);
     const auto [columns, rows] = extent(tc, tr);
-    const float sign = reader_.sign();
-    alignas(64) float stored[kTileSide];  // results as a tile holds them
-    alignas(64) float after[kTileSide];
-    TileRef copy;
-    for (int r = 0; r < rows; ++r) {
-      const float* old = before.samples.data() + r * kTileSide;
-      applySign(results + r * stride, sign, columns, stored);
-      if (spec_.max_change.has_value()) {
-        const float* origin = original_.tile(tc, tr).samples.data() + r * kTileSide;
-        for (int c = 0; c < columns; ++c)
-          if (old[c] == old[c]) stored[c] = limitedChange(stored[c], origin[c], *spec_.max_change);
-      }
-      int changed = takeChanged(old, stored, columns, after);
-      const std::uint64_t marks = before.marks[static_cast<std::size_t>(r)];
-      const std::uint64_t kept = spec_.scope == FilterScope::kKeepMarks ? marks : ~marks;
-      if (kept != 0 && changed != 0)
-        for (int c = 0; c < columns; ++c)
-          if (((kept >> c) & 1U) != 0 && old[c] == old[c] && after[c] != old[c]) {
-            after[c] = old[c];
-            --changed;
-          }
-      if (changed == 0) continue;
-      if (!copy) {
-        copy = TileRef::adopt(memory_.tiles.acquire());
-        if (!copy) {
-          // Relaxed: read after the join of the parallel loop, which orders everything.
-          out_of_memory_.store(true, std::memory_order_relaxed);
-          return false;
-        }
-        *copy = before;
-      }
-      std::copy_n(after, columns, copy->samples.data() + r * kTileSide);
+    std::ptrdiff_t stride = scratch.out_stride;
+    float sign = reader_.sign();
+    if (spec_.max_change.has_value() || columns < kTileSide || rows < kTileSide) {
+      drawBack(tc, tr, results, stride, scratch.one_tile.data());
+      results = scratch.one_tile.data();
+      stride = kTileSide;
+      sign = 1.0F;
     }
-    if (copy) {
-      refreshBounds(*copy, 0, 0, kTileSide, kTileSide);
-      made.push_back({tc, tr, std::move(copy)});
+    TileRef after = TileRef::adopt(memory_.tiles.acquire());
+    if (!after) {
+      // Relaxed: read after the join of the parallel loop, which orders everything.
+      out_of_memory_.store(true, std::memory_order_relaxed);
+      return false;
     }
+    const TileReport report = mergeTile(before, results, stride, sign, spec_.scope, *after, level_);
+    if (report.changed != 0) made.push_back({tc, tr, std::move(after), report});
     return true;
+  }
+
+  // Results as a tile holds them, without the version's sign, and within the largest change allowed; 0 where
+  // there is no sample.
+  void drawBack(std::int32_t tc, std::int32_t tr, const float* results, std::ptrdiff_t stride,
+                float* stored) const noexcept {
+    const auto [columns, rows] = extent(tc, tr);
+    const float sign = reader_.sign();
+    const float* old = reader_.tile(tc, tr).samples.data();
+    const float* origin = original_.tile(tc, tr).samples.data();
+    std::fill_n(stored, kTileSamples, 0.0F);
+    for (int r = 0; r < rows; ++r)
+      for (int c = 0; c < columns; ++c) {
+        const int at = r * kTileSide + c;
+        if (old[at] != old[at]) continue;
+        const float result = sign * results[r * stride + c];
+        stored[at] =
+            spec_.max_change.has_value() ? limitedChange(result, origin[at], *spec_.max_change) : result;
+      }
   }
 
   FieldMemory& memory_;
@@ -238,8 +221,18 @@ class Pass {
   const FilterSpec& spec_;
   int radius_;
   bool same_field_;
+  CpuLevel level_ = bestCpuLevel();
   std::atomic<bool> out_of_memory_{false};
 };
+
+// Orders tiles as a walk over the tree meets them, and so as changedTiles does: eight by eight on every
+// level.
+std::uint64_t placeInTree(std::int32_t column, std::int32_t row) noexcept {
+  std::uint64_t place = 0;
+  for (int shift = 27; shift >= 0; shift -= 3)
+    place = place << 6 | static_cast<std::uint64_t>((row >> shift & 7) << 3 | (column >> shift & 7));
+  return place;
+}
 
 // Large enough that the halo does not dominate, small enough that the scratch stays near the core and every
 // core has several blocks to do.
@@ -258,8 +251,8 @@ int suitableSide(const FilterSpec& spec, const Grid& grid) noexcept {
 
 }  // namespace
 
-Result<Version> filterOnce(const Version& input, const Version& original, const FilterSpec& spec,
-                           int block_side, JobControl& job) {
+Result<PassResult> filterOnce(const Version& input, const Version& original, const FilterSpec& spec,
+                              int block_side, JobControl& job) {
   const Grid& grid = input.grid();
   const FieldReader reader = input.reader();
   const std::int32_t tiles_a_side = (block_side > 0 ? block_side : suitableSide(spec, grid)) / kTileSide;
@@ -290,12 +283,21 @@ Result<Version> filterOnce(const Version& input, const Version& original, const 
       tbb::simple_partitioner());
   if (job.cancelled()) return cancelled();
 
+  std::vector<NewTile> tiles;
+  for (std::vector<NewTile>& some : made)
+    tiles.insert(tiles.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
+  std::ranges::sort(tiles, {}, [](const NewTile& t) { return placeInTree(t.column, t.row); });
+  PassResult result;
+  result.reports.reserve(tiles.size());
   LiveField live(input, Growth::kAllowed);
   bool room = !pass.outOfMemory();
-  for (std::vector<NewTile>& tiles : made)
-    for (NewTile& t : tiles) room = room && live.replaceTile(t.column, t.row, std::move(t.tile));
+  for (NewTile& t : tiles) {
+    result.reports.push_back(t.report);
+    room = room && live.replaceTile(t.column, t.row, std::move(t.tile));
+  }
   if (!room) return failure("memory for the filtered samples could not be had", "filter");
-  return live.snapshot();
+  result.field = live.snapshot();
+  return result;
 }
 
 }  // namespace fettle::engine

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <vector>
+
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
 #include "engine/filter/filter.h"
+#include "engine/filter/merge.h"
 
 namespace fettle::engine {
 
@@ -18,9 +21,15 @@ struct FilterTuning {
                                            const FilterSpec& spec, const FilterTuning& tuning,
                                            JobControl& job);
 
+/// The field after one pass, and what happened to each tile that changed, in the order of changedTiles.
+struct PassResult {
+  Version field;
+  std::vector<TileReport> reports;
+};
+
 /// The spec applied once. As applyFilter, on the calling thread's task arena; the spec is valid. Progress is
 /// advanced by the field's samples. Throws std::bad_alloc.
-[[nodiscard]] Result<Version> filterOnce(const Version& input, const Version& original,
-                                         const FilterSpec& spec, int block_side, JobControl& job);
+[[nodiscard]] Result<PassResult> filterOnce(const Version& input, const Version& original,
+                                            const FilterSpec& spec, int block_side, JobControl& job);
 
 }  // namespace fettle::engine

@@ -1,0 +1,28 @@
+// Includes the file named by FETTLE_KERNEL once for each CpuLevel: see cpu.h. No include guard: every kernel
+// does it. The includer has included <cstring>, and <immintrin.h> where FETTLE_CPU_LEVELS is defined.
+
+// All that takes or returns a vector is inlined: there is no call whose convention could differ.
+// To the end of the file, because that is where the compiler speaks of it.
+#pragma GCC diagnostic ignored "-Wpsabi"
+namespace plain {
+#include "engine/filter/vectors-inl.h"
+#include FETTLE_KERNEL
+}  // namespace plain
+#ifdef FETTLE_CPU_LEVELS
+#pragma GCC push_options
+#pragma GCC target("arch=haswell")
+namespace avx2 {
+#include "engine/filter/vectors-inl.h"
+#include FETTLE_KERNEL
+}  // namespace avx2
+#pragma GCC pop_options
+#pragma GCC push_options
+// The widest vectors though the compiler thinks half as wide ones the better bargain for everyday code.
+#pragma GCC target("arch=skylake-avx512,prefer-vector-width=512")
+namespace avx512 {
+#include "engine/filter/vectors-inl.h"
+#include FETTLE_KERNEL
+}  // namespace avx512
+#pragma GCC pop_options
+#endif
+#undef FETTLE_KERNEL

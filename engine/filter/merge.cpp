@@ -1,0 +1,34 @@
+#include "engine/filter/merge.h"
+
+#include <algorithm>
+#include <cstring>
+
+#ifdef FETTLE_CPU_LEVELS
+#include <immintrin.h>
+#endif
+
+namespace fettle::engine {
+
+namespace {
+
+#define FETTLE_KERNEL "engine/filter/merge-inl.h"
+#include "engine/filter/each_cpu-inl.h"
+
+}  // namespace
+
+TileReport mergeTile(const Tile& before, const float* results, std::ptrdiff_t stride, float sign,
+                     FilterScope scope, Tile& after, CpuLevel level) noexcept {
+  const std::uint64_t flip = scope == FilterScope::kKeepMarks ? ~std::uint64_t{0} : 0;
+  const TileReport report = FETTLE_AT_LEVEL(level, merge)(before, results, stride, sign, flip, after);
+  after.marks = before.marks;
+  after.nan_samples = before.nan_samples;
+  after.marked_samples = before.marked_samples;
+  after.bounds = {*std::ranges::min_element(after.block_min), *std::ranges::max_element(after.block_max)};
+  return report;
+}
+
+TileReport compareTiles(const Tile& before, const Tile& after, CpuLevel level) noexcept {
+  return FETTLE_AT_LEVEL(level, compare)(before, after);
+}
+
+}  // namespace fettle::engine

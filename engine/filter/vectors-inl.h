@@ -1,0 +1,60 @@
+// Vectors that the compiler cuts to what the processor has: 16 floats are one register with AVX-512, two with
+// AVX, four with SSE. Included by each_cpu-inl.h for each level; no guard for that reason, and no includes.
+
+constexpr int kLanes = 16;
+
+using Floats = float __attribute__((vector_size(64)));
+using Ints = int __attribute__((vector_size(64)));
+using HalfFloats = float __attribute__((vector_size(32)));
+using Doubles = double __attribute__((vector_size(64)));  // 8
+using Longs = long long __attribute__((vector_size(64)));
+
+#define FETTLE_INLINE inline __attribute__((always_inline))
+
+template <class Vector, class Element>
+FETTLE_INLINE Vector load(const Element* from) noexcept {
+  Vector v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+
+template <class Vector, class Element>
+FETTLE_INLINE void store(Element* to, const Vector& v) noexcept {
+  std::memcpy(to, &v, sizeof v);
+}
+
+template <class Vector>
+FETTLE_INLINE Vector lesser(const Vector& a, const Vector& b) noexcept {
+  return a < b ? a : b;
+}
+
+template <class Vector>
+FETTLE_INLINE Vector greater(const Vector& a, const Vector& b) noexcept {
+  return a > b ? a : b;
+}
+
+FETTLE_INLINE Doubles widened(const HalfFloats& v) noexcept {
+#ifdef __AVX512F__
+  return _mm512_cvtps_pd(v);
+#else
+  return __builtin_convertvector(v, Doubles);
+#endif
+}
+
+FETTLE_INLINE HalfFloats narrowed(const Doubles& v) noexcept {
+#ifdef __AVX512F__
+  return _mm512_cvtpd_ps(v);
+#else
+  return __builtin_convertvector(v, HalfFloats);
+#endif
+}
+
+// Half 0 or 1 of 16 floats.
+FETTLE_INLINE HalfFloats halfOf(const Floats& v, int half) noexcept {
+  HalfFloats h;
+  std::memcpy(&h, reinterpret_cast<const char*>(&v) + half * sizeof h, sizeof h);
+  return h;
+}
+
+#undef FETTLE_INLINE
+#define FETTLE_INLINE inline __attribute__((always_inline))
