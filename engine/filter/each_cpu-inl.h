@@ -10,7 +10,7 @@ namespace plain {
 }  // namespace plain
 #ifdef FETTLE_CPU_LEVELS
 #pragma GCC push_options
-#pragma GCC target("arch=haswell")
+#pragma GCC target("avx2,fma,bmi2,popcnt")
 namespace avx2 {
 #include "engine/filter/vectors-inl.h"
 #include FETTLE_KERNEL
@@ -18,7 +18,7 @@ namespace avx2 {
 #pragma GCC pop_options
 #pragma GCC push_options
 // The widest vectors though the compiler thinks half as wide ones the better bargain for everyday code.
-#pragma GCC target("arch=skylake-avx512,prefer-vector-width=512")
+#pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,fma,bmi2,popcnt,prefer-vector-width=512")
 namespace avx512 {
 #include "engine/filter/vectors-inl.h"
 #include FETTLE_KERNEL

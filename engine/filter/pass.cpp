@@ -18,6 +18,7 @@
 
 #include "engine/field/live_field.h"
 #include "engine/filter/block.h"
+#include "engine/filter/box_strip.h"
 #include "engine/filter/limit_change.h"
 #include "engine/filter/merge.h"
 
@@ -32,6 +33,7 @@ struct TileRect {
 
 struct Scratch {
   std::unique_ptr<BlockFilter> filter;
+  std::unique_ptr<BoxStrip> strip;
   std::vector<float> heights, out;
   std::ptrdiff_t out_stride = 0;
   alignas(64) std::array<float, kTileSamples> one_tile;
@@ -69,20 +71,49 @@ class Pass {
   bool run(TileRect rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
     shrink(rect);
     if (rect.column0 == rect.column1) return true;
+    if (spec_.kind == FilterKind::kBox && radius_ > 0) {
+      if (!scratch.strip) scratch.strip = BoxStrip::make(radius_);
+      if (scratch.strip) return runStrip(rect, scratch, job, made);
+    }
     if (!gatherAndFilter(rect, scratch, job)) return false;
-    for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
-      for (std::int32_t tc = rect.column0; tc < rect.column1; ++tc) {
-        if (!mayChange(tc, tr)) continue;
-        const float* results = scratch.out.data() + (tr - rect.row0) * kTileSide * scratch.out_stride +
-                               (tc - rect.column0) * kTileSide;
-        if (!merge(tc, tr, results, scratch, made)) return false;
-      }
-    return true;
+    return mergeAll(rect, reader_.sign(), scratch, made);
   }
 
   [[nodiscard]] bool outOfMemory() const noexcept { return out_of_memory_.load(std::memory_order_relaxed); }
 
  private:
+  // As run, for the box: one row of tiles after the other, with sums that run on from one to the next.
+  bool runStrip(const TileRect& rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
+    const std::int32_t c0 = rect.column0 * kTileSide;
+    const std::int32_t c1 = std::min(rect.column1 * kTileSide, reader_.width());
+    const std::int32_t r1 = std::min(rect.row1 * kTileSide, reader_.height());
+    bool begun = false;
+    for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr) {
+      if (job.cancelled()) return false;
+      const TileRect band{rect.column0, tr, rect.column1, tr + 1};
+      const std::int32_t r0 = tr * kTileSide;
+      if (!begun) scratch.strip->begin(reader_, c0, c1, r0, r1 - r0);
+      scratch.out_stride = (rect.column1 - rect.column0) * kTileSide;
+      scratch.out.resize(static_cast<std::size_t>(scratch.out_stride) * kTileSide);
+      begun = scratch.strip->rows(std::min(r1 - r0, kTileSide), scratch.out.data(), scratch.out_stride);
+      if (!begun && !gatherAndFilter(band, scratch, job)) return false;
+      if (!mergeAll(band, begun ? 1.0F : reader_.sign(), scratch, made)) return false;
+    }
+    return true;
+  }
+
+  // Merges scratch.out, which has the sign `sign`, into the tiles of a rectangle.
+  bool mergeAll(const TileRect& rect, float sign, Scratch& scratch, std::vector<NewTile>& made) {
+    for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
+      for (std::int32_t tc = rect.column0; tc < rect.column1; ++tc) {
+        if (!mayChange(tc, tr)) continue;
+        const float* results = scratch.out.data() + (tr - rect.row0) * kTileSide * scratch.out_stride +
+                               (tc - rect.column0) * kTileSide;
+        if (!merge(tc, tr, results, sign, scratch, made)) return false;
+      }
+    return true;
+  }
+
   // Whether any sample of the tile can come out different.
   [[nodiscard]] bool mayChange(std::int32_t tc, std::int32_t tr) const noexcept {
     const Tile& tile = reader_.tile(tc, tr);
@@ -173,14 +204,13 @@ class Pass {
   }
 
   // Puts the results of one tile together with what must stay, and makes a tile of it if any bit changed.
-  bool merge(std::int32_t tc, std::int32_t tr, const float* results, Scratch& scratch,
+  bool merge(std::int32_t tc, std::int32_t tr, const float* results, float sign, Scratch& scratch,
              std::vector<NewTile>& made) {
     const Tile& before = reader_.tile(tc, tr);
     const auto [columns, rows] = extent(tc, tr);
     std::ptrdiff_t stride = scratch.out_stride;
-    float sign = reader_.sign();
     if (spec_.max_change.has_value() || columns < kTileSide || rows < kTileSide) {
-      drawBack(tc, tr, results, stride, scratch.one_tile.data());
+      drawBack(tc, tr, results, stride, sign, scratch.one_tile.data());
       results = scratch.one_tile.data();
       stride = kTileSide;
       sign = 1.0F;
@@ -198,10 +228,9 @@ class Pass {
 
   // Results as a tile holds them, without the version's sign, and within the largest change allowed; 0 where
   // there is no sample.
-  void drawBack(std::int32_t tc, std::int32_t tr, const float* results, std::ptrdiff_t stride,
+  void drawBack(std::int32_t tc, std::int32_t tr, const float* results, std::ptrdiff_t stride, float sign,
                 float* stored) const noexcept {
     const auto [columns, rows] = extent(tc, tr);
-    const float sign = reader_.sign();
     const float* old = reader_.tile(tc, tr).samples.data();
     const float* origin = original_.tile(tc, tr).samples.data();
     std::fill_n(stored, kTileSamples, 0.0F);
@@ -234,19 +263,29 @@ std::uint64_t placeInTree(std::int32_t column, std::int32_t row) noexcept {
   return place;
 }
 
+/// How the field is cut, in samples.
+struct Cut {
+  int columns, rows;
+};
+
 // Large enough that the halo does not dominate, small enough that the scratch stays near the core and every
-// core has several blocks to do.
-int suitableSide(const FilterSpec& spec, const Grid& grid) noexcept {
-  const bool ranks = spec.kind == FilterKind::kMedian;
+// core has several blocks to do. A strip's scratch follows its width alone, so that it can be long.
+Cut suitableCut(const FilterSpec& spec, const Grid& grid) noexcept {
   const int wanted = (2 * spec.window + kTileSide - 1) / kTileSide * kTileSide;
-  int side = ranks ? std::clamp(wanted, 128, 512) : std::clamp(wanted, 256, 1024);
+  Cut cut{std::clamp(wanted, 256, 1024), std::clamp(wanted, 256, 1024)};
+  if (spec.kind == FilterKind::kMedian) cut = {std::clamp(wanted, 128, 512), std::clamp(wanted, 128, 512)};
+  if (spec.kind == FilterKind::kBox)
+    cut = {std::clamp(4 * wanted, 512, 2048), std::clamp(8 * wanted, 2048, 8192)};
   const std::int64_t cores = tbb::this_task_arena::max_concurrency();
   const auto blocks = [&] {
-    return std::int64_t{(grid.width + side - 1) / side} * ((grid.height + side - 1) / side);
+    return std::int64_t{(grid.width + cut.columns - 1) / cut.columns} *
+           ((grid.height + cut.rows - 1) / cut.rows);
   };
-  while (cores > 1 && side > kTileSide && blocks() < 4 * cores)
-    side = std::max(side / 2 / kTileSide, 1) * kTileSide;
-  return side;
+  while (cores > 1 && std::max(cut.columns, cut.rows) > kTileSide && blocks() < 4 * cores) {
+    int& longer = cut.rows >= cut.columns ? cut.rows : cut.columns;
+    longer = std::max(longer / 2 / kTileSide, 1) * kTileSide;
+  }
+  return cut;
 }
 
 }  // namespace
@@ -255,10 +294,12 @@ Result<PassResult> filterOnce(const Version& input, const Version& original, con
                               int block_side, JobControl& job) {
   const Grid& grid = input.grid();
   const FieldReader reader = input.reader();
-  const std::int32_t tiles_a_side = (block_side > 0 ? block_side : suitableSide(spec, grid)) / kTileSide;
-  assert(tiles_a_side > 0);
-  const std::int32_t across = (reader.tileColumns() + tiles_a_side - 1) / tiles_a_side;
-  const std::int32_t up = (reader.tileRows() + tiles_a_side - 1) / tiles_a_side;
+  const Cut cut = block_side > 0 ? Cut{block_side, block_side} : suitableCut(spec, grid);
+  const std::int32_t wide = cut.columns / kTileSide;
+  const std::int32_t high = cut.rows / kTileSide;
+  assert(wide > 0 && high > 0);
+  const std::int32_t across = (reader.tileColumns() + wide - 1) / wide;
+  const std::int32_t up = (reader.tileRows() + high - 1) / high;
 
   Pass pass(input, original, spec);
   tbb::enumerable_thread_specific<Scratch> scratches;
@@ -270,9 +311,8 @@ Result<PassResult> filterOnce(const Version& input, const Version& original, con
           if (job.cancelled() || pass.outOfMemory()) return;
           const auto bc = static_cast<std::int32_t>(i % across);
           const auto br = static_cast<std::int32_t>(i / across);
-          const TileRect rect{bc * tiles_a_side, br * tiles_a_side,
-                              std::min((bc + 1) * tiles_a_side, reader.tileColumns()),
-                              std::min((br + 1) * tiles_a_side, reader.tileRows())};
+          const TileRect rect{bc * wide, br * high, std::min((bc + 1) * wide, reader.tileColumns()),
+                              std::min((br + 1) * high, reader.tileRows())};
           if (!pass.run(rect, scratches.local(), job, made.local())) return;
           const std::int64_t columns =
               std::min(rect.column1 * kTileSide, grid.width) - rect.column0 * kTileSide;

@@ -1,0 +1,310 @@
+#include "engine/filter/box_strip.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "engine/filter/cpu.h"
+
+#ifdef FETTLE_CPU_LEVELS
+#include <immintrin.h>
+// GCC 12 takes the undefined lanes inside its own intrinsics for the caller's variables.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#endif
+
+namespace fettle::engine {
+
+#ifdef FETTLE_CPU_LEVELS
+
+namespace {
+
+constexpr int kFloats = 16;  // of a register
+constexpr int kLongs = 8;
+
+#pragma GCC push_options
+#pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,fma,bmi2,popcnt,prefer-vector-width=512")
+
+// Integers of 16 samples; a hole is 0. `misfits` gathers lanes whose sample is no integer after scaling.
+template <bool kCheck>
+inline __attribute__((always_inline)) __mmask16 integers(const float* from, __m512 scale, __m512i& low,
+                                                         __m512i& high, __mmask16& misfits) {
+  const __m512 v = _mm512_loadu_ps(from);
+  const __mmask16 there = _mm512_cmp_ps_mask(v, v, _CMP_ORD_Q);
+  const __m512 scaled = _mm512_maskz_mul_ps(there, v, scale);
+  if constexpr (kCheck)
+    misfits |= _mm512_cmp_ps_mask(_mm512_roundscale_ps(scaled, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC),
+                                  scaled, _CMP_NEQ_UQ);
+  low = _mm512_cvtps_epi64(_mm512_castps512_ps256(scaled));
+  high = _mm512_cvtps_epi64(_mm512_extractf32x8_ps(scaled, 1));
+  return there;
+}
+
+// Adds the samples `enter` to the column sums and takes `leave` away, n a multiple of 16. Whether all fit.
+template <bool kEnter, bool kLeave, bool kHoles>
+inline __attribute__((always_inline)) bool moveColumns(const float* enter, const float* leave, int n,
+                                                       float power, std::int64_t* sums,
+                                                       std::int32_t* counts) {
+  const __m512 scale = _mm512_set1_ps(power);
+  __mmask16 misfits = 0;
+  for (int i = 0; i < n; i += kFloats) {
+    __m512i low = _mm512_loadu_si512(sums + i);
+    __m512i high = _mm512_loadu_si512(sums + i + kLongs);
+    __mmask16 come = 0;
+    __mmask16 gone = 0;
+    __m512i a, b;
+    if constexpr (kEnter) {
+      come = integers<true>(enter + i, scale, a, b, misfits);
+      low = _mm512_add_epi64(low, a);
+      high = _mm512_add_epi64(high, b);
+    }
+    if constexpr (kLeave) {
+      gone = integers<false>(leave + i, scale, a, b, misfits);
+      low = _mm512_sub_epi64(low, a);
+      high = _mm512_sub_epi64(high, b);
+    }
+    _mm512_storeu_si512(sums + i, low);
+    _mm512_storeu_si512(sums + i + kLongs, high);
+    if constexpr (kHoles) {
+      __m512i count = _mm512_loadu_si512(counts + i);
+      count = _mm512_mask_add_epi32(count, come, count, _mm512_set1_epi32(1));
+      count = _mm512_mask_sub_epi32(count, gone, count, _mm512_set1_epi32(1));
+      _mm512_storeu_si512(counts + i, count);
+    }
+  }
+  return misfits == 0;
+}
+
+template <bool kHoles>
+bool moveColumnsOf(const float* enter, const float* leave, int n, float power, std::int64_t* sums,
+                   std::int32_t* counts) {
+  if (enter != nullptr && leave != nullptr)
+    return moveColumns<true, true, kHoles>(enter, leave, n, power, sums, counts);
+  if (enter != nullptr) return moveColumns<true, false, kHoles>(enter, leave, n, power, sums, counts);
+  if (leave != nullptr) return moveColumns<false, true, kHoles>(enter, leave, n, power, sums, counts);
+  return true;
+}
+
+void prefetch(const float* from, int n) {
+  for (int i = 0; i < n; i += kFloats) __builtin_prefetch(from + i);
+}
+
+// Lane i becomes the sum of the lanes 0 .. i (W. D. Hillis, G. L. Steele, Data parallel algorithms, 1986).
+inline __attribute__((always_inline)) __m512i running(__m512i v) {
+  const __m512i none = _mm512_setzero_si512();
+  v = _mm512_add_epi64(v, _mm512_alignr_epi64(v, none, 7));
+  v = _mm512_add_epi64(v, _mm512_alignr_epi64(v, none, 6));
+  return _mm512_add_epi64(v, _mm512_alignr_epi64(v, none, 4));
+}
+
+inline __attribute__((always_inline)) __m512i running32(__m512i v) {
+  const __m512i none = _mm512_setzero_si512();
+  v = _mm512_add_epi32(v, _mm512_alignr_epi32(v, none, 15));
+  v = _mm512_add_epi32(v, _mm512_alignr_epi32(v, none, 14));
+  v = _mm512_add_epi32(v, _mm512_alignr_epi32(v, none, 12));
+  return _mm512_add_epi32(v, _mm512_alignr_epi32(v, none, 8));
+}
+
+struct Slide {
+  const std::int64_t* sums;          // of the column that leaves at the first output
+  const std::int32_t* counts;        // likewise, with holes
+  const std::int32_t* column_count;  // columns of each output's window, without holes
+  int window;
+  int rows;        // of the window that lie in the field
+  int full_count;  // of columns x rows: what most windows have
+  int exponent;
+};
+
+// out[c] = (sum of sums[c + 1 .. c + window]) * 2^-exponent / count, as a division in double and a rounding
+// to float, for c in 0 .. n rounded up to 16.
+//
+// The division is done as a * y, with y = 1 / b rounded, and one correction by fused multiply-adds: with
+// q = round(a y) the rest r = a - b q is exact, and round(q + r y) = round(a / b). For |r / b| <= 1.5 ulp(q),
+// so q + r y is within 1.5 * 2^-53 ulp of a / b, and a / b is no nearer than 2^-21 ulp to a point where
+// rounding changes: b is an integer below 2^20 (times a power of two) and such a point has 54 bits, hence
+// |a - b m| is a multiple of ulp / 2, and not 0, because b m would have more than the 53 bits of a.
+template <bool kHoles>
+void slide(const Slide& s, float* out, int n) {
+  const double divisor = std::ldexp(static_cast<double>(s.full_count), s.exponent);
+  const __m512d b = _mm512_set1_pd(divisor);
+  const __m512d y = _mm512_set1_pd(1.0 / divisor);
+  const __m512d power = _mm512_set1_pd(std::ldexp(1.0, s.exponent));
+  const __m512i last = _mm512_set1_epi64(7);
+  const __m512i full = _mm512_set1_epi32(s.full_count);
+
+  std::int64_t before = 0;  // the window before the first output
+  std::int32_t count_before = 0;
+  for (int j = 0; j < s.window; ++j) before += s.sums[j];
+  if constexpr (kHoles)
+    for (int j = 0; j < s.window; ++j) count_before += s.counts[j];
+  __m512i sum = _mm512_set1_epi64(before);
+  __m512i sum_count = _mm512_set1_epi32(count_before);
+
+  for (int c = 0; c < n; c += kFloats) {
+    __m512i count;
+    if constexpr (kHoles) {
+      const __m512i change =
+          _mm512_sub_epi32(_mm512_loadu_si512(s.counts + c + s.window), _mm512_loadu_si512(s.counts + c));
+      count = _mm512_add_epi32(sum_count, running32(change));
+      sum_count = _mm512_permutexvar_epi32(_mm512_set1_epi32(15), count);
+    } else {
+      count = _mm512_mullo_epi32(_mm512_loadu_si512(s.column_count + c), _mm512_set1_epi32(s.rows));
+    }
+    const bool alike = _mm512_cmpneq_epi32_mask(count, full) == 0;
+    __m512d mean[2];
+    for (int h = 0; h < 2; ++h) {
+      const std::int64_t* at = s.sums + c + h * kLongs;
+      const __m512i within =
+          running(_mm512_sub_epi64(_mm512_loadu_si512(at + s.window), _mm512_loadu_si512(at)));
+      const __m512d a = _mm512_cvtepi64_pd(_mm512_add_epi64(sum, within));
+      // The chain from one step to the next is this one addition.
+      sum = _mm512_add_epi64(sum, _mm512_permutexvar_epi64(last, within));
+      if (alike) {
+        const __m512d q = _mm512_mul_pd(a, y);
+        mean[h] = _mm512_fmadd_pd(_mm512_fnmadd_pd(q, b, a), y, q);
+      } else {
+        const __m256i part = h == 0 ? _mm512_castsi512_si256(count) : _mm512_extracti32x8_epi32(count, 1);
+        mean[h] = _mm512_div_pd(a, _mm512_mul_pd(_mm512_cvtepi32_pd(part), power));
+      }
+    }
+    _mm256_storeu_ps(out + c, _mm512_cvtpd_ps(mean[0]));
+    _mm256_storeu_ps(out + c + kLongs, _mm512_cvtpd_ps(mean[1]));
+  }
+}
+
+#pragma GCC pop_options
+
+constexpr std::int32_t floorTo(std::int32_t value, std::int32_t step) noexcept {
+  return (value >= 0 ? value : value - step + 1) / step * step;
+}
+
+}  // namespace
+
+std::unique_ptr<BoxStrip> BoxStrip::make(int radius) {
+  if (bestCpuLevel() != CpuLevel::kAvx512) return nullptr;
+  return std::unique_ptr<BoxStrip>(new BoxStrip(radius));
+}
+
+void BoxStrip::lookUp(Row& row, std::int32_t y) const {
+  const std::int32_t tile_row = y < 0 || y >= reader_.height() ? -1 : y >> kTileShift;
+  if (tile_row == row.tile_row) return;
+  row.tile_row = tile_row;
+  if (row.none()) return;
+  row.tiles.resize(pieces_.size());
+  for (std::size_t i = 0; i < pieces_.size(); ++i)
+    row.tiles[i] = reader_.tile(pieces_[i].tile_column, tile_row).samples.data() + pieces_[i].offset;
+}
+
+bool BoxStrip::move(std::int32_t enter, std::int32_t leave) {
+  lookUp(enter_, enter);
+  lookUp(leave_, leave);
+  const float power = std::ldexp(1.0F, exponent_);
+  const std::ptrdiff_t enter_at = std::ptrdiff_t{enter & (kTileSide - 1)} * kTileSide;
+  const std::ptrdiff_t leave_at = std::ptrdiff_t{leave & (kTileSide - 1)} * kTileSide;
+  constexpr std::ptrdiff_t kAhead = std::ptrdiff_t{8} * kTileSide;
+  bool fit = true;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const Piece& piece = pieces_[i];
+    const float* in = enter_.none() ? nullptr : enter_.tiles[i] + enter_at;
+    const float* out = leave_.none() ? nullptr : leave_.tiles[i] + leave_at;
+    if (in != nullptr) prefetch(in + kAhead, piece.columns);
+    fit &= holes_ ? moveColumnsOf<true>(in, out, piece.columns, power, sums_.data() + piece.at,
+                                        counts_.data() + piece.at)
+                  : moveColumnsOf<false>(in, out, piece.columns, power, sums_.data() + piece.at, nullptr);
+  }
+  return fit;
+}
+
+// Whether there are holes among the samples that windows can reach, and the finest power of two that fits.
+void BoxStrip::survey(std::int32_t row, std::int32_t rows) {
+  float magnitude = 0.0F;
+  holes_ = false;
+  const std::int32_t tr0 = std::max(row - radius_, 0) >> kTileShift;
+  const std::int32_t tr1 = std::min(row + rows - 1 + radius_, reader_.height() - 1) >> kTileShift;
+  for (std::int32_t tr = tr0; tr <= tr1; ++tr)
+    for (const Piece& piece : pieces_) {
+      const Tile& tile = reader_.tile(piece.tile_column, tr);
+      const std::int32_t in_field = std::min(kTileSide, reader_.width() - piece.tile_column * kTileSide) *
+                                    std::min(kTileSide, reader_.height() - tr * kTileSide);
+      holes_ |= tile.nan_samples > static_cast<std::uint32_t>(kTileSamples - in_field);
+      if (!tile.bounds.empty())
+        magnitude = std::max({magnitude, std::fabs(tile.bounds.min), std::fabs(tile.bounds.max)});
+    }
+  // All magnitudes are below 2^top, all sums below 2^(top + bits).
+  int top = 0;
+  (void)std::frexp(magnitude, &top);
+  const auto window = static_cast<std::uint64_t>(2 * radius_ + 1);
+  const auto bits = static_cast<int>(std::bit_width(window * window));
+  exponent_ = std::min(63 - top - bits, 126);
+}
+
+void BoxStrip::begin(const FieldReader& reader, std::int32_t column0, std::int32_t column1, std::int32_t row,
+                     std::int32_t rows) {
+  reader_ = reader;
+  column0_ = column0;
+  column1_ = column1;
+  next_ = row;
+  first_ = floorTo(column0 - radius_ - 1, kFloats);
+  const std::int32_t outputs = floorTo(column1 - column0 + kTileSide - 1, kTileSide);
+  const std::int32_t beyond = column0 + outputs + radius_ + kFloats;
+  sums_.assign(static_cast<std::size_t>(floorTo(beyond - first_, kTileSide) + kTileSide), 0);
+  pieces_.clear();
+  const std::int32_t end = std::min(column1 + radius_, reader.width());
+  for (std::int32_t c = std::max(first_, 0); c < end;) {
+    const std::int32_t offset = c & (kTileSide - 1);
+    const std::int32_t in_tile = std::min(kTileSide - offset, end - c);
+    const std::int32_t columns = floorTo(in_tile + kFloats - 1, kFloats);
+    pieces_.push_back({c >> kTileShift, offset, columns, c - first_});
+    c += columns;
+  }
+  survey(row, rows);
+  if (holes_) counts_.assign(sums_.size(), 0);
+  plain_count_.resize(static_cast<std::size_t>(outputs));
+  for (std::int32_t c = 0; c < outputs; ++c)
+    plain_count_[static_cast<std::size_t>(c)] =
+        std::min(column0 + c + radius_ + 1, reader.width()) - std::max(column0 + c - radius_, 0);
+  enter_ = leave_ = {};
+  started_ = false;
+  bool fit = exponent_ >= 0;
+  if (fit)
+    for (std::int32_t y = row - radius_; y < row + radius_; ++y) fit &= move(y, -1);
+  if (!fit) exponent_ = -1;
+}
+
+bool BoxStrip::rows(std::int32_t rows, float* out, std::ptrdiff_t stride) {
+  if (exponent_ < 0) return false;
+  for (std::int32_t r = 0; r < rows; ++r, ++next_, out += stride) {
+    // The first row of a strip has no row that leaves: begin() has not let it in.
+    const bool first = !started_;
+    if (!move(next_ + radius_, first ? -1 : next_ - radius_ - 1)) return false;
+    started_ = true;
+    Slide s;
+    s.window = 2 * radius_ + 1;
+    s.rows = std::min(next_ + radius_ + 1, reader_.height()) - std::max(next_ - radius_, 0);
+    s.full_count = s.rows * std::min(s.window, reader_.width());
+    const std::ptrdiff_t at = column0_ - radius_ - 1 - first_;
+    s.sums = sums_.data() + at;
+    s.counts = holes_ ? counts_.data() + at : nullptr;
+    s.column_count = plain_count_.data();
+    s.exponent = exponent_;
+    if (holes_)
+      slide<true>(s, out, column1_ - column0_);
+    else
+      slide<false>(s, out, column1_ - column0_);
+  }
+  return true;
+}
+
+#else
+
+std::unique_ptr<BoxStrip> BoxStrip::make(int) {
+  return nullptr;
+}
+void BoxStrip::begin(const FieldReader&, std::int32_t, std::int32_t, std::int32_t, std::int32_t) {}
+bool BoxStrip::rows(std::int32_t, float*, std::ptrdiff_t) {
+  return false;
+}
+
+#endif
+
+}  // namespace fettle::engine
