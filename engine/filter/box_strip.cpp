@@ -123,53 +123,85 @@ struct Slide {
 // so q + r y is within 1.5 * 2^-53 ulp of a / b, and a / b is no nearer than 2^-21 ulp to a point where
 // rounding changes: b is an integer below 2^20 (times a power of two) and such a point has 54 bits, hence
 // |a - b m| is a multiple of ulp / 2, and not 0, because b m would have more than the 53 bits of a.
-template <bool kHoles>
-void slide(const Slide& s, float* out, int n) {
-  const double divisor = std::ldexp(static_cast<double>(s.full_count), s.exponent);
-  const __m512d b = _mm512_set1_pd(divisor);
-  const __m512d y = _mm512_set1_pd(1.0 / divisor);
-  const __m512d power = _mm512_set1_pd(std::ldexp(1.0, s.exponent));
-  const __m512i last = _mm512_set1_epi64(7);
-  const __m512i full = _mm512_set1_epi32(s.full_count);
-
-  std::int64_t before = 0;  // the window before the first output
-  std::int32_t count_before = 0;
-  for (int j = 0; j < s.window; ++j) before += s.sums[j];
-  if constexpr (kHoles)
+class Slider {
+ public:
+  explicit Slider(const Slide& s) noexcept
+      : sums_(s.sums),
+        counts_(s.counts),
+        column_count_(s.column_count),
+        window_(s.window),
+        rows_(_mm512_set1_epi32(s.rows)),
+        full_(_mm512_set1_epi32(s.full_count)),
+        power_(_mm512_set1_pd(std::ldexp(1.0, s.exponent))) {
+    const double divisor = std::ldexp(static_cast<double>(s.full_count), s.exponent);
+    b_ = _mm512_set1_pd(divisor);
+    y_ = _mm512_set1_pd(1.0 / divisor);
+    std::int64_t before = 0;  // the window before the first output
+    for (int j = 0; j < s.window; ++j) before += s.sums[j];
+    sum_ = _mm512_set1_epi64(before);
+    if (counts_ == nullptr) return;
+    std::int32_t count_before = 0;
     for (int j = 0; j < s.window; ++j) count_before += s.counts[j];
-  __m512i sum = _mm512_set1_epi64(before);
-  __m512i sum_count = _mm512_set1_epi32(count_before);
+    sum_count_ = _mm512_set1_epi32(count_before);
+  }
 
-  for (int c = 0; c < n; c += kFloats) {
+  // Outputs c .. c + 15, c going up by 16 from call to call. kFull: all windows are full.
+  template <bool kHoles, bool kFull>
+  inline __attribute__((always_inline)) void step(int c, float* out) noexcept {
     __m512i count;
     if constexpr (kHoles) {
       const __m512i change =
-          _mm512_sub_epi32(_mm512_loadu_si512(s.counts + c + s.window), _mm512_loadu_si512(s.counts + c));
-      count = _mm512_add_epi32(sum_count, running32(change));
-      sum_count = _mm512_permutexvar_epi32(_mm512_set1_epi32(15), count);
-    } else {
-      count = _mm512_mullo_epi32(_mm512_loadu_si512(s.column_count + c), _mm512_set1_epi32(s.rows));
+          _mm512_sub_epi32(_mm512_loadu_si512(counts_ + c + window_), _mm512_loadu_si512(counts_ + c));
+      count = _mm512_add_epi32(sum_count_, running32(change));
+      sum_count_ = _mm512_permutexvar_epi32(_mm512_set1_epi32(15), count);
+    } else if constexpr (!kFull) {
+      count = _mm512_mullo_epi32(_mm512_loadu_si512(column_count_ + c), rows_);
     }
-    const bool alike = _mm512_cmpneq_epi32_mask(count, full) == 0;
     __m512d mean[2];
     for (int h = 0; h < 2; ++h) {
-      const std::int64_t* at = s.sums + c + h * kLongs;
+      const std::int64_t* at = sums_ + c + h * kLongs;
       const __m512i within =
-          running(_mm512_sub_epi64(_mm512_loadu_si512(at + s.window), _mm512_loadu_si512(at)));
-      const __m512d a = _mm512_cvtepi64_pd(_mm512_add_epi64(sum, within));
+          running(_mm512_sub_epi64(_mm512_loadu_si512(at + window_), _mm512_loadu_si512(at)));
+      mean[h] = _mm512_cvtepi64_pd(_mm512_add_epi64(sum_, within));
       // The chain from one step to the next is this one addition.
-      sum = _mm512_add_epi64(sum, _mm512_permutexvar_epi64(last, within));
-      if (alike) {
-        const __m512d q = _mm512_mul_pd(a, y);
-        mean[h] = _mm512_fmadd_pd(_mm512_fnmadd_pd(q, b, a), y, q);
-      } else {
-        const __m256i part = h == 0 ? _mm512_castsi512_si256(count) : _mm512_extracti32x8_epi32(count, 1);
-        mean[h] = _mm512_div_pd(a, _mm512_mul_pd(_mm512_cvtepi32_pd(part), power));
+      sum_ = _mm512_add_epi64(sum_, _mm512_permutexvar_epi64(_mm512_set1_epi64(7), within));
+    }
+    bool full = kFull;
+    if constexpr (!kFull) full = _mm512_cmpneq_epi32_mask(count, full_) == 0;
+    if (full) {
+      for (__m512d& a : mean) {
+        const __m512d q = _mm512_mul_pd(a, y_);
+        a = _mm512_fmadd_pd(_mm512_fnmadd_pd(q, b_, a), y_, q);
       }
+    } else if constexpr (!kFull) {
+      const __m512d low = _mm512_cvtepi32_pd(_mm512_castsi512_si256(count));
+      const __m512d high = _mm512_cvtepi32_pd(_mm512_extracti32x8_epi32(count, 1));
+      mean[0] = _mm512_div_pd(mean[0], _mm512_mul_pd(low, power_));
+      mean[1] = _mm512_div_pd(mean[1], _mm512_mul_pd(high, power_));
     }
     _mm256_storeu_ps(out + c, _mm512_cvtpd_ps(mean[0]));
     _mm256_storeu_ps(out + c + kLongs, _mm512_cvtpd_ps(mean[1]));
   }
+
+ private:
+  const std::int64_t* sums_;
+  const std::int32_t* counts_;
+  const std::int32_t* column_count_;
+  int window_;
+  __m512i rows_, full_, sum_, sum_count_{};
+  __m512d power_, b_, y_;
+};
+
+// Of the outputs [full_begin, full_end), multiples of 16, no window is cut by a border of the field.
+template <bool kHoles>
+void slide(const Slide& s, float* out, int n, int full_begin, int full_end) {
+  Slider slider(s);
+  int c = 0;
+  if constexpr (!kHoles) {
+    for (; c < full_begin; c += kFloats) slider.step<false, false>(c, out);
+    for (; c < full_end; c += kFloats) slider.step<false, true>(c, out);
+  }
+  for (; c < n; c += kFloats) slider.step<kHoles, false>(c, out);
 }
 
 #pragma GCC pop_options
@@ -201,13 +233,16 @@ bool BoxStrip::move(std::int32_t enter, std::int32_t leave) {
   const float power = std::ldexp(1.0F, exponent_);
   const std::ptrdiff_t enter_at = std::ptrdiff_t{enter & (kTileSide - 1)} * kTileSide;
   const std::ptrdiff_t leave_at = std::ptrdiff_t{leave & (kTileSide - 1)} * kTileSide;
-  constexpr std::ptrdiff_t kAhead = std::ptrdiff_t{8} * kTileSide;
+  // Rows ahead that memory is asked for: two cache lines a column of the register, and tiles lie anywhere.
+  constexpr std::int32_t kAhead = 8;
+  lookUp(ahead_, enter + kAhead);
+  const std::ptrdiff_t ahead_at = std::ptrdiff_t{(enter + kAhead) & (kTileSide - 1)} * kTileSide;
   bool fit = true;
   for (std::size_t i = 0; i < pieces_.size(); ++i) {
     const Piece& piece = pieces_[i];
     const float* in = enter_.none() ? nullptr : enter_.tiles[i] + enter_at;
     const float* out = leave_.none() ? nullptr : leave_.tiles[i] + leave_at;
-    if (in != nullptr) prefetch(in + kAhead, piece.columns);
+    if (!ahead_.none()) prefetch(ahead_.tiles[i] + ahead_at, piece.columns);
     fit &= holes_ ? moveColumnsOf<true>(in, out, piece.columns, power, sums_.data() + piece.at,
                                         counts_.data() + piece.at)
                   : moveColumnsOf<false>(in, out, piece.columns, power, sums_.data() + piece.at, nullptr);
@@ -263,7 +298,7 @@ void BoxStrip::begin(const FieldReader& reader, std::int32_t column0, std::int32
   for (std::int32_t c = 0; c < outputs; ++c)
     plain_count_[static_cast<std::size_t>(c)] =
         std::min(column0 + c + radius_ + 1, reader.width()) - std::max(column0 + c - radius_, 0);
-  enter_ = leave_ = {};
+  enter_ = leave_ = ahead_ = {};
   started_ = false;
   bool fit = exponent_ >= 0;
   if (fit)
@@ -287,10 +322,15 @@ bool BoxStrip::rows(std::int32_t rows, float* out, std::ptrdiff_t stride) {
     s.counts = holes_ ? counts_.data() + at : nullptr;
     s.column_count = plain_count_.data();
     s.exponent = exponent_;
+    const std::int32_t n = column1_ - column0_;
+    const std::int32_t full_begin =
+        std::min(floorTo(std::max(radius_ - column0_, 0) + kFloats - 1, kFloats), n);
+    const std::int32_t full_end =
+        std::max(floorTo(std::clamp(reader_.width() - radius_ - column0_, 0, n), kFloats), full_begin);
     if (holes_)
-      slide<true>(s, out, column1_ - column0_);
+      slide<true>(s, out, n, full_begin, full_end);
     else
-      slide<false>(s, out, column1_ - column0_);
+      slide<false>(s, out, n, full_begin, full_end);
   }
   return true;
 }

@@ -65,7 +65,7 @@ class BoxStrip {
   bool holes_ = false;
   bool started_ = false;
   int exponent_ = 0;  // a sample is an integer times 2^-exponent_
-  Row enter_, leave_;
+  Row enter_, leave_, ahead_;
 };
 
 }  // namespace fettle::engine

@@ -4,11 +4,21 @@
 // All that takes or returns a vector is inlined: there is no call whose convention could differ.
 // To the end of the file, because that is where the compiler speaks of it.
 #pragma GCC diagnostic ignored "-Wpsabi"
+#ifdef FETTLE_CPU_LEVELS
+// GCC 12 takes the undefined lanes inside its own intrinsics for the caller's variables.
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#endif
+// FETTLE_LEVEL is the level within a kernel: GCC 12 reads the whole file before it heeds a pragma, so that
+// __AVX512F__ and the like are never defined there.
+#define FETTLE_LEVEL 0
 namespace plain {
 #include "engine/filter/vectors-inl.h"
 #include FETTLE_KERNEL
 }  // namespace plain
 #ifdef FETTLE_CPU_LEVELS
+#undef FETTLE_LEVEL
+#define FETTLE_LEVEL 1
 #pragma GCC push_options
 #pragma GCC target("avx2,fma,bmi2,popcnt")
 namespace avx2 {
@@ -16,6 +26,8 @@ namespace avx2 {
 #include FETTLE_KERNEL
 }  // namespace avx2
 #pragma GCC pop_options
+#undef FETTLE_LEVEL
+#define FETTLE_LEVEL 2
 #pragma GCC push_options
 // The widest vectors though the compiler thinks half as wide ones the better bargain for everyday code.
 #pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,fma,bmi2,popcnt,prefer-vector-width=512")
@@ -25,4 +37,5 @@ namespace avx512 {
 }  // namespace avx512
 #pragma GCC pop_options
 #endif
+#undef FETTLE_LEVEL
 #undef FETTLE_KERNEL

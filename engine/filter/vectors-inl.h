@@ -34,15 +34,22 @@ FETTLE_INLINE Vector greater(const Vector& a, const Vector& b) noexcept {
 }
 
 FETTLE_INLINE Doubles widened(const HalfFloats& v) noexcept {
-#ifdef __AVX512F__
+#if FETTLE_LEVEL == 2
   return _mm512_cvtps_pd(v);
+#elif FETTLE_LEVEL == 1
+  const __m256d low = _mm256_cvtps_pd(_mm256_castps256_ps128(v));
+  const __m256d high = _mm256_cvtps_pd(_mm256_extractf128_ps(v, 1));
+  Doubles wide;
+  std::memcpy(&wide, &low, sizeof low);
+  std::memcpy(reinterpret_cast<char*>(&wide) + sizeof low, &high, sizeof high);
+  return wide;
 #else
   return __builtin_convertvector(v, Doubles);
 #endif
 }
 
 FETTLE_INLINE HalfFloats narrowed(const Doubles& v) noexcept {
-#ifdef __AVX512F__
+#if FETTLE_LEVEL == 2
   return _mm512_cvtpd_ps(v);
 #else
   return __builtin_convertvector(v, HalfFloats);
@@ -55,6 +62,3 @@ FETTLE_INLINE HalfFloats halfOf(const Floats& v, int half) noexcept {
   std::memcpy(&h, reinterpret_cast<const char*>(&v) + half * sizeof h, sizeof h);
   return h;
 }
-
-#undef FETTLE_INLINE
-#define FETTLE_INLINE inline __attribute__((always_inline))
