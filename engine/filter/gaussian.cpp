@@ -1,21 +1,32 @@
 // The weighted mean of a square window with weights that are a product, w(dx) * w(dy): one pass down, one
-// along. The order of additions is fixed for each output and counted from its own centre, outermost pair
-// first; a sample that is not there adds a zero. So an output depends on its window alone, and a block with a
-// hole somewhere else has the same bits as one without.
+// along, in fused multiply-adds. The order of additions is fixed for each output, first sample of its window
+// to last; a sample that is not there adds a zero. So an output depends on its window alone, and a block with
+// a hole somewhere else has the same bits as one without.
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "engine/filter/block.h"
+#include "engine/filter/cpu.h"
+
+#ifdef FETTLE_CPU_LEVELS
+#include <immintrin.h>
+#endif
 
 namespace fettle::engine {
 
 namespace {
 
 // weights[k] for the distance k = 0 .. radius; their sum over -radius .. radius is 1 up to rounding. Weights
-// far out are dropped as long as all that is dropped is below 2^-64 of the whole: a tenth of what the double
-// roundings may lose anyway, and for a binomial window of 1001 that leaves 149 of 501.
+// far out are dropped as long as all that is dropped is below 2^-54 of the whole: it and what renormalising
+// makes of it are below a fiftieth of what the double roundings may lose anyway, and of a binomial window of
+// 101 that leaves 85.
 std::vector<double> halfWeights(const FilterSpec& spec) {
   const int radius = spec.window / 2;
   std::vector<long double> exact(static_cast<std::size_t>(radius) + 1);
@@ -37,170 +48,158 @@ std::vector<double> halfWeights(const FilterSpec& spec) {
     for (long double& w : exact) w /= sum;
   }
   long double dropped = 0.0L;
-  while (exact.size() > 1 && dropped + 2 * exact.back() <= std::ldexp(1.0L, -64)) {
+  while (exact.size() > 1 && dropped + 2 * exact.back() <= std::ldexp(1.0L, -54)) {
     dropped += 2 * exact.back();
     exact.pop_back();
   }
   return {exact.begin(), exact.end()};
 }
 
-constexpr int kChunk = 32;  // accumulators that stay in registers or in the first lines of the cache
-
-// One column of the window, both halves: rows above[k] and below[k] (null where the field has none), k >= 1.
-struct Rows {
-  const float* const* above;
-  const float* const* below;
-  const float* centre;
+// What a kernel works on: some rows of outputs at once, all that their windows reach, and what is between the
+// pass down and the pass along.
+struct GaussianGroup {
+  const double* weights;      // by distance
+  const double* all_weights;  // of the whole window, first to last
+  int taps;
+  const float* const* rows;  // of the block, as many as the outputs' windows reach; from the first column
+  int columns;               // that windows reach and the field has
+  double* value;             // sums down the columns, from the first column
+  double* there;             // sums of the weights of samples that there are; only with holes
+  std::ptrdiff_t stride;     // of both
+  const double* inverse;     // of the weight that each output's window has in all; only without holes
+  float* const* out;         // of each row
+  int out_columns;
 };
 
-template <bool kHoles>
-FETTLE_INTO_EACH_CPU void load(const float* row, int at, int n, double* __restrict value,
-                               double* __restrict there) {
-  for (int i = 0; i < n; ++i) {
-    const float v = row[at + i];
-    const bool is = !kHoles || v == v;
-    value[i] = is ? static_cast<double>(v) : 0.0;
-    if constexpr (kHoles) there[i] = is ? 1.0 : 0.0;
-  }
+#define FETTLE_KERNEL "engine/filter/gaussian-inl.h"
+#include "engine/filter/each_cpu-inl.h"
+
+using Kernel = void (*)(const GaussianGroup&, bool holes);
+
+constexpr int kSmallRows = 4;
+constexpr int kLargeRows = 16;
+constexpr int kSmallRadius = 7;  // from here on the turned kernels are faster
+
+template <int kRadius>
+std::pair<Kernel, Kernel> smallKernels(int radius, CpuLevel level) noexcept {
+  if constexpr (kRadius < kSmallRadius)
+    if (radius != kRadius) return smallKernels<kRadius + 1>(radius, level);
+  return {FETTLE_AT_LEVEL(level, smallDown<kRadius>), FETTLE_AT_LEVEL(level, smallFinish<kRadius>)};
 }
 
-// value[c] = sum over the column of w * height; with holes there[c] = sum of w over the samples there are.
-template <bool kHoles>
-FETTLE_INTO_EACH_CPU void down(const Rows& rows, const double* weights, int radius, int n,
-                               double* __restrict value, double* __restrict there) {
-  for (int c = 0; c < n; c += kChunk) {
-    const int m = std::min(kChunk, n - c);
-    double sum[kChunk] = {};
-    double sum_there[kChunk] = {};
-    double v0[kChunk], v1[kChunk], t0[kChunk], t1[kChunk];
-    for (int k = radius; k >= 1; --k) {
-      const float* above = rows.above[k];
-      const float* below = rows.below[k];
-      const double w = weights[k];
-      if (!kHoles && m == kChunk && above != nullptr && below != nullptr) {
-        for (int i = 0; i < kChunk; ++i)
-          sum[i] += w * (static_cast<double>(above[c + i]) + static_cast<double>(below[c + i]));
-        continue;
-      }
-      if (above == nullptr && below == nullptr) continue;
-      if (above != nullptr) load<kHoles>(above, c, m, v0, t0);
-      if (below != nullptr) load<kHoles>(below, c, m, v1, t1);
-      for (int i = 0; i < m; ++i)
-        sum[i] += w * ((above != nullptr ? v0[i] : 0.0) + (below != nullptr ? v1[i] : 0.0));
-      if constexpr (kHoles)
-        for (int i = 0; i < m; ++i)
-          sum_there[i] += w * ((above != nullptr ? t0[i] : 0.0) + (below != nullptr ? t1[i] : 0.0));
-    }
-    load<kHoles>(rows.centre, c, m, v0, t0);
-    for (int i = 0; i < m; ++i) value[c + i] = sum[i] + weights[0] * v0[i];
-    if constexpr (kHoles)
-      for (int i = 0; i < m; ++i) there[c + i] = sum_there[i] + weights[0] * t0[i];
-  }
-}
-
-// out[c] = sum over k of w * in[c + radius +- k].
-FETTLE_INTO_EACH_CPU void along(const double* __restrict in, const double* weights, int radius, int n,
-                                double* __restrict out) {
-  const double* centre = in + radius;
-  int c = 0;
-  for (; c + kChunk <= n; c += kChunk) {
-    double sum[kChunk] = {};
-    for (int k = radius; k >= 1; --k) {
-      const double w = weights[k];
-      const double* left = centre + c - k;
-      const double* right = centre + c + k;
-      for (int i = 0; i < kChunk; ++i) sum[i] += w * (left[i] + right[i]);
-    }
-    for (int i = 0; i < kChunk; ++i) out[c + i] = sum[i] + weights[0] * centre[c + i];
-  }
-  for (; c < n; ++c) {
-    double sum = 0.0;
-    for (int k = radius; k >= 1; --k) sum += weights[k] * (centre[c - k] + centre[c + k]);
-    out[c] = sum + weights[0] * centre[c];
-  }
-}
-
-FETTLE_EACH_CPU void downPlain(const Rows& rows, const double* weights, int radius, int n, double* value) {
-  down<false>(rows, weights, radius, n, value, nullptr);
-}
-FETTLE_EACH_CPU void downHoles(const Rows& rows, const double* weights, int radius, int n, double* value,
-                               double* there) {
-  down<true>(rows, weights, radius, n, value, there);
-}
-FETTLE_EACH_CPU void alongRow(const double* in, const double* weights, int radius, int n, double* out) {
-  along(in, weights, radius, n, out);
-}
-FETTLE_EACH_CPU void divideRow(const double* __restrict value, const double* __restrict weight, int n,
-                               float* __restrict out) {
-  for (int c = 0; c < n; ++c) out[c] = static_cast<float>(value[c] / weight[c]);
-}
-
+// Rows in groups: down the columns first, with the sums kept in double, then along the rows. The small
+// kernels take the second pass from memory at every distance; the large ones turn rows and columns in
+// between, so that they add whole vectors in both passes and a weight is fetched once for two of them.
 class GaussianFilter final : public BlockFilter {
  public:
-  explicit GaussianFilter(const FilterSpec& spec)
-      : weights_(halfWeights(spec)),
-        radius_(static_cast<int>(weights_.size()) - 1),
-        above_(weights_.size()),
-        below_(weights_.size()) {}
+  GaussianFilter(const FilterSpec& spec, CpuLevel level)
+      : weights_(halfWeights(spec)), radius_(static_cast<int>(weights_.size()) - 1) {
+    for (int k = -radius_; k <= radius_; ++k)
+      all_weights_.push_back(weights_[static_cast<std::size_t>(std::abs(k))]);
+    small_ = radius_ <= kSmallRadius;
+    if (small_)
+      std::tie(down_, finish_) = smallKernels<0>(radius_, level);
+    else
+      std::tie(down_, finish_) =
+          std::pair<Kernel, Kernel>(FETTLE_AT_LEVEL(level, largeDown), FETTLE_AT_LEVEL(level, largeFinish));
+  }
 
   bool run(const Block& block, const JobControl& job) override {
+    const int group = small_ ? kSmallRows : kLargeRows;
     const int n = block.out_columns;
     const int width = n + 2 * radius_;
     const int first = block.first_column - radius_;
     const int begin = std::max(0, -first);
     const int end = std::min(width, block.columns - first);
-    value_.assign(static_cast<std::size_t>(width), 0.0);
-    there_.assign(static_cast<std::size_t>(width), 0.0);
-    sum_.resize(static_cast<std::size_t>(n));
-    sum_there_.resize(static_cast<std::size_t>(n));
-    double column_weight = -1.0;
+    // Room for a vector more than there are columns; what lies outside the field is 0 and stays so.
+    const std::size_t room = static_cast<std::size_t>(width) + 24;
+    value_.assign(room * static_cast<std::size_t>(group), 0.0);
+    there_.clear();
+    inverse_.resize(static_cast<std::size_t>(n) + 8);
+    double weight_before = -1.0;
+    no_row_.assign(static_cast<std::size_t>(block.columns) + 16, std::numeric_limits<float>::quiet_NaN());
 
-    const auto rowAt = [&](int r) {
-      return r >= 0 && r < block.rows ? block.row(r) + first + begin : nullptr;
-    };
-    for (int r = 0; r < block.out_rows; ++r) {
+    GaussianGroup g{};
+    g.weights = weights_.data();
+    g.all_weights = all_weights_.data();
+    g.taps = 2 * radius_ + 1;
+    g.columns = end - begin;
+    g.stride = static_cast<std::ptrdiff_t>(room);
+    g.out_columns = n;
+    const std::ptrdiff_t a_column = small_ ? 1 : kLargeRows;
+    const std::ptrdiff_t a_row = small_ ? g.stride : 1;
+    rows_.resize(static_cast<std::size_t>(group + 2 * radius_));
+    out_.resize(static_cast<std::size_t>(group));
+    spare_.resize(static_cast<std::size_t>(n) + 8);
+    for (int r = 0; r < block.out_rows; r += group) {
       if (job.cancelled()) return false;
-      const int centre = block.first_row + r;
-      for (int k = 1; k <= radius_; ++k) {
-        above_[static_cast<std::size_t>(k)] = rowAt(centre + k);
-        below_[static_cast<std::size_t>(k)] = rowAt(centre - k);
+      const int top = block.first_row + r - radius_;
+      bool holes = block.holes;
+      for (int i = 0; i < group + 2 * radius_; ++i) {
+        const bool there = top + i >= 0 && top + i < block.rows;
+        rows_[static_cast<std::size_t>(i)] = there ? block.row(top + i) + first + begin : no_row_.data();
+        holes |= !there;
       }
-      const Rows rows{above_.data(), below_.data(), rowAt(centre)};
-      if (block.holes) {
-        downHoles(rows, weights_.data(), radius_, end - begin, value_.data() + begin, there_.data() + begin);
-        alongRow(there_.data(), weights_.data(), radius_, n, sum_there_.data());
+      for (int j = 0; j < group; ++j)
+        out_[static_cast<std::size_t>(j)] =
+            r + j < block.out_rows ? block.out + (r + j) * block.out_stride : spare_.data();
+      if (holes && there_.size() < value_.size()) there_.assign(value_.size(), 0.0);
+      g.rows = rows_.data();
+      g.out = out_.data();
+      g.value = value_.data() + begin * a_column;
+      g.there = holes ? there_.data() + begin * a_column : nullptr;
+      down_(g, holes);
+      // The last vector may have reached beyond the field.
+      for (int c = end; c < std::min(begin + (end - begin + 7) / 8 * 8, static_cast<int>(room)); ++c)
+        for (int j = 0; j < group; ++j) {
+          value_[static_cast<std::size_t>(c * a_column + j * a_row)] = 0.0;
+          if (holes) there_[static_cast<std::size_t>(c * a_column + j * a_row)] = 0.0;
+        }
+      g.value = value_.data();
+      if (holes) {
+        g.there = there_.data();
       } else {
-        downPlain(rows, weights_.data(), radius_, end - begin, value_.data() + begin);
-        // The same additions as with holes, done once for all columns and kept while rows stay alike.
-        double weight = 0.0;
-        for (int k = radius_; k >= 1; --k) {
-          const auto i = static_cast<std::size_t>(k);
-          weight += weights_[i] * ((above_[i] != nullptr ? 1.0 : 0.0) + (below_[i] != nullptr ? 1.0 : 0.0));
-        }
-        weight += weights_[0];
-        if (weight != column_weight) {
-          column_weight = weight;
-          std::fill(there_.begin() + begin, there_.begin() + end, weight);
-          alongRow(there_.data(), weights_.data(), radius_, n, sum_there_.data());
-        }
+        weigh(begin, end, n, weight_before);
+        g.inverse = inverse_.data();
       }
-      alongRow(value_.data(), weights_.data(), radius_, n, sum_.data());
-      divideRow(sum_.data(), sum_there_.data(), n, block.out + r * block.out_stride);
+      finish_(g, holes);
     }
     return true;
   }
 
  private:
+  // The weight of each output's window where no sample is missing but beyond the sides, inverted: the same
+  // operations as with holes, done once for all rows.
+  void weigh(int begin, int end, int n, double& before) {
+    double column = 0.0;
+    for (const double w : all_weights_) column = std::fma(w, 1.0, column);
+    if (column == before) return;
+    before = column;
+    const int taps = 2 * radius_ + 1;
+    for (int c = 0; c < n; ++c) {
+      double weight = 0.0;
+      for (int i = std::max(begin - c, 0); i < std::min(end - c, taps); ++i)
+        weight = std::fma(all_weights_[static_cast<std::size_t>(i)], column, weight);
+      inverse_[static_cast<std::size_t>(c)] = 1.0 / weight;
+    }
+  }
+
   std::vector<double> weights_;
   int radius_;
-  std::vector<const float*> above_, below_;
-  std::vector<double> value_, there_, sum_, sum_there_;
+  std::vector<double> all_weights_;
+  bool small_ = false;
+  Kernel down_ = nullptr;
+  Kernel finish_ = nullptr;
+  std::vector<const float*> rows_;
+  std::vector<float*> out_;
+  std::vector<float> spare_, no_row_;
+  std::vector<double> value_, there_, inverse_;
 };
 
 }  // namespace
 
 std::unique_ptr<BlockFilter> makeGaussianFilter(const FilterSpec& spec) {
-  return std::make_unique<GaussianFilter>(spec);
+  return std::make_unique<GaussianFilter>(spec, bestCpuLevel());
 }
 
 }  // namespace fettle::engine

@@ -168,22 +168,23 @@ class Pass {
     Block block;
     block.columns = std::min(c1 + radius_, reader_.width()) - left;
     block.rows = std::min(r1 + radius_, reader_.height()) - low;
-    block.stride = block.columns;
+    // Rows end with room for a vector, so that kernels may read and write beyond them.
+    block.stride = (block.columns + 31) / 16 * 16;
     block.first_column = c0 - left;
     block.first_row = r0 - low;
     block.out_columns = c1 - c0;
     block.out_rows = r1 - r0;
-    block.out_stride = block.out_columns;
+    block.out_stride = (rect.column1 - rect.column0) * kTileSide;
     scratch.out_stride = block.out_stride;
-    scratch.heights.resize(static_cast<std::size_t>(block.columns) * static_cast<std::size_t>(block.rows));
-    scratch.out.resize(static_cast<std::size_t>(block.out_columns) *
-                       static_cast<std::size_t>(block.out_rows));
+    scratch.heights.resize(static_cast<std::size_t>(block.stride) * static_cast<std::size_t>(block.rows));
+    scratch.out.resize(static_cast<std::size_t>(block.out_stride) * static_cast<std::size_t>(block.out_rows));
     reader_.readHeights(left, low, block.columns, block.rows, scratch.heights.data(), block.stride);
     block.heights = scratch.heights.data();
     block.out = scratch.out.data();
     surveyTiles(left, low, block);
     if (radius_ == 0) {
-      std::copy(scratch.heights.begin(), scratch.heights.end(), scratch.out.begin());
+      for (int r = 0; r < block.out_rows; ++r)
+        std::copy_n(block.row(r), block.out_columns, block.out + r * block.out_stride);
       return true;
     }
     if (!scratch.filter) scratch.filter = makeFilter(spec_);
@@ -274,6 +275,8 @@ Cut suitableCut(const FilterSpec& spec, const Grid& grid) noexcept {
   const int wanted = (2 * spec.window + kTileSide - 1) / kTileSide * kTileSide;
   Cut cut{std::clamp(wanted, 256, 1024), std::clamp(wanted, 256, 1024)};
   if (spec.kind == FilterKind::kMedian) cut = {std::clamp(wanted, 128, 512), std::clamp(wanted, 128, 512)};
+  if (spec.kind == FilterKind::kGaussian)
+    cut = {std::clamp(4 * wanted, 512, 1024), std::clamp(wanted, 128, 512)};
   if (spec.kind == FilterKind::kBox)
     cut = {std::clamp(4 * wanted, 512, 2048), std::clamp(8 * wanted, 2048, 8192)};
   const std::int64_t cores = tbb::this_task_arena::max_concurrency();

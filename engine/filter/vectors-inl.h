@@ -62,3 +62,26 @@ FETTLE_INLINE HalfFloats halfOf(const Floats& v, int half) noexcept {
   std::memcpy(&h, reinterpret_cast<const char*>(&v) + half * sizeof h, sizeof h);
   return h;
 }
+
+// a * b + c, rounded once. Processors without the instruction take the C library's, which is many times
+// slower.
+FETTLE_INLINE Doubles fused(const Doubles& a, const Doubles& b, const Doubles& c) noexcept {
+#if FETTLE_LEVEL == 2
+  return _mm512_fmadd_pd(a, b, c);
+#elif FETTLE_LEVEL == 1
+  Doubles sum;
+  for (std::size_t h = 0; h < 2; ++h) {
+    __m256d x, y, z;
+    std::memcpy(&x, reinterpret_cast<const char*>(&a) + h * sizeof x, sizeof x);
+    std::memcpy(&y, reinterpret_cast<const char*>(&b) + h * sizeof y, sizeof y);
+    std::memcpy(&z, reinterpret_cast<const char*>(&c) + h * sizeof z, sizeof z);
+    z = _mm256_fmadd_pd(x, y, z);
+    std::memcpy(reinterpret_cast<char*>(&sum) + h * sizeof z, &z, sizeof z);
+  }
+  return sum;
+#else
+  Doubles sum;
+  for (int l = 0; l < 8; ++l) sum[l] = __builtin_fma(a[l], b[l], c[l]);
+  return sum;
+#endif
+}
