@@ -14,9 +14,6 @@ namespace fettle::app {
 /// refuses.
 [[nodiscard]] engine::Result<std::string> plotSvg(const bench::Study& study);
 
-/// Whether gnuplot is there, to be asked before minutes are spent on figures for it. Errors as plotSvg.
-[[nodiscard]] engine::Status plotsCanBeMade();
-
 /// 1 for the first method of a study, 2 for the next that has another name, ...
 [[nodiscard]] int methodNumber(const bench::Study& study, const std::string& method);
 

@@ -7,6 +7,7 @@
 #include "app/accuracy/page.h"
 #include "app/accuracy/plot.h"
 #include "app/command.h"
+#include "app/plots/gnuplot.h"
 #include "app/scan_options.h"
 #include "bench/accuracy/studies.h"
 #include "bench/machine.h"

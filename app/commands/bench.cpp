@@ -4,6 +4,7 @@
 
 #include "app/command.h"
 #include "app/commands/bench_filters.h"
+#include "app/commands/bench_growth.h"
 #include "app/commands/bench_import.h"
 #include "bench/effects_bench.h"
 #include "bench/haptic_bench.h"
@@ -318,6 +319,7 @@ void addBench(CLI::App& root, Chosen& chosen) {
   sweep->add_option("--press", sweep_options->press_n, "Constant press, N")->capture_default_str();
   sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
 
+  addBenchGrowth(*bench, chosen);
   addBenchImport(*bench, chosen);
   addBenchFilters(*bench, chosen);
 
