@@ -1,0 +1,305 @@
+// What must hold at every tick on every hard field, whichever way it is touched.
+//
+// A ball beside a needle, slope 1e6, is the one exception: which of the needle's faces holds it depends on
+// the last bits of a foot on a patch 1e6 high, and a tick may end a tenth of a cell farther from the endpoint
+// than the one before. Counted, and bounded by a step of the ball's walk.
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+
+#include "haptic/certified.h"
+#include "haptic/tick.h"
+#include "tests/haptic/support/fields.h"
+#include "tests/numeric/support/hard_fields.h"
+
+namespace fettle::haptic {
+namespace {
+
+using tests::Choice;
+using tests::HardField;
+using tests::Jumps;
+using tests::ulps;
+
+constexpr double kNeedle = 1e5;  // slope
+
+struct Case {
+  std::string field;
+  Choice choice;
+};
+
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.field << ' ' << tests::choiceName(c.choice);
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const std::string& field : tests::hardFieldNames())
+    for (const Choice choice : tests::kChoices) all.push_back({field, choice});
+  return all;
+}
+
+class EveryField : public ::testing::TestWithParam<Case> {
+ protected:
+  const HardField& hard() const { return hard_; }
+  Choice choice() const { return GetParam().choice; }
+  bool ball() const { return choice() == Choice::kSphere; }
+  Scene scene() const { return tests::sceneFor(choice(), hard().field.grid()); }
+  double cellMm() const {
+    return std::min(hard().field.grid().spacingXMm(), hard().field.grid().spacingYMm());
+  }
+  std::string name() const { return hard().name + " " + tests::choiceName(choice()); }
+
+  // Error of a distance: coordinates and heights as large as `size` are rounded when they are read, scaled,
+  // subtracted, squared and summed (some 16 roundings), and a search may lose kSame, 1e-15, of the squared
+  // distance in each of a few dozen rounds. A ball also reaches in by its tolerance, 1e-6 of a cell.
+  double heightError(const glm::dvec3& at) const;
+
+  double distanceError(double distance_mm, double tip_size_mm) const {
+    const double rounding = ulps(64, std::max(hard().size_mm, tip_size_mm)) + 64e-15 * distance_mm;
+    return ball() ? 4e-6 * cellMm() + 4.0 * rounding : rounding;
+  }
+
+ private:
+  HardField hard_ = tests::hardField(GetParam().field);
+};
+
+// Every number is finite, the force is K times the penetration or cut to the limit, and bad input gives none.
+TEST_P(EveryField, ForceIsFiniteAndProportionalAndNaNAndInfinityGiveNone) {
+  engine::LiveField live(hard().field, engine::Growth::kAllowed);
+  Tick tick(scene(), live, hard().field);
+  std::int64_t contacts = 0;
+  int bad = 0;
+  for (StrokeSample sample : tests::wander(hard(), 4000, 1, Jumps::kYes)) {
+    if (++bad % 53 == 0)
+      sample.tip_mm[bad / 53 % 3] = bad % 2 == 0 ? NAN : (bad % 3 == 0 ? HUGE_VAL : -HUGE_VAL);
+    if (bad % 401 == 0) sample.tip_mm[bad % 3] = bad % 2 == 0 ? 1e300 : -5e-324;
+    const ForceSample felt = tick.run(sample);
+    const double force = glm::length(felt.force_n);
+    ASSERT_TRUE(std::isfinite(force));
+    // 3 roundings of scaling by the limit.
+    ASSERT_LE(force, 1000.0 * (1 + 1e-15));
+    const bool finite = std::isfinite(sample.tip_mm.x + sample.tip_mm.y + sample.tip_mm.z);
+    if (!finite || !felt.contact) {
+      ASSERT_EQ(felt.force_n, glm::dvec3(0.0));
+      continue;
+    }
+    ++contacts;
+    ASSERT_TRUE(std::isfinite(felt.proxy_mm.x + felt.proxy_mm.y + felt.proxy_mm.z));
+    // K = 1 N/mm: one multiplication, exact.
+    const double depth = glm::length(tick.contact().penetration_mm);
+    if (depth < 999.0) {
+      ASSERT_EQ(felt.force_n, tick.contact().penetration_mm);
+    }
+  }
+  EXPECT_GT(contacts, 200);
+  EXPECT_GT(tick.counters().bad_input, 50);
+  tests::tellRare(name(), tick.counters());
+}
+
+// How far a point is above or below the surface. A point on the rim of a hole or on the field's side may be
+// rounded over it: the nearest of it and its neighbours by a few last bits counts. HUGE_VAL far from any.
+double EveryField::heightError(const glm::dvec3& at) const {
+  double least = HUGE_VAL;
+  for (const double dx : {0.0, -4.0, 4.0})
+    for (const double dy : {0.0, -4.0, 4.0}) {
+      const auto error = static_cast<double>(
+          std::abs(tests::heightAt(hard().field, at.x + ulps(dx, at.x), at.y + ulps(dy, at.y)) - at.z));
+      if (error < least) least = error;
+    }
+  return least;
+}
+
+// The point tip's proxy lies on the surface: interpolated by a twin in long double from the samples.
+TEST_P(EveryField, ProxyLiesOnTheSurface) {
+  engine::LiveField live(hard().field, engine::Growth::kAllowed);
+  Tick tick(scene(), live, hard().field);
+  std::int64_t walls = 0, looked = 0;
+  double worst = 0.0;
+  for (const StrokeSample& sample : tests::wander(hard(), 4000, 2, Jumps::kYes)) {
+    const ForceSample felt = tick.run(sample);
+    if (!felt.contact) continue;
+    // x = column sx + u sx is rounded twice, which the slope turns into height; the patch's height sums four
+    // products of heights, each rounded.
+    const double tolerance = ulps(8, std::hypot(felt.proxy_mm.x, felt.proxy_mm.y)) * (1.0 + hard().slope) +
+                             ulps(16, hard().size_mm);
+    const double error = heightError(felt.proxy_mm);
+    if (ball() && !(error <= tolerance)) {
+      // Holds against the wall of a hole or the field's side, level with the centre: no point of the surface,
+      // but below its rim.
+      ++walls;
+      continue;
+    }
+    ASSERT_LE(error, tolerance) << felt.proxy_mm.x << ' ' << felt.proxy_mm.y << ' ' << felt.proxy_mm.z;
+    worst = std::max(worst, error / tolerance);
+    ++looked;
+  }
+  EXPECT_GT(looked + walls, 200);
+  tests::tellRare(name(), tick.counters(),
+                  fmt::format("worst {:.2g} of the tolerance, {} on walls", worst, walls));
+}
+
+// Nothing falls through: below the surface there is contact.
+TEST_P(EveryField, BelowTheSurfaceThereIsContact) {
+  engine::LiveField live(hard().field, engine::Growth::kAllowed);
+  Tick tick(scene(), live, hard().field);
+  std::int64_t below_ticks = 0;
+  for (const StrokeSample& sample : tests::wander(hard(), 6000, 3, Jumps::kYes)) {
+    const bool touching = tick.run(sample).contact;
+    const glm::dvec3& e = sample.tip_mm;
+    const auto depth = static_cast<double>(tests::heightAt(hard().field, e.x, e.y) - e.z);
+    // Where rounding decides which side a tip is on, either is right.
+    const double tolerance = ulps(8, std::hypot(e.x, e.y)) * (1.0 + hard().slope) + ulps(16, hard().size_mm);
+    if (!(depth > tolerance)) continue;
+    ++below_ticks;
+    ASSERT_TRUE(touching) << "tip " << e.x << ' ' << e.y << ' ' << e.z << ", " << depth << " below";
+  }
+  EXPECT_GT(below_ticks, 300);
+  EXPECT_EQ(tick.counters().below_without_contact, 0);
+  tests::tellRare(name(), tick.counters());
+}
+
+// A tip that stays in contact goes to a proxy that is no farther than the one it had: both tracking searches
+// start there and only go down, and the certified one finds the closest of all. From that alone follows that
+// the spring gives back no more than was put in (tests/numeric/loop), whatever the surface.
+TEST_P(EveryField, TheProxyIsNeverFartherThanTheOneBefore) {
+  engine::LiveField live(hard().field, engine::Growth::kAllowed);
+  Tick tick(scene(), live, hard().field);
+  bool was_touching = false;
+  glm::dvec3 proxy{0.0}, before{0.0};
+  std::int64_t held = 0, entries = 0, far_entries = 0, handed_over = 0, side_entries = 0;
+  for (const StrokeSample& sample : tests::wander(hard(), 6000, 4, Jumps::kNo)) {
+    const ForceSample felt = tick.run(sample);
+    const glm::dvec3& e = sample.tip_mm;
+    if (felt.contact) {
+      const double distance = glm::length(tick.contact().penetration_mm);
+      const double allowed = glm::length((was_touching ? proxy : before) - e);
+      const bool farther = distance > allowed + distanceError(distance, glm::length(e));
+      if (was_touching) {
+        ++held;
+        handed_over += farther ? 1 : 0;
+        if (ball()) {
+          ASSERT_LE(distance, allowed + cellMm());
+        }
+        if (ball() ? hard().slope < kNeedle : choice() == Choice::kCertified || hard().slope < 1.0) {
+          ASSERT_FALSE(farther) << distance << " > " << allowed << " at " << e.x << ' ' << e.y << ' ' << e.z;
+        }
+      } else if (tick.counters().side_entries == side_entries) {
+        // Comes in through the surface, so a point of it lies on the way. The local search may start on the
+        // wrong side of a steep cell, and end farther: counted.
+        ++entries;
+        far_entries += farther ? 1 : 0;
+        if (choice() == Choice::kCertified || (ball() && hard().slope < kNeedle)) {
+          ASSERT_FALSE(farther) << distance << " > " << allowed << " at " << e.x << ' ' << e.y << ' ' << e.z;
+        }
+      }
+      proxy = e + tick.contact().penetration_mm;
+    }
+    was_touching = felt.contact;
+    side_entries = tick.counters().side_entries;
+    before = e;
+  }
+  EXPECT_GT(held, 100);
+  tests::tellRare(name(), tick.counters(),
+                  fmt::format("{} of {} ticks handed over to a farther proxy, {} of {} entries far",
+                              handed_over, held, far_entries, entries));
+}
+
+// A tip at rest has a proxy at rest. It never goes farther from the endpoint again, so that it cannot dither
+// between two minima; and after 8 ticks a point's proxy moves by no more than rounding makes of it. Certified
+// is a function of the endpoint: the same bits. Newton's last step leaves the gradient at a few roundings e
+// of its summands, which the flatness of the minimum turns into parameters: at most e / (1 - coupling), 500 e
+// by kLargestCoupling. A ball takes steps of 1e-4 of a cell for rest, and may slide on by such a step a tick.
+TEST_P(EveryField, ATipAtRestHasAProxyAtRest) {
+  engine::LiveField live(hard().field, engine::Growth::kAllowed);
+  Tick tick(scene(), live, hard().field);
+  const std::vector<StrokeSample> path = tests::wander(hard(), 3000, 5, Jumps::kYes);
+  std::int64_t rests = 0, late = 0;
+  double worst = 0.0;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    ForceSample felt = tick.run(path[i]);
+    if (i % 25 != 0 || !felt.contact) continue;
+    ++rests;
+    bool moves_late = false;
+    for (int k = 0; k < 40; ++k) {
+      const glm::dvec3 before = tick.contact().penetration_mm;
+      felt = tick.run(path[i]);
+      ASSERT_TRUE(felt.contact);
+      const glm::dvec3 now = tick.contact().penetration_mm;
+      const double needle = ball() && hard().slope > kNeedle ? cellMm() : 0.0;
+      ASSERT_LE(glm::length(now),
+                glm::length(before) + needle + distanceError(glm::length(now), glm::length(path[i].tip_mm)));
+      if (choice() == Choice::kCertified) {
+        ASSERT_EQ(now, before);
+      }
+      if (k < 8) continue;
+      moves_late = moves_late || now != before;
+      worst = std::max(worst, glm::length(now - before));
+    }
+    late += moves_late ? 1 : 0;
+  }
+  EXPECT_GT(rests, 20);
+  if (!ball()) {
+    EXPECT_LE(worst, ulps(500 * 4, hard().size_mm));
+  }
+  tests::tellRare(name(), tick.counters(),
+                  fmt::format("{} rests, {} moved after 8 ticks, by {:.1e} cells at most", rests, late,
+                              worst / cellMm()));
+}
+
+std::string caseName(const ::testing::TestParamInfo<Case>& info) {
+  return info.param.field + "_" + tests::choiceName(info.param.choice);
+}
+INSTANTIATE_TEST_SUITE_P(Numeric, EveryField, ::testing::ValuesIn(cases()), caseName);
+
+// Certified against brute force in long double over every cell of the field.
+class CertifiedOn : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(CertifiedOn, IsTheClosestPointOfAllCells) {
+  const HardField hard = tests::hardField(GetParam());
+  Surface surface(hard.field.reader());
+  const double radius = 1e9 * hard.size_mm;  // all of it
+  std::int64_t looked = 0;
+  double worst = 0.0;
+  const std::vector<StrokeSample> path = tests::wander(hard, 3000, 6, Jumps::kYes);
+  for (std::size_t i = 0; i < path.size(); i += 250) {
+    const glm::dvec3& e = path[i].tip_mm;
+    SurfacePoint found;
+    const bool is = certifiedClosest(surface, e, radius, found);
+    long double best = HUGE_VALL;
+    Patch patch;
+    for (int r = 0; r < surface.cellRows(); ++r)
+      for (int c = 0; c < surface.cellColumns(); ++c)
+        if (surface.patch({c, r}, patch)) {
+          // Boxes that cannot be nearer are left out; brute force is slow.
+          const auto beyond = [](double x, double low, double high) {
+            return std::max({low - x, x - high, 0.0});
+          };
+          const long double dx = beyond(e.x, patch.x0, patch.x0 + patch.sx);
+          const long double dy = beyond(e.y, patch.y0, patch.y0 + patch.sy);
+          const long double dz = beyond(e.z, patch.lowest(), patch.highest());
+          if (dx * dx + dy * dy + dz * dz < best * (1 + 1e-12L))
+            best = std::min(best, tests::bruteDistance2(patch, e));
+        }
+    ASSERT_EQ(is, std::isfinite(best));
+    if (!is) continue;
+    ++looked;
+    const double brute = static_cast<double>(std::sqrt(best));
+    // Newton stops within 1e-7 of the parameters' minimum, where the distance is flat: 1e-14, times what the
+    // curvature of a patch can make of it (1e3); and roundings of coordinates.
+    const double tolerance =
+        1e-11 * brute + ulps(64, hard.size_mm + glm::length(e) * (hard.size_mm < 1.0 ? 0.0 : 1.0));
+    ASSERT_NEAR(std::sqrt(found.distance2_mm2), brute, tolerance) << e.x << ' ' << e.y << ' ' << e.z;
+    worst = std::max(worst, std::abs(std::sqrt(found.distance2_mm2) - brute) / tolerance);
+  }
+  EXPECT_GT(looked, 5);
+  std::printf("%s: %lld points, worst %.2g of the tolerance\n", hard.name.c_str(),
+              static_cast<long long>(looked), worst);
+}
+
+INSTANTIATE_TEST_SUITE_P(Numeric, CertifiedOn, ::testing::ValuesIn(tests::hardFieldNames()),
+                         [](const auto& one) { return one.param; });
+
+}  // namespace
+}  // namespace fettle::haptic
