@@ -19,7 +19,9 @@
 //   S = c T v^2 / (2 a) of the filter's velocity v. With w = D / T and v' = v + a (w - v)
 //     S' - S - c v . D = - c T (2 - a) / 2 |v|^2 - c a T v . w + c a T / 2 |w|^2 <= c a / (2 - a) |D|^2 / T,
 //   the difference being the square c T (2 - a) / 2 |v + a w / (2 - a)|^2: C / 2 = c a / ((2 - a) T).
-//   Coupling is cut where it would pull; what it then leaves undone, (c v - K d) D, is added to its side.
+//   Coupling is cut where it would pull, and rests in free space; what it then leaves undone, (c v - K d) D
+//   or c v D, is no energy of the spring's: it goes to S alone, and the balance is of what can come out,
+//   without S.
 // The device damps with b: it dissipates at least b |D|^2 / T. Summed, (1) says that nothing comes out while
 // b / T >= C / 2: the conditions b > K T / 2 and b > K T / 2 + c a / (2 - a) of Colgate and Schenkel. Both
 // are checked: (1) at every tick, and the balance over the whole session at the published damping.
@@ -102,16 +104,18 @@ class Books {
         e += 0.5 * p.coupling.damping_n_s_per_mm * period_s_ / a * v.z * v.z;
     }
     coming_on_ = 0.0;
-    cut_n_ = 0.0;
+    filters_ =
+        e +
+        (lists(scene_, EffectKind::kGravity) ? p.gravity.stylus_kg * kGravity_n_per_kg * at.tip_mm.z : 0.0);
+    const bool coupled = lists(scene_, EffectKind::kCoupling);
+    cut_n_ = coupled ? p.coupling.damping_n_s_per_mm * tick.effects().motion->mmPerS().z : 0.0;
     if (!contact) {
       on_ = 0.0;
       touched_ = false;
       return e;
     }
     const double d = glm::length(tick.contact().penetration_mm);
-    if (lists(scene_, EffectKind::kCoupling))
-      cut_n_ =
-          p.coupling.damping_n_s_per_mm * tick.effects().motion->mmPerS().z - scene_.stiffness_n_per_mm * d;
+    if (coupled) cut_n_ = std::max(cut_n_ - scene_.stiffness_n_per_mm * d, 0.0);
     const double k = scene_.stiffness_n_per_mm;
     const double most = scene_.force_limit_n / k;
     if (lists(scene_, EffectKind::kTexture)) {
@@ -140,15 +144,18 @@ class Books {
   // What edge snap gave the hand by coming on in the last tick [mJ].
   double comingOn() const { return coming_on_; }
 
-  // What a coupling that was cut to no pull leaves undone over a way along the normal, z [mJ]: of the tick
-  // that stored() was last asked about.
-  double cut(double way_mm) const { return std::max(cut_n_, 0.0) * std::max(way_mm, 0.0); }
+  // The part of stored() that is the dampers' filter and no energy that could come out [mJ].
+  double filters() const { return filters_; }
+
+  // What a coupling that was cut to no pull, or rests in free space, leaves undone over a way along z [mJ]:
+  // of the tick that stored() was last asked about.
+  double cut(double way_mm) const { return std::max(cut_n_ * way_mm, 0.0); }
 
  private:
   const Scene& scene_;
   double period_s_;
   std::shared_ptr<const TextureTable> relief_;
-  double on_ = 0.0, touched_s_ = 0.0, coming_on_ = 0.0, cut_n_ = 0.0;
+  double on_ = 0.0, touched_s_ = 0.0, coming_on_ = 0.0, cut_n_ = 0.0, filters_ = 0.0;
   bool touched_ = false;
 };
 
@@ -218,9 +225,9 @@ Balance session(const engine::Version& field, const Scene& scene, double rate_hz
         ++(felt.contact && !was_contact ? out.far_entries : out.broken);
         out.worst_mj = std::max(out.worst_mj, missing);
       }
-      out.given_mj += given;
+      out.given_mj += books.comingOn();
       sum += work + device_damping * glm::dot(way, way) / period;
-      out.lowest_mj = std::min(out.lowest_mj, sum + out.given_mj - (stored - start));
+      out.lowest_mj = std::min(out.lowest_mj, sum + out.given_mj - (stored - books.filters() - start));
       out.scale_mj = std::max({out.scale_mj, std::abs(sum), std::abs(stored)});
     }
     out.contacts += felt.contact ? 1 : 0;
@@ -244,11 +251,12 @@ Scene sceneOf(std::vector<EffectKind> effects, Choice choice, const engine::Grid
 }
 
 void tell(const std::string& name, const Balance& b) {
-  tests::tellRare(name, b.counters,
-                  fmt::format("{} ticks, {} contacts, {} entries, lowest balance {:.2e} of {:.2g} mJ, {} "
-                              "ticks broken by {:.1e} mJ",
-                              b.ticks, b.contacts, b.entries, b.far_entries, b.lowest_mj, b.scale_mj,
-                              b.broken, b.worst_mj));
+  tests::tellRare(
+      name, b.counters,
+      fmt::format("{} ticks, {} contacts, {} entries, {} of them far, lowest balance {:.2e} of {:.2g} mJ, {} "
+                  "ticks broken by {:.1e} mJ",
+                  b.ticks, b.contacts, b.entries, b.far_entries, b.lowest_mj, b.scale_mj, b.broken,
+                  b.worst_mj));
 }
 
 // Every tick adds a few roundings of the running sum.
