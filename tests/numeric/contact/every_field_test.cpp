@@ -140,6 +140,41 @@ TEST_P(EveryField, ProxyLiesOnTheSurface) {
                   fmt::format("worst {:.2g} of the tolerance, {} on walls", worst, walls));
 }
 
+// A point's proxy is a local minimum of the distance: of points 1e-6 of a cell around it, in whichever cells,
+// none is nearer. (1e-3 around it there are: beyond a crease, and along the twist of a patch.) Newton's last
+// step, 1e-7 of a cell, leaves a slope of its square, times curvature, at most 1 + slope^2: nothing beside
+// the step of 1e-7 itself, which is allowed here.
+TEST_P(EveryField, NoPointAroundTheProxyIsNearer) {
+  if (ball()) GTEST_SKIP() << "a ball is held by several points: tests/haptic/sphere_tip_test.cpp";
+  if (hard().slope > 100.0) GTEST_SKIP() << "rounding of a place is more than 1e-6 of what a wall rises";
+  engine::LiveField live(hard().field, engine::Growth::kAllowed);
+  Tick tick(scene(), live, hard().field);
+  const double sx = hard().field.grid().spacingXMm();
+  const double sy = hard().field.grid().spacingYMm();
+  const double steep = 1.0 + hard().slope * hard().slope;
+  std::int64_t looked = 0;
+  for (const StrokeSample& sample : tests::wander(hard(), 4000, 7, Jumps::kYes)) {
+    const ForceSample felt = tick.run(sample);
+    if (!felt.contact) continue;
+    ++looked;
+    const glm::dvec3& e = sample.tip_mm;
+    const double distance = glm::length(felt.proxy_mm - e);
+    const double slack = 2.0 * distanceError(distance, glm::length(e)) * distance +
+                         1e-13 * steep * std::max(sx, sy) * std::max(sx, sy);
+    for (int k = 0; k < 16; ++k) {
+      glm::dvec3 q =
+          felt.proxy_mm + 1e-6 * glm::dvec3(sx * std::cos(k * 0.3927), sy * std::sin(k * 0.3927), 0.0);
+      q.z = static_cast<double>(tests::heightAt(hard().field, q.x, q.y));
+      if (std::isnan(q.z)) continue;  // a hole or beside the field
+      ASSERT_GE(glm::dot(q - e, q - e), distance * distance - slack)
+          << "tip " << e.x << ' ' << e.y << ' ' << e.z << ", proxy " << felt.proxy_mm.x << ' '
+          << felt.proxy_mm.y;
+    }
+  }
+  EXPECT_GT(looked, 200);
+  tests::tellRare(name(), tick.counters());
+}
+
 // Nothing falls through: below the surface there is contact.
 TEST_P(EveryField, BelowTheSurfaceThereIsContact) {
   engine::LiveField live(hard().field, engine::Growth::kAllowed);
