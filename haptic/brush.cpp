@@ -1,10 +1,11 @@
 #include "haptic/brush.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
 #include <memory>
 
+#include "engine/filter/limit_change.h"
 #include "haptic/effect.h"
 
 namespace fettle::haptic {
@@ -52,6 +53,22 @@ double blend(const float* centre, std::ptrdiff_t stride, double strength) noexce
   return gauss + strength * (box - gauss);
 }
 
+// heightAt multiplies by the sign, which on the haptic thread makes a denormal zero.
+float exactHeight(const engine::FieldReader& reader, std::int32_t column, std::int32_t row) noexcept {
+  using engine::kTileShift;
+  using engine::kTileSide;
+  const engine::Tile& tile = reader.tile(column >> kTileShift, row >> kTileShift);
+  const float height = tile.samples[static_cast<std::size_t>((row & (kTileSide - 1)) * kTileSide +
+                                                             (column & (kTileSide - 1)))];
+  return reader.sign() < 0.0F ? -height : height;
+}
+
+// By its bits: to the haptic thread it compares equal to zero.
+bool isDenormal(float height) noexcept {
+  const auto size = std::bit_cast<std::uint32_t>(height) & 0x7fffffffU;
+  return size != 0 && size < 0x00800000U;
+}
+
 }  // namespace
 
 Brush::Brush(double radius, std::optional<double> max_change, const engine::Version& original)
@@ -65,16 +82,10 @@ Brush::Brush(double radius, std::optional<double> max_change, const engine::Vers
 
 float Brush::limited(double height, float old, std::int32_t column, std::int32_t row) const noexcept {
   if (!max_change_) return static_cast<float>(height);
-  const float origin = original_.reader().heightAt(column, row);
-  if (std::isnan(origin)) return old;
-  const double low = static_cast<double>(origin) - *max_change_;
-  const double high = static_cast<double>(origin) + *max_change_;
-  float z = static_cast<float>(std::clamp(height, low, high));
-  // Rounding to float may step over the limit by one. It cannot step over the origin, itself a float.
-  constexpr float kInf = std::numeric_limits<float>::infinity();
-  if (static_cast<double>(z) > high) z = std::nextafter(z, -kInf);
-  if (static_cast<double>(z) < low) z = std::nextafter(z, kInf);
-  return z;
+  const float origin = exactHeight(original_.reader(), column, row);
+  // A denormal is zero to the haptic thread, which cannot measure how far from it a height is.
+  if (std::isnan(origin) || isDenormal(origin)) return old;
+  return engine::limitedChange(static_cast<float>(height), origin, *max_change_);
 }
 
 // The paper's brush of one sample, whose window is mostly within one tile: read where it lies.

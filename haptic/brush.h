@@ -21,6 +21,9 @@ namespace fettle::haptic {
 /// that of the original's sample, as exact numbers, whatever rounding does; where the original has a hole
 /// there is nothing to measure against, and the sample is kept.
 ///
+/// A sample whose original is a denormal is kept, too, with `max_change`: the haptic thread flushes
+/// denormals, so that they count as zero there. They keep their bits where they are not smoothed.
+///
 /// Source: Potter, Johnson, Cohen, DETC2004-57539, "Haptically Driven Filtering" and figure 5.
 /// Threading: made anywhere (allocates); apply() on the field's thread: wait-free, noexcept, allocates
 /// nothing.

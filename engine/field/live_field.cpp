@@ -11,8 +11,11 @@ namespace fettle::engine {
 namespace {
 
 // The bit pattern that is stored for a height: sign off, infinities and every kind of NaN as one hole.
+// Negated and not multiplied, since the haptic thread flushes denormals: a sample that is written back
+// unchanged keeps its bits.
 float stored(float height, float sign) noexcept {
-  return std::isfinite(height) ? sign * height : std::numeric_limits<float>::quiet_NaN();
+  if (!std::isfinite(height)) return std::numeric_limits<float>::quiet_NaN();
+  return sign < 0.0F ? -height : height;
 }
 
 }  // namespace

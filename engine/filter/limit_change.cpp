@@ -19,6 +19,8 @@ float highest(float original, double most) noexcept {
   const auto wide = static_cast<double>(bound);
   if (wide > sum || (wide == sum && error < 0.0))
     bound = std::nextafter(bound, -std::numeric_limits<float>::infinity());
+  // Only on a thread that flushes denormals, where the next one still counts as zero.
+  if (static_cast<double>(bound) > sum) bound = -std::numeric_limits<float>::min();
   return bound;
 }
 
