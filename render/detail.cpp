@@ -77,15 +77,24 @@ void DetailMeasure::measure(const engine::FieldReader& reader) {
 
 void DetailMeasure::refresh(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles) {
   if (levels_.empty()) return measure(reader);
-  // Cells reach into the next tile, and a hole's vertex takes its height from up to a tile away.
+  // Cells reach into the next tile, and a hole's vertex takes its height from up to a tile away. A tile's
+  // last vertices are the next tile's first samples: where these are holes, the largest stride sees two tiles
+  // far.
+  const auto holed = [&](glm::ivec2 tile) {
+    for (int y = tile.y; y <= std::min(tile.y + 1, tiles_.y - 1); ++y)
+      for (int x = tile.x; x <= std::min(tile.x + 1, tiles_.x - 1); ++x)
+        if (reader.tile(x, y).nan_samples != 0) return true;
+    return false;
+  };
+  const int far = topLevel() >= kTileLevels ? -2 : -1;
   std::vector<glm::ivec2> around;
   for (const glm::ivec2& t : tiles)
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
+    for (int dy = far; dy <= 1; ++dy)
+      for (int dx = far; dx <= 1; ++dx) {
         const glm::ivec2 n = t + glm::ivec2(dx, dy);
         if (n.x < 0 || n.y < 0 || n.x >= tiles_.x || n.y >= tiles_.y) continue;
-        if ((dx > 0 || dy > 0) && reader.tile(n.x, n.y).nan_samples == 0) continue;
-        around.push_back(n);
+        const bool next = std::max(dx, dy) <= 0 && std::min(dx, dy) >= -1;
+        if (next || holed(n)) around.push_back(n);
       }
   const auto before = [](const glm::ivec2& a, const glm::ivec2& b) {
     return a.y != b.y ? a.y < b.y : a.x < b.x;

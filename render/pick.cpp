@@ -22,10 +22,12 @@ Corners cornersOf(const engine::FieldReader& reader, std::int32_t column, std::i
   return {p.a, p.b, p.c, p.d, !std::isnan(p.d)};
 }
 
-// First t in [enter, leave] at which height(t) - z(t) is zero, given the line in cell units from the cell's
-// corner.
+// First t in [enter, leave] at which z(t) - height(t) is zero, given the line in cell units from the cell's
+// corner. `above`: that difference where the line left the cell before, 0 when there was none; then where it
+// leaves this one. Rounding may have the line above the edge between two cells as it leaves the one and below
+// it as it enters the other: that is a meeting, too.
 std::optional<double> meetPatch(const Corners& p, const glm::dvec3& from, const glm::dvec3& dir, double enter,
-                                double leave) noexcept {
+                                double leave, double& above) noexcept {
   // Counted from `enter`, so that the coefficients are as small as the cell and lose no digits far along the
   // line.
   const double u = from.x + enter * dir.x, v = from.y + enter * dir.y, z = from.z + enter * dir.z;
@@ -37,7 +39,9 @@ std::optional<double> meetPatch(const Corners& p, const glm::dvec3& from, const 
   const auto offer = [&](double t) {
     if (t >= 0.0 && t <= run) first = std::min(first, t);
   };
-  if (c0 == 0.0) return enter;
+  const double before = above;
+  above = c0 + run * (c1 + run * c2);
+  if (c0 == 0.0 || (before != 0.0 && std::signbit(before) != std::signbit(c0))) return enter;
   const double square = c1 * c1 - 4.0 * c2 * c0;
   if (c2 == 0.0) {
     if (c1 != 0.0) offer(-c0 / c1);
@@ -48,9 +52,8 @@ std::optional<double> meetPatch(const Corners& p, const glm::dvec3& from, const 
     if (q != 0.0) offer(c0 / q);
   }
   // Signs that differ at the two ends have a zero between them, whatever rounding said.
-  const double end = c0 + run * (c1 + run * c2);
-  if (first == kInfinity && std::signbit(c0) != std::signbit(end))
-    first = end == c0 ? 0.0 : run * c0 / (c0 - end);
+  if (first == kInfinity && std::signbit(c0) != std::signbit(above))
+    first = above == c0 ? 0.0 : run * c0 / (c0 - above);
   if (first == kInfinity) return std::nullopt;
   return enter + std::clamp(first, 0.0, run);
 }
@@ -98,12 +101,14 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
   if (!(t <= end)) return std::nullopt;
 
   const auto cellAt = [](double at, std::int32_t last) {
-    return std::clamp(static_cast<std::int32_t>(std::floor(at)), 0, last);
+    // Clamped as a double: from far away the place along the line may be off by more than an int holds.
+    return static_cast<std::int32_t>(std::clamp(std::floor(at), 0.0, static_cast<double>(last)));
   };
   std::int32_t c = cellAt(o.x + t * d.x, columns - 1), r = cellAt(o.y + t * d.y, rows - 1);
   const auto exit = [](double at, double along, std::int32_t low, std::int32_t high) {
     return along > 0.0 ? (high - at) / along : along < 0.0 ? (low - at) / along : kInfinity;
   };
+  double above = 0.0;  // see meetPatch
   while (t <= end) {
     // The largest square that the line clears: tried from the cell's own block upwards, as long as it does.
     int shift = 0;
@@ -127,11 +132,16 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
       shift = s;
       leave = out;
     }
-    if (shift == 0) {
+    if (shift != 0) {
+      above = 0.0;  // clear of both: the line is not that near
+    } else {
       leave = std::min({end, exit(o.x, d.x, c, c + 1), exit(o.y, d.y, r, r + 1)});
       const Corners p = cornersOf(reader, c, r);
-      if (p.whole) {
-        const std::optional<double> at = meetPatch(p, {o.x - c, o.y - r, o.z}, d, t, std::max(t, leave));
+      if (!p.whole) {
+        above = 0.0;
+      } else {
+        const std::optional<double> at =
+            meetPatch(p, {o.x - c, o.y - r, o.z}, d, t, std::max(t, leave), above);
         if (at) return SurfaceHit{from + *at * direction, c, r, *at};
       }
     }
