@@ -68,25 +68,10 @@ PlainField formed(int width, int height, const std::function<float(int, int)>& z
 }
 
 std::vector<std::string> hardFieldNames() {
-  return {"noise",
-          "integers",
-          "steps",
-          "spikes",
-          "denormals",
-          "all magnitudes",
-          "duplicates",
-          "saddle",
-          "one row",
-          "one column",
-          "one sample",
-          "two by two",
-          "scattered holes",
-          "hole blocks",
-          "islands",
-          "all holes",
-          "half holes",
-          "huge",
-          "zeros of both signs"};
+  return {"noise",      "flat",           "concave corner",     "integers",    "steps",   "spikes",
+          "denormals",  "all magnitudes", "duplicates",         "saddle",      "one row", "one column",
+          "one sample", "two by two",     "scattered holes",    "hole blocks", "islands", "all holes",
+          "half holes", "huge",           "zeros of both signs"};
 }
 
 PlainField hardField(const std::string& name) {
@@ -94,6 +79,11 @@ PlainField hardField(const std::string& name) {
   const auto uniform = [&random] { return static_cast<float>(random() % 16777216U) / 16777216.0F; };
   const auto noise = [&](int, int) { return uniform() - 0.5F; };
   if (name == "noise") return formed(150, 131, noise);
+  if (name == "flat") return formed(90, 70, [](int, int) { return 0.1F; });
+  if (name == "concave corner")
+    return formed(90, 70, [](int c, int r) {
+      return 0.8F * static_cast<float>(std::max(std::abs(c - 40), std::abs(r - 33)));
+    });
   if (name == "integers")
     return formed(140, 70, [&](int, int) { return static_cast<float>(random() % 65536U); });
   if (name == "steps")
