@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/base/job.h"
+#include "engine/filter/cpu.h"
 #include "engine/filter/filter.h"
 
 // The hot loops are compiled once for each kind of processor and chosen when the program starts. The bits are
@@ -31,8 +32,9 @@ namespace fettle::engine {
 ///   +---------------------------+
 struct Block {
   const float* heights = nullptr;
-  std::ptrdiff_t stride = 0;  ///< of heights [elements]
-  int columns = 0;            ///< of heights
+  std::ptrdiff_t stride =
+      0;            ///< of heights [elements]; at least 16 more than columns: may be read, mean nothing
+  int columns = 0;  ///< of heights
   int rows = 0;
   int first_column = 0;  ///< of the outputs, counted in heights
   int first_row = 0;
@@ -61,7 +63,9 @@ class BlockFilter {
 };
 
 [[nodiscard]] std::unique_ptr<BlockFilter> makeBoxFilter(const FilterSpec& spec);
-[[nodiscard]] std::unique_ptr<BlockFilter> makeGaussianFilter(const FilterSpec& spec);
-[[nodiscard]] std::unique_ptr<BlockFilter> makeMedianFilter(const FilterSpec& spec);
+/// Takes whole vectors: reads, to no effect, 16 elements beyond the columns of a row of heights and writes
+/// out_columns rounded up to 16; strides must leave room.
+[[nodiscard]] std::unique_ptr<BlockFilter> makeGaussianFilter(const FilterSpec& spec, CpuLevel level);
+[[nodiscard]] std::unique_ptr<BlockFilter> makeMedianFilter(const FilterSpec& spec, CpuLevel level);
 
 }  // namespace fettle::engine

@@ -123,7 +123,7 @@ Result<Filtered> applyFilter(const Version& input, const Version& original, cons
       Version state = input;
       PassResult last;
       for (int pass = 0; pass < spec.passes; ++pass) {
-        Result<PassResult> next = filterOnce(state, original, spec, tuning.block_side, job);
+        Result<PassResult> next = filterOnce(state, original, spec, tuning, job);
         if (!next) return tl::unexpected(std::move(next.error()));
         last = std::move(*next);
         state = last.field;

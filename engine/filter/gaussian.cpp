@@ -198,8 +198,8 @@ class GaussianFilter final : public BlockFilter {
 
 }  // namespace
 
-std::unique_ptr<BlockFilter> makeGaussianFilter(const FilterSpec& spec) {
-  return std::make_unique<GaussianFilter>(spec, bestCpuLevel());
+std::unique_ptr<BlockFilter> makeGaussianFilter(const FilterSpec& spec, CpuLevel level) {
+  return std::make_unique<GaussianFilter>(spec, level);
 }
 
 }  // namespace fettle::engine

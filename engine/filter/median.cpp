@@ -9,8 +9,9 @@ float midpoint(float a, float b) noexcept {
   return static_cast<float>((static_cast<double>(a) + static_cast<double>(b)) * 0.5);
 }
 
-std::unique_ptr<BlockFilter> makeMedianFilter(const FilterSpec& spec) {
-  return spec.window <= kSmallMedianWindow ? makeSmallMedian(spec.window) : makeRankMedian(spec.window);
+std::unique_ptr<BlockFilter> makeMedianFilter(const FilterSpec& spec, CpuLevel level) {
+  return spec.window <= kSmallMedianWindow ? makeSmallMedian(spec.window, level)
+                                           : makeRankMedian(spec.window, level);
 }
 
 }  // namespace fettle::engine

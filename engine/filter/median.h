@@ -7,13 +7,13 @@
 namespace fettle::engine {
 
 /// Largest window that makeSmallMedian takes.
-inline constexpr int kSmallMedianWindow = 7;
+inline constexpr int kSmallMedianWindow = 11;
 
-/// Windows of 3, 5 and 7: compares samples, many outputs abreast.
-[[nodiscard]] std::unique_ptr<BlockFilter> makeSmallMedian(int window);
+/// Windows of 3 to 11: compares samples, many outputs abreast.
+[[nodiscard]] std::unique_ptr<BlockFilter> makeSmallMedian(int window, CpuLevel level);
 
-/// Any window: a sliding set of ranks.
-[[nodiscard]] std::unique_ptr<BlockFilter> makeRankMedian(int window);
+/// Any window from 3 on: sets of ranks that windows share.
+[[nodiscard]] std::unique_ptr<BlockFilter> makeRankMedian(int window, CpuLevel level);
 
 /// (a + b) / 2, exact and rounded to float once, ties to even. Both finite.
 [[nodiscard]] float midpoint(float a, float b) noexcept;

@@ -1,77 +1,147 @@
-// The kernel of median_small.cpp, which includes it once for each kind of processor, each time in a namespace
-// of its own and with other instructions allowed. No include guard for that reason, and no includes.
+// The kernels of median_small.cpp; see each_cpu-inl.h.
 
-// One register with AVX-512, two with AVX, four with SSE: the compiler cuts it to what there is.
-using Heights = float __attribute__((vector_size(kAbreast * sizeof(float))));
+// As many floats as a register has: lists of samples are long enough as they are.
+constexpr int kAbreast = FETTLE_LEVEL == 2 ? 16 : FETTLE_LEVEL == 1 ? 8 : 4;
+using Samples = float __attribute__((vector_size(kAbreast * sizeof(float))));
 
-inline void load(Heights& to, const float* from) noexcept {
-  std::memcpy(&to, from, sizeof to);
+template <Comparator kStep>
+FETTLE_INLINE void exchange(Samples* v) noexcept {
+  const Samples a = v[kStep.low];
+  const Samples b = v[kStep.high];
+  if constexpr (kStep.wants_low) v[kStep.low] = a < b ? a : b;
+  if constexpr (kStep.wants_high) v[kStep.high] = a < b ? b : a;
 }
 
-inline void exchange(Heights& a, Heights& b) noexcept {
-  const Heights low = a < b ? a : b;
-  const Heights high = a < b ? b : a;
-  a = low;
-  b = high;
+template <class Network, std::size_t... kIndex>
+FETTLE_INLINE void applySteps(Samples* v, std::index_sequence<kIndex...>) noexcept {
+  (exchange<Network::kList.steps[kIndex]>(v), ...);
 }
 
-// Moves the smallest of a[0 .. n) to a[0] and the largest to a[n - 1].
-inline void extremesOutward(Heights* a, int n) noexcept {
-  for (int i = 0; i < n / 2; ++i) exchange(a[i], a[n - 1 - i]);
-  for (int i = 1; i < (n + 1) / 2; ++i) exchange(a[0], a[i]);
-  for (int i = n / 2; i < n - 1; ++i) exchange(a[i], a[n - 1]);
+template <class Network>
+FETTLE_INLINE void apply(Samples* v) noexcept {
+  applySteps<Network>(v, std::make_index_sequence<Network::kList.count>());
 }
 
-// The median of an odd number of samples, 2 p + 1, while seeing p + 2 at a time: the largest and the smallest
-// of p + 2 cannot be the median, so both are forgotten and one more sample is looked at ("forgetful
-// selection"; N. Devillard, Fast median search: an ANSI C implementation, 1998, cites it for 3 x 3 and 5 x
-// 5). Loops are left as loops: written out for 7 x 7 they took the compiler three minutes and 0.9 GB.
-template <int kSide>
-inline void medianRow(const float* corner, std::ptrdiff_t stride, float* out) noexcept {
-  constexpr int kCount = kSide * kSide;
-  constexpr int kSeen = kCount / 2 + 2;
-  Heights a[kSeen];
-  for (int i = 0; i < kSeen; ++i) load(a[i], corner + i / kSide * stride + i % kSide);
-  int next = kSeen;
-  for (int n = kSeen; n >= 3; --n) {
-    extremesOutward(a, n);
-    if (n == 3) break;
-    load(a[0], corner + next / kSide * stride + next % kSide);
-    ++next;
+// Ranks [kBegin, kEnd) of the ascending a and b together, ascending.
+template <int kA, int kB, int kBegin = 0, int kEnd = kA + kB>
+__attribute__((noinline)) void merge(const Samples* a, const Samples* b, Samples* out) noexcept {
+  Samples v[kA + kB];
+  for (int i = 0; i < kA; ++i) v[i] = a[i];
+  for (int i = 0; i < kB; ++i) v[kA + i] = b[i];
+  apply<Merging<kA, kB, kBegin, kEnd>>(v);
+  for (int i = kBegin; i < kEnd; ++i) out[i - kBegin] = v[i];
+}
+
+// The middle one of the ascending a (kN + 1 samples) and b (kN): at least kN others are no greater than the
+// greater of a[i] and b[kN - 1 - i], and for one i it is the one with exactly kN.
+template <int kN>
+FETTLE_INLINE Samples middle(const Samples* a, const Samples* b) noexcept {
+  Samples least = a[kN];
+#pragma GCC unroll 16
+  for (int i = 0; i < kN; ++i) {
+    const Samples greater_one = a[i] > b[kN - 1 - i] ? a[i] : b[kN - 1 - i];
+    least = greater_one < least ? greater_one : least;
   }
-  std::memcpy(out, &a[1], sizeof a[1]);
+  return least;
+}
+
+// Medians of kN x kN windows, kN = 5 .. 11, kAbreast columns of outputs, row after row. Four outputs below
+// each other share kN - 3 rows of samples, two of them share kN - 1; what is shared is sorted once, and of
+// every sorted list only that part is kept that can still become the median (A. Adams, Fast median filters
+// using separable sorting networks, 2021). Counting rows from 1 at the first window's first, the outputs of
+// step k have their windows begin in rows 4 k - 3 .. 4 k.
+template <int kN>
+void medianStrip(const float* corner, std::ptrdiff_t stride, int last_row, int out_rows, float* out,
+                 std::ptrdiff_t out_stride) noexcept {
+  constexpr int kMedian = (kN * kN - 1) / 2;
+  constexpr int kCore = kN * (kN - 3);
+  constexpr int kCoreBegin = kMedian - 3 * kN > 0 ? kMedian - 3 * kN : 0;
+  constexpr int kCoreEnd = kCore < kMedian + 1 ? kCore : kMedian + 1;
+  constexpr int kCoreKept = kCoreEnd - kCoreBegin;
+  constexpr int kHalfBegin = kMedian - kN - kCoreBegin;
+
+  Samples rows[16][kN];
+  Samples pairs[8][2 * kN];
+  Samples quads[4][4 * kN];
+  Samples core[kCoreKept];
+  Samples half[kN + 1];
+  int row = 1;
+  for (int k = 1; 4 * (k - 1) < out_rows; ++k) {
+    for (; row < 4 * k + kN; ++row) {
+      const float* from = corner + (row - 1 < last_row ? row - 1 : last_row) * stride;
+      Samples v[kN];
+      for (int i = 0; i < kN; ++i) v[i] = load<Samples>(from + i);
+      apply<Sorting<kN>>(v);
+      for (int i = 0; i < kN; ++i) rows[row & 15][i] = v[i];
+      if (row % 2 == 1 && row >= 3)
+        merge<kN, kN>(rows[(row - 1) & 15], rows[row & 15], pairs[(row >> 1) & 7]);
+      if constexpr (kN > 5)
+        if (row % 4 == 3 && row >= 7)
+          merge<2 * kN, 2 * kN>(pairs[((row >> 1) - 1) & 7], pairs[(row >> 1) & 7], quads[(row >> 2) & 3]);
+    }
+    const Samples* shared = core;
+    if constexpr (kN == 5) shared = pairs[(2 * k) & 7];
+    if constexpr (kN == 7) shared = quads[k & 3] + kCoreBegin;
+    if constexpr (kN == 9)
+      merge<4 * kN, 2 * kN, kCoreBegin, kCoreEnd>(quads[k & 3], pairs[(2 * k + 2) & 7], core);
+    if constexpr (kN == 11)
+      merge<4 * kN, 4 * kN, kCoreBegin, kCoreEnd>(quads[k & 3], quads[(k + 1) & 3], core);
+    const int last_pair = (4 * k + kN - 3) / 2;
+    for (int side = 0; side < 2; ++side) {
+      merge<kCoreKept, 2 * kN, kHalfBegin, kHalfBegin + kN + 1>(
+          shared, pairs[(side == 0 ? 2 * k - 1 : last_pair) & 7], half);
+      for (int i = 0; i < 2; ++i) {
+        const int output = 4 * (k - 1) + 2 * side + i;
+        if (output >= out_rows) break;
+        const int lone = i == 0 ? 4 * k - 3 + 2 * side : 4 * k + kN - 3 + 2 * side;
+        store(out + output * out_stride, middle<kN>(half, rows[lone & 15]));
+      }
+    }
+  }
 }
 
 // 3 x 3: sort each column; the median of nine is the median of the largest low, the middle middle and the
-// smallest high (J. L. Smith, Implementing median filters in XC4000E FPGAs, 1996).
-template <>
-inline void medianRow<3>(const float* corner, std::ptrdiff_t stride, float* out) noexcept {
-  Heights low[3], middle[3], high[3];
-  for (int i = 0; i < 3; ++i) {
-    load(low[i], corner + i);
-    load(middle[i], corner + stride + i);
-    load(high[i], corner + 2 * stride + i);
-    exchange(low[i], middle[i]);
-    exchange(middle[i], high[i]);
-    exchange(low[i], middle[i]);
-  }
-  exchange(low[0], low[1]);
-  exchange(low[1], low[2]);
-  exchange(high[0], high[1]);
-  exchange(high[0], high[2]);
-  exchange(middle[0], middle[1]);
-  exchange(middle[1], middle[2]);
-  exchange(middle[0], middle[1]);
-  Heights a = low[2];
-  Heights b = middle[1];
-  Heights c = high[0];
-  exchange(a, b);
-  exchange(b, c);
-  exchange(a, b);
-  std::memcpy(out, &b, sizeof b);
+// smallest high (J. L. Smith, Implementing median filters in XC4000E FPGAs, 1996). Two outputs below each
+// other share the comparison of the two rows they share.
+FETTLE_INLINE void threeColumns(const Samples& low, const Samples& high, const Samples& v, Samples* sorted) {
+  sorted[0] = lesser(low, v);
+  const Samples rest = greater(low, v);
+  sorted[1] = lesser(high, rest);
+  sorted[2] = greater(high, rest);
 }
 
-template <int kSide>
-inline void medianRun(const float* corner, std::ptrdiff_t stride, float* out, int chunks) noexcept {
-  for (int i = 0; i < chunks; ++i) medianRow<kSide>(corner + i * kAbreast, stride, out + i * kAbreast);
+FETTLE_INLINE Samples middleOfThree(const Samples& a, const Samples& b, const Samples& c) {
+  return greater(lesser(a, b), lesser(greater(a, b), c));
+}
+
+FETTLE_INLINE Samples middleOfNine(const Samples (*sorted)[3]) {
+  const Samples low = greater(greater(sorted[0][0], sorted[1][0]), sorted[2][0]);
+  const Samples mid = middleOfThree(sorted[0][1], sorted[1][1], sorted[2][1]);
+  const Samples high = lesser(lesser(sorted[0][2], sorted[1][2]), sorted[2][2]);
+  return middleOfThree(low, mid, high);
+}
+
+template <>
+void medianStrip<3>(const float* corner, std::ptrdiff_t stride, int last_row, int out_rows, float* out,
+                    std::ptrdiff_t out_stride) noexcept {
+  const auto row = [&](int i) { return corner + (i < last_row ? i : last_row) * stride; };
+  for (int r = 0; r < out_rows; r += 2) {
+    Samples first[3][3];
+    Samples second[3][3];
+#pragma GCC unroll 3
+    for (int i = 0; i < 3; ++i) {
+      const auto b = load<Samples>(row(r + 1) + i);
+      const auto c = load<Samples>(row(r + 2) + i);
+      const Samples low = lesser(b, c);
+      const Samples high = greater(b, c);
+      threeColumns(low, high, load<Samples>(row(r) + i), first[i]);
+      threeColumns(low, high, load<Samples>(row(r + 3) + i), second[i]);
+    }
+    const Samples medians[2] = {middleOfNine(first), middleOfNine(second)};
+    for (int j = 0; j < 2 && r + j < out_rows; ++j) store(out + (r + j) * out_stride, medians[j]);
+  }
+}
+
+inline int medianAbreast() noexcept {
+  return kAbreast;
 }

@@ -1,102 +1,179 @@
-// Medians of windows with few samples, by comparing and exchanging only, 16 outputs abreast. Windows that
-// leave the field or hold a hole have any number of samples and go one by one.
+// Medians of windows with few samples, by comparing and exchanging only, many outputs abreast. Windows that
+// leave the field or hold a hole have any number of samples: few of them go one by one, many by their ranks.
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <cstring>
+#include <utility>
+#include <vector>
 
+#include "engine/filter/cpu.h"
 #include "engine/filter/median.h"
+#include "engine/filter/sorting_network.h"
+
+#ifdef FETTLE_CPU_LEVELS
+#include <immintrin.h>
+#endif
 
 namespace fettle::engine {
 
 namespace {
 
-constexpr int kAbreast = 16;
+template <int kN>
+struct Sorting {
+  static constexpr auto kList = sortingNetwork(kN);
+};
 
-using Run = void (*)(const float* corner, std::ptrdiff_t stride, float* out, int chunks);
+template <int kA, int kB, int kBegin, int kEnd>
+struct Merging {
+  static constexpr auto kList = mergingNetwork(kA, kB, kBegin, kEnd);
+};
 
-// Explicit vectors are cut to the machine's before functions are cloned for machines, so that FETTLE_EACH_CPU
-// would come too late for them.
-namespace plain {
-#include "engine/filter/median_small-inl.h"
-}
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
-#define FETTLE_SMALL_MEDIAN_TARGETS
-#pragma GCC push_options
-#pragma GCC target("arch=haswell")
-namespace avx2 {
-#include "engine/filter/median_small-inl.h"
-}
-#pragma GCC pop_options
-#pragma GCC push_options
-#pragma GCC target("arch=skylake-avx512")
-namespace avx512 {
-#include "engine/filter/median_small-inl.h"
-}
-#pragma GCC pop_options
-#endif
+#define FETTLE_KERNEL "engine/filter/median_small-inl.h"
+#include "engine/filter/each_cpu-inl.h"
 
-template <int kSide>
-Run chooseRun() noexcept {
-#ifdef FETTLE_SMALL_MEDIAN_TARGETS
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
-    return avx512::medianRun<kSide>;
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) return avx2::medianRun<kSide>;
-#endif
-  return plain::medianRun<kSide>;
+using Strip = void (*)(const float* corner, std::ptrdiff_t stride, int last_row, int out_rows, float* out,
+                       std::ptrdiff_t out_stride);
+
+Strip chooseStrip(int window, CpuLevel level) noexcept {
+  switch (window) {
+    case 3:
+      return FETTLE_AT_LEVEL(level, medianStrip<3>);
+    case 5:
+      return FETTLE_AT_LEVEL(level, medianStrip<5>);
+    case 7:
+      return FETTLE_AT_LEVEL(level, medianStrip<7>);
+    case 9:
+      return FETTLE_AT_LEVEL(level, medianStrip<9>);
+    default:
+      return FETTLE_AT_LEVEL(level, medianStrip<11>);
+  }
 }
 
-FETTLE_EACH_CPU bool anyHole(const float* corner, std::ptrdiff_t stride, int columns, int rows) {
+// Bit i: row[i] is a hole, i < n <= 64.
+FETTLE_EACH_CPU std::uint64_t holesOf(const float* row, int n) noexcept {
+  std::uint64_t holes = 0;
+  for (int i = 0; i < n; ++i) holes |= std::uint64_t{row[i] != row[i]} << i;
+  return holes;
+}
+
+FETTLE_EACH_CPU bool anyHole(const float* row, int n) noexcept {
   int holes = 0;
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < columns; ++c) {
-      const float v = corner[r * stride + c];
-      holes |= v != v ? 1 : 0;
-    }
+  for (int i = 0; i < n; ++i) holes |= row[i] != row[i] ? 1 : 0;
   return holes != 0;
 }
 
 class SmallMedian final : public BlockFilter {
  public:
-  explicit SmallMedian(int window)
+  SmallMedian(int window, CpuLevel level)
       : radius_(window / 2),
-        run_(window == 3   ? chooseRun<3>()
-             : window == 5 ? chooseRun<5>()
-                           : chooseRun<7>()) {}
+        strip_(chooseStrip(window, level)),
+        abreast_(FETTLE_AT_LEVEL(level, medianAbreast)()),
+        by_ranks_(makeRankMedian(window, level)) {}
 
   bool run(const Block& block, const JobControl& job) override {
-    const int side = 2 * radius_ + 1;
-    // Columns of the output whose windows lie in the field.
-    const int begin = std::clamp(radius_ - block.first_column, 0, block.out_columns);
-    const int end = std::clamp(block.columns - radius_ - block.first_column, begin, block.out_columns);
-    for (int r = 0; r < block.out_rows; ++r) {
-      if (job.cancelled()) return false;
-      float* out = block.out + r * block.out_stride;
-      const int row = block.first_row + r - radius_;
-      int c = 0;
-      if (row >= 0 && row + side <= block.rows) {
-        for (; c < begin; ++c) out[c] = one(block, c, r);
-        const float* corner = block.row(row) + block.first_column - radius_;
-        if (!block.holes) {
-          const int chunks = (end - begin) / kAbreast;
-          run_(corner + c, block.stride, out + c, chunks);
-          c += chunks * kAbreast;
-        } else {
-          for (; c + kAbreast <= end; c += kAbreast) {
-            if (anyHole(corner + c, block.stride, kAbreast + side - 1, side))
-              for (int i = c; i < c + kAbreast; ++i) out[i] = one(block, i, r);
-            else
-              run_(corner + c, block.stride, out + c, 1);
-          }
-        }
-      }
-      for (; c < block.out_columns; ++c) out[c] = one(block, c, r);
-    }
+    for (int c = 0; c < block.out_columns; c += kAcross)
+      if (!runColumns(block, c, std::min(kAcross, block.out_columns - c), job)) return false;
     return true;
   }
 
  private:
+  static constexpr int kAcross = 64;  // outputs side by side: bits of a word
+  // Windows that are worth sorting a block for.
+  static constexpr int kManyWindows = 256;
+
+  // Outputs [first, first + n).
+  bool runColumns(const Block& block, int first, int n, const JobControl& job) {
+    // Outputs whose windows lie in the field, columns and rows.
+    const int c0 = std::clamp(radius_ - block.first_column, first, first + n);
+    int c1 = std::clamp(block.columns - radius_ - block.first_column, c0, first + n);
+    if (c1 - c0 < abreast_) c1 = c0;
+    const int r0 = std::clamp(radius_ - block.first_row, 0, block.out_rows);
+    const int r1 = std::clamp(block.rows - radius_ - block.first_row, r0, block.out_rows);
+    const int top = block.first_row + r0 - radius_;
+    if (r0 < r1)
+      for (int next = c0; next < c1; next += abreast_) {
+        if (job.cancelled()) return false;
+        const int c = std::min(next, c1 - abreast_);  // the last ones may be done twice
+        strip_(block.row(top) + block.first_column + c - radius_, block.stride, block.rows - 1 - top, r1 - r0,
+               block.out + r0 * block.out_stride + c, block.out_stride);
+      }
+
+    // What is left: windows that leave the field or hold a hole.
+    const std::uint64_t all = n == kAcross ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1;
+    const std::uint64_t inside =
+        c1 - c0 == kAcross ? ~std::uint64_t{0} : ((std::uint64_t{1} << (c1 - c0)) - 1) << (c0 - first);
+    left_.assign(static_cast<std::size_t>(block.out_rows), all);
+    for (int r = r0; r < r1; ++r) left_[static_cast<std::size_t>(r)] = all & ~inside;
+    if (block.holes) addHoles(block, first, n);
+    int windows = 0;
+    for (const std::uint64_t row : left_) windows += std::popcount(row);
+    if (windows == 0) return true;
+    if (windows >= kManyWindows) return runRanks(block, first, job);
+    for (int r = 0; r < block.out_rows; ++r)
+      for (std::uint64_t row = left_[static_cast<std::size_t>(r)]; row != 0; row &= row - 1) {
+        const int c = first + std::countr_zero(row);
+        block.out[r * block.out_stride + c] = one(block, c, r);
+      }
+    return true;
+  }
+
+  // Adds the outputs whose windows hold a hole, but not those that are holes.
+  void addHoles(const Block& block, int first, int n) {
+    const int left = std::max(block.first_column + first - radius_, 0);
+    const int right = std::min(block.first_column + first + n + radius_, block.columns);
+    for (int y = 0; y < block.rows; ++y) {
+      if (!anyHole(block.row(y) + left, right - left)) continue;
+      std::uint64_t reached = 0;
+      for (int x = left; x < right; ++x) {
+        if (const float v = block.row(y)[x]; v == v) continue;
+        const int begin = std::clamp(x - radius_ - block.first_column - first, 0, n);
+        const int end = std::clamp(x + radius_ + 1 - block.first_column - first, begin, n);
+        if (begin == end) continue;
+        reached |= (~std::uint64_t{0} >> (kAcross - (end - begin))) << begin;
+      }
+      for (int r = std::max(y - radius_ - block.first_row, 0);
+           r <= std::min(y + radius_ - block.first_row, block.out_rows - 1); ++r)
+        left_[static_cast<std::size_t>(r)] |= reached;
+    }
+    for (int r = 0; r < block.out_rows; ++r)
+      if (left_[static_cast<std::size_t>(r)] != 0)
+        left_[static_cast<std::size_t>(r)] &=
+            ~holesOf(block.row(block.first_row + r) + block.first_column + first, n);
+  }
+
+  // The rows with windows left, by their ranks.
+  bool runRanks(const Block& block, int first, const JobControl& job) {
+    for (int r = 0; r < block.out_rows;) {
+      if (left_[static_cast<std::size_t>(r)] == 0) {
+        ++r;
+        continue;
+      }
+      std::uint64_t columns = 0;
+      int end = r;
+      for (; end < block.out_rows && left_[static_cast<std::size_t>(end)] != 0; ++end)
+        columns |= left_[static_cast<std::size_t>(end)];
+      const int begin_column = first + std::countr_zero(columns);
+      const int end_column = first + kAcross - std::countl_zero(columns);
+      const int left = std::max(block.first_column + begin_column - radius_, 0);
+      const int low = std::max(block.first_row + r - radius_, 0);
+      Block part = block;
+      part.heights = block.row(low) + left;
+      part.columns = std::min(block.first_column + end_column + radius_, block.columns) - left;
+      part.rows = std::min(block.first_row + end + radius_, block.rows) - low;
+      part.first_column = block.first_column + begin_column - left;
+      part.first_row = block.first_row + r - low;
+      part.out = block.out + r * block.out_stride + begin_column;
+      part.out_columns = end_column - begin_column;
+      part.out_rows = end - r;
+      if (!by_ranks_->run(part, job)) return false;
+      r = end;
+    }
+    return true;
+  }
+
   [[nodiscard]] float one(const Block& block, int c, int r) const noexcept {
     std::array<float, kSmallMedianWindow * kSmallMedianWindow> window{};
     const int column = block.first_column + c;
@@ -114,13 +191,16 @@ class SmallMedian final : public BlockFilter {
   }
 
   int radius_;
-  Run run_;
+  Strip strip_;
+  int abreast_;
+  std::unique_ptr<BlockFilter> by_ranks_;
+  std::vector<std::uint64_t> left_;  // of each row of outputs, those that are not done yet
 };
 
 }  // namespace
 
-std::unique_ptr<BlockFilter> makeSmallMedian(int window) {
-  return std::make_unique<SmallMedian>(window);
+std::unique_ptr<BlockFilter> makeSmallMedian(int window, CpuLevel level) {
+  return std::make_unique<SmallMedian>(window, level);
 }
 
 }  // namespace fettle::engine

@@ -45,33 +45,34 @@ struct NewTile {
   TileReport report;
 };
 
-std::unique_ptr<BlockFilter> makeFilter(const FilterSpec& spec) {
+std::unique_ptr<BlockFilter> makeFilter(const FilterSpec& spec, CpuLevel level) {
   switch (spec.kind) {
     case FilterKind::kBox:
       return makeBoxFilter(spec);
     case FilterKind::kGaussian:
-      return makeGaussianFilter(spec);
+      return makeGaussianFilter(spec, level);
     case FilterKind::kMedian:
-      return makeMedianFilter(spec);
+      return makeMedianFilter(spec, level);
   }
   return nullptr;
 }
 
 class Pass {
  public:
-  Pass(const Version& input, const Version& original, const FilterSpec& spec)
+  Pass(const Version& input, const Version& original, const FilterSpec& spec, CpuLevel level)
       : memory_(*input.memory()),
         reader_(input.reader()),
         original_(original.reader()),
         spec_(spec),
         radius_(spec.window / 2),
-        same_field_(&reader_.root() == &original_.root()) {}
+        same_field_(&reader_.root() == &original_.root()),
+        level_(level) {}
 
   // Filters one rectangle of tiles; appends the tiles that changed. False when cancelled or out of memory.
   bool run(TileRect rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
     shrink(rect);
     if (rect.column0 == rect.column1) return true;
-    if (spec_.kind == FilterKind::kBox && radius_ > 0) {
+    if (spec_.kind == FilterKind::kBox && radius_ > 0 && level_ == CpuLevel::kAvx512) {
       if (!scratch.strip) scratch.strip = BoxStrip::make(radius_);
       if (scratch.strip) return runStrip(rect, scratch, job, made);
     }
@@ -187,7 +188,7 @@ class Pass {
         std::copy_n(block.row(r), block.out_columns, block.out + r * block.out_stride);
       return true;
     }
-    if (!scratch.filter) scratch.filter = makeFilter(spec_);
+    if (!scratch.filter) scratch.filter = makeFilter(spec_, level_);
     return scratch.filter->run(block, job);
   }
 
@@ -251,7 +252,7 @@ class Pass {
   const FilterSpec& spec_;
   int radius_;
   bool same_field_;
-  CpuLevel level_ = bestCpuLevel();
+  CpuLevel level_;
   std::atomic<bool> out_of_memory_{false};
 };
 
@@ -294,17 +295,17 @@ Cut suitableCut(const FilterSpec& spec, const Grid& grid) noexcept {
 }  // namespace
 
 Result<PassResult> filterOnce(const Version& input, const Version& original, const FilterSpec& spec,
-                              int block_side, JobControl& job) {
+                              const FilterTuning& tuning, JobControl& job) {
   const Grid& grid = input.grid();
   const FieldReader reader = input.reader();
-  const Cut cut = block_side > 0 ? Cut{block_side, block_side} : suitableCut(spec, grid);
+  const Cut cut = tuning.block_side > 0 ? Cut{tuning.block_side, tuning.block_side} : suitableCut(spec, grid);
   const std::int32_t wide = cut.columns / kTileSide;
   const std::int32_t high = cut.rows / kTileSide;
   assert(wide > 0 && high > 0);
   const std::int32_t across = (reader.tileColumns() + wide - 1) / wide;
   const std::int32_t up = (reader.tileRows() + high - 1) / high;
 
-  Pass pass(input, original, spec);
+  Pass pass(input, original, spec, std::min(tuning.level, bestCpuLevel()));
   tbb::enumerable_thread_specific<Scratch> scratches;
   tbb::enumerable_thread_specific<std::vector<NewTile>> made;
   tbb::parallel_for(

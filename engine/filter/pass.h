@@ -5,6 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
+#include "engine/filter/cpu.h"
 #include "engine/filter/filter.h"
 #include "engine/filter/merge.h"
 
@@ -14,6 +15,8 @@ namespace fettle::engine {
 struct FilterTuning {
   /// Side of the blocks [samples], a multiple of kTileSide; 0 = what suits the filter and its window.
   int block_side = 0;
+  /// Kernels of no higher level are used.
+  CpuLevel level = CpuLevel::kAvx512;
 };
 
 /// applyFilter with the work cut as told: for tests that the cut does not show, and for benchmarks.
@@ -30,6 +33,7 @@ struct PassResult {
 /// The spec applied once. As applyFilter, on the calling thread's task arena; the spec is valid. Progress is
 /// advanced by the field's samples. Throws std::bad_alloc.
 [[nodiscard]] Result<PassResult> filterOnce(const Version& input, const Version& original,
-                                            const FilterSpec& spec, int block_side, JobControl& job);
+                                            const FilterSpec& spec, const FilterTuning& tuning,
+                                            JobControl& job);
 
 }  // namespace fettle::engine

@@ -84,7 +84,7 @@ EdgeResponse::EdgeResponse(double sigma, Scatter scatter)
       scatter_(scatter),
       side_(std::max(1, static_cast<int>(std::lround(2.0 * sigma)))) {
   median_reach_ = sigma >= 1.5 ? 2 : 1;
-  median_ = makeMedianFilter(medianOf(2 * median_reach_ + 1));
+  median_ = makeMedianFilter(medianOf(2 * median_reach_ + 1), bestCpuLevel());
   // As far as a kernel reaches and some samples more, for a plane through one column alone is none.
   fill_reach_ = kernels_.radius + std::max(2, static_cast<int>(std::ceil(sigma)));
   margin_ = side_ + 1 + kernels_.radius +
