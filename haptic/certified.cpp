@@ -207,6 +207,21 @@ bool convexDistance(const Patch& s, double ez) noexcept {
   return sum > zd * (2.0 * pq + zd) * (1.0 + 1e-12);
 }
 
+// Whether the distance can be stationary inside the patch: there sx (ex - sx u) = z p and likewise along v,
+// with z and the slopes within what they are over the whole patch.
+bool mayRestInside(const Patch& s, const glm::dvec3& e) noexcept {
+  const double z_low = s.lowest() - e.z;
+  const double z_high = s.highest() - e.z;
+  const auto may = [&](double slope0, double out, double spacing) {
+    const double slope1 = slope0 + s.d;
+    const auto [low, high] = std::minmax({z_low * slope0, z_low * slope1, z_high * slope0, z_high * slope1});
+    const double room =
+        1e-6 * (spacing * (std::abs(out) + spacing) + std::max(std::abs(low), std::abs(high)));
+    return high > spacing * (out - spacing) - room && low < spacing * out + room;
+  };
+  return may(s.b, e.x - s.x0, s.sx) && may(s.c, e.y - s.y0, s.sy);
+}
+
 double unit(double x) noexcept {
   return std::clamp(x, 0.0, 1.0);
 }
@@ -244,6 +259,7 @@ PatchPoint closestOnWholePatch(const Patch& s, const glm::dvec3& endpoint) noexc
     keepNearer(best, closestOnEdgeV(s, endpoint, side));
     keepNearer(best, closestOnEdgeU(s, endpoint, side));
   }
+  if (!mayRestInside(s, endpoint)) return best;
   const Reduced r{s.sx, s.sy, endpoint.x - s.x0, endpoint.y - s.y0, s.b, s.c, s.d, s.a - endpoint.z};
   forEachMinimum(r, [&](double v) {
     keepNearer(best, closestOnEdgeV(s, endpoint, unit(v)));  // exact along u at any v
@@ -334,6 +350,18 @@ class CellSearch {
       }
   }
 
+  // Whether the patch, which is its middle plane give or take a quarter of its twist, is farther away than
+  // the best point, with room for rounding.
+  [[nodiscard]] bool planeIsBeyond(const Patch& s) const noexcept {
+    const double p = (s.b + 0.5 * s.d) / s.sx;
+    const double q = (s.c + 0.5 * s.d) / s.sy;
+    const double middle = s.a + 0.5 * (s.b + s.c) + 0.25 * s.d;
+    const double apart =
+        std::abs(e_.z - middle - p * (e_.x - s.x0 - 0.5 * s.sx) - q * (e_.y - s.y0 - 0.5 * s.sy)) -
+        0.25 * std::abs(s.d);
+    return apart > 0.0 && apart * apart > best_.distance2_mm2 * (1.0 + p * p + q * q) * (1.0 + 1e-9);
+  }
+
   // At most kWindowWithoutPyramid columns.
   void cells(std::int32_t c0, std::int32_t r0, std::int32_t c1, std::int32_t r1) noexcept {
     // The horizontal distance of a cell is a part along x and a part along y: as many of each as the window
@@ -353,7 +381,7 @@ class CellSearch {
         if (flat2 > radius2_ || flat2 >= best_.distance2_mm2) continue;
         if (!surface_.patch({column, row}, patch)) continue;
         const double dz = beyond(e_.z, patch.lowest(), patch.highest());
-        if (flat2 + dz * dz >= best_.distance2_mm2) continue;
+        if (flat2 + dz * dz >= best_.distance2_mm2 || planeIsBeyond(patch)) continue;
         const PatchPoint point = closestOnWholePatch(patch, e_);
         if (point.distance2_mm2 < best_.distance2_mm2)
           best_ = {{column, row}, point.u, point.v, patch.at(point.u, point.v), point.distance2_mm2};
