@@ -86,6 +86,16 @@ void SphereTracker::look(const Surface& surface, const glm::dvec3& centre, Touch
   if (!window_.holds(centre)) window_.load(surface, centre, reach, kRoomSteps * step_);
   window_.touches(centre, reach, out);
   out.below = window_.heightUnder(centre) > centre.z;
+  looked_from_[&out == &lists_[0] ? 0 : 1] = centre;
+}
+
+// What an earlier tick knows of the surface goes when the surface may be another.
+void SphereTracker::forgetEdited(const Surface& surface) noexcept {
+  if (felt_ == &surface && felt_refreshes_ == surface.refreshes()) return;
+  felt_ = &surface;
+  felt_refreshes_ = surface.refreshes();
+  window_.forget();
+  looked_from_.fill(glm::dvec3(NAN));
 }
 
 // Out of the material, straight up: the material grown by the ball is all below one height, so that halving
@@ -132,9 +142,10 @@ int SphereTracker::halfSpacesAt(const TouchList& near) noexcept {
 int SphereTracker::addCuts(const glm::dvec3& to, TouchList& there, double tolerance, int seen,
                            int cuts) noexcept {
   const auto add = [&](const Touch& t) {
-    if (cuts == kMostCuts) return;
-    half_spaces_[static_cast<std::size_t>(seen + cuts)] = cutFor(t.point_mm, t.normal);
-    cuts_[static_cast<std::size_t>(cuts++)] = t;
+    // The oldest makes room.
+    const int at = cuts < kMostCuts ? cuts++ : oldest_cut_++ % kMostCuts;
+    half_spaces_[static_cast<std::size_t>(seen + at)] = cutFor(t.point_mm, t.normal);
+    cuts_[static_cast<std::size_t>(at)] = t;
   };
   Touch under;
   if (there.below) {
@@ -168,6 +179,68 @@ glm::dvec3 SphereTracker::slideOf(const Projection& step) const noexcept {
   return glm::dvec3(0.0);
 }
 
+// The step with what holds the ball taken as curved, as it is: along it Newton's step for the distance to the
+// endpoint (the second derivative of the Lagrangian function; Nocedal and Wright 2006, "Numerical
+// Optimization", section 18.1), out of it by what the curve rises on the way. False when it is the plain step
+// or no minimum is that way.
+bool SphereTracker::bentStep(const Projection& step, const glm::dvec3& slide, int seen,
+                             glm::dvec3& out) const noexcept {
+  if (step.count < 1 || step.count > 2) return false;
+  const double long2 = length2(slide);
+  if (!(long2 > 1e-20 * step_ * step_)) return false;
+  const auto touch = [&](int k) -> const Touch& {
+    const int index = step.active[static_cast<std::size_t>(k)];
+    return index < seen ? lists_[static_cast<std::size_t>(here_)].touches[static_cast<std::size_t>(index)]
+                        : cuts_[static_cast<std::size_t>(index - seen)];
+  };
+  const auto normal = [&](int k) -> const glm::dvec3& {
+    return half_spaces_[static_cast<std::size_t>(step.active[static_cast<std::size_t>(k)])].normal;
+  };
+  const glm::dvec3 a = slide / std::sqrt(long2);
+  glm::dvec3 along;
+  double rise[2] = {0.0, 0.0};
+  if (step.count == 2) {
+    const double bend0 = window_.bend(centre_, touch(0), a, a);
+    const double bend1 = window_.bend(centre_, touch(1), a, a);
+    const double stiff = 1.0 - step.share[0] * bend0 - step.share[1] * bend1;
+    if (!(stiff > 0.05)) return false;
+    along = slide / stiff;
+    rise[0] = -0.5 * bend0 * length2(along);
+    rise[1] = -0.5 * bend1 * length2(along);
+    const double g = glm::dot(normal(0), normal(1));
+    const double det = 1.0 - g * g;
+    if (!(det > 1e-6)) return false;
+    out = step.y - slide + along + ((rise[0] - g * rise[1]) / det) * normal(0) +
+          ((rise[1] - g * rise[0]) / det) * normal(1);
+    return true;
+  }
+  const glm::dvec3 b = glm::cross(normal(0), a);
+  const double aa = window_.bend(centre_, touch(0), a, a);
+  const double ab = window_.bend(centre_, touch(0), a, b);
+  const double bb = window_.bend(centre_, touch(0), b, b);
+  const double m00 = 1.0 - step.share[0] * aa;
+  const double m01 = -step.share[0] * ab;
+  const double m11 = 1.0 - step.share[0] * bb;
+  const double det = m00 * m11 - m01 * m01;
+  if (!(m00 > 0.05 && m11 > 0.05 && det > 0.05 * 0.05)) return false;
+  const double sa = std::sqrt(long2) * m11 / det;
+  const double sb = -std::sqrt(long2) * m01 / det;
+  along = sa * a + sb * b;
+  out = step.y - slide + along - 0.5 * (sa * sa * aa + 2.0 * sa * sb * ab + sb * sb * bb) * normal(0);
+  return true;
+}
+
+// Moves a step that came a little into the material out of it by the shortest way, as the touches there have
+// it.
+bool SphereTracker::liftedOut(const TouchList& there, glm::dvec3& step) noexcept {
+  if (there.below || there.nearest_mm < radius_ - slack_) return false;
+  const int count = halfSpacesAt(there);
+  const Projection out = projectOnHalfSpaces(glm::dvec3(0.0), half_spaces_.data(), count, 0.01 * tolerance_);
+  if (!out.solved) return false;
+  step += out.y;
+  return true;
+}
+
 SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dvec3& endpoint,
                                            TickCounters& counters) noexcept {
   const double tolerance = toleranceMm(std::max(std::abs(centre_.z), std::abs(endpoint.z)));
@@ -177,20 +250,22 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
   int cuts = 0;
   int made_from = here_;  // the list that the last step's half-spaces are of
   int steps = 0;
+  oldest_cut_ = 0;
   glm::dvec3 last{0.0};  // the step before
   double longest = step_;
-  glm::dvec3 slid{0.0};  // of it, along what holds the ball
-  int held_by = 0;
   Arrival arrival = Arrival::kBound;
   for (; steps < kSphereSteps && arrival == Arrival::kBound; ++steps) {
     const glm::dvec3 goal = endpoint - centre_;
     made_from = here_;
-    seen = halfSpacesAt(lists_[here_]);
-    for (int k = 0; k < cuts; ++k) {
-      const glm::dvec3 from = centre_ - cuts_[static_cast<std::size_t>(k)].point_mm;
-      const double distance = glm::length(from);
-      half_spaces_[static_cast<std::size_t>(seen + k)] = {from / distance, radius_ - distance};
-    }
+    const auto takeHalfSpaces = [&] {
+      seen = halfSpacesAt(lists_[here_]);
+      for (int k = 0; k < cuts; ++k) {
+        const glm::dvec3 from = centre_ - cuts_[static_cast<std::size_t>(k)].point_mm;
+        const double distance = glm::length(from);
+        half_spaces_[static_cast<std::size_t>(seen + k)] = {from / distance, radius_ - distance};
+      }
+    };
+    takeHalfSpaces();
     // An edit may have raised the surface into the ball: half of it comes out a step.
     const double reach_in = std::max(tolerance, 0.5 * (radius_ - lists_[here_].nearest_mm));
     TouchList& there = lists_[1 - here_];
@@ -202,6 +277,7 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
       return true;
     };
     double part = 1.0;
+    double went2 = -1.0;  // squared length of a bent step that was taken
     bool moved = false;
     glm::dvec3 slide{0.0};
     for (int round = 0; round < kCutRounds + kHalvings && !moved; ++round) {
@@ -219,18 +295,17 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
         }
         part = far > longest ? longest / far : 1.0;
         slide = slideOf(step);
-        if (round == 0 && part == 1.0 && step.count == held_by) {
-          // The same contacts as before: on a round part the steps shrink by the same factor each, whose sum
-          // is known (Aitken 1926). Going there at once is tried first.
-          const double factor = glm::dot(slide, slid) / std::max(length2(slid), 1e-300);
-          if (factor < 0.9 && factor > 0.05) {
-            const glm::dvec3 all = slide * (factor / (1.0 - factor));
-            if (length2(step.y + all) <= step_ * step_ && tryOut(centre_ + step.y + all)) {
-              moved = true;
-              slide = glm::dvec3(0.0);
-              break;
-            }
+        glm::dvec3 bent;
+        if (round == 0 && bentStep(step, slide, seen, bent) && length2(bent) <= longest * longest) {
+          const auto nearer = [&] { return length2(goal - bent) < length2(goal); };
+          if (nearer()) {
+            moved = tryOut(centre_ + bent);
+            if (!moved && liftedOut(there, bent) && nearer()) moved = tryOut(centre_ + bent);
           }
+          went2 = length2(bent);
+          if (moved) break;
+          went2 = -1.0;
+          takeHalfSpaces();
         }
       } else {
         part *= 0.5;
@@ -246,7 +321,7 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
       break;
     }
     here_ = 1 - here_;
-    const double length_2 = part * part * length2(step.y);
+    const double length_2 = went2 >= 0.0 ? went2 : part * part * length2(step.y);
     if (step.count == 0 && part == 1.0)
       arrival = Arrival::kFree;
     else if (length_2 <= rest * rest)
@@ -254,8 +329,6 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
     else if (length_2 > 0.01 * step_ * step_)
       cuts = 0;
     last = centre_ - start;
-    slid = part == 1.0 ? slide : glm::dvec3(0.0);
-    held_by = step.count;
   }
   counters.longest_search = std::max<std::int64_t>(counters.longest_search, steps);
   counters.search_bound_hits += arrival == Arrival::kBound ? 1 : 0;
@@ -287,12 +360,13 @@ Contact SphereTracker::update(Surface& surface, const glm::dvec3& endpoint, Tick
     return contact;
   }
   const double farthest = kSphereSteps * step_;
-  window_.forget();  // an edit may have changed what it holds
+  forgetEdited(surface);
   if (!was_placed || !(length2(moved) <= farthest * farthest)) {
     centre_ = endpoint;
     lift(surface);
   } else {
-    look(surface, centre_, lists_[here_]);
+    // A ball that rests was looked at by the last tick.
+    if (looked_from_[static_cast<std::size_t>(here_)] != centre_) look(surface, centre_, lists_[here_]);
     if (lists_[here_].below || lists_[here_].nearest_mm < 0.5 * radius_) lift(surface);
   }
   const Arrival arrival = walk(surface, endpoint, counters);

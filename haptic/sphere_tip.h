@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -41,15 +42,22 @@ inline constexpr double kMostSphereCells = 16.0;
 /// One tick: the centre starts where it was and walks towards the endpoint, a step at a time. A step is the
 /// projection of the endpoint on the half-spaces n . (x - p) >= r of all touches nearby: their active set, at
 /// most three, holds the ball (Zilles and Salisbury 1995). For a convex part of the surface the half-space is
-/// an inner approximation, so the step and the way to it stay out of it; what rises into the ball on the way
-/// (concave parts) is added as a half-space of its own and the step is taken again. Every step makes the
-/// centre's distance to the endpoint smaller, so the ball comes to rest on both walls of a groove rather than
-/// to jump between them. It ends when a step is shorter than the tolerance, or after kSphereSteps (counted in
-/// search_bound_hits; the centre is free of the material and goes on in the next tick).
+/// an inner approximation, so the step and the way to it stay out of it. One or two touches leave the ball a
+/// way along them: there the step is Newton's on the curved surface rather than on its planes, and when it
+/// ends a little in the material it is moved out by the shortest way. Where that fails, the plain step is
+/// taken, and what rises into the ball on the way (concave parts) is added as a half-space of its own and the
+/// step is taken again. Every step makes the centre's distance to the endpoint smaller, so the ball comes to
+/// rest on both walls of a groove rather than to jump between them. It ends when a step is shorter than the
+/// tolerance, or after kSphereSteps (counted in search_bound_hits; the centre is free of the material and
+/// goes on in the next tick).
+///
+/// The samples around the ball, and the touches where it rests, are kept from tick to tick until the surface
+/// is refreshed.
 ///
 /// Sources: Zilles, Salisbury 1995, "A constraint-based god-object method for haptic display"; Ruspini,
 /// Kolarov, Khatib 1997, "The haptic display of complex graphical environments" (ball as proxy); Serra 1982,
-/// "Image analysis and mathematical morphology" (dilation by a ball).
+/// "Image analysis and mathematical morphology" (dilation by a ball); Nocedal and Wright 2006, "Numerical
+/// Optimization", section 18.1 (Newton's step under constraints).
 ///
 /// Errors. The ball reaches into the material by at most toleranceMm(): 1e-6 of the smaller of radius and
 /// spacing, plus roundings of the heights. At rest no step longer than 1e-4 of that size makes it nearer.
@@ -69,7 +77,8 @@ class SphereTracker {
   /// `radius_mm` > 0; over kMostSphereCells cells it is cut to that (sphereProblem tells before).
   SphereTracker(double radius_mm, const engine::Grid& grid) noexcept;
 
-  /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt.
+  /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt,
+  /// by Surface::refreshes().
   [[nodiscard]] Contact update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters) noexcept;
 
   /// Forgets the centre, as before the first tick.
@@ -92,12 +101,16 @@ class SphereTracker {
   [[nodiscard]] bool clearOfAll(const Surface& surface, const glm::dvec3& a,
                                 const glm::dvec3& b) const noexcept;
   void look(const Surface& surface, const glm::dvec3& centre, TouchList& out) noexcept;
+  void forgetEdited(const Surface& surface) noexcept;
   void lift(const Surface& surface) noexcept;
   [[nodiscard]] HalfSpace cutFor(const glm::dvec3& point, const glm::dvec3& normal) const noexcept;
   [[nodiscard]] int halfSpacesAt(const TouchList& near) noexcept;
   [[nodiscard]] int addCuts(const glm::dvec3& to, TouchList& there, double tolerance, int seen,
                             int cuts) noexcept;
   [[nodiscard]] glm::dvec3 slideOf(const Projection& step) const noexcept;
+  [[nodiscard]] bool bentStep(const Projection& step, const glm::dvec3& slide, int seen,
+                              glm::dvec3& out) const noexcept;
+  [[nodiscard]] bool liftedOut(const TouchList& there, glm::dvec3& step) noexcept;
   [[nodiscard]] Arrival walk(const Surface& surface, const glm::dvec3& endpoint,
                              TickCounters& counters) noexcept;
 
@@ -112,8 +125,12 @@ class SphereTracker {
   SphereWindow window_;
   int here_ = 0;  // which list is that of the centre; the other is for where it may go
   std::array<TouchList, 2> lists_;
+  std::array<glm::dvec3, 2> looked_from_{glm::dvec3(NAN), glm::dvec3(NAN)};  // centres of the lists
+  const Surface* felt_ = nullptr;  // what window and lists are of, and its refreshes() then
+  std::uint64_t felt_refreshes_ = 0;
   std::array<HalfSpace, TouchList::kMost + kMostCuts> half_spaces_;
   std::array<Touch, kMostCuts> cuts_;
+  int oldest_cut_ = 0;
 };
 
 /// Steps of one tick.

@@ -1,19 +1,18 @@
 #include "haptic/sphere_window.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include <glm/geometric.hpp>
 
 #include "haptic/normal.h"
+#include "haptic/touch_lanes.h"
 
 namespace fettle::haptic {
 
 namespace {
 
-// Pieces of a cell that is twisted enough for two minima. With 6 a ball came 0.016 of a cell into one of
-// slope 10.
-constexpr int kPieces = 24;
 // Two cells must never both leave a touch on their common side to the other: what rounding may do to the
 // comparison, relative. A touch too many there does no harm, it is the same as its neighbour's.
 constexpr double kSeam = 1e-10;
@@ -119,6 +118,44 @@ double SphereWindow::heightUnder(const glm::dvec3& at) const noexcept {
   return under(at, point) ? point.point_mm.z : -HUGE_VAL;
 }
 
+// The squared distance to the nearest of S(u, v), halved, has the second derivative I - J H^-1 J^T (the foot
+// moves with the centre): J the surface's derivatives that are free at the touch, H its own second
+// derivatives in them. The distance is the root of twice that.
+double SphereWindow::bend(const glm::dvec3& centre, const Touch& touch, const glm::dvec3& a,
+                          const glm::dvec3& b) const noexcept {
+  const glm::dvec3 m = centre - touch.point_mm;
+  const double distance = glm::length(m);
+  if (!(distance > 0.0)) return 0.0;
+  const auto i = static_cast<std::int32_t>(touch.cell.column - column_);
+  const auto j = static_cast<std::int32_t>(touch.cell.row - row_);
+  double foot = 0.0;
+  if (valid(i, j)) {
+    const Corners z = corners(i, j);
+    const double d = z.z11 - z.z10 - z.z01 + z.z00;
+    const glm::dvec3 su{sx_, 0.0, z.z10 - z.z00 + d * touch.v};
+    const glm::dvec3 sv{0.0, sy_, z.z01 - z.z00 + d * touch.u};
+    const bool along_u = touch.u > 0.0 && touch.u < 1.0;
+    const bool along_v = touch.v > 0.0 && touch.v < 1.0;
+    const double uu = glm::dot(su, su);
+    const double vv = glm::dot(sv, sv);
+    const double au = glm::dot(a, su);
+    const double av = glm::dot(a, sv);
+    const double bu = glm::dot(b, su);
+    const double bv = glm::dot(b, sv);
+    if (along_u && along_v) {
+      const double uv = glm::dot(su, sv) - m.z * d;
+      const double det = uu * vv - uv * uv;
+      if (!(det > 1e-6 * uu * vv)) return 0.0;
+      foot = (au * bu * vv + av * bv * uu - (au * bv + av * bu) * uv) / det;
+    } else if (along_u) {
+      foot = au * bu / uu;
+    } else if (along_v) {
+      foot = av * bv / vv;
+    }
+  }
+  return (glm::dot(a, b) - foot) / distance;
+}
+
 // One look for touches: everything relative to the centre.
 class SphereWindow::Collector {
  public:
@@ -132,6 +169,7 @@ class SphereWindow::Collector {
         out_(out) {}
 
   void cell(std::int32_t i, std::int32_t j) noexcept;
+  void abreast(std::int32_t i0, std::int32_t i1, std::int32_t j0, std::int32_t j1) noexcept;
 
  private:
   // Touches are kept with distance squared first; the root is taken of those that stay.
@@ -236,6 +274,8 @@ class SphereWindow::Collector {
   void wall(std::int32_t ci, std::int32_t cj, std::int32_t i, std::int32_t j, bool along_x, double side,
             double out) noexcept;
 
+  void minimum(std::int32_t i, std::int32_t j, Valley& g, double low, double high, double v) noexcept;
+  void minimumOfPiece(std::int32_t i, std::int32_t j, Valley& g, int piece) noexcept;
   void inside(std::int32_t i, std::int32_t j, const Corners& z) noexcept;
   void rims(std::int32_t i, std::int32_t j) noexcept;
 
@@ -249,19 +289,21 @@ class SphereWindow::Collector {
 //   g(v) = min over u of f(u, v),   u(v) = (sx ex - w p) / (sx^2 + p^2),   p = b + d v,   w = a - cz + c v,
 // (halves throughout), whose minima with 0 < u(v) < 1 are those of the patch (the reduction of
 // certified.cpp).
-void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corners& z) noexcept {
-  const double b = z.z10 - z.z00;
-  const double c = z.z01 - z.z00;
-  const double d = (z.z11 - z.z01) - b;
-  const double sx = w_.sx_;
-  const double sy = w_.sy_;
-  const double ex = c_.x - (w_.column_ + i) * sx;
-  const double ey = c_.y - (w_.row_ + j) * sy;
-  const double w0 = z.z00 - c_.z;
-  double u = 0.0;
-  double height = 0.0;
-  double bend = 0.0;
-  const auto slopeAt = [&](double v) {
+class SphereWindow::Valley {
+ public:
+  Valley(const SphereWindow& w, const glm::dvec3& centre, std::int32_t i, std::int32_t j,
+         const Corners& z) noexcept
+      : sx(w.sx_),
+        sy(w.sy_),
+        b(z.z10 - z.z00),
+        c(z.z01 - z.z00),
+        d((z.z11 - z.z01) - b),
+        ex(centre.x - (w.column_ + i) * sx),
+        ey(centre.y - (w.row_ + j) * sy),
+        w0(z.z00 - centre.z) {}
+
+  // Of g; leaves u, height and g's own second derivative behind.
+  [[nodiscard]] double slopeAt(double v) noexcept {
     const double p = b + d * v;
     const double w = w0 + c * v;
     const double uu = sx * sx + p * p;
@@ -271,45 +313,60 @@ void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corne
     const double uv = p * q + height * d;
     bend = sy * sy + q * q - uv * uv / uu;
     return sy * (sy * v - ey) + height * q;
-  };
-  // Newton's method, kept within a bracket where g falls at `low` and rises at `high`.
-  const auto minimum = [&](double low, double high, double v) {
-    for (int round = 0; round < 40; ++round) {
-      const double slope = slopeAt(v);
-      (slope < 0.0 ? low : high) = v;
-      const double next = bend > 0.0 ? v - slope / bend : -1.0;
-      const double to = next > low && next < high ? next : 0.5 * (low + high);
-      const double moved = std::abs(to - v);
-      v = to;
-      if (moved < 1e-6) break;
-    }
-    (void)slopeAt(v);
-    if (!(u > 0.0 && u < 1.0 && v > 0.0 && v < 1.0 && height < 0.0)) return;
-    const glm::dvec3 m{ex - u * sx, ey - v * sy, -height};
-    const double d2 = m.x * m.x + m.y * m.y + m.z * m.z;
-    if (d2 < reach2_) add(i, j, u, v, m, d2);
-  };
-  const double first = slopeAt(0.0);
-  const double last = slopeAt(1.0);
+  }
+
+  double sx, sy, b, c, d, ex, ey, w0;
+  double u = 0.0, height = 0.0, bend = 0.0;
+};
+
+// Newton's method, kept within a bracket where g falls at `low` and rises at `high`.
+void SphereWindow::Collector::minimum(std::int32_t i, std::int32_t j, Valley& g, double low, double high,
+                                      double v) noexcept {
+  for (int round = 0; round < 40; ++round) {
+    const double slope = g.slopeAt(v);
+    (slope < 0.0 ? low : high) = v;
+    const double next = g.bend > 0.0 ? v - slope / g.bend : -1.0;
+    const double to = next > low && next < high ? next : 0.5 * (low + high);
+    const double moved = std::abs(to - v);
+    v = to;
+    if (moved < 1e-6) break;
+  }
+  (void)g.slopeAt(v);
+  if (!(g.u > 0.0 && g.u < 1.0 && v > 0.0 && v < 1.0 && g.height < 0.0)) return;
+  const glm::dvec3 m{g.ex - g.u * g.sx, g.ey - v * g.sy, -g.height};
+  const double d2 = m.x * m.x + m.y * m.y + m.z * m.z;
+  if (d2 < reach2_) add(i, j, g.u, v, m, d2);
+}
+
+void SphereWindow::Collector::minimumOfPiece(std::int32_t i, std::int32_t j, Valley& g, int piece) noexcept {
+  minimum(i, j, g, static_cast<double>(piece) / kTwistPieces, (piece + 1.0) / kTwistPieces,
+          (piece + 0.5) / kTwistPieces);
+}
+
+void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corners& z) noexcept {
+  Valley g(w_, c_, i, j, z);
+  const double sx = g.sx;
+  const double sy = g.sy;
+  const double first = g.slopeAt(0.0);
+  const double last = g.slopeAt(1.0);
   // Second derivatives of the distance, halved: sx^2 + p^2, sy^2 + q^2, p q + z d.
-  const double p = std::max(std::abs(b), std::abs(b + d));
-  const double q = std::max(std::abs(c), std::abs(c + d));
+  const double p = std::max(std::abs(g.b), std::abs(g.b + g.d));
+  const double q = std::max(std::abs(g.c), std::abs(g.c + g.d));
   const double high = std::max({z.z00, z.z10, z.z01, z.z11});
   const double low = std::min({z.z00, z.z10, z.z01, z.z11});
-  const double zd = std::abs(d) * std::max(std::abs(c_.z - high), std::abs(c_.z - low));
+  const double zd = std::abs(g.d) * std::max(std::abs(c_.z - high), std::abs(c_.z - low));
   if (zd * (2.0 * p * q + zd) < sx * sx * sy * sy) {
     // Convex: one minimum at most.
-    if (first < 0.0 && last > 0.0) minimum(0.0, 1.0, std::clamp(ey / sy, 0.0, 1.0));
+    if (first < 0.0 && last > 0.0) minimum(i, j, g, 0.0, 1.0, std::clamp(g.ey / sy, 0.0, 1.0));
     return;
   }
   // Twisted so much that the ball bridges it: no minimum inside, only saddles.
-  const double bridge = std::abs(d) * std::max(0.0, c_.z - high) - p * q;
+  const double bridge = std::abs(g.d) * std::max(0.0, c_.z - high) - p * q;
   if (bridge > 0.0 && bridge * bridge > (sx * sx + p * p) * (sy * sy + q * q)) return;
   double before = first;
-  for (int k = 1; k <= kPieces; ++k) {
-    const double after = k == kPieces ? last : slopeAt(static_cast<double>(k) / kPieces);
-    if (before < 0.0 && after > 0.0)
-      minimum((k - 1.0) / kPieces, static_cast<double>(k) / kPieces, (k - 0.5) / kPieces);
+  for (int k = 1; k <= kTwistPieces; ++k) {
+    const double after = k == kTwistPieces ? last : g.slopeAt(static_cast<double>(k) / kTwistPieces);
+    if (before < 0.0 && after > 0.0) minimumOfPiece(i, j, g, k - 1);
     before = after;
   }
 }
@@ -380,7 +437,53 @@ void SphereWindow::Collector::cell(std::int32_t i, std::int32_t j) noexcept {
   inside(i, j, z);
 }
 
+// What cell() does, for cells without holes around them and two samples beyond each in the window.
+void SphereWindow::Collector::abreast(std::int32_t i0, std::int32_t i1, std::int32_t j0,
+                                      std::int32_t j1) noexcept {
+  const TouchKernels& kernels = touchKernels();
+  const LaneWindow window{w_.z_.data(), w_.columns_, w_.column_, w_.row_, w_.sx_, w_.sy_};
+  const LaneProbe ball{c_.x, c_.y, c_.z, reach_, reach2_, seam_x_, seam_y_};
+  std::array<LaneCell, kMostSide * kMostSide + kTouchLanes> cells;
+  const int count = kernels.reached(window, ball, i0, i1, j0, j1, cells.data());
+  LaneFinds finds;
+  for (int from = 0; from < count; from += kTouchLanes) {
+    const LaneCell* some = cells.data() + from;
+    kernels.look(window, ball, some, std::min(count - from, kTouchLanes), finds);
+    const auto take = [&](const LaneTouches& touches, std::size_t k, double u, double v) {
+      if ((touches.found >> k & 1u) != 0)
+        add(some[k].i, some[k].j, u, v, {touches.mx[k], touches.my[k], touches.mz[k]}, touches.d2[k]);
+    };
+    // In the order of cell(), which decides how ties are broken.
+    for (unsigned left = finds.sample.found | finds.edge_x.found | finds.edge_y.found | finds.inside.found |
+                         finds.twisted;
+         left != 0; left &= left - 1) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(left));
+      take(finds.sample, k, 1.0, 1.0);
+      take(finds.edge_x, k, finds.edge_x.u[k], 1.0);
+      take(finds.edge_y, k, 1.0, finds.edge_y.v[k]);
+      take(finds.inside, k, finds.inside.u[k], finds.inside.v[k]);
+      if ((finds.twisted >> k & 1u) == 0) continue;
+      const std::int32_t i = some[k].i;
+      const std::int32_t j = some[k].j;
+      for (unsigned rises = kernels.rises(window, ball, some[k]); rises != 0; rises &= rises - 1) {
+        Valley g(w_, c_, i, j, w_.corners(i, j));
+        minimumOfPiece(i, j, g, std::countr_zero(rises));
+      }
+    }
+  }
+}
+
 void SphereWindow::touches(const glm::dvec3& centre, double reach_mm, TouchList& out) const noexcept {
+  collect(centre, reach_mm, out, true);
+}
+
+void SphereWindow::touchesCellByCell(const glm::dvec3& centre, double reach_mm,
+                                     TouchList& out) const noexcept {
+  collect(centre, reach_mm, out, false);
+}
+
+void SphereWindow::collect(const glm::dvec3& centre, double reach_mm, TouchList& out,
+                           bool abreast) const noexcept {
   out.count = 0;
   out.nearest_mm = HUGE_VAL;
   const double reach2 = reach_mm * reach_mm;
@@ -389,12 +492,16 @@ void SphereWindow::touches(const glm::dvec3& centre, double reach_mm, TouchList&
   const std::int32_t i1 = clampedIndex((centre.x + reach_mm) / sx_ - column_, columns_ - 1);
   const std::int32_t j0 = clampedIndex((centre.y - reach_mm) / sy_ - row_, rows_ - 1);
   const std::int32_t j1 = clampedIndex((centre.y + reach_mm) / sy_ - row_, rows_ - 1);
+  Collector collector(*this, centre, reach_mm, out);
+  if (abreast && whole_ && i1 + 2 < columns_ && j1 + 2 < rows_) [[likely]] {
+    collector.abreast(i0, i1, j0, j1);
+    return;
+  }
   std::array<double, kMostSide> dx2;
   for (std::int32_t i = i0; i <= i1; ++i) {
     const double dx = beyond(centre.x, (column_ + i) * sx_, (column_ + i + 1) * sx_);
     dx2[static_cast<std::size_t>(i)] = dx * dx;
   }
-  Collector collector(*this, centre, reach_mm, out);
   for (std::int32_t j = j0; j <= j1; ++j) {
     const double dy = beyond(centre.y, (row_ + j) * sy_, (row_ + j + 1) * sy_);
     const double left = reach2 - dy * dy;

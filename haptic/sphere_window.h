@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "haptic/surface.h"
+#include "haptic/touch_lanes.h"
 
 namespace fettle::haptic {
 
@@ -62,12 +63,19 @@ class SphereWindow {
   /// All touches nearer than `reach_mm` (at most what load() was given); when there are more than fit, the
   /// nearest ones.
   void touches(const glm::dvec3& centre, double reach_mm, TouchList& out) const noexcept;
+  /// The same, bit for bit, one cell after the other: what touches() does at holes and rims, and what its
+  /// cells abreast (touch_lanes.h) are tested against.
+  void touchesCellByCell(const glm::dvec3& centre, double reach_mm, TouchList& out) const noexcept;
 
   /// Height of the surface under (x, y) [mm]; -HUGE_VAL over holes and beside the field.
   [[nodiscard]] double heightUnder(const glm::dvec3& at) const noexcept;
   /// The point of the surface straight above or below `at`, and the surface's normal there; false over holes
   /// and beside the field.
   [[nodiscard]] bool under(const glm::dvec3& at, Touch& out) const noexcept;
+  /// How the distance to what is touched bends: the second derivative's bilinear form [1/mm] at `centre` for
+  /// two directions square to the line to the point; 0 for a plane, 1 / distance for a sample.
+  [[nodiscard]] double bend(const glm::dvec3& centre, const Touch& touch, const glm::dvec3& a,
+                            const glm::dvec3& b) const noexcept;
   /// Highest sample within the window [mm]; -HUGE_VAL when there is none.
   [[nodiscard]] double highest() const noexcept { return highest_; }
 
@@ -80,9 +88,11 @@ class SphereWindow {
     return {z[0], z[1], z[columns_], z[columns_ + 1]};
   }
   [[nodiscard]] bool valid(std::int32_t i, std::int32_t j) const noexcept;
+  void collect(const glm::dvec3& centre, double reach_mm, TouchList& out, bool abreast) const noexcept;
   class Collector;
+  class Valley;
 
-  std::array<double, kMostSide * kMostSide> z_{};
+  std::array<double, kMostSide * kMostSide + kTouchLanes> z_{};  // lanes may read on past the last sample
   std::array<float, kMostSide * kMostSide> raw_{};
   std::int32_t column_ = 0, row_ = 0;    // field sample of z_[0]
   std::int32_t columns_ = 0, rows_ = 0;  // samples

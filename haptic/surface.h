@@ -65,7 +65,10 @@ class Surface {
     reader_ = reader;
     factor_ = reader.grid().height_unit.mm * static_cast<double>(reader.sign());
     tile_ = nullptr;
+    ++refreshes_;
   }
+  /// How often refresh() was called: what was read at the same number still holds.
+  [[nodiscard]] std::uint64_t refreshes() const noexcept { return refreshes_; }
 
   [[nodiscard]] const engine::FieldReader& reader() const noexcept { return reader_; }
   [[nodiscard]] double spacingX() const noexcept { return sx_; }
@@ -203,6 +206,7 @@ class Surface {
   engine::FieldReader reader_;
   double sx_, sy_;
   double factor_;
+  std::uint64_t refreshes_ = 0;
   const engine::Tile* tile_ = nullptr;
   std::int32_t tile_column_ = 0;
   std::int32_t tile_row_ = 0;
