@@ -67,5 +67,7 @@ class BlockFilter {
 /// out_columns rounded up to 16; strides must leave room.
 [[nodiscard]] std::unique_ptr<BlockFilter> makeGaussianFilter(const FilterSpec& spec, CpuLevel level);
 [[nodiscard]] std::unique_ptr<BlockFilter> makeMedianFilter(const FilterSpec& spec, CpuLevel level);
+[[nodiscard]] std::unique_ptr<BlockFilter> makeBilateralFilter(const FilterSpec& spec, CpuLevel level);
+[[nodiscard]] std::unique_ptr<BlockFilter> makeTotalVariationFilter(const FilterSpec& spec);
 
 }  // namespace fettle::engine

@@ -21,10 +21,12 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr std::array<std::pair<FilterKind, std::string_view>, 3> kNames{{
+constexpr std::array<std::pair<FilterKind, std::string_view>, 5> kNames{{
     {FilterKind::kBox, "box"},
     {FilterKind::kGaussian, "gaussian"},
     {FilterKind::kMedian, "median"},
+    {FilterKind::kBilateral, "bilateral"},
+    {FilterKind::kTotalVariation, "tv"},
 }};
 
 std::int64_t samplesThatAreNotHoles(const Version& version) noexcept {
@@ -95,9 +97,17 @@ Status validate(const FilterSpec& spec) {
   if (!std::isfinite(spec.sigma) || spec.sigma < 0.0)
     return inputError(fmt::format("a sigma of {} samples cannot be used", spec.sigma), "sigma",
                       "give a positive number of samples, or 0 for binomial weights");
-  if (spec.sigma != 0.0 && spec.kind != FilterKind::kGaussian)
+  if (spec.sigma != 0.0 && spec.kind != FilterKind::kGaussian && spec.kind != FilterKind::kBilateral)
     return inputError(fmt::format("a {} filter has no sigma", name(spec.kind)), "sigma",
-                      "leave it out, or use the gaussian filter");
+                      "leave it out, or use the gaussian or the bilateral filter");
+  if (hasRange(spec.kind) &&
+      !(spec.range_sigma >= FilterSpec::kLeastRange && spec.range_sigma <= FilterSpec::kMostRange))
+    return inputError(
+        fmt::format("a range sigma of {} cannot be used", spec.range_sigma), "range-sigma",
+        fmt::format("give a height from {} to {}", FilterSpec::kLeastRange, FilterSpec::kMostRange));
+  if (!hasRange(spec.kind) && spec.range_sigma != 0.0)
+    return inputError(fmt::format("a {} filter has no range sigma", name(spec.kind)), "range-sigma",
+                      "leave it out, or use the bilateral or the tv filter");
   if (spec.passes < 1 || spec.passes > FilterSpec::kMaxPasses)
     return inputError(fmt::format("a filter cannot be applied {} times", spec.passes), "passes",
                       fmt::format("give a number from 1 to {}", FilterSpec::kMaxPasses));

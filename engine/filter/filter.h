@@ -19,6 +19,14 @@ namespace fettle::engine {
 ///              binomial, w(d) = C(n - 1, (n - 1) / 2 + d); sigma > 0: w(d) = exp(-d^2 / (2 sigma^2)), cut at
 ///              the window.
 ///   kMedian    their median; for an even count the mean of the two middle ones.
+///   kBilateral their mean with weights exp(-(dx^2 + dy^2) / (2 sigma^2)) * w(dz), renormalised; sigma = 0:
+///              n / 4. dz is the sample's height less the centre's, R = range_sigma: w = (1 - dz^2 / (32
+///              R^2))^16, a Gaussian of standard deviation R to within 0.019, and none beyond 5.65 R. What
+///              stands out by more than that stays, outliers too. Keeps steps of some R.
+///   kTotalVariation  what (n - 1) / 2 steps make of it on the way to the surface u of least sum |grad u| +
+///              (u - z)^2 / (2 R) (Rudin, Osher, Fatemi 1992; the steps, and grad, in total_variation.cpp):
+///              n is how far it works, R = range_sigma how strongly. Steps keep their place, a flat of side w
+///              is drawn to its surroundings by some 4 R / w. No sample moves by more than 3.42 R.
 /// Heights are taken with the version's sign, so filtering commutes with inverting.
 ///
 /// Accuracy, against the same formula without rounding:
@@ -27,9 +35,21 @@ namespace fettle::engine {
 ///   kGaussian  double throughout, one rounding to float at the end. Error <= 0.5 ulp of the result
 ///              + (n + 4) * 2^-51 of the largest magnitude in the window.
 ///   kMedian    exact, for an even count rounded once.
+///   kBilateral differences and weights in float. Error <= 0.5 ulp of the result + (n + 64) * 2^-22 R,
+///              wherever the heights lie; a constant and a plane of exact heights come back to the bit.
+///   kTotalVariation  slopes in float, in units of R. Error <= 0.5 ulp of the result + n * 2^-19 R (bounded
+///              by the tests; in the mean over the field by the steps, none of which magnifies an error); a
+///              constant comes back to the bit.
 /// Every result of kBox and kMedian lies between the smallest and the largest sample of its window, every one
-/// of kGaussian does but for that error. A result equal to the sample keeps its very bits (-0 stays -0).
-enum class FilterKind { kBox, kGaussian, kMedian };
+/// of kGaussian and kBilateral does but for that error; one of kTotalVariation need not before it has run its
+/// course. A result equal to the sample keeps its very bits (-0 stays -0).
+enum class FilterKind { kBox, kGaussian, kMedian, kBilateral, kTotalVariation };
+inline constexpr int kFilterKinds = 5;
+
+/// Whether a filter tells noise from surface by height differences: FilterSpec::range_sigma.
+[[nodiscard]] constexpr bool hasRange(FilterKind kind) noexcept {
+  return kind == FilterKind::kBilateral || kind == FilterKind::kTotalVariation;
+}
 
 /// What the marks mean to a filter.
 enum class FilterScope {
@@ -41,11 +61,17 @@ struct FilterSpec {
   static constexpr int kMaxWindow = 1001;
   static constexpr int kMaxPasses = 1000;
   static constexpr int kMaxThreads = 1024;
+  static constexpr double kLeastRange = 1e-30, kMostRange = 1e30;
 
   FilterKind kind = FilterKind::kBox;
-  int window = 3;      ///< side of the window [samples], odd, 1 .. kMaxWindow; with 1 only max_change acts
-  double sigma = 0.0;  ///< [samples], only for kGaussian: 0 = binomial weights, > 0 = true Gaussian
-  int passes = 1;      ///< times the filter is applied to its own result, 1 .. kMaxPasses
+  int window = 3;  ///< side of the window [samples], odd, 1 .. kMaxWindow; with 1 only max_change acts
+  /// [samples], kGaussian: 0 = binomial weights, > 0 = true Gaussian; kBilateral: 0 = window / 4.
+  double sigma = 0.0;
+  /// How large a difference is noise [height_unit], kLeastRange .. kMostRange for kBilateral and
+  /// kTotalVariation, 0 for the others. More smooths more and rounds lower steps. What a scan's own noise
+  /// asks for: withMeasuredRange (noise_range.h).
+  double range_sigma = 0.0;
+  int passes = 1;  ///< times the filter is applied to its own result, 1 .. kMaxPasses
   FilterScope scope = FilterScope::kKeepMarks;
   /// After every pass each filtered sample is drawn back to within this distance of the original sample
   /// [height_unit, finite, >= 0]; never exceeded, not even by a rounding. Nothing is drawn where the original
@@ -81,7 +107,7 @@ struct Filtered {
 [[nodiscard]] Result<Filtered> applyFilter(const Version& input, const Version& original,
                                            const FilterSpec& spec, JobControl& job);
 
-/// "box", "gaussian", "median" and back.
+/// "box", "gaussian", "median", "bilateral", "tv" and back.
 [[nodiscard]] std::optional<FilterKind> filterKindFromName(std::string_view name);
 [[nodiscard]] std::string_view name(FilterKind kind);
 

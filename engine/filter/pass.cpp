@@ -53,6 +53,10 @@ std::unique_ptr<BlockFilter> makeFilter(const FilterSpec& spec, CpuLevel level) 
       return makeGaussianFilter(spec, level);
     case FilterKind::kMedian:
       return makeMedianFilter(spec, level);
+    case FilterKind::kBilateral:
+      return makeBilateralFilter(spec, level);
+    case FilterKind::kTotalVariation:
+      return makeTotalVariationFilter(spec);
   }
   return nullptr;
 }
@@ -128,7 +132,7 @@ class Pass {
         spec_.max_change.has_value() && !same_field_ && &original_.tile(tc, tr) != &tile;
     if (limit_may_act) return true;
     if (radius_ == 0) return false;
-    // A window in which all samples are equal has them for its mean and its median.
+    // A window in which all samples are equal has them for its mean and its median, and nothing to smooth.
     return !(tile.bounds.min == tile.bounds.max && flatAround(tc, tr, tile.bounds.min));
   }
 

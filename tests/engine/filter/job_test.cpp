@@ -14,8 +14,6 @@
 namespace fettle::engine::tests {
 namespace {
 
-constexpr FilterKind kKinds[] = {FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian};
-
 // Rich in what could make one cut of the work differ from another: holes in some blocks and not in others,
 // heights in some blocks that need another kind of sum, marks.
 PlainField variedField(int width, int height) {
@@ -35,8 +33,10 @@ TEST(Jobs, GiveTheSameBitsForAnyNumberOfThreadsAnyCutOfTheWorkAndAnyProcessor) {
   // The machine may have fewer cores than five; this lets the arena have its five threads all the same.
   const tbb::global_control five(tbb::global_control::max_allowed_parallelism, 5);
   const Version input = toVersion(variedField(450, 260));
-  for (const FilterKind kind : kKinds)
+  for (const FilterKind kind : kEveryKind)
     for (const int window : {3, 5, 7, 9, 11, 21, 131}) {
+      // Its time goes with the window's samples.
+      if (kind == FilterKind::kBilateral && window > 21) continue;
       FilterSpec spec = makeSpec(kind, window);
       spec.passes = window == 3 ? 1 : 2;
       spec.max_change = 4.0;
@@ -69,7 +69,7 @@ TEST(Jobs, GiveTheSameBitsForAnyNumberOfThreadsAnyCutOfTheWorkAndAnyProcessor) {
         EXPECT_EQ(first_report->rms_change, result->report.rms_change);
         EXPECT_EQ(first_report->max_change, result->report.max_change);
       }
-      EXPECT_GT(first_report->changed, 80000);
+      EXPECT_GT(first_report->changed, 70000);
     }
 }
 
@@ -97,7 +97,7 @@ TEST(Jobs, StopSoonWhenCancelledWithTheLargestWindowAndLeaveTheInputAsItWas) {
   const Version input = toVersion(variedField(1500, 1300));
   const std::uint64_t hash = contentHash(input);
   const std::size_t tiles = input.memory()->tiles.liveObjects();
-  for (const FilterKind kind : kKinds) {
+  for (const FilterKind kind : kEveryKind) {
     FilterSpec spec = makeSpec(kind, 1001, kind == FilterKind::kGaussian ? 300.0 : 0.0);
     spec.passes = 1000;
     JobControl job;

@@ -12,7 +12,6 @@
 namespace fettle::engine::tests {
 namespace {
 
-constexpr FilterKind kKinds[] = {FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian};
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // Every sign of trouble at once: noise, spikes, holes scattered and in a block, marks scattered and in a
@@ -30,7 +29,7 @@ PlainField markedField() {
 
 TEST(Marks, KeepTheirExactBitsButCountAsNeighbours) {
   const PlainField plain = markedField();
-  for (const FilterKind kind : kKinds)
+  for (const FilterKind kind : kEveryKind)
     for (const int window : {3, 7, 11}) {
       const FilterSpec spec = makeSpec(kind, window);
       const Filtered result = filtered(toVersion(plain), spec);
@@ -42,7 +41,7 @@ TEST(Marks, KeepTheirExactBitsButCountAsNeighbours) {
 
 TEST(Marks, AloneAreFilteredWhenTheScopeSaysSo) {
   const PlainField plain = markedField();
-  for (const FilterKind kind : kKinds)
+  for (const FilterKind kind : kEveryKind)
     for (const int window : {3, 7, 11}) {
       FilterSpec spec = makeSpec(kind, window);
       spec.scope = FilterScope::kOnlyMarks;
@@ -54,7 +53,7 @@ TEST(Marks, AloneAreFilteredWhenTheScopeSaysSo) {
 
 TEST(Marks, StayUntouchedOverSeveralPassesAndEachPassFiltersTheOneBefore) {
   const PlainField plain = markedField();
-  for (const FilterKind kind : kKinds)
+  for (const FilterKind kind : kEveryKind)
     for (const FilterScope scope : {FilterScope::kKeepMarks, FilterScope::kOnlyMarks}) {
       FilterSpec once = makeSpec(kind, 5);
       once.scope = scope;
@@ -139,7 +138,7 @@ TEST(MaxChange, IsNeverExceededOverSeveralPassesAgainstTheOriginal) {
   PlainField plain = markedField();
   plain.marks.clear();
   const Version original = toVersion(plain);
-  for (const FilterKind kind : kKinds)
+  for (const FilterKind kind : kEveryKind)
     for (const double most : {0.1, 1e-9, 0.02 / 3, 1.0, 1e9}) {
       FilterSpec spec = makeSpec(kind, 5);
       spec.max_change = most;
@@ -150,6 +149,7 @@ TEST(MaxChange, IsNeverExceededOverSeveralPassesAgainstTheOriginal) {
       // A second filter goes on from the first one's result, under the same promise to the original.
       JobControl job;
       spec.kind = FilterKind::kBox;
+      spec.range_sigma = 0.0;
       const Result<Filtered> second = applyFilter(first.field, original, spec, job);
       ASSERT_TRUE(second);
       expectWithin(toPlain(second->field), plain, most);
@@ -207,6 +207,12 @@ TEST(Spec, IsRefusedWithTheValueThatIsWrong) {
   EXPECT_TRUE(refused([](FilterSpec& s) { s.sigma = 1.0; }));
   EXPECT_TRUE(refused([](FilterSpec& s) { s.kind = FilterKind::kGaussian, s.sigma = -1.0; }));
   EXPECT_TRUE(refused([](FilterSpec& s) { s.kind = FilterKind::kGaussian, s.sigma = std::nan(""); }));
+  EXPECT_TRUE(refused([](FilterSpec& s) { s.range_sigma = 1.0; }));
+  for (const FilterKind kind : {FilterKind::kBilateral, FilterKind::kTotalVariation})
+    for (const double range : {0.0, -1.0, 1e31, std::nan("")})
+      EXPECT_TRUE(refused([&](FilterSpec& s) { s.kind = kind, s.range_sigma = range; }));
+  EXPECT_FALSE(refused([](FilterSpec& s) { s = makeSpec(FilterKind::kBilateral, 3, 2.0); }));
+  EXPECT_TRUE(refused([](FilterSpec& s) { s = makeSpec(FilterKind::kTotalVariation, 3, 2.0); }));
   EXPECT_TRUE(refused([](FilterSpec& s) { s.max_change = -0.1; }));
   EXPECT_TRUE(refused([](FilterSpec& s) { s.max_change = std::numeric_limits<double>::infinity(); }));
   EXPECT_TRUE(refused([](FilterSpec& s) { s.threads = -1; }));
@@ -216,7 +222,7 @@ TEST(Spec, IsRefusedWithTheValueThatIsWrong) {
 }
 
 TEST(Spec, NamesItsFilters) {
-  for (const FilterKind kind : kKinds) EXPECT_EQ(filterKindFromName(name(kind)), kind);
+  for (const FilterKind kind : kEveryKind) EXPECT_EQ(filterKindFromName(name(kind)), kind);
   EXPECT_EQ(filterKindFromName("mean"), std::nullopt);
 }
 

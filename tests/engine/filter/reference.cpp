@@ -173,7 +173,41 @@ long double ulp(float value) {
   return std::ldexp(1.0L, std::ilogb(value) - 23);
 }
 
-std::string checkWindow(const PlainField& field, int column, int row, const FilterSpec& spec, float got) {
+std::vector<double> totalVariationTwin(const PlainField& field, const FilterSpec& spec) {
+  const int w = field.width, h = field.height;
+  const auto at = [w](int c, int r) { return static_cast<std::size_t>(r) * w + c; };
+  std::vector<double> along(field.z.size()), across(field.z.size()), div(field.z.size());
+  const auto diverge = [&] {
+    for (int r = 0; r < h; ++r)
+      for (int c = 0; c < w; ++c)
+        div[at(c, r)] = along[at(c, r)] - (c > 0 ? along[at(c - 1, r)] : 0.0) + across[at(c, r)] -
+                        (r > 0 ? across[at(c, r - 1)] : 0.0);
+  };
+  for (int step = 0; step < spec.window / 2; ++step) {
+    diverge();
+    for (int r = 0; r < h; ++r)
+      for (int c = 0; c < w; ++c) {
+        // 0 where the neighbour is missing.
+        const auto slope = [&](int c1, int r1) {
+          if (c1 >= w || r1 >= h || std::isnan(field.at(c, r)) || std::isnan(field.at(c1, r1))) return 0.0;
+          return (static_cast<double>(field.at(c1, r1)) - static_cast<double>(field.at(c, r))) /
+                     spec.range_sigma +
+                 div[at(c1, r1)] - div[at(c, r)];
+        };
+        const double a = along[at(c, r)] + 0.2F * slope(c + 1, r);
+        const double b = across[at(c, r)] + 0.2F * slope(c, r + 1);
+        const double length = std::max(1.0, std::hypot(a, b));
+        along[at(c, r)] = a / length;
+        across[at(c, r)] = b / length;
+      }
+  }
+  diverge();
+  for (std::size_t i = 0; i < div.size(); ++i) div[i] = field.z[i] + spec.range_sigma * div[i];
+  return div;
+}
+
+std::string checkWindow(const PlainField& field, int column, int row, const FilterSpec& spec, float got,
+                        const std::vector<double>& twin) {
   const int radius = spec.window / 2;
   const int c0 = std::max(column - radius, 0);
   const int c1 = std::min(column + radius, field.width - 1);
@@ -217,6 +251,28 @@ std::string checkWindow(const PlainField& field, int column, int row, const Filt
     const long double rounding = (spec.window + 4) * std::ldexp(largest, -51);
     return std::fabs(sum / weight - got) <= ulp(got) + rounding ? "" : complain(sum / weight);
   }
+  if (spec.kind == FilterKind::kTotalVariation) {
+    const long double want = twin[static_cast<std::size_t>(row) * field.width + column];
+    const long double rounding = std::ldexp(static_cast<long double>(spec.window) * spec.range_sigma, -19);
+    return std::fabs(want - got) <= ulp(got) + rounding ? "" : complain(want);
+  }
+  if (spec.kind == FilterKind::kBilateral) {
+    const long double range = spec.range_sigma, sigma = spec.sigma > 0.0 ? spec.sigma : spec.window / 4.0;
+    const long double centre = field.at(column, row);
+    long double sum = 0.0L, weight = 0.0L;
+    for (int r = r0; r <= r1; ++r)
+      for (int c = c0; c <= c1; ++c)
+        if (const float v = field.at(c, r); !std::isnan(v)) {
+          const long double d = (v - centre) / range;
+          const long double place = ((c - column) * (c - column) + (r - row) * (r - row)) / (sigma * sigma);
+          const long double w = std::exp(-place / 2) * std::pow(std::max(1 - d * d / 32, 0.0L), 16);
+          sum += w * d;
+          weight += w;
+        }
+    const long double want = centre + range * sum / weight;
+    const long double rounding = (spec.window + 64) * std::ldexp(range, -22);
+    return std::fabs(want - got) <= ulp(got) + rounding ? "" : complain(want);
+  }
   std::vector<float> samples;
   for (int r = r0; r <= r1; ++r)
     for (int c = c0; c <= c1; ++c)
@@ -245,6 +301,8 @@ std::string checkPass(const PlainField& before, const PlainField& after, const F
   const auto all = static_cast<std::size_t>(before.width) * static_cast<std::size_t>(before.height);
   const std::size_t step =
       samples > 0 ? std::max<std::size_t>(all / static_cast<std::size_t>(samples), 1) | 1U : 1;
+  const std::vector<double> twin =
+      spec.kind == FilterKind::kTotalVariation ? totalVariationTwin(before, spec) : std::vector<double>{};
   std::string complaints;
   int found = 0;
   for (std::size_t i = 0; i < all && found < 5; ++i) {
@@ -257,7 +315,7 @@ std::string checkPass(const PlainField& before, const PlainField& after, const F
     } else if (std::isnan(after.z[i])) {
       complaint = fmt::format("({}, {}): a hole where none was\n", c, r);
     } else if (i % step == 0) {
-      complaint = checkWindow(before, c, r, spec, after.z[i]);
+      complaint = checkWindow(before, c, r, spec, after.z[i], twin);
     }
     if (complaint.empty()) continue;
     complaints += complaint;
@@ -281,6 +339,7 @@ FilterSpec makeSpec(FilterKind kind, int window, double sigma) {
   spec.kind = kind;
   spec.window = window;
   spec.sigma = sigma;
+  if (hasRange(kind)) spec.range_sigma = 0.25;
   return spec;
 }
 

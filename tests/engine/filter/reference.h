@@ -28,6 +28,10 @@ struct PlainField {
 [[nodiscard]] Version toVersion(const PlainField& field);
 [[nodiscard]] PlainField toPlain(const Version& version);
 
+/// All of them, for tests of what they share.
+inline constexpr FilterKind kEveryKind[] = {FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian,
+                                            FilterKind::kBilateral, FilterKind::kTotalVariation};
+
 /// The same bits, all NaN being one.
 [[nodiscard]] bool sameBits(float a, float b);
 [[nodiscard]] bool sameBits(const PlainField& a, const PlainField& b);
@@ -58,9 +62,15 @@ class ExactSum {
 ///   box      within 1 ulp of the exact mean, exact sums;
 ///   gaussian within 1 ulp or the stated (window + 4) * 2^-51 of the window's largest magnitude, of a long
 ///            double sum over window x window products;
-///   median   equal to the exact median, an even count rounded once.
+///   median   equal to the exact median, an even count rounded once;
+///   bilateral  within 1 ulp and the stated (window + 64) * 2^-22 range sigmas of long double sums;
+///   tv       within 1 ulp and the stated window * 2^-19 range sigmas of the same steps in double.
+/// Of a total variation `twin` is totalVariationTwin of the field.
 [[nodiscard]] std::string checkWindow(const PlainField& field, int column, int row, const FilterSpec& spec,
-                                      float got);
+                                      float got, const std::vector<double>& twin = {});
+
+/// What the steps of kTotalVariation make of a whole field, in double and without blocks.
+[[nodiscard]] std::vector<double> totalVariationTwin(const PlainField& field, const FilterSpec& spec);
 
 /// checkWindow for every sample (or for `samples` of them, spread evenly, when positive), holes and kept
 /// samples checked to be untouched. The first few complaints, or an empty text.
@@ -70,6 +80,7 @@ class ExactSum {
 /// applyFilter, expecting success.
 [[nodiscard]] Filtered filtered(const Version& input, const FilterSpec& spec);
 
+/// A range sigma of 0.25 where the kind has one.
 [[nodiscard]] FilterSpec makeSpec(FilterKind kind, int window, double sigma = 0.0);
 
 }  // namespace fettle::engine::tests

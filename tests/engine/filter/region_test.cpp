@@ -43,7 +43,7 @@ std::int64_t differing(const Version& a, const Version& b, TileRange in, bool in
 TEST(FilterRange, gives_the_bits_of_the_whole_filter_there_and_leaves_the_rest) {
   const Version field = roughField(330, 260);
   JobControl job;
-  FilterSpec specs[4];
+  FilterSpec specs[6];
   specs[0].window = 9;
   specs[1].kind = FilterKind::kGaussian;
   specs[1].window = 5;
@@ -54,6 +54,14 @@ TEST(FilterRange, gives_the_bits_of_the_whole_filter_there_and_leaves_the_rest) 
   specs[3].kind = FilterKind::kMedian;
   specs[3].window = 5;
   specs[3].max_change = 0.05;
+  specs[4].kind = FilterKind::kBilateral;
+  specs[4].window = 7;
+  specs[4].passes = 2;
+  specs[4].range_sigma = 0.1;
+  specs[5].kind = FilterKind::kTotalVariation;
+  specs[5].window = 21;
+  specs[5].passes = 2;
+  specs[5].range_sigma = 0.1;
   for (const Version& input : {field, field.inverted()})
     for (const FilterSpec& spec : specs) {
       const Version whole = applyFilter(input, field, spec, job)->field;

@@ -11,7 +11,7 @@ namespace {
 
 class Scans : public testing::TestWithParam<const char*> {};
 
-TEST_P(Scans, AreFilteredWithinOneUlpOfTheReferenceAndTheMedianExactly) {
+TEST_P(Scans, AreFilteredAsNearTheReferenceAsStatedAndTheMedianExactly) {
   FETTLE_SCAN_OR_SKIP(path, GetParam());
   JobControl job;
   ImportOptions options;
@@ -19,10 +19,12 @@ TEST_P(Scans, AreFilteredWithinOneUlpOfTheReferenceAndTheMedianExactly) {
   const Result<Imported> imported = importField(path, options, job);
   ASSERT_TRUE(imported) << imported.error().line();
   const PlainField plain = toPlain(imported->field);
-  for (const FilterKind kind : {FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian})
+  for (const FilterKind kind : kEveryKind)
     for (const int window : {3, 9, 31}) {
       SCOPED_TRACE(std::string(name(kind)) + " " + std::to_string(window));
-      const FilterSpec spec = makeSpec(kind, window);
+      FilterSpec spec = makeSpec(kind, window);
+      // Scans in counts: a step is a difference to be smoothed.
+      if (hasRange(kind)) spec.range_sigma = path.find("_u16") != std::string::npos ? 2.0 : 0.25;
       const Filtered result = filtered(imported->field, spec);
       // Holes and their neighbours everywhere, windows at about 1000 places.
       EXPECT_EQ(checkPass(plain, toPlain(result.field), spec, 1000), "");

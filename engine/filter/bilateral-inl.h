@@ -1,0 +1,44 @@
+// Sums of a bilateral window; see each_cpu-inl.h.
+
+/// Weights and weighted differences of two samples opposite each other across each centre.
+FETTLE_INLINE void addOpposites(const Floats& one, const Floats& other, const Floats& centre, float per_range,
+                                float weight, Floats& sum, Floats& sum_weight) noexcept {
+  const Floats beyond = Floats{} + kBeyond, none{};
+  // A hole compares false and goes beyond the weights, like a difference that overflows.
+  const Floats a = greater(lesser((one - centre) * per_range, beyond), -beyond);
+  const Floats b = greater(lesser((other - centre) * per_range, beyond), -beyond);
+  Floats wa = greater(1.0F - a * a * 0.03125F, none);
+  Floats wb = greater(1.0F - b * b * 0.03125F, none);
+  for (int twice = 0; twice < 4; ++twice) {
+    wa *= wa;
+    wb *= wb;
+  }
+  sum += weight * (wa * a + wb * b);
+  sum_weight += weight * (wa + wb);
+}
+
+/// Adds to sums of weight times difference [range sigmas] and of weight what one pair of window rows holds,
+/// for `chunks` of kChunk outputs, from left to right for each. `above` and `below` point to the samples over
+/// and under the first output; first_dx is 1 for the centre's own row, which is both.
+void addRows(const float* centre, const float* above, const float* below, const float* weights, int first_dx,
+             int radius, float per_range, int chunks, double* sum, double* sum_weight) noexcept {
+  for (int chunk = 0; chunk < chunks; ++chunk) {
+    const int c = chunk * kChunk;
+    const Floats z0 = load<Floats>(centre + c), z1 = load<Floats>(centre + c + kLanes);
+    Floats s0{}, s1{}, w0{}, w1{};
+    for (int dx = first_dx; dx <= radius; ++dx) {
+      const float* one = above + c + dx;
+      const float* other = below + c - dx;
+      addOpposites(load<Floats>(one), load<Floats>(other), z0, per_range, weights[dx], s0, w0);
+      addOpposites(load<Floats>(one + kLanes), load<Floats>(other + kLanes), z1, per_range, weights[dx], s1,
+                   w1);
+    }
+    for (int half = 0; half < 4; ++half) {
+      const int at = c + half * kLanes / 2;
+      const Floats& s = half < 2 ? s0 : s1;
+      const Floats& w = half < 2 ? w0 : w1;
+      store(sum + at, load<Doubles>(sum + at) + widened(halfOf(s, half % 2)));
+      store(sum_weight + at, load<Doubles>(sum_weight + at) + widened(halfOf(w, half % 2)));
+    }
+  }
+}

@@ -1,0 +1,23 @@
+#include "engine/filter/noise_range.h"
+
+#include <algorithm>
+
+#include "engine/inspect/noise.h"
+
+namespace fettle::engine {
+
+Result<FilterSpec> withMeasuredRange(const FilterSpec& spec, const Version& field, JobControl& job) {
+  FilterSpec ready = spec;
+  if (!hasRange(spec.kind) || spec.range_sigma != 0.0) return ready;
+  const auto noise = estimateNoise(field, job);
+  if (!noise) return tl::unexpected(noise.error());
+  if (!(noise->sigma > 0.0))
+    return inputError("no noise can be seen in the scan that a range sigma could follow", "range-sigma",
+                      "give one, in the scan's height unit");
+  ready.range_sigma = std::clamp(
+      noise->sigma * (spec.kind == FilterKind::kBilateral ? kBilateralNoises : kTotalVariationNoises),
+      FilterSpec::kLeastRange, FilterSpec::kMostRange);
+  return ready;
+}
+
+}  // namespace fettle::engine
