@@ -18,7 +18,7 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-constexpr std::array<std::string_view, 3> kFilters = {"box", "gaussian", "median"};
+constexpr std::array<std::string_view, 5> kFilters = {"box", "gaussian", "median", "bilateral", "tv"};
 constexpr std::array<std::string_view, 2> kScopes = {"keep", "only"};
 
 template <std::size_t N>
@@ -42,6 +42,7 @@ void put(json& out, const engine::FilterSpec& spec) {
   out["filter"] = kFilters[static_cast<std::size_t>(spec.kind)];
   out["window"] = spec.window;
   if (spec.sigma > 0.0) out["sigma"] = spec.sigma;
+  if (spec.range_sigma > 0.0) out["range_sigma"] = spec.range_sigma;
   out["passes"] = spec.passes;
   out["marks"] = kScopes[static_cast<std::size_t>(spec.scope)];
   if (spec.max_change) out["max_change"] = *spec.max_change;
@@ -52,6 +53,7 @@ engine::FilterSpec specOf(const json& in) {
   spec.kind = static_cast<engine::FilterKind>(wordOf(in.at("filter"), kFilters));
   spec.window = in.at("window").get<int>();
   spec.sigma = in.value("sigma", 0.0);
+  spec.range_sigma = in.value("range_sigma", 0.0);
   spec.passes = in.at("passes").get<int>();
   spec.scope = static_cast<engine::FilterScope>(wordOf(in.at("marks"), kScopes));
   if (in.contains("max_change")) spec.max_change = in.at("max_change").get<double>();

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/filter/noise_range.h"
 #include "engine/filter/region.h"
 
 namespace fettle::app {
@@ -15,8 +16,8 @@ constexpr std::chrono::milliseconds kSeenFirst{1000};
 constexpr std::int32_t kFarthestReach = 512;  // [samples]
 
 bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
-  return a.kind == b.kind && a.window == b.window && a.sigma == b.sigma && a.passes == b.passes &&
-         a.scope == b.scope && a.max_change == b.max_change;
+  return a.kind == b.kind && a.window == b.window && a.sigma == b.sigma && a.range_sigma == b.range_sigma &&
+         a.passes == b.passes && a.scope == b.scope && a.max_change == b.max_change;
 }
 
 // Filters what is seen and tells `done` after each part. Where that is most of the field, the second for
@@ -44,9 +45,8 @@ void filterSeen(const engine::Version& base, const engine::Version& original, co
 }  // namespace
 
 std::string filterName(const engine::FilterSpec& spec) {
-  std::string text = spec.kind == engine::FilterKind::kBox        ? "Box"
-                     : spec.kind == engine::FilterKind::kGaussian ? "Gaussian"
-                                                                  : "Median";
+  constexpr const char* kTitles[] = {"Box", "Gaussian", "Median", "Bilateral", "Total variation"};
+  std::string text = kTitles[static_cast<int>(spec.kind)];
   text += fmt::format(" {} x {}", spec.window, spec.window);
   if (spec.passes > 1) text += fmt::format(", {} passes", spec.passes);
   if (spec.scope == engine::FilterScope::kOnlyMarks) text += ", only marks";
@@ -60,22 +60,26 @@ void FilterPreview::compute(Touch& touch, Keep keep, std::vector<engine::TileRan
   so_far_->spec = spec;
   seen_so_far_ = {};
   computing_.start([base = touch.field(), id = touch.noteFilterBase(), so_far = so_far_,
-                    seen = std::move(seen_first), original = touch.original(), what = spec,
+                    seen = std::move(seen_first), original = touch.original(), asked = spec,
                     inverted = touch.scene().invert](engine::JobControl& job) -> engine::Result<Variant> {
     const engine::Version limit = inverted ? original.inverted() : original;
+    // Before any part of it is filtered: the result is brought into the field in parts, and replayed.
+    const auto ready = engine::withMeasuredRange(asked, base, job);
+    if (!ready) return tl::unexpected(ready.error());
+    const engine::FilterSpec& what = *ready;
     filterSeen(base, limit, what, seen, job, [&](const engine::Version& part) {
       const std::scoped_lock lock(so_far->mutex);
       so_far->field = part;
     });
     auto result = engine::applyFilter(base, limit, what, job);
     if (!result) return tl::unexpected(result.error());
-    return Variant{what, base, std::move(*result), id};
+    return Variant{asked, what, base, std::move(*result), id};
   });
 }
 
 void FilterPreview::apply(Touch& touch) {
   if (applying()) return;
-  if (!variants_.empty() && same(variants_.back().spec, spec)) {
+  if (!variants_.empty() && same(variants_.back().asked, spec)) {
     adopt(touch, variants_.back());
     return;
   }

@@ -23,13 +23,14 @@ class FilterPreview {
   static constexpr std::size_t kMostVariants = 4;  // and the field itself: five pictures
 
   struct Variant {
-    engine::FilterSpec spec;
+    engine::FilterSpec asked;  ///< as the panel had it
+    engine::FilterSpec spec;   ///< as computed: with a range sigma, where the panel left it to the noise
     engine::Version base;  ///< as felt when it was computed
     engine::Filtered result;
     std::uint64_t base_id = 0;  ///< the base's in the journal (Touch::noteFilterBase)
   };
 
-  /// What the panel edits.
+  /// What the panel edits. A range sigma of 0 is one for the field's noise (engine::withMeasuredRange).
   engine::FilterSpec spec;
 
   /// A picture of a filter: what it made, or has made so far.

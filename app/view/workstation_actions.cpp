@@ -224,9 +224,9 @@ void Workstation::act(Action action) {
       break;
     }
     case Action::kFilterNext:
-      filters_.spec.kind = filters_.spec.kind == engine::FilterKind::kBox ? engine::FilterKind::kGaussian
-                           : filters_.spec.kind == engine::FilterKind::kGaussian ? engine::FilterKind::kMedian
-                                                                                 : engine::FilterKind::kBox;
+      filters_.spec.kind =
+          static_cast<engine::FilterKind>((static_cast<int>(filters_.spec.kind) + 1) % engine::kFilterKinds);
+      filters_.spec.sigma = filters_.spec.range_sigma = 0.0;  // in other units for another kind
       break;
     case Action::kFilterPreview:
       filters_.compute(*touch_, FilterPreview::Keep::kReplace, seenPart());

@@ -13,11 +13,13 @@ void Workstation::filterPanel() {
   engine::FilterSpec& spec = filters_.spec;
   const engine::Grid& grid = touch_->field().grid();
   beginFields();
-  const char* names[] = {"Box", "Gaussian", "Median"};
+  const char* names[] = {"Box", "Gaussian", "Median", "Bilateral", "Total variation"};
   int kind = static_cast<int>(spec.kind);
-  if (field("filter", [&] { return ImGui::Combo("##filter", &kind, names, 3); }))
+  if (field("filter",
+            [&] { return ImGui::Combo("##filter", &kind, names, static_cast<int>(std::size(names))); }))
     spec.kind = static_cast<engine::FilterKind>(kind);
   if (spec.kind != engine::FilterKind::kGaussian) spec.sigma = 0.0;
+  if (!engine::hasRange(spec.kind)) spec.range_sigma = 0.0;
   if (field("window", [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
     spec.window = std::clamp(spec.window | 1, 1, engine::FilterSpec::kMaxWindow);
   // In millimetres across the columns; the nearest odd number of samples is taken.
@@ -35,6 +37,11 @@ void Workstation::filterPanel() {
     (void)field("sigma", [&] {
       return typeNumber("##sigma", spec.sigma, 0.0, 1000.0,
                         spec.sigma > 0.0 ? "%.2f samples" : "0: binomial");
+    });
+  if (engine::hasRange(spec.kind))
+    (void)field("range sigma", [&] {
+      return typeNumber("##range", spec.range_sigma, 0.0, engine::FilterSpec::kMostRange,
+                        spec.range_sigma > 0.0 ? "%.4g " + grid.height_unit.name : "0: from the noise");
     });
   bool limited = spec.max_change.has_value();
   (void)field("max change", [&] {

@@ -121,6 +121,10 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   spec.passes = 7;
   spec.scope = engine::FilterScope::kOnlyMarks;
   spec.max_change = 1.0 / 3.0;
+  engine::FilterSpec edge_preserving;
+  edge_preserving.kind = engine::FilterKind::kTotalVariation;
+  edge_preserving.window = 21;
+  edge_preserving.range_sigma = 0.1 + 0.7;
   const LoopPlace there{1234567890123, true}, before{7, false};
   const std::vector<journal::Entry> all = {
       journal::Begin{3, anyScene(random)},
@@ -135,6 +139,7 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
       journal::FilterBegun{1, spec},
       journal::Snapshot{there},
       journal::Offered{there, true},
+      journal::FilterBegun{2, edge_preserving},
   };
   for (const journal::Entry& entry : all) {
     const std::string text = journalText(entry);
@@ -148,6 +153,10 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   ASSERT_TRUE(back);
   EXPECT_EQ(std::get<journal::FilterBegun>(*back).spec.sigma, spec.sigma);
   EXPECT_EQ(std::get<journal::FilterBegun>(*back).spec.max_change, spec.max_change);
+  const auto other = journalEntry(journalText(all.back()));
+  ASSERT_TRUE(other);
+  EXPECT_EQ(std::get<journal::FilterBegun>(*other).spec.kind, edge_preserving.kind);
+  EXPECT_EQ(std::get<journal::FilterBegun>(*other).spec.range_sigma, edge_preserving.range_sigma);
 }
 
 TEST(Journal, WhatIsNoEntryIsRefusedByName) {

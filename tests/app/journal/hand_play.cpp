@@ -59,7 +59,9 @@ std::string HandPlay::stroke(bool ends) {
 
 std::string HandPlay::filter(bool under_a_stroke) {
   engine::FilterSpec& spec = filters_.spec;
-  spec.kind = static_cast<engine::FilterKind>(random_() % 3);
+  spec.kind = static_cast<engine::FilterKind>(random_() % engine::kFilterKinds);
+  // Given here, or left to the noise of the field then.
+  spec.range_sigma = engine::hasRange(spec.kind) && random_() % 2 == 0 ? 0.02 : 0.0;
   spec.window = 3 + 2 * static_cast<int>(random_() % 3);
   spec.passes = 1 + static_cast<int>(random_() % 2);
   spec.scope = random_() % 4 == 0 ? engine::FilterScope::kOnlyMarks : engine::FilterScope::kKeepMarks;

@@ -13,6 +13,9 @@ TEST(FilterName, says_what_the_filter_does) {
   spec.passes = 3;
   spec.scope = engine::FilterScope::kOnlyMarks;
   EXPECT_EQ(filterName(spec), "Median 5 x 5, 3 passes, only marks");
+  spec = {};
+  spec.kind = engine::FilterKind::kTotalVariation;
+  EXPECT_EQ(filterName(spec), "Total variation 3 x 3");
 }
 
 }  // namespace
