@@ -47,6 +47,19 @@ void addScanOptions(CLI::App* command, ScanOptions& options) {
       ->group(group);
 }
 
+std::string scanOptionsText(const ScanOptions& options) {
+  std::string text;
+  if (options.no_data) text += fmt::format(" --no-data {}", *options.no_data);
+  if (!options.spacing.empty()) text += fmt::format(" --spacing {}", fmt::join(options.spacing, ","));
+  if (options.z_scale) text += fmt::format(" --z-scale {}", *options.z_scale);
+  if (!options.unit.empty()) text += " --unit " + options.unit;
+  if (options.cell_size) text += fmt::format(" --cell-size {}", *options.cell_size);
+  if (!options.cell_rule.empty()) text += " --cell-rule " + options.cell_rule;
+  if (!options.depth_camera.empty())
+    text += fmt::format(" --depth-camera {}", fmt::join(options.depth_camera, ","));
+  return text;
+}
+
 engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options) {
   engine::ImportOptions import;
   import.no_data = options.no_data;

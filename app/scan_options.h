@@ -29,6 +29,9 @@ struct ScanOptions {
 };
 void addScanOptions(CLI::App* command, ScanOptions& options);
 
+/// The options as they were typed, each with a blank before it; empty without any.
+[[nodiscard]] std::string scanOptionsText(const ScanOptions& options);
+
 /// As the importer takes them. Errors: an unknown unit.
 [[nodiscard]] engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options);
 

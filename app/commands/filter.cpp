@@ -1,5 +1,10 @@
+#include <algorithm>
+#include <cctype>
 #include <chrono>
+#include <cmath>
 #include <memory>
+#include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -8,7 +13,9 @@
 #include "app/scan_options.h"
 #include "app/terminal.h"
 #include "engine/filter/filter.h"
+#include "engine/filter/noise_range.h"
 #include "engine/io/marks.h"
+#include "engine/suggest/filter_suggestion.h"
 
 namespace fettle::app {
 
@@ -19,11 +26,15 @@ struct Options {
   std::string filter;
   int window = 3;
   double sigma = 0.0;
+  std::string range_sigma;
   int passes = 1;
   std::string keep;
   std::string only;
   std::string max_change;
   int threads = 0;
+  bool suggest = false;
+  std::string tolerance;
+  std::optional<double> budget;
   ScanOptions reading;
 };
 
@@ -35,7 +46,13 @@ engine::Result<engine::FilterSpec> specOf(const Options& options) {
   spec.passes = options.passes;
   spec.threads = options.threads;
   spec.scope = options.only.empty() ? engine::FilterScope::kKeepMarks : engine::FilterScope::kOnlyMarks;
-  if (auto status = engine::validate(spec); !status) return tl::unexpected(status.error());
+  if (!options.range_sigma.empty() && !engine::hasRange(spec.kind))
+    return engine::inputError(fmt::format("a {} filter has no range sigma", options.filter), "--range-sigma",
+                              "leave it out, or use the bilateral or the tv filter");
+  // The scan's unit and noise are not known yet.
+  engine::FilterSpec ranged = spec;
+  if (engine::hasRange(spec.kind)) ranged.range_sigma = 1.0;
+  if (auto status = engine::validate(ranged); !status) return tl::unexpected(status.error());
   return spec;
 }
 
@@ -54,6 +71,16 @@ engine::Result<Report> filterOne(const Options& options, engine::FilterSpec spec
     if (!limit) return tl::unexpected(limit.error());
     spec.max_change = *limit;
   }
+  if (!options.range_sigma.empty()) {
+    const auto range = parseHeight(options.range_sigma, field.grid(), "--range-sigma");
+    if (!range) return tl::unexpected(range.error());
+    spec.range_sigma = *range;
+    // 0 would ask for the noise's.
+    if (auto status = engine::validate(spec); !status) return tl::unexpected(status.error());
+  }
+  const auto ready = engine::withMeasuredRange(spec, field, job);
+  if (!ready) return tl::unexpected(ready.error());
+  spec = *ready;
   const auto start = std::chrono::steady_clock::now();
   const auto filtered = engine::applyFilter(field, imported->field, spec, job);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -64,6 +91,7 @@ engine::Result<Report> filterOne(const Options& options, engine::FilterSpec spec
   return Report{{"filter", options.filter},
                 {"window", spec.window},
                 {"sigma", spec.sigma},
+                {"range_sigma", engine::hasRange(spec.kind) ? Report(spec.range_sigma) : Report()},
                 {"passes", spec.passes},
                 {"unit", field.grid().height_unit.name},
                 {"changed", filtered->report.changed},
@@ -74,7 +102,186 @@ engine::Result<Report> filterOne(const Options& options, engine::FilterSpec spec
                 {"hash", fmt::format("{:016x}", engine::contentHash(filtered->field))}};
 }
 
+// The file and how it is read, as a shell takes them.
+std::string shellWord(const std::string& text) {
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("/._-+=:,@%").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return text;
+  std::string out = "'";
+  for (const char c : text)
+    if (c == '\'')
+      out += "'\\''";
+    else
+      out += c;
+  return out + "'";
+}
+
+// What is to be typed to have a candidate carried out.
+std::vector<std::string> commandsFor(const Options& options, const engine::FilterCandidate& c) {
+  if (c.spec.window == 1) return {};
+  const std::string in = shellWord(options.files.files[0]);
+  const std::string out = options.files.files.size() > 1 ? shellWord(options.files.files[1]) : "OUT.tif";
+  const std::string reading = scanOptionsText(options.reading);
+  std::vector<std::string> commands;
+  std::string filter = fmt::format("fettle filter {} {} --filter {} --window {}", in, out,
+                                   engine::name(c.spec.kind), c.spec.window);
+  if (c.spec.passes > 1) filter += fmt::format(" --passes {}", c.spec.passes);
+  if (engine::hasRange(c.spec.kind))
+    filter += fmt::format(" --range-sigma {}", c.spec.range_sigma);
+  std::string keep = options.keep;
+  if (c.around_edges) {
+    commands.push_back(fmt::format("fettle mark {} marks.png --edges --thickness {}{}{}", in, c.thickness,
+                                   keep.empty() ? "" : " --add " + shellWord(keep), reading));
+    keep = "marks.png";
+  }
+  if (!keep.empty()) filter += " --keep " + shellWord(keep);
+  if (options.threads != 0) filter += fmt::format(" --threads {}", options.threads);
+  commands.push_back(filter + reading);
+  return commands;
+}
+
+std::string methodOf(const engine::FilterCandidate& c) {
+  if (c.spec.window == 1) return "the scan as it is";
+  return fmt::format("{} {}{}{}", engine::name(c.spec.kind), c.spec.window,
+                     c.spec.passes > 1 ? fmt::format(", {} passes", c.spec.passes) : "",
+                     c.around_edges ? " around suggested edges" : "");
+}
+
+// "7.1 um on flats and 12 um near edges".
+std::string leftBy(const engine::FilterCandidate& c, const std::string& unit) {
+  const auto part = [&](double error, const char* where) {
+    return std::isnan(error) ? std::string() : fmt::format("{:.3g} {} {}", error, unit, where);
+  };
+  const std::string flat = part(c.error_flat, "on flats"), edge = part(c.error_edge, "near edges");
+  return flat.empty() || edge.empty() ? flat + edge : flat + " and " + edge;
+}
+
+// Why this one, from the figures.
+std::string whyOf(const engine::FilterSuggestion& found, const engine::SuggestionRequest& asked,
+                  const std::string& unit) {
+  const engine::FilterCandidate& pick = found.picked();
+  const auto affordable = [&](const engine::FilterCandidate& c) {
+    return !asked.budget_s || c.seconds <= *asked.budget_s;
+  };
+  const engine::FilterCandidate *marked = nullptr, *flattest = nullptr;
+  for (const engine::FilterCandidate& c : found.candidates) {
+    if (!affordable(c)) continue;
+    if (c.around_edges && (marked == nullptr || c.error() < marked->error())) marked = &c;
+    if (flattest == nullptr || c.error_flat < flattest->error_flat) flattest = &c;
+  }
+  std::string why = fmt::format("The noise is {:.3g} {}. ", found.sigma, unit);
+  if (pick.spec.window == 1 && found.met())
+    return why + fmt::format("The scan as it is stays within {:.3g} {}: no filter is needed.",
+                             asked.tolerance, unit);
+  if (found.met()) {
+    why += fmt::format(
+        "{} leaves {}, in about {:.2g} s; of all tried that stay within {:.3g} {}, none is faster.",
+        methodOf(pick), leftBy(pick, unit), pick.seconds, asked.tolerance, unit);
+  } else {
+    why +=
+        fmt::format("Nothing tried stays within {:.3g} {}{}. Nearest is {} with {}, in about {:.2g} s.",
+                    asked.tolerance, unit, asked.budget_s ? fmt::format(" in {:g} s", *asked.budget_s) : "",
+                    methodOf(pick), leftBy(pick, unit), pick.seconds);
+    if (flattest != nullptr && flattest->error_flat <= asked.tolerance)
+      why += fmt::format(
+          " Flats alone: {} leaves {}; edges that must be nearer than that have to be "
+          "smoothed by hand (fettle view) or scanned again.",
+          methodOf(*flattest), leftBy(*flattest, unit));
+    else
+      why += " A scan with less noise is needed, or the mean of several.";
+  }
+  if (marked != nullptr && !pick.around_edges)
+    why += fmt::format(" Marking edges first leaves {} ({}): marked samples keep their noise.",
+                       leftBy(*marked, unit), methodOf(*marked));
+  if (found.outlier_share > 1e-4)
+    why += fmt::format(
+        " {:.2g} % of the samples stand out alone: of these a median takes most, bilateral and tv none.",
+        100.0 * found.outlier_share);
+  return why;
+}
+
+Report reportOf(const engine::FilterCandidate& c) {
+  const auto figure = [](double value) { return std::isnan(value) ? Report() : Report(value); };
+  return {{"method", methodOf(c)},
+          {"filter", c.spec.window == 1 ? Report() : Report(engine::name(c.spec.kind))},
+          {"window", c.spec.window},
+          {"passes", c.spec.passes},
+          {"range_sigma", engine::hasRange(c.spec.kind) ? Report(c.spec.range_sigma) : Report()},
+          {"around_edges", c.around_edges},
+          {"error_flat", figure(c.error_flat)},
+          {"error_edge", figure(c.error_edge)},
+          {"seconds", c.seconds},
+          {"within", c.within}};
+}
+
+engine::Result<Report> suggest(const Options& options, engine::JobControl& job) {
+  const auto refused = [](const char* option, const char* why) {
+    return engine::inputError(fmt::format("--suggest goes without {}", option), option, why);
+  };
+  if (options.files.many() || options.files.files.size() > 2)
+    return refused("several scans", "give one scan, and OUT if you like: it is only named");
+  if (!options.filter.empty()) return refused("--filter", "it is what is suggested");
+  if (!options.only.empty()) return refused("--only", "give --keep, or nothing");
+  if (options.tolerance.empty())
+    return engine::inputError("no tolerance is given", "--tolerance",
+                              "give the error that may be left, as 0.01 in the scan's unit or 10um");
+  const ProgressLine progress(job);
+  auto imported = loadScan(options.files.files[0], options.reading, job);
+  if (!imported) return tl::unexpected(imported.error());
+  engine::Version field = imported->field;
+  if (!options.keep.empty()) {
+    auto marked = engine::importMarks(field, options.keep);
+    if (!marked) return tl::unexpected(marked.error());
+    field = *std::move(marked);
+  }
+  engine::SuggestionRequest request;
+  const auto tolerance = parseHeight(options.tolerance, field.grid(), "--tolerance");
+  if (!tolerance) return tl::unexpected(tolerance.error());
+  request.tolerance = *tolerance;
+  request.budget_s = options.budget;
+  request.threads = options.threads;
+  const auto found = engine::suggestFilter(field, request, job);
+  if (!found) return tl::unexpected(found.error());
+  const std::string& unit = field.grid().height_unit.name;
+  Report report{{"met", found->met()},
+                {"why", whyOf(*found, request, unit)},
+                {"commands", commandsFor(options, found->picked())},
+                {"unit", unit},
+                {"tolerance", request.tolerance},
+                {"budget", request.budget_s ? Report(*request.budget_s) : Report()},
+                {"noise", found->sigma},
+                {"samples", found->samples},
+                {"outlier_share", found->outlier_share},
+                {"edge_share", found->edge_share},
+                {"pick", reportOf(found->picked())}};
+  report["candidates"] = Report::array();
+  for (const engine::FilterCandidate& c : found->candidates) report["candidates"].push_back(reportOf(c));
+  return report;
+}
+
+void printSuggestion(const Report& report) {
+  fmt::print("{}\n", report["why"].get<std::string>());
+  for (const Report& command : report["commands"]) fmt::print("\n    {}", command.get<std::string>());
+  const std::string unit = report["unit"];
+  fmt::print("\n\n{:<36}{:>14}{:>14}{:>10}\n", "expected", "flats, " + unit, "edges, " + unit, "s");
+  const auto figure = [](const Report& value) {
+    return value.is_null() ? std::string("-") : fmt::format("{:.3g}", value.get<double>());
+  };
+  for (const Report& c : report["candidates"])
+    fmt::print("{:<36}{:>14}{:>14}{:>10}{}\n", c["method"].get<std::string>(), figure(c["error_flat"]),
+               figure(c["error_edge"]), figure(c["seconds"]), c["within"].get<bool>() ? "  within" : "");
+}
+
 engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
+  if (options.suggest) return suggest(options, job);
+  if (options.filter.empty())
+    return engine::inputError("no filter is named", "--filter",
+                              "give one, or let one be suggested: --suggest");
+  if (!options.tolerance.empty() || options.budget)
+    return engine::inputError("tolerance and budget are for --suggest",
+                              options.tolerance.empty() ? "--budget" : "--tolerance", "add --suggest");
   const auto spec = specOf(options);
   if (!spec) return tl::unexpected(spec.error());
   const auto tasks = batchTasks(options.files, {options.keep, options.only});
@@ -87,22 +294,34 @@ engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
   return one(tasks->front(), job);
 }
 
+void print(const Report& report) {
+  if (report.contains("commands"))
+    printSuggestion(report);
+  else
+    printBatch(report);
+}
+
 }  // namespace
 
 void addFilter(CLI::App& root, Chosen& chosen) {
   auto options = std::make_shared<Options>();
   CLI::App* command = addCommand(
       root, chosen, "filter", "Filter whole scans, around what is marked",
-      [options](engine::JobControl& job) { return filter(*options, job); }, printBatch, Progress::kOwn,
+      [options](engine::JobControl& job) { return filter(*options, job); }, print, Progress::kOwn,
       batchStatus);
   addBatchOptions(command, options->files);
-  command->add_option("--filter", options->filter, "box, gaussian or median")
-      ->required()
-      ->check(CLI::IsMember({"box", "gaussian", "median"}));
+  command
+      ->add_option("--filter", options->filter,
+                   "box, gaussian, median, bilateral or tv (total variation); the last two keep edges")
+      ->check(CLI::IsMember({"box", "gaussian", "median", "bilateral", "tv"}));
   command->add_option("--window", options->window, "Side of the window in samples, odd, 1 to 1001")
       ->capture_default_str();
   command->add_option("--sigma", options->sigma,
-                      "Gaussian: standard deviation in samples; without it the weights are binomial");
+                      "Gaussian: standard deviation in samples; without it the weights are binomial. "
+                      "Bilateral: likewise; without it a quarter of the window");
+  command->add_option("--range-sigma", options->range_sigma,
+                      "Bilateral, tv: how large a difference is noise, as 20um; without it 4 (bilateral) or "
+                      "1 (tv) standard deviations of the scan's noise");
   command->add_option("--passes", options->passes, "How often the filter is applied")->capture_default_str();
   CLI::Option* keep =
       command->add_option("--keep", options->keep, "Picture of marks: these samples keep their bits");
@@ -112,6 +331,15 @@ void addFilter(CLI::App& root, Chosen& chosen) {
       "--max-change", options->max_change,
       "No sample ends further than this from IN; in the scan's height unit, or as 20um, 0.5mm");
   command->add_option("--threads", options->threads, "Threads to use; 0 = one a core")->capture_default_str();
+  command->add_flag(
+      "--suggest", options->suggest,
+      "Filter nothing: try filters on pieces of IN, say which to take for --tolerance, why, and "
+      "what to type");
+  command->add_option("--tolerance", options->tolerance,
+                      "With --suggest: root mean square error that may be left on flats and near edges, each "
+                      "by itself; in the scan's height unit, or as 20um");
+  command->add_option("--budget", options->budget,
+                      "With --suggest: seconds that filtering the scan may take");
   addScanOptions(command, options->reading);
 }
 

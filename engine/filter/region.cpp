@@ -4,8 +4,8 @@
 #include <new>
 #include <vector>
 
-#include "engine/field/builder.h"
 #include "engine/field/live_field.h"
+#include "engine/field/piece.h"
 
 namespace fettle::engine {
 
@@ -19,17 +19,8 @@ struct Rect {
   std::int32_t column, row, columns, rows;
 };
 
-// A rectangle of a field as a field of its own.
 Version piece(const Version& field, const Rect& rect) {
-  const std::size_t samples = static_cast<std::size_t>(rect.columns) * static_cast<std::size_t>(rect.rows);
-  std::vector<float> heights(samples);
-  std::vector<std::uint8_t> marks(samples);
-  field.reader().readHeights(rect.column, rect.row, rect.columns, rect.rows, heights.data(), rect.columns);
-  field.reader().readMarks(rect.column, rect.row, rect.columns, rect.rows, marks.data(), rect.columns);
-  Grid grid = field.grid();
-  grid.width = rect.columns;
-  grid.height = rect.rows;
-  return makeField(grid, heights, marks);
+  return pieceOf(field, rect.column, rect.row, rect.columns, rect.rows);
 }
 
 }  // namespace

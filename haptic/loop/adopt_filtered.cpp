@@ -5,9 +5,9 @@
 #include <tuple>
 #include <utility>
 
-#include "engine/field/builder.h"
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
+#include "engine/field/piece.h"
 
 namespace fettle::haptic {
 
@@ -21,20 +21,6 @@ struct ByRow {
   }
 };
 using Spots = std::set<TileSpot, ByRow>;
-
-// The samples [c0, c0 + columns) x [r0, r0 + rows) of a field, as a field of their own.
-engine::Version piece(const engine::Version& field, std::int32_t c0, std::int32_t r0, std::int32_t columns,
-                      std::int32_t rows) {
-  const std::size_t samples = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  std::vector<float> heights(samples);
-  std::vector<std::uint8_t> marks(samples);
-  field.reader().readHeights(c0, r0, columns, rows, heights.data(), columns);
-  field.reader().readMarks(c0, r0, columns, rows, marks.data(), columns);
-  engine::Grid grid = field.grid();
-  grid.width = columns;
-  grid.height = rows;
-  return engine::makeField(grid, heights, marks);
-}
 
 tl::unexpected<engine::Error> noMemory() {
   return engine::failure("memory for the filtered tiles could not be had", "adopting a filter's result",
@@ -171,12 +157,13 @@ engine::Result<engine::Version> filterTiles(const engine::Version& input, const 
     const std::int32_t r0 = std::max(tile_r - reach, 0);
     const std::int32_t columns = std::min(tile_c + tile_columns + reach, grid.width) - c0;
     const std::int32_t rows = std::min(tile_r + tile_rows + reach, grid.height) - r0;
-    const engine::Version part = piece(input, c0, r0, columns, rows);
+    const engine::Version part = engine::pieceOf(input, c0, r0, columns, rows);
     // The original is only read where max_change is measured against it.
     const engine::Version part_original =
         spec.max_change
-            ? piece(input.reader().sign() == original.reader().sign() ? original : original.inverted(), c0,
-                    r0, columns, rows)
+            ? engine::pieceOf(
+                  input.reader().sign() == original.reader().sign() ? original : original.inverted(), c0, r0,
+                  columns, rows)
             : part;
     const engine::Result<engine::Filtered> done = engine::applyFilter(part, part_original, spec, job);
     if (!done) return tl::unexpected(done.error());

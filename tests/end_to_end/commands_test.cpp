@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -110,13 +111,59 @@ TEST_F(Commands, FilterKeepsMarksAndStaysWithinTheMaximumChange) {
 }
 
 TEST_F(Commands, FilterGivesTheSameBitsForAnyNumberOfThreads) {
-  for (const std::string filter : {"box", "gaussian", "median"}) {
+  for (const std::string filter : {"box", "gaussian", "median", "bilateral", "tv"}) {
     const auto hash = [&](const std::string& threads) {
       return fettleJson({"filter", scan(), file("t.tif"), "--filter", filter, "--window", "9", "--threads",
                          threads})["hash"];
     };
     EXPECT_EQ(hash("1"), hash("3")) << filter;
   }
+}
+
+TEST_F(Commands, FilterTakesARangeSigmaWithAUnitOrFromTheNoise) {
+  const auto range = [&](const std::string& given) {
+    std::vector<std::string> arguments{"filter", scan(), file("b.tif"), "--filter", "bilateral"};
+    if (!given.empty()) arguments.insert(arguments.end(), {"--range-sigma", given});
+    return fettleJson(arguments)["range_sigma"].get<double>();
+  };
+  EXPECT_EQ(range("80um"), 0.08);
+  EXPECT_EQ(range("0.08"), 0.08);
+  EXPECT_EQ(range(""), 4.0 * fettleJson({"info", scan()})["noise"].get<double>());
+  expectRefused(fettle({"filter", scan(), file("b.tif"), "--filter", "box", "--range-sigma", "1"}),
+                "range sigma");
+  expectRefused(fettle({"filter", scan(), file("b.tif"), "--filter", "tv", "--range-sigma", "0"}),
+                "range sigma");
+}
+
+TEST_F(Commands, SuggestedFilterTypedAsToldLeavesWhatWasTolerated) {
+  ASSERT_EQ(fettle({"synth", file("s.tif"), "--size", "512x512", "--truth", file("st.tif"), "--edges",
+                    file("se.png")})
+                .status,
+            0);
+  const auto said = fettleJson(
+      {"filter", file("s.tif"), file("clean.tif"), "--suggest", "--tolerance", "15um", "--budget", "600"});
+  EXPECT_EQ(said["met"], true);
+  EXPECT_GT(said["candidates"].size(), 20U);
+  EXPECT_FALSE(std::filesystem::exists(file("clean.tif"))) << "only named";
+  ASSERT_EQ(said["commands"].size(), 1U);
+  std::istringstream words(said["commands"][0].get<std::string>());
+  std::vector<std::string> arguments;
+  for (std::string word; words >> word;) arguments.push_back(word);
+  ASSERT_EQ(arguments.front(), "fettle");
+  arguments.erase(arguments.begin());
+  const Outcome done = fettle(arguments);
+  ASSERT_EQ(done.status, 0) << done.err;
+  const auto left = fettleJson(
+      {"compare", file("s.tif"), file("clean.tif"), "--truth", file("st.tif"), "--edges", file("se.png")});
+  EXPECT_LT(left["rmse_flat"], 1.2 * 0.015);
+  EXPECT_LT(left["rmse_edge"], 1.2 * 0.015);
+  // For people, the same in words; and what cannot be had is said.
+  const Outcome told = fettle({"filter", file("s.tif"), "--suggest", "--tolerance", "1um"});
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find("Nothing tried stays within 0.001 mm"), std::string::npos) << told.out;
+  expectRefused(fettle({"filter", file("s.tif"), "--suggest"}), "--tolerance");
+  expectRefused(fettle({"filter", file("s.tif"), file("o.tif"), "--filter", "box", "--tolerance", "1"}),
+                "--suggest");
 }
 
 TEST_F(Commands, CompareAgainstTheTruthJudgesFlatsAndEdges) {

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/field/version.h"
+
+namespace fettle::engine {
+
+/// The samples [column, column + columns) x [row, row + rows) of a field, with their marks, as a field of its
+/// own and of its own memory, with the heights as they read (sign applied). All of it lies in the field.
+/// Throws std::bad_alloc.
+[[nodiscard]] Version pieceOf(const Version& field, std::int32_t column, std::int32_t row,
+                              std::int32_t columns, std::int32_t rows);
+
+}  // namespace fettle::engine
