@@ -1,5 +1,6 @@
 #include "app/accuracy/page.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -52,21 +53,27 @@ code{font-size:12px;color:#777}svg{max-width:100%;height:auto}summary{cursor:poi
 </style>)";
 
 std::string tableOf(const bench::Study& study) {
+  std::string headings;
+  for (const std::string& column : study.columns) headings += "<th>" + escaped(column) + "</th>";
   std::string out = fmt::format(
       "<table><tr><th class=t>subject</th><th>no.</th><th class=t>method</th><th>{} "
       "[{}]</th><th>worst</th><th>{} "
-      "[{}]</th><th>p99</th><th>worst</th>{}<th class=t>note</th><th class=t>hash</th></tr>\n",
+      "[{}]</th><th>p99</th><th>worst</th>{}{}<th class=t>note</th><th class=t>hash</th></tr>\n",
       escaped(study.cost_name), escaped(study.cost_unit), escaped(study.error_name),
-      escaped(study.error_unit),
-      study.wrong_name.empty() ? "" : "<th>" + escaped(study.wrong_name) + "</th>");
-  for (const bench::AccuracyRow& row : study.rows)
+      escaped(study.error_unit), study.wrong_name.empty() ? "" : "<th>" + escaped(study.wrong_name) + "</th>",
+      headings);
+  for (const bench::AccuracyRow& row : study.rows) {
+    std::string more;
+    for (const double value : row.more) more += "<td>" + number(value) + "</td>";
     out += fmt::format(
         "<tr><td class=t>{}</td><td>{}</td><td "
         "class=t>{}</td><td>{}</td><td>{}</td><td><b>{}</b></td><td>{}</td><td>{}"
-        "</td>{}<td class=n>{}</td><td class=t><code>{:016x}</code></td></tr>\n",
+        "</td>{}{}<td class=n>{}</td><td class=t><code>{:016x}</code></td></tr>\n",
         escaped(row.subject), methodNumber(study, row.method), escaped(row.method), number(row.cost),
         number(row.cost_worst), number(row.error), number(row.error_p99), number(row.error_worst),
-        study.wrong_name.empty() ? "" : "<td>" + percent(row.wrong) + "</td>", escaped(row.note), row.hash);
+        study.wrong_name.empty() ? "" : "<td>" + percent(row.wrong) + "</td>", more, escaped(row.note),
+        row.hash);
+  }
   return out + "</table>\n";
 }
 
@@ -78,6 +85,14 @@ std::string legendOf(const bench::Study& study) {
     if (methodNumber(study, row.method) == next)
       out += fmt::format("{}<b>{}</b>&nbsp;{}", next == 1 ? "" : " &middot; ", next, escaped(row.method)),
           ++next;
+  return out;
+}
+
+std::string viewsOf(const PlottedStudy& s) {
+  std::string out;
+  for (std::size_t i = 0; i < s.view_svgs.size(); ++i)
+    out += fmt::format("<h3>{}</h3>\n{}\n<p class=how>{}</p>\n", escaped(s.study.views[i].title),
+                       s.view_svgs[i], legendOf(s.study.views[i]));
   return out;
 }
 
@@ -103,29 +118,43 @@ std::string accuracyPage(const std::vector<PlottedStudy>& studies, const std::st
       "drawn on the lower edge.</p>\n";
   for (const PlottedStudy& s : studies) {
     page += fmt::format(
-        "<h2 id=\"{}\">{}</h2>\n<p class=ask>{}</p>\n<p class=answer>{}</p>\n{}\n<p class=how>{}</p>\n<p "
+        "<h2 id=\"{}\">{}</h2>\n<p class=ask>{}</p>\n<p class=answer>{}</p>\n{}\n<p class=how>{}</p>\n{}<p "
         "class=how>"
         "<b>Measured against:</b> {}</p>\n<details><summary>All figures</summary>\n{}</details>\n",
         s.study.id, escaped(s.study.title), escaped(s.study.question), escaped(s.study.answer), s.svg,
-        legendOf(s.study), escaped(s.study.reference), tableOf(s.study));
+        legendOf(s.study), viewsOf(s), escaped(s.study.reference), tableOf(s.study));
   }
   return page + "</body></html>\n";
 }
 
 std::string accuracyCsv(const std::vector<PlottedStudy>& studies) {
+  std::vector<std::string> columns;  // of all studies, each once
+  for (const PlottedStudy& s : studies)
+    for (const std::string& column : s.study.columns)
+      if (std::find(columns.begin(), columns.end(), column) == columns.end()) columns.push_back(column);
   std::string text =
       "study,subject,number,method,cost,cost_worst,cost_unit,error,error_p99,error_worst,error_unit,wrong,"
-      "hash,note\n";
+      "hash,note";
+  for (const std::string& column : columns) text += fmt::format(",{}", csvText(column));
+  text += "\n";
   const auto plain = [](double value) {
     return std::isnan(value) ? std::string() : fmt::format("{:.9g}", value);
   };
   for (const PlottedStudy& s : studies)
-    for (const bench::AccuracyRow& row : s.study.rows)
-      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{:016x},{}\n", s.study.id,
-                          csvText(row.subject), methodNumber(s.study, row.method), csvText(row.method),
-                          plain(row.cost), plain(row.cost_worst), csvText(s.study.cost_unit),
-                          plain(row.error), plain(row.error_p99), plain(row.error_worst),
-                          csvText(s.study.error_unit), plain(row.wrong), row.hash, csvText(row.note));
+    for (const bench::AccuracyRow& row : s.study.rows) {
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{:016x},{}", s.study.id, csvText(row.subject),
+                          methodNumber(s.study, row.method), csvText(row.method), plain(row.cost),
+                          plain(row.cost_worst), csvText(s.study.cost_unit), plain(row.error),
+                          plain(row.error_p99), plain(row.error_worst), csvText(s.study.error_unit),
+                          plain(row.wrong), row.hash, csvText(row.note));
+      for (const std::string& column : columns) {
+        const auto at = std::find(s.study.columns.begin(), s.study.columns.end(), column);
+        text += ",";
+        if (at != s.study.columns.end())
+          text += plain(row.more[static_cast<std::size_t>(at - s.study.columns.begin())]);
+      }
+      text += "\n";
+    }
   return text;
 }
 

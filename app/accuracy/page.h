@@ -10,6 +10,7 @@ namespace fettle::app {
 struct PlottedStudy {
   bench::Study study;
   std::string svg;
+  std::vector<std::string> view_svgs;  ///< of study.views
 };
 
 /// The whole report as one HTML page that needs nothing beside it. `machine` and `made_with` (the options)
@@ -19,7 +20,8 @@ struct PlottedStudy {
 
 /// Every row of every study:
 /// study,subject,number,method,cost,cost_worst,cost_unit,error,error_p99,error_worst,
-/// error_unit,wrong,hash,note. Texts are quoted; what a study does not have is empty.
+/// error_unit,wrong,hash,note, then the further columns of all studies. Texts are quoted; what a study does
+/// not have is empty.
 [[nodiscard]] std::string accuracyCsv(const std::vector<PlottedStudy>& studies);
 
 }  // namespace fettle::app

@@ -58,7 +58,9 @@ std::string scriptOf(const bench::Study& study) {
   script += fmt::format("set xlabel {}\nset ylabel {}\n",
                         quoted(fmt::format("{} [{}]", study.cost_name, study.cost_unit)),
                         quoted(fmt::format("{} [{}]", study.error_name, study.error_unit)));
-  if (cost.logarithmic())
+  const bool cost_by_factors = cost.logarithmic() && !study.cost_from_zero;
+  if (study.cost_from_zero) script += fmt::format("set xrange [{}:{}]\n", -0.03 * cost.high, 1.1 * cost.high);
+  if (cost_by_factors)
     script += ticsOf('x', cost.floor() * 2.5, cost.high * 1.7) +
               fmt::format("set logscale x\nset xrange [{}:{}]\n", cost.floor() * 2.5, cost.high * 1.7);
   if (error.logarithmic())
@@ -71,7 +73,7 @@ std::string scriptOf(const bench::Study& study) {
     std::vector<Point> points;
     for (const bench::AccuracyRow& row : study.rows)
       if (row.subject == subjects[s])
-        points.push_back({std::max(row.cost, cost.logarithmic() ? cost.floor() * 3.0 : 0.0),
+        points.push_back({std::max(row.cost, cost_by_factors ? cost.floor() * 3.0 : 0.0),
                           row.error > 1e-9 ? row.error : (error.logarithmic() ? 1.05 * error.floor() : 0.0),
                           methodNumber(study, row.method)});
     const std::vector<Point> front = frontOf(points);

@@ -77,8 +77,14 @@ engine::Result<Report> accuracy(const Options& options, engine::JobControl& job)
     if (!study) return ended(study.error());
     auto svg = plotSvg(*study);
     if (!svg) return ended(svg.error());
+    std::vector<std::string> views;
+    for (const bench::Study& view : study->views) {
+      auto drawn = plotSvg(view);
+      if (!drawn) return ended(drawn.error());
+      views.push_back(*std::move(drawn));
+    }
     answers[study->id] = study->answer;
-    for (const bench::AccuracyRow& row : study->rows)
+    for (const bench::AccuracyRow& row : study->rows) {
       rows.push_back({{"study", study->id},
                       {"subject", row.subject},
                       {"method", row.method},
@@ -91,7 +97,9 @@ engine::Result<Report> accuracy(const Options& options, engine::JobControl& job)
                       {"wrong", row.wrong},
                       {"hash", fmt::format("{:016x}", row.hash)},
                       {"note", row.note}});
-    studies.push_back({*std::move(study), *std::move(svg)});
+      for (std::size_t i = 0; i < row.more.size(); ++i) rows.back()[study->columns[i]] = row.more[i];
+    }
+    studies.push_back({*std::move(study), *std::move(svg), std::move(views)});
   }
   const std::string machine = bench::machine();
   const std::string made_with = fmt::format(
@@ -99,9 +107,15 @@ engine::Result<Report> accuracy(const Options& options, engine::JobControl& job)
       options.scan.empty() ? "" : ", with " + std::filesystem::path(options.scan).filename().string());
   const std::string page = (folder / "accuracy.html").string(), csv = (folder / "accuracy.csv").string();
   if (auto ok = engine::writeFileAtomically(csv, accuracyCsv(studies)); !ok) return ended(ok.error());
-  for (const PlottedStudy& s : studies)
+  for (const PlottedStudy& s : studies) {
     if (auto ok = engine::writeFileAtomically((folder / (s.study.id + ".svg")).string(), s.svg); !ok)
       return ended(ok.error());
+    for (std::size_t i = 0; i < s.view_svgs.size(); ++i)
+      if (auto ok =
+              engine::writeFileAtomically((folder / (s.study.views[i].id + ".svg")).string(), s.view_svgs[i]);
+          !ok)
+        return ended(ok.error());
+  }
   if (auto ok = engine::writeFileAtomically(page, accuracyPage(studies, machine, made_with)); !ok)
     return ended(ok.error());
   return Report{{"page", page},       {"csv", csv},  {"machine", machine}, {"effort", options.effort},

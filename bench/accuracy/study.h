@@ -19,6 +19,7 @@ struct AccuracyRow {
   double wrong = 0.0;        ///< share of cases that Study::wrong_name names, 0 .. 1; NaN: none
   std::uint64_t hash = 0;    ///< of the result: the same on every run of the same build
   std::string note;          ///< what else there is to say, in a few words
+  std::vector<double> more;  ///< of Study::columns, as many; NaN: does not apply
 };
 
 /// A trade of accuracy against time: ways of doing the same, on several subjects, against one reference.
@@ -30,10 +31,15 @@ struct Study {
   const char* cost_unit = "";  ///< a literal, like error_unit
   std::string error_name;      ///< of the vertical axis
   const char* error_unit = "";
-  std::string wrong_name;  ///< empty: rows have no share of wrong ones
-  std::string reference;   ///< what errors are measured against, and how that is checked itself
-  std::string answer;      ///< in a sentence or two, made of the rows' figures
+  std::string wrong_name;            ///< empty: rows have no share of wrong ones
+  std::string reference;             ///< what errors are measured against, and how that is checked itself
+  std::string answer;                ///< in a sentence or two, made of the rows' figures
+  bool cost_from_zero = false;       ///< the horizontal axis is even, from 0; else by factors
+  std::vector<std::string> columns;  ///< further figures of each row, with unit: "flats [um]"
   std::vector<AccuracyRow> rows;
+  /// The same rows seen another way, or the best of them: plots of their own in the same section. Only id,
+  /// title, names and units of the axes, and rows count.
+  std::vector<Study> views;
 };
 
 }  // namespace fettle::bench

@@ -143,5 +143,29 @@ TEST(UploadStudy, RoundingStaysWithinHalfAStep) {
   EXPECT_LT(whole.error_worst, 10.0);  // a part of some tens of millimetres over 65535 steps, halved
 }
 
+TEST(RestorationStudy, FiltersThatKeepEdgesBeatThoseThatDoNotAndEffortPaysForTheLatter) {
+  engine::JobControl job;
+  AccuracyOptions options;
+  options.effort = 0.01;
+  const auto study = restorationStudy(options, job);
+  ASSERT_TRUE(study) << study.error().line();
+  for (const AccuracyRow& row : study->rows) EXPECT_EQ(row.more.size(), study->columns.size()) << row.method;
+  const double nothing = rowOf(*study, "scan as it came", "nothing").error;
+  for (const char* keeps : {"bilateral 5", "tv 17"}) {
+    const AccuracyRow& row = rowOf(*study, "alone", keeps);
+    EXPECT_LT(row.error, 0.7 * nothing) << keeps;
+    EXPECT_LT(row.more[0], 0.5 * rowOf(*study, "scan as it came", "nothing").more[0]) << keeps;
+  }
+  EXPECT_GT(rowOf(*study, "alone", "box 5, 2 passes").error, nothing);
+  ASSERT_EQ(study->views.size(), 1U);
+  const Study& effort = study->views[0];
+  const AccuracyRow& alone = rowOf(effort, "box, Gaussian, median", "alone");
+  const AccuracyRow& by_hand = rowOf(effort, "box, Gaussian, median", "by hand: all edges");
+  EXPECT_EQ(alone.cost, 0.0);
+  EXPECT_GT(by_hand.cost, 10.0);
+  EXPECT_LT(by_hand.error, alone.error);
+  EXPECT_LT(rowOf(effort, "box, Gaussian, median", "by hand: long edges").cost, by_hand.cost);
+}
+
 }  // namespace
 }  // namespace fettle::bench
