@@ -1,0 +1,88 @@
+// What a tick may cost, in instructions: the same on an idle machine and on a busy one, so that a change that
+// makes it dearer fails here and not in somebody's hand. Of a release build alone: other builds have other
+// instructions.
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "bench/hand_stroke.h"
+#include "bench/instructions.h"
+#include "engine/field/live_field.h"
+#include "haptic/loop/rt_thread.h"
+#include "haptic/scene.h"
+#include "haptic/tick.h"
+
+namespace fettle::bench {
+namespace {
+
+constexpr double kSpacingMm = 0.05;
+
+struct Budget {
+  const char* name;
+  haptic::Tool tool;
+  haptic::ContactLevel level;
+  double ball_cells;  // 0: a point
+  int counted;        // ticks
+  // Instructions a tick as counted when this was written, with the compiler of Debian 12. A tenth more fails;
+  // so does a quarter less, to be written down here and defended from then on.
+  double instructions;
+};
+
+constexpr Budget kBudgets[] = {
+    {"feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 0.0, 300, 1.0},
+    {"3 x 3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 0.0, 300, 1.0},
+    {"certified, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 0.0, 60, 1.0},
+    {"ball, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 2.0, 12, 1.0},
+};
+
+// Ticks spread over a hand's way: each counted one follows on its predecessor, as the rest do.
+std::optional<double> instructionsOf(const Budget& budget) {
+  const engine::Version field = workpiece(256, kSpacingMm);
+  HandMotion motion;
+  motion.ticks = 20'000;
+  motion.speed_mm_s = 20.0;
+  motion.tool = budget.tool;
+  std::vector<haptic::StrokeSample> strokes = handStroke(field, motion);
+  haptic::Scene scene = haptic::defaultScene();
+  scene.level = budget.level;
+  if (budget.ball_cells > 0.0) {
+    scene.tip = haptic::TipShape::kSphere;
+    scene.tip_radius_mm = budget.ball_cells * kSpacingMm;
+    for (haptic::StrokeSample& s : strokes) s.tip_mm.z += scene.tip_radius_mm;
+  }
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  haptic::Tick tick(scene, live, field);
+  const haptic::DenormalScope as_in_the_loop;
+  const std::size_t begin = strokes.size() / 2;
+  for (std::size_t i = 0; i < begin; ++i) (void)tick.run(strokes[i]);
+  const auto count = countInstructions([&] {
+    for (int i = 0; i < budget.counted; ++i) (void)tick.run(strokes[begin + static_cast<std::size_t>(i)]);
+  });
+  if (!count.instructions) return std::nullopt;
+  return static_cast<double>(*count.instructions) / budget.counted;
+}
+
+class TickBudget : public testing::TestWithParam<Budget> {};
+
+TEST_P(TickBudget, IsKept) {
+#if !defined(NDEBUG) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "not a release build";
+#else
+  const Budget& budget = GetParam();
+  const auto counted = instructionsOf(budget);
+  if (!counted) GTEST_SKIP() << "instructions cannot be counted here";
+  RecordProperty("instructions_a_tick", static_cast<int>(*counted));
+  EXPECT_LE(*counted, 1.1 * budget.instructions) << budget.name << ": dearer than it was";
+  EXPECT_GE(*counted, 0.75 * budget.instructions) << budget.name << ": cheaper; write the new figure down";
+#endif
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, TickBudget, testing::ValuesIn(kBudgets), [](const auto& tried) {
+  std::string name;
+  for (const char c : std::string(tried.param.name))
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0) name += c;
+  return name;
+});
+
+}  // namespace
+}  // namespace fettle::bench
