@@ -207,21 +207,6 @@ bool convexDistance(const Patch& s, double ez) noexcept {
   return sum > zd * (2.0 * pq + zd) * (1.0 + 1e-12);
 }
 
-// Whether the distance can be stationary inside the patch: there sx (ex - sx u) = z p and likewise along v,
-// with z and the slopes within what they are over the whole patch.
-bool mayRestInside(const Patch& s, const glm::dvec3& e) noexcept {
-  const double z_low = s.lowest() - e.z;
-  const double z_high = s.highest() - e.z;
-  const auto may = [&](double slope0, double out, double spacing) {
-    const double slope1 = slope0 + s.d;
-    const auto [low, high] = std::minmax({z_low * slope0, z_low * slope1, z_high * slope0, z_high * slope1});
-    const double room =
-        1e-6 * (spacing * (std::abs(out) + spacing) + std::max(std::abs(low), std::abs(high)));
-    return high > spacing * (out - spacing) - room && low < spacing * out + room;
-  };
-  return may(s.b, e.x - s.x0, s.sx) && may(s.c, e.y - s.y0, s.sy);
-}
-
 double unit(double x) noexcept {
   return std::clamp(x, 0.0, 1.0);
 }
@@ -259,7 +244,6 @@ PatchPoint closestOnWholePatch(const Patch& s, const glm::dvec3& endpoint) noexc
     keepNearer(best, closestOnEdgeV(s, endpoint, side));
     keepNearer(best, closestOnEdgeU(s, endpoint, side));
   }
-  if (!mayRestInside(s, endpoint)) return best;
   const Reduced r{s.sx, s.sy, endpoint.x - s.x0, endpoint.y - s.y0, s.b, s.c, s.d, s.a - endpoint.z};
   forEachMinimum(r, [&](double v) {
     keepNearer(best, closestOnEdgeV(s, endpoint, unit(v)));  // exact along u at any v
