@@ -78,6 +78,13 @@ std::string HandPlay::filter(bool under_a_stroke) {
   return leaves ? "filter, cancelled" : "filter";
 }
 
+void HandPlay::apply(const engine::FilterSpec& spec) {
+  filters_.spec = spec;
+  filters_.apply(touch_);
+  static_cast<void>(stroke(true));
+  while (filters_.computing() || filters_.applying()) wait(1);
+}
+
 std::string HandPlay::marks() {
   touch_.poll();
   const engine::Version base = touch_.upright();

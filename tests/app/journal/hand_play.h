@@ -20,6 +20,8 @@ class HandPlay {
 
   /// One thing a person does; says what.
   std::string act();
+  /// This filter, brought in while a stroke goes on.
+  void apply(const engine::FilterSpec& spec);
   /// Until nothing is under way: no stroke, no filter, every step handed over.
   void settle();
   /// Until all that was done lies on the disk.

@@ -90,6 +90,38 @@ TEST(SessionJournal, ReplaysToTheBitsThatHandsFiltersAndUndoMade) {
   EXPECT_GT(played->steps, 3);
 }
 
+TEST(SessionJournal, ReplaysFiltersWhoseRangeWasLeftToTheNoiseToTheSameBits) {
+  const TempFolder folder;
+  const std::string path = folder.file("work.fettle");
+  Document document = fromField(roughPart(), folder.file("scan.tif"));
+  const engine::History history = document.history;
+  SessionKeeper keeper(document);
+  keeper.saveAs(path, engine::OriginalStorage::kEmbedded);
+  auto touch = touchOf(document, history, keeper);
+  ASSERT_TRUE(touch);
+  HandPlay play(*touch, keeper, 7);
+  engine::FilterSpec spec;
+  for (const auto& [kind, window] :
+       {std::pair{engine::FilterKind::kBilateral, 5}, {engine::FilterKind::kTotalVariation, 11}}) {
+    spec.kind = kind;
+    spec.window = window;
+    play.apply(spec);
+  }
+  play.settle();
+  for (const app::Notice& notice : play.notices()) ADD_FAILURE() << notice.what;
+  touch->finish();
+  const std::uint64_t expected = engine::contentHash(touch->history().current());
+  ASSERT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
+
+  engine::JobControl job;
+  const auto session = engine::openSession(path, {}, job);
+  ASSERT_TRUE(session) << session.error().line();
+  const auto played = app::playSession(*session, job);
+  ASSERT_TRUE(played) << played.error().line();
+  EXPECT_EQ(played->filters, 2);
+  EXPECT_EQ(engine::contentHash(played->field), expected);
+}
+
 TEST(SessionKeeper, WhatIsOnlyLookedAtLeavesNoFile) {
   const TempFolder folder;
   setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
