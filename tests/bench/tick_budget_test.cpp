@@ -16,6 +16,11 @@ namespace fettle::bench {
 namespace {
 
 constexpr double kSpacingMm = 0.05;
+#if defined(NDEBUG) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+constexpr bool kReleased = true;
+#else
+constexpr bool kReleased = false;
+#endif
 
 struct Budget {
   const char* name;
@@ -65,16 +70,13 @@ std::optional<double> instructionsOf(const Budget& budget) {
 class TickBudget : public testing::TestWithParam<Budget> {};
 
 TEST_P(TickBudget, IsKept) {
-#if !defined(NDEBUG) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "not a release build";
-#else
+  if (!kReleased) GTEST_SKIP() << "not a release build";
   const Budget& budget = GetParam();
   const auto counted = instructionsOf(budget);
   if (!counted) GTEST_SKIP() << "instructions cannot be counted here";
   RecordProperty("instructions_a_tick", static_cast<int>(*counted));
   EXPECT_LE(*counted, 1.1 * budget.instructions) << budget.name << ": dearer than it was";
   EXPECT_GE(*counted, 0.75 * budget.instructions) << budget.name << ": cheaper; write the new figure down";
-#endif
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, TickBudget, testing::ValuesIn(kBudgets), [](const auto& tried) {

@@ -169,6 +169,7 @@ long double ExactSum::value() const {
 }
 
 long double ulp(float value) {
+  if (!std::isfinite(value)) return std::numeric_limits<long double>::quiet_NaN();
   if (std::fabs(value) < std::numeric_limits<float>::min()) return std::ldexp(1.0L, -149);
   return std::ldexp(1.0L, std::ilogb(value) - 23);
 }

@@ -54,7 +54,8 @@ class ExactSum {
   std::array<std::uint64_t, 6> words_{};  // two's complement, least significant first
 };
 
-/// Distance between neighbouring floats at `value`, from above; of a denormal 2^-149.
+/// Distance between neighbouring floats at `value`, from above; of a denormal 2^-149, of what is not finite
+/// NaN, which nothing is within.
 [[nodiscard]] long double ulp(float value);
 
 /// What a single window comes to, by brute force over its samples, one pass, marks not looked at.
