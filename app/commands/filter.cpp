@@ -128,8 +128,7 @@ std::vector<std::string> commandsFor(const Options& options, const engine::Filte
   std::string filter = fmt::format("fettle filter {} {} --filter {} --window {}", in, out,
                                    engine::name(c.spec.kind), c.spec.window);
   if (c.spec.passes > 1) filter += fmt::format(" --passes {}", c.spec.passes);
-  if (engine::hasRange(c.spec.kind))
-    filter += fmt::format(" --range-sigma {}", c.spec.range_sigma);
+  if (engine::hasRange(c.spec.kind)) filter += fmt::format(" --range-sigma {}", c.spec.range_sigma);
   std::string keep = options.keep;
   if (c.around_edges) {
     commands.push_back(fmt::format("fettle mark {} marks.png --edges --thickness {}{}{}", in, c.thickness,

@@ -25,7 +25,7 @@ class FilterPreview {
   struct Variant {
     engine::FilterSpec asked;  ///< as the panel had it
     engine::FilterSpec spec;   ///< as computed: with a range sigma, where the panel left it to the noise
-    engine::Version base;  ///< as felt when it was computed
+    engine::Version base;      ///< as felt when it was computed
     engine::Filtered result;
     std::uint64_t base_id = 0;  ///< the base's in the journal (Touch::noteFilterBase)
   };

@@ -24,7 +24,7 @@ struct Display {
   float light_elevation_deg = 45.0F;
   bool furniture = true;
   std::int64_t vertices = 65536;  ///< a frame may cost, 4096 .. 2^22
-  bool half_in_motion = true;  ///< the picture is half as sharp while the view moves (CameraMotion)
+  bool half_in_motion = true;     ///< the picture is half as sharp while the view moves (CameraMotion)
   // Not remembered: whoever comes next may have no glasses on.
   render::StereoMode stereo = render::StereoMode::kOff;
   float eye_separation = 1.0F / 30.0F;

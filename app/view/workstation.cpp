@@ -109,8 +109,8 @@ void Workstation::rememberLayout() {
 }
 
 void Workstation::goRound() {
-  const bool working = mark_edit_.busy() || edges_.busy() || costs_.busy() || loading_.busy() || saving_.busy() ||
-                       filters_.computing() || filters_.applying();
+  const bool working = mark_edit_.busy() || edges_.busy() || costs_.busy() || loading_.busy() ||
+                       saving_.busy() || filters_.computing() || filters_.applying();
   window_->poll(active() ? 0.0 : working ? kBusy_s : kIdle_s);
   whileWaiting();
   countHands();

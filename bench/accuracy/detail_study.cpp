@@ -46,8 +46,7 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
   std::vector<StudiedScan> subjects{{"milled part, 1M samples", part->scan}};
   if (options.scan) subjects.push_back(*options.scan);
   const int views = std::max(2, static_cast<int>(std::lround(12 * options.effort)));
-  job.begin("level of detail",
-            subjects.size() * static_cast<std::size_t>(views) * (std::size(kChoices) + 1));
+  job.begin("level of detail", subjects.size() * static_cast<std::size_t>(views) * (std::size(kChoices) + 1));
 
   auto created = render::LivePicture::create();
   if (!created) return tl::unexpected(created.error());

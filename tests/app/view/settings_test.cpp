@@ -34,9 +34,10 @@ TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
   const tests::TempFolder folder;
   const std::string path = (folder.path() / "window.json").string();
   EXPECT_EQ(Settings::load(path), Settings());
-  for (const char* text : {"", "no json", "[1, 2]",
-                           "{\"split_at\": 7, \"light_elevation\": -3, \"marks\": 3, \"vertices\": 12, \"mouse\": \"cat\"}",
-                           "{\"panels\": {\"Tool\": 5}, \"side_width\": \"wide\", \"colours\": 4}"}) {
+  for (const char* text :
+       {"", "no json", "[1, 2]",
+        "{\"split_at\": 7, \"light_elevation\": -3, \"marks\": 3, \"vertices\": 12, \"mouse\": \"cat\"}",
+        "{\"panels\": {\"Tool\": 5}, \"side_width\": \"wide\", \"colours\": 4}"}) {
     std::ofstream(path) << text;
     EXPECT_EQ(Settings::load(path), Settings()) << text;
   }
