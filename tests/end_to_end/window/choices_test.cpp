@@ -19,6 +19,10 @@ int figuresIn(const State& s, const std::string& unit) {
   return found;
 }
 
+bool reads(const State& s, const std::string& text) {
+  return s["texts"].dump().find(text) != std::string::npos;
+}
+
 TEST_F(WindowTest, levels_of_contact_and_detail_are_chosen_by_what_they_cost_on_this_scan) {
   const auto program = start({scan});
   Hand hand(display, *program, "choices");
@@ -35,11 +39,12 @@ TEST_F(WindowTest, levels_of_contact_and_detail_are_chosen_by_what_they_cost_on_
   (void)hand.look("contact list");
   hand.tap("paper, to rest");
   program->until("paper", [](const State& s) { return s["contact_level"] == "paper"; });
-  program->until("what it costs", [](const State& s) {
-    return s["texts"].dump().find("point felt is off") != std::string::npos;
+  program->until("what it costs, and the list closed", [](const State& s) {
+    return reads(s, "point felt is off") && !reads(s, "ball, radius 2 cells");
   });
   (void)hand.look("contact chosen");
   hand.tap("paper, to rest");
+  program->until("the list again", [](const State& s) { return reads(s, "ball, radius 2 cells"); });
   hand.tap("ball, radius 2 cells");
   program->until("a ball", [](const State& s) { return s["contact_level"] == "ball"; });
 
@@ -52,10 +57,8 @@ TEST_F(WindowTest, levels_of_contact_and_detail_are_chosen_by_what_they_cost_on_
   hand.tap("16 k vertices");
   program->until("fewer vertices",
                  [](const State& s) { return s["vertices"] == 16384 && s["settled"] == true; });
-  program->until("what it costs", [](const State& s) {
-    return s["texts"].dump().find("of 255 off") != std::string::npos &&
-           s["texts"].dump().find("256 k") == std::string::npos;
-  });
+  program->until("what it costs",
+                 [](const State& s) { return reads(s, "of 255 off") && !reads(s, "256 k"); });
   (void)hand.look("detail chosen");
   EXPECT_EQ(program->now()["notices"], State::array());
   program->signal(SIGTERM);
