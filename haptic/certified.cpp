@@ -19,6 +19,8 @@
 #include <cmath>
 #include <limits>
 
+#include <glm/geometric.hpp>
+
 #include "haptic/closest_point.h"
 
 namespace fettle::haptic {
@@ -235,11 +237,15 @@ PatchPoint closestOnEdgeU(const Patch& s, const glm::dvec3& e, double u) noexcep
 
 }  // namespace
 
-PatchPoint closestOnWholePatch(const Patch& s, const glm::dvec3& endpoint) noexcept {
-  const double u0 = unit((endpoint.x - s.x0) / s.sx);
-  const double v0 = unit((endpoint.y - s.y0) / s.sy);
-  PatchPoint best = closestOnPatch(s, endpoint, u0, v0);
-  if (convexDistance(s, endpoint.z)) return best;
+namespace {
+
+// Going down from the point below or above the endpoint.
+PatchPoint descend(const Patch& s, const glm::dvec3& endpoint) noexcept {
+  return closestOnPatch(s, endpoint, unit((endpoint.x - s.x0) / s.sx), unit((endpoint.y - s.y0) / s.sy));
+}
+
+// Where the descent may have come to rest somewhere else: all edges and all stationary points besides.
+PatchPoint bestOfAll(const Patch& s, const glm::dvec3& endpoint, PatchPoint best) noexcept {
   for (const double side : {0.0, 1.0}) {
     keepNearer(best, closestOnEdgeV(s, endpoint, side));
     keepNearer(best, closestOnEdgeU(s, endpoint, side));
@@ -252,6 +258,25 @@ PatchPoint closestOnWholePatch(const Patch& s, const glm::dvec3& endpoint) noexc
   return best;
 }
 
+// Squared distance that no point of the patch undercuts, as seen along `away`, a direction from some point to
+// the endpoint, not zero: a patch lies in the hull of its corners, and so no nearer than the nearest of their
+// four planes across that direction. Off by a few roundings of the heights nearby.
+[[gnu::always_inline]] inline double hullDistance2(const Patch& s, const glm::dvec3& e,
+                                                   const glm::dvec3& away) noexcept {
+  const double along_u = away.x * s.sx + away.z * s.b;
+  const double along_v = away.y * s.sy + away.z * s.c;
+  const double nearest = away.x * (e.x - s.x0) + away.y * (e.y - s.y0) + away.z * (e.z - s.a) -
+                         std::max({0.0, along_u, along_v, along_u + along_v + away.z * s.d});
+  return nearest > 0.0 ? nearest * nearest / glm::dot(away, away) : 0.0;
+}
+
+}  // namespace
+
+PatchPoint closestOnWholePatch(const Patch& s, const glm::dvec3& endpoint) noexcept {
+  const PatchPoint best = descend(s, endpoint);
+  return convexDistance(s, endpoint.z) ? best : bestOfAll(s, endpoint, best);
+}
+
 namespace {
 
 double beyond(double x, double low, double high) noexcept {
@@ -262,18 +287,7 @@ double beyond(double x, double low, double high) noexcept {
 class CellSearch {
  public:
   CellSearch(Surface& surface, const glm::dvec3& endpoint, double radius_mm) noexcept
-      : surface_(surface), e_(endpoint), radius2_(radius_mm * radius_mm) {
-    const auto index = [](double x, std::int32_t cells) {
-      return static_cast<std::int32_t>(std::clamp(std::floor(x), -1.0, static_cast<double>(cells)));
-    };
-    const std::int32_t columns = surface.cellColumns();
-    const std::int32_t rows = surface.cellRows();
-    // One cell more on each side: which cells belong is decided by their distance, not by this rounding.
-    c0_ = std::max(index((e_.x - radius_mm) / surface.spacingX(), columns) - 1, 0);
-    c1_ = std::min(index((e_.x + radius_mm) / surface.spacingX(), columns) + 1, columns - 1);
-    r0_ = std::max(index((e_.y - radius_mm) / surface.spacingY(), rows) - 1, 0);
-    r1_ = std::min(index((e_.y + radius_mm) / surface.spacingY(), rows) + 1, rows - 1);
-  }
+      : surface_(surface), e_(endpoint), radius_mm_(radius_mm), radius2_(radius_mm * radius_mm) {}
 
   void seed() noexcept {
     CellIndex own;
@@ -284,10 +298,27 @@ class CellSearch {
   }
 
   void run() noexcept {
-    if (c1_ - c0_ < kWindowWithoutPyramid && r1_ - r0_ < kWindowWithoutPyramid)
-      cells(c0_, r0_, c1_, r1_);
+    const double reach_mm = std::min(radius_mm_, std::sqrt(best_.distance2_mm2));
+    // A hair more on each side: which cells belong is decided by their distance, not by this rounding.
+    constexpr double kHair = 1e-6;
+    const auto index = [](double x, std::int32_t cells) {
+      return static_cast<std::int32_t>(std::clamp(std::floor(x), -1.0, static_cast<double>(cells)));
+    };
+    const auto first = [&](double x, double spacing, std::int32_t cells) {
+      return std::max(index((x - reach_mm) / spacing - kHair, cells), 0);
+    };
+    const auto last = [&](double x, double spacing, std::int32_t cells) {
+      return std::min(index((x + reach_mm) / spacing + kHair, cells), cells - 1);
+    };
+    const std::int32_t c0 = first(e_.x, surface_.spacingX(), surface_.cellColumns());
+    const std::int32_t c1 = last(e_.x, surface_.spacingX(), surface_.cellColumns());
+    const std::int32_t r0 = first(e_.y, surface_.spacingY(), surface_.cellRows());
+    const std::int32_t r1 = last(e_.y, surface_.spacingY(), surface_.cellRows());
+    if (c0 > c1 || r0 > r1) return;
+    if (c1 - c0 < kWindowWithoutPyramid && r1 - r0 < kWindowWithoutPyramid)
+      cells(c0, r0, c1, r1);
     else
-      squares(1, c0_, r0_, c1_, r1_);
+      squares(1, c0, r0, c1, r1);
   }
 
   [[nodiscard]] const SurfacePoint& best() const noexcept { return best_; }
@@ -346,6 +377,23 @@ class CellSearch {
     return apart > 0.0 && apart * apart > best_.distance2_mm2 * (1.0 + p * p + q * q) * (1.0 + 1e-9);
   }
 
+  // About the closest point of the patch's middle plane, cut to the cell.
+  [[nodiscard]] glm::dvec3 nearMiddle(const Patch& s) const noexcept {
+    const double b = s.b + 0.5 * s.d;
+    const double c = s.c + 0.5 * s.d;
+    const double x = e_.x - s.x0;
+    const double y = e_.y - s.y0;
+    const double z = e_.z - s.a + 0.25 * s.d;
+    const double uu = s.sx * s.sx + b * b;
+    const double vv = s.sy * s.sy + c * c;
+    const double uv = b * c;
+    const double gu = s.sx * x + b * z;
+    const double gv = s.sy * y + c * z;
+    const double u = unit((vv * gu - uv * gv) / (uu * vv - uv * uv));
+    const double v = unit((gv - uv * u) / vv);
+    return s.at(unit((gu - uv * v) / uu), v);
+  }
+
   // At most kWindowWithoutPyramid columns.
   void cells(std::int32_t c0, std::int32_t r0, std::int32_t c1, std::int32_t r1) noexcept {
     // The horizontal distance of a cell is a part along x and a part along y: as many of each as the window
@@ -366,17 +414,34 @@ class CellSearch {
         if (!surface_.patch({column, row}, patch)) continue;
         const double dz = beyond(e_.z, patch.lowest(), patch.highest());
         if (flat2 + dz * dz >= best_.distance2_mm2 || planeIsBeyond(patch)) continue;
-        const PatchPoint point = closestOnWholePatch(patch, e_);
-        if (point.distance2_mm2 < best_.distance2_mm2)
-          best_ = {{column, row}, point.u, point.v, patch.at(point.u, point.v), point.distance2_mm2};
+        if (hullIsBeyond(patch, best_.position_mm) || hullIsBeyond(patch, nearMiddle(patch))) continue;
+        solve({column, row}, patch);
       }
     }
   }
 
+  // From a vertex or an edge where the best point rests, the cells around it are as near as it is, and not
+  // nearer: which is seen along the way from it to the endpoint, with room for rounding.
+  [[nodiscard]] bool hullIsBeyond(const Patch& s, const glm::dvec3& from) const noexcept {
+    constexpr double kRounding = 1.0 + 4e-15;
+    const glm::dvec3 away = e_ - from;
+    return hullDistance2(s, e_, away) * kRounding >= best_.distance2_mm2;
+  }
+
+  void solve(CellIndex cell, const Patch& patch) noexcept {
+    const auto keep = [&](const PatchPoint& point) {
+      if (point.distance2_mm2 < best_.distance2_mm2)
+        best_ = {cell, point.u, point.v, patch.at(point.u, point.v), point.distance2_mm2};
+    };
+    const PatchPoint rest = descend(patch, e_);
+    keep(rest);
+    if (convexDistance(patch, e_.z) || hullIsBeyond(patch, patch.at(rest.u, rest.v))) return;
+    keep(bestOfAll(patch, e_, rest));
+  }
+
   Surface& surface_;
   glm::dvec3 e_;
-  double radius2_;
-  std::int32_t c0_, c1_, r0_, r1_;
+  double radius_mm_, radius2_;
   SurfacePoint best_{{}, 0.0, 0.0, {}, std::numeric_limits<double>::infinity()};
 };
 
