@@ -39,7 +39,7 @@ std::vector<haptic::StrokeSample> handStroke(const engine::Version& field, const
   return strokes;
 }
 
-engine::Version workpiece(std::int32_t side, double spacing_mm) {
+engine::Version workpiece(std::int32_t side, double spacing_mm, double noise_mm) {
   engine::Grid grid;
   grid.width = grid.height = side;
   grid.spacing_x = grid.spacing_y = spacing_mm;
@@ -51,7 +51,7 @@ engine::Version workpiece(std::int32_t side, double spacing_mm) {
       state ^= state << 13;
       state ^= state >> 7;
       state ^= state << 17;
-      const double noise = (static_cast<double>(state >> 11) * 0x1p-53 - 0.5) * 0.04;
+      const double noise = (static_cast<double>(state >> 11) * 0x1p-53 - 0.5) * noise_mm;
       const double x = c * spacing_mm;
       const double y = r * spacing_mm;
       // Flanks of slope 1 and less: an open-loop hand can follow these, a wall would hold it.

@@ -24,8 +24,8 @@ struct HandMotion {
 [[nodiscard]] std::vector<haptic::StrokeSample> handStroke(const engine::Version& field,
                                                            const HandMotion& motion);
 
-/// A field for such strokes: a milled part with steps, ribs and freeform areas, and noise; `side` samples
-/// square.
-[[nodiscard]] engine::Version workpiece(std::int32_t side, double spacing_mm);
+/// A field for such strokes: a milled part with steps, ribs and freeform areas, and noise of so much from its
+/// lowest to its highest; `side` samples square.
+[[nodiscard]] engine::Version workpiece(std::int32_t side, double spacing_mm, double noise_mm = 0.04);
 
 }  // namespace fettle::bench

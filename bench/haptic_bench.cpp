@@ -1,13 +1,16 @@
 #include "bench/haptic_bench.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "bench/hand_stroke.h"
+#include "bench/hard_grounds.h"
 #include "bench/machine.h"
+#include "bench/plain_search.h"
 #include "engine/field/live_field.h"
 #include "haptic/loop/rt_thread.h"
 #include "haptic/replay.h"
@@ -58,6 +61,7 @@ void timeTicks(const haptic::Scene& scene, const engine::Version& field,
   row.p50_ns = quantile(0.5);
   row.p99_ns = quantile(0.99);
   row.p999_ns = quantile(0.999);
+  row.p9999_ns = quantile(0.9999);
   row.worst_ns = ns.back();
 }
 
@@ -100,6 +104,64 @@ engine::Result<HapticBenchRow> run(const Way& way, const engine::Version& field,
   return row;
 }
 
+// The yardstick's rate over the same strokes.
+engine::Result<HapticBenchRow> runPlain(const engine::Version& field,
+                                        std::span<const haptic::StrokeSample> strokes,
+                                        const HapticBenchOptions& options, engine::JobControl& job) {
+  const double stiffness = haptic::defaultScene().stiffness_n_per_mm;
+  HapticBenchRow row;
+  row.name = "plain array, the source's search";
+  row.ticks = static_cast<std::int64_t>(strokes.size());
+  PlainSearch search(field);
+  std::vector<double> rates;
+  for (int i = 0; i < options.repeats; ++i) {
+    if (job.cancelled()) return engine::cancelled();
+    row.contact_ticks = 0;
+    row.hash = 0;
+    const auto begin = std::chrono::steady_clock::now();
+    for (const haptic::StrokeSample& sample : strokes) {
+      const glm::dvec3 force = search.tick(sample.tip_mm, stiffness);
+      row.contact_ticks += force.z != 0.0 ? 1 : 0;
+      row.hash = std::rotl(row.hash, 7) ^ std::bit_cast<std::uint64_t>(force.z);
+    }
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+    rates.push_back(static_cast<double>(strokes.size()) / spent.count());
+    search.reset();
+  }
+  std::sort(rates.begin(), rates.end());
+  row.slowest = rates.front();
+  row.median = rates[rates.size() / 2];
+  row.fastest = rates.back();
+  return row;
+}
+
+struct Touched {
+  const char* ground;
+  const engine::Version& field;
+  double speed_mm_s;
+  std::int64_t ticks;
+};
+
+engine::Status touch(const Touched& what, const HapticBenchOptions& options, engine::JobControl& job,
+                     HapticBenchReport& report) {
+  HandMotion motion;
+  motion.ticks = what.ticks;
+  motion.speed_mm_s = what.speed_mm_s;
+  std::vector<haptic::StrokeSample> strokes = handStroke(what.field, motion);
+  const auto add = [&](engine::Result<HapticBenchRow> row) -> engine::Status {
+    if (!row) return tl::unexpected(row.error());
+    row->ground = what.ground;
+    row->speed_mm_s = what.speed_mm_s;
+    report.rows.push_back(*std::move(row));
+    return {};
+  };
+  if (auto done = add(runPlain(what.field, strokes, options, job)); !done) return done;
+  double raised_mm = 0.0;  // a ball's endpoint is its centre: the same press is one radius higher
+  for (const Way& way : kWays)
+    if (auto done = add(run(way, what.field, strokes, raised_mm, options, job)); !done) return done;
+  return {};
+}
+
 }  // namespace
 
 engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options, engine::JobControl& job) {
@@ -112,19 +174,19 @@ engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options,
   HapticBenchReport report;
   report.machine = machine();
   report.copy_bytes_per_s = copyBytesPerSecond();
-  const engine::Version field = workpiece(options.side, kSpacingMm);
-  for (const double speed : options.speeds_mm_s) {
-    HandMotion motion;
-    motion.ticks = options.ticks;
-    motion.speed_mm_s = speed;
-    std::vector<haptic::StrokeSample> strokes = handStroke(field, motion);
-    double raised_mm = 0.0;  // a ball's endpoint is its centre: the same press is one radius higher
-    for (const Way& way : kWays) {
-      auto row = run(way, field, strokes, raised_mm, options, job);
-      if (!row) return tl::unexpected(row.error());
-      row->speed_mm_s = speed;
-      report.rows.push_back(*std::move(row));
-    }
+  constexpr std::int32_t kSmallSide = 1024;
+  constexpr double kSpeed = 20.0;
+  const engine::Version part = workpiece(options.side, kSpacingMm);
+  for (const double speed : options.speeds_mm_s)
+    if (auto done = touch({"rough part", part, speed, options.ticks}, options, job, report); !done)
+      return tl::unexpected(done.error());
+  const engine::Version clean = workpiece(std::min(options.side, kSmallSide), kSpacingMm, 0.0);
+  if (auto done = touch({"clean part", clean, kSpeed, options.ticks}, options, job, report); !done)
+    return tl::unexpected(done.error());
+  for (const HardGround& ground : hardGrounds()) {
+    const engine::Version hard = makeGround(ground, std::min(options.side, kSmallSide), kSpacingMm);
+    if (auto done = touch({ground.name, hard, kSpeed, options.ticks}, options, job, report); !done)
+      return tl::unexpected(done.error());
   }
   return report;
 }

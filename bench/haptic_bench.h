@@ -19,6 +19,7 @@ struct HapticBenchOptions {
 
 /// One way of touching, run `repeats` times from the same start. Ticks a second.
 struct HapticBenchRow {
+  std::string ground;  ///< what is touched: "rough part", "clean part", or a HardGround's name
   std::string name;
   double speed_mm_s = 0.0;
   std::int64_t ticks = 0;
@@ -26,12 +27,15 @@ struct HapticBenchRow {
   double median = 0.0;
   double slowest = 0.0;
   double fastest = 0.0;
-  // Of single ticks, clock included, from a pass of its own over at most 100,000 of them [ns].
+  // Of single ticks, clock included, from a pass of its own over at most 100,000 of them [ns]; 0 for the
+  // plain search.
   double p50_ns = 0.0;
   double p99_ns = 0.0;
   double p999_ns = 0.0;
+  double p9999_ns = 0.0;
   double worst_ns = 0.0;
-  std::uint64_t hash = 0;  ///< of the field after it; the same in every repeat, else an error
+  std::uint64_t hash = 0;  ///< of the field after it; of the forces for the plain search; the same in every
+                           ///< repeat, else an error
 };
 
 struct HapticBenchReport {
@@ -41,7 +45,9 @@ struct HapticBenchReport {
 };
 
 /// Replays a hand that wanders over a milled, noisy workpiece, as fast as the machine can: the whole tick
-/// with collision, contact, force and, where named, 3 x 3 local smoothing; every way at each speed. Errors:
+/// with collision, contact, force and, where named, 3 x 3 local smoothing; every way at each speed. Then over
+/// the same part without noise and over the hard grounds, 1024 samples square, at 20 mm/s. Yardstick of each:
+/// PlainSearch over the same strokes. Errors:
 /// kInput for options out of range, kCancelled, kFailed when two repeats differ in a bit. Thread: any;
 /// blocks.
 [[nodiscard]] engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options,

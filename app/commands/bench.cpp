@@ -26,7 +26,8 @@ engine::Result<Report> haptic(const bench::HapticBenchOptions& options, engine::
                 {"repeats", options.repeats},
                 {"rows", Report::array()}};
   for (const bench::HapticBenchRow& row : measured->rows)
-    report["rows"].push_back({{"name", row.name},
+    report["rows"].push_back({{"ground", row.ground},
+                              {"name", row.name},
                               {"speed_mm_s", row.speed_mm_s},
                               {"ticks", row.ticks},
                               {"contact_ticks", row.contact_ticks},
@@ -36,6 +37,7 @@ engine::Result<Report> haptic(const bench::HapticBenchOptions& options, engine::
                               {"tick_p50_ns", row.p50_ns},
                               {"tick_p99_ns", row.p99_ns},
                               {"tick_p999_ns", row.p999_ns},
+                              {"tick_p9999_ns", row.p9999_ns},
                               {"tick_worst_ns", row.worst_ns},
                               {"hash", fmt::format("{:016x}", row.hash)}});
   return report;
@@ -45,16 +47,23 @@ void printHaptic(const Report& report) {
   fmt::print("{}\n{} x {} samples, median of {} runs; one thread copies {:.1f} GB/s\n\n",
              report["machine"].get<std::string>(), report["side"].get<int>(), report["side"].get<int>(),
              report["repeats"].get<int>(), report["copy_bytes_per_second"].get<double>() * 1e-9);
-  fmt::print("{:<28}{:>6}{:>9}{:>11}{:>9}{:>9}{:>8}{:>8}{:>9}{:>10}  hash\n", "", "mm/s", "ticks",
-             "M ticks/s", "slowest", "fastest", "p50 ns", "p99 ns", "p99.9 ns", "worst ns");
-  for (const Report& row : report["rows"])
-    fmt::print("{:<28}{:>6.0f}{:>9}{:>11.3f}{:>9.3f}{:>9.3f}{:>8.0f}{:>8.0f}{:>9.0f}{:>10.0f}  {}\n",
-               row["name"].get<std::string>(), row["speed_mm_s"].get<double>(),
-               row["ticks"].get<std::int64_t>(), row["ticks_per_second"].get<double>() * 1e-6,
-               row["slowest"].get<double>() * 1e-6, row["fastest"].get<double>() * 1e-6,
-               row["tick_p50_ns"].get<double>(), row["tick_p99_ns"].get<double>(),
-               row["tick_p999_ns"].get<double>(), row["tick_worst_ns"].get<double>(),
-               row["hash"].get<std::string>());
+  fmt::print("{:<34}{:>6}{:>9}{:>11}{:>9}{:>9}{:>8}{:>8}{:>9}{:>10}{:>10}  hash\n", "", "mm/s", "ticks",
+             "M ticks/s", "slowest", "fastest", "p50 ns", "p99 ns", "p99.9 ns", "p99.99 ns", "worst ns");
+  std::string ground;
+  for (const Report& row : report["rows"]) {
+    if (ground != row["ground"]) fmt::print("{}\n", ground = row["ground"]);
+    fmt::print("  {:<32}{:>6.0f}{:>9}{:>11.3f}{:>9.3f}{:>9.3f}", row["name"].get<std::string>(),
+               row["speed_mm_s"].get<double>(), row["ticks"].get<std::int64_t>(),
+               row["ticks_per_second"].get<double>() * 1e-6, row["slowest"].get<double>() * 1e-6,
+               row["fastest"].get<double>() * 1e-6);
+    if (row["tick_worst_ns"] > 0.0)
+      fmt::print("{:>8.0f}{:>8.0f}{:>9.0f}{:>10.0f}{:>10.0f}", row["tick_p50_ns"].get<double>(),
+                 row["tick_p99_ns"].get<double>(), row["tick_p999_ns"].get<double>(),
+                 row["tick_p9999_ns"].get<double>(), row["tick_worst_ns"].get<double>());
+    else
+      fmt::print("{:45}", "");
+    fmt::print("  {}\n", row["hash"].get<std::string>());
+  }
 }
 
 engine::Result<Report> effects(const bench::EffectsBenchOptions& options, engine::JobControl& job) {
