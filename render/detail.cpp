@@ -6,6 +6,8 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include "render/detail_tile.h"
+
 namespace fettle::render {
 namespace {
 
@@ -130,11 +132,11 @@ void DetailMeasure::measureTile(const engine::FieldReader& reader, glm::ivec2 ti
   const glm::ivec2 first = tile * kSide;
   const glm::ivec2 cells = glm::min(size_ - 1 - first, glm::ivec2(kSide));
   if (cells.x <= 0 || cells.y <= 0) return;
-  alignas(64) float heights[kTileStride * kTileStride];
-  reader.readHeights(first.x, first.y, kTileStride, kTileStride, heights, kTileStride);
+  alignas(64) float heights[kTileRows * kTileStride];
+  reader.readHeights(first.x, first.y, kTileStride, kTileRows, heights, kTileStride);
   // A field of one row or column is drawn as two equal ones.
   if (reader.width() == 1)
-    for (int r = 0; r < kTileStride; ++r) heights[r * kTileStride + 1] = heights[r * kTileStride];
+    for (int r = 0; r < kTileRows; ++r) heights[r * kTileStride + 1] = heights[r * kTileStride];
   if (reader.height() == 1) std::copy_n(heights, kTileStride, heights + kTileStride);
   const float sign = reader.sign();
   for (float& h : heights) h *= sign;
@@ -143,8 +145,11 @@ void DetailMeasure::measureTile(const engine::FieldReader& reader, glm::ivec2 ti
       tile_errors_[static_cast<std::size_t>(tile.y) * static_cast<std::size_t>(tiles_.x) +
                    static_cast<std::size_t>(tile.x)];
   const int top = std::min(topLevel(), kTileLevels);
+  TileExtremes extremes;
+  extremes.ofSamples(heights, cells);
   float vertices[(kSide / 2 + 1) * (kSide / 2 + 1)];
   for (int k = 1; k <= top; ++k) {
+    if (k > 1) extremes.coarsen();
     const int stride = 1 << k, vertex_stride = (kSide >> k) + 1;
     for (int j = 0; j < vertex_stride; ++j)
       for (int i = 0; i < vertex_stride; ++i) {
@@ -155,13 +160,13 @@ void DetailMeasure::measureTile(const engine::FieldReader& reader, glm::ivec2 ti
       }
     if (!withinTile(k)) {
       whole[static_cast<std::size_t>(k)] = {};
-      measureTileLevel(heights, cells, k, vertices, kSide, 1, &whole[static_cast<std::size_t>(k)]);
+      measureTileLevel(heights, cells, k, vertices, extremes, kSide, 1, &whole[static_cast<std::size_t>(k)]);
       continue;
     }
     constexpr int kMost = kSide / (2 * gpu::kPatchCells) > 0 ? kSide / (2 * gpu::kPatchCells) : 1;
     const int across = kSide / side(k);
     Error squares[kMost * kMost] = {};
-    measureTileLevel(heights, cells, k, vertices, gpu::kPatchCells, across, squares);
+    measureTileLevel(heights, cells, k, vertices, extremes, gpu::kPatchCells, across, squares);
     Level& level = levels_[static_cast<std::size_t>(k)];
     for (int y = 0; y < across; ++y)
       for (int x = 0; x < across; ++x) {

@@ -87,16 +87,6 @@ class DetailMeasure {
   std::vector<std::array<Error, kTileLevels + 1>> tile_errors_;
 };
 
-/// A tile's part in it: `heights` are its samples and the first ones of the tiles above and to the right (65
-/// x 65, row-major), `cells` how many cells it has across and up (0 .. 64). Writes the errors of the cells of
-/// level k, cut into squares of `patch_cells` cells of that level (or fewer, where the tile is smaller),
-/// row-major with `across` squares a row. `vertices`: heights at this level's vertices, kMissingVertex where
-/// there is none to be found; row-major, (64 >> k) + 1 a row.
-inline constexpr float kMissingVertex = 1e30F;
-inline constexpr int kTileStride = engine::kTileSide + 1;
-void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const float* vertices,
-                      int patch_cells, int across, DetailMeasure::Error* out);
-
 /// Height of a vertex as shaders/field.glsl finds it (drawnZ): the sample itself, or for a hole the first
 /// height on the rings around it. NaN when there is none. `s` within the virtual field.
 [[nodiscard]] float drawnHeight(const engine::FieldReader& reader, glm::ivec2 s,
