@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -46,6 +47,10 @@ engine::Result<render::PictureSpec> picture(const Options& options, engine::JobC
   if (!size) return tl::unexpected(size.error());
   std::tie(spec.view.width, spec.view.height) = *size;
   if (!options.centre.empty()) {
+    if (!std::all_of(options.centre.begin(), options.centre.end(),
+                     [](double c) { return c >= 0.0 && c <= 1.0; }))
+      return engine::inputError("the middle of the picture lies beside the field", "--centre",
+                                "give fractions from 0 to 1 of the field's width and height, e.g. 0.5,0.5");
     spec.view.centre_x = options.centre[0];
     spec.view.centre_y = options.centre[1];
   }
