@@ -29,6 +29,16 @@ bool withinTile(int level) {
   return DetailMeasure::side(level) <= kSide;
 }
 
+constexpr DetailMeasure::Error kUnknown{kInfinity, kInfinity};
+
+void unique(std::vector<glm::ivec2>& list) {
+  const auto before = [](const glm::ivec2& a, const glm::ivec2& b) {
+    return a.y != b.y ? a.y < b.y : a.x < b.x;
+  };
+  std::sort(list.begin(), list.end(), before);
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
 }  // namespace
 
 float drawnHeight(const engine::FieldReader& reader, glm::ivec2 s, std::int32_t stride) noexcept {
@@ -51,7 +61,7 @@ glm::ivec2 DetailMeasure::patches(int level) const noexcept {
   return (size_ - 2) / side(level) + 1;
 }
 
-void DetailMeasure::measure(const engine::FieldReader& reader) {
+void DetailMeasure::begin(const engine::FieldReader& reader) {
   size_ = glm::ivec2(std::max(2, reader.width()), std::max(2, reader.height()));
   tiles_ = {reader.tileColumns(), reader.tileRows()};
   int top = 0;
@@ -62,23 +72,41 @@ void DetailMeasure::measure(const engine::FieldReader& reader) {
     level.count = patches(k);
     if (k > 0)
       level.errors.assign(static_cast<std::size_t>(level.count.x) * static_cast<std::size_t>(level.count.y),
-                          {});
+                          kUnknown);
   }
-  tile_errors_.assign(static_cast<std::size_t>(tiles_.x) * static_cast<std::size_t>(tiles_.y), {});
-  oneapi::tbb::parallel_for(0, tiles_.y, [&](int row) {
-    for (int column = 0; column < tiles_.x; ++column) measureTile(reader, {column, row});
-  });
-  for (int k = 1; k <= top; ++k) {
-    if (withinTile(k)) continue;
-    oneapi::tbb::parallel_for(0, levels_[static_cast<std::size_t>(k)].count.y, [&](int y) {
-      for (int x = 0; x < levels_[static_cast<std::size_t>(k)].count.x; ++x)
-        k <= kTileLevels ? gather(k, {x, y}) : nest(reader, k, {x, y});
-    });
-  }
+  const std::size_t all = static_cast<std::size_t>(tiles_.x) * static_cast<std::size_t>(tiles_.y);
+  std::array<Error, kTileLevels + 1> unknown;
+  unknown.fill(kUnknown);
+  tile_errors_.assign(all, unknown);
+  waits_.assign(all, true);
+  // By squares of the largest patches that are measured tile by tile, so that these are known one by one. The
+  // first are measured last.
+  waiting_.clear();
+  waiting_.reserve(all);
+  const int square = side(kTileLevels) / kSide;
+  for (int y = 0; y < tiles_.y; y += square)
+    for (int x = 0; x < tiles_.x; x += square)
+      for (int j = y; j < std::min(y + square, tiles_.y); ++j)
+        for (int i = x; i < std::min(x + square, tiles_.x); ++i) waiting_.emplace_back(i, j);
+  std::reverse(waiting_.begin(), waiting_.end());
 }
 
-void DetailMeasure::refresh(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles) {
-  if (levels_.empty()) return measure(reader);
+// Patches of a level above the tile that depend on samples of these tiles.
+std::vector<glm::ivec2> DetailMeasure::above(int level, std::span<const glm::ivec2> tiles) const {
+  std::vector<glm::ivec2> patches;
+  const std::int32_t reach = level <= kTileLevels ? 0 : 1 << level;
+  for (const glm::ivec2& t : tiles) {
+    const glm::ivec2 low = glm::max(t * kSide - reach, glm::ivec2(0)) / side(level);
+    const glm::ivec2 high = glm::min((t * kSide + kSide + reach) / side(level),
+                                     levels_[static_cast<std::size_t>(level)].count - 1);
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x) patches.emplace_back(x, y);
+  }
+  unique(patches);
+  return patches;
+}
+
+void DetailMeasure::forget(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles) {
   // Cells reach into the next tile, and a hole's vertex takes its height from up to a tile away. A tile's
   // last vertices are the next tile's first samples: where these are holes, the largest stride sees two tiles
   // far.
@@ -98,40 +126,74 @@ void DetailMeasure::refresh(const engine::FieldReader& reader, std::span<const g
         const bool next = std::max(dx, dy) <= 0 && std::min(dx, dy) >= -1;
         if (next || holed(n)) around.push_back(n);
       }
-  const auto before = [](const glm::ivec2& a, const glm::ivec2& b) {
-    return a.y != b.y ? a.y < b.y : a.x < b.x;
-  };
-  const auto unique = [&](std::vector<glm::ivec2>& list) {
-    std::sort(list.begin(), list.end(), before);
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  };
   unique(around);
-  if (around.size() < 8) {
-    for (const glm::ivec2& t : around) measureTile(reader, t);
-  } else {
-    oneapi::tbb::parallel_for(std::size_t{0}, around.size(),
-                              [&](std::size_t i) { measureTile(reader, around[i]); });
+  for (const glm::ivec2& t : around) {
+    if (!waits_[indexOf(t)]) waiting_.push_back(t);
+    waits_[indexOf(t)] = true;
+    tile_errors_[indexOf(t)].fill(kUnknown);
   }
   for (int k = 1; k <= topLevel(); ++k) {
-    if (withinTile(k)) continue;
-    std::vector<glm::ivec2> dirty;
-    const std::int32_t reach = k <= kTileLevels ? 0 : 1 << k;
-    for (const glm::ivec2& t : around) {
-      const glm::ivec2 low = glm::max(t * kSide - reach, glm::ivec2(0)) / side(k);
-      const glm::ivec2 high =
-          glm::min((t * kSide + kSide + reach) / side(k), levels_[static_cast<std::size_t>(k)].count - 1);
-      for (int y = low.y; y <= high.y; ++y)
-        for (int x = low.x; x <= high.x; ++x) dirty.emplace_back(x, y);
+    Level& level = levels_[static_cast<std::size_t>(k)];
+    const auto drop = [&](glm::ivec2 p) {
+      if (p.x < level.count.x && p.y < level.count.y)
+        level.errors[static_cast<std::size_t>(p.y) * static_cast<std::size_t>(level.count.x) +
+                     static_cast<std::size_t>(p.x)] = kUnknown;
+    };
+    if (withinTile(k)) {
+      const int across = kSide / side(k);
+      for (const glm::ivec2& t : around)
+        for (int y = 0; y < across; ++y)
+          for (int x = 0; x < across; ++x) drop(t * across + glm::ivec2(x, y));
+    } else {
+      for (const glm::ivec2& p : above(k, around)) drop(p);
     }
-    unique(dirty);
-    for (const glm::ivec2& p : dirty) k <= kTileLevels ? gather(k, p) : nest(reader, k, p);
   }
+}
+
+std::size_t DetailMeasure::measureSome(const engine::FieldReader& reader, std::size_t most) {
+  const std::size_t count = std::min(most, waiting_.size());
+  const std::vector<glm::ivec2> now(waiting_.end() - static_cast<std::ptrdiff_t>(count), waiting_.end());
+  waiting_.resize(waiting_.size() - count);
+  if (count < 8) {
+    for (const glm::ivec2& t : now) measureTile(reader, t);
+  } else {
+    oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { measureTile(reader, now[i]); });
+  }
+  for (const glm::ivec2& t : now) waits_[indexOf(t)] = false;
+  for (int k = 1; k <= topLevel() && count > 0; ++k) {
+    if (withinTile(k)) continue;
+    const std::vector<glm::ivec2> dirty = above(k, now);
+    const auto renew = [&](std::size_t i) {
+      k <= kTileLevels ? gather(k, dirty[i]) : nest(reader, k, dirty[i]);
+    };
+    if (dirty.size() < 8) {
+      for (std::size_t i = 0; i < dirty.size(); ++i) renew(i);
+    } else {
+      oneapi::tbb::parallel_for(std::size_t{0}, dirty.size(), renew);
+    }
+  }
+  return count;
+}
+
+void DetailMeasure::measure(const engine::FieldReader& reader) {
+  begin(reader);
+  (void)measureSome(reader, unknown());
+}
+
+void DetailMeasure::refresh(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles) {
+  if (levels_.empty()) return measure(reader);
+  forget(reader, tiles);
+  (void)measureSome(reader, unknown());
 }
 
 void DetailMeasure::measureTile(const engine::FieldReader& reader, glm::ivec2 tile) {
   const glm::ivec2 first = tile * kSide;
   const glm::ivec2 cells = glm::min(size_ - 1 - first, glm::ivec2(kSide));
-  if (cells.x <= 0 || cells.y <= 0) return;
+  std::array<Error, kTileLevels + 1>& whole = tile_errors_[indexOf(tile)];
+  if (cells.x <= 0 || cells.y <= 0) {
+    whole.fill({});
+    return;
+  }
   alignas(64) float heights[kTileRows * kTileStride];
   reader.readHeights(first.x, first.y, kTileStride, kTileRows, heights, kTileStride);
   // A field of one row or column is drawn as two equal ones.
@@ -141,9 +203,6 @@ void DetailMeasure::measureTile(const engine::FieldReader& reader, glm::ivec2 ti
   const float sign = reader.sign();
   for (float& h : heights) h *= sign;
 
-  std::array<Error, kTileLevels + 1>& whole =
-      tile_errors_[static_cast<std::size_t>(tile.y) * static_cast<std::size_t>(tiles_.x) +
-                   static_cast<std::size_t>(tile.x)];
   const int top = std::min(topLevel(), kTileLevels);
   TileExtremes extremes;
   extremes.ofSamples(heights, cells);
@@ -200,6 +259,12 @@ void DetailMeasure::nest(const engine::FieldReader& reader, int level, glm::ivec
       worst =
           larger(worst, below.errors[static_cast<std::size_t>(y) * static_cast<std::size_t>(below.count.x) +
                                      static_cast<std::size_t>(x)]);
+  if (worst.deviation == kInfinity) {
+    // Not known yet, or never: then neither is this one, and its own samples need not be looked at.
+    l.errors[static_cast<std::size_t>(patch.y) * static_cast<std::size_t>(l.count.x) +
+             static_cast<std::size_t>(patch.x)] = kUnknown;
+    return;
+  }
   const std::int32_t stride = 1 << level, half = stride / 2;
   const glm::ivec2 last = size_ - 1;
   float step = 0.0F, kink = 0.0F, largest = 0.0F;

@@ -40,8 +40,13 @@ namespace fettle::render {
 /// drawn. Where that finds none, the deviation is infinite if the cell shows anything. Rounding is accounted
 /// for: four units in the last place of the highest magnitude are added.
 ///
-/// Memory: about 0.03 bytes a sample. Threading: measure() and refresh() use all cores and block; reading
-/// while they run is a race. Determinism: the same bits for any thread count.
+/// Measuring may be spread over many frames: begin() and forget() say what is not known (any more), and
+/// measureSome() measures a part of that. Until a patch is known, both its numbers are infinite, which is
+/// true of any surface; so are those of every patch above it.
+///
+/// Memory: about 0.03 bytes a sample. Threading: measuring uses all cores and blocks; reading while it runs
+/// is a race. Determinism: the same bits for any thread count, and in whatever parts and order a field was
+/// measured.
 class DetailMeasure {
  public:
   struct Error {
@@ -49,9 +54,20 @@ class DetailMeasure {
     float excess = 0.0F;
   };
 
-  /// Forgets everything and measures a field.
+  /// A field of which nothing is known yet. Cost: 0.03 bytes a sample are written.
+  void begin(const engine::FieldReader& reader);
+  /// What the samples of these tiles (column, row) bear on is not known any more. Before that, something
+  /// began.
+  void forget(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles);
+  /// Measures up to so many tiles of those that are not known, the latest forgotten ones first. How many it
+  /// were. About 40 us of processor time each.
+  std::size_t measureSome(const engine::FieldReader& reader, std::size_t most);
+  /// Tiles that are not known.
+  [[nodiscard]] std::size_t unknown() const noexcept { return waiting_.size(); }
+
+  /// Forgets everything and measures all of a field.
   void measure(const engine::FieldReader& reader);
-  /// Measures anew what the samples of these tiles (column, row) bear on.
+  /// Measures anew what the samples of these tiles (column, row) bear on, and whatever else is not known.
   void refresh(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles);
 
   /// The level at which one patch covers the field.
@@ -76,6 +92,11 @@ class DetailMeasure {
     glm::ivec2 count{0, 0};
     std::vector<Error> errors;
   };
+  [[nodiscard]] std::size_t indexOf(glm::ivec2 tile) const noexcept {
+    return static_cast<std::size_t>(tile.y) * static_cast<std::size_t>(tiles_.x) +
+           static_cast<std::size_t>(tile.x);
+  }
+  [[nodiscard]] std::vector<glm::ivec2> above(int level, std::span<const glm::ivec2> tiles) const;
   void measureTile(const engine::FieldReader& reader, glm::ivec2 tile);
   void gather(int level, glm::ivec2 patch);
   void nest(const engine::FieldReader& reader, int level, glm::ivec2 patch);
@@ -85,6 +106,8 @@ class DetailMeasure {
   std::vector<Level> levels_;
   // Of levels whose patches are larger than a tile: by tile, kTileLevels apart.
   std::vector<std::array<Error, kTileLevels + 1>> tile_errors_;
+  std::vector<glm::ivec2> waiting_;  // tiles that are not known, each once
+  std::vector<bool> waits_;          // by tile
 };
 
 /// Height of a vertex as shaders/field.glsl finds it (drawnZ): the sample itself, or for a hole the first

@@ -265,7 +265,7 @@ engine::Status LivePicture::Impl::arrangePool(const Shown& next) {
   // The measures are kept: they are of the versions that were wanted as soon as the pending tiles are in
   // them.
   for (Field& f : fields) {
-    if (f.texture.pending() > 0) f.measure.refresh(f.texture.version().reader(), f.texture.pendingTiles());
+    if (f.texture.pending() > 0) f.measure.forget(f.texture.version().reader(), f.texture.pendingTiles());
     f.texture.clear();
   }
   original.clear();
@@ -317,7 +317,7 @@ engine::Status LivePicture::Impl::update(const Shown& next) {
       if (!shown.versions.empty() && fields[i].texture.pending() > 0 && next.marks != shown.marks) {
         const std::vector<glm::ivec2> tiles = fields[i].texture.pendingTiles();
         bringAll(fields[i].texture);
-        fields[i].measure.refresh(v.reader(), tiles);
+        fields[i].measure.forget(v.reader(), tiles);
       }
       fields[i].measured = v;
       continue;
@@ -334,9 +334,9 @@ engine::Status LivePicture::Impl::update(const Shown& next) {
       for (const engine::TileChange& c :
            engine::changedTiles(known ? fields[i].measured : next.versions[0], v))
         tiles.emplace_back(c.tile_column, c.tile_row);
-      fields[i].measure.refresh(v.reader(), tiles);
+      fields[i].measure.forget(v.reader(), tiles);
     } else {
-      fields[i].measure.measure(v.reader());
+      fields[i].measure.begin(v.reader());
     }
     fields[i].measured = v;
   }
@@ -534,7 +534,10 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     moved.clear();
     f.texture.pump(staging, submissions.next(), submissions.commands(), options.upload_bytes_a_frame, count,
                    moved);
-    if (!moved.empty()) f.measure.refresh(f.texture.version().reader(), moved);
+    const engine::FieldReader reader = f.texture.version().reader();
+    if (!moved.empty()) f.measure.forget(reader, moved);
+    count.measured_tiles += static_cast<std::int64_t>(f.measure.measureSome(reader, kMeasuredAFrame));
+    count.unmeasured_tiles += static_cast<std::int64_t>(f.measure.unknown());
   }
   moved.clear();
   if (!original.version().empty())
@@ -544,7 +547,9 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   stats.upload.tiles += count.tiles;
   stats.upload.bytes += count.bytes;
   stats.upload.changed_samples += count.changed_samples;
-  stats.upload.pending_tiles = count.pending_tiles;
+  stats.upload.measured_tiles = count.measured_tiles;
+  stats.upload.unmeasured_tiles = count.unmeasured_tiles;
+  stats.upload.pending_tiles = count.pending_tiles + count.unmeasured_tiles;
   const double pumped_ms = msSince(start);
   stats.upload.ms += pumped_ms;
   uploaded = {};
@@ -582,6 +587,10 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     q.shade_step = 1 << shift;
     q.measure = &fields[i].measure;
     q.reader = p.field.reader();
+    if (fields[i].texture.pending() > 0)
+      q.settled = [&texture = fields[i].texture](glm::ivec2 first, glm::ivec2 last) {
+        return !texture.anyPending(first / engine::kTileSide, last / engine::kTileSide);
+      };
     q.placing = p.placing;
     q.camera = p.camera;
     if (stereo) {

@@ -114,14 +114,21 @@ struct FrameInput {
   std::int64_t vertex_budget = 65536;
 };
 
+/// Tiles whose detail (render/detail.h) a frame measures at most, for each version: about 4 ms on two cores.
+inline constexpr std::size_t kMeasuredAFrame = 256;
+
 /// What bringing a version over took.
 struct UploadStatistics {
   std::int64_t tiles = 0;            ///< tiles of heights and tiles of marks that moved
   std::int64_t bytes = 0;            ///< all that moved, coarse copies included
   std::int64_t changed_samples = 0;  ///< in the rectangles that differ, one a tile
-  std::int64_t pending_tiles = 0;    ///< left for the next frames, pages that wait included
-  std::int64_t stalls = 0;           ///< times the CPU waited for staging to be free
-  double ms = 0.0;                   ///< on this thread: comparing, measuring, copying to staging
+  std::int64_t pending_tiles =
+      0;  ///< left for the next frames, unmeasured tiles and pages that wait included
+  std::int64_t measured_tiles = 0;  ///< whose detail was measured (anew), at most kMeasuredAFrame a panel
+  std::int64_t unmeasured_tiles =
+      0;                    ///< whose detail is not known yet: drawn finer than need be, bound_px holds
+  std::int64_t stalls = 0;  ///< times the CPU waited for staging to be free
+  double ms = 0.0;          ///< on this thread: comparing, measuring, copying to staging
 };
 
 /// A field of which the finest samples are on the device by need (LiveOptions::memory_budget_bytes).

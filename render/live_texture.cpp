@@ -76,6 +76,20 @@ std::vector<glm::ivec2> LiveTexture::pendingTiles() const {
   return tiles;
 }
 
+bool LiveTexture::anyPending(glm::ivec2 first, glm::ivec2 last) const {
+  const auto tiles =
+      static_cast<std::size_t>(last.x - first.x + 1) * static_cast<std::size_t>(last.y - first.y + 1);
+  if (tiles > pending_.size())
+    return std::any_of(pending_.begin(), pending_.end(), [&](const auto& pending) {
+      const glm::ivec2 t = tileOf(pending.first);
+      return t.x >= first.x && t.y >= first.y && t.x <= last.x && t.y <= last.y;
+    });
+  for (int y = first.y; y <= last.y; ++y)
+    for (int x = first.x; x <= last.x; ++x)
+      if (pending_.contains(keyOf(x, y))) return true;
+  return false;
+}
+
 std::uint64_t LiveTexture::bytesOfWhole(const Context& context, const engine::Grid& grid, MarksOverlay marks,
                                         std::uint32_t max_side) {
   const Paging paging = choosePaging(grid.width, grid.height, max_side);

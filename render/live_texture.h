@@ -67,6 +67,9 @@ class LiveTexture {
   [[nodiscard]] std::size_t pending() const noexcept { return pending_.size() + fixed_left_; }
   /// Tiles that differ from what is on the device, in no order.
   [[nodiscard]] std::vector<glm::ivec2> pendingTiles() const;
+  /// Whether some tile of those from `first` to `last` (column, row; both included) differs from what is on
+  /// the device.
+  [[nodiscard]] bool anyPending(glm::ivec2 first, glm::ivec2 last) const;
   /// Whether no tile of a page is pending. Those that are move before others do.
   [[nodiscard]] bool settled(int entry);
   /// Null unless by need.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <queue>
@@ -38,6 +39,38 @@ engine::HeightBounds heightsWithin(const engine::FieldReader& reader, glm::ivec2
       all.max = std::max(all.max, b.max);
     }
   return all;
+}
+
+namespace {
+
+// Of the children of `node`, whose first tile is `at`, in tiles low .. high.
+bool holeBelow(const engine::Node& node, glm::ivec2 at, glm::ivec2 first, glm::ivec2 last) {
+  const int shift = 3 * (node.level - 2);  // log2 of a child's side in tiles
+  for (std::uint64_t left = node.holed_children; left != 0; left &= left - 1) {
+    const int k = std::countr_zero(left);
+    const glm::ivec2 child = at + (glm::ivec2(k & 7, k >> 3) << shift);
+    const glm::ivec2 low = glm::max(first - child * engine::kTileSide, 0);
+    const glm::ivec2 high = last - child * engine::kTileSide;
+    const int side = engine::kTileSide << shift;
+    if (low.x >= side || low.y >= side || high.x < 0 || high.y < 0) continue;
+    const void* below = node.children[static_cast<std::size_t>(k)];
+    if (shift > 0) {
+      if (holeBelow(*static_cast<const engine::Node*>(below), child, first, last)) return true;
+      continue;
+    }
+    const auto& samples = static_cast<const engine::Tile*>(below)->samples;
+    for (int r = low.y; r <= std::min(high.y, side - 1); ++r)
+      for (int c = low.x; c <= std::min(high.x, side - 1); ++c)
+        if (std::isnan(samples[static_cast<std::size_t>(r * side + c)])) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool holeWithin(const engine::FieldReader& reader, glm::ivec2 first, glm::ivec2 last) {
+  const glm::ivec2 end(reader.width() - 1, reader.height() - 1);
+  return holeBelow(reader.root(), {0, 0}, glm::min(first, end), glm::min(last, end));
 }
 
 PatchTree::PatchTree(const PatchQuestion& question) : q_(question) {
@@ -85,6 +118,20 @@ double PatchTree::movesAtMost(const glm::dvec3& step, const Box& box) const noex
   return q_.other_eye ? std::max(px, q_.other_eye->movesAtMost(step, box)) : px;
 }
 
+// `raw`: the heights of samples first .. last, which the patch covers.
+DetailMeasure::Error PatchTree::errorOf(int level, glm::ivec2 patch, glm::ivec2 first, glm::ivec2 last,
+                                        const engine::HeightBounds& raw) const {
+  const DetailMeasure::Error error = q_.measure->error(level, patch.x, patch.y);
+  if (std::isfinite(error.deviation) || (q_.settled && !q_.settled(first, last)) ||
+      holeWithin(q_.reader, first, last))
+    return error;
+  // Both surfaces lie between the lowest and the highest sample, but for the roundings that detail.h counts.
+  const float range =
+      raw.max - raw.min +
+      4.0F * std::numeric_limits<float>::epsilon() * std::max(std::fabs(raw.min), std::fabs(raw.max));
+  return range < 1e28F ? DetailMeasure::Error{range, range} : error;
+}
+
 // Appends a patch; -1 when there is nothing to draw.
 std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
   const std::int32_t side = DetailMeasure::side(level);
@@ -98,7 +145,7 @@ std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
   const glm::dvec2 a = q_.placing.first + q_.placing.spacing * glm::dvec2(first);
   const glm::dvec2 b = q_.placing.first + q_.placing.spacing * glm::dvec2(last);
   const bool rim = x == 0 || y == 0 || last.x == q_.placing.size.x - 1 || last.y == q_.placing.size.y - 1;
-  const DetailMeasure::Error error = q_.measure->error(level, x, y);
+  const DetailMeasure::Error error = errorOf(level, {x, y}, first, last, raw);
   // A hole's vertex may take its height from beside the patch.
   const bool holed = !(error.excess < std::numeric_limits<float>::infinity());
   const double drawn_low = holed ? q_.lowest : low, drawn_high = holed ? q_.highest : high;

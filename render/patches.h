@@ -15,6 +15,8 @@ namespace fettle::render {
 struct PatchQuestion {
   const DetailMeasure* measure = nullptr;
   engine::FieldReader reader;
+  /// Whether what is drawn over these samples, last ones included, is what `reader` reads; empty: everywhere.
+  std::function<bool(glm::ivec2 first, glm::ivec2 last)> settled;
   Placing placing;
   Camera camera;
   std::optional<Camera> other_eye;     ///< of a picture for two eyes: what holds, holds for both
@@ -59,6 +61,8 @@ struct PatchLeaf {
 /// and for every point drawn:
 ///   - straight up or down: the deviation (detail.h), as long as it can look anywhere in the patch's box;
 ///   - sideways within its cell to a drawn point of the same height, and up or down by the excess.
+/// Where the deviation is not known (yet), and no hole is near, it is no more than the range of the patch's
+/// heights in the min/max pyramid, since all vertices are samples: the same holds for the excess.
 /// Where heights of the patch are cut, the first is replaced by the range of what is left of them, since
 /// cutting and interpolating do not commute. So bound_px is the Hausdorff distance on the screen between the
 /// two, at most. The third part is Camera::movesAtMost, which bounds what a step can look like.
@@ -91,6 +95,8 @@ class PatchTree {
   [[nodiscard]] Node& node(std::int32_t i) noexcept { return nodes_[static_cast<std::size_t>(i)]; }
   void refine();
   std::int32_t add(int level, std::int32_t x, std::int32_t y);
+  [[nodiscard]] DetailMeasure::Error errorOf(int level, glm::ivec2 patch, glm::ivec2 first, glm::ivec2 last,
+                                             const engine::HeightBounds& raw) const;
   [[nodiscard]] bool mayShowHole(const Node& n) const;
   [[nodiscard]] std::array<bool, 4> wallsSeen(const Camera& camera) const;
   [[nodiscard]] bool misses(const Box& box) const noexcept;
@@ -111,6 +117,9 @@ class PatchTree {
 /// quarter as large or so. Empty where there are only holes.
 [[nodiscard]] engine::HeightBounds heightsWithin(const engine::FieldReader& reader, glm::ivec2 first,
                                                  glm::ivec2 last);
+
+/// Whether a sample of that rectangle is a hole. Cost: of the tree's nodes that hold any.
+[[nodiscard]] bool holeWithin(const engine::FieldReader& reader, glm::ivec2 first, glm::ivec2 last);
 
 [[nodiscard]] PatchChoice choosePatches(const PatchQuestion& question);
 

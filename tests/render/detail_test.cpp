@@ -112,5 +112,67 @@ TEST(Detail, AfterAnEditTheMeasureEqualsAFreshOneBitForBit) {
   }
 }
 
+// Every number of `some` is that of `all`, or infinite.
+void expectSafe(const DetailMeasure& some, const DetailMeasure& all, int& known) {
+  known = 0;
+  for (int level = 1; level <= all.topLevel(); ++level)
+    for (int y = 0; y < all.patches(level).y; ++y)
+      for (int x = 0; x < all.patches(level).x; ++x) {
+        const DetailMeasure::Error a = some.error(level, x, y), b = all.error(level, x, y);
+        if (std::isinf(a.deviation) && std::isinf(a.excess)) continue;
+        ++known;
+        ASSERT_EQ(a.deviation, b.deviation) << "level " << level << ' ' << x << ' ' << y;
+        ASSERT_EQ(a.excess, b.excess) << "level " << level << ' ' << x << ' ' << y;
+      }
+}
+
+TEST(Detail, MeasuredInPartsItIsInfiniteUntilItIsTheSameBitForBit) {
+  // 12 x 47 tiles; a level above the tile's; holes of all kinds.
+  const engine::Version field = fieldOf(gridOf(3000, 700), [](int c, int r) {
+    return std::hypot(c - 320, r - 128) < 90 || (c * 31 + r * 17) % 9973 == 0 ? kNan : rough(c, r);
+  });
+  DetailMeasure all;
+  all.measure(field.reader());
+  EXPECT_EQ(all.unknown(), 0U);
+  DetailMeasure parts;
+  parts.begin(field.reader());
+  ASSERT_EQ(parts.unknown(), std::size_t{47 * 11});
+  int known = -1, before = -1;
+  expectSafe(parts, all, known);
+  EXPECT_EQ(known, 0);
+  while (parts.unknown() > 0) {
+    const std::size_t left = parts.unknown();
+    ASSERT_EQ(parts.measureSome(field.reader(), 37), std::min<std::size_t>(37, left));
+    before = known;
+    expectSafe(parts, all, known);
+    EXPECT_GE(known, before);
+  }
+  EXPECT_GT(known, before);
+
+  // An edit meanwhile, of tiles that are known and of such that are not.
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  parts.begin(field.reader());
+  (void)parts.measureSome(field.reader(), 300);
+  std::vector<glm::ivec2> tiles;
+  for (int i = 0; i < 40; ++i) {
+    const int c = i * 71, r = i * 17;
+    ASSERT_TRUE(live.setHeight(c, r, i % 4 == 0 ? kNan : static_cast<float>(i)));
+    tiles.emplace_back(c / 64, r / 64);
+  }
+  all.measure(live.reader());
+  parts.forget(live.reader(), tiles);
+  expectSafe(parts, all, known);
+  while (parts.unknown() > 0) (void)parts.measureSome(live.reader(), 64);
+  int whole = 0;
+  expectSafe(parts, all, whole);
+  EXPECT_GT(whole, known);
+  for (int level = 1; level <= all.topLevel(); ++level)
+    for (int y = 0; y < all.patches(level).y; ++y)
+      for (int x = 0; x < all.patches(level).x; ++x) {
+        ASSERT_EQ(parts.error(level, x, y).deviation, all.error(level, x, y).deviation);
+        ASSERT_EQ(parts.error(level, x, y).excess, all.error(level, x, y).excess);
+      }
+}
+
 }  // namespace
 }  // namespace fettle::render

@@ -74,6 +74,17 @@ Frame shoot(LivePicture& picture, const FrameInput& input) {
   return frame;
 }
 
+// The first frame for which nothing is left to be moved or measured.
+Frame settled(LivePicture& picture, const FrameInput& input) {
+  Frame frame;
+  for (int i = 0; i < 1000; ++i) {
+    frame = shoot(picture, input);
+    if (frame.stats.upload.pending_tiles == 0) return frame;
+  }
+  ADD_FAILURE() << "never at rest";
+  return frame;
+}
+
 std::vector<FrameInput> views() {
   std::vector<FrameInput> all;
   for (const auto& [azimuth, elevation, zoom] :
@@ -265,6 +276,70 @@ TEST(Live, AFilterResultComesOverInSharesAndEndsAsAFreshPicture) {
   EXPECT_EQ(shoot(picture, input).image.rgba, shoot(*fresh, input).image.rgba);
 }
 
+TEST(Live, NoFrameMeasuresMoreTilesThanItMayAndEachBoundHolds) {
+  // 33 x 16 tiles: twice what a frame may measure.
+  auto picture = makePicture();
+  ASSERT_TRUE(picture);
+  const engine::Version before = partField(2100, 1000);
+  constexpr std::int64_t kTiles = 33 * 16, kMost = kMeasuredAFrame;
+  ASSERT_GT(kTiles, 2 * kMost);
+  FrameInput input = bare();
+  input.range = ValueRange{-3, 9};
+  input.view.vertical_exaggeration = 1.0;
+  input.vertex_budget = 1 << 22;
+  std::optional<Frame> fine;
+  const auto settle = [&] {
+    // Until a frame is the last one: those before differ from the surface at full resolution by what they
+    // say.
+    for (int frames = 1; frames < 100; ++frames) {
+      const Frame frame = shoot(*picture, input);
+      EXPECT_LE(frame.stats.upload.measured_tiles, kMost);
+      EXPECT_LE(frame.stats.bound_px, input.error_px);
+      EXPECT_TRUE(frame.stats.within_budget);
+      if (fine) {
+        const int pixels = frame.image.width * frame.image.height;
+        EXPECT_LE(unmatched(frame.image, fine->image, 2, 10), pixels / 500) << frames;
+        EXPECT_LE(unmatched(fine->image, frame.image, 2, 10), pixels / 500) << frames;
+      }
+      if (frame.stats.upload.pending_tiles == 0) return std::pair{frames, frame};
+      EXPECT_GT(frame.stats.upload.unmeasured_tiles + frame.stats.upload.tiles, 0);
+    }
+    ADD_FAILURE() << "never at rest";
+    return std::pair{0, Frame{}};
+  };
+  ASSERT_TRUE(picture->update(before));
+  const auto [first_frames, first] = settle();
+  EXPECT_EQ(first_frames, static_cast<int>((kTiles + kMost - 1) / kMost));
+
+  // A filter changes every sample.
+  engine::LiveField live(before, engine::Growth::kAllowed);
+  std::vector<float> z(2100 * 1000);
+  before.reader().readHeights(0, 0, 2100, 1000, z.data(), 2100);
+  for (float& height : z) height *= 1.01F;
+  ASSERT_TRUE(live.writeHeights(0, 0, 2100, 1000, z.data(), 2100));
+  const engine::Version after = live.snapshot();
+  ASSERT_TRUE(picture->update(after));
+  const auto [frames, at_rest] = settle();
+  EXPECT_GT(frames, 2);
+
+  // And ends with the picture of one that never saw another state; the camera's range is that of the first.
+  picture->refreshRanges();
+  const Frame last = shoot(*picture, input);
+  auto fresh = makePicture();
+  ASSERT_TRUE(fresh->update(after));
+  const Frame other = settled(*fresh, input);
+  EXPECT_EQ(at_rest.stats.patches, last.stats.patches);
+  EXPECT_EQ(last.stats.patches, other.stats.patches);
+  EXPECT_EQ(last.image.rgba, other.image.rgba);
+
+  // While nothing is known, against the surface at full resolution.
+  fine = shoot(*fresh, full(input));
+  fresh.reset();
+  picture = makePicture();
+  ASSERT_TRUE(picture->update(after));
+  (void)settle();
+}
+
 TEST(Live, PagesAndCoarseCopiesGiveTheSamePixelsAsOneImage) {
   const engine::Version field = fieldOf(
       gridOf(1500, 700, 0.1, 0.1),
@@ -304,7 +379,7 @@ TEST(Live, VerticesStayWithinTheBudgetWhateverTheFieldAndTheBoundIsSaid) {
   // A plane costs next to nothing at any size.
   ASSERT_TRUE(picture->update(
       fieldOf(gridOf(2048, 2048, 0.1, 0.1), [](int c, int r) { return 0.25 * c + 0.5 * r; })));
-  const Frame plane = shoot(*picture, bare());
+  const Frame plane = settled(*picture, bare());
   EXPECT_LT(plane.stats.vertices, 4096);
   EXPECT_LE(plane.stats.bound_px, 1.0);
 }
@@ -316,7 +391,7 @@ TEST(Live, ASpikeOfASingleSampleIsDrawnFromAnyDistance) {
   FrameInput input = bare();
   input.view.vertical_exaggeration = 1.0;
   input.view.elevation_deg = 20;
-  const Frame frame = shoot(*picture, input);
+  const Frame frame = settled(*picture, input);
   EXPECT_LE(frame.stats.bound_px, 1.0);
   // The finest patch is there: a spike is not stepped over.
   EXPECT_GT(frame.stats.patches, 8);

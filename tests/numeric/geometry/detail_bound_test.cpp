@@ -299,11 +299,15 @@ TEST(ScreenBound, HoldsForEverySampleOfFieldsMadeToDefeatIt) {
     for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective})
       for (const auto& [azimuth, elevation] : {std::pair{315.0, 45.0}, {20.0, 8.0}, {0.0, 90.0}})
         for (const double error_px : {0.7, 6.0})
-          for (const bool cut : {false, true}) {
-            SCOPED_TRACE(fmt::format("{} {} {} {} {}", test.name, azimuth, elevation, error_px, cut));
+          for (const auto& [cut, known] : {std::pair{false, 9}, {true, 9}, {false, 2}, {false, 0}}) {
+            SCOPED_TRACE(
+                fmt::format("{} {} {} {} {} {}", test.name, azimuth, elevation, error_px, cut, known));
             const engine::Version field = fieldOf(gridOf(97, 75, 0.5, 0.8), test.height);
             DetailMeasure measure;
-            measure.measure(field.reader());
+            measure.begin(field.reader());
+            // Of four tiles.
+            (void)measure.measureSome(field.reader(), static_cast<std::size_t>(known));
+            ASSERT_EQ(measure.unknown(), static_cast<std::size_t>(std::max(0, 4 - known)));
             const engine::HeightBounds all = field.reader().bounds();
             PatchQuestion q;
             q.measure = &measure;
