@@ -29,13 +29,15 @@ struct Way {
   haptic::ContactLevel level;
   std::int64_t share;   // runs ticks / share
   double ball_samples;  // radius of the tip; 0 is a point
+  int search_rounds = 2048;
 };
 
 constexpr Way kWays[] = {
     {"paper, feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 1, 0.0},
     {"paper, 3x3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 1, 0.0},
     {"certified radius 2, feel", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 10, 0.0},
-    {"sphere r = 2 samples, feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0},
+    {"ball r = 2 samples, to rest", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0},
+    {"the same, 4 steps a tick", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0, 5},
 };
 
 constexpr std::size_t kTimedTicks = 100'000;
@@ -70,6 +72,7 @@ engine::Result<HapticBenchRow> run(const Way& way, const engine::Version& field,
                                    const HapticBenchOptions& options, engine::JobControl& job) {
   haptic::Scene scene = haptic::defaultScene();
   scene.level = way.level;
+  scene.search_rounds = way.search_rounds;
   const double radius_mm = way.ball_samples * kSpacingMm;
   if (radius_mm > 0.0) {
     scene.tip = haptic::TipShape::kSphere;

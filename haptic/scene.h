@@ -60,7 +60,7 @@ struct Scene {
   int certified_radius_cells = 2;
   /// Level paper: rounds a search may take in one tick, 2 .. 2048; each looks at a patch and takes a step,
   /// the last one only looks. As many as there are: to rest. Fewer bound the tick's time and lag behind a
-  /// fast hand.
+  /// fast hand. A ball takes one step fewer, and never more than kSphereSteps.
   int search_rounds = 2048;
 
   /// Spring: newtons a millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.

@@ -38,7 +38,8 @@ std::optional<std::string> sphereProblem(double radius_mm, const engine::Grid& g
                      most, kMostSphereCells);
 }
 
-SphereTracker::SphereTracker(double radius_mm, const engine::Grid& grid) noexcept {
+SphereTracker::SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps) noexcept
+    : most_steps_(std::clamp(most_steps, 1, kSphereSteps)) {
   const double cell = smallerSpacing(grid);
   radius_ = std::min(radius_mm, kMostSphereCells * cell);
   // The lens that a step s cuts from a ball is s^2 / (8 r) deep: cell / 16 in the middle of the range.
@@ -254,7 +255,7 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
   glm::dvec3 last{0.0};  // the step before
   double longest = step_;
   Arrival arrival = Arrival::kBound;
-  for (; steps < kSphereSteps && arrival == Arrival::kBound; ++steps) {
+  for (; steps < most_steps_ && arrival == Arrival::kBound; ++steps) {
     const glm::dvec3 goal = endpoint - centre_;
     made_from = here_;
     const auto takeHalfSpaces = [&] {

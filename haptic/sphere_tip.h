@@ -20,6 +20,9 @@ namespace fettle::haptic {
 /// Largest radius, in cells of the smaller spacing.
 inline constexpr double kMostSphereCells = 16.0;
 
+/// Steps of one tick, at most.
+inline constexpr int kSphereSteps = 128;
+
 /// Why a ball of this radius cannot feel a field of this grid; nothing when it can.
 [[nodiscard]] std::optional<std::string> sphereProblem(double radius_mm, const engine::Grid& grid);
 
@@ -48,8 +51,9 @@ inline constexpr double kMostSphereCells = 16.0;
 /// taken, and what rises into the ball on the way (concave parts) is added as a half-space of its own and the
 /// step is taken again. Every step makes the centre's distance to the endpoint smaller, so the ball comes to
 /// rest on both walls of a groove rather than to jump between them. It ends when a step is shorter than the
-/// tolerance, or after kSphereSteps (counted in search_bound_hits; the centre is free of the material and
-/// goes on in the next tick).
+/// tolerance, or after so many steps (counted in search_bound_hits; the centre is free of the material and
+/// goes on in the next tick). Fewer than kSphereSteps bound the tick's time: a ball that rolls into another
+/// hollow takes a few ticks for it, and one that is drawn through free air faster than that lags behind.
 ///
 /// The samples around the ball, and the touches where it rests, are kept from tick to tick until the surface
 /// is refreshed.
@@ -75,7 +79,8 @@ inline constexpr double kMostSphereCells = 16.0;
 class SphereTracker {
  public:
   /// `radius_mm` > 0; over kMostSphereCells cells it is cut to that (sphereProblem tells before).
-  SphereTracker(double radius_mm, const engine::Grid& grid) noexcept;
+  /// `most_steps`, 1 .. kSphereSteps, of a tick.
+  SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps = kSphereSteps) noexcept;
 
   /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt,
   /// by Surface::refreshes().
@@ -116,6 +121,7 @@ class SphereTracker {
 
   static constexpr int kMostCuts = 16;
 
+  int most_steps_;
   double radius_, step_, slack_, tolerance_;
   glm::dvec3 centre_{0.0};
   glm::dvec3 previous_{0.0};  // endpoint
@@ -132,8 +138,5 @@ class SphereTracker {
   std::array<Touch, kMostCuts> cuts_;
   int oldest_cut_ = 0;
 };
-
-/// Steps of one tick.
-inline constexpr int kSphereSteps = 128;
 
 }  // namespace fettle::haptic

@@ -39,6 +39,7 @@ constexpr ContactChoice kChoices[] = {
     {"certified, 6 cells", ContactLevel::kCertified, 2048, 6},  // what the window has for a mouse
     {"certified, 8 cells", ContactLevel::kCertified, 2048, 8},
     {"ball, radius 1 cell", ContactLevel::kPaper, 2048, 2, 1.0},
+    {"ball, 2 cells, 4 steps a tick", ContactLevel::kPaper, 5, 2, 2.0},
     {"ball, radius 2 cells", ContactLevel::kPaper, 2048, 2, 2.0},
 };
 
@@ -60,6 +61,7 @@ haptic::Scene ContactChoice::in(haptic::Scene scene, const engine::Grid& grid) c
   scene.tip = ball_radius_cells > 0.0 ? haptic::TipShape::kSphere : haptic::TipShape::kPoint;
   if (ball_radius_cells > 0.0) {
     scene.tip_radius_mm = ball_radius_cells * cellMm(grid);
+    scene.search_rounds = search_rounds;
     return scene;
   }
   scene.level = level;

@@ -20,7 +20,7 @@ namespace fettle::bench {
 struct ContactChoice {
   const char* name;
   haptic::ContactLevel level = haptic::ContactLevel::kPaper;
-  int search_rounds = 2048;        ///< level paper; the last one only looks
+  int search_rounds = 2048;        ///< level paper, and a ball; the last one only looks
   int certified_radius_cells = 2;  ///< level certified
   double ball_radius_cells = 0.0;  ///< of the larger spacing; 0: a point, else level means nothing
 

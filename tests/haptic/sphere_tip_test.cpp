@@ -43,8 +43,8 @@ bool freeOf(Surface& surface, const glm::dvec3& centre, double radius) {
 }
 
 struct Ball {
-  Ball(const engine::Version& start, double radius)
-      : field(start), surface(field.reader()), tracker(radius, field.grid()) {}
+  Ball(const engine::Version& start, double radius, int most_steps = kSphereSteps)
+      : field(start), surface(field.reader()), tracker(radius, field.grid(), most_steps) {}
   Contact at(double x, double y, double z) { return tracker.update(surface, {x, y, z}, counters); }
   // Until it rests: what one tick's steps do not reach, the next does.
   Contact settle(double x, double y, double z, int ticks = 60) {
@@ -239,6 +239,41 @@ TEST(SphereTip, StaysOutOfRandomFieldsAndNoCentreNearbyIsBetter) {
     }
   }
   EXPECT_GT(touched, 60);
+}
+
+TEST(SphereTip, FewStepsATickEndWhereManyDoAndNoTickTakesMore) {
+  std::mt19937_64 random(78);
+  int touched = 0;
+  int same = 0;
+  for (int i = 0; i < 40; ++i) {
+    // Slopes and waves; in noise a ball has many places to rest at.
+    const engine::Version field = randomField(random, 18, 18, i % 2, 1.0, 1.0);
+    Ball many(field, 1.4);
+    Ball few(field, 1.4, 2);
+    const glm::dvec3 above{uniform(random, 6, 11), uniform(random, 6, 11), 20.0};
+    (void)many.at(above.x, above.y, above.z);
+    (void)few.at(above.x, above.y, above.z);
+    const glm::dvec3 e{above.x, above.y, uniform(random, -1, 0)};
+    const Contact all = many.settle(e.x, e.y, e.z, 40);
+    double before = HUGE_VAL;
+    Contact some;
+    for (int tick = 0; tick < 80; ++tick) {
+      some = few.at(e.x, e.y, e.z);
+      const glm::dvec3 c = few.tracker.centre();
+      const double tolerance = few.tracker.toleranceMm(c.z) + 1e-9;
+      if (tick < 16) {
+        ASSERT_GE(bruteDistance(few.surface, c, 1.9), 1.4 - tolerance);
+      }
+      EXPECT_LE(glm::length(c - e), before + 2.0 * tolerance);
+      before = glm::length(c - e);
+    }
+    EXPECT_LE(few.counters.longest_search, 2);
+    if (!all.touching || !some.touching) continue;
+    ++touched;
+    same += glm::length(many.tracker.centre() - few.tracker.centre()) < 1e-2 ? 1 : 0;
+  }
+  EXPECT_GT(touched, 30);
+  EXPECT_GT(same, 0.9 * touched) << same << " of " << touched;
 }
 
 TEST(SphereTip, TendsToTheCertifiedClosestPointAsItShrinks) {

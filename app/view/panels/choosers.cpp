@@ -7,6 +7,7 @@
 
 #include "app/view/panels/widgets.h"
 #include "app/view/workstation.h"
+#include "haptic/sphere_tip.h"
 
 namespace fettle::app {
 namespace {
@@ -81,7 +82,8 @@ std::string length(double mm) {
 bool sameChoice(const haptic::Scene& scene, const bench::ContactChoice& choice, const engine::Grid& grid) {
   const haptic::Scene chosen = choice.in(scene, grid);
   if (chosen.tip != scene.tip) return false;
-  if (scene.tip == haptic::TipShape::kSphere) return chosen.tip_radius_mm == scene.tip_radius_mm;
+  if (scene.tip == haptic::TipShape::kSphere)
+    return chosen.tip_radius_mm == scene.tip_radius_mm && chosen.search_rounds == scene.search_rounds;
   return chosen.level == scene.level && (scene.level == haptic::ContactLevel::kCertified
                                              ? chosen.certified_radius_cells == scene.certified_radius_cells
                                              : chosen.search_rounds == scene.search_rounds);
@@ -89,7 +91,10 @@ bool sameChoice(const haptic::Scene& scene, const bench::ContactChoice& choice, 
 
 std::string described(const haptic::Scene& scene) {
   if (scene.tip == haptic::TipShape::kSphere)
-    return fmt::format("ball, radius {:.3g} mm", scene.tip_radius_mm);
+    return scene.search_rounds > haptic::kSphereSteps
+               ? fmt::format("ball, radius {:.3g} mm", scene.tip_radius_mm)
+               : fmt::format("ball, radius {:.3g} mm, {} steps", scene.tip_radius_mm,
+                             scene.search_rounds - 1);
   if (scene.level == haptic::ContactLevel::kCertified)
     return fmt::format("certified, {} cells", scene.certified_radius_cells);
   return fmt::format("paper, {} steps a tick", scene.search_rounds - 1);
