@@ -10,7 +10,9 @@
 namespace fettle::bench {
 
 struct ImportBenchOptions {
-  std::int32_t side = 1024;  ///< samples along each side of the field that is written and read, 16 .. 8192
+  /// Samples along each side of the field that is written and read, 16 .. 16384. Above 2048 it is written as
+  /// GeoTIFF alone, in each layout: text and meshes would take minutes and tens of gigabytes.
+  std::int32_t side = 1024;
   int repeats = 5;           ///< 1 .. 100
   /// Files to read instead; with none the same field is written in every format.
   std::vector<std::string> files;
@@ -23,7 +25,9 @@ struct ImportBenchRow {
   std::int64_t bytes = 0;
   std::int64_t samples = 0;  ///< of the field
   double median = 0.0, slowest = 0.0, fastest = 0.0;
-  double plain = 0.0;      ///< median rate of reading the same file into a buffer, in the same run
+  double plain = 0.0;  ///< median rate of reading the same file into a buffer, in the same run
+  /// Median rate of GDAL alone (bench/gdal_yardstick.h) in the same run; 0 for files it is not asked to read.
+  double gdal = 0.0;
   std::uint64_t hash = 0;  ///< of the field; the same in every repeat
 };
 
@@ -33,7 +37,8 @@ struct ImportBenchReport {
 };
 
 /// Imports each file `repeats` times, going round all of them, each time after a plain reading of it (1 MB at
-/// a time), so that the file is in the page cache for both and a change of the machine's speed meets both.
+/// a time) and, for a TIFF, a reading by GDAL alone, so that the file is in the page cache for all and a
+/// change of the machine's speed meets all.
 /// Files made here lie in a folder of their own under the system's temporary folder and are removed.
 /// Errors: kInput for options out of range and files that cannot be read or made, kFailed when two repeats
 /// differ in a bit, kCancelled. Thread: any; blocks.
