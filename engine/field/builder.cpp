@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 namespace fettle::engine {
 
@@ -31,12 +32,12 @@ FieldBuilder::FieldBuilder(Grid grid, std::shared_ptr<FieldMemory> memory)
       tile_rows_((grid_->height + kTileSide - 1) / kTileSide),
       infinities_(std::make_unique<std::atomic<std::int64_t>>(0)) {}
 
-Result<FieldBuilder> FieldBuilder::create(Grid grid, const std::string& what) {
-  return create(std::move(grid), std::make_shared<FieldMemory>(), what);
+Result<FieldBuilder> FieldBuilder::create(Grid grid, const std::string& what, Start start) {
+  return create(std::move(grid), std::make_shared<FieldMemory>(), what, start);
 }
 
 Result<FieldBuilder> FieldBuilder::create(Grid grid, std::shared_ptr<FieldMemory> memory,
-                                          const std::string& what) {
+                                          const std::string& what, Start start) {
   if (grid.width < 1 || grid.height < 1 || grid.width > Grid::kMaxSide || grid.height > Grid::kMaxSide)
     return inputError(fmt::format("a field of {} x {} samples cannot be held", grid.width, grid.height), what,
                       fmt::format("a side must be 1 to {} samples", Grid::kMaxSide));
@@ -47,16 +48,21 @@ Result<FieldBuilder> FieldBuilder::create(Grid grid, std::shared_ptr<FieldMemory
   FieldBuilder builder(std::move(grid), std::move(memory));
   const auto tiles = static_cast<std::size_t>(builder.tile_columns_) * builder.tile_rows_;
   builder.tiles_.reserve(tiles);
+  builder.memory_->tiles.reserve(tiles);  // a refusal shows below
   for (std::size_t i = 0; i < tiles; ++i) {
     TileRef tile = TileRef::adopt(builder.memory_->tiles.acquire());
     if (!tile)
       return failure(fmt::format("memory for {} samples could not be had", builder.grid_->samples()), what);
     builder.tiles_.push_back(std::move(tile));
   }
-  for (TileRef& tile : builder.tiles_) {
-    tile->samples.fill(kHole);
-    tile->marks.fill(0);
-  }
+  tbb::parallel_for(std::size_t{0}, tiles, [&builder, start](std::size_t i) {
+    const auto columns = static_cast<std::size_t>(builder.tile_columns_);
+    const bool at_border = (i + 1) % columns == 0 || i + columns >= builder.tiles_.size();
+    Tile& tile = *builder.tiles_[i];
+    // Samples past the field's end are holes in any case.
+    if (start == Start::kHoles || at_border) tile.samples.fill(kHole);
+    tile.marks.fill(0);
+  });
   return builder;
 }
 
@@ -112,11 +118,7 @@ Node* FieldBuilder::buildNode(int level, std::int32_t column, std::int32_t row, 
     if (tc < tile_columns_ && tr < tile_rows_) {
       if (level == 2) {
         TileRef ref = std::move(tiles_[static_cast<std::size_t>(tr) * tile_columns_ + tc]);
-        Tile& tile = *ref;
-        refreshBounds(tile, 0, 0, kTileSide, kTileSide);
-        refreshMarks(tile);
-        tile.nan_samples = static_cast<std::uint32_t>(
-            std::count_if(tile.samples.begin(), tile.samples.end(), [](float v) { return std::isnan(v); }));
+        const Tile& tile = *ref;
         const int columns = std::min(kTileSide, grid_->width - tc * kTileSide);
         const int rows = std::min(kTileSide, grid_->height - tr * kTileSide);
         child = tile.bounds;
@@ -142,6 +144,14 @@ Version FieldBuilder::build() && {
   bool marked = false;
   bool holed = false;
   HeightBounds bounds;
+  tbb::parallel_for(std::size_t{0}, tiles_.size(), [this](std::size_t i) {
+    Tile& tile = *tiles_[i];
+    refreshBounds(tile, 0, 0, kTileSide, kTileSide);
+    refreshMarks(tile);
+    std::uint32_t holes = 0;
+    for (const float v : tile.samples) holes += v != v ? 1U : 0U;
+    tile.nan_samples = holes;
+  });
   Node* root = buildNode(rootLevel(*grid_), 0, 0, marked, holed, bounds);
   tiles_.clear();
   return {std::move(grid_), std::move(memory_), root, 1.0F};

@@ -13,16 +13,23 @@ namespace fettle::engine {
 /// in any order, and turns into a Version.
 ///
 /// Threading: writeHeights and writeMarks may be called from several threads at once as long as no two calls
-/// touch the same tile.
+/// touch the same sample, for marks the same row of a tile. create() and build() use all cores.
 class FieldBuilder {
  public:
+  /// What the samples are before they are written.
+  enum class Start : std::uint8_t {
+    kHoles,
+    kUnwritten,  ///< anything: the caller writes every sample before build(). Saves a pass over the field
+  };
+
   /// Allocates all tiles. Errors: a side outside 1 .. Grid::kMaxSide, a spacing that is not finite and
   /// positive, memory exhausted. `what` names the field in the error, usually the file.
-  [[nodiscard]] static Result<FieldBuilder> create(Grid grid, const std::string& what);
+  [[nodiscard]] static Result<FieldBuilder> create(Grid grid, const std::string& what,
+                                                   Start start = Start::kHoles);
 
   /// As create, in the memory of an existing field, so that both share one pool.
   [[nodiscard]] static Result<FieldBuilder> create(Grid grid, std::shared_ptr<FieldMemory> memory,
-                                                   const std::string& what);
+                                                   const std::string& what, Start start = Start::kHoles);
 
   FieldBuilder(FieldBuilder&&) = default;
   FieldBuilder& operator=(FieldBuilder&&) = default;

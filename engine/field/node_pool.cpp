@@ -4,8 +4,24 @@
 #include <new>
 
 #include <sys/mman.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace fettle::engine {
+
+namespace {
+
+// A slab's memory. `whole`: large pages, and all of them now.
+void* slabMemory(std::size_t bytes, bool whole) noexcept {
+  void* memory = std::aligned_alloc(bytes, bytes);
+  if (memory == nullptr || !whole) return memory;
+  // Wishes that may be refused.
+  (void)madvise(memory, bytes, MADV_HUGEPAGE);
+  (void)madvise(memory, bytes, MADV_POPULATE_WRITE);
+  return memory;
+}
+
+}  // namespace
 
 template <class T, std::size_t kSlabBytes>
 ObjectPool<T, kSlabBytes>::~ObjectPool() {
@@ -15,14 +31,18 @@ ObjectPool<T, kSlabBytes>::~ObjectPool() {
 template <class T, std::size_t kSlabBytes>
 auto ObjectPool<T, kSlabBytes>::addSlab() noexcept -> Slab* {
   if (slab_count_ == kMaxSlabs) return nullptr;
-  void* memory = std::aligned_alloc(kSlabBytes, kSlabBytes);
-  if (memory == nullptr) return nullptr;
   // From the second slab on (small fields stay small) large pages, because a stroke wanders over more tiles
   // than the processor keeps small pages in mind: 3 % of a tick on 4096 x 4096 samples. And all of them now,
-  // because the haptic thread must not wait for the system to bring one. Both are wishes that may be refused.
-  if (slab_count_ > 0) {
-    (void)madvise(memory, kSlabBytes, MADV_HUGEPAGE);
-    (void)madvise(memory, kSlabBytes, MADV_POPULATE_WRITE);
+  // because the haptic thread must not wait for the system to bring one.
+  return takeIn(slabMemory(kSlabBytes, slab_count_ > 0));
+}
+
+template <class T, std::size_t kSlabBytes>
+auto ObjectPool<T, kSlabBytes>::takeIn(void* memory) noexcept -> Slab* {
+  if (memory == nullptr) return nullptr;
+  if (slab_count_ >= kMaxSlabs) {
+    std::free(memory);
+    return nullptr;
   }
   Slab* slab = static_cast<Slab*>(memory);
   slab->pool = this;
@@ -85,8 +105,23 @@ T* ObjectPool<T, kSlabBytes>::acquire() noexcept {
 template <class T, std::size_t kSlabBytes>
 bool ObjectPool<T, kSlabBytes>::reserve(std::size_t objects) noexcept {
   const std::scoped_lock lock(grow_);
-  while (freeObjects() < objects)
-    if (addSlab() == nullptr) return false;
+  // The system clears the pages of a large field for as long as its samples take to be read: on all cores.
+  constexpr std::size_t kAtOnce = 16;
+  while (freeObjects() < objects) {
+    const std::size_t missing = (objects - freeObjects() + kCount - 1) / kCount;
+    if (slab_count_ == 0 || missing < kAtOnce) {
+      if (addSlab() == nullptr) return false;
+      continue;
+    }
+    std::array<void*, kAtOnce> memory{};
+    tbb::this_task_arena::isolate([&memory] {  // no other work under the lock
+      tbb::parallel_for(std::size_t{0}, kAtOnce,
+                        [&memory](std::size_t i) { memory[i] = slabMemory(kSlabBytes, true); });
+    });
+    bool taken = true;
+    for (void* each : memory) taken = takeIn(each) != nullptr && taken;
+    if (!taken) return false;
+  }
   return true;
 }
 

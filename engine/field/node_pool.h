@@ -38,7 +38,8 @@ class ObjectPool {
   /// As tryAcquire, growing by one slab when dry. Null only when memory or the address table is exhausted.
   [[nodiscard]] T* acquire() noexcept;
 
-  /// Makes at least `objects` free; false when memory ran out. Locks and allocates.
+  /// Makes at least `objects` free; false when memory ran out. Locks and allocates; much at a time on all
+  /// cores.
   bool reserve(std::size_t objects) noexcept;
 
   [[nodiscard]] std::size_t freeObjects() const noexcept { return free_.load(std::memory_order_relaxed); }
@@ -91,6 +92,7 @@ class ObjectPool {
     return slab->refs[indexOf(slab, object)];
   }
   Slab* addSlab() noexcept;
+  Slab* takeIn(void* memory) noexcept;
   void push(Slab* slab, std::size_t index) noexcept;
 
   std::atomic<std::uint64_t> head_{0};  // pops << 32 | number + 1

@@ -7,6 +7,7 @@
 #include "engine/io/export.h"
 #include "engine/io/import.h"
 #include "engine/io/input_file.h"
+#include "engine/io/preview.h"
 
 namespace fettle::engine {
 
@@ -36,6 +37,8 @@ struct Format {
 
 [[nodiscard]] bool looksLikeTiff(std::string_view head, std::string_view extension);
 [[nodiscard]] Result<Imported> readTiff(const InputFile&, const ImportOptions&, JobControl&);
+[[nodiscard]] Result<std::optional<Preview>> previewTiff(const InputFile&, const ImportOptions&, std::int64_t,
+                                                         JobControl&);
 [[nodiscard]] Result<Exported> writeTiff(const Version&, const std::string&, const ExportOptions&,
                                          JobControl&);
 

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "engine/io/perspective.h"
+#include "engine/io/preview.h"
 #include "engine/io/unit_doubt.h"
 
 namespace fettle::engine {
@@ -137,6 +138,24 @@ std::span<const FormatInfo> formats() {
 Result<Imported> importField(const std::string& path, const ImportOptions& options, JobControl& job) {
   try {
     return import(path, options, job);
+  } catch (const std::bad_alloc&) {
+    return inputError("the file needs more memory than is free", path, "cut the scan into parts");
+  }
+}
+
+Result<std::optional<Preview>> importPreview(const std::string& path, const ImportOptions& options,
+                                             std::int64_t max_samples, JobControl& job) {
+  try {
+    if (Status status = checkOptions(options); !status) return tl::unexpected(status.error());
+    if (options.depth_camera) return std::nullopt;
+    const Result<InputFile> file = InputFile::open(path);
+    if (!file) return tl::unexpected(file.error());
+    std::string head(4, '\0');
+    const Result<std::size_t> got = file->read(0, head.data(), head.size());
+    if (!got) return tl::unexpected(got.error());
+    head.resize(*got);
+    if (!looksLikeTiff(head, {})) return std::nullopt;
+    return previewTiff(*file, options, max_samples, job);
   } catch (const std::bad_alloc&) {
     return inputError("the file needs more memory than is free", path, "cut the scan into parts");
   }

@@ -23,6 +23,7 @@ enum Tag : std::uint64_t {
   kXResolution = 282,
   kYResolution = 283,
   kResolutionUnit = 296,
+  kPredictor = 317,
   kTileOffsets = 324,
   kTileBytes = 325,
 };
@@ -187,6 +188,7 @@ Result<TiffDirectory> readTiffDirectory(const InputFile& file) {
     return damaged();
 
   TiffDirectory directory;
+  directory.little_endian = little;
   std::optional<Entry> offsets;
   std::optional<Entry> sizes;
   for (std::uint64_t i = 0; i < *count; ++i) {
@@ -216,6 +218,9 @@ Result<TiffDirectory> readTiffDirectory(const InputFile& file) {
         break;
       case kSamplesPerPixel:
         scalar(directory.samples_per_pixel);
+        break;
+      case kPredictor:
+        scalar(directory.predictor);
         break;
       case kResolutionUnit:
         scalar(directory.resolution_unit);

@@ -15,8 +15,10 @@ struct TiffDirectory {
   std::uint64_t width = 0;
   std::uint64_t height = 0;
   std::uint64_t samples_per_pixel = 1;
-  std::uint64_t bits = 1;             ///< of one sample of the first band
-  std::uint64_t compression = 1;      ///< TIFF tag 259
+  std::uint64_t bits = 1;         ///< of one sample of the first band
+  std::uint64_t compression = 1;  ///< TIFF tag 259
+  std::uint64_t predictor = 1;    ///< tag 317: what was packed is 1 the numbers, 2, 3 differences of them
+  bool little_endian = true;
   std::uint64_t stored_bytes = 0;     ///< of strips or tiles that lie within the file
   bool cut = false;                   ///< some strip or tile reaches past the end of the file
   std::optional<double> x_per_unit;   ///< tag 282, pixels a unit; finite and > 0
