@@ -32,6 +32,12 @@ double cpuMs() {
          1e-3 * static_cast<double>(use.ru_utime.tv_usec + use.ru_stime.tv_usec);
 }
 
+std::int64_t peakBytes() {
+  rusage use{};
+  getrusage(RUSAGE_SELF, &use);
+  return std::int64_t{use.ru_maxrss} * 1024;
+}
+
 double noise(std::int32_t c, std::int32_t r) {
   auto h = static_cast<std::uint32_t>(c) * 2654435761U ^ static_cast<std::uint32_t>(r) * 2246822519U;
   h ^= h >> 15U;
@@ -294,8 +300,14 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     Scene all_round{"plain", {{*field}, std::nullopt, render::MarksOverlay::kHide}, plain};
     const auto start = Clock::now();
     if (auto ok = (*picture)->update(all_round.shown); !ok) return tl::unexpected(ok.error());
-    (*picture)->finish();
-    report.first_ms.push_back(msSince(start));
+    for (bool first = true, rests = false; !rests; first = false) {
+      const auto frame = (*picture)->drawAndWait(plain);
+      if (!frame) return tl::unexpected(frame.error());
+      if (first) report.first_ms.push_back(msSince(start));
+      rests = frame->upload.pending_tiles == 0;
+      if (job.cancelled()) return engine::cancelled();
+    }
+    report.rest_ms.push_back(msSince(start));
 
     std::vector<Scene> scenes(6, all_round);
     scenes[1].name = "empty";
@@ -347,6 +359,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
       if (auto ok = beside(**picture, all_round, options.loop_seconds, report.loop); !ok)
         return tl::unexpected(ok.error());
   }
+  report.peak_bytes = peakBytes();
   report.targets = targetsOf(report, options.in_motion);
   return report;
 }

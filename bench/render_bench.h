@@ -64,7 +64,10 @@ struct RenderBenchReport {
   std::string machine;
   std::string device;
   std::vector<RenderBenchRow> rows;
-  std::vector<double> first_ms;  ///< of each field: from a version to everything on the device
+  std::vector<double> first_ms;  ///< of each field: from a version to its first picture
+  std::vector<double> rest_ms;   ///< and to the first frame that nothing is left to be moved or measured for
+  std::int64_t peak_bytes =
+      0;  ///< memory that the process held at most; the device's too, where it is software
   RenderBesideLoop loop;
   std::vector<RenderTarget> targets;
 };

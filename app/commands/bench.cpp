@@ -199,10 +199,9 @@ void printStability(const Report& report) {
 engine::Result<Report> picture(const bench::RenderBenchOptions& options, engine::JobControl& job) {
   const auto result = bench::benchRender(options, job);
   if (!result) return tl::unexpected(result.error());
-  Report report{{"machine", result->machine},
-                {"device", result->device},
-                {"first_ms", result->first_ms},
-                {"rows", Report::array()}};
+  Report report{{"machine", result->machine},       {"device", result->device},
+                {"first_ms", result->first_ms},     {"rest_ms", result->rest_ms},
+                {"peak_bytes", result->peak_bytes}, {"rows", Report::array()}};
   for (const bench::RenderBenchRow& row : result->rows)
     report["rows"].push_back({{"name", row.name},
                               {"samples", row.samples},
@@ -255,6 +254,10 @@ void printPicture(const Report& report) {
         row["redrawn"].get<double>(), row["edit_p50_ms"].get<double>(), row["edit_p99_ms"].get<double>(),
         row["tiles"].get<std::int64_t>(), row["bytes"].get<std::int64_t>(), row["upload_ratio"].get<double>(),
         row["hash"].get<std::string>());
+  for (std::size_t i = 0; i < report["first_ms"].size(); ++i)
+    fmt::print("field {}: first picture {:.0f} ms, at rest {:.0f} ms\n", i + 1,
+               report["first_ms"][i].get<double>(), report["rest_ms"][i].get<double>());
+  fmt::print("peak resident memory {} MiB\n", report["peak_bytes"].get<std::int64_t>() >> 20);
   for (const Report& row : report["rows"])
     if (row["off_max"].get<double>() > 0.0)
       fmt::print(
