@@ -13,12 +13,34 @@
 #include <unistd.h>
 
 #include "app/terminal.h"
+#include "engine/field/tile_store.h"
 #include "engine/io/export.h"
 
 namespace fettle::app {
 
+namespace {
+
+constexpr const char* kReading = "Reading the scan";
+
+}  // namespace
+
+void addStoreOption(CLI::App* command) {
+  command
+      ->add_option_function<std::string>(
+          "--store",
+          [](const std::string& folder) {
+            engine::StorePolicy policy;
+            policy.folder = folder;
+            policy.always = true;
+            engine::setStorePolicy(policy);
+          },
+          "Folder on a disk for the samples, so that they may be more than memory holds")
+      ->group(kReading);
+}
+
 void addScanOptions(CLI::App* command, ScanOptions& options) {
-  const std::string group = "Reading the scan";
+  const std::string group = kReading;
+  addStoreOption(command);
   command
       ->add_option("--no-data", options.no_data, "Height that means a hole, besides what the file declares")
       ->group(group);

@@ -29,6 +29,10 @@ struct ScanOptions {
 };
 void addScanOptions(CLI::App* command, ScanOptions& options);
 
+/// --store FOLDER: every field of this process lies there (engine/field/tile_store.h). Part of
+/// addScanOptions.
+void addStoreOption(CLI::App* command);
+
 /// The options as they were typed, each with a blank before it; empty without any.
 [[nodiscard]] std::string scanOptionsText(const ScanOptions& options);
 

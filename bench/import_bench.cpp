@@ -10,6 +10,7 @@
 #include "bench/hand_stroke.h"
 #include "bench/import_files.h"
 #include "bench/machine.h"
+#include "bench/own_folder.h"
 #include "engine/io/export.h"
 #include "engine/io/import.h"
 
@@ -23,29 +24,6 @@ using Seconds = std::chrono::duration<double>;
 constexpr double kSpacingMm = 0.05;
 constexpr std::int32_t kEveryFormat = 2048;  // largest side
 constexpr std::int32_t kLargest = 16384;
-
-// A folder that goes when the run ends.
-class Folder {
- public:
-  [[nodiscard]] static engine::Result<Folder> create() {
-    std::error_code error;
-    std::string name = (fs::temp_directory_path(error) / "fettle-bench-XXXXXX").string();
-    if (error || mkdtemp(name.data()) == nullptr)
-      return engine::inputError("no temporary folder can be made", name, "set TMPDIR to one with free space");
-    return Folder(name);
-  }
-  Folder(Folder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-  Folder& operator=(Folder&&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
-
- private:
-  explicit Folder(fs::path path) : path_(std::move(path)) {}
-  fs::path path_;
-};
 
 struct Case {
   std::string name;
@@ -128,7 +106,7 @@ engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options,
   if (options.side < 16 || options.side > kLargest || options.repeats < 1 || options.repeats > 100)
     return engine::inputError("an option of the benchmark is out of range", "bench import",
                               "side 16 to 16384, repeats 1 to 100");
-  const auto folder = Folder::create();
+  const auto folder = OwnFolder::create();
   if (!folder) return tl::unexpected(folder.error());
   std::vector<Case> cases;
   if (options.files.empty()) {

@@ -6,6 +6,7 @@
 #include "app/commands/bench_filters.h"
 #include "app/commands/bench_growth.h"
 #include "app/commands/bench_import.h"
+#include "app/commands/bench_large.h"
 #include "bench/effects_bench.h"
 #include "bench/haptic_bench.h"
 #include "bench/machine.h"
@@ -332,6 +333,7 @@ void addBench(CLI::App& root, Chosen& chosen) {
   sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
 
   addBenchGrowth(*bench, chosen);
+  addBenchLarge(*bench, chosen);
   addBenchImport(*bench, chosen);
   addBenchFilters(*bench, chosen);
 

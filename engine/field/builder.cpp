@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "engine/field/tile_store.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -23,6 +25,17 @@ int rootLevel(const Grid& grid) noexcept {
   return level;
 }
 
+Status sidesAndSpacing(const Grid& grid, const std::string& what) {
+  if (grid.width < 1 || grid.height < 1 || grid.width > Grid::kMaxSide || grid.height > Grid::kMaxSide)
+    return inputError(fmt::format("a field of {} x {} samples cannot be held", grid.width, grid.height), what,
+                      fmt::format("a side must be 1 to {} samples", Grid::kMaxSide));
+  for (const double spacing : {grid.spacingXMm(), grid.spacingYMm(), grid.height_unit.mm})
+    if (!std::isfinite(spacing) || spacing <= 0.0)
+      return inputError(fmt::format("the spacing {} mm is not a positive length", spacing), what,
+                        "give it with --spacing");
+  return {};
+}
+
 }  // namespace
 
 FieldBuilder::FieldBuilder(Grid grid, std::shared_ptr<FieldMemory> memory)
@@ -33,24 +46,22 @@ FieldBuilder::FieldBuilder(Grid grid, std::shared_ptr<FieldMemory> memory)
       infinities_(std::make_unique<std::atomic<std::int64_t>>(0)) {}
 
 Result<FieldBuilder> FieldBuilder::create(Grid grid, const std::string& what, Start start) {
-  return create(std::move(grid), std::make_shared<FieldMemory>(), what, start);
+  if (Status fit = sidesAndSpacing(grid, what); !fit) return tl::unexpected(fit.error());
+  auto memory =
+      memoryFor(static_cast<std::uint64_t>(grid.width), static_cast<std::uint64_t>(grid.height), what);
+  if (!memory) return tl::unexpected(memory.error());
+  return create(std::move(grid), *std::move(memory), what, start);
 }
 
 Result<FieldBuilder> FieldBuilder::create(Grid grid, std::shared_ptr<FieldMemory> memory,
                                           const std::string& what, Start start) {
-  if (grid.width < 1 || grid.height < 1 || grid.width > Grid::kMaxSide || grid.height > Grid::kMaxSide)
-    return inputError(fmt::format("a field of {} x {} samples cannot be held", grid.width, grid.height), what,
-                      fmt::format("a side must be 1 to {} samples", Grid::kMaxSide));
-  for (const double spacing : {grid.spacingXMm(), grid.spacingYMm(), grid.height_unit.mm})
-    if (!std::isfinite(spacing) || spacing <= 0.0)
-      return inputError(fmt::format("the spacing {} mm is not a positive length", spacing), what,
-                        "give it with --spacing");
+  if (Status fit = sidesAndSpacing(grid, what); !fit) return tl::unexpected(fit.error());
   FieldBuilder builder(std::move(grid), std::move(memory));
   const auto tiles = static_cast<std::size_t>(builder.tile_columns_) * builder.tile_rows_;
   builder.tiles_.reserve(tiles);
-  builder.memory_->tiles.reserve(tiles);  // a refusal shows below
+  builder.memory_->bulk().reserve(tiles);  // a refusal shows below
   for (std::size_t i = 0; i < tiles; ++i) {
-    TileRef tile = TileRef::adopt(builder.memory_->tiles.acquire());
+    TileRef tile = TileRef::adopt(builder.memory_->bulk().acquire());
     if (!tile)
       return failure(fmt::format("memory for {} samples could not be had", builder.grid_->samples()), what);
     builder.tiles_.push_back(std::move(tile));
@@ -117,14 +128,12 @@ Node* FieldBuilder::buildNode(int level, std::int32_t column, std::int32_t row, 
     bool child_holed = false;
     if (tc < tile_columns_ && tr < tile_rows_) {
       if (level == 2) {
-        TileRef ref = std::move(tiles_[static_cast<std::size_t>(tr) * tile_columns_ + tc]);
-        const Tile& tile = *ref;
-        const int columns = std::min(kTileSide, grid_->width - tc * kTileSide);
-        const int rows = std::min(kTileSide, grid_->height - tr * kTileSide);
-        child = tile.bounds;
-        child_marked = tile.marked_samples != 0;
-        child_holed = tile.nan_samples > static_cast<std::uint32_t>(kTileSamples - columns * rows);
-        node->children[k] = ref.detach();
+        const std::size_t place = static_cast<std::size_t>(tr) * tile_columns_ + tc;
+        const Summary& summary = summaries_[place];
+        child = summary.bounds;
+        child_marked = summary.marked;
+        child_holed = summary.holed;
+        node->children[k] = tiles_[place].detach();
       } else {
         node->children[k] = buildNode(level - 1, tc, tr, child_marked, child_holed, child);
       }
@@ -144,6 +153,7 @@ Version FieldBuilder::build() && {
   bool marked = false;
   bool holed = false;
   HeightBounds bounds;
+  summaries_.resize(tiles_.size());
   tbb::parallel_for(std::size_t{0}, tiles_.size(), [this](std::size_t i) {
     Tile& tile = *tiles_[i];
     refreshBounds(tile, 0, 0, kTileSide, kTileSide);
@@ -151,9 +161,16 @@ Version FieldBuilder::build() && {
     std::uint32_t holes = 0;
     for (const float v : tile.samples) holes += v != v ? 1U : 0U;
     tile.nan_samples = holes;
+    const auto tc = static_cast<std::int32_t>(i % static_cast<std::size_t>(tile_columns_));
+    const auto tr = static_cast<std::int32_t>(i / static_cast<std::size_t>(tile_columns_));
+    const int columns = std::min(kTileSide, grid_->width - tc * kTileSide);
+    const int rows = std::min(kTileSide, grid_->height - tr * kTileSide);
+    summaries_[i] = {tile.bounds, tile.marked_samples != 0,
+                     holes > static_cast<std::uint32_t>(kTileSamples - columns * rows)};
   });
   Node* root = buildNode(rootLevel(*grid_), 0, 0, marked, holed, bounds);
   tiles_.clear();
+  summaries_.clear();
   return {std::move(grid_), std::move(memory_), root, 1.0F};
 }
 

@@ -22,8 +22,9 @@ class FieldBuilder {
     kUnwritten,  ///< anything: the caller writes every sample before build(). Saves a pass over the field
   };
 
-  /// Allocates all tiles. Errors: a side outside 1 .. Grid::kMaxSide, a spacing that is not finite and
-  /// positive, memory exhausted. `what` names the field in the error, usually the file.
+  /// Takes all tiles, from memory or a store as memoryFor (tile_store.h) decides. Errors: a side outside
+  /// 1 .. Grid::kMaxSide, a spacing that is not finite and positive, no room. `what` names the field in the
+  /// error, usually the file.
   [[nodiscard]] static Result<FieldBuilder> create(Grid grid, const std::string& what,
                                                    Start start = Start::kHoles);
 
@@ -60,13 +61,21 @@ class FieldBuilder {
   [[nodiscard]] Version build() &&;
 
  private:
+  /// What the nodes must know of a tile. In a store, looking at the tile again would read it from the disk.
+  struct Summary {
+    HeightBounds bounds;
+    bool marked = false;
+    bool holed = false;
+  };
+
   FieldBuilder(Grid grid, std::shared_ptr<FieldMemory> memory);
   [[nodiscard]] Node* buildNode(int level, std::int32_t column, std::int32_t row, bool& marked, bool& holed,
                                 HeightBounds& bounds);
 
   std::shared_ptr<const Grid> grid_;
   std::shared_ptr<FieldMemory> memory_;
-  std::vector<TileRef> tiles_;  // row-major
+  std::vector<TileRef> tiles_;      // row-major
+  std::vector<Summary> summaries_;  // of each, in build()
   std::int32_t tile_columns_ = 0;
   std::int32_t tile_rows_ = 0;
   std::unique_ptr<std::atomic<std::int64_t>> infinities_;

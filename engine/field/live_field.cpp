@@ -34,8 +34,10 @@ Version LiveField::adopt(Version version) noexcept {
 }
 
 TileRef LiveField::newTile() noexcept {
-  TilePool& pool = state_.memory_->tiles;
-  TileRef tile = TileRef::adopt(growth_ == Growth::kAllowed ? pool.acquire() : pool.tryAcquire());
+  // Who may grow a pool may wait for a disk as well.
+  FieldMemory& memory = *state_.memory_;
+  TileRef tile =
+      TileRef::adopt(growth_ == Growth::kAllowed ? memory.bulk().acquire() : memory.tiles.tryAcquire());
   if (!tile) ++refused_;
   return tile;
 }

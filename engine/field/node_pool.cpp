@@ -7,6 +7,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "engine/field/tile_store.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -25,12 +27,16 @@ void* slabMemory(std::size_t bytes, bool whole) noexcept {
 
 template <class T, std::size_t kSlabBytes>
 ObjectPool<T, kSlabBytes>::~ObjectPool() {
+  if (source_ != nullptr) return;
   for (std::size_t s = 0; s < slab_count_; ++s) std::free(slabs_[s].load(std::memory_order_relaxed));
 }
 
 template <class T, std::size_t kSlabBytes>
 auto ObjectPool<T, kSlabBytes>::addSlab() noexcept -> Slab* {
+  // A store keeps the first page of a slab, and so all that is counted, in ordinary memory.
+  static_assert(!std::is_same_v<T, Tile> || sizeof(Slab) - sizeof(Slab::items) <= 4096);
   if (slab_count_ == kMaxSlabs) return nullptr;
+  if (source_ != nullptr) return takeIn(source_->take(kSlabBytes));
   // From the second slab on (small fields stay small) large pages, because a stroke wanders over more tiles
   // than the processor keeps small pages in mind: 3 % of a tick on 4096 x 4096 samples. And all of them now,
   // because the haptic thread must not wait for the system to bring one.
@@ -109,7 +115,7 @@ bool ObjectPool<T, kSlabBytes>::reserve(std::size_t objects) noexcept {
   constexpr std::size_t kAtOnce = 16;
   while (freeObjects() < objects) {
     const std::size_t missing = (objects - freeObjects() + kCount - 1) / kCount;
-    if (slab_count_ == 0 || missing < kAtOnce) {
+    if (source_ != nullptr || slab_count_ == 0 || missing < kAtOnce) {
       if (addSlab() == nullptr) return false;
       continue;
     }
@@ -133,6 +139,13 @@ void ObjectPool<T, kSlabBytes>::recycle(T* object) noexcept {
 
 template class ObjectPool<Tile, std::size_t{4} << 20>;
 template class ObjectPool<Node, std::size_t{1} << 20>;
+
+FieldMemory::FieldMemory() = default;
+
+FieldMemory::FieldMemory(std::unique_ptr<TileStore> tile_store)
+    : store(std::move(tile_store)), stored_(store ? std::make_unique<TilePool>(*store) : nullptr) {}
+
+FieldMemory::~FieldMemory() = default;
 
 void releaseNode(Node* node) noexcept {
   if (node == nullptr || !InnerPool::dropLast(node)) return;

@@ -5,12 +5,22 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <utility>
 
 #include "engine/field/tile.h"
 
 namespace fettle::engine {
+
+/// Where a pool's slabs come from when that is not the heap.
+class SlabSource {
+ public:
+  virtual ~SlabSource() = default;
+  /// `bytes` of memory, all zero, at a multiple of `bytes` (a power of two); null when there is no more. It
+  /// stays until the source dies. Threading: one at a time; the pool's lock sees to that.
+  [[nodiscard]] virtual void* take(std::size_t bytes) noexcept = 0;
+};
 
 /// Preallocated objects of one type, counted by reference, for the field's tiles and nodes.
 ///
@@ -28,6 +38,8 @@ template <class T, std::size_t kSlabBytes>
 class ObjectPool {
  public:
   ObjectPool() = default;
+  /// Takes its slabs from `source`, which outlives it; their pages are not asked for beforehand.
+  explicit ObjectPool(SlabSource& source) noexcept : source_(&source) {}
   ObjectPool(const ObjectPool&) = delete;
   ObjectPool& operator=(const ObjectPool&) = delete;
   ~ObjectPool();
@@ -101,6 +113,7 @@ class ObjectPool {
   std::array<std::atomic<Slab*>, kMaxSlabs> slabs_{};
   std::mutex grow_;
   std::size_t slab_count_ = 0;  // guarded by grow_
+  SlabSource* source_ = nullptr;
 };
 
 using TilePool = ObjectPool<Tile, std::size_t{4} << 20>;
@@ -108,10 +121,27 @@ using InnerPool = ObjectPool<Node, std::size_t{1} << 20>;
 extern template class ObjectPool<Tile, std::size_t{4} << 20>;
 extern template class ObjectPool<Node, std::size_t{1} << 20>;
 
+class TileStore;
+
 /// The memory that all versions of a field share; it lives as long as the last of them.
+///
+/// With a store (tile_store.h) whole fields lie in a mapped file, and touching one of their tiles may wait
+/// for the disk; what a stroke writes, and every node with its bounds, lies in ordinary memory all the same.
+/// A tile goes back to the pool that it came from, whoever gives it back.
 struct FieldMemory {
-  TilePool tiles;
+  FieldMemory();
+  explicit FieldMemory(std::unique_ptr<TileStore> tile_store);
+  ~FieldMemory();
+
+  const std::unique_ptr<TileStore> store;  ///< null: all in ordinary memory
+  TilePool tiles;                          ///< in ordinary memory: for who may not wait
   InnerPool nodes;
+
+  /// For who may wait: import, filters, jobs. The stored tiles when there is a store, else `tiles`.
+  [[nodiscard]] TilePool& bulk() noexcept { return stored_ ? *stored_ : tiles; }
+
+ private:
+  std::unique_ptr<TilePool> stored_;
 };
 
 /// Drops one reference to a tile; recycles it when that was the last.

@@ -29,13 +29,29 @@ constexpr std::array<std::pair<FilterKind, std::string_view>, 5> kNames{{
     {FilterKind::kTotalVariation, "tv"},
 }};
 
-std::int64_t samplesThatAreNotHoles(const Version& version) noexcept {
-  const FieldReader reader = version.reader();
+// Of the samples below a node whose first tile is (tc, tr). Tiles without a hole are not looked at: on the
+// disk, each would be a page to wait for.
+std::int64_t notHolesBelow(const Node& node, std::int32_t tc, std::int32_t tr, const Grid& grid) noexcept {
+  const std::int32_t tiles_a_child = 1 << (3 * (node.level - 2));
+  const std::int64_t samples_a_child = std::int64_t{tiles_a_child} * kTileSide;
   std::int64_t n = 0;
-  for (std::int32_t tr = 0; tr < reader.tileRows(); ++tr)
-    for (std::int32_t tc = 0; tc < reader.tileColumns(); ++tc)
-      n += kTileSamples - std::int64_t{reader.tile(tc, tr).nan_samples};
+  for (int k = 0; k < kFanOut; ++k) {
+    if (node.children[k] == nullptr) continue;
+    const std::int32_t column = tc + k % 8 * tiles_a_child;
+    const std::int32_t row = tr + k / 8 * tiles_a_child;
+    if ((node.holed_children >> k & 1) == 0)
+      n += std::min(samples_a_child, grid.width - std::int64_t{column} * kTileSide) *
+           std::min(samples_a_child, grid.height - std::int64_t{row} * kTileSide);
+    else if (node.level == 2)
+      n += kTileSamples - std::int64_t{static_cast<const Tile*>(node.children[k])->nan_samples};
+    else
+      n += notHolesBelow(*static_cast<const Node*>(node.children[k]), column, row, grid);
+  }
   return n;
+}
+
+std::int64_t samplesThatAreNotHoles(const Version& version) noexcept {
+  return notHolesBelow(version.reader().root(), 0, 0, version.grid());
 }
 
 // The reports of tiles put together, in their order.

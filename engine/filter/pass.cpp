@@ -221,7 +221,7 @@ class Pass {
       stride = kTileSide;
       sign = 1.0F;
     }
-    TileRef after = TileRef::adopt(memory_.tiles.acquire());
+    TileRef after = TileRef::adopt(memory_.bulk().acquire());
     if (!after) {
       // Relaxed: read after the join of the parallel loop, which orders everything.
       out_of_memory_.store(true, std::memory_order_relaxed);

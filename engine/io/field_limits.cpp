@@ -1,44 +1,12 @@
 #include "engine/io/field_limits.h"
 
-#include <fstream>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "engine/field/tile_store.h"
+
 namespace fettle::engine {
-
-namespace {
-
-std::optional<std::uint64_t> numberIn(const char* path) {
-  std::ifstream file(path);
-  std::uint64_t number = 0;
-  if (file >> number) return number;
-  return std::nullopt;
-}
-
-}  // namespace
-
-std::uint64_t availableMemory() {
-  std::uint64_t available = 0;
-  std::ifstream info("/proc/meminfo");
-  std::string key;
-  std::uint64_t kilobytes = 0;
-  while (info >> key >> kilobytes) {
-    if (key == "MemAvailable:") {
-      available = kilobytes * 1024;
-      break;
-    }
-    info.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  }
-  const auto limit = numberIn("/sys/fs/cgroup/memory.max");
-  const auto used = numberIn("/sys/fs/cgroup/memory.current");
-  if (limit && used) {
-    const std::uint64_t left = *limit > *used ? *limit - *used : 0;
-    available = available == 0 ? left : std::min(available, left);
-  }
-  return available;
-}
 
 Status checkFieldSize(std::uint64_t width, std::uint64_t height, std::uint64_t extra_bytes,
                       const std::string& path) {
@@ -49,14 +17,8 @@ Status checkFieldSize(std::uint64_t width, std::uint64_t height, std::uint64_t e
   if (width > kMaxSide || height > kMaxSide)
     return inputError(fmt::format("{} x {} samples are too many", width, height), path,
                       fmt::format("a side may have {} at most: cut the scan into parts", kMaxSide));
-  // Tiles are full at the borders too, and carry marks and bounds: 1.06 of the samples' own 4 bytes.
-  const std::uint64_t samples = (width + kTileSide - 1) / kTileSide * ((height + kTileSide - 1) / kTileSide);
-  const std::uint64_t bytes = samples * (sizeof(Tile) + 32) + extra_bytes;
-  const std::uint64_t available = availableMemory();
-  if (available != 0 && bytes > available)
-    return inputError(fmt::format("{} x {} samples need {} MB of memory, {} MB are free", width, height,
-                                  bytes >> 20, available >> 20),
-                      path, "cut the scan into parts or close other programs");
+  if (const auto place = placeOf(width, height, extra_bytes, path); !place)
+    return tl::unexpected(place.error());
   return {};
 }
 

@@ -9,12 +9,9 @@
 
 namespace fettle::engine {
 
-/// Memory that a process may still take [bytes]: what the system calls available, or what is left of the
-/// control group's limit if that is less. 0 if neither is known.
-[[nodiscard]] std::uint64_t availableMemory();
-
 /// Refuses a field that a header promises but that cannot be: sides of 0 or past Grid::kMaxSide, more than
-/// `availableMemory` holds beside `extra_bytes`. Call before anything is allocated.
+/// neither memory, beside `extra_bytes`, nor the disk of a store holds (tile_store.h). Call before anything
+/// is allocated.
 [[nodiscard]] Status checkFieldSize(std::uint64_t width, std::uint64_t height, std::uint64_t extra_bytes,
                                     const std::string& path);
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <liblzf/lzf.h>
 
+#include "engine/base/memory.h"
 #include "engine/io/field_limits.h"
 #include "engine/io/format.h"
 #include "engine/io/gridding.h"

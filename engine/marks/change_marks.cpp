@@ -55,7 +55,7 @@ Result<Version> changeMarks(const Version& field, TileRange range, const TileMar
     for (int r = 0; r < kTileSide; ++r) rows[static_cast<std::size_t>(r)] &= inField(grid, tc, tr, r);
     job.advance();
     if (rows == old.marks) return;
-    TileRef fresh = TileRef::adopt(field.memory()->tiles.acquire());
+    TileRef fresh = TileRef::adopt(field.memory()->bulk().acquire());
     if (!fresh) {
       dry.store(true, std::memory_order_relaxed);
       return;

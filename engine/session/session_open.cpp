@@ -213,7 +213,7 @@ Result<Session> read(SessionTables& tables, const SessionOpenOptions& options, J
     }
   TilesById tiles;
   if (Status status =
-          load(tables, index.grid, std::move(wanted), session.original.memory()->tiles, tiles, job);
+          load(tables, index.grid, std::move(wanted), session.original.memory()->bulk(), tiles, job);
       !status)
     return tl::unexpected(status.error());
 
@@ -289,7 +289,7 @@ Result<Step> readStep(SessionTables& tables, const SessionIndex& index, std::int
   for (const std::size_t i : where)
     if (const TilePlace* before = placeAt(index, i, number - 1)) wanted.push_back(*before);
   TilesById tiles;
-  if (Status status = load(tables, index.grid, std::move(wanted), original.memory()->tiles, tiles, job);
+  if (Status status = load(tables, index.grid, std::move(wanted), original.memory()->bulk(), tiles, job);
       !status)
     return tl::unexpected(status.error());
   Result<Version> before = moved(after, number - 1, where, index, original, tiles, path);

@@ -1,0 +1,90 @@
+#include "engine/base/memory.h"
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+namespace fettle::engine {
+
+namespace {
+
+std::optional<std::uint64_t> numberIn(const std::string& path) {
+  std::ifstream file(path);
+  std::uint64_t number = 0;
+  if (file >> number) return number;
+  return std::nullopt;
+}
+
+// The number after `key` in a file of lines "key number ...".
+std::optional<std::uint64_t> numberOf(const std::string& path, std::string_view key) {
+  std::ifstream file(path);
+  std::string line;
+  while (std::getline(file, line)) {
+    std::istringstream words(line);
+    std::string word;
+    std::uint64_t number = 0;
+    if (words >> word && word == key && words >> number) return number;
+  }
+  return std::nullopt;
+}
+
+// What a control group leaves. Its files are given by their names in version 2 or 1 of the interface.
+std::optional<std::uint64_t> leftOf(const std::string& group, const char* limit_name, const char* used_name) {
+  const auto limit = numberIn(group + limit_name);
+  const auto used = numberIn(group + used_name);
+  if (!limit || !used) return std::nullopt;
+  // Pages of files are given back when memory is wanted.
+  std::uint64_t cache = 0;
+  for (const char* key : {"inactive_file", "active_file"})
+    cache += numberOf(group + "/memory.stat", key).value_or(0);
+  const std::uint64_t taken = *used > cache ? *used - cache : 0;
+  return *limit > taken ? *limit - taken : 0;
+}
+
+}  // namespace
+
+std::uint64_t availableMemory() {
+  constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t available = kUnknown;
+  if (const auto kilobytes = numberOf("/proc/meminfo", "MemAvailable:")) available = *kilobytes * 1024;
+  const auto consider = [&available](std::optional<std::uint64_t> left) {
+    if (left) available = std::min(available, *left);
+  };
+  // A container shows its own group as the root of all.
+  consider(leftOf("/sys/fs/cgroup", "/memory.max", "/memory.current"));
+  consider(leftOf("/sys/fs/cgroup/memory", "/memory.limit_in_bytes", "/memory.usage_in_bytes"));
+  std::ifstream groups("/proc/self/cgroup");
+  std::string line;
+  while (std::getline(groups, line)) {
+    // "number:controllers:path"; version 2 has no controllers.
+    const std::size_t first = line.find(':');
+    const std::size_t second = line.find(':', first + 1);
+    if (first == std::string::npos || second == std::string::npos) continue;
+    const std::string controllers = line.substr(first + 1, second - first - 1);
+    const std::string path = line.substr(second + 1);
+    if (controllers.empty()) consider(leftOf("/sys/fs/cgroup" + path, "/memory.max", "/memory.current"));
+    if (controllers == "memory")
+      consider(leftOf("/sys/fs/cgroup/memory" + path, "/memory.limit_in_bytes", "/memory.usage_in_bytes"));
+  }
+  return available == kUnknown ? 0 : available;
+}
+
+ResidentMemory residentMemory() {
+  const auto bytes = [](std::string_view key) {
+    return numberOf("/proc/self/status", key).value_or(0) * 1024;
+  };
+  return {bytes("VmRSS:"), bytes("VmHWM:"), bytes("RssAnon:")};
+}
+
+bool forgetPeak() {
+  std::ofstream file("/proc/self/clear_refs");
+  file << "5";
+  file.flush();
+  return file.good();
+}
+
+}  // namespace fettle::engine
