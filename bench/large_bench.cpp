@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -26,6 +27,8 @@
 #include "engine/history/history.h"
 #include "engine/io/export.h"
 #include "engine/io/import.h"
+#include "haptic/devices/replay_device.h"
+#include "haptic/loop/haptic_loop.h"
 #include "haptic/loop/rt_thread.h"
 #include "haptic/scene.h"
 #include "haptic/tick.h"
@@ -41,6 +44,7 @@ constexpr std::int32_t kSmallSide = 1024;
 constexpr double kSpacingMm = 0.05;
 constexpr double kTicks = 200'000;
 constexpr int kStrokeTicks = 2000;
+constexpr double kLoopSeconds = 10.0;
 
 std::uint64_t diskReads() noexcept {
   rusage usage{};
@@ -176,11 +180,61 @@ LargeTicks ticks(const engine::Version& large, const engine::Version& small, hap
   return result;
 }
 
+// In real time, as in the window: what the loop felt and what it waited for.
+engine::Status liveLoop(const engine::Version& field, double effort, Stages& stages, LargeLoop& result,
+                        engine::JobControl& job) {
+  HandMotion motion;
+  motion.ticks = std::llround(kLoopSeconds * effort * 1000.0);
+  motion.tool = haptic::Tool::kSmooth;
+  haptic::ReplayDevice device(handStroke(field, motion));
+  // All other samples, so that memory smaller than the field has forgotten those under the hand.
+  stages.run("read every sample", static_cast<double>(field.grid().samples()),
+             [&] { static_cast<void>(engine::summarize(field)); });
+  haptic::HapticLoop::Settings settings;
+  settings.options.limits = haptic::limitsFor(device.profile());
+  settings.options.record_capacity = 1 << 12;
+  haptic::Scene scene = haptic::defaultScene();
+  scene.brush_radius_samples = 2.0;
+  auto created = haptic::HapticLoop::create(field, field, scene, device, settings);
+  if (!created) return tl::unexpected(created.error());
+  haptic::HapticLoop& loop = **created;
+  const auto wanted = static_cast<std::uint64_t>(motion.ticks);
+  const auto takeRecords = [&] {
+    for (haptic::LoopEvent event; loop.poll(event);) {
+    }
+    for (haptic::TickRecord record; loop.pollRecord(record);) result.contact_ticks += record.contact ? 1 : 0;
+  };
+  engine::Status status;
+  LargeStage& stage = stages.run("live loop", 0.0, [&] {
+    status = loop.start();
+    while (status && loop.state().tick < wanted && !job.cancelled()) {
+      takeRecords();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    static_cast<void>(loop.stop());
+    takeRecords();
+  });
+  if (!status) return status;
+  if (job.cancelled()) return engine::cancelled();
+  const haptic::LoopState& state = loop.state();
+  const haptic::TimingFigures compute = loop.timing().compute.figures();
+  result.ticks = state.tick;
+  result.not_near = state.not_near;
+  result.disk_waits = loop.diskWaits();
+  result.brought = loop.nearTiles() != nullptr ? loop.nearTiles()->brought() : 0;
+  result.not_locked = loop.nearTiles() != nullptr ? loop.nearTiles()->notLocked() : 0;
+  result.compute_p50_us = 1e-3 * static_cast<double>(compute.p50_ns);
+  result.compute_p999_us = 1e-3 * static_cast<double>(compute.p999_ns);
+  result.compute_worst_us = 1e-3 * static_cast<double>(compute.worst_ns);
+  stage.note = fmt::format("{} ticks at 1 kHz", state.tick);
+  return {};
+}
+
 engine::Status enoughRoom(const LargeOptions& options, const fs::path& folder, std::uint64_t& store_bytes) {
   const auto side = static_cast<std::uint64_t>(options.side);
   const std::uint64_t field = engine::fieldBytes(side, side);
   // The scan and the filtered one; the small field, buffers and the program.
-  constexpr std::uint64_t kBeside = std::uint64_t{600} << 20;
+  constexpr std::uint64_t kBeside = std::uint64_t{200} << 20;
   const auto place = engine::placeOf(side, side, kBeside, "bench large");
   if (!place) return tl::unexpected(place.error());
   const bool stored = *place == engine::Place::kStore;
@@ -286,7 +340,8 @@ engine::Result<LargeReport> benchLarge(const LargeOptions& options, engine::JobC
       report.ticks.push_back(ticks(field, small, haptic::Tool::kSmooth, "3 x 3 smoothing", options.effort));
     });
   }
-  if (job.cancelled()) return engine::cancelled();
+  if (engine::Status looped = liveLoop(field, options.effort, stages, report.loop, job); !looped)
+    return tl::unexpected(looped.error());
 
   engine::LiveField live(field, engine::Growth::kAllowed);
   engine::History history(std::exchange(field, {}));

@@ -42,6 +42,17 @@ struct LargeTicks {
   std::int64_t waited = 0;  ///< ticks, of those by the clock, that met a page on the disk
 };
 
+/// The live loop over the large field, in real time at 1 kHz, with a hand at 50 mm/s that smooths.
+struct LargeLoop {
+  std::uint64_t ticks = 0;
+  std::uint64_t contact_ticks = 0;
+  std::uint64_t not_near = 0;    ///< ticks that felt nothing because samples were still on the disk
+  std::uint64_t disk_waits = 0;  ///< times the loop's thread waited for the disk
+  std::uint64_t brought = 0;     ///< tiles that the keeper read ahead of the hand
+  std::uint64_t not_locked = 0;  ///< of these, those whose pages could not be locked
+  double compute_p50_us = 0.0, compute_p999_us = 0.0, compute_worst_us = 0.0;
+};
+
 struct LargeReport {
   std::string machine;
   std::int32_t side = 0;
@@ -54,11 +65,13 @@ struct LargeReport {
   std::int64_t stroke_tiles = 0;   ///< that the stroke changed
   std::vector<LargeStage> stages;
   std::vector<LargeTicks> ticks;
+  LargeLoop loop;
 };
 
-/// A scan of side x side samples the whole way: written as an uncompressed TIFF, opened, felt, edited with a
-/// brush, undone, filtered whole (median 3, undone, box 11), drawn, saved, undone. Tells before it starts
-/// whether disk and memory suffice. The files lie in a folder of their own and are removed.
+/// A scan of side x side samples the whole way: written as an uncompressed TIFF, opened, felt (by ticks one
+/// after the other, and by the live loop), edited with a brush, undone, filtered whole (median 3, undone, box
+/// 11), drawn, saved, undone. Tells before it starts whether disk and memory suffice. The files lie in a
+/// folder of their own and are removed.
 ///
 /// Disk: three times 4 bytes a sample, and the tiles where they go into a store. Memory: some 10 bytes a
 /// sample without one. Errors: kInput for an option out of range or too little disk or memory; kCancelled;

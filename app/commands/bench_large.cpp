@@ -46,6 +46,16 @@ Report reportOf(const bench::LargeReport& measured) {
                                {"tick_p999_ns", t.p999_ns},
                                {"tick_worst_ns", t.worst_ns},
                                {"ticks_that_waited", t.waited}});
+  const bench::LargeLoop& loop = measured.loop;
+  report["live_loop"] = {{"ticks", loop.ticks},
+                         {"contact_ticks", loop.contact_ticks},
+                         {"ticks_not_near", loop.not_near},
+                         {"disk_waits", loop.disk_waits},
+                         {"tiles_brought", loop.brought},
+                         {"tiles_not_locked", loop.not_locked},
+                         {"compute_p50_us", loop.compute_p50_us},
+                         {"compute_p999_us", loop.compute_p999_us},
+                         {"compute_worst_us", loop.compute_worst_us}};
   return report;
 }
 
@@ -84,6 +94,17 @@ void print(const Report& report) {
                t["name"].get<std::string>(), t["ticks"].get<std::int64_t>(), t["tick_ns"].get<double>(),
                t["small_tick_ns"].get<double>(), t["of_small"].get<double>(), t["tick_p999_ns"].get<double>(),
                1e-3 * t["tick_worst_ns"].get<double>(), t["ticks_that_waited"].get<std::int64_t>());
+  const Report& loop = report["live_loop"];
+  fmt::print(
+      "\nlive loop at 1 kHz: {} ticks, {} in contact, {} that felt nothing because samples were on the disk; "
+      "waited for the disk {} times; {} tiles brought, {} not locked; compute p50 {:.1f} us, p99.9 {:.1f} "
+      "us, "
+      "worst {:.1f} us\n",
+      loop["ticks"].get<std::uint64_t>(), loop["contact_ticks"].get<std::uint64_t>(),
+      loop["ticks_not_near"].get<std::uint64_t>(), loop["disk_waits"].get<std::uint64_t>(),
+      loop["tiles_brought"].get<std::uint64_t>(), loop["tiles_not_locked"].get<std::uint64_t>(),
+      loop["compute_p50_us"].get<double>(), loop["compute_p999_us"].get<double>(),
+      loop["compute_worst_us"].get<double>());
   fmt::print("\nthe stroke changed {} tiles; saved {}; most memory {:.0f} MB\n",
              report["stroke_tiles"].get<std::int64_t>(), report["hash"].get<std::string>(),
              kMb * report["peak_bytes"].get<double>());

@@ -320,6 +320,7 @@ engine::Result<Report> record(const Options& options, engine::JobControl& job) {
                 {"reproduced", hash == replayed},
                 {"lost_rows", outcome->last.lost_records},
                 {"refused_edits", outcome->last.refused_edits},
+                {"not_near", outcome->last.not_near},
                 {"rate_hz", options.rate_hz},
                 {"scale", desk ? Report(workspace.scale()) : Report()},
                 {"felt_stiffness_n_per_mm", workspace.feltStiffness(scene.stiffness_n_per_mm)},

@@ -4,10 +4,23 @@
 #include <new>
 #include <system_error>
 
+#include <sys/resource.h>
+
+#include "engine/field/tile_store.h"
 #include "haptic/loop/pacer.h"
 #include "haptic/safety/last_resort.h"
 
 namespace fettle::haptic {
+
+namespace {
+
+std::uint64_t diskWaitsOfThisThread() noexcept {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return static_cast<std::uint64_t>(usage.ru_majflt);
+}
+
+}  // namespace
 
 engine::Result<std::unique_ptr<HapticLoop>> HapticLoop::create(const engine::Version& start,
                                                                const engine::Version& original,
@@ -38,7 +51,8 @@ HapticLoop::HapticLoop(const engine::Version& start, std::unique_ptr<PreparedSce
     : settings_(settings),
       memory_(start.memory()),
       channels_(settings.options),
-      tick_(std::move(scene), start, device, channels_, settings.options) {}
+      near_(memory_->store ? std::make_unique<NearTiles>() : nullptr),
+      tick_(std::move(scene), start, device, channels_, settings.options, near_.get()) {}
 
 HapticLoop::~HapticLoop() {
   static_cast<void>(stop());
@@ -55,6 +69,12 @@ engine::Status HapticLoop::start() {
   }
   // Acquire pairs with the release in main: the report is whole.
   ready_.wait(false, std::memory_order_acquire);
+  try {
+    if (near_) near_->start();
+  } catch (const std::system_error& e) {
+    static_cast<void>(stop());
+    return engine::failure(e.what(), "starting the thread that reads the field from the disk");
+  }
   return {};
 }
 
@@ -72,6 +92,12 @@ void HapticLoop::main() noexcept {
   const RealTimeScope real_time(settings_.wish);
   const HandlerStack handler_stack;
   const DenormalScope denormals;
+  // All pages are locked now, and a field in a store is there not to be.
+  if (memory_->store) memory_->store->letGo();
+  const std::uint64_t waits_before = diskWaitsOfThisThread();
+  const auto noteDiskWaits = [&] {
+    disk_waits_.store(diskWaitsOfThisThread() - waits_before, std::memory_order_relaxed);
+  };
   real_time_ = real_time.report();
   ready_.store(true, std::memory_order_release);
   ready_.notify_one();
@@ -83,8 +109,10 @@ void HapticLoop::main() noexcept {
     timing_.lateness.add(tick.lateness_ns);
     timing_.compute.add(monotonicNow() - tick.woke_ns);
     if (tick.skipped > 0) timing_.addMissed(tick.skipped);
+    if (tick_.state().tick % 1024 == 0) noteDiskWaits();
   }
   tick_.stop();
+  noteDiskWaits();
 }
 
 }  // namespace fettle::haptic

@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "haptic/loop/loop_tick.h"
+#include "haptic/loop/near_tiles.h"
 #include "haptic/loop/pool_keeper.h"
 #include "haptic/loop/rt_thread.h"
 #include "haptic/loop/timing.h"
@@ -68,6 +69,13 @@ class HapticLoop {
   [[nodiscard]] const LoopTiming& timing() const noexcept { return timing_; }
   /// What the thread got of the system; empty before start().
   [[nodiscard]] const RealTimeReport& realTime() const noexcept { return real_time_; }
+  /// What keeps the samples around the hand in memory; null for a field that lies there anyway.
+  [[nodiscard]] const NearTiles* nearTiles() const noexcept { return near_.get(); }
+  /// Times the loop's thread waited for the disk so far (major page faults; looked at every 1024 ticks and at
+  /// the end). Any thread.
+  [[nodiscard]] std::uint64_t diskWaits() const noexcept {
+    return disk_waits_.load(std::memory_order_relaxed);
+  }
   [[nodiscard]] const PoolKeeper* pools() const noexcept { return keeper_ ? &*keeper_ : nullptr; }
 
  private:
@@ -78,10 +86,12 @@ class HapticLoop {
   Settings settings_;
   std::shared_ptr<engine::FieldMemory> memory_;
   LoopChannels channels_;
+  std::unique_ptr<NearTiles> near_;
   LoopTick tick_;
   LoopTiming timing_;
   RealTimeReport real_time_;
   std::optional<PoolKeeper> keeper_;
+  std::atomic<std::uint64_t> disk_waits_{0};  // relaxed: for show
   std::atomic<bool> ready_{false};
   std::atomic<bool> stop_{false};
   std::thread thread_;

@@ -43,17 +43,19 @@ SampleRect SampleRect::joined(const SampleRect& other) const noexcept {
 }
 
 LoopTick::LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, Device& device,
-                   LoopChannels& channels, const LoopOptions& options)
+                   LoopChannels& channels, const LoopOptions& options, NearTiles* near)
     : scene_(std::move(scene)),
       device_(device),
       channels_(channels),
       options_(options),
       guard_(options.limits),
       workspace_(options.workspace),
-      tool_(options.tool) {
+      tool_(options.tool),
+      near_(near) {
   static_cast<void>(scene_->field.adopt(scene_->scene.invert ? start.inverted() : std::move(start)));
   scene_->tick.fieldChanged();
   published_ = scene_->field.snapshot();
+  if (near_ != nullptr) near_->replaced();
 }
 
 SampleRect LoopTick::wholeField() const noexcept {
@@ -155,6 +157,7 @@ void LoopTick::swapScene(LoopCommand& command) noexcept {
   if (turn) next.field.invert();
   next.tick.fieldChanged();
   std::swap(scene_, command.scene);
+  if (near_ != nullptr) near_->replaced();  // the original may be another
   disturbance_ = Disturbance::kSurfaceReplaced;
   LoopEvent event = eventNow(EventKind::kSceneChanged, command.id);
   event.retired_scene = std::move(command.scene);
@@ -193,6 +196,7 @@ void LoopTick::adopt(LoopCommand& command) noexcept {
       command.version = field.adopt(std::move(live));
     }
     scene_->tick.fieldChanged();
+    if (near_ != nullptr) near_->replaced();
   }
   LoopEvent event = eventNow(done ? EventKind::kAdopted : EventKind::kAdoptRefused, command.id);
   event.retired = std::move(command.version);
@@ -211,6 +215,7 @@ void LoopTick::restore(LoopCommand& command) noexcept {
   command.version = field.adopt(std::move(command.version));
   if (field.reader().sign() != sign) field.invert();
   scene_->tick.fieldChanged();
+  if (near_ != nullptr) near_->replaced();
   disturbance_ = Disturbance::kSurfaceReplaced;
   job_valid_ = false;
   in_stroke_ = stroke_ended_ = false;
@@ -252,6 +257,33 @@ void LoopTick::noteVelocity(const DeviceInput& input) noexcept {
   }
   last_input_ = input;
   has_input_ = true;
+}
+
+// What a tick may read lies around the tip, where it was the tick before, and the proxy.
+bool LoopTick::samplesAreNear(const glm::dvec3& tip_mm) noexcept {
+  if (!finite(tip_mm)) return true;  // no input reads nothing
+  const engine::Grid& grid = scene_->field.grid();
+  const auto sample = [](double mm, double spacing_mm, std::int32_t side) {
+    return static_cast<std::int32_t>(std::clamp(std::floor(mm / spacing_mm), 0.0, side - 1.0));
+  };
+  const std::int32_t column = sample(tip_mm.x, grid.spacingXMm(), grid.width);
+  const std::int32_t row = sample(tip_mm.y, grid.spacingYMm(), grid.height);
+  const glm::dvec3 before = finite(state_.endpoint_mm) ? state_.endpoint_mm : tip_mm;
+  const glm::dvec3 proxy = finite(state_.proxy_mm) ? state_.proxy_mm : tip_mm;
+  SampleRect rect{column, row, 1, 1};
+  // Only a tick that felt something goes on from where that was.
+  if (was_near_ && state_.tick > 0)
+    for (const glm::dvec3& p : {before, proxy})
+      rect = rect.joined(
+          {sample(p.x, grid.spacingXMm(), grid.width), sample(p.y, grid.spacingYMm(), grid.height), 1, 1});
+  const std::int32_t c0 = std::max(rect.column - NearTiles::kTouch, 0);
+  const std::int32_t r0 = std::max(rect.row - NearTiles::kTouch, 0);
+  rect = {c0, r0, std::min(rect.column + rect.columns + NearTiles::kTouch, grid.width) - c0,
+          std::min(rect.row + rect.rows + NearTiles::kTouch, grid.height) - r0};
+  const bool near = near_->ready(scene_->field, scene_->original, rect, column, row);
+  if (near != was_near_) disturbance_ = Disturbance::kSurfaceReplaced;
+  was_near_ = near;
+  return near;
 }
 
 void LoopTick::noteTiles(const SampleRect& rect) noexcept {
@@ -351,6 +383,10 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   if (first_ns_ < 0) first_ns_ = now_ns;
   StrokeSample sample{1e-9 * static_cast<double>(now_ns - first_ns_), tip_mm, tool};
   if (input.link != LinkState::kConnected) sample.tip_mm.x = std::numeric_limits<double>::quiet_NaN();
+  if (near_ != nullptr && !samplesAreNear(sample.tip_mm)) {
+    sample.tip_mm.x = std::numeric_limits<double>::quiet_NaN();
+    ++state_.not_near;
+  }
   const ForceSample force = scene_->tick.run(sample);
 
   const glm::dvec3 command = in_field ? force.force_n : workspace_.forceToDevice(force.force_n);

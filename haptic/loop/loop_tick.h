@@ -9,6 +9,7 @@
 #include "haptic/devices/device.h"
 #include "haptic/devices/latest_slot.h"
 #include "haptic/loop/messages.h"
+#include "haptic/loop/near_tiles.h"
 #include "haptic/loop/rings.h"
 #include "haptic/safety/safety.h"
 
@@ -110,6 +111,10 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 ///
 /// A command that has an answer is left in its ring until the answer has a place.
 ///
+/// A field in a store (engine/field/tile_store.h). A tick whose samples are still on the disk is given no
+/// input: contact ends, the guard lets the force fade, and ramps it when the surface is there again. Counted,
+/// and recorded as it was given, so that a replay does the same.
+///
 /// Time. The tick sees seconds since the first one, so that what is recorded is exactly what it saw.
 ///
 /// Threading: constructed on the main side (allocates); run() and stop() on one thread. run(): noexcept,
@@ -121,9 +126,10 @@ class LoopTick {
   static constexpr int kMostCommands = 8;
 
   /// Starts from `start`, the right way up (the scene's inversion is applied here). `device` and `channels`
-  /// outlive this; `options.limits` in range.
+  /// outlive this; `options.limits` in range. `near`: for a field in a store, outlives this; null: every
+  /// sample is in memory.
   LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, Device& device,
-           LoopChannels& channels, const LoopOptions& options);
+           LoopChannels& channels, const LoopOptions& options, NearTiles* near = nullptr);
 
   /// One tick. `now_ns`: monotonicNow() at wake-up; `since_ns`: since the previous tick's.
   void run(std::int64_t now_ns, std::int64_t since_ns) noexcept;
@@ -160,6 +166,7 @@ class LoopTick {
   [[nodiscard]] Tool toolInEffect(const DeviceInput& input, double age_s) const noexcept;
   void record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept;
   void noteVelocity(const DeviceInput& input) noexcept;
+  [[nodiscard]] bool samplesAreNear(const glm::dvec3& tip_mm) noexcept;
 
   // Places of the event ring that edits leave free for answers.
   static constexpr std::size_t kAnswerPlaces = 2;
@@ -175,6 +182,8 @@ class LoopTick {
   bool has_waiting_ = false;
   std::uint64_t disarms_ = 0;  // of LoopChannels::disarms, done
   Disturbance disturbance_ = Disturbance::kNone;
+  NearTiles* near_;
+  bool was_near_ = true;
 
   engine::Version published_;  // of the newest event; the next one carries it away
   SampleRect dirty_;

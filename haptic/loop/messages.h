@@ -22,14 +22,16 @@ namespace fettle::haptic {
 ///
 /// Threading: constructed (allocates) and destroyed on the main side, used by the loop in between.
 struct PreparedScene {
-  /// `scene` in range (sceneProblem). `original`, the right way up, is what Scene::max_change is measured
+  /// `scene` in range (sceneProblem). `first`, the right way up, is what Scene::max_change is measured
   /// against; it also stands in, so nothing is held beyond what is held anyway.
-  PreparedScene(const Scene& scene_to_run, const engine::Version& original)
+  PreparedScene(const Scene& scene_to_run, const engine::Version& first)
       : scene(scene_to_run),
-        field(scene_to_run.invert ? original.inverted() : original, engine::Growth::kNever),
-        tick(scene, field, scene_to_run.invert ? original.inverted() : original) {}
+        original(first),
+        field(scene_to_run.invert ? first.inverted() : first, engine::Growth::kNever),
+        tick(scene, field, scene_to_run.invert ? first.inverted() : first) {}
 
   Scene scene;
+  engine::Version original;
   engine::LiveField field;
   Tick tick;
 };
@@ -123,6 +125,7 @@ struct LoopState {
   std::uint64_t adopted = 0;        ///< versions adopted so far
   std::uint64_t carried = 0;        ///< tiles carried over adoptions so far
   std::uint64_t lost_records = 0;   ///< ticks whose record found its ring full, so far
+  std::uint64_t not_near = 0;  ///< ticks that felt nothing: samples still on the disk (NearTiles), so far
   TickCounters counters;
   SafetyCounters safety_counters;
 };

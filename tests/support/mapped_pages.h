@@ -24,10 +24,15 @@ class Pages {
     bytes_ = end - begin_;
     count_ = bytes_ / page;
   }
-  /// Asks the system to write them out and forget them; what is locked stays. False where it cannot.
+  /// Asks the system to write them out and forget them, which it does with all that are not locked. Whether
+  /// it took any.
   bool sendOut() const {
-    auto* at = reinterpret_cast<void*>(begin_);
-    return msync(at, bytes_, MS_SYNC) == 0 && madvise(at, bytes_, MADV_PAGEOUT) == 0;
+    const std::size_t page = bytes_ / count_;
+    msync(reinterpret_cast<void*>(begin_), bytes_, MS_SYNC);
+    bool any = false;
+    for (std::uintptr_t at = begin_; at < begin_ + bytes_; at += page)
+      any = madvise(reinterpret_cast<void*>(at), page, MADV_PAGEOUT) == 0 || any;
+    return any;
   }
   [[nodiscard]] bool allInMemory() const {
     std::vector<unsigned char> states(count_);

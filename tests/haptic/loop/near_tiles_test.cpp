@@ -1,0 +1,173 @@
+// A loop over a field on the disk: it feels what has been brought, never waits, and makes the same field.
+#include "haptic/loop/near_tiles.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "engine/field/tile_store.h"
+#include "haptic/replay.h"
+#include "tests/haptic/loop/hand_device.h"
+#include "tests/haptic/support/fields.h"
+#include "tests/support/mapped_pages.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::haptic {
+namespace {
+
+using tests::HandDevice;
+using tests::sweep;
+using tests::testOptions;
+
+constexpr int kSide = 1200;
+
+std::int64_t waits() {
+  rusage usage{};
+  getrusage(RUSAGE_THREAD, &usage);
+  return usage.ru_majflt;
+}
+
+// A loop whose keeper works when the test says so.
+struct StoredBench {
+  StoredBench(const engine::Version& start, const Scene& scene, const LoopOptions& options)
+      : channels(options),
+        loop(std::make_unique<PreparedScene>(scene, start), start, device, channels, options, &near) {}
+
+  void tickAt(const glm::dvec3& tip_mm) {
+    device.input.position_mm = tip_mm;
+    device.now_ns += 1'000'000;
+    loop.run(device.now_ns, 1'000'000);
+    for (LoopEvent event; channels.events.pop(event);) newest = std::move(event);
+  }
+
+  HandDevice device;
+  LoopChannels channels;
+  NearTiles near;
+  LoopTick loop;
+  LoopEvent newest;
+};
+
+class NearTilesTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::string folder = folder_.path().string();
+    if (const auto store = engine::TileStore::create(folder, 0); !store) GTEST_SKIP() << store.error().line();
+    engine::setStorePolicy({.folder = folder, .always = true});
+    field_ = fettle::tests::fieldOf(kSide, kSide,
+                                    [](int c, int r) { return 0.3 * std::sin(0.9 * c) * std::cos(0.7 * r); });
+    ASSERT_TRUE(field_.memory()->tiles.reserve(1000) && field_.memory()->nodes.reserve(200));
+    scene_ = defaultScene();
+    scene_.brush_radius_samples = 3.0;
+  }
+  void TearDown() override { engine::setStorePolicy({}); }
+
+  // Everything that may go; whether anything went.
+  bool sendOut() const {
+    const engine::FieldReader reader = field_.reader();
+    bool any = false;
+    for (std::int32_t tr = 0; tr < reader.tileRows(); ++tr)
+      for (std::int32_t tc = 0; tc < reader.tileColumns(); ++tc)
+        any = fettle::tests::Pages(&reader.tile(tc, tr)).sendOut() || any;
+    return any;
+  }
+
+  fettle::tests::TempFolder folder_;
+  engine::Version field_;
+  Scene scene_;
+};
+
+TEST_F(NearTilesTest, NothingIsFeltBeforeItWasBroughtAndEverythingAfter) {
+  StoredBench bench(field_, scene_, testOptions(Tool::kFeel));
+  for (int i = 0; i < 20; ++i) bench.tickAt({600.0, 600.0, -0.5});
+  EXPECT_EQ(bench.loop.state().not_near, 20U);
+  EXPECT_FALSE(bench.loop.state().contact);
+  bench.near.bring();
+  bench.tickAt({600.0, 600.0, 1.0});
+  bench.tickAt({600.0, 600.0, -0.5});
+  EXPECT_EQ(bench.loop.state().not_near, 20U);
+  EXPECT_TRUE(bench.loop.state().contact);
+  // Somewhere else, quicker than the keeper looks.
+  bench.tickAt({50.0, 50.0, -0.5});
+  EXPECT_EQ(bench.loop.state().not_near, 21U);
+  EXPECT_FALSE(bench.loop.state().contact);
+  bench.near.bring();
+  bench.tickAt({50.0, 50.0, 1.0});
+  bench.tickAt({50.0, 50.0, -0.5});
+  EXPECT_EQ(bench.loop.state().not_near, 21U);
+  EXPECT_TRUE(bench.loop.state().contact);
+}
+
+TEST_F(NearTilesTest, AnotherStateIsFeltOnceItsTilesAreThere) {
+  engine::LiveField job(field_, engine::Growth::kAllowed);
+  for (int r = 590; r < 610; ++r)
+    for (int c = 590; c < 610; ++c) ASSERT_TRUE(job.setHeight(c, r, 5.0F));
+  StoredBench bench(field_, scene_, testOptions(Tool::kFeel));
+  bench.tickAt({600.0, 600.0, 9.0});
+  bench.near.bring();
+  bench.tickAt({600.0, 600.0, 9.0});
+  const std::uint64_t before = bench.loop.state().not_near;
+  LoopCommand restore;
+  restore.kind = CommandKind::kRestore;
+  restore.version = job.snapshot();
+  ASSERT_TRUE(bench.channels.commands.push(std::move(restore)));
+  bench.tickAt({600.0, 600.0, 4.8});
+  EXPECT_EQ(bench.loop.state().not_near, before + 1);
+  EXPECT_FALSE(bench.loop.state().contact);
+  bench.near.bring();
+  bench.tickAt({600.0, 600.0, 6.0});
+  bench.tickAt({600.0, 600.0, 4.8});
+  EXPECT_EQ(bench.loop.state().not_near, before + 1);
+  EXPECT_TRUE(bench.loop.state().contact);
+}
+
+TEST_F(NearTilesTest, TheSystemMayTakeEverythingButWhatIsUnderTheHand) {
+  StoredBench bench(field_, scene_, testOptions(Tool::kSmooth));
+  bench.tickAt({600.0, 600.0, 1.0});
+  bench.near.bring();
+  bench.near.bring();
+  if (bench.near.notLocked() > 0) GTEST_SKIP() << "pages cannot be locked here";
+  if (!sendOut()) GTEST_SKIP() << "pages cannot be sent out";
+  const engine::FieldReader reader = field_.reader();
+  const std::int32_t tile = 600 / engine::kTileSide;
+  for (std::int32_t tr = tile - NearTiles::kTiles; tr <= tile + NearTiles::kTiles; ++tr)
+    for (std::int32_t tc = tile - NearTiles::kTiles; tc <= tile + NearTiles::kTiles; ++tc)
+      EXPECT_TRUE(fettle::tests::Pages(&reader.tile(tc, tr)).allInMemory()) << tc << " " << tr;
+  EXPECT_FALSE(fettle::tests::Pages(&reader.tile(0, 0)).allInMemory());
+  const std::int64_t before = waits();
+  for (int i = 0; i < 500; ++i) bench.tickAt({600.0 + 0.1 * i, 600.0 + 0.05 * i, -0.3});
+  EXPECT_EQ(waits(), before) << "the loop waited for the disk";
+  EXPECT_EQ(bench.loop.state().not_near, 1U);
+  // Away from there, nothing is kept where the hand was.
+  bench.tickAt({100.0, 100.0, 1.0});
+  for (int i = 0; i < 3; ++i) bench.near.bring();
+  ASSERT_TRUE(sendOut());
+  EXPECT_FALSE(fettle::tests::Pages(&reader.tile(tile + 2, tile + 2)).allInMemory());
+  EXPECT_TRUE(fettle::tests::Pages(&reader.tile(1, 1)).allInMemory());
+}
+
+TEST_F(NearTilesTest, ALiveSessionOverTheDiskEqualsTheReplayOfWhatItWasGiven) {
+  LoopOptions options = testOptions(Tool::kSmooth);
+  options.record_capacity = 1 << 15;
+  StoredBench bench(field_, scene_, options);
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    // A keeper that falls behind now and then.
+    if (i % 16 == 0 && i / 1000 % 3 != 2) bench.near.bring();
+    bench.device.input.tool = static_cast<Tool>(i / 500 % kTools);
+    bench.tickAt(sweep(i, kSide - 1.0, 0.1, 0.8));
+  }
+  bench.loop.stop();
+  EXPECT_GT(bench.loop.state().not_near, 100U);
+  EXPECT_LT(bench.loop.state().not_near, 15000U);
+  std::vector<StrokeSample> strokes;
+  for (TickRecord record; bench.channels.records.pop(record);) strokes.push_back(record.input);
+  ASSERT_EQ(strokes.size(), 20000U);
+  engine::JobControl job;
+  const auto replayed = replay(field_, field_, strokes, scene_, {}, job);
+  ASSERT_TRUE(replayed);
+  EXPECT_EQ(engine::contentHash(bench.loop.scene().field.snapshot()), engine::contentHash(replayed->field));
+  EXPECT_GT(replayed->report.samples_changed, 1000);
+}
+
+}  // namespace
+}  // namespace fettle::haptic
