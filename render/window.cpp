@@ -471,6 +471,10 @@ engine::Result<LiveTarget*> Window::pictureTarget() try {
   return tl::unexpected(lost(impl_->device_name, error.what()));
 }
 
+void Window::forgetPicture() noexcept {
+  impl_->drawn = false;
+}
+
 void Window::Impl::bringPicture(const vk::raii::CommandBuffer& commands) const {
   // Drawn by an earlier submission of this queue; its last barrier knows nothing of this copy.
   change(commands, picture.colour, Layout::eTransferSrcOptimal, Layout::eTransferSrcOptimal,

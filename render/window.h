@@ -145,6 +145,8 @@ class Window {
   /// What to draw the picture to, of the size of its area (LivePicture::draw). Keeps its content from frame
   /// to frame. Never null. Errors (kFailed): no memory for it, or the device was lost.
   [[nodiscard]] engine::Result<LiveTarget*> pictureTarget();
+  /// Shows nothing there until the next pictureTarget().
+  void forgetPicture() noexcept;
   /// The VkFormat of the picture's target.
   [[nodiscard]] static std::uint32_t pictureFormat();
 

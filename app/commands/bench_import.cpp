@@ -60,7 +60,9 @@ void addBenchImport(CLI::App& bench, Chosen& chosen) {
       bench, chosen, "import", "How fast each format becomes a field, beside plain reading of the same file",
       [options](engine::JobControl& job) { return measure(*options, job); }, print);
   command->add_option("SCANS", options->files, "Files to read; none: one field written in every format");
-  command->add_option("--side", options->side, "Samples along each side of that field; above 2048: GeoTIFF alone")
+  command
+      ->add_option("--side", options->side,
+                   "Samples along each side of that field; above 2048: GeoTIFF alone")
       ->capture_default_str();
   command->add_option("--repeats", options->repeats, "Imports of each file")->capture_default_str();
 }

@@ -150,7 +150,9 @@ void Workstation::whileWaiting() {
 }
 
 void Workstation::takeResults() {
+  takeCoarse();
   if (auto done = loading_.take()) {
+    if (!*done) dropCoarse();
     if (*done) {
       takeDocument(std::move(**done));
     } else if (!touch_ && loading_path_ == options_.scan &&
@@ -200,6 +202,7 @@ void Workstation::frame() {
   panels();
   const bool announces = announcesPicture();
   if (touch_ && !announces) drawPicture();
+  if (!touch_ && coarse_) drawCoarse();
   const auto shown = window_->present();
   if (!shown) {
     losePicture(shown.error());
@@ -226,21 +229,83 @@ bool Workstation::announcesPicture() const {
 
 // After a frame was shown.
 void Workstation::noteOpening() {
+  if (coarseIsShown() && opening_.coarse_ms == 0.0) opening_.coarse_ms = opening_.sinceAsked();
   if (!touch_ || shown_.versions.empty()) return;
   if (opening_.seen_ms == 0.0) opening_.seen_ms = opening_.sinceAsked();
   if (opening_.whole_ms == 0.0 && figures_.upload.pending_tiles == 0)
     opening_.whole_ms = opening_.sinceAsked();
 }
 
-void Workstation::drawPicture() {
-  const haptic::LoopState state = touch_->state();
-  const double moved = glm::length(state.endpoint_mm - drawn_state_.endpoint_mm);
+// The view is as large as the place it is drawn to.
+void Workstation::followArea() {
   const render::Rectangle& area = window_->pictureArea();
-  const double pixel_mm = figures_.pixels_per_mm > 0.0 ? 1.0 / figures_.pixels_per_mm : 0.0;
-  if (moved > pixel_mm || state.contact != drawn_state_.contact) stale_ = true;
   if (view_.width != area.width || view_.height != area.height) stale_ = true;
   view_.width = area.width;
   view_.height = area.height;
+}
+
+// How sharp the next frame is; one that owes a sharp one after it has to be drawn.
+render::Sharpness Workstation::seeMotion() {
+  const bool owed = camera_motion_.owesSharp();
+  const render::Sharpness sharpness =
+      camera_motion_.see(view_, drag_ != Drag::kNone, CameraMotion::Clock::now());
+  if (owed && !camera_motion_.owesSharp()) stale_ = true;
+  return sharpness;
+}
+
+// What the user chose.
+render::FrameInput Workstation::frameInput(render::Sharpness sharpness) const {
+  render::FrameInput input;
+  input.view = view_;
+  input.vertex_budget = display_.vertices;
+  input.arrangement = display_.split && shown_.versions.size() == 2 ? render::Arrangement::kSplit
+                                                                    : render::Arrangement::kSideBySide;
+  input.split = display_.split_at;
+  input.contours = display_.contours ? render::Contours::kShow : render::Contours::kHide;
+  input.marks_opacity = display_.marks_opacity;
+  input.map = display_.map;
+  input.stereo.mode = display_.stereo;
+  input.stereo.eye_separation = static_cast<double>(display_.eye_separation);
+  input.theme = display_.theme;
+  if (display_.half_in_motion && !options_.sharp_motion) input.sharpness = sharpness;
+  input.furniture_scale = kFurniture * window_->scale();
+  input.decoration = display_.furniture ? render::Decoration::kFull : render::Decoration::kNone;
+  input.light_azimuth_deg = display_.light_azimuth_deg;
+  input.light_elevation_deg = display_.light_elevation_deg;
+  return input;
+}
+
+// Whether it was drawn.
+bool Workstation::submit(const render::FrameInput& input) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto target = window_->pictureTarget();
+  if (!target) return false;  // present() tells
+  const auto figures = picture_->draw(input, **target);
+  if (!figures) {
+    if (window_->usable()) status_text_ = figures.error().line();
+    return false;
+  }
+  const auto took = std::chrono::steady_clock::now() - start;
+  figures_ = *figures;
+  frame_ms_ = std::chrono::duration<double, std::milli>(took).count();
+  frame_times_.add(std::chrono::duration_cast<std::chrono::nanoseconds>(took).count());
+  tiles_uploaded_ += figures_.upload.tiles;
+  bytes_uploaded_ += figures_.upload.bytes;
+  return true;
+}
+
+// Of what can be turned and zoomed; null when there is nothing.
+const engine::Grid* Workstation::seenGrid() const {
+  if (touch_) return &touch_->field().grid();
+  return coarse_ ? &coarse_->field.grid() : nullptr;
+}
+
+void Workstation::drawPicture() {
+  const haptic::LoopState state = touch_->state();
+  const double moved = glm::length(state.endpoint_mm - drawn_state_.endpoint_mm);
+  const double pixel_mm = figures_.pixels_per_mm > 0.0 ? 1.0 / figures_.pixels_per_mm : 0.0;
+  if (moved > pixel_mm || state.contact != drawn_state_.contact) stale_ = true;
+  followArea();
 
   render::Shown shown;
   shown.versions.push_back(edges_.over(touch_->field()));
@@ -261,30 +326,11 @@ void Workstation::drawPicture() {
     shown_ = std::move(shown);
     stale_ = true;
   }
-  const bool owed = camera_motion_.owesSharp();
-  const render::Sharpness sharpness =
-      camera_motion_.see(view_, drag_ != Drag::kNone, CameraMotion::Clock::now());
-  if (owed && !camera_motion_.owesSharp()) stale_ = true;
+  const render::Sharpness sharpness = seeMotion();
   if (!stale_ && figures_.upload.pending_tiles == 0) return;
   stale_ = false;
 
-  render::FrameInput input;
-  input.view = view_;
-  input.vertex_budget = display_.vertices;
-  input.arrangement = display_.split && shown_.versions.size() == 2 ? render::Arrangement::kSplit
-                                                                    : render::Arrangement::kSideBySide;
-  input.split = display_.split_at;
-  input.contours = display_.contours ? render::Contours::kShow : render::Contours::kHide;
-  input.marks_opacity = display_.marks_opacity;
-  input.map = display_.map;
-  input.stereo.mode = display_.stereo;
-  input.stereo.eye_separation = static_cast<double>(display_.eye_separation);
-  input.theme = display_.theme;
-  if (display_.half_in_motion && !options_.sharp_motion) input.sharpness = sharpness;
-  input.furniture_scale = kFurniture * window_->scale();
-  input.decoration = display_.furniture ? render::Decoration::kFull : render::Decoration::kNone;
-  input.light_azimuth_deg = display_.light_azimuth_deg;
-  input.light_elevation_deg = display_.light_elevation_deg;
+  render::FrameInput input = frameInput(sharpness);
   if (shown_.versions.size() > 1) {
     input.titles.emplace_back("as it is");
     for (const FilterPreview::Picture& picture : pictures) input.titles.push_back(picture.title);
@@ -314,20 +360,7 @@ void Workstation::drawPicture() {
     input.overlays.rings.push_back(ring);
   }
   drawn_state_ = state;
-  const auto start = std::chrono::steady_clock::now();
-  const auto target = window_->pictureTarget();
-  if (!target) return;  // present() tells
-  const auto figures = picture_->draw(input, **target);
-  if (!figures) {
-    if (window_->usable()) status_text_ = figures.error().line();
-    return;
-  }
-  const auto took = std::chrono::steady_clock::now() - start;
-  figures_ = *figures;
-  frame_ms_ = std::chrono::duration<double, std::milli>(took).count();
-  frame_times_.add(std::chrono::duration_cast<std::chrono::nanoseconds>(took).count());
-  tiles_uploaded_ += figures_.upload.tiles;
-  bytes_uploaded_ += figures_.upload.bytes;
+  if (!submit(input)) return;
   force_plot_.push_back(static_cast<float>(glm::length(state.force_n)));
   if (force_plot_.size() > kPlot) force_plot_.erase(force_plot_.begin());
   touch_->setView(view_.azimuth_deg, view_.zoom);
@@ -341,6 +374,7 @@ Report Workstation::report() const {
   r["tiles_uploaded"] = tiles_uploaded_;
   r["bytes_uploaded"] = bytes_uploaded_;
   if (touch_) {
+    r["open_coarse_picture_ms"] = opening_.coarse_ms;
     r["open_read_ms"] = opening_.read_ms;
     r["open_touched_ms"] = opening_.touched_ms;
     r["open_first_picture_ms"] = opening_.seen_ms;

@@ -11,6 +11,7 @@
 #include "app/view/background.h"
 #include "app/view/camera_motion.h"
 #include "app/view/choice_costs.h"
+#include "app/view/coarse_slot.h"
 #include "app/view/edge_tool.h"
 #include "app/view/event_log.h"
 #include "app/view/filter_preview.h"
@@ -80,8 +81,21 @@ class Workstation {
   void frame();
   void takeResults();
   void drawPicture();
+  void followArea();
+  [[nodiscard]] render::Sharpness seeMotion();
+  [[nodiscard]] render::FrameInput frameInput(render::Sharpness sharpness) const;
+  bool submit(const render::FrameInput& input);
+  [[nodiscard]] const engine::Grid* seenGrid() const;
   [[nodiscard]] Report report() const;
   [[nodiscard]] bool active() const;
+
+  // workstation_coarse.cpp: what is seen while a large scan is read
+  [[nodiscard]] Background<Document>::Work openingWork(const std::string& path, Recovery recovery);
+  void takeCoarse();
+  void dropCoarse();
+  [[nodiscard]] bool coarseIsShown() const;
+  [[nodiscard]] std::string coarseText() const;
+  void drawCoarse();
 
   // workstation_device.cpp: a graphics device that is lost
   [[nodiscard]] engine::Status makePicture();
@@ -104,10 +118,13 @@ class Workstation {
   void handleKey(const render::InputEvent& event);
   bool handleAdjusting(const render::InputEvent& event);
   void act(Action action);
+  bool moveCamera(Action action, const engine::Grid& grid);
   void chooseTool(std::optional<haptic::Tool> tool);
   void setBrushRadius(double samples);
   void setPressDepth(double mm);
   void setRate(double hz);
+  // Memory that undo may take; older steps are read back from the session when they are wanted.
+  static constexpr std::size_t kHistoryBytes = std::size_t{1} << 30;
   // Text of the picture's furniture over that of a picture [render::layOut], at scale 1 of the display: 13
   // pixels, a little smaller than that of the panels.
   static constexpr double kFurniture = 0.87;
@@ -195,6 +212,8 @@ class Workstation {
   std::unique_ptr<SessionKeeper> keeper_;  // there with touch_, and outlives it
   std::unique_ptr<Touch> touch_;
   Background<Document> loading_;
+  std::shared_ptr<CoarseSlot> coarse_slot_;  // of the newest loading
+  std::optional<engine::Preview> coarse_;    // while there is no touch_
   Background<engine::Version> saving_;
   Background<engine::Deviation> measuring_;
   Keeping keeping_ = Keeping::kCopy;
@@ -226,6 +245,7 @@ class Workstation {
   // on the device; 0: not yet.
   struct Opening {
     std::chrono::steady_clock::time_point asked;
+    double coarse_ms = 0.0;  // a coarse picture was seen; 0: there was none
     double read_ms = 0.0, touched_ms = 0.0, seen_ms = 0.0, whole_ms = 0.0;
     bool announced = false;  // that the first picture is being made
     [[nodiscard]] double sinceAsked() const;

@@ -85,6 +85,71 @@ void Workstation::setRate(double hz) {
   stale_ = true;
 }
 
+// Whether the action was one of the camera's.
+bool Workstation::moveCamera(Action action, const engine::Grid& grid) {
+  const double wide = window_->pictureArea().width;
+  const auto look = [&](double azimuth, double elevation) {
+    view_.azimuth_deg = azimuth;
+    view_.elevation_deg = elevation;
+  };
+  switch (action) {
+    case Action::kViewAll:
+      Navigation::showAll(view_);
+      break;
+    case Action::kViewFront:
+      look(0.0, 25.0);
+      break;
+    case Action::kViewBack:
+      look(180.0, 25.0);
+      break;
+    case Action::kViewRight:
+      look(90.0, 25.0);
+      break;
+    case Action::kViewLeft:
+      look(270.0, 25.0);
+      break;
+    case Action::kViewTop:
+      look(0.0, 90.0);
+      break;
+    case Action::kProjection:
+      view_.projection = view_.projection == render::Projection::kOrthographic
+                             ? render::Projection::kPerspective
+                             : render::Projection::kOrthographic;
+      break;
+    case Action::kTurnLeft:
+      Navigation::turn(view_, -kKey_px, 0.0, wide);
+      break;
+    case Action::kTurnRight:
+      Navigation::turn(view_, kKey_px, 0.0, wide);
+      break;
+    case Action::kTiltUp:
+      Navigation::turn(view_, 0.0, kKey_px, wide);
+      break;
+    case Action::kTiltDown:
+      Navigation::turn(view_, 0.0, -kKey_px, wide);
+      break;
+    case Action::kPanLeft:
+      Navigation::pan(view_, grid, kKey_px, 0.0, figures_.pixels_per_mm);
+      break;
+    case Action::kPanRight:
+      Navigation::pan(view_, grid, -kKey_px, 0.0, figures_.pixels_per_mm);
+      break;
+    case Action::kPanUp:
+      Navigation::pan(view_, grid, 0.0, kKey_px, figures_.pixels_per_mm);
+      break;
+    case Action::kPanDown:
+      Navigation::pan(view_, grid, 0.0, -kKey_px, figures_.pixels_per_mm);
+      break;
+    case Action::kZoomIn:
+    case Action::kZoomOut:
+      Navigation::zoom(view_, grid, action == Action::kZoomIn ? 2.0 : -2.0, 0.0, 0.0, figures_.pixels_per_mm);
+      break;
+    default:
+      return false;
+  }
+  return true;
+}
+
 void Workstation::act(Action action) {
   stale_ = true;
   // What needs no field.
@@ -125,15 +190,11 @@ void Workstation::act(Action action) {
     default:
       break;
   }
-  if (!touch_) return;
-  const engine::Grid& grid = touch_->field().grid();
-  const double wide = window_->pictureArea().width;
+  const engine::Grid* const seen = seenGrid();
+  if (seen == nullptr || moveCamera(action, *seen) || !touch_) return;
+  const engine::Grid& grid = *seen;
   const bool marking = touch_->tool() == Tool::kMark || touch_->tool() == Tool::kUnmark;
   const double radius = marking ? touch_->scene().mark_radius_samples : touch_->scene().brush_radius_samples;
-  const auto look = [&](double azimuth, double elevation) {
-    view_.azimuth_deg = azimuth;
-    view_.elevation_deg = elevation;
-  };
   switch (action) {
     case Action::kSave:
       save();
@@ -293,9 +354,6 @@ void Workstation::act(Action action) {
     case Action::kStereo:
       display_.stereo = static_cast<render::StereoMode>((static_cast<int>(display_.stereo) + 1) % 3);
       break;
-    case Action::kViewAll:
-      Navigation::showAll(view_);
-      break;
     case Action::kViewLastStroke: {
       const engine::FieldRect rect = touch_->lastRect();
       if (rect.empty()) break;
@@ -303,54 +361,6 @@ void Workstation::act(Action action) {
                            (rect.row + 0.5 * rect.rows) * grid.spacingYMm());
       break;
     }
-    case Action::kViewFront:
-      look(0.0, 25.0);
-      break;
-    case Action::kViewBack:
-      look(180.0, 25.0);
-      break;
-    case Action::kViewRight:
-      look(90.0, 25.0);
-      break;
-    case Action::kViewLeft:
-      look(270.0, 25.0);
-      break;
-    case Action::kViewTop:
-      look(0.0, 90.0);
-      break;
-    case Action::kProjection:
-      view_.projection = view_.projection == render::Projection::kOrthographic
-                             ? render::Projection::kPerspective
-                             : render::Projection::kOrthographic;
-      break;
-    case Action::kTurnLeft:
-      Navigation::turn(view_, -kKey_px, 0.0, wide);
-      break;
-    case Action::kTurnRight:
-      Navigation::turn(view_, kKey_px, 0.0, wide);
-      break;
-    case Action::kTiltUp:
-      Navigation::turn(view_, 0.0, kKey_px, wide);
-      break;
-    case Action::kTiltDown:
-      Navigation::turn(view_, 0.0, -kKey_px, wide);
-      break;
-    case Action::kPanLeft:
-      Navigation::pan(view_, grid, kKey_px, 0.0, figures_.pixels_per_mm);
-      break;
-    case Action::kPanRight:
-      Navigation::pan(view_, grid, -kKey_px, 0.0, figures_.pixels_per_mm);
-      break;
-    case Action::kPanUp:
-      Navigation::pan(view_, grid, 0.0, kKey_px, figures_.pixels_per_mm);
-      break;
-    case Action::kPanDown:
-      Navigation::pan(view_, grid, 0.0, -kKey_px, figures_.pixels_per_mm);
-      break;
-    case Action::kZoomIn:
-    case Action::kZoomOut:
-      Navigation::zoom(view_, grid, action == Action::kZoomIn ? 2.0 : -2.0, 0.0, 0.0, figures_.pixels_per_mm);
-      break;
     case Action::kArm:
       touch_->arm();
       break;

@@ -14,8 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Memory that undo may take; older steps are read back from the session when they are wanted.
-constexpr std::size_t kHistoryBytes = std::size_t{1} << 30;
 // A scan up to so many samples goes into the session whole unless the user says otherwise.
 constexpr std::int64_t kEmbedded = std::int64_t{16} << 20;
 constexpr auto kNoteEvery = std::chrono::seconds(1);
@@ -140,13 +138,14 @@ void Workstation::open(const std::string& path) {
 void Workstation::load(const std::string& path, Recovery recovery) {
   loading_path_ = path;
   load_asked_ = std::chrono::steady_clock::now();
-  loading_.start([path, recovery, reading = options_.reading](engine::JobControl& job) {
-    return openDocument(path, reading, recovery, kHistoryBytes, job);
-  });
+  dropCoarse();
+  if (!touch_) opening_ = {load_asked_};
+  loading_.start(openingWork(path, recovery));
 }
 
 void Workstation::takeDocument(Document document) {
-  opening_ = {load_asked_};
+  const double coarse_ms = touch_ ? 0.0 : opening_.coarse_ms;
+  opening_ = {load_asked_, coarse_ms};
   opening_.read_ms = opening_.sinceAsked();
   const engine::Grid& grid = document.original.grid();
   TouchOptions options = options_.touch;
@@ -169,6 +168,7 @@ void Workstation::takeDocument(Document document) {
   auto touch = Touch::start(history, document.original, scene, options, keeper_.get());
   if (!touch) {
     keeper_.reset();
+    dropCoarse();
     if (path_.empty())
       end_ = tl::unexpected(touch.error());
     else
@@ -176,6 +176,8 @@ void Workstation::takeDocument(Document document) {
     return;
   }
   touch_ = std::move(*touch);
+  const bool looked_at = coarse_.has_value();
+  dropCoarse();  // its picture stays until there is one of the whole
   opening_.touched_ms = opening_.sinceAsked();
   path_ = document.path;
   save_path_.clear();
@@ -185,7 +187,8 @@ void Workstation::takeDocument(Document document) {
   deviation_.reset();
   embeds_ = grid.samples() <= kEmbedded;
   const auto camera = document.notes.find("camera");
-  view_ = viewOf(camera != document.notes.end() ? camera->second : std::string());
+  // Who has turned the coarse picture goes on from there.
+  if (!looked_at) view_ = viewOf(camera != document.notes.end() ? camera->second : std::string());
   shown_ = {};
   figures_ = {};
   chooseTool(std::nullopt);

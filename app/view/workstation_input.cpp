@@ -116,8 +116,9 @@ void Workstation::handle(const InputEvent& event) {
     handleKey(event);
     return;
   }
-  if (!touch_ || dialog_ != Dialog::kNone) return;
-  const engine::Grid& grid = touch_->field().grid();
+  const engine::Grid* const seen = seenGrid();
+  if (seen == nullptr || dialog_ != Dialog::kNone) return;
+  const engine::Grid& grid = *seen;
   const render::Rectangle& area = window_->pictureArea();
   const double dx = event.x - last_x_, dy = event.y - last_y_;
   const double split_px = plot().x + display_.split_at * plot().width;
@@ -147,7 +148,7 @@ void Workstation::handle(const InputEvent& event) {
       break;
     case InputKind::kWheel:
       if (event.panels_mouse || !inPicture(event.x, event.y)) return;
-      if (touch_->mouse() != nullptr && tool_on_ && (stylus_held_ || event.modifiers.control)) {
+      if (touch_ && touch_->mouse() != nullptr && tool_on_ && (stylus_held_ || event.modifiers.control)) {
         touch_->mouse()->wheel(event.wheel);
       } else {
         Navigation::zoom(view_, grid, event.wheel, event.x - (area.x + 0.5 * area.width),

@@ -40,6 +40,7 @@ Report Workstation::told() const {
            {"asks_before_quitting", settings_.ask_before_quitting},
            {"device_losses", device_losses_},
            {"loading", loading_.busy()},
+           {"coarse", coarseIsShown()},
            {"saving", saving_.busy() || (keeper_ && keeper_->saving())},
            {"path", path_},
            {"save_path", keeper_ && keeper_->named() ? keeper_->path() : save_path_}};
@@ -52,6 +53,9 @@ Report Workstation::told() const {
                          : stylus_held_ || drag_ != Drag::kNone || figures_.upload.pending_tiles > 0 ||
                                told_dialog_ != dialog_ || frames_ < told_dialog_since_ + 3;
   bool settled = !moves && input_.empty() && !loading_.busy() && r["saving"] == false;
+  if (seenGrid() != nullptr)
+    r["view"] = {rounded(view_.azimuth_deg), rounded(view_.elevation_deg), rounded(view_.zoom),
+                 rounded(view_.centre_x), rounded(view_.centre_y)};
   if (touch_) {
     const haptic::LoopState& drawn = drawn_state_;
     const haptic::LoopState now = touch_->state();
@@ -72,8 +76,6 @@ Report Workstation::told() const {
                      : adjusting_ == Adjusting::kDepth ? "depth"
                                                        : "";
     r["typed"] = typed_;
-    r["view"] = {rounded(view_.azimuth_deg), rounded(view_.elevation_deg), rounded(view_.zoom),
-                 rounded(view_.centre_x), rounded(view_.centre_y)};
     r["perspective"] = view_.projection == render::Projection::kPerspective;
     r["marks"] = display_.marks;
     r["deviation"] = display_.deviation;

@@ -42,7 +42,7 @@ void Workstation::panels() {
   statusBar();
   window_->setPictureArea(
       {0, static_cast<int>(top), static_cast<int>(width - side), static_cast<int>(height - top - bottom)});
-  if (const bool announces = announcesPicture(); !touch_ || announces) {
+  if (const bool announces = announcesPicture(); (!touch_ && !coarse_) || announces) {
     ImGui::SetNextWindowPos(ImVec2(0.5F * (width - side), 0.45F * height), ImGuiCond_Always,
                             ImVec2(0.5F, 0.5F));
     ImGui::Begin("##empty", nullptr,
@@ -127,6 +127,12 @@ void Workstation::statusBar() {
     ImGui::ProgressBar(static_cast<float>(keeper_->progress()), ImVec2(240.0F, 0.0F), "saving");
     ImGui::SameLine();
     if (ImGui::SmallButton("Cancel")) keeper_->cancelSaving();
+  } else if (coarse_) {
+    ImGui::ProgressBar(static_cast<float>(loading_.progress()), ImVec2(160.0F, 0.0F), "reading");
+    ImGui::SameLine();
+    if (ImGui::SmallButton("Cancel")) loading_.cancel();
+    ImGui::SameLine();
+    ImGui::TextUnformatted(coarseText().c_str());
   } else if (touch_ && loading_.busy()) {
     ImGui::ProgressBar(static_cast<float>(loading_.progress()), ImVec2(240.0F, 0.0F), "opening");
     ImGui::SameLine();

@@ -95,7 +95,7 @@ void Workstation::menuBar() {
     for (const Action a : {Action::kViewAll, Action::kViewLastStroke, Action::kViewFront, Action::kViewBack,
                            Action::kViewRight, Action::kViewLeft, Action::kViewTop, Action::kProjection,
                            Action::kZoomIn, Action::kZoomOut})
-      menuItem(a, field);
+      menuItem(a, a == Action::kViewLastStroke ? field : seenGrid() != nullptr);
     ImGui::Separator();
     if (ImGui::BeginMenu("Mouse")) {
       const auto choice = [&](const char* name, Habits habits) {

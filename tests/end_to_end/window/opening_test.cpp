@@ -1,5 +1,7 @@
 // A scan that takes a while to open: what is on the screen until it is seen.
 #include <csignal>
+#include <filesystem>
+#include <fstream>
 
 #include "tests/end_to_end/window/window_fixture.h"
 #include "tests/support/process.h"
@@ -28,6 +30,53 @@ TEST_F(WindowTest, a_large_scan_says_what_it_is_at_until_it_is_seen) {
   EXPECT_GE(report["open_touched_ms"], report["open_read_ms"]);
   EXPECT_GE(report["open_first_picture_ms"], report["open_touched_ms"]);
   EXPECT_GE(report["open_whole_picture_ms"], report["open_first_picture_ms"]);
+}
+
+TEST_F(WindowTest, a_large_scan_is_seen_coarsely_first_and_goes_on_from_where_it_was_turned) {
+  const std::string large = folder.file("large.tif");
+  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", large, "--size", "3000x2800", "--seed", "5"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto program = start({large});
+  Hand hand(display, *program, "coarse");
+  const State coarse = program->until("a coarse picture", [](const State& s) { return s["coarse"] == true; });
+  EXPECT_NE(coarse["texts"].dump().find("coarse picture, 1 sample in"), std::string::npos);
+  EXPECT_FALSE(coarse.contains("tool")) << "nothing to touch yet";
+  EXPECT_EQ(coarse["path"], "");
+  (void)hand.press("Left");
+  const State whole = opened(*program);
+  EXPECT_EQ(whole["coarse"], false);
+  EXPECT_EQ(whole["texts"].dump().find("coarse picture"), std::string::npos);
+  EXPECT_NE(whole["view"], coarse["view"]);
+  const State report = quit(hand);
+  EXPECT_GT(report["open_coarse_picture_ms"], 0.0);
+  EXPECT_GE(report["open_read_ms"], report["open_coarse_picture_ms"]);
+}
+
+TEST_F(WindowTest, a_coarse_picture_goes_when_the_rest_of_the_scan_cannot_be_read) {
+  // Packed strips of which the coarse picture looks at the first rows alone, one of them broken at its end.
+  const std::string broken = folder.file("broken.tif");
+  const Outcome made = runProcess({FETTLE_PROGRAM, "synth", broken, "--size", "5120x5120", "--seed", "5"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  {
+    std::fstream file(broken, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(std::filesystem::file_size(broken) / 2));
+    const std::string noise(4096, '\xff');
+    file.write(noise.data(), static_cast<std::streamsize>(noise.size()));
+    ASSERT_TRUE(file);
+  }
+  const auto program = start({});
+  Hand hand(display, *program, "broken");
+  program->until("an empty window", [](const State& s) {
+    return s["path"] == "" && s["texts"].dump().find("Drop a scan here") != std::string::npos;
+  });
+  const Screen empty = hand.look("empty");
+  EXPECT_EQ(other.drop(other.windowOf("fettle"), {broken}), "");
+  program->until("a coarse picture", [](const State& s) { return s["coarse"] == true; });
+  program->until("what is wrong",
+                 [](const State& s) { return s["dialog"] == "message" && s["coarse"] == false; });
+  (void)hand.key("Escape");
+  (void)hand.same("empty again", empty);
+  EXPECT_EQ(program->now()["path"], "");
 }
 
 }  // namespace
