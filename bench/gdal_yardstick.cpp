@@ -21,8 +21,8 @@ Dataset openTiff(const std::string& path) {
   GDALRegister_GTiff();
   const std::array<const char*, 2> drivers{"GTiff", nullptr};
   const std::array<const char*, 2> options{"NUM_THREADS=ALL_CPUS", nullptr};
-  return Dataset(GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), options.data(),
-                            nullptr));
+  return Dataset(
+      GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), options.data(), nullptr));
 }
 
 // Rows a call.

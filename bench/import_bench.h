@@ -13,7 +13,7 @@ struct ImportBenchOptions {
   /// Samples along each side of the field that is written and read, 16 .. 16384. Above 2048 it is written as
   /// GeoTIFF alone, in each layout: text and meshes would take minutes and tens of gigabytes.
   std::int32_t side = 1024;
-  int repeats = 5;           ///< 1 .. 100
+  int repeats = 5;  ///< 1 .. 100
   /// Files to read instead; with none the same field is written in every format.
   std::vector<std::string> files;
 };
