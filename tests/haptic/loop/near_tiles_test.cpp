@@ -122,6 +122,9 @@ TEST_F(NearTilesTest, AnotherStateIsFeltOnceItsTilesAreThere) {
 }
 
 TEST_F(NearTilesTest, TheSystemMayTakeEverythingButWhatIsUnderTheHand) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizers take mlock away";
+#endif
   StoredBench bench(field_, scene_, testOptions(Tool::kSmooth));
   bench.tickAt({600.0, 600.0, 1.0});
   bench.near.bring();
