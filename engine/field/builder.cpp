@@ -18,6 +18,17 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
+// f(0) to f(n - 1): on all cores for fields whose tiles take longer than waking a worker does, 17 MB and
+// more.
+template <class F>
+void forEachIndex(std::size_t n, const F& f) {
+  constexpr std::size_t kWorthIt = 1024;
+  if (n >= kWorthIt)
+    tbb::parallel_for(std::size_t{0}, n, f);
+  else
+    for (std::size_t i = 0; i < n; ++i) f(i);
+}
+
 // Level of the smallest root that covers the field: a node of level n spans 8 * 8^n samples.
 int rootLevel(const Grid& grid) noexcept {
   int level = 2;
@@ -66,7 +77,7 @@ Result<FieldBuilder> FieldBuilder::create(Grid grid, std::shared_ptr<FieldMemory
       return failure(fmt::format("memory for {} samples could not be had", builder.grid_->samples()), what);
     builder.tiles_.push_back(std::move(tile));
   }
-  tbb::parallel_for(std::size_t{0}, tiles, [&builder, start](std::size_t i) {
+  forEachIndex(tiles, [&builder, start](std::size_t i) {
     const auto columns = static_cast<std::size_t>(builder.tile_columns_);
     const bool at_border = (i + 1) % columns == 0 || i + columns >= builder.tiles_.size();
     Tile& tile = *builder.tiles_[i];
@@ -154,7 +165,7 @@ Version FieldBuilder::build() && {
   bool holed = false;
   HeightBounds bounds;
   summaries_.resize(tiles_.size());
-  tbb::parallel_for(std::size_t{0}, tiles_.size(), [this](std::size_t i) {
+  forEachIndex(tiles_.size(), [this](std::size_t i) {
     Tile& tile = *tiles_[i];
     refreshBounds(tile, 0, 0, kTileSide, kTileSide);
     refreshMarks(tile);
