@@ -9,8 +9,8 @@
 
 // The hot loops are compiled once for each kind of processor and chosen when the program starts. The bits are
 // the same for all: every kernel fixes its order of operations, and contraction to fused multiply-adds is
-// off. Sanitizers start before the loader can choose, so they get the plain version. Chosen by what a processor
-// can do: "arch=haswell" would be taken by that very processor alone and by none of its successors.
+// off. Sanitizers start before the loader can choose, so they get the plain version. Chosen by what a
+// processor can do: "arch=haswell" would be taken by that very processor alone and by none of its successors.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define FETTLE_EACH_CPU __attribute__((target_clones("avx512f", "avx2", "default")))
