@@ -117,8 +117,8 @@ void NearTiles::bring() noexcept {
   collect(held_.live, around);
   collect(held_.original, around);
   std::ranges::sort(next_);
-  const auto twice = std::ranges::unique(next_);
-  next_.erase(twice.begin(), twice.end());
+  const auto twice = std::unique(next_.begin(), next_.end());
+  next_.erase(twice, next_.end());
   for (const engine::Tile* tile : next_) {
     if (!hold(tile)) not_locked_.fetch_add(1, std::memory_order_relaxed);
     if (!std::ranges::binary_search(locked_, tile)) brought_.fetch_add(1, std::memory_order_relaxed);
