@@ -285,7 +285,9 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     return engine::inputError("the time beside the loop is out of range", "bench render", "give 0 to 600 s");
   RenderBenchReport report;
   report.machine = machine();
-  auto picture = render::LivePicture::create();
+  render::LiveOptions live;
+  live.memory_budget_bytes = options.memory_budget_bytes;
+  auto picture = render::LivePicture::create(live);
   if (!picture) return tl::unexpected(picture.error());
   report.device = (*picture)->device();
   render::FrameInput plain;

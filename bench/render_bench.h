@@ -17,7 +17,8 @@ struct RenderBenchOptions {
   int height = 800;
   double error_px = 1.0;
   std::int64_t vertex_budget = 65536;
-  std::vector<std::string> scenes;  ///< rows by name; none: all
+  std::int64_t memory_budget_bytes = 0;  ///< LiveOptions::memory_budget_bytes
+  std::vector<std::string> scenes;       ///< rows by name; none: all
   /// How frames are drawn while the camera moves, beside the loop and for the targets. kFull: the rows that
   /// are half as sharp are left out.
   render::Sharpness in_motion = render::Sharpness::kHalf;

@@ -131,7 +131,7 @@ struct UploadStatistics {
   double ms = 0.0;          ///< on this thread: comparing, measuring, copying to staging
 };
 
-/// A field of which the finest samples are on the device by need (LiveOptions::memory_budget_bytes).
+/// A field of which the finer samples are on the device by need: any of more than a few million samples.
 struct ResidencyStatistics {
   bool by_need = false;            ///< false: all is there, and the rest of this stays zero
   std::int64_t device_bytes = 0;   ///< of the pool of pages, full or not
@@ -179,10 +179,11 @@ struct LiveOptions {
   /// one.
   std::int64_t upload_bytes_a_frame = std::int64_t{6} << 20;
   /// Device memory that the samples of all versions, of the original and their marks may take [bytes]; 0:
-  /// half of the largest heap of the device's own memory. What does not fit, or is larger than the device's
-  /// images, is there by need: coarse copies always, finer samples in pages where the view asks for them,
-  /// within upload_bytes_a_frame. Frames after a move may be coarser then than error_px; FrameStatistics says
-  /// so. Once by need, versions of the same field stay so.
+  /// half of the largest heap of the device's own memory. What takes more than that or than kWholeBytes
+  /// (render/live_fields.h), or is larger than the device's images, is there by need: coarse copies always,
+  /// finer samples in pages where the view asks for them, within upload_bytes_a_frame. Frames after a move
+  /// may be coarser then than error_px; FrameStatistics says so. Once by need, versions of the same field
+  /// stay so.
   std::int64_t memory_budget_bytes = 0;
 };
 
@@ -217,10 +218,10 @@ class LivePicture {
   LivePicture(const LivePicture&) = delete;
   LivePicture& operator=(const LivePicture&) = delete;
 
-  /// From now on frames show this. The first time, or when the field is not related to the one before, all of
-  /// it is moved before this returns; else what differs is queued and moved with the next frames, within
-  /// LiveOptions::upload_bytes_a_frame each. Errors: kInput when versions do not fit each other; kFailed when
-  /// the device cannot hold them.
+  /// From now on frames show this. The first time, or when the field is not related to the one before, its
+  /// coarse copies (8 MiB) are moved before this returns, of a small field all of it; else what differs is
+  /// queued and moved with the next frames, within LiveOptions::upload_bytes_a_frame each. Errors: kInput
+  /// when versions do not fit each other; kFailed when the device cannot hold them.
   [[nodiscard]] engine::Status update(const Shown& shown);
   /// One version, no original, marks as before.
   [[nodiscard]] engine::Status update(const engine::Version& version);

@@ -24,8 +24,21 @@ glm::ivec2 tileOf(std::uint64_t key) {
   return {static_cast<std::int32_t>(key & 0xffffffffU), static_cast<std::int32_t>(key >> 32U)};
 }
 
-// Nothing else moves while a tile's measures are brought up to date: as much as if it had moved as a whole.
-constexpr std::int64_t kTileCost = engine::kTileSamples * sizeof(float);
+// What a tile by need counts for at least, as bytes: looking for its pages, of which few or none may be on
+// the device, and forgetting its measures.
+constexpr std::int64_t kTileCost = 2048;
+// From so many changed tiles on (a filter's result, not a stroke) nobody looks for the rectangle of each: of
+// a filtered tile all is new, and looking reads both of them.
+constexpr std::size_t kManyTiles = 256;
+
+// Where two states of a tile differ in heights: the rectangle, or all of it.
+TileSpan changedSpan(const engine::TileChange& change, bool many) {
+  if (!many) return changedHeights(*change.before, *change.after);
+  return std::memcmp(change.before->samples.data(), change.after->samples.data(),
+                     sizeof(change.before->samples)) != 0
+             ? TileSpan::whole()
+             : TileSpan{};
+}
 
 }  // namespace
 
@@ -60,9 +73,10 @@ void LiveTexture::addChanges(const engine::Version& next, const engine::Version&
       add(change.tile_column, change.tile_row, TileKind::kMarks, span);
       if (pages_) pages_->forget({change.tile_column, change.tile_row});
     }
-  for (const engine::TileChange& change : engine::changedTiles(version_, next)) {
+  const std::vector<engine::TileChange> changes = engine::changedTiles(version_, next);
+  for (const engine::TileChange& change : changes) {
     add(change.tile_column, change.tile_row, TileKind::kHeights,
-        changedHeights(*change.before, *change.after));
+        changedSpan(change, changes.size() >= kManyTiles));
     if (has_marks_)
       add(change.tile_column, change.tile_row, TileKind::kMarks, changedMarks(*change.before, *change.after));
     // Before the old tile's memory may be given to another one.

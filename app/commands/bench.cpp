@@ -354,6 +354,9 @@ void addBench(CLI::App& root, Chosen& chosen) {
   drawing->add_option("--error", render_options->error_px, "Screen error wanted, px")->capture_default_str();
   drawing->add_option("--vertices", render_options->vertex_budget, "Vertices a frame at most")
       ->capture_default_str();
+  drawing->add_option(
+      "--device-memory", render_options->memory_budget_bytes,
+      "Bytes that samples may take on the device, the rest comes by need; 0: half of its memory");
 
   lateness->add_flag("--busy", *busy, "Keep every core busy by other processes meanwhile");
 }

@@ -35,21 +35,30 @@ engine::Version part(int w, int h, Holes holes) {
       [](int c, int) { return c % 50 == 0; });
 }
 
+// Where samples lie: all of them on the device, or in pages of a pool of so many bytes.
+constexpr std::int64_t kWhole = 0, kPages = 1'200'000;
+
 class Twins {
  public:
-  Twins() {
+  explicit Twins(std::int64_t device_bytes = kWhole) {
     LiveOptions options;
     options.validation = Validation::kOn;
+    options.memory_budget_bytes = device_bytes;
     auto created = LivePicture::create(options);
     if (created) picture_ = *std::move(created);
   }
   [[nodiscard]] LivePicture& picture() { return *picture_; }
 
-  // The next frame in parts, then the same as a whole; equal to the last bit. How much the first drew anew.
+  // The next frame in parts, or the first of those that pages keep coming with, then the same as a whole;
+  // equal to the last bit. How much the first drew anew.
   double shoot(FrameInput input) {
     Image parts, whole;
     input.redraw = FrameInput::Redraw::kChanged;
-    const auto first = picture_->draw(input, parts);
+    auto first = picture_->draw(input, parts);
+    const double drawn = first ? first->redrawn : -1.0;
+    while (first && first->residency.pages_loaded + first->residency.pages_waiting > 0)
+      first = picture_->draw(input, parts);
+    if (first) by_need_ = first->residency.by_need;
     input.redraw = FrameInput::Redraw::kAll;
     const auto second = picture_->draw(input, whole);
     if (!first || !second) {
@@ -61,10 +70,12 @@ class Twins {
     for (std::size_t i = 0; i < parts.rgba.size(); ++i) off += parts.rgba[i] != whole.rgba[i];
     EXPECT_EQ(off, 0) << "channels differ, drawn anew: " << first->redrawn;
     for (const std::string& message : picture_->validationMessages()) ADD_FAILURE() << message;
-    return first->redrawn;
+    return drawn;
   }
+  [[nodiscard]] bool byNeed() const noexcept { return by_need_; }
 
  private:
+  bool by_need_ = false;
   std::unique_ptr<LivePicture> picture_;
 };
 
@@ -75,69 +86,77 @@ FrameInput smallInput() {
   return input;
 }
 
-TEST(Damage, FramesInPartsEqualWholeOnesOverRandomEditsUndoAndViews) {
+class DamageOverEdits : public testing::TestWithParam<std::tuple<Holes, std::int64_t>> {};
+
+TEST_P(DamageOverEdits, FramesInPartsEqualWholeOnes) {
   std::mt19937 random(20261121);
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
-  for (const Holes holes : {Holes::kNone, Holes::kSome}) {
-    Twins twins;
-    const engine::Version start = part(640, 480, holes);
-    auto live = std::make_unique<engine::LiveField>(start, engine::Growth::kAllowed);
-    Shown shown;
-    shown.versions = {start};
-    shown.marks = MarksOverlay::kShow;
-    ASSERT_TRUE(twins.picture().update(shown));
-    FrameInput input = smallInput();
-    double drawn = 0.0;
-    int parts = 0;
-    std::vector<engine::Version> undo{start};
-    for (int step = 0; step < 24; ++step) {
-      SCOPED_TRACE(testing::Message() << "step " << step << " holes " << static_cast<int>(holes));
-      const bool moves = step % 10 == 0;
-      if (moves) {
-        input.view.azimuth_deg = below(360);
-        input.view.elevation_deg = 15 + below(76);
-        input.view.zoom = 0.4 + 0.1 * below(60);
-        input.view.projection = below(2) == 0 ? Projection::kOrthographic : Projection::kPerspective;
-        input.contours = below(2) == 0 ? Contours::kShow : Contours::kHide;
-        input.vertex_budget = 4096 << below(5);
-      }
-      const int what = below(6);
-      if (what == 0 && undo.size() > 1) {
-        undo.pop_back();
-        live = std::make_unique<engine::LiveField>(undo.back(), engine::Growth::kAllowed);
-      } else if (what == 1) {
-        const int c = below(600), r = below(440);
-        for (int i = 0; i < 30; ++i) ASSERT_TRUE(live->setMark(c + i, r + i, i % 3 != 0));
-        undo.push_back(live->snapshot());
-      } else if (what == 2) {
-        // Only what lies over the surface.
-        input.overlays.lines.clear();
-        appendStylus({{5.0 + below(50), 24, 6}, {30, 24, 3}, {0, 0, 1}, true, 1.0}, 4.0,
-                     input.overlays.lines);
-      } else {
-        const int w = 1 + below(40), h = 1 + below(40), c = below(640 - w), r = below(480 - h);
-        std::vector<float> z(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
-        live->reader().readHeights(c, r, w, h, z.data(), w);
-        const float by = 0.01F * static_cast<float>(below(400) - 200);
-        for (float& x : z) x += by;
-        if (holes == Holes::kSome && below(4) == 0) z[z.size() / 2] = static_cast<float>(kNan);
-        ASSERT_TRUE(live->writeHeights(c, r, w, h, z.data(), w));
-        undo.push_back(live->snapshot());
-      }
-      shown.versions = {undo.back()};
-      ASSERT_TRUE(twins.picture().update(shown));
-      const double share = twins.shoot(input);
-      if (moves) {
-        EXPECT_EQ(share, 1.0);
-        continue;
-      }
-      ++parts;
-      drawn += share;
+  const auto [holes, device_bytes] = GetParam();
+  Twins twins(device_bytes);
+  const engine::Version start = part(640, 480, holes);
+  auto live = std::make_unique<engine::LiveField>(start, engine::Growth::kAllowed);
+  Shown shown;
+  shown.versions = {start};
+  shown.marks = MarksOverlay::kShow;
+  ASSERT_TRUE(twins.picture().update(shown));
+  FrameInput input = smallInput();
+  double drawn = 0.0;
+  int parts = 0;
+  std::vector<engine::Version> undo{start};
+  for (int step = 0; step < 24; ++step) {
+    SCOPED_TRACE(testing::Message() << "step " << step << " holes " << static_cast<int>(holes));
+    const bool moves = step % 10 == 0;
+    if (moves) {
+      input.view.azimuth_deg = below(360);
+      input.view.elevation_deg = 15 + below(76);
+      input.view.zoom = 0.4 + 0.1 * below(60);
+      input.view.projection = below(2) == 0 ? Projection::kOrthographic : Projection::kPerspective;
+      input.contours = below(2) == 0 ? Contours::kShow : Contours::kHide;
+      input.vertex_budget = 4096 << below(5);
     }
-    // A brush of 40 samples is a fifteenth of the field's width; zoomed in it fills the picture.
-    EXPECT_LT(drawn / parts, 0.6);
+    const int what = below(6);
+    if (what == 0 && undo.size() > 1) {
+      undo.pop_back();
+      live = std::make_unique<engine::LiveField>(undo.back(), engine::Growth::kAllowed);
+    } else if (what == 1) {
+      const int c = below(600), r = below(440);
+      for (int i = 0; i < 30; ++i) ASSERT_TRUE(live->setMark(c + i, r + i, i % 3 != 0));
+      undo.push_back(live->snapshot());
+    } else if (what == 2) {
+      // Only what lies over the surface.
+      input.overlays.lines.clear();
+      appendStylus({{5.0 + below(50), 24, 6}, {30, 24, 3}, {0, 0, 1}, true, 1.0}, 4.0, input.overlays.lines);
+    } else {
+      const int w = 1 + below(40), h = 1 + below(40), c = below(640 - w), r = below(480 - h);
+      std::vector<float> z(static_cast<std::size_t>(w) * static_cast<std::size_t>(h));
+      live->reader().readHeights(c, r, w, h, z.data(), w);
+      const float by = 0.01F * static_cast<float>(below(400) - 200);
+      for (float& x : z) x += by;
+      if (holes == Holes::kSome && below(4) == 0) z[z.size() / 2] = static_cast<float>(kNan);
+      ASSERT_TRUE(live->writeHeights(c, r, w, h, z.data(), w));
+      undo.push_back(live->snapshot());
+    }
+    shown.versions = {undo.back()};
+    ASSERT_TRUE(twins.picture().update(shown));
+    const double share = twins.shoot(input);
+    if (moves) {
+      EXPECT_EQ(share, 1.0);
+      continue;
+    }
+    ++parts;
+    drawn += share;
   }
+  // A brush of 40 samples is a fifteenth of the field's width; zoomed in it fills the picture.
+  EXPECT_LT(drawn / parts, 0.6);
+  EXPECT_EQ(twins.byNeed(), device_bytes != kWhole);
 }
+INSTANTIATE_TEST_SUITE_P(, DamageOverEdits,
+                         testing::Combine(testing::Values(Holes::kNone, Holes::kSome),
+                                          testing::Values(kWhole, kPages)),
+                         [](const auto& about) {
+                           return std::string(std::get<0>(about.param) == Holes::kSome ? "Holed" : "Full") +
+                                  (std::get<1>(about.param) == kWhole ? "Whole" : "Pages");
+                         });
 
 TEST(Damage, NothingIsDrawnAnewWhereNothingChangedAndLittleUnderABrush) {
   Twins twins;

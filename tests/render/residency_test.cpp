@@ -219,6 +219,54 @@ TEST(Residency, AFieldThatFitsIsThereAsAWhole) {
   EXPECT_FALSE(shoot(*picture, bare(1)).stats.residency.by_need);
 }
 
+// Large for a picture, in little memory: a wave, and a step of its own in every tile.
+engine::Version wideField(double lift) {
+  return fieldOf(gridOf(2600, 2000, 0.05, 0.05), [&](int c, int r) {
+    return lift + std::sin(0.01 * c) * std::cos(0.013 * r) + 0.05 * (((c >> 6) + (r >> 6)) & 3);
+  });
+}
+
+TEST(Residency, TheFirstPictureOfALargeFieldWaitsForACoarseCopyAlone) {
+  auto picture = makePicture();
+  ASSERT_TRUE(picture->update(wideField(0.0)));
+  const Frame first = shoot(*picture, bare(1));
+  EXPECT_TRUE(first.stats.residency.by_need);
+  // 20.8 MB of samples; every 4th each way before the first picture, and then what it asks for.
+  EXPECT_LT(first.stats.upload.bytes, (std::int64_t{8} << 20) + (std::int64_t{6} << 20));
+  EXPECT_LT(first.stats.residency.device_bytes, std::int64_t{64} << 20);
+}
+
+TEST(Residency, AResultThatChangesEveryTileComesOverWithoutLookingForRectangles) {
+  const engine::Version before = wideField(0.0);
+  // The same memory, so that it is a state of the same field.
+  engine::LiveField live(before, engine::Growth::kAllowed);
+  std::vector<float> row(2600);
+  for (int r = 0; r < 2000; ++r) {
+    before.reader().readHeights(0, r, 2600, 1, row.data(), 2600);
+    for (float& z : row) z += 0.25F * static_cast<float>((r >> 5) & 1);
+    // One band of tiles stays as it is, copied all the same.
+    if (r < 640 || r >= 704) {
+      ASSERT_TRUE(live.writeHeights(0, r, 2600, 1, row.data(), 2600));
+    }
+  }
+  ASSERT_TRUE(live.setMark(100, 650, true));
+  const engine::Version after = live.snapshot();
+  auto stays = makePicture(), fresh = makePicture();
+  for (const double zoom : {1.0, 14.0}) {
+    SCOPED_TRACE(zoom);
+    const FrameInput input = bare(zoom, 0.4, 0.3);
+    ASSERT_TRUE(stays->update(before));
+    const Frame old = settle(*stays, input);
+    ASSERT_TRUE(stays->update(after));
+    ASSERT_TRUE(fresh->update(after));
+    stays->refreshRanges();
+    const Frame a = settle(*stays, input), b = settle(*fresh, input);
+    EXPECT_TRUE(a.stats.residency.by_need);
+    EXPECT_EQ(differing(a.image, b.image), 0U);
+    EXPECT_GT(differing(a.image, old.image), 5000U);
+  }
+}
+
 TEST(Residency, ATightBudgetEndsInTheSamePictureBitForBitOverViewsAndEdits) {
   std::mt19937 random(5);
   const auto uniform = [&](double low, double high) {

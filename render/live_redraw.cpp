@@ -1,0 +1,54 @@
+#include "render/live_redraw.h"
+
+#include <cstring>
+
+#include "engine/field/difference.h"
+#include "render/damage.h"
+#include "render/live_fields.h"
+
+namespace fettle::render {
+
+bool onlyFieldsDiffer(const DrawnFrame& before, const DrawnFrame& now) {
+  if (before.panels.size() != now.panels.size() || before.ground != now.ground ||
+      !(before.original == now.original) || !(before.accepted == now.accepted) ||
+      before.furniture.size() != now.furniture.size())
+    return false;
+  // Plain numbers without gaps, and equal bits draw equal pictures.
+  if (!now.furniture.empty() && std::memcmp(before.furniture.data(), now.furniture.data(),
+                                            now.furniture.size() * sizeof(gpu::Quad)) != 0)
+    return false;
+  for (std::size_t i = 0; i < now.panels.size(); ++i) {
+    const DrawnFrame::Panel &a = before.panels[i], &b = now.panels[i];
+    const auto same = [](const Rectangle& x, const Rectangle& y) {
+      return x.x == y.x && x.y == y.y && x.width == y.width && x.height == y.height;
+    };
+    if (!related(a.field, b.field) || a.variant != b.variant || a.shade_level != b.shade_level ||
+        !same(a.plot, b.plot) || !same(a.visible, b.visible) || a.pages != b.pages ||
+        std::memcmp(&a.uniforms, &b.uniforms, sizeof(a.uniforms)) != 0)
+      return false;
+  }
+  return true;
+}
+
+std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame& now,
+                                     std::span<const PatchQuestion> questions,
+                                     std::vector<LivePanel>& panels) {
+  std::vector<PatchChoice> parts(panels.size());
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const std::vector<engine::TileChange> tiles =
+        engine::changedTiles(before.panels[i].field, now.panels[i].field);
+    DamageQuestion q;
+    q.now = questions[i];
+    q.before = before.panels[i].field.reader();
+    q.tiles = tiles;
+    q.chosen_before = &before.panels[i].choice;
+    q.chosen_after = panels[i].choice;
+    q.visible = panels[i].visible;
+    panels[i].redraw = damageOf(q);
+    parts[i] = within(*panels[i].choice, questions[i], panels[i].redraw);
+    panels[i].choice = &parts[i];
+  }
+  return parts;
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/field/version.h"
+#include "render/live_frame.h"
+#include "render/patches.h"
+
+namespace fettle::render {
+
+/// What the layers of a LiveFrame show: another frame that differs in the fields alone is drawn in parts.
+struct DrawnFrame {
+  struct Panel {
+    engine::Version field;
+    gpu::PanelUniforms uniforms;
+    SurfaceVariant variant;
+    int shade_level = 0;
+    Rectangle plot, visible;
+    PatchChoice choice;
+    std::vector<std::uint32_t> pages;  ///< by need: pages that come and go change what is drawn
+  };
+  std::vector<Panel> panels;
+  std::vector<gpu::Quad> furniture;
+  glm::vec3 ground{0.0F};
+  engine::Version original;
+  std::optional<engine::Version> accepted;
+};
+
+/// Whether two frames are alike but for samples of the fields, so that damageOf tells where they differ.
+[[nodiscard]] bool onlyFieldsDiffer(const DrawnFrame& before, const DrawnFrame& now);
+
+/// Sets what of each panel is to be drawn anew, and cuts the panels' choices down to that: to those returned,
+/// which have to outlive the panels.
+[[nodiscard]] std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame& now,
+                                                   std::span<const PatchQuestion> questions,
+                                                   std::vector<LivePanel>& panels);
+
+}  // namespace fettle::render
