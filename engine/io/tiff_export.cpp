@@ -1,18 +1,32 @@
 // GeoTIFF float32: Deflate with the floating-point predictor, which every reader knows and keeps every bit.
+//
+// GDAL writes the header, libtiff puts in the blocks that BlockPacker made on all cores. By GDAL alone, whose
+// libtiff packs with libdeflate, 1,074 million samples took 38.5 s at level 6, and take 9.9 s now, two cores;
+// a plain copy of the file, flushed, 10.9 s. In memory, so without the disk, it was 29 and 58 million samples
+// a second at levels 6 and 1, and is 180. The price is the size of the file: 1 % on a noisy part, 4 % once it
+// was smoothed, 5 % on a clean one, 9 % on a simulated scan.
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <cpl_string.h>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gdal.h>
 #include <ogr_srs_api.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+#include <tiffio.h>
 
 #include "engine/io/atomic_file.h"
+#include "engine/io/block_packer.h"
 #include "engine/io/format.h"
 #include "engine/io/gdal_session.h"
 #include "engine/io/geo_reference.h"
@@ -22,11 +36,19 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr int kBlock = 256;
+constexpr std::int32_t kBlock = 256;
 
 struct FreeList {
   void operator()(char** list) const noexcept { CSLDestroy(list); }
 };
+struct CloseTiff {
+  void operator()(TIFF* file) const noexcept { TIFFClose(file); }
+};
+
+// Smaller fields lie in strips as wide as they are.
+bool tiled(const Grid& grid) {
+  return grid.width > kBlock && grid.height > kBlock;
+}
 
 // Whether the file will say the lateral unit by itself.
 bool crsStatesUnit(const Grid& grid) {
@@ -62,56 +84,141 @@ Status describe(GDALDatasetH dataset, const Grid& grid, const GdalSession& gdal,
   return {};
 }
 
-Status writePlain(const Version& field, const std::string& temporary, const std::string& path,
-                  JobControl& job) {
-  const FieldReader reader = field.reader();
-  const Grid& grid = field.grid();
+// Packs the blocks of a file, on all cores, and writes them in their order, so that the bytes do not depend
+// on the number of threads.
+class BlockWriter {
+ public:
+  BlockWriter(const Version& field, const std::string& path, JobControl& job)
+      : reader_(field.reader()),
+        path_(path),
+        job_(job),
+        width_(field.grid().width),
+        height_(field.grid().height),
+        columns_(tiled(field.grid()) ? kBlock : width_),
+        across_((width_ + columns_ - 1) / columns_) {}
 
-  GdalSession gdal;
-  // Threads compress blocks; the blocks are written in order, so the bytes do not depend on their number.
+  Status write(TIFF* file) {
+    const std::size_t blocks =
+        static_cast<std::size_t>(across_) * static_cast<std::size_t>((height_ + kBlock - 1) / kBlock);
+    // One being written, one being packed by each core, one ready for each: each takes 1 MB.
+    const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    slots_.resize(std::min({blocks, 2 * threads + 1, kMostSlots}));
+    job_.begin("writing", static_cast<std::uint64_t>(height_));
+    std::size_t next = 0;
+    Status status;
+    // Those between the first filter and the last follow each other: as many slots keep them apart.
+    tbb::parallel_pipeline(
+        slots_.size(),
+        tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
+                                            [&](tbb::flow_control& flow) -> std::size_t {
+                                              if (next < blocks && !failed_ && !job_.cancelled())
+                                                return next++;
+                                              flow.stop();
+                                              return 0;
+                                            }) &
+            tbb::make_filter<std::size_t, std::size_t>(tbb::filter_mode::parallel,
+                                                       [&](std::size_t block) {
+                                                         pack(block);
+                                                         return block;
+                                                       }) &
+            tbb::make_filter<std::size_t, void>(tbb::filter_mode::serial_in_order, [&](std::size_t block) {
+              if (failed_) return;
+              status = put(file, block);
+              failed_ = !status;
+            }));
+    if (!status) return status;
+    if (job_.cancelled()) return cancelled();
+    return {};
+  }
+
+ private:
+  static constexpr std::size_t kMostSlots = 64;
+  static constexpr tmsize_t kFlush = tmsize_t{16} << 20;
+  struct Slot {
+    std::vector<float> heights;
+    BlockPacker packer;
+    std::span<const std::uint8_t> packed;
+  };
+
+  [[nodiscard]] std::int32_t top(std::size_t block) const {
+    return static_cast<std::int32_t>(block / static_cast<std::size_t>(across_)) * kBlock;
+  }
+  [[nodiscard]] std::int32_t rows(std::size_t block) const { return std::min(kBlock, height_ - top(block)); }
+
+  void pack(std::size_t block) {
+    Slot& slot = slots_[block % slots_.size()];
+    // Tiles are whole at the borders too, strips end with the field. Samples outside come out as holes.
+    const std::int32_t now = columns_ < width_ ? kBlock : rows(block);
+    slot.heights.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(now));
+    const auto left = static_cast<std::int32_t>(block % static_cast<std::size_t>(across_)) * columns_;
+    // Read upside down: the first row of the file is the highest one of the field.
+    reader_.readHeights(left, height_ - top(block) - now, columns_, now,
+                        slot.heights.data() + static_cast<std::ptrdiff_t>(now - 1) * columns_, -columns_);
+    slot.packed = slot.packer.pack(slot.heights, static_cast<std::size_t>(columns_));
+  }
+
+  Status put(TIFF* file, std::size_t block) {
+    const std::span<const std::uint8_t> packed = slots_[block % slots_.size()].packed;
+    if (packed.empty()) return failure("a block could not be packed", path_);
+    const GdalSession said;  // GDAL hears for libtiff too
+    const auto size = static_cast<tmsize_t>(packed.size());
+    auto* bytes = const_cast<std::uint8_t*>(packed.data());
+    const auto number = static_cast<std::uint32_t>(block);
+    const tmsize_t wrote = columns_ < width_ ? TIFFWriteRawTile(file, number, bytes, size)
+                                             : TIFFWriteRawStrip(file, number, bytes, size);
+    if (wrote != size) return cannotWrite(said, path_);
+    // The disk begins now, not only when the whole is flushed at the end. A wish: its failing means nothing.
+    unflushed_ += wrote;
+    if (unflushed_ >= kFlush) {
+      (void)sync_file_range(TIFFFileno(file), 0, 0, SYNC_FILE_RANGE_WRITE);
+      unflushed_ = 0;
+    }
+    if ((block + 1) % static_cast<std::size_t>(across_) == 0)
+      job_.advance(static_cast<std::uint64_t>(rows(block)));
+    return {};
+  }
+
+  const FieldReader reader_;
+  const std::string& path_;
+  JobControl& job_;
+  const std::int32_t width_, height_;
+  const std::int32_t columns_;  // of a block
+  const std::int32_t across_;   // blocks
+  std::vector<Slot> slots_;
+  tmsize_t unflushed_ = 0;
+  std::atomic<bool> failed_{false};
+};
+
+// All but the samples, by GDAL.
+Status writeHeader(const Grid& grid, const std::string& temporary, const std::string& path) {
+  const GdalSession gdal;
   const std::string block = fmt::format("{}", kBlock);
   std::unique_ptr<char*, FreeList> creation;
-  const bool tiled = grid.width > kBlock && grid.height > kBlock;
   for (const auto& [key, value] : {std::pair{"COMPRESS", "DEFLATE"},
                                    {"PREDICTOR", "3"},
-                                   {"ZLEVEL", "6"},
                                    {"BIGTIFF", "IF_SAFER"},
-                                   {"NUM_THREADS", "ALL_CPUS"},
-                                   {"TILED", tiled ? "YES" : "NO"},
+                                   {"SPARSE_OK", "TRUE"},
+                                   {"TILED", tiled(grid) ? "YES" : "NO"},
                                    {"BLOCKYSIZE", block.c_str()}})
     creation.reset(CSLSetNameValue(creation.release(), key, value));
-  if (tiled) creation.reset(CSLSetNameValue(creation.release(), "BLOCKXSIZE", block.c_str()));
+  if (tiled(grid)) creation.reset(CSLSetNameValue(creation.release(), "BLOCKXSIZE", block.c_str()));
   DatasetPtr dataset(GDALCreate(GDALGetDriverByName("GTiff"), temporary.c_str(), grid.width, grid.height, 1,
                                 GDT_Float32, creation.get()));
   if (!dataset) return cannotWrite(gdal, path);
   if (Status status = describe(dataset.get(), grid, gdal, path); !status) return status;
-
-  GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
-  // A few blocks at a time, flushed at once: left in the cache, all blocks would be compressed in one last
-  // step that cannot be cancelled; it takes as long either way. Strips are as wide as the field and must be
-  // whole when they are flushed.
-  const std::int32_t piece = tiled ? std::min(8 * kBlock, grid.width) : grid.width;
-  std::vector<float> heights(static_cast<std::size_t>(piece) * kBlock);
-  job.begin("writing", static_cast<std::uint64_t>(grid.height));
-  for (std::int32_t top = 0; top < grid.height; top += kBlock) {
-    const std::int32_t rows = std::min(kBlock, grid.height - top);
-    for (std::int32_t left = 0; left < grid.width; left += piece) {
-      const std::int32_t columns = std::min(piece, grid.width - left);
-      // Read upside down: the first row of the file is the highest one of the field.
-      reader.readHeights(left, grid.height - top - rows, columns, rows,
-                         heights.data() + static_cast<std::ptrdiff_t>(rows - 1) * columns, -columns);
-      CPLErr error = GDALRasterIO(band, GF_Write, left, top, columns, rows, heights.data(), columns, rows,
-                                  GDT_Float32, 0, 0);
-      if (error == CE_None) error = GDALFlushRasterCache(band);
-      if (error != CE_None || gdal.failed()) return cannotWrite(gdal, path);
-      if (job.cancelled()) return cancelled();
-    }
-    job.advance(static_cast<std::uint64_t>(rows));
-  }
-  GDALFlushCache(dataset.get());
   dataset.reset();
   if (gdal.failed()) return cannotWrite(gdal, path);
-  if (job.cancelled()) return cancelled();
+  return {};
+}
+
+Status writePlain(const Version& field, const std::string& temporary, const std::string& path,
+                  JobControl& job) {
+  if (Status status = writeHeader(field.grid(), temporary, path); !status) return status;
+  const GdalSession gdal;
+  const std::unique_ptr<TIFF, CloseTiff> file(TIFFOpen(temporary.c_str(), "r+"));
+  if (!file) return cannotWrite(gdal, path);
+  if (Status status = BlockWriter(field, path, job).write(file.get()); !status) return status;
+  if (TIFFFlush(file.get()) != 1 || gdal.failed()) return cannotWrite(gdal, path);  // where the blocks lie
   return {};
 }
 

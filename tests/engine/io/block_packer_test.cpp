@@ -1,0 +1,152 @@
+// What BlockPacker makes is a zlib stream of the predictor's bytes, told here once more in plain words, and
+// GDAL reads the files made of such blocks bit for bit.
+#include "engine/io/block_packer.h"
+
+#include <bit>
+#include <cfloat>
+#include <cmath>
+#include <filesystem>
+#include <random>
+#include <vector>
+
+#include <gdal.h>
+#include <gdal_frmts.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <zlib.h>
+
+#include "tests/engine/io/io_support.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::engine {
+namespace {
+
+using tests::TempFolder;
+
+std::vector<float> anyFloats(std::size_t count, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::vector<float> values{0.0F, -0.0F, FLT_MIN, FLT_TRUE_MIN, -FLT_TRUE_MIN, FLT_MAX, -FLT_MAX, kNan};
+  while (values.size() < count) {
+    const float v = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+    values.push_back(std::isfinite(v) ? v : kNan);
+  }
+  values.resize(count);
+  return values;
+}
+
+std::vector<float> slope(std::size_t count, std::size_t columns) {
+  std::vector<float> values(count);
+  for (std::size_t i = 0; i < count; ++i)
+    values[i] = static_cast<float>(i % columns) * 0.01F + static_cast<float>(i / columns) * 0.25F;
+  return values;
+}
+
+// Byte by byte, as the technical note says.
+std::vector<std::uint8_t> predicted(const std::vector<float>& samples, std::size_t columns) {
+  std::vector<std::uint8_t> out;
+  for (std::size_t at = 0; at < samples.size(); at += columns) {
+    std::uint8_t before = 0;
+    for (const int shift : {24, 16, 8, 0})
+      for (std::size_t i = at; i < at + columns; ++i) {
+        const auto byte = static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(samples[i]) >> shift);
+        out.push_back(static_cast<std::uint8_t>(byte - before));
+        before = byte;
+      }
+  }
+  return out;
+}
+
+TEST(BlockPacker, AnyInflaterFindsThePredictedBytes) {
+  BlockPacker packer;  // one for all: nothing of a block may stay for the next
+  for (const std::size_t columns : {1U, 2U, 3U, 15U, 16U, 17U, 255U, 256U, 1000U})
+    for (const std::size_t rows : {1U, 2U, 7U, 256U}) {
+      const std::size_t count = columns * rows;
+      for (const std::vector<float>& samples :
+           {anyFloats(count, 7), slope(count, columns), std::vector<float>(count, 1.5F),
+            std::vector<float>(count, kNan), std::vector<float>(count, 0.0F)}) {
+        const auto packed = packer.pack(samples, columns);
+        ASSERT_FALSE(packed.empty());
+        std::vector<std::uint8_t> bytes(4 * count + 1);
+        uLongf size = bytes.size();
+        ASSERT_EQ(uncompress(bytes.data(), &size, packed.data(), packed.size()), Z_OK);
+        bytes.resize(size);
+        ASSERT_EQ(bytes, predicted(samples, columns)) << columns << " x " << rows;
+      }
+    }
+}
+
+TEST(BlockPacker, WhatDoesNotPackGrowsLittleAndWhatRepeatsBecomesSmall) {
+  BlockPacker packer;
+  const std::size_t bytes = std::size_t{4} * 256 * 256;
+  EXPECT_LT(packer.pack(anyFloats(bytes / 4, 3), 256).size(), bytes + bytes / 100);
+  EXPECT_LT(packer.pack(std::vector<float>(bytes / 4, 2.5F), 256).size(), bytes / 100);
+  EXPECT_LT(packer.pack(slope(bytes / 4, 256), 256).size(), bytes / 2);
+}
+
+TEST(TiffExport, GdalReadsEveryBitOfEveryLayout) {
+  const TempFolder folder;
+  GDALRegister_GTiff();
+  for (const auto& [w, h] : {std::pair{1, 1},
+                             {256, 256},
+                             {257, 257},
+                             {600, 770},
+                             {512, 512},
+                             {1000, 5},
+                             {5, 1000},
+                             {256, 1000},
+                             {1000, 256}}) {
+    const std::vector<float> heights =
+        anyFloats(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), 9);
+    const std::string path = folder.file("t.tif");
+    ASSERT_TRUE(save(makeField(gridOf(w, h), heights), path));
+    GDALDatasetH dataset = GDALOpen(path.c_str(), GA_ReadOnly);
+    ASSERT_NE(dataset, nullptr);
+    EXPECT_STREQ(GDALGetMetadataItem(dataset, "COMPRESSION", "IMAGE_STRUCTURE"), "DEFLATE");
+    std::vector<float> read(heights.size());
+    ASSERT_EQ(GDALRasterIO(GDALGetRasterBand(dataset, 1), GF_Read, 0, 0, w, h, read.data(), w, h, GDT_Float32,
+                           0, 0),
+              CE_None);
+    GDALClose(dataset);
+    for (int r = 0; r < h; ++r)
+      for (int c = 0; c < w; ++c) {
+        const float wrote = heights[static_cast<std::size_t>(h - 1 - r) * static_cast<std::size_t>(w) +
+                                    static_cast<std::size_t>(c)];
+        const float got =
+            read[static_cast<std::size_t>(r) * static_cast<std::size_t>(w) + static_cast<std::size_t>(c)];
+        if (std::isnan(wrote))
+          ASSERT_TRUE(std::isnan(got)) << w << " x " << h;
+        else
+          ASSERT_EQ(std::bit_cast<std::uint32_t>(wrote), std::bit_cast<std::uint32_t>(got))
+              << w << " x " << h;
+      }
+  }
+}
+
+TEST(TiffExport, TheBytesDoNotDependOnTheNumberOfThreads) {
+  const TempFolder folder;
+  const Version field = makeField(gridOf(900, 1100), slope(std::size_t{900} * 1100, 900));
+  ASSERT_TRUE(save(field, folder.file("all.tif")));
+  {
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    ASSERT_TRUE(save(field, folder.file("one.tif")));
+  }
+  const tbb::global_control many(tbb::global_control::max_allowed_parallelism, 7);
+  ASSERT_TRUE(save(field, folder.file("seven.tif")));
+  const std::string all = readBytes(folder.file("all.tif"));
+  EXPECT_EQ(all, readBytes(folder.file("one.tif")));
+  EXPECT_EQ(all, readBytes(folder.file("seven.tif")));
+}
+
+TEST(TiffExport, ACancelledOneLeavesNothing) {
+  const TempFolder folder;
+  JobControl job;
+  job.cancel();
+  const auto written = exportField(makeField(gridOf(600, 600), slope(std::size_t{600} * 600, 600)),
+                                   folder.file("t.tif"), {}, job);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().kind, ErrorKind::kCancelled);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace fettle::engine
