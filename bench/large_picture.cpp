@@ -1,0 +1,45 @@
+#include "bench/large_picture.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace fettle::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+engine::Result<LargePicture> LargePicture::create() {
+  auto made = render::LivePicture::create();
+  if (!made) return tl::unexpected(made.error());
+  return LargePicture(*std::move(made));
+}
+
+engine::Result<PictureSteps> LargePicture::show(const engine::Version& version, engine::JobControl& job) {
+  PictureSteps steps;
+  render::FrameInput input;
+  input.view.width = 1280;
+  input.view.height = 800;
+  const auto start = Clock::now();
+  if (auto ok = picture_->update(version); !ok) return tl::unexpected(ok.error());
+  steps.longest_s = secondsSince(start);
+  for (bool rests = false; !rests; ++steps.frames) {
+    if (job.cancelled()) return engine::cancelled();
+    const auto begin = Clock::now();
+    const auto frame = picture_->drawAndWait(input);
+    if (!frame) return tl::unexpected(frame.error());
+    steps.longest_s = std::max(steps.longest_s, secondsSince(begin));
+    if (steps.frames == 0) steps.first_s = secondsSince(start);
+    rests = frame->upload.pending_tiles == 0 && frame->residency.pages_loaded == 0;
+  }
+  steps.rest_s = secondsSince(start);
+  return steps;
+}
+
+}  // namespace fettle::bench
