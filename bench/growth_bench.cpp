@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "bench/commit_times.h"
 #include "bench/hand_stroke.h"
 #include "bench/machine.h"
 #include "engine/field/live_field.h"
@@ -40,10 +41,10 @@ GrowthPoint pointOf(double work, std::vector<double> costs) {
   return {work, costs[costs.size() / 2], costs.back()};
 }
 
-void add(Growth& growth, const std::string& series, const GrowthPoint& point) {
+void add(Growth& growth, const std::string& series, const GrowthPoint& point, double target = 0.0) {
   for (GrowthSeries& s : growth.series)
     if (s.name == series) return s.points.push_back(point);
-  growth.series.push_back({series, {point}, 0.0});
+  growth.series.push_back({series, {point}, 0.0, target});
 }
 
 // Nanoseconds a tick, single ones by the clock left out: the whole way through, three times.
@@ -89,9 +90,21 @@ void versions(const engine::Version& field, double work, double effort, Growth& 
     edit.push_back(1e9 * edited / rounds);
     undo.push_back(1e9 * undone / rounds);
   }
-  add(growth, "snapshot", pointOf(work, std::move(snapshot)));
+  add(growth, "snapshot", pointOf(work, std::move(snapshot)), 1e4);
   add(growth, "edit of a sample", pointOf(work, std::move(edit)));
-  add(growth, "undo", pointOf(work, std::move(undo)));
+  add(growth, "undo", pointOf(work, std::move(undo)), 1e6);
+}
+
+// A stroke's way to the disk.
+engine::Status commits(const engine::Version& field, double work, double effort, Growth& growth,
+                       engine::JobControl& job) {
+  engine::JobControl quiet;
+  auto times = commitTimes(field, std::max(3, static_cast<int>(100 * effort)), quiet);
+  if (!times) return tl::unexpected(times.error());
+  if (job.cancelled()) return engine::cancelled();
+  add(growth, "on the disk", pointOf(work, std::move(times->durable_ms)), 1e3);
+  add(growth, "the window waits", pointOf(work, std::move(times->waits_ms)));
+  return {};
 }
 
 engine::Result<GrowthPoint> filtering(const engine::Version& field, engine::FilterKind kind, int window,
@@ -195,6 +208,8 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
               {}};
   Growth version{"version",   "Versions over the field's size", "samples of the field",
                  "time [ns]", "0: a tree of shared tiles",      {}};
+  Growth commit{"commit",    "A stroke kept in the session over the field's size", "samples of the field",
+                "time [ms]", "0: only what the stroke changed is written",         {}};
   Growth filter{"filter",
                 "Filters over the field's size",
                 "samples of the field",
@@ -225,6 +240,8 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
     add(tick, "feel", ticks(field, scene, haptic::Tool::kFeel, samples, options.effort));
     add(tick, "3 x 3 smoothing", ticks(field, scene, haptic::Tool::kSmooth, samples, options.effort));
     versions(field, samples, options.effort, version);
+    if (engine::Status kept = commits(field, samples, options.effort, commit, job); !kept)
+      return tl::unexpected(kept.error());
     for (const FilterKind kind : kKinds) {
       const auto point = filtering(field, kind, 11, 0, samples, 1e3, job);
       if (!point) return tl::unexpected(point.error());
@@ -254,8 +271,8 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
       job.advance();
     }
   }
-  report.growths = {std::move(tick), std::move(version), std::move(filter), std::move(window),
-                    std::move(brush)};
+  report.growths = {std::move(tick),   std::move(version), std::move(commit),
+                    std::move(filter), std::move(window),  std::move(brush)};
   if (options.picture) {
     auto upload = uploads(job);
     if (!upload) return tl::unexpected(upload.error());

@@ -31,6 +31,7 @@ struct GrowthSeries {
   /// Of the line through the points' logarithms, by least squares: 0 = the cost does not grow, 1 = as the
   /// work, 2 = as its square.
   double slope = 0.0;
+  double target = 0.0;  ///< most that the cost is to be at any size; 0: none is set
 };
 
 /// Costs of a kind against the same work, for one picture with logarithmic axes.
@@ -49,11 +50,11 @@ struct GrowthReport {
   std::vector<Growth> growths;
 };
 
-/// How costs grow with the work: a tick, snapshot, edit and undo over the size of the field; filters over the
-/// size of the field and of the window; a tick over the radius of its brush; an upload over the tiles that
-/// changed. One thread but for the filters of whole fields, which take all cores. Memory: some 20 bytes a
-/// sample of the largest field. Errors: kInput for an option out of range, kCancelled, kFailed without memory
-/// or device. Thread: any; blocks.
+/// How costs grow with the work: a tick, snapshot, edit, undo and keeping a stroke in a session
+/// (commit_times.h) over the size of the field; filters over the size of the field and of the window; a tick
+/// over the radius of its brush; an upload over the tiles that changed. One thread but for the filters of
+/// whole fields, which take all cores. Memory: some 20 bytes a sample of the largest field. Errors: kInput
+/// for an option out of range, kCancelled, kFailed without memory or device. Thread: any; blocks.
 [[nodiscard]] engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::JobControl& job);
 
 /// The slope of a series. 0 for less than two points.

@@ -60,7 +60,10 @@ engine::Result<Report> measure(const Options& options, engine::JobControl& job) 
       Report points = Report::array();
       for (const bench::GrowthPoint& p : series.points)
         points.push_back({{"work", p.work}, {"median", p.median}, {"worst", p.worst}});
-      entry["series"].push_back({{"name", series.name}, {"slope", series.slope}, {"points", points}});
+      entry["series"].push_back({{"name", series.name},
+                                 {"slope", series.slope},
+                                 {"target", series.target > 0.0 ? Report(series.target) : Report()},
+                                 {"points", points}});
     }
     if (!options.folder.empty()) {
       const auto svg = drawnByGnuplot(scriptOf(growth));
@@ -86,9 +89,12 @@ void print(const Report& report) {
   for (const Report& growth : report["growths"]) {
     fmt::print("\n{}: {}; slope wanted {}\n", growth["title"].get<std::string>(),
                growth["cost"].get<std::string>(), growth["wanted"].get<std::string>());
-    fmt::print("{:<20}{:>7}  at {}\n", "", "slope", growth["work"].get<std::string>());
+    fmt::print("{:<20}{:>7}{:>8}  at {}: median (worst)\n", "", "slope", "target",
+               growth["work"].get<std::string>());
     for (const Report& series : growth["series"]) {
-      fmt::print("{:<20}{:>7.2f} ", series["name"].get<std::string>(), series["slope"].get<double>());
+      const Report& target = series["target"];
+      fmt::print("{:<20}{:>7.2f}{:>8} ", series["name"].get<std::string>(), series["slope"].get<double>(),
+                 target.is_null() ? std::string() : fmt::format("{:g}", target.get<double>()));
       for (const Report& p : series["points"])
         fmt::print(" {:.3g}: {:.3g} ({:.3g})", p["work"].get<double>(), p["median"].get<double>(),
                    p["worst"].get<double>());

@@ -5,6 +5,9 @@
 
 #include <cmath>
 
+#include "bench/commit_times.h"
+#include "bench/hand_stroke.h"
+
 namespace fettle::bench {
 namespace {
 
@@ -26,7 +29,7 @@ TEST(GrowthBench, EverySeriesHasAllItsSizes) {
   engine::JobControl job;
   const auto report = benchGrowth(options, job);
   ASSERT_TRUE(report) << report.error().line();
-  ASSERT_EQ(report->growths.size(), 5U);
+  ASSERT_EQ(report->growths.size(), 6U);
   for (const Growth& growth : report->growths) {
     EXPECT_FALSE(growth.series.empty()) << growth.id;
     const std::size_t sizes = growth.series.front().points.size();
@@ -40,6 +43,20 @@ TEST(GrowthBench, EverySeriesHasAllItsSizes) {
     }
   }
   EXPECT_EQ(job.done(), job.total());
+}
+
+TEST(GrowthBench, EveryStrokeIsTimedUntilItIsOnTheDisk) {
+  engine::JobControl job;
+  const auto times = commitTimes(workpiece(256, 0.05), 4, job);
+  ASSERT_TRUE(times) << times.error().line();
+  ASSERT_EQ(times->durable_ms.size(), 4U);
+  ASSERT_EQ(times->waits_ms.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_GT(times->waits_ms[i], 0.0);
+    EXPECT_GT(times->durable_ms[i], times->waits_ms[i]);
+    EXPECT_GT(times->tiles[i], 0.0);
+    EXPECT_LE(times->tiles[i], 16.0);
+  }
 }
 
 TEST(GrowthBench, AFieldOutOfRangeIsRefusedAndACancelIsHeard) {

@@ -1,0 +1,85 @@
+#include "bench/commit_times.h"
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "app/journal/recorder.h"
+#include "bench/hand_stroke.h"
+#include "bench/own_folder.h"
+#include "engine/field/live_field.h"
+#include "engine/field/tile_store.h"
+#include "engine/history/history.h"
+#include "engine/session/session_writer.h"
+#include "haptic/loop/rt_thread.h"
+#include "haptic/scene.h"
+#include "haptic/tick.h"
+
+namespace fettle::bench {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::int64_t kStrokeTicks = 1000;
+
+double msSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+engine::Result<CommitTimes> commitTimes(const engine::Version& field, int strokes, engine::JobControl& job) {
+  const auto folder = OwnFolder::create(engine::storePolicy().folder);
+  if (!folder) return tl::unexpected(folder.error());
+  engine::Session session;
+  session.original = field;
+  session.history = engine::History(field);
+  auto writer = engine::SessionWriter::create(session, (folder->path() / "strokes.fettle").string(), {}, job);
+  if (!writer) return tl::unexpected(writer.error());
+
+  haptic::Scene scene = haptic::defaultScene();
+  scene.brush_radius_samples = 8.0;
+  HandMotion motion;
+  motion.ticks = kStrokeTicks * strokes;
+  motion.tool = haptic::Tool::kSmooth;
+  const std::vector<haptic::StrokeSample> ticks = handStroke(field, motion);
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  haptic::Tick tick(scene, live, field);
+  app::Recorder recorder;
+  engine::History& history = session.history;
+  CommitTimes times;
+  for (std::int64_t stroke = 0; stroke < strokes; ++stroke) {
+    {
+      const haptic::DenormalScope as_in_the_loop;
+      for (std::int64_t i = stroke * kStrokeTicks; i < (stroke + 1) * kStrokeTicks; ++i) {
+        (void)tick.run(ticks[static_cast<std::size_t>(i)]);
+        recorder.tick(ticks[static_cast<std::size_t>(i)]);
+      }
+    }
+    const auto end = Clock::now();
+    engine::StepInfo info;
+    info.name = "smoothing";
+    info.time = engine::stepTimeNow();
+    if (!history.push(std::move(info), live.snapshot())) continue;  // a hand that touched nothing
+    const std::int64_t number = history.number();
+    recorder.add(app::journal::StepMade{number,
+                                        "smoothing",
+                                        engine::StepKind::kStroke,
+                                        {static_cast<std::uint64_t>((stroke + 1) * kStrokeTicks), false},
+                                        false});
+    (*writer)->commit(number, history.step(number), recorder.take());
+    const double waited = msSince(end);
+    if (engine::Status flushed = (*writer)->flush(job); !flushed) return tl::unexpected(flushed.error());
+    times.durable_ms.push_back(msSince(end));
+    times.waits_ms.push_back(waited);
+    const auto change = engine::measureChange(history.state(number - 1), history.current());
+    times.tiles.push_back(static_cast<double>(change.tiles));
+  }
+  if (times.durable_ms.empty()) return engine::failure("no stroke touched the field", "bench growth");
+  if (engine::Status closed = (*writer)->close(job); !closed) return tl::unexpected(closed.error());
+  return times;
+}
+
+}  // namespace fettle::bench
