@@ -85,6 +85,12 @@ Result<FieldBuilder> FieldBuilder::create(Grid grid, std::shared_ptr<FieldMemory
     if (start == Start::kHoles || at_border) tile.samples.fill(kHole);
     tile.marks.fill(0);
   });
+  builder.summaries_.resize(tiles);
+  if (start == Start::kUnwritten) {
+    builder.missing_ = std::make_unique<std::atomic<std::int32_t>[]>(tiles);
+    for (std::size_t i = 0; i < tiles; ++i)
+      builder.missing_[i].store(builder.samplesOf(i), std::memory_order_relaxed);
+  }
   return builder;
 }
 
@@ -160,24 +166,39 @@ Node* FieldBuilder::buildNode(int level, std::int32_t column, std::int32_t row, 
   return node;
 }
 
+std::int32_t FieldBuilder::samplesOf(std::size_t place) const noexcept {
+  const auto tc = static_cast<std::int32_t>(place % static_cast<std::size_t>(tile_columns_));
+  const auto tr = static_cast<std::int32_t>(place / static_cast<std::size_t>(tile_columns_));
+  return std::min(kTileSide, grid_->width - tc * kTileSide) *
+         std::min(kTileSide, grid_->height - tr * kTileSide);
+}
+
+void FieldBuilder::summarise(std::size_t place) noexcept {
+  Tile& tile = *tiles_[place];
+  refreshBounds(tile, 0, 0, kTileSide, kTileSide);
+  refreshMarks(tile);
+  std::uint32_t holes = 0;
+  for (const float v : tile.samples) holes += v != v ? 1U : 0U;
+  tile.nan_samples = holes;
+  summaries_[place] = {tile.bounds, tile.marked_samples != 0,
+                       holes > static_cast<std::uint32_t>(kTileSamples - samplesOf(place))};
+}
+
+void FieldBuilder::wrote(std::int32_t tc, std::int32_t tr, std::int32_t samples) noexcept {
+  assert(missing_ != nullptr);
+  const std::size_t place = static_cast<std::size_t>(tr) * tile_columns_ + tc;
+  // Release: what I wrote is there for whoever comes last. Acquire: I am the last, and see what all wrote.
+  const std::int32_t before = missing_[place].fetch_sub(samples, std::memory_order_acq_rel);
+  assert(before >= samples);
+  if (before == samples) summarise(place);
+}
+
 Version FieldBuilder::build() && {
   bool marked = false;
   bool holed = false;
   HeightBounds bounds;
-  summaries_.resize(tiles_.size());
   forEachIndex(tiles_.size(), [this](std::size_t i) {
-    Tile& tile = *tiles_[i];
-    refreshBounds(tile, 0, 0, kTileSide, kTileSide);
-    refreshMarks(tile);
-    std::uint32_t holes = 0;
-    for (const float v : tile.samples) holes += v != v ? 1U : 0U;
-    tile.nan_samples = holes;
-    const auto tc = static_cast<std::int32_t>(i % static_cast<std::size_t>(tile_columns_));
-    const auto tr = static_cast<std::int32_t>(i / static_cast<std::size_t>(tile_columns_));
-    const int columns = std::min(kTileSide, grid_->width - tc * kTileSide);
-    const int rows = std::min(kTileSide, grid_->height - tr * kTileSide);
-    summaries_[i] = {tile.bounds, tile.marked_samples != 0,
-                     holes > static_cast<std::uint32_t>(kTileSamples - columns * rows)};
+    if (missing_ == nullptr || missing_[i].load(std::memory_order_relaxed) != 0) summarise(i);
   });
   Node* root = buildNode(rootLevel(*grid_), 0, 0, marked, holed, bounds);
   tiles_.clear();

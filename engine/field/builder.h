@@ -52,6 +52,11 @@ class FieldBuilder {
     return *tiles_[static_cast<std::size_t>(tr) * tile_columns_ + tc];
   }
 
+  /// Says that `samples` of tile (tc, tr) are written now, each sample once and for good, in a builder that
+  /// started kUnwritten: who says it of a tile's last ones makes its bounds and counts at once, while it lies
+  /// in the processor's cache. build() makes those of tiles of which not all was said. Threading: any.
+  void wrote(std::int32_t tc, std::int32_t tr, std::int32_t samples) noexcept;
+
   /// Samples that were infinite and became holes.
   [[nodiscard]] std::int64_t infinities() const noexcept {
     return infinities_->load(std::memory_order_relaxed);
@@ -69,13 +74,17 @@ class FieldBuilder {
   };
 
   FieldBuilder(Grid grid, std::shared_ptr<FieldMemory> memory);
+  void summarise(std::size_t place) noexcept;
+  [[nodiscard]] std::int32_t samplesOf(std::size_t place) const noexcept;
   [[nodiscard]] Node* buildNode(int level, std::int32_t column, std::int32_t row, bool& marked, bool& holed,
                                 HeightBounds& bounds);
 
   std::shared_ptr<const Grid> grid_;
   std::shared_ptr<FieldMemory> memory_;
   std::vector<TileRef> tiles_;      // row-major
-  std::vector<Summary> summaries_;  // of each, in build()
+  std::vector<Summary> summaries_;  // of each
+  // Samples of each that wrote() has not heard of; none where the builder started with holes.
+  std::unique_ptr<std::atomic<std::int32_t>[]> missing_;
   std::int32_t tile_columns_ = 0;
   std::int32_t tile_rows_ = 0;
   std::unique_ptr<std::atomic<std::int64_t>> infinities_;

@@ -16,28 +16,44 @@ namespace fettle::engine {
 
 namespace {
 
-// Turns a piece into heights where it belongs. `row` holds a row of the piece.
+// Turns a piece into heights where it belongs, tile by tile, so that each is whole while it lies in the
+// cache.
 template <class T>
-void place(const TiffScan& scan, const TiffPiece& piece, FieldBuilder& builder, std::vector<float>& row,
-           HeightTally& tally) {
+void placeTiles(const TiffScan& scan, const TiffPiece& piece, FieldBuilder& builder, HeightTally& tally) {
+  const std::int32_t height = builder.grid().height;
+  const TiffWindow& w = piece.window;
+  const std::int32_t low = scan.top_down ? height - w.row - w.rows : w.row;
+  const std::int32_t right = w.column + w.columns;
+  for (std::int32_t bottom = low; bottom < low + w.rows;) {
+    const std::int32_t top = std::min(low + w.rows, (bottom | (kTileSide - 1)) + 1);
+    for (std::int32_t left = w.column; left < right;) {
+      const std::int32_t end = std::min(right, (left | (kTileSide - 1)) + 1);
+      Tile& tile = builder.tile(left / kTileSide, bottom / kTileSide);
+      for (std::int32_t row = bottom; row < top; ++row) {
+        const std::int32_t r = scan.top_down ? height - 1 - row - w.row : row - w.row;
+        scan.rule.convert(
+            static_cast<const T*>(piece.numbers) + std::ptrdiff_t{r} * piece.stride + (left - w.column),
+            tile.samples.data() + (row % kTileSide) * kTileSide + left % kTileSide,
+            static_cast<std::size_t>(end - left), tally);
+      }
+      builder.wrote(left / kTileSide, bottom / kTileSide, (end - left) * (top - bottom));
+      left = end;
+    }
+    bottom = top;
+  }
+}
+
+// The same where the file has a mask or runs leftwards. `row` holds a row of the piece.
+template <class T>
+void placeRows(const TiffScan& scan, const TiffPiece& piece, FieldBuilder& builder, std::vector<float>& row,
+               HeightTally& tally) {
   const Grid& grid = builder.grid();
   const TiffWindow& w = piece.window;
   const std::int32_t first = scan.right_to_left ? grid.width - w.column - w.columns : w.column;
+  row.resize(static_cast<std::size_t>(w.columns));
   for (std::int32_t r = 0; r < w.rows; ++r) {
     const T* numbers = static_cast<const T*>(piece.numbers) + std::ptrdiff_t{r} * piece.stride;
     const std::int32_t to = scan.top_down ? grid.height - 1 - (w.row + r) : w.row + r;
-    if (piece.mask == nullptr && !scan.right_to_left) {
-      for (std::int32_t c = first; c < first + w.columns;) {
-        const std::int32_t end = std::min(first + w.columns, (c | (kTileSide - 1)) + 1);
-        Tile& tile = builder.tile(c / kTileSide, to / kTileSide);
-        scan.rule.convert(numbers + (c - first),
-                          tile.samples.data() + (to % kTileSide) * kTileSide + c % kTileSide,
-                          static_cast<std::size_t>(end - c), tally);
-        c = end;
-      }
-      continue;
-    }
-    row.resize(static_cast<std::size_t>(w.columns));
     scan.rule.convert(numbers, row.data(), row.size(), tally);
     for (std::size_t k = 0; piece.mask != nullptr && k < row.size(); ++k)
       if (piece.mask[static_cast<std::size_t>(r) * row.size() + k] == 0)
@@ -57,7 +73,10 @@ Status readSamples(const TiffScan& scan, TiffSamples& samples, FieldBuilder& bui
   tbb::enumerable_thread_specific<Worker> workers;
   Status status = samples.readAll(job, [&](const TiffPiece& piece) {
     Worker& worker = workers.local();
-    place<T>(scan, piece, builder, worker.row, worker.tally);
+    if (piece.mask == nullptr && !scan.right_to_left)
+      placeTiles<T>(scan, piece, builder, worker.tally);
+    else
+      placeRows<T>(scan, piece, builder, worker.row, worker.tally);
   });
   for (const Worker& worker : workers) total.merge(worker.tally);
   return status;

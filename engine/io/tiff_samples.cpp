@@ -13,6 +13,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "engine/field/tile.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -23,7 +25,7 @@ constexpr int kMostThreads = 16;
 // Opening the file again costs more than such a field takes to read [samples].
 constexpr std::int64_t kSmall = std::int64_t{1} << 18;
 // Rows of a window that is no block.
-constexpr std::int32_t kRows = 64;
+constexpr std::int32_t kRows = kTileSide;
 
 Status unreadable(const GdalSession& gdal, const std::string& path) {
   return inputError("the samples cannot be read: " + gdal.reason("the file is damaged"), path,
@@ -144,8 +146,11 @@ std::vector<TiffWindow> TiffSamples::windows() const {
     rows = (rows + 1) / 2;
   std::vector<TiffWindow> all;
   for (std::int32_t row = 0; row < height_;) {
-    // Parts of a block end where the block does.
-    const std::int32_t limit = blocks ? (row / block_rows_ + 1) * block_rows_ : height_;
+    // Parts of a block end where the block does, plain ones so that the field's tiles are whole.
+    const std::int32_t limit = blocks ? (row / block_rows_ + 1) * block_rows_
+                               : way_ == Way::kPlain && scan_.top_down
+                                   ? height_ - (height_ - row - 1) / rows * rows
+                                   : height_;
     const std::int32_t end = std::min({row + rows, limit, height_});
     for (std::int32_t column = 0; column < width_; column += columns)
       all.push_back({column, row, std::min(columns, width_ - column), end - row});
