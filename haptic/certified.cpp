@@ -144,6 +144,37 @@ Changes signChanges(const Quintic& h, double noise) noexcept {
   return first < 0 ? Changes::kOneUp : Changes::kOneDown;
 }
 
+// The root of h between two places of which it is below zero at the first and above at the other. To the last
+// bit: next to a spike a patch is a valley along which nothing else converges. Secants that do not stick to
+// one end (Dowell and Jarratt 1971, "A modified regula falsi method"), and the middle wherever such a step
+// has not halved what is left, so that 54 halvings are enough whatever h is like.
+double rootBetween(const Reduced& r, double low, double high, double h_low, double h_high) noexcept {
+  int kept = 0;  // the end that the last step left where it was: -1 low, 1 high
+  for (int i = 0; i < 54; ++i) {
+    const double half = 0.5 * (high - low);
+    const double middle = low + half;
+    if (!(low < middle && middle < high)) break;
+    double x = low - h_low * (high - low) / (h_high - h_low);
+    for (int step = 0; step < 2; ++step, x = low + 0.5 * (high - low)) {
+      if (!(low < x && x < high)) x = middle;
+      const double h = r.h(x);
+      if (h < 0.0) {
+        low = x;
+        h_low = h;
+        if (kept == 1) h_high *= 0.5;
+        kept = 1;
+      } else {
+        high = x;
+        h_high = h;
+        if (kept == -1) h_low *= 0.5;
+        kept = -1;
+      }
+      if (high - low <= half) break;
+    }
+  }
+  return 0.5 * (low + high);
+}
+
 // Calls f(v) near every root in [0, 1] at which h goes from below to above zero: the minima along v. May call
 // it elsewhere too. kNodes bounds the halvings: five roots need far fewer unless they coincide to rounding,
 // and then every point near them is as good.
@@ -165,14 +196,7 @@ void forEachMinimum(const Reduced& r, F&& f) noexcept {
     const Changes changes = signChanges(h, noise);
     if (changes == Changes::kNone || changes == Changes::kOneDown) continue;
     if (changes == Changes::kOneUp) {
-      double low = at.low;
-      double high = at.low + at.size;
-      // To the last bit: next to a spike a patch is a valley along which nothing else converges.
-      for (int i = 0; i < 54; ++i) {
-        const double middle = 0.5 * (low + high);
-        (r.h(middle) < 0.0 ? low : high) = middle;
-      }
-      f(0.5 * (low + high));
+      f(rootBetween(r, at.low, at.low + at.size, h[0], h[5]));
       continue;
     }
     const bool lost = at.depth >= 20 && largest(h.data(), 6) <= noise;
@@ -185,28 +209,9 @@ void forEachMinimum(const Reduced& r, F&& f) noexcept {
   }
 }
 
-// Whether the squared distance is convex over the whole patch, so that going down from anywhere finds its one
-// minimum. With halves
-// of the second derivatives, det = sx^2 sy^2 + sx^2 q^2 + sy^2 p^2 - z d (2 p q + z d).
-bool convexDistance(const Patch& s, double ez) noexcept {
-  // Beside a spike, slope 100 and more, the descent may not come to rest in its rounds: trust it less there.
-  const double climb =
-      std::max(std::abs(s.b), std::abs(s.b + s.d)) + std::max(std::abs(s.c), std::abs(s.c + s.d));
-  if (climb > 100.0 * std::min(s.sx, s.sy)) return false;
-  if (s.d == 0.0) return true;
-  const double p0 = s.b;
-  const double p1 = s.b + s.d;
-  const double q0 = s.c;
-  const double q1 = s.c + s.d;
-  const auto least = [](double a, double b) {
-    return (a > 0.0) == (b > 0.0) ? std::min(std::abs(a), std::abs(b)) : 0.0;
-  };
-  const double p_low = least(p0, p1);
-  const double q_low = least(q0, q1);
-  const double zd = std::abs(s.d) * std::max(std::abs(s.highest() - ez), std::abs(s.lowest() - ez));
-  const double pq = std::max(std::abs(p0), std::abs(p1)) * std::max(std::abs(q0), std::abs(q1));
-  const double sum = s.sx * s.sx * s.sy * s.sy + s.sx * s.sx * q_low * q_low + s.sy * s.sy * p_low * p_low;
-  return sum > zd * (2.0 * pq + zd) * (1.0 + 1e-12);
+// The least magnitude between two numbers.
+double least(double a, double b) noexcept {
+  return (a > 0.0) == (b > 0.0) ? std::min(std::abs(a), std::abs(b)) : 0.0;
 }
 
 double unit(double x) noexcept {
@@ -258,6 +263,33 @@ PatchPoint bestOfAll(const Patch& s, const glm::dvec3& endpoint, PatchPoint best
   return best;
 }
 
+// Whether no point of the patch is nearer than `rest`, where the descent came to rest, but for rounding. With
+// D = (du, dv) the way from there to another point S, and a = e - S(rest),
+//   |S - e|^2 = |a|^2 - 2 (a.Su du + a.Sv dv) + (sx^2 + P^2) du^2 + (sy^2 + Q^2) dv^2 + 2 (P Q - k) du dv,
+//   P = p + d dv / 2,  Q = q + d du / 2,  k = az d,  p and q the slopes at rest.
+// At rest the second term is not above zero for any way that stays in the patch, and the rest is not below
+// zero where its determinant sx^2 sy^2 + sx^2 Q^2 + sy^2 P^2 + 2 k P Q - k^2 is not.
+bool nothingNearer(const Patch& s, const glm::dvec3& e, const PatchPoint& rest) noexcept {
+  const double p = s.b + s.d * rest.v;
+  const double q = s.c + s.d * rest.u;
+  const glm::dvec3 a = e - s.at(rest.u, rest.v);
+  const double along_u = a.x * s.sx + a.z * p;
+  const double along_v = a.y * s.sy + a.z * q;
+  const double gain = std::max(-along_u * rest.u, along_u * (1.0 - rest.u)) +
+                      std::max(-along_v * rest.v, along_v * (1.0 - rest.v));
+  if (!(gain <= 1e-13 * rest.distance2_mm2)) return false;
+  const double p0 = p - 0.5 * s.d * rest.v;
+  const double p1 = p + 0.5 * s.d * (1.0 - rest.v);
+  const double q0 = q - 0.5 * s.d * rest.u;
+  const double q1 = q + 0.5 * s.d * (1.0 - rest.u);
+  const double k = a.z * s.d;
+  const double p_low = least(p0, p1);
+  const double q_low = least(q0, q1);
+  const double product = std::min({k * p0 * q0, k * p0 * q1, k * p1 * q0, k * p1 * q1});
+  const double sum = s.sx * s.sx * (s.sy * s.sy + q_low * q_low) + s.sy * s.sy * p_low * p_low;
+  return sum + 2.0 * product - k * k > 1e-12 * (sum + 2.0 * std::abs(product) + k * k);
+}
+
 // Squared distance that no point of the patch undercuts, as seen along `away`, a direction from some point to
 // the endpoint, not zero: a patch lies in the hull of its corners, and so no nearer than the nearest of their
 // four planes across that direction. Off by a few roundings of the heights nearby.
@@ -273,8 +305,8 @@ PatchPoint bestOfAll(const Patch& s, const glm::dvec3& endpoint, PatchPoint best
 }  // namespace
 
 PatchPoint closestOnWholePatch(const Patch& s, const glm::dvec3& endpoint) noexcept {
-  const PatchPoint best = descend(s, endpoint);
-  return convexDistance(s, endpoint.z) ? best : bestOfAll(s, endpoint, best);
+  const PatchPoint rest = descend(s, endpoint);
+  return nothingNearer(s, endpoint, rest) ? rest : bestOfAll(s, endpoint, rest);
 }
 
 namespace {
@@ -435,7 +467,7 @@ class CellSearch {
     };
     const PatchPoint rest = descend(patch, e_);
     keep(rest);
-    if (convexDistance(patch, e_.z) || hullIsBeyond(patch, patch.at(rest.u, rest.v))) return;
+    if (nothingNearer(patch, e_, rest) || hullIsBeyond(patch, patch.at(rest.u, rest.v))) return;
     keep(bestOfAll(patch, e_, rest));
   }
 
