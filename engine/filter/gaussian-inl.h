@@ -17,7 +17,7 @@ template <int kRadius, bool kHoles>
 FETTLE_INLINE void downSmall(const GaussianGroup& g) noexcept {
   constexpr int kRows = 4;
   Doubles w[kRadius + 1];
-  for (int k = 0; k <= kRadius; ++k) w[k] = Doubles{} + g.weights[k];
+  for (int k = 0; k <= kRadius; ++k) w[k] = spread(g.weights[k]);
   for (int c = 0; c < g.columns; c += 8) {
     Doubles sum[kRows] = {};
     Doubles sum_there[kRows] = {};
@@ -53,7 +53,7 @@ template <int kRadius, bool kHoles>
 FETTLE_INLINE void finishSmall(const GaussianGroup& g) noexcept {
   constexpr int kRows = 4;
   Doubles w[kRadius + 1];
-  for (int k = 0; k <= kRadius; ++k) w[k] = Doubles{} + g.weights[k];
+  for (int k = 0; k <= kRadius; ++k) w[k] = spread(g.weights[k]);
   for (int c = 0; c < g.out_columns; c += 8) {
     Doubles inverse;
     if constexpr (!kHoles) inverse = load<Doubles>(g.inverse + c);
@@ -82,40 +82,55 @@ void smallFinish(const GaussianGroup& g, bool holes) noexcept {
     finishSmall<kRadius, false>(g);
 }
 
-// sum[j] += weights[i - j] * x for the outputs j that sample i of a window that begins at output 0 reaches,
-// with `reached` a constant after unrolling.
-template <int kOutputs, int kAbreast>
-FETTLE_INLINE void reach(const double* weights, int i, int from, int to, const Doubles* x,
+// Doubles of 16 columns or rows side by side, for each sample along a window.
+constexpr int kSide = 16;
+
+// How many outputs, and vectors of each, are summed at once: what the registers hold beside samples and a
+// weight. With 8 x 2 sums a sample is fetched for eight products and a weight for two, so that fetching keeps
+// up with multiplying.
+constexpr int kOutputs = FETTLE_LEVEL == 2 ? 8 : 4;
+constexpr int kAbreast = FETTLE_LEVEL == 2 ? 2 : 1;
+
+// sum[j] += weights[-j] * x for the outputs j in [from, to), constants after unrolling.
+FETTLE_INLINE void reach(const double* weights, int from, int to, const double* sample,
                          Doubles (*sum)[kAbreast]) noexcept {
-#pragma GCC unroll 16
+  Doubles x[kAbreast];
+#pragma GCC unroll 2
+  for (int h = 0; h < kAbreast; ++h) x[h] = load<Doubles>(sample + 8 * h);
+#pragma GCC unroll 8
   for (int j = 0; j < kOutputs; ++j) {
     if (j < from || j >= to) continue;
-    const Doubles w = Doubles{} + weights[i - j];
+    const Doubles w = spread(weights[-j]);
 #pragma GCC unroll 2
     for (int h = 0; h < kAbreast; ++h) sum[j][h] = fused(w, x[h], sum[j][h]);
   }
 }
 
-// All of kOutputs neighbouring windows of `taps` >= kOutputs samples: sample(i, x) for i in
-// 0 .. taps + kOutputs - 2.
-template <int kOutputs, int kAbreast, class Sample>
-FETTLE_INLINE void windows(const double* weights, int taps, const Sample& sample,
-                           Doubles (*sum)[kAbreast]) noexcept {
-  Doubles x[kAbreast];
-#pragma GCC unroll 16
-  for (int i = 0; i < kOutputs - 1; ++i) {
-    sample(i, x);
-    reach<kOutputs, kAbreast>(weights, i, 0, i + 1, x, sum);
-  }
-  for (int i = kOutputs - 1; i < taps; ++i) {
-    sample(i, x);
-    reach<kOutputs, kAbreast>(weights, i, 0, kOutputs, x, sum);
-  }
-#pragma GCC unroll 16
-  for (int i = 1; i < kOutputs; ++i) {
-    sample(taps - 1 + i, x);
-    reach<kOutputs, kAbreast>(weights + taps - 1, i, i, kOutputs, x, sum);
-  }
+// Windows of `taps` >= 8 samples that begin at eight neighbouring samples; a sample is kSide doubles.
+FETTLE_INLINE void windows(const double* weights, int taps, const double* samples,
+                           Doubles (*all)[2]) noexcept {
+#pragma GCC unroll 2
+  for (int first = 0; first < 8; first += kOutputs)
+#pragma GCC unroll 2
+    for (int half = 0; half < 2; half += kAbreast) {
+      Doubles sum[kOutputs][kAbreast] = {};
+      const double* sample = samples + first * kSide + half * 8;
+      const double* weight = weights;
+#pragma GCC unroll 8
+      for (int i = 0; i < kOutputs - 1; ++i, ++weight, sample += kSide) reach(weight, 0, i + 1, sample, sum);
+      for (int i = kOutputs - 1; i < taps; ++i, ++weight, sample += kSide) {
+        // A weight is wanted by the next output at the next sample. Left to itself the compiler carries it
+        // over in a register and spreads it anew, which costs more than fetching it.
+        asm("" : "+r"(weight));
+        reach(weight, 0, kOutputs, sample, sum);
+      }
+#pragma GCC unroll 8
+      for (int i = 1; i < kOutputs; ++i, ++weight, sample += kSide) reach(weight, i, kOutputs, sample, sum);
+#pragma GCC unroll 8
+      for (int j = 0; j < kOutputs; ++j)
+#pragma GCC unroll 2
+        for (int h = 0; h < kAbreast; ++h) all[first + j][half + h] = sum[j][h];
+    }
 }
 
 // Eight vectors of eight: element j of vector i to element i of vector j.
@@ -134,79 +149,79 @@ FETTLE_INLINE void transpose(Vector* v) noexcept {
   }
 }
 
-// Eight rows of outputs, turned: value[c * 16 + row].
-template <bool kThere>
-FETTLE_INLINE void downTurned(const GaussianGroup& g, const float* const* rows, double* to) noexcept {
-  for (int c = 0; c < g.columns; c += 8) {
-    Doubles sum[8][1] = {};
-    windows<8, 1>(
-        g.all_weights, g.taps,
-        [&](int i, Doubles* x) {
-          Doubles value, there;
-          take<true>(rows[i] + c, value, there);
-          x[0] = kThere ? there : value;
-        },
-        sum);
-    Doubles turned[8];
-    for (int j = 0; j < 8; ++j) turned[j] = sum[j][0];
-    transpose(turned);
-    for (int l = 0; l < 8; ++l) store(to + (c + l) * std::ptrdiff_t{16}, turned[l]);
+// Sums down 16 columns for the group's rows, turned: value[c * kSide + row].
+FETTLE_INLINE void downTurned(const GaussianGroup& g, const double* samples, double* to) noexcept {
+  for (int first = 0; first < kSide; first += 8) {
+    Doubles sum[8][2];
+    windows(g.all_weights, g.taps, samples + first * kSide, sum);
+#pragma GCC unroll 2
+    for (int half = 0; half < 2; ++half) {
+      Doubles turned[8];
+#pragma GCC unroll 8
+      for (int j = 0; j < 8; ++j) turned[j] = sum[j][half];
+      transpose(turned);
+#pragma GCC unroll 8
+      for (int l = 0; l < 8; ++l) store(to + (half * 8 + l) * kSide + first, turned[l]);
+    }
   }
 }
 
-FETTLE_INLINE void downTurnedPlain(const GaussianGroup& g) noexcept {
-  for (int c = 0; c < g.columns; c += 8) {
-    Doubles sum[16][1] = {};
-    windows<16, 1>(
-        g.all_weights, g.taps, [&](int i, Doubles* x) { x[0] = widened(load<HalfFloats>(g.rows[i] + c)); },
-        sum);
-    for (int half = 0; half < 2; ++half) {
-      Doubles turned[8];
-      for (int j = 0; j < 8; ++j) turned[j] = sum[half * 8 + j][0];
-      transpose(turned);
-      for (int l = 0; l < 8; ++l) store(g.value + (c + l) * std::ptrdiff_t{16} + half * 8, turned[l]);
-    }
+// Samples are widened once for all windows that they are in, 16 columns at a time, which stay near the core.
+template <bool kHoles>
+FETTLE_INLINE void down(const GaussianGroup& g) noexcept {
+  const int rows = kSide + g.taps - 1;
+  double* there = g.strip + rows * kSide;
+  for (int c = 0; c < g.columns; c += kSide) {
+    for (int i = 0; i < rows; ++i)
+      for (int h = 0; h < 2; ++h) {
+        Doubles x, t;
+        take<kHoles>(g.rows[i] + c + 8 * h, x, t);
+        store(g.strip + i * kSide + 8 * h, x);
+        if constexpr (kHoles) store(there + i * kSide + 8 * h, t);
+      }
+    downTurned(g, g.strip, g.value + c * std::ptrdiff_t{kSide});
+    if constexpr (kHoles) downTurned(g, there, g.there + c * std::ptrdiff_t{kSide});
   }
 }
 
 inline void largeDown(const GaussianGroup& g, bool holes) noexcept {
-  if (!holes) return downTurnedPlain(g);
-  for (int half = 0; half < 2; ++half) {
-    downTurned<false>(g, g.rows + half * 8, g.value + half * 8);
-    downTurned<true>(g, g.rows + half * 8, g.there + half * 8);
-  }
+  if (holes)
+    down<true>(g);
+  else
+    down<false>(g);
 }
 
-FETTLE_INLINE void alongTurned(const GaussianGroup& g, const double* turned, int c,
-                               Doubles (*sum)[2]) noexcept {
-  windows<8, 2>(
-      g.all_weights, g.taps,
-      [&](int i, Doubles* x) {
-        const double* from = turned + (c + i) * std::ptrdiff_t{16};
-        x[0] = load<Doubles>(from);
-        x[1] = load<Doubles>(from + 8);
-      },
-      sum);
-}
-
-inline void largeFinish(const GaussianGroup& g, bool holes) noexcept {
+template <bool kHoles>
+FETTLE_INLINE void finish(const GaussianGroup& g) noexcept {
   for (int c = 0; c < g.out_columns; c += 8) {
-    Doubles sum[8][2] = {};
-    alongTurned(g, g.value, c, sum);
-    Doubles inverse[8][2] = {};
-    if (holes) {
-      alongTurned(g, g.there, c, inverse);
+    Doubles sum[8][2];
+    windows(g.all_weights, g.taps, g.value + c * std::ptrdiff_t{kSide}, sum);
+    if constexpr (kHoles) {
+      Doubles weight[8][2];
+      windows(g.all_weights, g.taps, g.there + c * std::ptrdiff_t{kSide}, weight);
       for (int j = 0; j < 8; ++j)
-        for (int h = 0; h < 2; ++h) inverse[j][h] = 1.0 / inverse[j][h];
+        for (int h = 0; h < 2; ++h) sum[j][h] *= 1.0 / weight[j][h];
     } else {
+#pragma GCC unroll 8
       for (int j = 0; j < 8; ++j)
-        for (int h = 0; h < 2; ++h) inverse[j][h] = Doubles{} + g.inverse[c + j];
+#pragma GCC unroll 2
+        for (int h = 0; h < 2; ++h) sum[j][h] *= spread(g.inverse[c + j]);
     }
+#pragma GCC unroll 2
     for (int half = 0; half < 2; ++half) {
       HalfFloats out[8];
-      for (int j = 0; j < 8; ++j) out[j] = narrowed(sum[j][half] * inverse[j][half]);
+#pragma GCC unroll 8
+      for (int j = 0; j < 8; ++j) out[j] = narrowed(sum[j][half]);
       transpose(out);
+#pragma GCC unroll 8
       for (int j = 0; j < 8; ++j) store(g.out[half * 8 + j] + c, out[j]);
     }
   }
+}
+
+inline void largeFinish(const GaussianGroup& g, bool holes) noexcept {
+  if (holes)
+    finish<true>(g);
+  else
+    finish<false>(g);
 }

@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include <tbb/cache_aligned_allocator.h>
+
 #include "engine/filter/block.h"
 #include "engine/filter/cpu.h"
 
@@ -66,6 +68,7 @@ struct GaussianGroup {
   double* value;             // sums down the columns, from the first column
   double* there;             // sums of the weights of samples that there are; only with holes
   std::ptrdiff_t stride;     // of both
+  double* strip;             // of the large kernels: (rows + 2 radius) x 16 samples, twice with holes
   const double* inverse;     // of the weight that each output's window has in all; only without holes
   float* const* out;         // of each row
   int out_columns;
@@ -112,7 +115,7 @@ class GaussianFilter final : public BlockFilter {
     const int begin = std::max(0, -first);
     const int end = std::min(width, block.columns - first);
     // Room for a vector more than there are columns; what lies outside the field is 0 and stays so.
-    const std::size_t room = static_cast<std::size_t>(width) + 24;
+    const std::size_t room = static_cast<std::size_t>(width + 31) / 8 * 8;
     value_.assign(room * static_cast<std::size_t>(group), 0.0);
     there_.clear();
     inverse_.resize(static_cast<std::size_t>(n) + 8);
@@ -126,6 +129,8 @@ class GaussianFilter final : public BlockFilter {
     g.columns = end - begin;
     g.stride = static_cast<std::ptrdiff_t>(room);
     g.out_columns = n;
+    if (!small_) strip_.resize(static_cast<std::size_t>(2 * kLargeRows * (kLargeRows + 2 * radius_)));
+    g.strip = strip_.data();
     const std::ptrdiff_t a_column = small_ ? 1 : kLargeRows;
     const std::ptrdiff_t a_row = small_ ? g.stride : 1;
     rows_.resize(static_cast<std::size_t>(group + 2 * radius_));
@@ -150,7 +155,7 @@ class GaussianFilter final : public BlockFilter {
       g.there = holes ? there_.data() + begin * a_column : nullptr;
       down_(g, holes);
       // The last vector may have reached beyond the field.
-      for (int c = end; c < std::min(begin + (end - begin + 7) / 8 * 8, static_cast<int>(room)); ++c)
+      for (int c = end; c < std::min(begin + (end - begin + 15) / 16 * 16, static_cast<int>(room)); ++c)
         for (int j = 0; j < group; ++j) {
           value_[static_cast<std::size_t>(c * a_column + j * a_row)] = 0.0;
           if (holes) there_[static_cast<std::size_t>(c * a_column + j * a_row)] = 0.0;
@@ -176,11 +181,20 @@ class GaussianFilter final : public BlockFilter {
     if (column == before) return;
     before = column;
     const int taps = 2 * radius_ + 1;
+    double whole = 0.0;  // of a window that no side cuts, once there is one
     for (int c = 0; c < n; ++c) {
+      const int from = std::max(begin - c, 0);
+      const int to = std::min(end - c, taps);
+      double& inverse = inverse_[static_cast<std::size_t>(c)];
+      if (to - from == taps && whole != 0.0) {
+        inverse = whole;
+        continue;
+      }
       double weight = 0.0;
-      for (int i = std::max(begin - c, 0); i < std::min(end - c, taps); ++i)
+      for (int i = from; i < to; ++i)
         weight = std::fma(all_weights_[static_cast<std::size_t>(i)], column, weight);
-      inverse_[static_cast<std::size_t>(c)] = 1.0 / weight;
+      inverse = 1.0 / weight;
+      if (to - from == taps) whole = inverse;
     }
   }
 
@@ -193,7 +207,10 @@ class GaussianFilter final : public BlockFilter {
   std::vector<const float*> rows_;
   std::vector<float*> out_;
   std::vector<float> spare_, no_row_;
-  std::vector<double> value_, there_, inverse_;
+  // A vector that lies across two cache lines is fetched twice.
+  using Aligned = std::vector<double, tbb::cache_aligned_allocator<double>>;
+  Aligned value_, there_, strip_;
+  std::vector<double> inverse_;
 };
 
 }  // namespace

@@ -23,6 +23,16 @@ FETTLE_INLINE void store(Element* to, const Vector& v) noexcept {
   std::memcpy(to, &v, sizeof v);
 }
 
+// The element in every place. Not Vector{} + x: 0 + x differs from x where x is -0, so the compiler would
+// have to add, and to spread the sum with the ports that multiply.
+FETTLE_INLINE Doubles spread(double x) noexcept {
+#if FETTLE_LEVEL == 2
+  return _mm512_set1_pd(x);
+#else
+  return Doubles{x, x, x, x, x, x, x, x};
+#endif
+}
+
 template <class Vector>
 FETTLE_INLINE Vector lesser(const Vector& a, const Vector& b) noexcept {
   return a < b ? a : b;
