@@ -209,6 +209,31 @@ std::string groundName(FilterGround ground) {
   return {};
 }
 
+FilterTarget targetOf(const FiltersBenchRow& row) noexcept {
+  using engine::FilterKind;
+  struct Share {
+    FilterKind kind;
+    int window;
+    double share;
+  };
+  constexpr Share kShares[] = {
+      {FilterKind::kBox, 3, 0.34},        {FilterKind::kBox, 5, 0.34},
+      {FilterKind::kBox, 11, 0.34},       {FilterKind::kBox, 31, 0.34},
+      {FilterKind::kBox, 101, 0.34},      {FilterKind::kGaussian, 3, 0.34},
+      {FilterKind::kGaussian, 5, 0.34},   {FilterKind::kGaussian, 11, 0.34},
+      {FilterKind::kGaussian, 101, 0.13}, {FilterKind::kMedian, 3, 0.50},
+      {FilterKind::kMedian, 5, 0.29},     {FilterKind::kMedian, 11, 0.057},
+      {FilterKind::kMedian, 31, 0.0067},  {FilterKind::kMedian, 101, 0.0067},
+  };
+  FilterTarget target;
+  if (row.ground != FilterGround::kPlain) return target;
+  if (row.threads == 2) target.over_one = 1.8;
+  if (row.threads == 1)
+    for (const Share& each : kShares)
+      if (each.kind == row.kind && each.window == row.window) target.share = each.share;
+  return target;
+}
+
 engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& options, engine::JobControl& job) {
   if (engine::Status valid = checked(options); !valid) return tl::unexpected(valid.error());
   FiltersBenchReport report;
@@ -273,6 +298,15 @@ engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& optio
     row.cpu = median(cpu[k]);
     row.copy = median(copy_wall[row.threads]);
     row.copy_cpu = median(copy_cpu[row.threads]);
+    for (std::size_t one = 0; one < report.rows.size(); ++one) {
+      const FiltersBenchRow& alone = report.rows[one];
+      if (alone.threads != 1 || alone.kind != row.kind || alone.window != row.window ||
+          alone.ground != row.ground)
+        continue;
+      std::vector<double> ratios(wall[k].size());
+      for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = wall[k][i] / wall[one][i];
+      row.over_one = median(std::move(ratios));
+    }
   }
   return report;
 }

@@ -38,7 +38,9 @@ struct FiltersBenchRow {
   double median = 0.0, slowest = 0.0, fastest = 0.0;
   double cpu = 0.0;   ///< median of samples per second of processor time: what a busy machine leaves alone
   double copy = 0.0;  ///< median rate of plain copying of floats by as many threads, in the same run
-  double copy_cpu = 0.0;   ///< the same per second of processor time
+  double copy_cpu = 0.0;  ///< the same per second of processor time
+  /// Rate over that of the row alike with one thread, median of the ratios of each time round; 0 without one.
+  double over_one = 0.0;
   std::uint64_t hash = 0;  ///< of the result; the same in every repeat
 };
 
@@ -46,6 +48,14 @@ struct FiltersBenchReport {
   std::string machine;
   std::vector<FiltersBenchRow> rows;
 };
+
+/// What a row is meant to reach on plain ground, machine by machine: a share of the copy with one thread, a
+/// gain over one thread with two. 0: no target was set.
+struct FilterTarget {
+  double share = 0.0;
+  double over_one = 0.0;
+};
+[[nodiscard]] FilterTarget targetOf(const FiltersBenchRow& row) noexcept;
 
 /// Filters synthetic relief with noise, `repeats` times each row, going round all rows, with a plain copy of
 /// an array of as many floats each time round. A first run of each row, which fetches memory from the system,

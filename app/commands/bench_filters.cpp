@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -18,7 +19,8 @@ engine::Result<Report> measure(const bench::FiltersBenchOptions& options, engine
                 {"side", options.side},
                 {"repeats", options.repeats},
                 {"rows", Report::array()}};
-  for (const bench::FiltersBenchRow& row : measured->rows)
+  for (const bench::FiltersBenchRow& row : measured->rows) {
+    const bench::FilterTarget target = bench::targetOf(row);
     report["rows"].push_back({{"kind", engine::name(row.kind)},
                               {"window", row.window},
                               {"ground", bench::groundName(row.ground)},
@@ -31,28 +33,45 @@ engine::Result<Report> measure(const bench::FiltersBenchOptions& options, engine
                               {"share_of_copy", row.median / row.copy},
                               {"samples_per_cpu_second", row.cpu},
                               {"share_of_copy_cpu", row.cpu / row.copy_cpu},
+                              {"over_one_thread", row.over_one},
+                              {"share_target", target.share},
+                              {"over_one_thread_target", target.over_one},
                               {"hash", fmt::format("{:016x}", row.hash)}});
+  }
   return report;
+}
+
+// "value target", with a star where the target is met; nothing where the row has no such value.
+std::string beside(double value, double target, int digits) {
+  if (value == 0.0) return {};
+  if (target == 0.0) return fmt::format("{:.{}f}{:>8}", value, digits, "");
+  return fmt::format("{:.{}f} {:>6}{}", value, digits, fmt::format("{:g}", target),
+                     value >= target ? '*' : ' ');
 }
 
 void print(const Report& report) {
   fmt::print(
-      "{}\nwhole filter with its report, million samples/s, median of {} runs; copy: plain copying of floats "
-      "by "
-      "as many threads, in the same run; CPU: per second of processor time\n\n",
+      "{}\nwhole filter with its report, million samples/s, median of {} runs; share: of plain copying of "
+      "floats "
+      "by as many threads, in the same run, and its target; x one: of the rate with one thread, and its "
+      "target; "
+      "*: met; CPU: per second of processor time\n\n",
       report["machine"].get<std::string>(), report["repeats"].get<int>());
-  fmt::print("{:<12}{:>7}{:>8}{:>9}{:>7}{:>10}{:>10}{:>10}{:>8}{:>8}{:>10}{:>10}  hash\n", "", "window",
-             "ground", "threads", "side", "Ms/s", "slowest", "fastest", "copy", "share", "CPU Ms/s",
-             "CPU share");
-  for (const Report& row : report["rows"])
+  fmt::print("{:<12}{:>7}{:>8}{:>9}{:>7}{:>10}{:>10}{:>10}{:>8}{:>16}{:>16}{:>10}{:>10}  hash\n", "",
+             "window", "ground", "threads", "side", "Ms/s", "slowest", "fastest", "copy", "share target ",
+             "x one target ", "CPU Ms/s", "CPU share");
+  for (const Report& row : report["rows"]) {
+    const auto number = [&row](const char* key) { return row[key].get<double>(); };
+    const bool several = row["threads"].get<int>() > 1;
     fmt::print(
-        "{:<12}{:>7}{:>8}{:>9}{:>7}{:>10.1f}{:>10.1f}{:>10.1f}{:>8.0f}{:>8.4f}{:>10.1f}{:>10.4f}  {}\n",
+        "{:<12}{:>7}{:>8}{:>9}{:>7}{:>10.1f}{:>10.1f}{:>10.1f}{:>8.0f}{:>16}{:>16}{:>10.1f}{:>10.4f}  {}\n",
         row["kind"].get<std::string>(), row["window"].get<int>(), row["ground"].get<std::string>(),
-        row["threads"].get<int>(), row["side"].get<int>(), row["samples_per_second"].get<double>() * 1e-6,
-        row["slowest"].get<double>() * 1e-6, row["fastest"].get<double>() * 1e-6,
-        row["copy_samples_per_second"].get<double>() * 1e-6, row["share_of_copy"].get<double>(),
-        row["samples_per_cpu_second"].get<double>() * 1e-6, row["share_of_copy_cpu"].get<double>(),
-        row["hash"].get<std::string>());
+        row["threads"].get<int>(), row["side"].get<int>(), number("samples_per_second") * 1e-6,
+        number("slowest") * 1e-6, number("fastest") * 1e-6, number("copy_samples_per_second") * 1e-6,
+        beside(number("share_of_copy"), number("share_target"), 4),
+        beside(several ? number("over_one_thread") : 0.0, number("over_one_thread_target"), 2),
+        number("samples_per_cpu_second") * 1e-6, number("share_of_copy_cpu"), row["hash"].get<std::string>());
+  }
 }
 
 }  // namespace

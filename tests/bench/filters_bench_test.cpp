@@ -32,9 +32,31 @@ TEST(FiltersBench, HasARowForEachKindWindowGroundAndNumberOfThreadsAndAHashThatT
     EXPECT_GT(row.cpu, 0.0);
     EXPECT_GT(row.copy, 0.0);
     EXPECT_GT(row.copy_cpu, 0.0);
+    if (row.threads == 1)
+      EXPECT_EQ(row.over_one, 1.0);
+    else
+      EXPECT_GT(row.over_one, 0.0);
   }
   EXPECT_EQ(rows.size(), report->rows.size());
   EXPECT_EQ(hashes.size(), report->rows.size() / 2);
+}
+
+TEST(FiltersBench, NamesATargetForEveryRowOfPlainGround) {
+  FiltersBenchRow row;
+  for (const FilterKind kind : FiltersBenchOptions{}.kinds)
+    for (const int window : FiltersBenchOptions{}.windows) {
+      row.kind = kind;
+      row.window = window;
+      row.threads = 1;
+      // A Gaussian of 31 lies between two that have one.
+      EXPECT_EQ(targetOf(row).share > 0.0, !(kind == FilterKind::kGaussian && window == 31));
+      EXPECT_EQ(targetOf(row).over_one, 0.0);
+      row.threads = 2;
+      EXPECT_EQ(targetOf(row).over_one, 1.8);
+      EXPECT_EQ(targetOf(row).share, 0.0);
+    }
+  row.ground = FilterGround::kHoles;
+  EXPECT_EQ(targetOf(row).over_one, 0.0);
 }
 
 TEST(FiltersBench, MeasuresASmallerFieldWhereTheLimitLeavesNoTimeForTheWhole) {
