@@ -102,6 +102,7 @@ class SmallMedian final : public BlockFilter {
       }
 
     // What is left: windows that leave the field or hold a hole.
+    if (!block.holes && c1 - c0 == n && r1 - r0 == block.out_rows) return true;
     const std::uint64_t all = n == kAcross ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1;
     const std::uint64_t inside =
         c1 - c0 == kAcross ? ~std::uint64_t{0} : ((std::uint64_t{1} << (c1 - c0)) - 1) << (c0 - first);

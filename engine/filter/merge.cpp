@@ -1,6 +1,5 @@
 #include "engine/filter/merge.h"
 
-#include <algorithm>
 #include <cstring>
 
 #ifdef FETTLE_CPU_LEVELS
@@ -17,13 +16,13 @@ namespace {
 }  // namespace
 
 TileReport mergeTile(const Tile& before, const float* results, std::ptrdiff_t stride, float sign,
-                     FilterScope scope, Tile& after, CpuLevel level) noexcept {
+                     FilterScope scope, Tile& after, CpuLevel level, const Tile* ahead) noexcept {
   const std::uint64_t flip = scope == FilterScope::kKeepMarks ? ~std::uint64_t{0} : 0;
-  const TileReport report = FETTLE_AT_LEVEL(level, merge)(before, results, stride, sign, flip, after);
+  const TileReport report = FETTLE_AT_LEVEL(level, merge)(
+      before, results, stride, sign, flip, ahead == nullptr ? nullptr : ahead->samples.data(), after);
   after.marks = before.marks;
   after.nan_samples = before.nan_samples;
   after.marked_samples = before.marked_samples;
-  after.bounds = {*std::ranges::min_element(after.block_min), *std::ranges::max_element(after.block_max)};
   return report;
 }
 

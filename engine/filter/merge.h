@@ -21,9 +21,11 @@ struct TileReport {
 /// bounds and counts of `after` in one pass over the samples, and compares the two in the same pass.
 ///
 /// results: kTileSide x kTileSide, row-major, stride in elements, of the version's sign (1 or -1) while tiles
-/// are stored without; read everywhere, unspecified at holes and outside the field.
+/// are stored without; read everywhere, unspecified at holes and outside the field. ahead: a tile that is
+/// read soon; the wait for its samples goes on meanwhile. Null: none.
 [[nodiscard]] TileReport mergeTile(const Tile& before, const float* results, std::ptrdiff_t stride,
-                                   float sign, FilterScope scope, Tile& after, CpuLevel level) noexcept;
+                                   float sign, FilterScope scope, Tile& after, CpuLevel level,
+                                   const Tile* ahead = nullptr) noexcept;
 
 /// The change from one tile to another, over the samples that are holes in neither.
 [[nodiscard]] TileReport compareTiles(const Tile& before, const Tile& after, CpuLevel level) noexcept;

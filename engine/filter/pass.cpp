@@ -74,6 +74,8 @@ class Pass {
 
   // Filters one rectangle of tiles; appends the tiles that changed. False when cancelled or out of memory.
   bool run(TileRect rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
+    // Blocks are mostly taken one beside the other.
+    const std::int32_t to_next = rect.column1 - rect.column0;
     shrink(rect);
     if (rect.column0 == rect.column1) return true;
     if (spec_.kind == FilterKind::kBox && radius_ > 0 && level_ == CpuLevel::kAvx512) {
@@ -81,7 +83,7 @@ class Pass {
       if (scratch.strip) return runStrip(rect, scratch, job, made);
     }
     if (!gatherAndFilter(rect, scratch, job)) return false;
-    return mergeAll(rect, reader_.sign(), scratch, made);
+    return mergeAll(rect, reader_.sign(), to_next, scratch, made);
   }
 
   [[nodiscard]] bool outOfMemory() const noexcept { return out_of_memory_.load(std::memory_order_relaxed); }
@@ -102,19 +104,23 @@ class Pass {
       scratch.out.resize(static_cast<std::size_t>(scratch.out_stride) * kTileSide);
       begun = scratch.strip->rows(std::min(r1 - r0, kTileSide), scratch.out.data(), scratch.out_stride);
       if (!begun && !gatherAndFilter(band, scratch, job)) return false;
-      if (!mergeAll(band, begun ? 1.0F : reader_.sign(), scratch, made)) return false;
+      if (!mergeAll(band, begun ? 1.0F : reader_.sign(), 0, scratch, made)) return false;
     }
     return true;
   }
 
-  // Merges scratch.out, which has the sign `sign`, into the tiles of a rectangle.
-  bool mergeAll(const TileRect& rect, float sign, Scratch& scratch, std::vector<NewTile>& made) {
+  // Merges scratch.out, which has the sign `sign`, into the tiles of a rectangle, and fetches the tiles that
+  // lie `to_next` further meanwhile, if any.
+  bool mergeAll(const TileRect& rect, float sign, std::int32_t to_next, Scratch& scratch,
+                std::vector<NewTile>& made) {
     for (std::int32_t tr = rect.row0; tr < rect.row1; ++tr)
       for (std::int32_t tc = rect.column0; tc < rect.column1; ++tc) {
         if (!mayChange(tc, tr)) continue;
         const float* results = scratch.out.data() + (tr - rect.row0) * kTileSide * scratch.out_stride +
                                (tc - rect.column0) * kTileSide;
-        if (!merge(tc, tr, results, sign, scratch, made)) return false;
+        const bool more = to_next > 0 && tc + to_next + 1 < reader_.tileColumns();
+        const Tile* ahead = more ? &reader_.tile(tc + to_next + 1, tr) : nullptr;
+        if (!merge(tc, tr, results, sign, ahead, scratch, made)) return false;
       }
     return true;
   }
@@ -210,8 +216,8 @@ class Pass {
   }
 
   // Puts the results of one tile together with what must stay, and makes a tile of it if any bit changed.
-  bool merge(std::int32_t tc, std::int32_t tr, const float* results, float sign, Scratch& scratch,
-             std::vector<NewTile>& made) {
+  bool merge(std::int32_t tc, std::int32_t tr, const float* results, float sign, const Tile* ahead,
+             Scratch& scratch, std::vector<NewTile>& made) {
     const Tile& before = reader_.tile(tc, tr);
     const auto [columns, rows] = extent(tc, tr);
     std::ptrdiff_t stride = scratch.out_stride;
@@ -227,7 +233,7 @@ class Pass {
       out_of_memory_.store(true, std::memory_order_relaxed);
       return false;
     }
-    const TileReport report = mergeTile(before, results, stride, sign, spec_.scope, *after, level_);
+    const TileReport report = mergeTile(before, results, stride, sign, spec_.scope, *after, level_, ahead);
     if (report.changed != 0) made.push_back({tc, tr, std::move(after), report});
     return true;
   }

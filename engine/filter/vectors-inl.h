@@ -23,6 +23,27 @@ FETTLE_INLINE void store(Element* to, const Vector& v) noexcept {
   std::memcpy(to, &v, sizeof v);
 }
 
+// To 64 bytes at a multiple of 64, past the caches where the processor can; see pastCaches().
+FETTLE_INLINE void storePast(float* to, const Floats& v) noexcept {
+#if FETTLE_LEVEL == 2
+  _mm512_stream_ps(to, v);
+#elif FETTLE_LEVEL == 1
+  __m256 half[2];
+  std::memcpy(half, &v, sizeof v);
+  _mm256_stream_ps(to, half[0]);
+  _mm256_stream_ps(to + 8, half[1]);
+#else
+  std::memcpy(to, &v, sizeof v);
+#endif
+}
+
+// Once storePast is done: only then may another thread be told of what was stored.
+FETTLE_INLINE void pastCaches() noexcept {
+#if FETTLE_LEVEL != 0
+  _mm_sfence();
+#endif
+}
+
 // The element in every place. Not Vector{} + x: 0 + x differs from x where x is -0, so the compiler would
 // have to add, and to spread the sum with the ports that multiply.
 FETTLE_INLINE Doubles spread(double x) noexcept {
