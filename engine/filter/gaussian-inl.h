@@ -82,9 +82,6 @@ void smallFinish(const GaussianGroup& g, bool holes) noexcept {
     finishSmall<kRadius, false>(g);
 }
 
-// Doubles of 16 columns or rows side by side, for each sample along a window.
-constexpr int kSide = 16;
-
 // How many outputs, and vectors of each, are summed at once: what the registers hold beside samples and a
 // weight. With 8 x 2 sums a sample is fetched for eight products and a weight for two, so that fetching keeps
 // up with multiplying.
@@ -149,11 +146,13 @@ FETTLE_INLINE void transpose(Vector* v) noexcept {
   }
 }
 
-// Sums down 16 columns for the group's rows, turned: value[c * kSide + row].
+// Sums down 16 columns for the group's rows, turned: rows in parts of kSide, a plane of the group's columns
+// for each, and in a plane to[c * kSide + row].
 FETTLE_INLINE void downTurned(const GaussianGroup& g, const double* samples, double* to) noexcept {
-  for (int first = 0; first < kSide; first += 8) {
+  for (int first = 0; first < kLargeRows; first += 8) {
     Doubles sum[8][2];
     windows(g.all_weights, g.taps, samples + first * kSide, sum);
+    double* at = to + first / kSide * g.stride + first % kSide;
 #pragma GCC unroll 2
     for (int half = 0; half < 2; ++half) {
       Doubles turned[8];
@@ -161,7 +160,7 @@ FETTLE_INLINE void downTurned(const GaussianGroup& g, const double* samples, dou
       for (int j = 0; j < 8; ++j) turned[j] = sum[j][half];
       transpose(turned);
 #pragma GCC unroll 8
-      for (int l = 0; l < 8; ++l) store(to + (half * 8 + l) * kSide + first, turned[l]);
+      for (int l = 0; l < 8; ++l) store(at + (half * 8 + l) * kSide, turned[l]);
     }
   }
 }
@@ -169,16 +168,17 @@ FETTLE_INLINE void downTurned(const GaussianGroup& g, const double* samples, dou
 // Samples are widened once for all windows that they are in, 16 columns at a time, which stay near the core.
 template <bool kHoles>
 FETTLE_INLINE void down(const GaussianGroup& g) noexcept {
-  const int rows = kSide + g.taps - 1;
+  const int rows = kLargeRows + g.taps - 1;
   double* there = g.strip + rows * kSide;
   for (int c = 0; c < g.columns; c += kSide) {
-    for (int i = 0; i < rows; ++i)
+    for (int i = 0; i < rows; ++i) {
       for (int h = 0; h < 2; ++h) {
         Doubles x, t;
         take<kHoles>(g.rows[i] + c + 8 * h, x, t);
         store(g.strip + i * kSide + 8 * h, x);
         if constexpr (kHoles) store(there + i * kSide + 8 * h, t);
       }
+    }
     downTurned(g, g.strip, g.value + c * std::ptrdiff_t{kSide});
     if constexpr (kHoles) downTurned(g, there, g.there + c * std::ptrdiff_t{kSide});
   }
@@ -191,14 +191,16 @@ inline void largeDown(const GaussianGroup& g, bool holes) noexcept {
     down<false>(g);
 }
 
+// The pass along kSide rows from their plane.
 template <bool kHoles>
-FETTLE_INLINE void finish(const GaussianGroup& g) noexcept {
+FETTLE_INLINE void finishPart(const GaussianGroup& g, const double* value, const double* there,
+                              float* const* rows) noexcept {
   for (int c = 0; c < g.out_columns; c += 8) {
     Doubles sum[8][2];
-    windows(g.all_weights, g.taps, g.value + c * std::ptrdiff_t{kSide}, sum);
+    windows(g.all_weights, g.taps, value + c * std::ptrdiff_t{kSide}, sum);
     if constexpr (kHoles) {
       Doubles weight[8][2];
-      windows(g.all_weights, g.taps, g.there + c * std::ptrdiff_t{kSide}, weight);
+      windows(g.all_weights, g.taps, there + c * std::ptrdiff_t{kSide}, weight);
       for (int j = 0; j < 8; ++j)
         for (int h = 0; h < 2; ++h) sum[j][h] *= 1.0 / weight[j][h];
     } else {
@@ -214,9 +216,16 @@ FETTLE_INLINE void finish(const GaussianGroup& g) noexcept {
       for (int j = 0; j < 8; ++j) out[j] = narrowed(sum[j][half]);
       transpose(out);
 #pragma GCC unroll 8
-      for (int j = 0; j < 8; ++j) store(g.out[half * 8 + j] + c, out[j]);
+      for (int j = 0; j < 8; ++j) store(rows[half * 8 + j] + c, out[j]);
     }
   }
+}
+
+template <bool kHoles>
+FETTLE_INLINE void finish(const GaussianGroup& g) noexcept {
+  for (int part = 0; part < kLargeRows / kSide; ++part)
+    finishPart<kHoles>(g, g.value + part * g.stride, kHoles ? g.there + part * g.stride : nullptr,
+                       g.out + part * kSide);
 }
 
 inline void largeFinish(const GaussianGroup& g, bool holes) noexcept {

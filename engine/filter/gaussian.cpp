@@ -28,7 +28,7 @@ namespace {
 // weights[k] for the distance k = 0 .. radius; their sum over -radius .. radius is 1 up to rounding. Weights
 // far out are dropped as long as all that is dropped is below 2^-54 of the whole: it and what renormalising
 // makes of it are below a fiftieth of what the double roundings may lose anyway, and of a binomial window of
-// 101 that leaves 85.
+// 101 that leaves 79.
 std::vector<double> halfWeights(const FilterSpec& spec) {
   const int radius = spec.window / 2;
   std::vector<long double> exact(static_cast<std::size_t>(radius) + 1);
@@ -67,21 +67,26 @@ struct GaussianGroup {
   int columns;               // that windows reach and the field has
   double* value;             // sums down the columns, from the first column
   double* there;             // sums of the weights of samples that there are; only with holes
-  std::ptrdiff_t stride;     // of both
-  double* strip;             // of the large kernels: (rows + 2 radius) x 16 samples, twice with holes
+  std::ptrdiff_t stride;     // of both: from row to row, in the large kernels from plane to plane
+  double* strip;             // of the large kernels: (rows + 2 radius) x kSide samples, twice with holes
   const double* inverse;     // of the weight that each output's window has in all; only without holes
   float* const* out;         // of each row
   int out_columns;
 };
+
+// Rows of outputs in a group of the small kernels, and of the large ones: the more, the fewer times a sample
+// is fetched for another group's windows; what is between the passes must stay near the core.
+constexpr int kSmallRows = 4;
+constexpr int kLargeRows = 32;
+// Columns or rows that the large kernels take side by side.
+constexpr int kSide = 16;
 
 #define FETTLE_KERNEL "engine/filter/gaussian-inl.h"
 #include "engine/filter/each_cpu-inl.h"
 
 using Kernel = void (*)(const GaussianGroup&, bool holes);
 
-constexpr int kSmallRows = 4;
-constexpr int kLargeRows = 16;
-constexpr int kSmallRadius = 7;  // from here on the turned kernels are faster
+constexpr int kSmallRadius = 3;  // from here on the turned kernels are faster
 
 template <int kRadius>
 std::pair<Kernel, Kernel> smallKernels(int radius, CpuLevel level) noexcept {
@@ -127,12 +132,11 @@ class GaussianFilter final : public BlockFilter {
     g.all_weights = all_weights_.data();
     g.taps = 2 * radius_ + 1;
     g.columns = end - begin;
-    g.stride = static_cast<std::ptrdiff_t>(room);
+    g.stride = static_cast<std::ptrdiff_t>(small_ ? room : room * kSide);
     g.out_columns = n;
-    if (!small_) strip_.resize(static_cast<std::size_t>(2 * kLargeRows * (kLargeRows + 2 * radius_)));
+    if (!small_) strip_.resize(static_cast<std::size_t>(2 * kSide * (kLargeRows + 2 * radius_)));
     g.strip = strip_.data();
-    const std::ptrdiff_t a_column = small_ ? 1 : kLargeRows;
-    const std::ptrdiff_t a_row = small_ ? g.stride : 1;
+    const std::ptrdiff_t a_column = small_ ? 1 : kSide;
     rows_.resize(static_cast<std::size_t>(group + 2 * radius_));
     out_.resize(static_cast<std::size_t>(group));
     spare_.resize(static_cast<std::size_t>(n) + 8);
@@ -157,8 +161,9 @@ class GaussianFilter final : public BlockFilter {
       // The last vector may have reached beyond the field.
       for (int c = end; c < std::min(begin + (end - begin + 15) / 16 * 16, static_cast<int>(room)); ++c)
         for (int j = 0; j < group; ++j) {
-          value_[static_cast<std::size_t>(c * a_column + j * a_row)] = 0.0;
-          if (holes) there_[static_cast<std::size_t>(c * a_column + j * a_row)] = 0.0;
+          const std::ptrdiff_t row = small_ ? j * g.stride : j / kSide * g.stride + j % kSide;
+          value_[static_cast<std::size_t>(c * a_column + row)] = 0.0;
+          if (holes) there_[static_cast<std::size_t>(c * a_column + row)] = 0.0;
         }
       g.value = value_.data();
       if (holes) {
