@@ -59,6 +59,7 @@ struct TiffSamples::Worker {
   GDALRasterBandH band_mask = nullptr;
   std::vector<char> numbers;
   std::vector<std::uint8_t> mask;
+  BlockUnpacker unpacker;
 };
 
 TiffSamples::TiffSamples(const InputFile& file, const TiffScan& scan)
@@ -185,7 +186,17 @@ Status TiffSamples::readPlain(const TiffWindow& window, Worker& worker) const {
   return {};
 }
 
+// The first rows of the window's block.
+Status TiffSamples::unpackRows(const TiffWindow& window, std::int32_t rows, Worker& worker) const {
+  const std::size_t b = blockOf(window);
+  const PackedBlock block{offsets_[b], sizes_[b], static_cast<std::size_t>(block_columns_), number_bytes_,
+                          scan_.directory.predictor};
+  if (worker.unpacker.unpack(file_, block, static_cast<std::size_t>(rows), worker.numbers)) return {};
+  return inputError("the samples cannot be unpacked", file_.path(), "the file is cut short or damaged");
+}
+
 Status TiffSamples::readBlock(const TiffWindow& window, Worker& worker) const {
+  if (!offsets_.empty()) return unpackRows(window, window.rows, worker);
   GdalSession gdal;
   worker.numbers.resize(static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_) *
                         number_bytes_);
@@ -245,7 +256,7 @@ Status TiffSamples::run(const std::vector<TiffWindow>& windows, JobControl& job,
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, windows.size(), [&](std::size_t i) {
       Worker& worker = workers.local();
-      if (way_ == Way::kBlocks && worker.band == nullptr) {
+      if (way_ == Way::kBlocks && offsets_.empty() && worker.band == nullptr) {
         const GdalSession gdal;
         worker.own = openTiffForReading(file_, false);
         if (!worker.own) {
@@ -309,12 +320,8 @@ Status TiffSamples::readEvery(std::int32_t step, JobControl& job, const Take& ta
     const std::int32_t last = (window.row + window.rows - 1) / step * step;
     if (offsets_.empty()) {
       if (Status read = readBlock(window, worker); !read) return read;
-    } else {
-      const std::size_t b = blockOf(window);
-      const PackedBlock block{offsets_[b], sizes_[b], static_cast<std::size_t>(block_columns_), number_bytes_,
-                              scan_.directory.predictor};
-      if (!unpackFirstRows(file_, block, static_cast<std::size_t>(last - window.row + 1), worker.numbers))
-        return inputError("the samples cannot be unpacked", file_.path(), "the file is damaged");
+    } else if (Status read = unpackRows(window, last - window.row + 1, worker); !read) {
+      return read;
     }
     for (std::int32_t row = first; row <= last; row += step) {
       const std::size_t at = static_cast<std::size_t>(row - window.row);

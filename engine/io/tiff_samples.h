@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/job.h"
-#include "engine/io/packed_rows.h"
+#include "engine/io/block_unpacker.h"
 #include "engine/io/tiff_scan.h"
 
 namespace fettle::engine {
@@ -28,15 +28,16 @@ struct TiffPiece {
 /// Brings the samples of a band in, each block of the file unpacked once, on all cores.
 ///
 /// Blocks that hold the numbers as this machine does are read past GDAL, straight from the file into place:
-/// GDAL hands them through its cache, which costs more than all the rest. Packed blocks are unpacked by GDAL,
-/// each core with a handle of its own, because one handle that unpacks on many threads still copies on one.
+/// GDAL hands them through its cache, which costs more than all the rest. Blocks packed as Fettle packs them,
+/// and most other Deflate, go past it too (block_unpacker.h). Other packed blocks are unpacked by GDAL, each
+/// core with a handle of its own, because one handle that unpacks on many threads still copies on one.
 /// Blocks that must be read in order, or are very large, go through one handle by rows.
 class TiffSamples {
  public:
   /// How blocks come in; chosen by the file.
   enum class Way : std::uint8_t {
     kPlain,   ///< past GDAL
-    kBlocks,  ///< by GDAL, whole blocks in any order
+    kBlocks,  ///< unpacked, whole blocks in any order
     kRows,    ///< by GDAL, strips of rows in order
   };
   /// Called by several threads at once, each with another window.
@@ -68,6 +69,7 @@ class TiffSamples {
   [[nodiscard]] Status run(const std::vector<TiffWindow>& windows, JobControl& job, const Read& read);
   [[nodiscard]] Status readPlain(const TiffWindow& window, Worker& worker) const;
   [[nodiscard]] Status readBlock(const TiffWindow& window, Worker& worker) const;
+  [[nodiscard]] Status unpackRows(const TiffWindow& window, std::int32_t rows, Worker& worker) const;
   [[nodiscard]] Status readRows(const TiffWindow& window, Worker& worker) const;
   [[nodiscard]] std::vector<TiffWindow> windows() const;
 
@@ -78,7 +80,7 @@ class TiffSamples {
   std::int32_t across_ = 0, down_ = 0;  // blocks
   std::size_t number_bytes_ = 0;
   Way way_ = Way::kRows;
-  // Of each block, row-major: of plain ones, and of those whose first rows can be unpacked alone; else none.
+  // Of each block, row-major: of plain ones, and of those that are unpacked past GDAL; else none.
   std::vector<std::uint64_t> offsets_, sizes_;
 };
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cfloat>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <random>
 #include <vector>
@@ -15,6 +16,7 @@
 #include <tbb/global_control.h>
 #include <zlib.h>
 
+#include "engine/io/block_unpacker.h"
 #include "tests/engine/io/io_support.h"
 #include "tests/support/temp_folder.h"
 
@@ -81,6 +83,38 @@ TEST(BlockPacker, WhatDoesNotPackGrowsLittleAndWhatRepeatsBecomesSmall) {
   EXPECT_LT(packer.pack(anyFloats(bytes / 4, 3), 256).size(), bytes + bytes / 100);
   EXPECT_LT(packer.pack(std::vector<float>(bytes / 4, 2.5F), 256).size(), bytes / 100);
   EXPECT_LT(packer.pack(slope(bytes / 4, 256), 256).size(), bytes / 2);
+}
+
+TEST(BlockUnpacker, GivesBackWhatWasPackedAndRefusesDamage) {
+  const TempFolder folder;
+  const std::string path = folder.file("block");
+  BlockPacker packer;
+  BlockUnpacker unpacker;
+  std::vector<char> out;
+  for (const std::size_t columns : {1U, 3U, 17U, 256U, 1000U})
+    for (const std::vector<float>& samples : {anyFloats(columns * 200, 4), slope(columns * 200, columns)}) {
+      const auto packed = packer.pack(samples, columns);
+      std::string bytes = "head" + std::string(packed.begin(), packed.end()) + "tail";
+      const PackedBlock block{4, packed.size(), columns, 4, 3};
+      const auto unpack = [&](std::size_t rows) {
+        writeBytes(path, bytes);
+        const auto file = InputFile::open(path);
+        return file && unpacker.unpack(*file, block, rows, out);
+      };
+      for (const std::size_t rows : {200U, 1U, 7U}) {
+        ASSERT_TRUE(unpack(rows)) << columns;
+        ASSERT_EQ(std::memcmp(out.data(), samples.data(), 4 * rows * columns), 0) << columns << ' ' << rows;
+      }
+      EXPECT_FALSE(unpack(201));
+      // The checksum at the end, a bit in the middle.
+      for (const std::size_t at : {bytes.size() - 5, 4 + packed.size() / 2}) {
+        bytes[at] = static_cast<char>(bytes[at] ^ 16);
+        EXPECT_FALSE(unpack(200)) << columns << ' ' << at;
+        bytes[at] = static_cast<char>(bytes[at] ^ 16);
+      }
+      bytes.resize(4 + packed.size() / 2);
+      EXPECT_FALSE(unpack(200));
+    }
 }
 
 TEST(TiffExport, GdalReadsEveryBitOfEveryLayout) {

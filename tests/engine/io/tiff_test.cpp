@@ -98,6 +98,27 @@ TEST(Tiff, TilesAndManyStripsComeInTheRightOrder) {
   }
 }
 
+TEST(Tiff, DeflateWithEachPredictorIsReadExactly) {
+  const TempFolder folder;
+  std::vector<double> z;
+  for (int i = 0; i < 333 * 217; ++i) z.push_back((i * 7919) % 251);
+  for (const GDALDataType type : {GDT_Byte, GDT_Int16, GDT_UInt32, GDT_Float32, GDT_Float64})
+    for (const char* predictor : {"PREDICTOR=1", "PREDICTOR=2", "PREDICTOR=3"})
+      for (const std::vector<const char*>& layout :
+           {std::vector<const char*>{"TILED=YES", "BLOCKXSIZE=32", "BLOCKYSIZE=48"}, {"BLOCKYSIZE=100"}}) {
+        if (std::string(predictor) == "PREDICTOR=3" && type != GDT_Float32 && type != GDT_Float64) continue;
+        auto options = layout;
+        options.insert(options.end(), {"COMPRESS=DEFLATE", predictor});
+        makeTiff(folder.file("t.tif"), type, 333, 217, z, options);
+        FETTLE_LOAD(scan, folder.file("t.tif"));
+        for (int r = 0; r < 217; ++r)
+          for (int c = 0; c < 333; ++c)
+            ASSERT_EQ(stored(scan.field, r, c),
+                      static_cast<float>(z[static_cast<std::size_t>(r) * 333 + static_cast<std::size_t>(c)]))
+                << GDALGetDataTypeName(type) << ' ' << predictor << ' ' << r << ' ' << c;
+      }
+}
+
 TEST(Tiff, LostBitsOfLargeNumbersAreStated) {
   const TempFolder folder;
   makeTiff(folder.file("t.tif"), GDT_Int32, 2, 1, {16777217, 2147483647});
