@@ -1,9 +1,12 @@
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "engine/base/job.h"
 #include "engine/io/preview.h"
 
 namespace fettle::app {
@@ -22,9 +25,28 @@ class CoarseSlot {
     return std::exchange(preview_, std::nullopt);
   }
 
+  /// What was put has been on the screen once, or will not be.
+  void shown() {
+    {
+      const std::scoped_lock lock(mutex_);
+      shown_ = true;
+    }
+    seen_.notify_all();
+  }
+  /// For who reads the rest: until shown(), a cancel, or as long as this at most.
+  void waitShown(std::chrono::milliseconds most, const engine::JobControl& job) {
+    constexpr std::chrono::milliseconds kLook{10};
+    const auto end = std::chrono::steady_clock::now() + most;
+    std::unique_lock lock(mutex_);
+    while (!shown_ && !job.cancelled() && std::chrono::steady_clock::now() < end)
+      seen_.wait_for(lock, kLook, [this] { return shown_; });
+  }
+
  private:
   std::mutex mutex_;
+  std::condition_variable seen_;
   std::optional<engine::Preview> preview_;  // guarded by mutex_
+  bool shown_ = false;                      // guarded by mutex_
 };
 
 }  // namespace fettle::app

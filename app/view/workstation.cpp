@@ -229,7 +229,10 @@ bool Workstation::announcesPicture() const {
 
 // After a frame was shown.
 void Workstation::noteOpening() {
-  if (coarseIsShown() && opening_.coarse_ms == 0.0) opening_.coarse_ms = opening_.sinceAsked();
+  if (coarseIsShown() && opening_.coarse_ms == 0.0) {
+    opening_.coarse_ms = opening_.sinceAsked();
+    coarse_slot_->shown();
+  }
   if (!touch_ || shown_.versions.empty()) return;
   if (opening_.seen_ms == 0.0) opening_.seen_ms = opening_.sinceAsked();
   if (opening_.whole_ms == 0.0 && figures_.upload.pending_tiles == 0)

@@ -8,6 +8,9 @@ namespace fettle::app {
 namespace {
 
 constexpr std::int64_t kCoarseSamples = std::int64_t{1} << 20;
+// Reading the rest takes all cores and, page by page, the lock under which the driver takes its memory: the
+// picture that is there already would wait for it. Longer than this it is not waited for in turn.
+constexpr std::chrono::milliseconds kShownFirst{500};
 
 }  // namespace
 
@@ -21,7 +24,10 @@ Background<Document>::Work Workstation::openingWork(const std::string& path, Rec
     if (coarse_first && import) {
       // What is wrong with the file, reading the whole of it tells.
       auto coarse = engine::importPreview(path, *import, kCoarseSamples, job);
-      if (coarse && *coarse) slot->put(**std::move(coarse));
+      if (coarse && *coarse) {
+        slot->put(**std::move(coarse));
+        slot->waitShown(kShownFirst, job);
+      }
     }
     return openDocument(path, reading, recovery, kHistoryBytes, job);
   };
@@ -30,7 +36,11 @@ Background<Document>::Work Workstation::openingWork(const std::string& path, Rec
 void Workstation::takeCoarse() {
   if (!coarse_slot_) return;
   auto coarse = coarse_slot_->take();
-  if (!coarse || touch_) return;
+  if (!coarse) return;
+  if (touch_) {
+    coarse_slot_->shown();
+    return;
+  }
   coarse_ = std::move(coarse);
   stale_ = true;
 }
@@ -39,6 +49,7 @@ void Workstation::takeCoarse() {
 void Workstation::dropCoarse() {
   if (!coarse_) return;
   coarse_.reset();
+  coarse_slot_->shown();
   if (touch_) return;
   window_->forgetPicture();
   shown_ = {};
