@@ -23,13 +23,31 @@ FETTLE_INLINE void apply(Samples* v) noexcept {
 }
 
 // Ranks [kBegin, kEnd) of the ascending a and b together, ascending.
-template <int kA, int kB, int kBegin = 0, int kEnd = kA + kB>
-__attribute__((noinline)) void merge(const Samples* a, const Samples* b, Samples* out) noexcept {
+template <int kA, int kB, int kBegin, int kEnd>
+FETTLE_INLINE void mergeHere(const Samples* a, const Samples* b, Samples* out) noexcept {
   Samples v[kA + kB];
+#pragma GCC unroll 64
   for (int i = 0; i < kA; ++i) v[i] = a[i];
+#pragma GCC unroll 64
   for (int i = 0; i < kB; ++i) v[kA + i] = b[i];
   apply<Merging<kA, kB, kBegin, kEnd>>(v);
+#pragma GCC unroll 64
   for (int i = kBegin; i < kEnd; ++i) out[i - kBegin] = v[i];
+}
+
+template <int kA, int kB, int kBegin, int kEnd>
+__attribute__((noinline)) void mergeElsewhere(const Samples* a, const Samples* b, Samples* out) noexcept {
+  mergeHere<kA, kB, kBegin, kEnd>(a, b, out);
+}
+
+// Lists that fit the registers are merged on the spot, longer ones in a function of their own: many copies of
+// them would be more code than the processor keeps.
+template <int kA, int kB, int kBegin = 0, int kEnd = kA + kB>
+FETTLE_INLINE void merge(const Samples* a, const Samples* b, Samples* out) noexcept {
+  if constexpr (kA + kB <= 20 && FETTLE_LEVEL == 2)
+    mergeHere<kA, kB, kBegin, kEnd>(a, b, out);
+  else
+    mergeElsewhere<kA, kB, kBegin, kEnd>(a, b, out);
 }
 
 // The middle one of the ascending a (kN + 1 samples) and b (kN): at least kN others are no greater than the
