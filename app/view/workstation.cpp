@@ -91,8 +91,8 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
 }
 
 bool Workstation::active() const {
-  return stale_ || camera_motion_.owesSharp() || stylus_held_ || drag_ != Drag::kNone ||
-         figures_.upload.pending_tiles > 0;
+  return stale_ || camera_motion_.owesSharp() || (touch_ && refinement_.owed()) || stylus_held_ ||
+         drag_ != Drag::kNone || figures_.upload.pending_tiles > 0;
 }
 
 // What a person chose is written when it has changed, at most once in some seconds.
@@ -330,10 +330,12 @@ void Workstation::drawPicture() {
     stale_ = true;
   }
   const render::Sharpness sharpness = seeMotion();
-  if (!stale_ && figures_.upload.pending_tiles == 0) return;
+  const auto now = Refinement::Clock::now();
+  if (!stale_ && figures_.upload.pending_tiles == 0 && !refinement_.due(now)) return;
   stale_ = false;
 
   render::FrameInput input = frameInput(sharpness);
+  input.vertex_budget = refinement_.vertices(input.vertex_budget, now);
   if (shown_.versions.size() > 1) {
     input.titles.emplace_back("as it is");
     for (const FilterPreview::Picture& picture : pictures) input.titles.push_back(picture.title);
@@ -364,6 +366,7 @@ void Workstation::drawPicture() {
   }
   drawn_state_ = state;
   if (!submit(input)) return;
+  refinement_.drawn(figures_.redrawn == 1.0, figures_.upload.pending_tiles > 0, Refinement::Clock::now());
   force_plot_.push_back(static_cast<float>(glm::length(state.force_n)));
   if (force_plot_.size() > kPlot) force_plot_.erase(force_plot_.begin());
   touch_->setView(view_.azimuth_deg, view_.zoom);

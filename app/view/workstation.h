@@ -21,6 +21,7 @@
 #include "app/view/navigation.h"
 #include "app/view/open_document.h"
 #include "app/view/recent_files.h"
+#include "app/view/refinement.h"
 #include "app/view/session_keeper.h"
 #include "app/view/settings.h"
 #include "app/view/shortcuts.h"
@@ -229,6 +230,7 @@ class Workstation {
   // The picture.
   render::View view_;
   CameraMotion camera_motion_;
+  Refinement refinement_;
   Display display_;
   Habits habits_ = Habits::kBlender;
   Settings settings_, saved_settings_;  // panels; as the file has them

@@ -53,6 +53,7 @@ void Workstation::dropCoarse() {
   if (touch_) return;
   window_->forgetPicture();
   shown_ = {};
+  refinement_ = {};
   figures_ = {};
   drag_ = Drag::kNone;
   stale_ = true;

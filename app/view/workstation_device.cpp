@@ -31,6 +31,7 @@ engine::Status Workstation::makePicture() {
   picture_ = std::move(*picture);
   // Whatever was shown is uploaded to it again.
   shown_ = {};
+  refinement_ = {};
   figures_ = {};
   stale_ = true;
   return {};

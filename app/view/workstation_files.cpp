@@ -190,6 +190,7 @@ void Workstation::takeDocument(Document document) {
   // Who has turned the coarse picture goes on from there.
   if (!looked_at) view_ = viewOf(camera != document.notes.end() ? camera->second : std::string());
   shown_ = {};
+  refinement_ = {};
   figures_ = {};
   chooseTool(std::nullopt);
   recent_.add(path_);
