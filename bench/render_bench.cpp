@@ -295,7 +295,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
   plain.view.height = options.height;
   plain.error_px = options.error_px;
   plain.vertex_budget = options.vertex_budget;
-  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (7 * options.sides.size() + 5));
+  job.begin("drawing", static_cast<std::uint64_t>(options.frames) * (9 * options.sides.size() + 5));
   for (std::size_t i = 0; i < options.sides.size(); ++i) {
     const auto field = partOf(options.sides[i]);
     if (!field) return tl::unexpected(field.error());
@@ -311,7 +311,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     }
     report.rest_ms.push_back(msSince(start));
 
-    std::vector<Scene> scenes(6, all_round);
+    std::vector<Scene> scenes(8, all_round);
     scenes[1].name = "empty";
     scenes[1].input.view.zoom = 1e-3;
     scenes[2].name = "brush";
@@ -321,18 +321,23 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     for (const std::size_t k : {2, 3, 4}) scenes[k].brush = Brush::kWorks;
     scenes[5].name = "stylus, still";
     scenes[5].stylus = true;
-    for (const std::size_t k : {3, 4, 5}) scenes[k].camera = Camera::kStands;
+    // As the window draws when nothing moves.
+    scenes[6].name = "fine";
+    scenes[7].name = "fine, brush";
+    for (const std::size_t k : {6, 7}) scenes[k].input.vertex_budget = std::int64_t{1} << 20;
+    scenes[7].brush = Brush::kWorks;
+    for (const std::size_t k : {3, 4, 5, 7}) scenes[k].camera = Camera::kStands;
     if (i == 0) {
-      scenes.insert(scenes.end(), 3, all_round);
-      scenes[6].name = "contours";
-      scenes[6].input.contours = render::Contours::kShow;
-      scenes[7].name = "deviation";
-      scenes[7].shown.original = *field;
-      scenes[8].name = "marks";
-      scenes[8].shown.marks = render::MarksOverlay::kShow;
-      scenes.push_back(all_round);
-      scenes[9].name = "two eyes";
-      scenes[9].input.stereo.mode = render::StereoMode::kAnaglyph;
+      const std::size_t first = scenes.size();
+      scenes.insert(scenes.end(), 4, all_round);
+      scenes[first].name = "contours";
+      scenes[first].input.contours = render::Contours::kShow;
+      scenes[first + 1].name = "deviation";
+      scenes[first + 1].shown.original = *field;
+      scenes[first + 2].name = "marks";
+      scenes[first + 2].shown.marks = render::MarksOverlay::kShow;
+      scenes[first + 3].name = "two eyes";
+      scenes[first + 3].input.stereo.mode = render::StereoMode::kAnaglyph;
     }
     if (options.in_motion == render::Sharpness::kHalf) {
       Scene moving = all_round;

@@ -76,9 +76,9 @@ struct RenderBenchReport {
 /// A machined, noisy part. At each size: an empty frame (ground and furniture, the yardstick); from all
 /// round, plain, half as sharp ("moving", as the window does it) and while a brush of 31 x 31 samples works;
 /// from one side, the brush with frames drawn in parts and as a whole, and a stylus that moves over the
-/// surface. At the first size each render effect alone as well, beside the plain row, so that an effect left
-/// out can be seen to cost nothing. Errors: kInput for options out of range, kCancelled, those of
-/// LivePicture. Thread: any; blocks.
+/// surface; and as finely as the window draws what rests. At the first size each render effect alone as well,
+/// beside the plain row, so that an effect left out can be seen to cost nothing. Errors: kInput for options
+/// out of range, kCancelled, those of LivePicture. Thread: any; blocks.
 [[nodiscard]] engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
                                                             engine::JobControl& job);
 
