@@ -91,8 +91,8 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
 }
 
 bool Workstation::active() const {
-  return stale_ || camera_motion_.owesSharp() || (touch_ && refinement_.owed()) || stylus_held_ ||
-         drag_ != Drag::kNone || figures_.upload.pending_tiles > 0;
+  return stale_ || camera_motion_.owesSharp() || stylus_held_ || drag_ != Drag::kNone ||
+         figures_.upload.pending_tiles > 0;
 }
 
 // What a person chose is written when it has changed, at most once in some seconds.
@@ -110,7 +110,8 @@ void Workstation::rememberLayout() {
 
 void Workstation::goRound() {
   const bool working = mark_edit_.busy() || edges_.busy() || costs_.busy() || loading_.busy() ||
-                       saving_.busy() || filters_.computing() || filters_.applying();
+                       saving_.busy() || filters_.computing() || filters_.applying() ||
+                       (touch_ && refinement_.owed());
   window_->poll(active() ? 0.0 : working ? kBusy_s : kIdle_s);
   whileWaiting();
   countHands();

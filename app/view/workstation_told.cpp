@@ -49,7 +49,7 @@ Report Workstation::told() const {
   r["notices"] = notices;
   // A dialog is laid out anew each frame, and seen from its second one on.
   const bool moves = dialog_ == Dialog::kNone
-                         ? active()
+                         ? active() || (touch_ && refinement_.owed())
                          : stylus_held_ || drag_ != Drag::kNone || figures_.upload.pending_tiles > 0 ||
                                told_dialog_ != dialog_ || frames_ < told_dialog_since_ + 3;
   bool settled = !moves && input_.empty() && !loading_.busy() && r["saving"] == false;
