@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "app/scan_options.h"
+#include "app/streams.h"
 #include "app/terminal.h"
+#include "engine/io/atomic_file.h"
 #include "engine/io/import.h"
 
 namespace fettle::app {
@@ -31,6 +33,38 @@ std::string outputOf(const std::string& in, const BatchOptions& options) {
   return (std::filesystem::path(options.out_dir) / name).string();
 }
 
+// For its lifetime, the folders that a batch writes to; those it made are removed at the end if they are
+// empty.
+class Folders {
+ public:
+  engine::Status make(const std::string& file) {
+    const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+    std::error_code error;
+    std::vector<std::filesystem::path> missing;
+    for (auto at = folder; !at.empty() && !std::filesystem::exists(at, error); at = at.parent_path())
+      missing.push_back(at);
+    for (auto at = missing.rbegin(); at != missing.rend(); ++at) {
+      if (std::filesystem::create_directory(*at, error)) made_.push_back(*at);
+      if (error && engine::isDiskError(error.value())) return engine::writeError(at->string(), error.value());
+      if (error)
+        return engine::inputError(fmt::format("the folder cannot be made: {}", error.message()), at->string(),
+                                  "name another or change the rights of the one above it");
+    }
+    return {};
+  }
+  Folders() = default;
+  ~Folders() {
+    std::error_code ignored;
+    // remove() leaves a folder that is not empty.
+    for (auto at = made_.rbegin(); at != made_.rend(); ++at) std::filesystem::remove(*at, ignored);
+  }
+  Folders(const Folders&) = delete;
+  Folders& operator=(const Folders&) = delete;
+
+ private:
+  std::vector<std::filesystem::path> made_;
+};
+
 std::string counted(std::size_t number, const char* what) {
   return fmt::format("{} {}{}", number, what, number == 1 ? "" : "s");
 }
@@ -39,31 +73,45 @@ std::string counted(std::size_t number, const char* what) {
 
 void addBatchOptions(CLI::App* command, BatchOptions& options) {
   command
-      ->add_option("FILES", options.files,
-                   "IN OUT: the scan to read and the file to write, format by extension; with --out-dir all "
-                   "are scans to read")
+      ->add_option(
+          "FILES", options.files,
+          "IN OUT: the scan to read and the file to write, format by extension, - for standard input "
+          "and output; with --out-dir all are scans to read")
       ->required();
-  command->add_option("--out-dir", options.out_dir,
-                      "Folder for what is written, each under its scan's name; goes on where a scan fails");
-  command->add_option("--to", options.extension,
-                      "With --out-dir: format of what is written, as extension; else the scan's own, or tif");
+  command->add_option(
+      "--out-dir", options.out_dir,
+      "Folder for what is written, each under its scan's name, made when it is not there; goes on "
+      "where a scan fails");
+  command->add_option(
+      "--to", options.extension,
+      "With --out-dir, or - for OUT: format of what is written, as extension; in a folder the "
+      "scan's own without it, or tif");
+  addForceOption(command, options.replacing);
 }
 
 engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
-                                                  const std::vector<std::string>& others) {
+                                                  const std::vector<std::string>& others,
+                                                  engine::JobControl& job) {
   std::vector<BatchTask> tasks;
   if (!options.many()) {
     if (options.files.size() != 2)
       return engine::inputError(
           fmt::format("{} given", counted(options.files.size(), "file")), "IN OUT",
           "give a scan to read and a file to write, or --out-dir and any number of scans");
-    if (!options.extension.empty())
+    const std::string& out = options.files[1];
+    if (!options.extension.empty() && !isStream(out))
       return engine::inputError("--to needs --out-dir", "--to", "the extension of OUT names the format");
-    tasks.push_back({options.files[0], options.files[1]});
+    std::error_code error;
+    if (out.ends_with('/') || std::filesystem::is_directory(out, error))
+      return engine::inputError("the output is a folder", out, "name a file in it, or give it as --out-dir");
+    tasks.push_back({options.files[0], out, options.extension});
   } else {
     std::map<std::string, std::string> taken;
     for (const std::string& in : options.files) {
-      tasks.push_back({in, outputOf(in, options)});
+      if (isStream(in))
+        return engine::inputError("standard input has no name to be written under", in,
+                                  "give it alone, with a file to write");
+      tasks.push_back({in, outputOf(in, options), {}});
       const auto [earlier, fresh] = taken.emplace(tasks.back().out, in);
       if (!fresh)
         return engine::inputError(fmt::format("{} and {} would be written to one file", earlier->second, in),
@@ -73,10 +121,11 @@ engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
   std::vector<Output> outputs;
   std::vector<std::string> inputs = others;
   for (const BatchTask& task : tasks) {
-    outputs.push_back({task.out, OutputKind::kField});
+    outputs.push_back({task.out, OutputKind::kField, task.to, options.many()});
     inputs.push_back(task.in);
   }
-  if (auto status = checkOutputs(outputs, inputs); !status) return tl::unexpected(status.error());
+  if (auto status = checkOutputs(outputs, inputs, options.replacing, job); !status)
+    return tl::unexpected(status.error());
   return tasks;
 }
 
@@ -86,6 +135,7 @@ engine::Result<Report> runBatch(
   Report files = Report::array();
   std::vector<engine::Error> failures;
   std::size_t done = 0;
+  Folders folders;
   {
     BatchState state;
     state.count = tasks.size();
@@ -94,20 +144,24 @@ engine::Result<Report> runBatch(
       if (job.cancelled()) break;
       engine::Result<Report> result = tl::unexpected(engine::Error{});
       try {
-        result = one(task, job);
+        const auto ready = task.out.empty() ? engine::Status{} : folders.make(task.out);
+        result = ready ? one(task, job) : tl::unexpected(ready.error());
       } catch (const std::bad_alloc&) {  // of this scan; the next may fit
         result = engine::failure("memory ran out", task.in, "close other programs or take a smaller scan");
       }
       if (result) {
         ++done;
-        Report entry{{"in", task.in}, {"out", task.out}};
+        Report entry{{"in", task.in}};
+        if (!task.out.empty()) entry["out"] = task.out;
         entry.update(*result);
+        addKeptWarnings(entry);
         files.push_back(std::move(entry));
       } else if (result.error().kind == engine::ErrorKind::kCancelled) {
         job.cancel();
         break;
       } else {
         files.push_back({{"in", task.in}, {"error", result.error().line()}});
+        addKeptWarnings(files.back());
         failures.push_back(std::move(result).error());
         // Whoever reads the summary must know the scan; errors of the output name that alone.
         if (failures.back().where != task.in) failures.back().what = task.in + ": " + failures.back().what;
@@ -120,7 +174,9 @@ engine::Result<Report> runBatch(
     return tl::unexpected(
         engine::Error{engine::ErrorKind::kCancelled,
                       fmt::format("cancelled after {} of {}", done, counted(tasks.size(), "scan")), "",
-                      done == 0 ? "nothing was written" : "what was written is whole"});
+                      tasks.front().out.empty() ? ""
+                      : done == 0               ? "nothing was written"
+                                                : "what was written is whole"});
   return Report{{"done", done}, {"failed", failures.size()}, {"files", std::move(files)}};
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/command.h"
+#include "app/scan_options.h"
 
 namespace fettle::app {
 
@@ -12,8 +13,10 @@ namespace fettle::app {
 /// with a folder for what is written.
 struct BatchOptions {
   std::vector<std::string> files;
-  std::string out_dir;    ///< empty: one scan, IN OUT
-  std::string extension;  ///< of what is written to out_dir, with or without a dot; empty = see batchTasks
+  std::string out_dir;  ///< empty: one scan, IN OUT
+  std::string
+      extension;  ///< of what is written to out_dir or to "-", with or without a dot; empty: batchTasks
+  Replacing replacing = Replacing::kNoWork;
 
   [[nodiscard]] bool many() const noexcept { return !out_dir.empty(); }
 };
@@ -22,21 +25,25 @@ void addBatchOptions(CLI::App* command, BatchOptions& options);
 /// One scan to read and where it goes.
 struct BatchTask {
   std::string in;
-  std::string out;
+  std::string out;  ///< empty: nothing is written
+  std::string to;   ///< format of an `out` that is "-", as extension
 };
 
 /// What is to be done, in the order typed. In out_dir a scan keeps its name; its extension is that of
 /// `options`, else its own where that format can be written, else .tif. Refuses before anything is read
-/// (kInput): not exactly IN and OUT without out_dir, an extension without out_dir, two scans that would go to
-/// one file (naming both), and whatever checkOutputs refuses. `others` are further inputs that no output may
-/// replace.
+/// (kInput): not exactly IN and OUT without out_dir, an extension without out_dir or "-", two scans that
+/// would go to one file (naming both), and whatever checkOutputs refuses. `others` are further inputs that no
+/// output may replace.
 [[nodiscard]] engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
-                                                                const std::vector<std::string>& others);
+                                                                const std::vector<std::string>& others,
+                                                                engine::JobControl& job);
 
 /// Does one task after another with one progress line for all, and goes on where one fails. Failures are
 /// errors on stderr at the end, one line each. The report holds `done`, `failed` and `files`: one object a
-/// task, with `in`, `out` and what `one` reported, or `in` and `error`. batchStatus makes the exit status.
+/// task, with `in`, `out` (where there is one) and what `one` reported, or `in` and `error`. batchStatus
+/// makes the exit status.
 ///
+/// A folder to write to that is not there is made, and removed again when nothing was written.
 /// Cancelling ends the task at work, which leaves nothing, and starts no other: kCancelled, saying how many
 /// files are there and whole.
 [[nodiscard]] engine::Result<Report> runBatch(

@@ -4,6 +4,10 @@
 #include <cstdio>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/spelling.h"
+#include "app/terminal.h"
 
 namespace fettle::app {
 
@@ -47,6 +51,17 @@ void printIndented(const Report& report, int indent) {
 
 }  // namespace
 
+void addKeptWarnings(Report& report) {
+  for (const std::string& warning : takeWarnings()) {
+    Report& list = report["warnings"];
+    if (!list.is_array()) list = Report::array();
+    const bool there = std::any_of(list.begin(), list.end(), [&](const Report& held) {
+      return held.is_string() && warning.ends_with(held.get<std::string>());
+    });
+    if (!there) list.push_back(warning);
+  }
+}
+
 void printReport(const Report& report) {
   printIndented(report, 0);
 }
@@ -62,12 +77,29 @@ CLI::Validator within(double lowest, double highest) {
       fmt::format("FLOAT in [{:g} - {:g}]", lowest, highest));
 }
 
+CLI::Validator oneOf(const std::vector<std::string>& words) {
+  return CLI::Validator(
+      [words](const std::string& typed) {
+        if (std::find(words.begin(), words.end(), typed) != words.end()) return std::string();
+        const std::string meant = didYouMean(typed, words);
+        return fmt::format("{} is none of {}{}{}", typed, fmt::join(words, ", "), meant.empty() ? "" : "; ",
+                           meant);
+      },
+      fmt::format("{{{}}}", fmt::join(words, ",")));
+}
+
+void addOutputFlags(CLI::App& app, Chosen& chosen) {
+  app.add_flag("--json", chosen.json,
+               "Print one JSON object on stdout instead of text, an error as one on stderr");
+  app.add_flag("-q,--quiet", chosen.quiet, "Say nothing but errors: no report, warnings or progress");
+}
+
 CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
                      std::function<engine::Result<Report>(engine::JobControl&)> run,
                      std::function<void(const Report&)> print, Progress progress,
                      std::function<int(const Report&)> status) {
   CLI::App* command = root.add_subcommand(name, description);
-  command->add_flag("--json", chosen.json, "Print one JSON object on stdout instead of text");
+  addOutputFlags(*command, chosen);
   command->callback(
       [&chosen, run = std::move(run), print = std::move(print), progress, status = std::move(status)] {
         chosen.run = run;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -29,12 +30,20 @@ struct Chosen {
   std::function<int(const Report&)> status;  ///< exit status of what `run` reported; empty: 0
   Progress progress = Progress::kLine;
   bool json = false;
+  bool quiet = false;  ///< nothing is said but errors
 };
+
+/// Puts the warnings that --json kept back (takeWarnings) into the report's list `warnings`, but for those
+/// that it holds already, with or without the file's name before them. Without any the report stays as it is.
+void addKeptWarnings(Report& report);
 
 /// "key  value" lines; nested objects are indented, null prints as "-".
 void printReport(const Report& report);
 
-/// Adds a subcommand with --json. `run` is stored in `chosen` when the command line names it.
+/// Adds --json and --quiet, which a command takes before and behind its name.
+void addOutputFlags(CLI::App& app, Chosen& chosen);
+
+/// Adds a subcommand with --json and --quiet. `run` is stored in `chosen` when the command line names it.
 CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
                      std::function<engine::Result<Report>(engine::JobControl&)> run,
                      std::function<void(const Report&)> print = printReport,
@@ -42,6 +51,9 @@ CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, co
 
 /// For CLI::Option::check: a number from `lowest` to `highest`. CLI::Range lets NaN through.
 [[nodiscard]] CLI::Validator within(double lowest, double highest);
+
+/// For CLI::Option::check: one of these words. Another is refused with what it may stand for.
+[[nodiscard]] CLI::Validator oneOf(const std::vector<std::string>& words);
 
 void addInfo(CLI::App& root, Chosen& chosen);
 void addSynth(CLI::App& root, Chosen& chosen);

@@ -12,15 +12,25 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include "app/session_guard.h"
+#include "app/spelling.h"
+#include "app/streams.h"
 #include "app/terminal.h"
+#include "app/view/open_document.h"
 #include "engine/field/tile_store.h"
-#include "engine/io/export.h"
 
 namespace fettle::app {
 
 namespace {
 
 constexpr const char* kReading = "Reading the scan";
+
+std::vector<std::string> extensions(bool engine::FormatInfo::*able) {
+  std::vector<std::string> all;
+  for (const engine::FormatInfo& format : engine::formats())
+    if (format.*able) all.insert(all.end(), format.extensions.begin(), format.extensions.end());
+  return all;
+}
 
 }  // namespace
 
@@ -48,7 +58,7 @@ void addScanOptions(CLI::App* command, ScanOptions& options) {
       ->add_option("--spacing", options.spacing,
                    "Sample spacing X[,Y] in the scan's unit, where the file has none")
       ->delimiter(',')
-      ->expected(1, 2)
+      ->allow_extra_args(false)  // "--spacing 0.5 SCAN": what follows is the scan
       ->group(group);
   command->add_option("--z-scale", options.z_scale, "Height of one count of the file")->group(group);
   command
@@ -59,7 +69,7 @@ void addScanOptions(CLI::App* command, ScanOptions& options) {
       ->add_option("--cell-size", options.cell_size, "Point clouds: side of a grid cell in the scan's unit")
       ->group(group);
   command->add_option("--cell-rule", options.cell_rule, "Point clouds: height of a cell with several points")
-      ->check(CLI::IsMember({"median", "mean", "highest"}))
+      ->check(oneOf({"median", "mean", "highest"}))
       ->group(group);
   command
       ->add_option("--depth-camera", options.depth_camera,
@@ -67,6 +77,20 @@ void addScanOptions(CLI::App* command, ScanOptions& options) {
       ->delimiter(',')
       ->expected(4)
       ->group(group);
+  command
+      ->add_option("--from", options.from,
+                   "Format of standard input (-), as extension, where its content leaves doubt")
+      ->check([](const std::string& typed) {
+        const auto known = extensions(&engine::FormatInfo::reads);
+        if (std::find(known.begin(), known.end(), withDot(typed)) != known.end()) return std::string();
+        const std::string meant = didYouMean(withDot(typed), known);
+        return fmt::format("{} is no format that can be read{}{}", typed, meant.empty() ? "" : "; ", meant);
+      })
+      ->group(group);
+}
+
+void addStreamFormat(CLI::App* command, std::string& to) {
+  command->add_option("--to", to, "With - for OUT, standard output: its format, as extension");
 }
 
 std::string scanOptionsText(const ScanOptions& options) {
@@ -85,6 +109,9 @@ std::string scanOptionsText(const ScanOptions& options) {
 engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options) {
   engine::ImportOptions import;
   import.no_data = options.no_data;
+  if (options.spacing.size() > 2)
+    return engine::inputError(fmt::format("{} numbers are no spacing", options.spacing.size()), "--spacing",
+                              "give X[,Y]");
   if (!options.spacing.empty()) import.spacing = {options.spacing.front(), options.spacing.back()};
   import.z_scale = options.z_scale;
   import.cell_size = options.cell_size;
@@ -101,21 +128,69 @@ engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options) 
   return import;
 }
 
+namespace {
+
+engine::Result<engine::Imported> warned(engine::Result<engine::Imported> imported, const std::string& name) {
+  if (imported)
+    for (const std::string& warning : imported->warnings) warn(fmt::format("{}: {}", name, warning));
+  return imported;
+}
+
+}  // namespace
+
 engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
                                           engine::JobControl& job) {
   const auto import = importOptions(options);
   if (!import) return tl::unexpected(import.error());
-  auto imported = engine::importField(path, *import, job);
-  if (imported)
-    for (const std::string& warning : imported->warnings) warn(fmt::format("{}: {}", path, warning));
-  return imported;
+  if (!isStream(path)) return warned(engine::importField(path, *import, job), path);
+  const auto input = StandardInput::read(options.from.empty() ? "" : withDot(options.from), job);
+  if (!input) return tl::unexpected(input.error());
+  auto imported = engine::importField(input->path(), *import, job);
+  if (!imported) return tl::unexpected(input->renamed(imported.error()));
+  return warned(std::move(imported), shownInput(path));
 }
 
-engine::Status saveField(const engine::Version& field, const std::string& path, engine::JobControl& job) {
-  auto written = engine::exportField(field, path, {}, job);
-  if (!written) return tl::unexpected(written.error());
-  for (const std::string& warning : written->warnings) warn(fmt::format("{}: {}", path, warning));
-  return {};
+void addOriginalOption(CLI::App* command, std::string& original) {
+  command->add_option("--original", original,
+                      "The scan that the work began with: changes are limited against it; without it against "
+                      "what is read, or against the original that a session has");
+}
+
+engine::Result<engine::Version> originalOf(const engine::Imported& imported, const std::string& given,
+                                           const ScanOptions& reading, engine::JobControl& job) {
+  if (given.empty()) return imported.original.value_or(imported.field);
+  if (imported.original)
+    return engine::inputError("a session has its own original", given, "leave --original out");
+  const auto other = loadScan(given, reading, job);
+  if (!other) return tl::unexpected(other.error());
+  const engine::Version& original = other->original.value_or(other->field);
+  const engine::Grid &is = original.grid(), &wanted = imported.field.grid();
+  if (is.width != wanted.width || is.height != wanted.height)
+    return engine::inputError(fmt::format("the original has {} x {} samples and the scan {} x {}", is.width,
+                                          is.height, wanted.width, wanted.height),
+                              given, "give the scan that this one was made from");
+  if (!(is.height_unit == wanted.height_unit))
+    return engine::inputError(fmt::format("heights of the original are in {} and those of the scan in {}",
+                                          is.height_unit.name, wanted.height_unit.name),
+                              given, "convert one of them, or say --unit where a file states none");
+  return original.withGrid(wanted);
+}
+
+engine::Status checkOriginal(const std::string& given, bool limited, const std::string& out) {
+  if (given.empty() || limited || isSessionPath(out)) return {};
+  return engine::inputError("the original is what changes are limited against, and nothing limits them",
+                            "--original", "give --max-change, or a scene with max_change, or leave it out");
+}
+
+engine::Status saveField(const engine::Version& field, const std::string& path, engine::JobControl& job,
+                         const engine::ExportOptions& writing, const std::string& to) {
+  return writeTo(path, withDot(to), job, [&](const std::string& file) -> engine::Status {
+    auto written = engine::exportField(field, file, writing, job);
+    if (!written) return tl::unexpected(written.error());
+    for (const std::string& warning : written->warnings)
+      warn(fmt::format("{}: {}", shownOutput(path), warning));
+    return {};
+  });
 }
 
 engine::Result<double> parseHeight(const std::string& text, const engine::Grid& grid,
@@ -154,6 +229,13 @@ engine::Result<std::pair<int, int>> parseSize(const std::string& text, const std
   return std::pair{width, height};
 }
 
+std::string withDot(const std::string& extension) {
+  std::string dotted = extension.starts_with('.') ? extension : "." + extension;
+  std::transform(dotted.begin(), dotted.end(), dotted.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return dotted;
+}
+
 std::string extensionOf(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -163,15 +245,18 @@ std::string extensionOf(const std::string& path) {
 
 namespace {
 
+// Formats whose files a terminal can show.
+bool isText(const std::string& extension) {
+  return std::ranges::any_of(engine::formats(), [&](const engine::FormatInfo& format) {
+    return (format.name == "XYZ" || format.name == "AAIGrid") &&
+           std::ranges::find(format.extensions, extension) != format.extensions.end();
+  });
+}
+
 std::vector<std::string> extensionsFor(OutputKind kind) {
   if (kind == OutputKind::kMarks) return {".png", ".tif", ".tiff"};
   if (kind == OutputKind::kPicture) return {".png"};
-  std::vector<std::string> extensions;
-  if (kind == OutputKind::kField)
-    for (const engine::FormatInfo& format : engine::formats())
-      if (format.writes)
-        extensions.insert(extensions.end(), format.extensions.begin(), format.extensions.end());
-  return extensions;
+  return kind == OutputKind::kField ? extensions(&engine::FormatInfo::writes) : std::vector<std::string>();
 }
 
 // One spelling for one place, links and dots resolved as far as the path exists.
@@ -181,19 +266,46 @@ std::filesystem::path placeOf(const std::string& path) {
   return error ? std::filesystem::path(path) : place;
 }
 
+engine::Status checkExtension(const std::string& extension, OutputKind kind, const std::string& where) {
+  const std::vector<std::string> known = extensionsFor(kind);
+  if (known.empty() || std::find(known.begin(), known.end(), extension) != known.end()) return {};
+  const std::string meant = didYouMean(extension, known);
+  return engine::inputError(
+      extension.empty() ? "no extension names the format to write"
+                        : fmt::format("{} is no format to write", extension),
+      where, fmt::format("{}{}take one of {}", meant, meant.empty() ? "" : " ", fmt::join(known, " ")));
+}
+
+// Standard output in the place of a file.
+engine::Status checkStream(const Output& output) {
+  if (!output.stream)
+    return engine::inputError("this cannot be written to standard output", output.path, "name a file");
+  if (output.stream->empty())
+    return engine::inputError("the format of standard output is not said", "--to",
+                              "give it as extension: --to xyz");
+  const std::string extension = withDot(*output.stream);
+  if (auto known = checkExtension(extension, output.kind, "--to"); !known) return known;
+  const bool text = output.kind == OutputKind::kField && isText(extension);
+  if (!text && isatty(STDOUT_FILENO) != 0)
+    return engine::inputError(fmt::format("standard output is a terminal, and {} is no text", extension), "-",
+                              "send it into a file or another program, with > or |");
+  return {};
+}
+
 engine::Status checkOutput(const Output& output) {
-  const std::vector<std::string> extensions = extensionsFor(output.kind);
-  if (!extensions.empty() &&
-      std::find(extensions.begin(), extensions.end(), extensionOf(output.path)) == extensions.end())
-    return engine::inputError("no format to write has this extension", output.path,
-                              fmt::format("take one of {}", fmt::join(extensions, " ")));
-  std::filesystem::path folder = std::filesystem::path(output.path).parent_path();
-  if (folder.empty()) folder = ".";
+  if (isStream(output.path)) return checkStream(output);
   std::error_code error;
-  if (!std::filesystem::is_directory(folder, error))
-    return engine::inputError("there is no such folder", folder.string(), "make it or name another");
-  if (std::filesystem::is_directory(output.path, error))
+  if (output.path.ends_with('/') || std::filesystem::is_directory(output.path, error))
     return engine::inputError("the output is a folder", output.path, "name a file in it");
+  if (auto known = checkExtension(extensionOf(output.path), output.kind, output.path); !known) return known;
+  std::filesystem::path folder = std::filesystem::path(output.path).parent_path();
+  if (output.makes_folder)
+    while (!folder.empty() && !std::filesystem::exists(folder, error)) folder = folder.parent_path();
+  if (folder.empty()) folder = ".";
+  if (!std::filesystem::is_directory(folder, error))
+    return std::filesystem::exists(folder, error)
+               ? engine::inputError("this is a file and no folder", folder.string(), "name another")
+               : engine::inputError("there is no such folder", folder.string(), "make it or name another");
   if (std::filesystem::exists(output.path, error) && !std::filesystem::is_regular_file(output.path, error))
     return engine::inputError("the output is no regular file", output.path,
                               "outputs are put in place whole, by renaming: name a file");
@@ -205,11 +317,11 @@ engine::Status checkOutput(const Output& output) {
 
 }  // namespace
 
-engine::Status checkOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
+engine::Status checkPlaces(const std::vector<Output>& outputs, const std::vector<std::string>& inputs) {
   enum class Use : std::uint8_t { kInput, kOutput };
   std::map<std::filesystem::path, Use> taken;
   for (const std::string& input : inputs)
-    if (!input.empty()) taken.emplace(placeOf(input), Use::kInput);
+    if (!input.empty() && !isStream(input)) taken.emplace(placeOf(input), Use::kInput);
   for (const Output& output : outputs) {
     if (output.path.empty()) continue;
     if (auto status = checkOutput(output); !status) return status;
@@ -219,6 +331,26 @@ engine::Status checkOutputs(const std::vector<Output>& outputs, const std::vecto
                                                                : "two outputs are in the same place",
                                 output.path, "name another file");
   }
+  return {};
+}
+
+void addForceOption(CLI::App* command, Replacing& replacing) {
+  command->add_flag_function(
+      "--force", [&replacing](std::int64_t) { replacing = Replacing::kAnything; },
+      "Replace a session that has a journal");
+}
+
+engine::Status checkOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs,
+                            Replacing replacing, engine::JobControl& job) {
+  if (auto status = checkPlaces(outputs, inputs); !status) return status;
+  if (replacing == Replacing::kNoWork)
+    for (const Output& output : outputs)
+      if (isSessionPath(output.path))
+        if (auto status = refuseToLoseWork(output.path); !status) return status;
+  ScanGuard guard;
+  for (const Output& output : outputs)
+    if (!output.path.empty() && !isStream(output.path))
+      if (auto status = guard.spare(output.path, job); !status) return status;
   return {};
 }
 

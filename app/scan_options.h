@@ -9,6 +9,7 @@
 
 #include "app/command.h"
 #include "engine/field/version.h"
+#include "engine/io/export.h"
 #include "engine/io/import.h"
 
 namespace fettle::app {
@@ -26,6 +27,7 @@ struct ScanOptions {
   std::optional<double> cell_size;
   std::string cell_rule;
   std::vector<double> depth_camera;  ///< fx, fy, cx, cy [pixels]; empty = none
+  std::string from;                  ///< format of standard input as extension; empty = by its content
 };
 void addScanOptions(CLI::App* command, ScanOptions& options);
 
@@ -39,13 +41,41 @@ void addStoreOption(CLI::App* command);
 /// As the importer takes them. Errors: an unknown unit.
 [[nodiscard]] engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options);
 
-/// Imports a scan; what the importer warns of goes to stderr, each line naming the file.
+/// Imports a scan, "-" from standard input; what the importer warns of goes to stderr, each line naming the
+/// file.
 [[nodiscard]] engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
                                                         engine::JobControl& job);
 
-/// Writes a field; what the format could not keep goes to stderr.
+/// --original SCAN: what a limit of change is measured against, for files; a session has its own.
+void addOriginalOption(CLI::App* command, std::string& original);
+
+/// What the work on `imported` began with: `given` (--original) read as `reading` says, else the session's
+/// own original, else the field itself. Grid and way up are the field's. A session given as --original stands
+/// for the scan that it began with. Errors (kInput): --original for a session, another size or height unit;
+/// those of loadScan.
+[[nodiscard]] engine::Result<engine::Version> originalOf(const engine::Imported& imported,
+                                                         const std::string& given, const ScanOptions& reading,
+                                                         engine::JobControl& job);
+
+/// Refuses --original where nothing would look at it: changes are not limited, and `out` is no session, which
+/// would keep it.
+[[nodiscard]] engine::Status checkOriginal(const std::string& given, bool limited, const std::string& out);
+
+/// Export options with which a session begins with `original` (engine::ExportOptions::original).
+[[nodiscard]] inline engine::ExportOptions beginningWith(std::optional<engine::Version> original) {
+  engine::ExportOptions options;
+  options.original = std::move(original);
+  return options;
+}
+
+/// Writes a field, to "-" in the format of the extension `to`; what the format could not keep goes to stderr.
+/// With `writing.original` a session begins with that.
 [[nodiscard]] engine::Status saveField(const engine::Version& field, const std::string& path,
-                                       engine::JobControl& job);
+                                       engine::JobControl& job, const engine::ExportOptions& writing = {},
+                                       const std::string& to = {});
+
+/// --to EXT for a command whose OUT may be "-".
+void addStreamFormat(CLI::App* command, std::string& to);
 
 /// A length as the user types it, in height units of the field: "0.5" is in the field's own height unit,
 /// "0.5mm", "20um" in the unit that is named. Errors: not a number, unknown unit, negative, not finite.
@@ -70,6 +100,9 @@ inline constexpr SideRange kPictureSides{16, 16384};
 /// The extension with its dot, lower case; empty without one.
 [[nodiscard]] std::string extensionOf(const std::string& path);
 
+/// An extension as typed, "tif" or ".TIF", with its dot and in lower case.
+[[nodiscard]] std::string withDot(const std::string& extension);
+
 /// What a command writes, for the checks that need no scan.
 enum class OutputKind {
   kField,    ///< extension of a format that can be written
@@ -80,12 +113,31 @@ enum class OutputKind {
 struct Output {
   std::string path;  ///< empty = not asked for
   OutputKind kind = OutputKind::kText;
+  /// What "-" would be written as: an extension, empty where the user has not said one; nothing where the
+  /// output cannot be standard output.
+  std::optional<std::string> stream{};
+  bool makes_folder = false;  ///< whoever writes it makes its folder when it is not there
 };
 
+/// What an output may take the place of.
+enum class Replacing {
+  kNoWork,   ///< any file but a session that has a journal
+  kAnything  ///< --force
+};
+void addForceOption(CLI::App* command, Replacing& replacing);
+
 /// Refuses, before anything is read or computed, what would fail or destroy something at the end: an
-/// extension nobody writes, a folder that is not there or not writable, a target that is no regular file, two
-/// outputs in one place, an output in the place of an input.
+/// extension nobody writes, a folder that is not there or not writable, a target that is a folder or no
+/// regular file, two outputs in one place, an output in the place of an input; standard output without a
+/// format, for two outputs, or binary on a terminal.
+[[nodiscard]] engine::Status checkPlaces(const std::vector<Output>& outputs,
+                                         const std::vector<std::string>& inputs);
+
+/// The same for a command, which asks nobody: also refuses to replace a session that has a journal, unless
+/// `replacing` allows it. Where an output replaces the scan of another session, that session gets the scan
+/// first, with a warning (ScanGuard).
 [[nodiscard]] engine::Status checkOutputs(const std::vector<Output>& outputs,
-                                          const std::vector<std::string>& inputs);
+                                          const std::vector<std::string>& inputs, Replacing replacing,
+                                          engine::JobControl& job);
 
 }  // namespace fettle::app

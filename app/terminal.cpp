@@ -7,9 +7,11 @@
 #include <atomic>
 #include <chrono>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 namespace fettle::app {
 
@@ -23,6 +25,23 @@ void onSignal(int signal) {
   // Sequentially consistent by default: once in a process's life, and never on a fast path.
   if (engine::JobControl* job = interrupted_job.load()) job->cancel();
   std::signal(signal, SIG_DFL);
+}
+
+Voice chosen_voice;
+
+std::mutex kept_mutex;
+std::vector<std::string> kept_warnings;  // guarded by kept_mutex
+
+const char* nameOf(engine::ErrorKind kind) {
+  switch (kind) {
+    case engine::ErrorKind::kInput:
+      return "input";
+    case engine::ErrorKind::kCancelled:
+      return "cancelled";
+    case engine::ErrorKind::kFailed:
+      break;
+  }
+  return "failed";
 }
 
 // A terminal that is gone or full must not end the work: what cannot be said is left unsaid.
@@ -72,7 +91,7 @@ std::string progressText(const engine::JobControl& job, const BatchState* batch)
 
 ProgressLine::ProgressLine(const engine::JobControl& job, const BatchState* batch)
     : job_(job), batch_(batch) {
-  if (isatty(STDERR_FILENO) != 0) thread_ = std::thread([this] { show(); });
+  if (!voice().quiet && isatty(STDERR_FILENO) != 0) thread_ = std::thread([this] { show(); });
 }
 
 ProgressLine::~ProgressLine() {
@@ -97,13 +116,40 @@ void ProgressLine::show() {
   std::fflush(stderr);
 }
 
+void setVoice(const Voice& voice) {
+  chosen_voice = voice;
+}
+
+const Voice& voice() noexcept {
+  return chosen_voice;
+}
+
 int report(const engine::Error& error) {
-  lineToStderr("fettle: error: " + error.line());
-  return error.kind == engine::ErrorKind::kInput ? 2 : 1;
+  const int status = error.kind == engine::ErrorKind::kInput ? 2 : 1;
+  if (voice().json) {
+    const nlohmann::ordered_json object{{"error", error.line()},     {"kind", nameOf(error.kind)},
+                                        {"what", error.what},        {"where", error.where},
+                                        {"remedy", error.remedy},    {"status", status},
+                                        {"warnings", takeWarnings()}};
+    lineToStderr(object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  } else {
+    lineToStderr("fettle: error: " + error.line());
+  }
+  return status;
 }
 
 void warn(const std::string& text) {
-  lineToStderr("fettle: warning: " + text);
+  if (voice().json) {
+    const std::scoped_lock lock(kept_mutex);
+    kept_warnings.push_back(text);
+  } else if (!voice().quiet) {
+    lineToStderr("fettle: warning: " + text);
+  }
+}
+
+std::vector<std::string> takeWarnings() {
+  const std::scoped_lock lock(kept_mutex);
+  return std::exchange(kept_warnings, {});
 }
 
 }  // namespace fettle::app

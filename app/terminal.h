@@ -5,6 +5,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
@@ -51,11 +52,24 @@ class ProgressLine {
   std::thread thread_;
 };
 
+/// How the program speaks on stderr. Set once, before a command runs.
+struct Voice {
+  bool quiet = false;  ///< errors alone: no warnings, no progress line
+  bool json = false;   ///< errors as JSON objects; warnings are kept for the report
+};
+void setVoice(const Voice& voice);
+[[nodiscard]] const Voice& voice() noexcept;
+
 /// Prints "fettle: error: what, where, remedy" on stderr and returns the exit status that belongs to it:
-/// 2 for bad usage or input, 1 for everything else.
+/// 2 for bad usage or input, 1 for everything else. With Voice::json one line with one object: `error` (the
+/// line without its head), `kind` (input, failed, cancelled), `what`, `where`, `remedy`, `status`,
+/// `warnings`.
 int report(const engine::Error& error);
 
-/// Prints "fettle: warning: ..." on stderr.
+/// Prints "fettle: warning: ..." on stderr; with Voice::json keeps it. Threading: any.
 void warn(const std::string& text);
+
+/// The warnings kept so far, which are kept no more.
+[[nodiscard]] std::vector<std::string> takeWarnings();
 
 }  // namespace fettle::app

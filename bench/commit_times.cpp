@@ -8,6 +8,7 @@
 #include "app/journal/recorder.h"
 #include "bench/hand_stroke.h"
 #include "bench/own_folder.h"
+#include "engine/base/stopwatch.h"
 #include "engine/field/live_field.h"
 #include "engine/field/tile_store.h"
 #include "engine/history/history.h"
@@ -23,10 +24,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::int64_t kStrokeTicks = 1000;
-
-double msSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 }  // namespace
 
@@ -70,9 +67,9 @@ engine::Result<CommitTimes> commitTimes(const engine::Version& field, int stroke
                                         {static_cast<std::uint64_t>((stroke + 1) * kStrokeTicks), false},
                                         false});
     (*writer)->commit(number, history.step(number), recorder.take());
-    const double waited = msSince(end);
+    const double waited = engine::msSince(end);
     if (engine::Status flushed = (*writer)->flush(job); !flushed) return tl::unexpected(flushed.error());
-    times.durable_ms.push_back(msSince(end));
+    times.durable_ms.push_back(engine::msSince(end));
     times.waits_ms.push_back(waited);
     const auto change = engine::measureChange(history.state(number - 1), history.current());
     times.tiles.push_back(static_cast<double>(change.tiles));

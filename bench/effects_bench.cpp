@@ -9,6 +9,7 @@
 
 #include "bench/hand_stroke.h"
 #include "bench/machine.h"
+#include "bench/repeats.h"
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
 #include "haptic/loop/rt_thread.h"
@@ -18,7 +19,6 @@ namespace fettle::bench {
 
 namespace {
 
-constexpr double kSpacingMm = 0.05;
 constexpr double kBallSamples = 2.0;
 // Counting may have to go in single steps of 5 to 20 us.
 constexpr std::size_t kCountedTicks = 24;

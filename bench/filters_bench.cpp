@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bench/machine.h"
+#include "bench/repeats.h"
 #include "engine/field/builder.h"
 
 namespace fettle::bench {
@@ -39,11 +40,6 @@ Seconds timed(Work&& work) {
   work();
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   return {wall.count(), processorSeconds() - cpu};
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 // Steele, Lea, Flood 2014, SplitMix64: a good hash of a counter, so that any sample can be made by itself.

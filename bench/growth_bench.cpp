@@ -11,6 +11,7 @@
 #include "bench/commit_times.h"
 #include "bench/hand_stroke.h"
 #include "bench/machine.h"
+#include "bench/repeats.h"
 #include "engine/field/live_field.h"
 #include "engine/field/tile.h"
 #include "engine/filter/filter.h"
@@ -23,18 +24,11 @@
 namespace fettle::bench {
 namespace {
 
-constexpr double kSpacingMm = 0.05;
 constexpr double kTicks = 50'000;
 constexpr int kWindows[] = {3, 5, 11, 21, 41, 101};
 constexpr double kBrushes[] = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
 constexpr double kWindowSide = 1024;  // of the field that windows are tried on
 constexpr std::int32_t kBrushSide = 1024;
-
-double secondsOf(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 GrowthPoint pointOf(double work, std::vector<double> costs) {
   std::sort(costs.begin(), costs.end());

@@ -11,6 +11,7 @@
 #include "bench/hard_grounds.h"
 #include "bench/machine.h"
 #include "bench/plain_search.h"
+#include "bench/repeats.h"
 #include "engine/field/live_field.h"
 #include "haptic/loop/rt_thread.h"
 #include "haptic/replay.h"
@@ -20,8 +21,6 @@
 namespace fettle::bench {
 
 namespace {
-
-constexpr double kSpacingMm = 0.05;
 
 struct Way {
   const char* name;

@@ -11,6 +11,7 @@
 #include "bench/import_files.h"
 #include "bench/machine.h"
 #include "bench/own_folder.h"
+#include "bench/repeats.h"
 #include "engine/io/export.h"
 #include "engine/io/import.h"
 
@@ -21,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using Seconds = std::chrono::duration<double>;
 
-constexpr double kSpacingMm = 0.05;
 constexpr std::int32_t kEveryFormat = 2048;  // largest side
 constexpr std::int32_t kLargest = 16384;
 
@@ -57,7 +57,10 @@ engine::Result<std::vector<Case>> makeFiles(const fs::path& folder, std::int32_t
   mesh.mesh = true;
   engine::ExportOptions cloud;
   cloud.cloud_optimised = true;
+  engine::ExportOptions packed;
+  packed.tiff_compression = engine::TiffCompression::kDeflate;
   add("GeoTIFF", "plain.tif", exported({}));
+  add("GeoTIFF, deflate", "deflate.tif", exported(packed));
   add("GeoTIFF, cloud-optimised", "cloud.tif", exported(cloud));
   add("GeoTIFF, packed strips", "packed_strips.tif", tiff(TiffLayout::kPackedStrips));
   add("GeoTIFF, plain strips", "plain_strips.tif", tiff(TiffLayout::kPlainStrips));
@@ -93,11 +96,6 @@ engine::Result<double> readPlainly(const std::string& path) {
   }
   if (!file.eof()) return engine::inputError("the file cannot be read", path);
   return Seconds(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "bench/large_scan.h"
 #include "bench/machine.h"
 #include "bench/own_folder.h"
+#include "bench/repeats.h"
 #include "engine/base/memory.h"
 #include "engine/field/live_field.h"
 #include "engine/field/tile_store.h"
@@ -41,8 +42,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int32_t kSmallSide = 1024;
-constexpr double kSpacingMm = 0.05;
-constexpr double kTicks = 200'000;
+constexpr double kLargeTicks = 200'000;
 constexpr int kStrokeTicks = 2000;
 constexpr double kLoopSeconds = 10.0;
 
@@ -56,17 +56,6 @@ std::uint64_t diskReadsOfAll() noexcept {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::uint64_t>(usage.ru_majflt);
-}
-
-double secondsOf(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 // Runs one stage and notes what it took.
@@ -138,7 +127,7 @@ LargeTicks ticks(const engine::Version& large, const engine::Version& small, hap
                  const std::string& name, double effort) {
   const haptic::Scene scene = haptic::defaultScene();
   HandMotion motion;
-  motion.ticks = std::llround(kTicks * effort);
+  motion.ticks = std::llround(kLargeTicks * effort);
   motion.speed_mm_s = 20.0;
   motion.tool = tool;
   const std::vector<haptic::StrokeSample> on_large = handStroke(large, motion);
@@ -405,7 +394,9 @@ engine::Result<LargeReport> benchLarge(const LargeOptions& options, engine::JobC
     if (auto drawn = draw(history, stages, samples, job); !drawn) return tl::unexpected(drawn.error());
 
   auto wrote = stages.tried("save", samples, [&]() -> engine::Status {
-    const auto exported = engine::exportField(history.current(), saved, {}, job);
+    engine::ExportOptions packed;
+    packed.tiff_compression = engine::TiffCompression::kDeflate;
+    const auto exported = engine::exportField(history.current(), saved, packed, job);
     if (!exported) return tl::unexpected(exported.error());
     return {};
   });

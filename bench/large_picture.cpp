@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <chrono>
 
+#include "engine/base/stopwatch.h"
+
 namespace fettle::bench {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 }  // namespace
 
@@ -28,17 +26,17 @@ engine::Result<PictureSteps> LargePicture::show(const engine::Version& version, 
   input.view.height = 800;
   const auto start = Clock::now();
   if (auto ok = picture_->update(version); !ok) return tl::unexpected(ok.error());
-  steps.longest_s = secondsSince(start);
+  steps.longest_s = engine::secondsSince(start);
   for (bool rests = false; !rests; ++steps.frames) {
     if (job.cancelled()) return engine::cancelled();
     const auto begin = Clock::now();
     const auto frame = picture_->drawAndWait(input);
     if (!frame) return tl::unexpected(frame.error());
-    steps.longest_s = std::max(steps.longest_s, secondsSince(begin));
-    if (steps.frames == 0) steps.first_s = secondsSince(start);
+    steps.longest_s = std::max(steps.longest_s, engine::secondsSince(begin));
+    if (steps.frames == 0) steps.first_s = engine::secondsSince(start);
     rests = frame->upload.pending_tiles == 0 && frame->residency.pages_loaded == 0;
   }
-  steps.rest_s = secondsSince(start);
+  steps.rest_s = engine::secondsSince(start);
   return steps;
 }
 

@@ -7,13 +7,14 @@
 #include <fstream>
 #include <vector>
 
+#include "bench/repeats.h"
+
 namespace fettle::bench {
 
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file is written in the machine's order");
 
-constexpr double kSpacingMm = 0.05;
 constexpr std::int32_t kStripRows = 64;
 constexpr std::uint64_t kFirstSample = 4096;
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "bench/machine.h"
+#include "engine/base/stopwatch.h"
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
 #include "haptic/loop/loop_bench.h"
@@ -20,10 +21,6 @@ namespace fettle::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double msSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 double cpuMs() {
   rusage use{};
@@ -167,11 +164,11 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
       start = Clock::now();
       const auto update_start = start;
       if (auto ok = picture.update(next); !ok) return tl::unexpected(ok.error());
-      update_ms = msSince(update_start);
+      update_ms = engine::msSince(update_start);
     }
     const auto stats = picture.drawAndWait(input);
     if (!stats) return tl::unexpected(stats.error());
-    frames.push_back(msSince(start));
+    frames.push_back(engine::msSince(start));
     if (works) edits.push_back(frames.back());
     redrawn += stats->redrawn;
     cpu += cpuMs() - cpu_before;
@@ -229,7 +226,7 @@ engine::Status beside(render::LivePicture& picture, const Scene& scene, double s
       quiet.cancel();
       break;
     }
-    frames.push_back(msSince(start));
+    frames.push_back(engine::msSince(start));
   }
   hand.join();
   if (!failed) return failed;
@@ -305,11 +302,11 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     for (bool first = true, rests = false; !rests; first = false) {
       const auto frame = (*picture)->drawAndWait(plain);
       if (!frame) return tl::unexpected(frame.error());
-      if (first) report.first_ms.push_back(msSince(start));
+      if (first) report.first_ms.push_back(engine::msSince(start));
       rests = frame->upload.pending_tiles == 0;
       if (job.cancelled()) return engine::cancelled();
     }
-    report.rest_ms.push_back(msSince(start));
+    report.rest_ms.push_back(engine::msSince(start));
 
     std::vector<Scene> scenes(8, all_round);
     scenes[1].name = "empty";

@@ -32,28 +32,49 @@ function(fettle_room name)
   target_link_libraries(fettle_${name} PUBLIC fettle_options ${ARG_LINKS})
 endfunction()
 
+# For test programs and what only they link. Optimising the expectations of a test takes longer than running them; what
+# they call is optimised as the program is. Reference filters that run for seconds do without this.
+function(fettle_test_options target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  if(target STREQUAL fettle_test_support)
+    target_precompile_headers(${target} PRIVATE ${FETTLE_COMMON_HEADERS} <gtest/gtest.h>)
+  else()
+    # Their macros are part of what was compiled.
+    target_link_libraries(${target} PRIVATE fettle_test_support)
+    target_precompile_headers(${target} REUSE_FROM fettle_test_support)
+  endif()
+endfunction()
+
+# Adds a test program to a target that builds a part of the tests.
+function(fettle_group group program)
+  if(NOT TARGET ${group})
+    add_custom_target(${group})
+  endif()
+  add_dependencies(${group} ${program})
+endfunction()
+
 # fettle_test(name SOURCES files... LINKS targets... [LABELS label] [DRAWS] [SERIAL]): one test program.
 # SERIAL: its cases play in real time, so none runs beside another test.
-# Every case is its own CTest entry, so a failure names the sentence that broke.
+# Every case is its own CTest entry, so a failure names the sentence that broke. The first label says what the program
+# needs; DRAWS programs need a Vulkan device.
 function(fettle_test name)
   cmake_parse_arguments(ARG "DRAWS;SERIAL" "TIMEOUT" "SOURCES;LINKS;LABELS" ${ARGN})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
-  add_executable(${name} ${ARG_SOURCES})
-  target_link_libraries(${name} PRIVATE ${ARG_LINKS} fettle_test_support GTest::gtest_main)
-  target_compile_definitions(${name} PRIVATE FETTLE_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  add_executable(${name})
+  fettle_sources(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE ${ARG_LINKS} GTest::gtest_main)
+  fettle_test_options(${name})
+  # What scripts/test builds of a preset that does not run everything.
   if(ARG_LABELS MATCHES "^(concurrency|live)$")
-    if(NOT TARGET concurrency_tests)
-      add_custom_target(concurrency_tests)  # what the thread sanitizer runs; see .ci/run
-    endif()
-    add_dependencies(concurrency_tests ${name})
+    fettle_group(concurrency_tests ${name})
   endif()
   if(ARG_LABELS STREQUAL "numeric")
-    if(NOT TARGET numeric_tests)
-      add_custom_target(numeric_tests)  # what is run without optimisation; see scripts/test
-    endif()
-    add_dependencies(numeric_tests ${name})
+    fettle_group(numeric_tests ${name})
+  endif()
+  if(NOT ARG_DRAWS AND NOT ARG_LABELS STREQUAL "instructions")
+    fettle_group(sanitized_tests ${name})
   endif()
   # Only properties with a value, and no more than one label: CTest's script is made from a flat list, in which an
   # empty value swallows the name of the next property and a second label is taken for one.
@@ -69,5 +90,11 @@ function(fettle_test name)
   if(ARG_DRAWS)
     list(APPEND properties ENVIRONMENT LSAN_OPTIONS=detect_leaks=0)
   endif()
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120 PROPERTIES ${properties})
+  # What scripts/test does not build of a sanitizer's preset has one entry, which it leaves out by its label.
+  if(FETTLE_SANITIZE AND (ARG_DRAWS OR ARG_LABELS STREQUAL "instructions"))
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES ${properties})
+  else()
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 120 PROPERTIES ${properties})
+  endif()
 endfunction()

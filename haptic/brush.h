@@ -21,6 +21,8 @@ namespace fettle::haptic {
 /// that of the original's sample, as exact numbers, whatever rounding does; where the original has a hole
 /// there is nothing to measure against, and the sample is kept.
 ///
+/// No edge stops the window: a sample beside a step that is not marked itself is blended with both sides.
+///
 /// A sample whose original is a denormal is kept, too, with `max_change`: the haptic thread flushes
 /// denormals, so that they count as zero there. They keep their bits where they are not smoothed.
 ///

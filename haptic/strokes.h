@@ -54,7 +54,7 @@ struct ForceSample {
 [[nodiscard]] engine::Result<std::vector<StrokeSample>> readStrokes(const std::string& path);
 
 /// Writes a strokes file, whole or not at all. Numbers are the shortest that read back to the same double.
-/// Errors (kInput): the path cannot be written, full disk.
+/// Errors: kInput, the path cannot be written; kFailed, full disk.
 [[nodiscard]] engine::Status writeStrokes(const std::string& path, std::span<const StrokeSample> strokes);
 
 /// A strokes file written while the session goes on: whole or not at all, as writeStrokes. A program that is

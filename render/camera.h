@@ -13,6 +13,7 @@ namespace fettle::render {
 /// Part of a picture [pixels], (0, 0) = top left corner.
 struct Rectangle {
   int x = 0, y = 0, width = 0, height = 0;
+  friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
 
 /// A box in scene coordinates [mm], exaggeration in z.
@@ -73,6 +74,9 @@ class Camera {
 
   /// Whether no part of the box can be in the plot. Conservative: false when in doubt.
   [[nodiscard]] bool misses(const Box& box) const noexcept;
+
+  /// Whether both show the same, bit for bit.
+  friend bool operator==(const Camera&, const Camera&) = default;
 
  private:
   glm::dmat4 clip_from_scene_{1.0};

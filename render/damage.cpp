@@ -205,6 +205,7 @@ PatchChoice within(const PatchChoice& choice, const PatchQuestion& question, con
   PatchChoice part;
   part.bound_px = choice.bound_px;
   part.within_budget = choice.within_budget;
+  if (empty(pixels)) return part;
   for (std::size_t i = 0; i < choice.patches.size(); ++i) {
     const gpu::Patch& p = choice.patches[i];
     if (!seen(screen.square(p), screen.holed() ? 1 << p.place.z : 0)) continue;

@@ -1,6 +1,7 @@
 #include "render/detail.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -11,7 +12,6 @@
 namespace fettle::render {
 namespace {
 
-constexpr int kSide = engine::kTileSide;
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 DetailMeasure::Error larger(DetailMeasure::Error a, DetailMeasure::Error b) {
@@ -26,7 +26,14 @@ float rawHeight(const engine::FieldReader& reader, std::int32_t column, std::int
 
 // Patches whose side is at most a tile's.
 bool withinTile(int level) {
-  return DetailMeasure::side(level) <= kSide;
+  return DetailMeasure::side(level) <= engine::kTileSide;
+}
+
+// A number that no measure had before. Measures of several threads' pictures take theirs from one counter,
+// and nothing else depends on it.
+std::uint64_t newState() {
+  static std::atomic<std::uint64_t> last{0};
+  return last.fetch_add(1, std::memory_order_relaxed) + 1;
 }
 
 constexpr DetailMeasure::Error kUnknown{kInfinity, kInfinity};
@@ -62,6 +69,7 @@ glm::ivec2 DetailMeasure::patches(int level) const noexcept {
 }
 
 void DetailMeasure::begin(const engine::FieldReader& reader) {
+  state_ = newState();
   size_ = glm::ivec2(std::max(2, reader.width()), std::max(2, reader.height()));
   tiles_ = {reader.tileColumns(), reader.tileRows()};
   int top = 0;
@@ -83,7 +91,7 @@ void DetailMeasure::begin(const engine::FieldReader& reader) {
   // first are measured last.
   waiting_.clear();
   waiting_.reserve(all);
-  const int square = side(kTileLevels) / kSide;
+  const int square = side(kTileLevels) / engine::kTileSide;
   for (int y = 0; y < tiles_.y; y += square)
     for (int x = 0; x < tiles_.x; x += square)
       for (int j = y; j < std::min(y + square, tiles_.y); ++j)
@@ -96,8 +104,8 @@ std::vector<glm::ivec2> DetailMeasure::above(int level, std::span<const glm::ive
   std::vector<glm::ivec2> patches;
   const std::int32_t reach = level <= kTileLevels ? 0 : 1 << level;
   for (const glm::ivec2& t : tiles) {
-    const glm::ivec2 low = glm::max(t * kSide - reach, glm::ivec2(0)) / side(level);
-    const glm::ivec2 high = glm::min((t * kSide + kSide + reach) / side(level),
+    const glm::ivec2 low = glm::max(t * engine::kTileSide - reach, glm::ivec2(0)) / side(level);
+    const glm::ivec2 high = glm::min((t * engine::kTileSide + engine::kTileSide + reach) / side(level),
                                      levels_[static_cast<std::size_t>(level)].count - 1);
     for (int y = low.y; y <= high.y; ++y)
       for (int x = low.x; x <= high.x; ++x) patches.emplace_back(x, y);
@@ -107,6 +115,7 @@ std::vector<glm::ivec2> DetailMeasure::above(int level, std::span<const glm::ive
 }
 
 void DetailMeasure::forget(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles) {
+  if (!tiles.empty()) state_ = newState();
   // Cells reach into the next tile, and a hole's vertex takes its height from up to a tile away. A tile's
   // last vertices are the next tile's first samples: where these are holes, the largest stride sees two tiles
   // far.
@@ -140,7 +149,7 @@ void DetailMeasure::forget(const engine::FieldReader& reader, std::span<const gl
                      static_cast<std::size_t>(p.x)] = kUnknown;
     };
     if (withinTile(k)) {
-      const int across = kSide / side(k);
+      const int across = engine::kTileSide / side(k);
       for (const glm::ivec2& t : around)
         for (int y = 0; y < across; ++y)
           for (int x = 0; x < across; ++x) drop(t * across + glm::ivec2(x, y));
@@ -152,6 +161,7 @@ void DetailMeasure::forget(const engine::FieldReader& reader, std::span<const gl
 
 std::size_t DetailMeasure::measureSome(const engine::FieldReader& reader, std::size_t most) {
   const std::size_t count = std::min(most, waiting_.size());
+  if (count > 0) state_ = newState();
   const std::vector<glm::ivec2> now(waiting_.end() - static_cast<std::ptrdiff_t>(count), waiting_.end());
   waiting_.resize(waiting_.size() - count);
   if (count < 8) {
@@ -187,8 +197,8 @@ void DetailMeasure::refresh(const engine::FieldReader& reader, std::span<const g
 }
 
 void DetailMeasure::measureTile(const engine::FieldReader& reader, glm::ivec2 tile) {
-  const glm::ivec2 first = tile * kSide;
-  const glm::ivec2 cells = glm::min(size_ - 1 - first, glm::ivec2(kSide));
+  const glm::ivec2 first = tile * engine::kTileSide;
+  const glm::ivec2 cells = glm::min(size_ - 1 - first, glm::ivec2(engine::kTileSide));
   std::array<Error, kTileLevels + 1>& whole = tile_errors_[indexOf(tile)];
   if (cells.x <= 0 || cells.y <= 0) {
     whole.fill({});
@@ -206,10 +216,10 @@ void DetailMeasure::measureTile(const engine::FieldReader& reader, glm::ivec2 ti
   const int top = std::min(topLevel(), kTileLevels);
   TileExtremes extremes;
   extremes.ofSamples(heights, cells);
-  float vertices[(kSide / 2 + 1) * (kSide / 2 + 1)];
+  float vertices[(engine::kTileSide / 2 + 1) * (engine::kTileSide / 2 + 1)];
   for (int k = 1; k <= top; ++k) {
     if (k > 1) extremes.coarsen();
-    const int stride = 1 << k, vertex_stride = (kSide >> k) + 1;
+    const int stride = 1 << k, vertex_stride = (engine::kTileSide >> k) + 1;
     for (int j = 0; j < vertex_stride; ++j)
       for (int i = 0; i < vertex_stride; ++i) {
         const glm::ivec2 at = glm::min(glm::ivec2(i, j) * stride, cells);
@@ -219,11 +229,13 @@ void DetailMeasure::measureTile(const engine::FieldReader& reader, glm::ivec2 ti
       }
     if (!withinTile(k)) {
       whole[static_cast<std::size_t>(k)] = {};
-      measureTileLevel(heights, cells, k, vertices, extremes, kSide, 1, &whole[static_cast<std::size_t>(k)]);
+      measureTileLevel(heights, cells, k, vertices, extremes, engine::kTileSide, 1,
+                       &whole[static_cast<std::size_t>(k)]);
       continue;
     }
-    constexpr int kMost = kSide / (2 * gpu::kPatchCells) > 0 ? kSide / (2 * gpu::kPatchCells) : 1;
-    const int across = kSide / side(k);
+    constexpr int kMost =
+        engine::kTileSide / (2 * gpu::kPatchCells) > 0 ? engine::kTileSide / (2 * gpu::kPatchCells) : 1;
+    const int across = engine::kTileSide / side(k);
     Error squares[kMost * kMost] = {};
     measureTileLevel(heights, cells, k, vertices, extremes, gpu::kPatchCells, across, squares);
     Level& level = levels_[static_cast<std::size_t>(k)];
@@ -239,7 +251,7 @@ void DetailMeasure::measureTile(const engine::FieldReader& reader, glm::ivec2 ti
 
 void DetailMeasure::gather(int level, glm::ivec2 patch) {
   Level& l = levels_[static_cast<std::size_t>(level)];
-  const int across = side(level) / kSide;
+  const int across = side(level) / engine::kTileSide;
   const glm::ivec2 last = glm::min((patch + 1) * across, tiles_);
   Error worst;
   for (int y = patch.y * across; y < last.y; ++y)

@@ -62,6 +62,9 @@ class DetailMeasure {
   /// Measures up to so many tiles of those that are not known, the latest forgotten ones first. How many it
   /// were. About 40 us of processor time each.
   std::size_t measureSome(const engine::FieldReader& reader, std::size_t most);
+  /// Equal numbers where nothing was measured or forgotten in between, of copies as well; never 0 after
+  /// begin().
+  [[nodiscard]] std::uint64_t state() const noexcept { return state_; }
   /// Tiles that are not known.
   [[nodiscard]] std::size_t unknown() const noexcept { return waiting_.size(); }
 
@@ -108,6 +111,7 @@ class DetailMeasure {
   std::vector<std::array<Error, kTileLevels + 1>> tile_errors_;
   std::vector<glm::ivec2> waiting_;  // tiles that are not known, each once
   std::vector<bool> waits_;          // by tile
+  std::uint64_t state_ = 0;
 };
 
 /// Height of a vertex as shaders/field.glsl finds it (drawnZ): the sample itself, or for a hole the first

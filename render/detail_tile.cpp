@@ -11,7 +11,7 @@
 namespace fettle::render {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kInfiniteError = std::numeric_limits<float>::infinity();
 constexpr int kColumns = kTileStride;
 
 // Everything about one row of coarse cells, spread over the columns of samples, so that the loop over a row
@@ -73,7 +73,7 @@ FETTLE_EACH_CPU void extremesOfRows(const float* first, const float* second, con
                                     float* __restrict hole, float* __restrict most) {
   for (int c = 0; c < kColumns; ++c) {
     const float a = first[c], b = second[c], d = third[c];
-    float low = kInfinity, high = -kInfinity, any = 0.0F;
+    float low = kInfiniteError, high = -kInfiniteError, any = 0.0F;
     low = a < low ? a : low;
     low = b < low ? b : low;
     low = d < low ? d : low;
@@ -105,7 +105,7 @@ FETTLE_EACH_CPU void excessOfRow(const float* __restrict below, const float* __r
     const float over = highest[i] - (right_high > left_high ? right_high : left_high);
     const float most = under > over ? under : over;
     // Where there are nothing but holes nothing is drawn: both are -infinity.
-    const float holed = lowest[i] <= highest[i] ? kInfinity : most;
+    const float holed = lowest[i] <= highest[i] ? kInfiniteError : most;
     excess[i] = hole[i] > 0.0F ? holed : most;
   }
 }
@@ -200,7 +200,7 @@ void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const f
     DetailMeasure::Error& error = out[p];
     // Sums of such magnitudes overflow or are a missing vertex's: no bound is known.
     if (!(error.deviation < 1e28F) || extremes.largest > 1e30F)
-      error = {kInfinity, kInfinity};
+      error = {kInfiniteError, kInfiniteError};
     else if (error.deviation > 0.0F)
       error = {error.deviation + rounding, error.excess + rounding};
   }

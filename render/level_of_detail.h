@@ -16,6 +16,7 @@ struct Placing {
   glm::dvec2 first{0.0, 0.0};    ///< scene x, y of virtual sample (0, 0) [mm]
   glm::dvec2 spacing{1.0, 1.0};  ///< [mm]
   [[nodiscard]] glm::dvec2 extent() const { return spacing * glm::dvec2(size - 1); }
+  friend bool operator==(const Placing&, const Placing&) = default;
 };
 /// The field's middle at scene (0, 0).
 [[nodiscard]] Placing placingOf(const engine::Grid& grid);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/stopwatch.h"
 #include "engine/field/difference.h"
 #include "render/live_frame.h"
 
@@ -13,16 +14,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double msSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
 // The coarsest copy of a field that comes by need is all that the first picture waits for.
 constexpr std::uint64_t kFixedBytes = std::uint64_t{8} << 20U;
 
 // What a view asks for follows its pixels, not the samples or the versions: at most 16 samples of 5 bytes a
 // pixel, where none of its panels shares a page with another. A picture of 3840 x 2160 pixels asks for 0.7 GB
-// at worst. A pool takes no more than this, nor than twice what one version takes as a whole.
+// at worst. A pool takes no more than this, nor than all that is shown takes as a whole, with room for one
+// state more beside a single one.
 constexpr std::uint64_t kPoolBytes = std::uint64_t{2} << 30U;
 
 // The finest level that stays on the device for good: what kFixedBytes and a quarter of the pool hold if
@@ -51,6 +49,27 @@ std::uint64_t largestHeap(const vk::raii::PhysicalDevice& device) {
       largest = std::max(largest, memory.memoryHeaps[i].size);
   return largest;
 }
+
+// The signs of all that is shown, the original's last: nothing on the device depends on them, but ranges do.
+// Without repetition, so that one more state of the same sign is no change.
+struct Signs {
+  float first = 1.0F;
+  bool mixed = false;  // some version has another one
+  float original = 0.0F;
+  explicit Signs(const Shown& shown) {
+    if (shown.versions.empty()) return;
+    first = shown.versions.front().reader().sign();
+    for (const engine::Version& v : shown.versions) mixed = mixed || v.reader().sign() != first;
+    if (shown.original) original = shown.original->reader().sign();
+  }
+  [[nodiscard]] Signs inverted() const {
+    Signs other = *this;
+    other.first = -first;
+    other.original = -original;
+    return other;
+  }
+  friend bool operator==(const Signs&, const Signs&) = default;
+};
 
 }  // namespace
 
@@ -102,6 +121,20 @@ bool LiveFields::wantsPool(const Shown& next) const {
   return next.original && !add(*next.original, MarksOverlay::kHide);
 }
 
+// What a pool for `next` may take [bytes]: room for all that is shown, so that a picture of several states of
+// which every page differs comes to the same rest as a picture of one.
+std::uint64_t LiveFields::poolBudget(const Shown& next) const {
+  const engine::Grid& grid = next.versions.front().grid();
+  const PageGrid pages(grid.width, grid.height, 8);
+  const std::uint64_t textures =
+      std::max<std::uint64_t>(2, next.versions.size() + (next.original.has_value() ? 1 : 0));
+  const std::uint64_t bytes = textures * static_cast<std::uint64_t>(pages.entries() + 2)
+                              << (2 * pages.log2Side());
+  const bool marks = next.marks == MarksOverlay::kShow || (pool_ && pool_->hasMarks());
+  // Of whole layers a pool may lose an eighth of its pages (choosePool).
+  return std::min({memory_budget_, kPoolBytes, bytes * (marks ? 5 : 4) / 8 * 9});
+}
+
 // The pool that `next` takes, with nothing in it when it is another one than before.
 void LiveFields::arrangePool(const Shown& next) {
   const bool wants = wantsPool(next);
@@ -110,7 +143,14 @@ void LiveFields::arrangePool(const Shown& next) {
   const bool fits = !pool_ || shown_.versions.empty() ||
                     (grid.width == shown_.versions.front().grid().width &&
                      grid.height == shown_.versions.front().grid().height);
-  if (wants == (pool_ != nullptr) && (!wants || (fits && (pool_->hasMarks() || !marks)))) return;
+  if (wants == (pool_ != nullptr) && (!wants || (fits && (pool_->hasMarks() || !marks)))) {
+    // More states than it was made for. What is there stays, and so does the larger pool when fewer are
+    // shown.
+    if (!wants || poolBudget(next) <= pool_budget_) return;
+    pool_budget_ = poolBudget(next);
+    pool_->grow(context_, pool_budget_, max_side_, submissions_);
+    return;
+  }
   submissions_.finish();
   // The measures are kept: they are of the versions that were wanted as soon as the pending tiles are in
   // them.
@@ -121,12 +161,9 @@ void LiveFields::arrangePool(const Shown& next) {
   original_.clear();
   pool_.reset();
   if (!wants) return;
-  const PageGrid pages(grid.width, grid.height, 8);
-  const std::uint64_t twice = std::uint64_t{2} * static_cast<std::uint64_t>(pages.entries() + 2)
-                              << (2 * pages.log2Side());
-  pool_ =
-      std::make_unique<PagePool>(context_, std::min({memory_budget_, kPoolBytes, twice * (marks ? 5 : 4)}),
-                                 marks ? PagePool::Marks::kBeside : PagePool::Marks::kNone, max_side_);
+  pool_budget_ = poolBudget(next);  // after the old pool is gone
+  pool_ = std::make_unique<PagePool>(context_, pool_budget_,
+                                     marks ? PagePool::Marks::kBeside : PagePool::Marks::kNone, max_side_);
 }
 
 engine::Result<LiveTexture::Freshness> LiveFields::want(LiveTexture& texture, const Shown& next,
@@ -215,10 +252,13 @@ engine::Result<LiveFields::Novelty> LiveFields::update(const Shown& next) {
     submissions_.finish();
     original_.clear();
   }
+  const Signs before(shown_), now(next);
+  const bool inverted = !shown_.versions.empty() && now == before.inverted();
+  another = another || !(inverted || now == before);
   shown_ = next;
   broken_ = false;
-  uploaded_.ms += msSince(start);
-  return another ? Novelty::kAnother : Novelty::kChanged;
+  uploaded_.ms += engine::msSince(start);
+  return another ? Novelty::kAnother : inverted ? Novelty::kInverted : Novelty::kChanged;
 }
 
 void LiveFields::pump(UploadStatistics& all) {
@@ -246,7 +286,7 @@ void LiveFields::pump(UploadStatistics& all) {
   all.measured_tiles = count.measured_tiles;
   all.unmeasured_tiles = count.unmeasured_tiles;
   all.pending_tiles = count.pending_tiles + count.unmeasured_tiles;
-  all.ms += msSince(start);
+  all.ms += engine::msSince(start);
   uploaded_ = {};
 }
 

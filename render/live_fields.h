@@ -33,8 +33,10 @@ class LiveFields {
   LiveFields(Context& context, Submissions& submissions, StagingRing& staging, const LiveOptions& options);
 
   enum class Novelty {
-    kChanged,  ///< states of the field shown before
-    kAnother,  ///< another field, or an original came or went: ranges are not what they were
+    kChanged,   ///< states of the field shown before
+    kInverted,  ///< the same, but every sign is the other one: so are the ends of all ranges
+    kAnother,   ///< another field, an original came or went, or some signs changed and others did not: ranges
+                ///< are not what they were
   };
   /// As LivePicture::update.
   [[nodiscard]] engine::Result<Novelty> update(const Shown& next);
@@ -63,6 +65,7 @@ class LiveFields {
     engine::Version measured;  // what `measure` is of, when no tile of the texture is pending
   };
   [[nodiscard]] bool wantsPool(const Shown& next) const;
+  [[nodiscard]] std::uint64_t poolBudget(const Shown& next) const;
   void arrangePool(const Shown& next);
   void bringAll(LiveTexture& texture);
   [[nodiscard]] engine::Result<LiveTexture::Freshness> want(LiveTexture& texture, const Shown& next,
@@ -79,6 +82,7 @@ class LiveFields {
   std::uint64_t memory_budget_ = 0;
   Shown shown_;
   std::unique_ptr<PagePool> pool_;  // null unless pages are there by need
+  std::uint64_t pool_budget_ = 0;   // what it was made for [bytes]
   std::vector<Field> fields_;
   LiveTexture original_;
   UploadStatistics uploaded_;    // since the last frame

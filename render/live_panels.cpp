@@ -39,7 +39,7 @@ glm::vec3 towardsLight(const FrameInput& input, const Camera& camera) {
 
 }  // namespace
 
-LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields)
+LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields, KeptTrees& kept)
     : fields_(fields) {
   const bool split = input.arrangement == Arrangement::kSplit && fields.count() >= 2;
   const std::size_t count = split ? 2 : plan.panels.size();
@@ -51,15 +51,19 @@ LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFie
   for (const Overlays::Ring& ring : input.overlays.rings)
     appendRing(fields.shown().versions.front().reader(), ring, lines);
   trees_.reserve(count);
+  kept.keepOnly(count);
   choices_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const PanelPlan& p = plan.panels[i];
     if (stereo) eyes_.push_back(eyesOf(p.camera, input.stereo, window));
-    questions_.push_back(questionOf(i, input, p, input.vertex_budget / static_cast<std::int64_t>(count)));
+    questions_.push_back(questionOf(i, input, p,
+                                    input.panel_vertices.empty()
+                                        ? input.vertex_budget / static_cast<std::int64_t>(count)
+                                        : input.panel_vertices[i]));
     panels_.push_back(panelOf(i, input, plan, lines));
     panels_.back().visible = split ? sideOf(p.plot, input.split, i > 0) : p.plot;
     questions_.back().shade_step = 1 << LiveTexture::shift(panels_.back().shade_level);
-    trees_.emplace_back(questions_.back());
+    trees_.push_back(kept.tree(i, questions_.back(), p.field));
   }
 }
 
@@ -147,9 +151,10 @@ PageDemand LivePanels::demand(std::uint64_t frame) {
 
 void LivePanels::settle(FrameStatistics& stats) {
   for (std::size_t i = 0; i < panels_.size(); ++i) {
+    bool pruned = false;
     if (fields_.byNeed()) {
       const PageSet& pages = *fields_.texture(i).pages();
-      trees_[i].prune([&](const PatchLeaf& leaf) { return PageDemand::drawable(leaf, pages); });
+      pruned = trees_[i].prune([&](const PatchLeaf& leaf) { return PageDemand::drawable(leaf, pages); });
       panels_[i].uniforms.pages = pageHead(pages.grid());
       panels_[i].pages =
           pageTable(pages, panels_[i].original != nullptr ? fields_.original().pages() : nullptr);
@@ -160,6 +165,12 @@ void LivePanels::settle(FrameStatistics& stats) {
     stats.vertices += choices_[i].vertices();
     stats.triangles += choices_[i].triangles();
     stats.bound_px = std::max(stats.bound_px, choices_[i].bound_px);
+    PanelDetail detail{choices_[i].bound_px, DetailLimit::kNone};
+    if (detail.bound_px > questions_[i].error_px)
+      detail.limit = !pruned                             ? DetailLimit::kVertices
+                     : stats.residency.pages_waiting > 0 ? DetailLimit::kUnderWay
+                                                         : DetailLimit::kMemory;
+    stats.panels.push_back(detail);
     stats.within_budget = stats.within_budget && choices_[i].within_budget;
   }
 }

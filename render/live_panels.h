@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/kept_trees.h"
 #include "render/live_fields.h"
 #include "render/live_frame.h"
 #include "render/patches.h"
@@ -16,8 +17,9 @@ namespace fettle::render {
 /// Threading: as Context. References what it is made of.
 class LivePanels {
  public:
-  /// Chooses the patches, as if everything were on the device.
-  LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields);
+  /// Chooses the patches, as if everything were on the device. Of panels that are as they were when `kept`
+  /// was used last they are taken from there.
+  LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields, KeptTrees& kept);
   LivePanels(const LivePanels&) = delete;
   LivePanels& operator=(const LivePanels&) = delete;
 

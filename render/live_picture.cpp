@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/stopwatch.h"
 #include "render/capture.h"
 #include "render/live_fields.h"
 #include "render/live_frame.h"
@@ -20,10 +21,6 @@ namespace fettle::render {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double msSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 constexpr vk::DeviceSize kStagingBytes = vk::DeviceSize{64} << 20U;
 
@@ -61,6 +58,7 @@ struct LivePicture::Impl {
 
   LiveFields fields;
   std::optional<PictureSpans> spans;
+  KeptTrees kept_trees;
   Canvas canvas;
   struct Seen {
     PicturePlan plan;
@@ -94,6 +92,8 @@ engine::Status LivePicture::Impl::update(const Shown& next) {
   const engine::Result<LiveFields::Novelty> novelty = fields.update(next);
   if (!novelty) return tl::unexpected(novelty.error());
   if (*novelty == LiveFields::Novelty::kAnother) spans.reset();
+  // Not read again: inverted twice, the picture is what it was, whatever was edited meanwhile.
+  if (*novelty == LiveFields::Novelty::kInverted && spans) spans = negated(*spans);
   return {};
 }
 
@@ -153,12 +153,12 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   staging.release(submissions.done());
   // What changed: to the device, and into the measures that patches are chosen by.
   fields.pump(stats.upload);
-  const double pumped_ms = msSince(start);
+  const double pumped_ms = engine::msSince(start);
 
   const auto select_start = Clock::now();
   const bool stereo = input.stereo.mode != StereoMode::kOff;
   const bool half = input.sharpness == Sharpness::kHalf;
-  LivePanels chosen(input, plan, fields);
+  LivePanels chosen(input, plan, fields, kept_trees);
   if (fields.byNeed()) {
     PageDemand demand = chosen.demand(submissions.next());
     fields.bringPages(demand, stats);
@@ -184,8 +184,10 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     furniture.push_back(line);
   }
 
-  // Tiles whose detail is not known yet are drawn more finely than need be, but as they are.
-  const bool there = stats.upload.pending_tiles == stats.upload.unmeasured_tiles;
+  // Tiles whose detail is not known yet are drawn more finely than need be, but as they are; in the place of
+  // pages under way lie others, which `pages` below says.
+  const bool there =
+      stats.upload.pending_tiles == stats.upload.unmeasured_tiles + stats.residency.pages_waiting;
   DrawnFrame layers;
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& panel = panels[i];
@@ -201,15 +203,16 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   std::vector<PatchChoice> parts;
   const bool some = !stereo && !half && input.redraw == FrameInput::Redraw::kChanged && before && there &&
                     frame.holds(target.extent) && (furniture.empty() || frame.holds(glyphs)) &&
-                    onlyFieldsDiffer(*before, layers);
+                    goesOn(*before, layers);
   if (some) parts = cutToDamage(*before, layers, chosen.questions(), panels);
   double plots_px = 0.0, redrawn_px = 0.0;
   for (const LivePanel& panel : panels) {
     plots_px += static_cast<double>(panel.visible.width) * panel.visible.height;
     redrawn_px += static_cast<double>(panel.redraw.width) * panel.redraw.height;
   }
+  stats.continued = some;
   if (some) stats.redrawn = redrawn_px / std::max(1.0, plots_px);
-  stats.select_ms = msSince(select_start);
+  stats.select_ms = engine::msSince(select_start);
 
   if (stereo)
     recordStereo(input.stereo, input.sharpness, panels, furniture, plan.palette.ground, target);
@@ -224,7 +227,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   stats.range = plan.range;
   stats.vertical_exaggeration = plan.exaggeration;
   stats.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
-  stats.record_ms = msSince(start) - stats.select_ms - pumped_ms;
+  stats.record_ms = engine::msSince(start) - stats.select_ms - pumped_ms;
   now.plan = std::move(plan);
   seen = std::move(now);
 }
@@ -311,7 +314,7 @@ engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input
     if (!stats) return stats;
     impl_->submissions.finish();
     stats->device_ms = impl_->submissions.lastMs();
-    stats->wait_ms = msSince(start) - stats->record_ms - stats->select_ms - stats->upload.ms;
+    stats->wait_ms = engine::msSince(start) - stats->record_ms - stats->select_ms - stats->upload.ms;
     return stats;
   } catch (const std::exception& error) {
     return tl::unexpected(errorOf(impl_->context.name(), error.what()));

@@ -112,6 +112,8 @@ struct FrameInput {
   enum class Redraw { kChanged, kAll } redraw = Redraw::kChanged;
   /// Vertices a frame may cost, all panels together, 4096 .. 2^24.
   std::int64_t vertex_budget = 65536;
+  /// Vertices that each panel may take, 1 .. 2^24, one number a panel; empty: equal shares of vertex_budget.
+  std::vector<std::int64_t> panel_vertices;
 };
 
 /// Tiles whose detail (render/detail.h) a frame measures at most, for each version: about 4 ms on two cores.
@@ -143,6 +145,20 @@ struct ResidencyStatistics {
   std::int64_t pages_beyond = 0;   ///< do not fit while the others are asked for; drawn coarser
 };
 
+/// What keeps a panel from being drawn within FrameInput::error_px.
+enum class DetailLimit {
+  kNone,      ///< nothing: it is
+  kUnderWay,  ///< pages that come with the next frames
+  kMemory,    ///< pages that do not fit into the device memory allowed
+  kVertices,  ///< the number of vertices allowed
+};
+
+/// How near the surface drawn in a panel lies to the one at full resolution.
+struct PanelDetail {
+  double bound_px = 0.0;  ///< as FrameStatistics::bound_px, of this panel
+  DetailLimit limit = DetailLimit::kNone;
+};
+
 struct FrameStatistics {
   std::int64_t patches = 0;
   std::int64_t vertices = 0;   ///< surface, skirts, walls
@@ -150,9 +166,13 @@ struct FrameStatistics {
   /// On the screen, no point of the surface at full resolution lies farther than this from the surface drawn,
   /// nor the other way round [px]. At most error_px where the budget allowed it. See render/detail.h.
   double bound_px = 0.0;
-  double redrawn = 1.0;       ///< share of the plots that was drawn anew, 0 .. 1
-  bool within_budget = true;  ///< false: refining stopped because of vertex_budget, bound_px > error_px
-  UploadStatistics upload;    ///< since the last frame
+  std::vector<PanelDetail> panels;  ///< of each panel; bound_px is the largest of theirs
+  double redrawn = 1.0;             ///< share of the plots that was drawn anew, 0 .. 1
+  /// Went on from the frame before and drew what differs, which may be everything.
+  bool continued = false;
+  bool within_budget =
+      true;                 ///< false: refining stopped because of the vertices allowed, bound_px > error_px
+  UploadStatistics upload;  ///< since the last frame
   ResidencyStatistics residency;
   double select_ms = 0.0;   ///< choosing the patches
   double record_ms = 0.0;   ///< everything else on this thread, waiting not counted

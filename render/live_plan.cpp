@@ -68,6 +68,15 @@ engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& show
       !(input.split >= 0.0 && input.split <= 1.0))
     return engine::inputError("the error, the budget, the split or the light is out of range", "picture",
                               "see FrameInput");
+  const std::size_t panels = input.arrangement == Arrangement::kSplit
+                                 ? std::min<std::size_t>(2, shown.versions.size())
+                                 : shown.versions.size();
+  const auto allowed = [](std::int64_t vertices) { return vertices >= 1 && vertices <= (1 << 24); };
+  if (!input.panel_vertices.empty() &&
+      (input.panel_vertices.size() != panels ||
+       !std::all_of(input.panel_vertices.begin(), input.panel_vertices.end(), allowed)))
+    return engine::inputError("the vertices of the panels are out of range, or not one number a panel",
+                              "picture", "see FrameInput");
   PictureSpec spec;
   spec.view = input.view;
   spec.deviation_from = shown.original;

@@ -8,7 +8,17 @@
 
 namespace fettle::render {
 
-bool onlyFieldsDiffer(const DrawnFrame& before, const DrawnFrame& now) {
+namespace {
+
+// Whether two panels are alike but for samples and patches, so that damageOf finds where they differ.
+bool onlyFieldDiffers(const DrawnFrame::Panel& a, const DrawnFrame::Panel& b) {
+  return related(a.field, b.field) && a.variant == b.variant && a.shade_level == b.shade_level &&
+         a.pages == b.pages && std::memcmp(&a.uniforms, &b.uniforms, sizeof(a.uniforms)) == 0;
+}
+
+}  // namespace
+
+bool goesOn(const DrawnFrame& before, const DrawnFrame& now) {
   if (before.panels.size() != now.panels.size() || before.ground != now.ground ||
       !(before.original == now.original) || !(before.accepted == now.accepted) ||
       before.furniture.size() != now.furniture.size())
@@ -17,17 +27,13 @@ bool onlyFieldsDiffer(const DrawnFrame& before, const DrawnFrame& now) {
   if (!now.furniture.empty() && std::memcmp(before.furniture.data(), now.furniture.data(),
                                             now.furniture.size() * sizeof(gpu::Quad)) != 0)
     return false;
+  bool some = now.panels.empty();
   for (std::size_t i = 0; i < now.panels.size(); ++i) {
     const DrawnFrame::Panel &a = before.panels[i], &b = now.panels[i];
-    const auto same = [](const Rectangle& x, const Rectangle& y) {
-      return x.x == y.x && x.y == y.y && x.width == y.width && x.height == y.height;
-    };
-    if (!related(a.field, b.field) || a.variant != b.variant || a.shade_level != b.shade_level ||
-        !same(a.plot, b.plot) || !same(a.visible, b.visible) || a.pages != b.pages ||
-        std::memcmp(&a.uniforms, &b.uniforms, sizeof(a.uniforms)) != 0)
-      return false;
+    if (!(a.plot == b.plot) || !(a.visible == b.visible)) return false;
+    some = some || onlyFieldDiffers(a, b);
   }
-  return true;
+  return some;
 }
 
 std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame& now,
@@ -35,6 +41,10 @@ std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame&
                                      std::vector<LivePanel>& panels) {
   std::vector<PatchChoice> parts(panels.size());
   for (std::size_t i = 0; i < panels.size(); ++i) {
+    if (!onlyFieldDiffers(before.panels[i], now.panels[i])) {
+      panels[i].redraw = panels[i].visible;
+      continue;
+    }
     const std::vector<engine::TileChange> tiles =
         engine::changedTiles(before.panels[i].field, now.panels[i].field);
     DamageQuestion q;

@@ -13,7 +13,8 @@
 
 namespace fettle::render {
 
-/// What the layers of a LiveFrame show: another frame that differs in the fields alone is drawn in parts.
+/// What the layers of a LiveFrame show: another frame that differs in some panels, or in the fields alone, is
+/// drawn in parts.
 struct DrawnFrame {
   struct Panel {
     engine::Version field;
@@ -31,11 +32,13 @@ struct DrawnFrame {
   std::optional<engine::Version> accepted;
 };
 
-/// Whether two frames are alike but for samples of the fields, so that damageOf tells where they differ.
-[[nodiscard]] bool onlyFieldsDiffer(const DrawnFrame& before, const DrawnFrame& now);
+/// Whether a frame can go on from the one before: both lie alike on the picture, and some panel of it shows a
+/// state of the same field in the same way.
+[[nodiscard]] bool goesOn(const DrawnFrame& before, const DrawnFrame& now);
 
-/// Sets what of each panel is to be drawn anew, and cuts the panels' choices down to that: to those returned,
-/// which have to outlive the panels.
+/// Sets what of each panel is to be drawn anew - where damageOf says that it differs, or all of it where more
+/// changed than samples and patches - and cuts the panels' choices down to that: to those returned, which
+/// have to outlive the panels.
 [[nodiscard]] std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame& now,
                                                    std::span<const PatchQuestion> questions,
                                                    std::vector<LivePanel>& panels);

@@ -11,7 +11,6 @@
 namespace fettle::render {
 namespace {
 
-constexpr int kSide = engine::kTileSide;
 using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 using ImageLayout = vk::ImageLayout;
@@ -226,8 +225,8 @@ bool LiveTexture::copy(StagingRing& ring, std::uint64_t submission, glm::ivec2 t
     copyPart(data, acceptedTile(tile), kind, s, p, ring.buffer().data() + *at + offsets[level],
              static_cast<std::size_t>(p.columns) * bytesOf(kind));
     const std::uint32_t columns = paging_.columns >> s, rows = paging_.rows >> s;
-    const std::uint32_t column = static_cast<std::uint32_t>(tile.x * (kSide >> s) + p.column);
-    const std::uint32_t row = static_cast<std::uint32_t>(tile.y * (kSide >> s) + p.row);
+    const std::uint32_t column = static_cast<std::uint32_t>(tile.x * (engine::kTileSide >> s) + p.column);
+    const std::uint32_t row = static_cast<std::uint32_t>(tile.y * (engine::kTileSide >> s) + p.row);
     vk::BufferImageCopy copy;
     copy.setBufferOffset(*at + offsets[level])
         .setImageSubresource(

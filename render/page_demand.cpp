@@ -14,11 +14,14 @@ bool looksAround(const PatchLeaf& leaf) {
 
 void PageDemand::ask(LiveTexture& texture, const LevelSpan& span, std::uint64_t frame) {
   PageSet& pages = *texture.pages();
+  auto asked =
+      std::find_if(asked_.begin(), asked_.end(), [&](const auto& of) { return of.first == &texture; });
+  if (asked == asked_.end()) asked = asked_.insert(asked_.end(), {&texture, 0});
   // Coarser levels too, for as long as the finer one is under way.
   for (int level = span.level; level < pages.fixedFrom(); ++level) {
     const int shift = dataShift(level - span.level);
     pages.grid().over({level, span.low >> shift, span.high >> shift}, [&](int entry) {
-      if (pages.ask(entry, frame)) wishes_.push_back({&texture, entry, level});
+      if (pages.ask(entry, frame)) wishes_.push_back({&texture, entry, level, asked->second++});
     });
   }
 }
@@ -45,8 +48,9 @@ bool PageDemand::drawable(const PatchLeaf& leaf, const PageSet& pages) noexcept 
 PageDemand::Outcome PageDemand::settle(PagePool& pool, StagingRing& ring, std::uint64_t frame,
                                        const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
                                        UploadStatistics& count) {
-  std::stable_sort(wishes_.begin(), wishes_.end(),
-                   [](const Wish& a, const Wish& b) { return a.level > b.level; });
+  std::stable_sort(wishes_.begin(), wishes_.end(), [](const Wish& a, const Wish& b) {
+    return a.level != b.level ? a.level > b.level : a.number < b.number;
+  });
   Outcome outcome;
   outcome.asked = static_cast<std::int64_t>(wishes_.size());
   PageSlots& slots = pool.slots();
@@ -94,6 +98,7 @@ PageDemand::Outcome PageDemand::settle(PagePool& pool, StagingRing& ring, std::u
   count.pending_tiles += outcome.waiting;
   pool.flush(commands, ring.buffer());
   wishes_.clear();
+  asked_.clear();
   return outcome;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "render/live_texture.h"
@@ -12,7 +13,8 @@ namespace fettle::render {
 /// The pages that one frame asks for, of all textures of a pool.
 ///
 /// They are brought in order of need: coarse levels first, since they soon show something everywhere, then in
-/// the order asked (near patches first). What is asked for stays; of the rest, what was asked for longest ago
+/// the order asked (near patches first), a page of each texture in turn: where not all of them fit, no panel
+/// is left out for another. What is asked for stays; of the rest, what was asked for longest ago
 /// goes. Where all that is asked for does not fit, the first pages do and the last ones never push them out,
 /// so a camera at rest comes to rest.
 ///
@@ -43,9 +45,11 @@ class PageDemand {
   struct Wish {
     LiveTexture* texture;
     int entry, level;
+    std::size_t number;  // of the texture's wishes
   };
   void ask(LiveTexture& texture, const LevelSpan& span, std::uint64_t frame);
   std::vector<Wish> wishes_;
+  std::vector<std::pair<const LiveTexture*, std::size_t>> asked_;  // wishes of each
 };
 
 /// The page table of a panel as shaders read it (shaders/layout.h). `original` may be null. An entry of the

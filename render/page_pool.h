@@ -2,10 +2,14 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "render/memory.h"
 #include "render/residency.h"
+#include "render/submissions.h"
 #include "render/tile_copy.h"
 
 namespace fettle::render {
@@ -18,16 +22,20 @@ class PagePool {
   enum class Marks { kNone, kBeside };
   /// As many pages as fit `budget` bytes, alignment and all. May hold none: see slots().count().
   PagePool(const Context& context, std::uint64_t budget, Marks marks, std::uint32_t max_side);
+  /// Takes as many pages as fit `budget` bytes, where that is more than there are; pages stay in their slots,
+  /// with what is in them. Waits for all that is under way. Needs room for both sizes while it copies: where
+  /// the device has none, everything stays as it is. Not between add() and flush().
+  void grow(const Context& context, std::uint64_t budget, std::uint32_t max_side, Submissions& submissions);
 
-  [[nodiscard]] int log2Side() const noexcept { return shape_.log2_side; }
+  [[nodiscard]] int log2Side() const noexcept { return store_.shape.log2_side; }
   [[nodiscard]] bool hasMarks() const noexcept { return marks_ == Marks::kBeside; }
   [[nodiscard]] PageSlots& slots() noexcept { return slots_; }
   [[nodiscard]] const PageSlots& slots() const noexcept { return slots_; }
   [[nodiscard]] vk::ImageView view(TileKind kind) const {
-    return images_[hasMarks() ? static_cast<std::size_t>(kind) : 0].view();
+    return store_.images[hasMarks() ? static_cast<std::size_t>(kind) : 0].view();
   }
   /// Device memory held, whatever is in it.
-  [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return store_.bytes; }
 
   /// A slot in an entry of the table that shaders read (shaders/layout.h).
   [[nodiscard]] std::uint32_t word(std::uint32_t slot) const noexcept;
@@ -37,10 +45,19 @@ class PagePool {
   void flush(const vk::raii::CommandBuffer& commands, const Buffer& staging);
 
  private:
-  PoolShape shape_;
+  // What all pages lie in.
+  struct Store {
+    PoolShape shape;
+    std::array<GpuImage, 2> images;  // heights, marks
+    std::uint64_t bytes = 0;
+  };
+  [[nodiscard]] static Store make(const Context& context, std::uint64_t budget, Marks marks,
+                                  std::uint32_t max_side, std::optional<int> log2_side);
+  // Where a slot's page begins: column, row, layer.
+  [[nodiscard]] static glm::ivec3 placeOf(const PoolShape& shape, std::uint32_t slot) noexcept;
+
   Marks marks_;
-  std::uint64_t bytes_ = 0;
-  std::array<GpuImage, 2> images_;
+  Store store_;
   std::array<std::vector<vk::BufferImageCopy>, 2> copies_;
   bool prepared_ = false;  // images have their layout
   PageSlots slots_{0};

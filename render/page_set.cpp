@@ -5,7 +5,6 @@
 namespace fettle::render {
 namespace {
 
-constexpr int kSide = engine::kTileSide;
 constexpr TileKind kKinds[2] = {TileKind::kHeights, TileKind::kMarks};
 
 vk::DeviceSize aligned(std::size_t bytes) {
@@ -50,11 +49,11 @@ bool PageSet::ask(int entry, std::uint64_t frame) noexcept {
 template <class Visit>
 void PageSet::over(glm::ivec2 tile, const Visit& visit) const {
   for (int level = 0; level < kDataLevels; ++level)
-    visit(grid_.entry(level, (tile * (kSide >> dataShift(level))) >> grid_.log2Side()));
+    visit(grid_.entry(level, (tile * (engine::kTileSide >> dataShift(level))) >> grid_.log2Side()));
   const int rim = grid_.first(kDataLevels), shift = 2 * grid_.log2Side();
-  const glm::ivec2 last = (size_ - 1) / kSide;
-  if (tile.x == last.x) visit(rim + (tile.y * kSide >> shift));
-  if (tile.y == last.y) visit(rim + ((grid_.rimRow() + tile.x * kSide) >> shift));
+  const glm::ivec2 last = (size_ - 1) / engine::kTileSide;
+  if (tile.x == last.x) visit(rim + (tile.y * engine::kTileSide >> shift));
+  if (tile.y == last.y) visit(rim + ((grid_.rimRow() + tile.x * engine::kTileSide) >> shift));
 }
 
 void PageSet::forget(glm::ivec2 tile) {
@@ -83,8 +82,9 @@ glm::ivec2 PageSet::sizeOfPage(int entry) const noexcept {
   const PageGrid::Place place = grid_.place(entry);
   const int side = 1 << grid_.log2Side();
   if (place.level == kDataLevels) return glm::ivec2(side);
-  const glm::ivec2 tiles = (size_ - 1) / kSide + 1;
-  return glm::min(tiles * (kSide >> dataShift(place.level)) - place.page * side, glm::ivec2(side));
+  const glm::ivec2 tiles = (size_ - 1) / engine::kTileSide + 1;
+  return glm::min(tiles * (engine::kTileSide >> dataShift(place.level)) - place.page * side,
+                  glm::ivec2(side));
 }
 
 vk::DeviceSize PageSet::bytesOfPage(int entry) const noexcept {
@@ -123,14 +123,15 @@ void PageSet::fill(int entry, const engine::FieldReader& reader, vk::DeviceSize 
       const int number = first + i, x = number - grid_.rimRow();
       const glm::ivec2 s = x < 0 ? glm::ivec2(size_.x - 1, number) : glm::ivec2(x, size_.y - 1);
       const bool inside = s.x < size_.x && s.y < size_.y;
-      out[i] = inside ? reader.tile(s.x / kSide, s.y / kSide)
-                            .samples[static_cast<std::size_t>(s.y % kSide * kSide + s.x % kSide)]
+      out[i] = inside ? reader.tile(s.x / engine::kTileSide, s.y / engine::kTileSide)
+                            .samples[static_cast<std::size_t>(s.y % engine::kTileSide * engine::kTileSide +
+                                                              s.x % engine::kTileSide)]
                       : 0.0F;
     }
     pool_.add(TileKind::kHeights, at(entry), {0, 0}, size, offset);
     return;
   }
-  const int shift = dataShift(place.level), within = kSide >> shift;
+  const int shift = dataShift(place.level), within = engine::kTileSide >> shift;
   const glm::ivec2 first = place.page * side / within, tiles = size / within;
   for (const TileKind kind : kKinds) {
     if (kind == TileKind::kMarks && !pool_.hasMarks()) break;
@@ -152,14 +153,14 @@ void PageSet::fill(int entry, const engine::FieldReader& reader, vk::DeviceSize 
 bool PageSet::write(glm::ivec2 tile, const TileSpan (&spans)[2], const engine::FieldReader& reader,
                     StagingRing& ring, std::uint64_t frame, std::int64_t& bytes) {
   // What has to move: whole pages in the place of shared ones, and rectangles.
-  struct Rectangle {
+  struct Upload {
     TileKind kind;
     int entry, shift;
     TilePart part;
     glm::ivec2 place;
     vk::DeviceSize offset;
   };
-  std::vector<Rectangle> rectangles;
+  std::vector<Upload> rectangles;
   std::vector<int> apart;
   vk::DeviceSize total = 0, whole = 0;
   const auto wanted = [&](int entry) {
@@ -183,20 +184,21 @@ bool PageSet::write(glm::ivec2 tile, const TileSpan (&spans)[2], const engine::F
       const int shift = dataShift(level);
       const TilePart part = partOf(span, kind, shift);
       if (part.empty()) continue;
-      const glm::ivec2 from = tile * (kSide >> shift) + glm::ivec2(part.column, part.row);
+      const glm::ivec2 from = tile * (engine::kTileSide >> shift) + glm::ivec2(part.column, part.row);
       const int entry = grid_.entry(level, from >> log2_side);
       if (wanted(entry)) add(kind, entry, shift, part, from & (side - 1));
     }
     if (kind == TileKind::kMarks) continue;
-    const glm::ivec2 last = size_ - 1, end = last / kSide, in = last % kSide;
+    const glm::ivec2 last = size_ - 1, end = last / engine::kTileSide, in = last % engine::kTileSide;
     const auto rim = [&](int number, const TilePart& part) {
       const int entry = grid_.first(kDataLevels) + (number >> 2 * log2_side);
       if (wanted(entry)) add(kind, entry, 0, part, {number & (side - 1), number >> log2_side & (side - 1)});
     };
     if (tile.x == end.x && span.last_column >= in.x)
-      rim(tile.y * kSide + span.first_row, {in.x, span.first_row, 1, span.last_row - span.first_row + 1});
+      rim(tile.y * engine::kTileSide + span.first_row,
+          {in.x, span.first_row, 1, span.last_row - span.first_row + 1});
     if (tile.y == end.y && span.last_row >= in.y)
-      rim(grid_.rimRow() + tile.x * kSide + span.first_column,
+      rim(grid_.rimRow() + tile.x * engine::kTileSide + span.first_column,
           {span.first_column, in.y, span.last_column - span.first_column + 1, 1});
   }
   const vk::DeviceSize needed = total + whole + 16 * apart.size();
@@ -204,7 +206,7 @@ bool PageSet::write(glm::ivec2 tile, const TileSpan (&spans)[2], const engine::F
   const std::optional<vk::DeviceSize> at_ring = ring.take(needed, frame);
   if (!at_ring) return false;
   const engine::Tile& data = reader.tile(tile.x, tile.y);
-  for (const Rectangle& r : rectangles) {
+  for (const Upload& r : rectangles) {
     const vk::DeviceSize offset = *at_ring + r.offset;
     const bool column = r.entry >= grid_.first(kDataLevels) && r.part.columns == 1;
     const auto columns = static_cast<std::size_t>(r.part.columns);

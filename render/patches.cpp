@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <tuple>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -14,7 +15,7 @@
 namespace fettle::render {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // Room is kept for two seams or walls a patch: fewer than that are there on average, since only the finer
 // side of two patches has the seam, and four finer ones share a coarser one's edges.
@@ -75,6 +76,18 @@ bool holeWithin(const engine::FieldReader& reader, glm::ivec2 first, glm::ivec2 
 
 PatchTree::PatchTree(const PatchQuestion& question) : q_(question) {
   if (add(q_.measure->topLevel(), 0, 0) >= 0) refine();
+}
+
+PatchTree::PatchTree(const PatchQuestion& question, const PatchTree& chosen)
+    : q_(question), nodes_(chosen.nodes_), within_budget_(chosen.within_budget_) {}
+
+// `shade_step` has no part in choosing.
+bool PatchTree::answers(const PatchQuestion& question) const {
+  const auto facts = [](const PatchQuestion& q) {
+    return std::tie(q.placing, q.camera, q.other_eye, q.mm_per_unit, q.reference, q.lowest, q.highest,
+                    q.floor_z, q.error_px, q.vertex_budget);
+  };
+  return facts(q_) == facts(question);
 }
 
 void PatchTree::refine() {
@@ -164,7 +177,7 @@ std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
   if (level > 0) {
     const bool cut = raw.min < q_.lowest || raw.max > q_.highest;
     const double upright = cut ? drawn_high - drawn_low : error.deviation;
-    n.error_px = upright < 1e30 ? movesAtMost({0.0, 0.0, upright * q_.mm_per_unit}, box) : kInfinity;
+    n.error_px = upright < 1e30 ? movesAtMost({0.0, 0.0, upright * q_.mm_per_unit}, box) : kUnbounded;
     if (n.error_px > q_.error_px && !holed) {
       const double stride = std::ldexp(1.0, level);
       const glm::dvec3 along_x{q_.placing.spacing.x, 0.0, 0.0}, along_y{0.0, q_.placing.spacing.y, 0.0};
@@ -242,23 +255,27 @@ void PatchTree::split(const PatchLeaf& leaf, double low_z, double high_z, int lo
           lowest_level, out);
 }
 
-void PatchTree::prune(const std::function<bool(const PatchLeaf&)>& drawable) {
-  if (nodes_.empty() || prune(0, drawable)) return;
+bool PatchTree::prune(const std::function<bool(const PatchLeaf&)>& drawable) {
+  bool replaced = false;
+  if (nodes_.empty() || pruneBelow(0, drawable, replaced)) return replaced;
   drop(0);
   node(0).leaf = true;
+  return true;
 }
 
 // Whether the subtree is drawable now.
-bool PatchTree::prune(std::int32_t at, const std::function<bool(const PatchLeaf&)>& drawable) {
+bool PatchTree::pruneBelow(std::int32_t at, const std::function<bool(const PatchLeaf&)>& drawable,
+                           bool& replaced) {
   const auto self = [&] { return drawable({node(at).level, {node(at).x, node(at).y}, node(at).holed}); };
   if (node(at).leaf) return self();
   bool all = true;
   for (const std::int32_t child : node(at).children)
-    if (child >= 0 && !prune(child, drawable)) all = false;
+    if (child >= 0 && !pruneBelow(child, drawable, replaced)) all = false;
   if (all) return true;
   if (!self()) return false;
   drop(at);
   node(at).leaf = true;
+  replaced = true;
   return true;
 }
 
@@ -280,7 +297,7 @@ bool PatchTree::mayShowHole(const Node& n) const {
   const glm::ivec2 low = glm::max(at - reach, 0), high = glm::min(at + reach, q_.measure->patches(level) - 1);
   for (int y = low.y; y <= high.y; ++y)
     for (int x = low.x; x <= high.x; ++x)
-      if (!(q_.measure->error(level, x, y).excess < kInfinity)) return true;
+      if (!(q_.measure->error(level, x, y).excess < kUnbounded)) return true;
   return false;
 }
 

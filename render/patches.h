@@ -68,15 +68,20 @@ struct PatchLeaf {
 /// two, at most. The third part is Camera::movesAtMost, which bounds what a step can look like.
 class PatchTree {
  public:
+  PatchTree() = default;
   explicit PatchTree(const PatchQuestion& question);
+  /// What was chosen for an equal question (answers()), as it was before prune() unless that was called.
+  PatchTree(const PatchQuestion& question, const PatchTree& chosen);
+  /// Whether the question is equal to this tree's, but for the field, its measure and whether it is settled.
+  [[nodiscard]] bool answers(const PatchQuestion& question) const;
   /// What was chosen, near ones first.
   [[nodiscard]] std::vector<PatchLeaf> leaves() const;
   /// What can be seen of them: as patches of at most 2^log2_side samples a side, those outside the plot left
   /// out.
   [[nodiscard]] std::vector<PatchLeaf> parts(int log2_side) const;
   /// Draws a coarser patch in the place of those of which one is not `drawable`: bound_px grows to what is
-  /// drawn then. The coarsest patch is drawn in any case.
-  void prune(const std::function<bool(const PatchLeaf&)>& drawable);
+  /// drawn then. The coarsest patch is drawn in any case. Whether there was one to be replaced.
+  bool prune(const std::function<bool(const PatchLeaf&)>& drawable);
   [[nodiscard]] PatchChoice list() const;
 
  private:
@@ -105,10 +110,10 @@ class PatchTree {
   [[nodiscard]] std::vector<std::int32_t> sorted() const;
   void split(const PatchLeaf& leaf, double low_z, double high_z, int lowest_level,
              std::vector<PatchLeaf>& out) const;
-  bool prune(std::int32_t at, const std::function<bool(const PatchLeaf&)>& drawable);
+  bool pruneBelow(std::int32_t at, const std::function<bool(const PatchLeaf&)>& drawable, bool& replaced);
   void drop(std::int32_t at);
 
-  PatchQuestion q_;
+  PatchQuestion q_{};
   std::vector<Node> nodes_;
   bool within_budget_ = true;
 };

@@ -7,7 +7,7 @@
 namespace fettle::render {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoHit = std::numeric_limits<double>::infinity();
 
 struct Corners {
   double a, b, c, d;  // height = a + b u + c v + d u v [mm]
@@ -35,7 +35,7 @@ std::optional<double> meetPatch(const Corners& p, const glm::dvec3& from, const 
   const double c1 = dir.z - (p.b * dir.x + p.c * dir.y + p.d * (u * dir.y + v * dir.x));
   const double c2 = -p.d * dir.x * dir.y;
   const double run = leave - enter;
-  double first = kInfinity;
+  double first = kNoHit;
   const auto offer = [&](double t) {
     if (t >= 0.0 && t <= run) first = std::min(first, t);
   };
@@ -52,9 +52,9 @@ std::optional<double> meetPatch(const Corners& p, const glm::dvec3& from, const 
     if (q != 0.0) offer(c0 / q);
   }
   // Signs that differ at the two ends have a zero between them, whatever rounding said.
-  if (first == kInfinity && std::signbit(c0) != std::signbit(above))
+  if (first == kNoHit && std::signbit(c0) != std::signbit(above))
     first = above == c0 ? 0.0 : run * c0 / (c0 - above);
-  if (first == kInfinity) return std::nullopt;
+  if (first == kNoHit) return std::nullopt;
   return enter + std::clamp(first, 0.0, run);
 }
 
@@ -84,7 +84,7 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
   // The part of the line within the box of the field.
   const engine::HeightBounds all = reader.bounds();
   if (all.empty()) return std::nullopt;
-  double t = 0.0, end = kInfinity;
+  double t = 0.0, end = kNoHit;
   const auto cut = [&](double at, double along, double low, double high) {
     if (along == 0.0) {
       if (at < low || at > high) end = -1.0;
@@ -106,7 +106,7 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
   };
   std::int32_t c = cellAt(o.x + t * d.x, columns - 1), r = cellAt(o.y + t * d.y, rows - 1);
   const auto exit = [](double at, double along, std::int32_t low, std::int32_t high) {
-    return along > 0.0 ? (high - at) / along : along < 0.0 ? (low - at) / along : kInfinity;
+    return along > 0.0 ? (high - at) / along : along < 0.0 ? (low - at) / along : kNoHit;
   };
   double above = 0.0;  // see meetPatch
   while (t <= end) {
@@ -118,7 +118,7 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
       const std::int32_t x = c >> s, y = r >> s;
       const double out =
           std::min({end, exit(o.x, d.x, x << s, (x + 1) << s), exit(o.y, d.y, y << s, (y + 1) << s)});
-      double low = kInfinity, high = -kInfinity;
+      double low = kNoHit, high = -kNoHit;
       // Cells on the upper edges use samples of the next squares.
       for (int k = 0; k < 4; ++k) {
         const engine::HeightBounds b = reader.bounds(level, x + (k & 1), y + (k >> 1));

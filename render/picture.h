@@ -180,7 +180,7 @@ class Renderer {
 };
 
 /// Writes 8-bit RGBA PNG with an sRGB chunk: whole or not at all (temporary file, fsync, rename).
-/// Errors: kInput when the path cannot be written or the disk is full.
+/// Errors: kInput when the path cannot be written, kFailed when the disk is full.
 [[nodiscard]] engine::Status writePng(const Image& image, const std::string& path);
 
 /// Reads any PNG as 8-bit RGBA. Errors: kInput for a file that cannot be read, is no PNG, is cut short, or

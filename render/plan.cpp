@@ -109,6 +109,10 @@ PictureSpans spansOf(std::span<const engine::Version> fields,
   return spans;
 }
 
+PictureSpans negated(const PictureSpans& spans) noexcept {
+  return {negated(spans.heights), negated(spans.colours)};
+}
+
 engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
   if (engine::Status ok = check(spec); !ok) return tl::unexpected(ok.error());
   if (engine::Status ok = checkFields(spec); !ok) return tl::unexpected(ok.error());

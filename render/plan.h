@@ -48,6 +48,8 @@ struct PictureSpans {
   ValueSpan heights;
   ValueSpan colours;
 };
+/// The spans of the same fields (and original), all of them inverted. O(1).
+[[nodiscard]] PictureSpans negated(const PictureSpans& spans) noexcept;
 /// Reads all fields (and the original): time follows their size.
 [[nodiscard]] PictureSpans spansOf(std::span<const engine::Version> fields,
                                    const std::optional<engine::Version>& deviation_from);

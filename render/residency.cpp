@@ -13,12 +13,13 @@ constexpr std::uint64_t kFewPages = 256;
 }  // namespace
 
 PoolShape choosePool(std::uint64_t budget, std::size_t bytes_a_sample, std::uint32_t max_side,
-                     std::uint32_t max_layers, std::uint64_t max_bytes) {
+                     std::uint32_t max_layers, std::uint64_t max_bytes, std::optional<int> log2_side) {
   PoolShape shape;
   const auto pages = [&] { return budget / bytes_a_sample >> (2 * shape.log2_side); };
   shape.log2_side =
       std::clamp(static_cast<int>(std::bit_width(max_side)) - 1, kSmallestLog2Side, kLargestLog2Side);
   while (shape.log2_side > kSmallestLog2Side && pages() < kFewPages) --shape.log2_side;
+  if (log2_side) shape.log2_side = *log2_side;
   // The limit of an image's size counts its larger part, the heights.
   const std::uint64_t most = std::min(pages(), max_bytes / sizeof(float) >> (2 * shape.log2_side));
   const std::uint64_t widest = std::clamp<std::uint64_t>(max_side >> shape.log2_side, 1, 255);
@@ -44,6 +45,13 @@ std::size_t PageSlots::NameHash::operator()(const Name& name) const noexcept {
 
 PageSlots::PageSlots(std::uint32_t count) : slots_(count), free_(count) {
   for (std::uint32_t i = 0; i < count; ++i) listAtBack(i);
+}
+
+void PageSlots::grow(std::uint32_t more) {
+  const std::uint32_t first = count();
+  slots_.resize(slots_.size() + more);
+  free_ += more;
+  for (std::uint32_t i = count(); i > first; --i) listAtFront(i - 1);
 }
 
 void PageSlots::unlist(std::uint32_t slot) noexcept {

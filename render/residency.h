@@ -18,9 +18,11 @@ struct PoolShape {
 };
 /// The most that `budget` bytes hold, in images of sides up to `max_side` [samples, >= 64], of at most
 /// `max_layers` layers and `max_bytes` bytes. Pages are of 256 samples a side, or smaller ones where that
-/// makes fewer than 256 of them: few large pages would follow a view badly.
+/// makes fewer than 256 of them: few large pages would follow a view badly. `log2_side`, 6 .. 8: pages of
+/// that side in any case.
 [[nodiscard]] PoolShape choosePool(std::uint64_t budget, std::size_t bytes_a_sample, std::uint32_t max_side,
-                                   std::uint32_t max_layers, std::uint64_t max_bytes);
+                                   std::uint32_t max_layers, std::uint64_t max_bytes,
+                                   std::optional<int> log2_side = {});
 
 /// Which page lies in which slot of a pool, who points at it, and which one goes when room is needed: the one
 /// asked for longest ago. Slots are numbered 0 .. count - 1. Pages of equal key share a slot.
@@ -39,6 +41,8 @@ class PageSlots {
     kFixed,  ///< stays until released
     kWhile,  ///< goes when room is needed
   };
+  /// As many slots more, free ones, behind those there are.
+  void grow(std::uint32_t more);
   /// A slot for `entry` (which holds none) with nothing in it yet: a free one, or that of the page used
   /// longest ago, unless that was in frame `frame` itself. False when there is none.
   [[nodiscard]] bool take(std::uint32_t* entry, Hold hold, std::uint64_t frame);

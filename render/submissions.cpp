@@ -1,14 +1,8 @@
 #include "render/submissions.h"
 
+#include "engine/base/stopwatch.h"
+
 namespace fettle::render {
-
-namespace {
-
-double msSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-}  // namespace
 
 Submissions::Submissions(Context& context) : context_(context) {
   pool_ = vk::raii::CommandPool(context.device(), {vk::CommandPoolCreateFlagBits::eResetCommandBuffer |
@@ -33,7 +27,7 @@ Submissions::~Submissions() {
 double Submissions::begin() {
   const auto start = std::chrono::steady_clock::now();
   if (next_ > kInFlight) waitFor(next_ - kInFlight);
-  const double waited = msSince(start);
+  const double waited = engine::msSince(start);
   const vk::raii::CommandBuffer& commands = slot(next_).commands;
   commands.reset();
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
@@ -64,7 +58,7 @@ void Submissions::submit(const Gate& gate) {
 std::uint64_t Submissions::done() {
   while (done_ + 1 < next_ && slot(done_ + 1).fence.getStatus() == vk::Result::eSuccess) {
     ++done_;
-    last_ms_ = msSince(slot(done_).sent);
+    last_ms_ = engine::msSince(slot(done_).sent);
   }
   return done_;
 }

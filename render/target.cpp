@@ -5,11 +5,11 @@ namespace fettle::render {
 namespace {
 
 using Usage = vk::ImageUsageFlagBits;
-using Layout = vk::ImageLayout;
+using ImageLayout = vk::ImageLayout;
 using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 
-vk::RenderingAttachmentInfo attachment(const GpuImage& image, Layout layout, vk::ClearValue clear,
+vk::RenderingAttachmentInfo attachment(const GpuImage& image, ImageLayout layout, vk::ClearValue clear,
                                        Pass pass) {
   vk::RenderingAttachmentInfo info;
   info.setImageView(image.view())
@@ -37,8 +37,8 @@ void beginRendering(const vk::raii::CommandBuffer& commands, vk::Extent2D extent
 void beginColour(const vk::raii::CommandBuffer& commands, const GpuImage& colour, Pass pass,
                  vk::PipelineStageFlags2 reader, vk::AccessFlags2 reading) {
   const bool first = pass == Pass::kFirst;
-  change(commands, colour, first ? Layout::eUndefined : Layout::eColorAttachmentOptimal,
-         Layout::eColorAttachmentOptimal, first ? reader : Stage::eColorAttachmentOutput,
+  change(commands, colour, first ? ImageLayout::eUndefined : ImageLayout::eColorAttachmentOptimal,
+         ImageLayout::eColorAttachmentOptimal, first ? reader : Stage::eColorAttachmentOutput,
          first ? reading : Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput,
          Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
 }
@@ -53,14 +53,15 @@ SceneTarget::SceneTarget(const Context& context, vk::Extent2D extent)
 
 void SceneTarget::begin(const vk::raii::CommandBuffer& commands, Pass pass) const {
   beginColour(commands, colour, pass, Stage::eFragmentShader, Access::eShaderRead);
-  change(commands, depth, pass == Pass::kFirst ? Layout::eUndefined : Layout::eDepthAttachmentOptimal,
-         Layout::eDepthAttachmentOptimal, Stage::eEarlyFragmentTests | Stage::eLateFragmentTests,
+  change(commands, depth,
+         pass == Pass::kFirst ? ImageLayout::eUndefined : ImageLayout::eDepthAttachmentOptimal,
+         ImageLayout::eDepthAttachmentOptimal, Stage::eEarlyFragmentTests | Stage::eLateFragmentTests,
          Access::eDepthStencilAttachmentWrite, Stage::eEarlyFragmentTests | Stage::eLateFragmentTests,
          Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite);
-  const vk::RenderingAttachmentInfo colours =
-      attachment(colour, Layout::eColorAttachmentOptimal, vk::ClearColorValue(std::array<float, 4>{}), pass);
+  const vk::RenderingAttachmentInfo colours = attachment(colour, ImageLayout::eColorAttachmentOptimal,
+                                                         vk::ClearColorValue(std::array<float, 4>{}), pass);
   const vk::RenderingAttachmentInfo depths =
-      attachment(depth, Layout::eDepthAttachmentOptimal, vk::ClearDepthStencilValue{1.0F, 0}, pass);
+      attachment(depth, ImageLayout::eDepthAttachmentOptimal, vk::ClearDepthStencilValue{1.0F, 0}, pass);
   beginRendering(commands, colour.extent(), colours, &depths);
 }
 
@@ -69,7 +70,7 @@ void SceneTarget::end(const vk::raii::CommandBuffer& commands) const {
 }
 
 void SceneTarget::finish(const vk::raii::CommandBuffer& commands) const {
-  change(commands, colour, Layout::eColorAttachmentOptimal, Layout::eShaderReadOnlyOptimal,
+  change(commands, colour, ImageLayout::eColorAttachmentOptimal, ImageLayout::eShaderReadOnlyOptimal,
          Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eFragmentShader,
          Access::eShaderRead);
 }
@@ -83,7 +84,7 @@ void PictureTarget::begin(const vk::raii::CommandBuffer& commands, const std::ar
                           Pass pass) const {
   beginColour(commands, colour, pass, Stage::eCopy, Access::eTransferRead);
   const vk::RenderingAttachmentInfo colours =
-      attachment(colour, Layout::eColorAttachmentOptimal,
+      attachment(colour, ImageLayout::eColorAttachmentOptimal,
                  vk::ClearColorValue(std::array<float, 4>{ground[0], ground[1], ground[2], 1.0F}), pass);
   beginRendering(commands, colour.extent(), colours, nullptr);
 }
@@ -93,7 +94,7 @@ void PictureTarget::end(const vk::raii::CommandBuffer& commands) const {
 }
 
 void PictureTarget::finish(const vk::raii::CommandBuffer& commands) const {
-  change(commands, colour, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal,
+  change(commands, colour, ImageLayout::eColorAttachmentOptimal, ImageLayout::eTransferSrcOptimal,
          Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eCopy, Access::eTransferRead);
 }
 

@@ -8,12 +8,11 @@
 namespace fettle::render {
 namespace {
 
-constexpr int kSide = engine::kTileSide;
-
 // Whether any of the 2^shift x 2^shift samples from `column`, `row` is marked.
 bool anyMark(const engine::Tile& tile, int column, int row, int shift) noexcept {
   const int side = 1 << shift;
-  const std::uint64_t mask = (side == kSide ? ~std::uint64_t{0} : (std::uint64_t{1} << side) - 1) << column;
+  const std::uint64_t mask = (side == engine::kTileSide ? ~std::uint64_t{0} : (std::uint64_t{1} << side) - 1)
+                             << column;
   for (int r = row; r < row + side; ++r)
     if ((tile.marks[static_cast<std::size_t>(r)] & mask) != 0) return true;
   return false;
@@ -23,11 +22,11 @@ bool anyMark(const engine::Tile& tile, int column, int row, int shift) noexcept 
 
 TileSpan changedHeights(const engine::Tile& a, const engine::Tile& b) noexcept {
   TileSpan span;
-  for (int r = 0; r < kSide; ++r) {
-    const float* x = a.samples.data() + r * kSide;
-    const float* y = b.samples.data() + r * kSide;
-    if (std::memcmp(x, y, sizeof(float) * kSide) == 0) continue;
-    int first = 0, last = kSide - 1;
+  for (int r = 0; r < engine::kTileSide; ++r) {
+    const float* x = a.samples.data() + r * engine::kTileSide;
+    const float* y = b.samples.data() + r * engine::kTileSide;
+    if (std::memcmp(x, y, sizeof(float) * engine::kTileSide) == 0) continue;
+    int first = 0, last = engine::kTileSide - 1;
     while (std::memcmp(x + first, y + first, sizeof(float)) == 0) ++first;
     while (std::memcmp(x + last, y + last, sizeof(float)) == 0) --last;
     span.join({first, r, last, r});
@@ -37,9 +36,9 @@ TileSpan changedHeights(const engine::Tile& a, const engine::Tile& b) noexcept {
 
 TileSpan changedMarks(const engine::Tile& a, const engine::Tile& b) noexcept {
   TileSpan span;
-  for (int r = 0; r < kSide; ++r) {
+  for (int r = 0; r < engine::kTileSide; ++r) {
     const std::uint64_t d = a.marks[static_cast<std::size_t>(r)] ^ b.marks[static_cast<std::size_t>(r)];
-    if (d != 0) span.join({std::countr_zero(d), r, kSide - 1 - std::countl_zero(d), r});
+    if (d != 0) span.join({std::countr_zero(d), r, engine::kTileSide - 1 - std::countl_zero(d), r});
   }
   return span;
 }
@@ -62,7 +61,7 @@ void copyPart(const engine::Tile& tile, const engine::Tile* accepted, TileKind k
       }
       continue;
     }
-    const float* from = tile.samples.data() + row * kSide;
+    const float* from = tile.samples.data() + row * engine::kTileSide;
     if (shift == 0) {
       std::memcpy(out, from + part.column, static_cast<std::size_t>(part.columns) * sizeof(float));
     } else {

@@ -17,7 +17,7 @@
 namespace fettle::render {
 namespace {
 
-using Layout = vk::ImageLayout;
+using ImageLayout = vk::ImageLayout;
 using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 
@@ -36,9 +36,9 @@ vk::raii::RenderPass makePass(const vk::raii::Device& device) {
       .setStoreOp(vk::AttachmentStoreOp::eStore)
       .setStencilLoadOp(vk::AttachmentLoadOp::eDontCare)
       .setStencilStoreOp(vk::AttachmentStoreOp::eDontCare)
-      .setInitialLayout(Layout::eColorAttachmentOptimal)
-      .setFinalLayout(Layout::eColorAttachmentOptimal);
-  const vk::AttachmentReference reference{0, Layout::eColorAttachmentOptimal};
+      .setInitialLayout(ImageLayout::eColorAttachmentOptimal)
+      .setFinalLayout(ImageLayout::eColorAttachmentOptimal);
+  const vk::AttachmentReference reference{0, ImageLayout::eColorAttachmentOptimal};
   vk::SubpassDescription subpass;
   subpass.setPipelineBindPoint(vk::PipelineBindPoint::eGraphics).setColorAttachments(reference);
   vk::RenderPassCreateInfo info;
@@ -201,26 +201,26 @@ void UiLayer::endFrame() {
 }
 
 void UiLayer::clear(const vk::raii::CommandBuffer& commands) const {
-  change(commands, image_, Layout::eUndefined, Layout::eTransferDstOptimal, Stage::eAllTransfer,
+  change(commands, image_, ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal, Stage::eAllTransfer,
          Access::eTransferRead, Stage::eAllTransfer, Access::eTransferWrite);
-  commands.clearColorImage(image_.image(), Layout::eTransferDstOptimal,
+  commands.clearColorImage(image_.image(), ImageLayout::eTransferDstOptimal,
                            vk::ClearColorValue(std::array<float, 4>{0.09F, 0.09F, 0.10F, 1.0F}),
                            image_.range());
   // Two writes by transfers in a row want their order said.
-  change(commands, image_, Layout::eTransferDstOptimal, Layout::eTransferDstOptimal, Stage::eAllTransfer,
-         Access::eTransferWrite, Stage::eAllTransfer, Access::eTransferWrite);
+  change(commands, image_, ImageLayout::eTransferDstOptimal, ImageLayout::eTransferDstOptimal,
+         Stage::eAllTransfer, Access::eTransferWrite, Stage::eAllTransfer, Access::eTransferWrite);
 }
 
 void UiLayer::draw(const vk::raii::CommandBuffer& commands) const {
-  change(commands, image_, Layout::eTransferDstOptimal, Layout::eColorAttachmentOptimal, Stage::eAllTransfer,
-         Access::eTransferWrite, Stage::eColorAttachmentOutput,
+  change(commands, image_, ImageLayout::eTransferDstOptimal, ImageLayout::eColorAttachmentOptimal,
+         Stage::eAllTransfer, Access::eTransferWrite, Stage::eColorAttachmentOutput,
          Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
   vk::RenderPassBeginInfo begin;
   begin.setRenderPass(*pass_).setFramebuffer(*framebuffer_).setRenderArea({{0, 0}, image_.extent()});
   commands.beginRenderPass(begin, vk::SubpassContents::eInline);
   ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *commands);
   commands.endRenderPass();
-  change(commands, image_, Layout::eColorAttachmentOptimal, Layout::eTransferSrcOptimal,
+  change(commands, image_, ImageLayout::eColorAttachmentOptimal, ImageLayout::eTransferSrcOptimal,
          Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eAllTransfer,
          Access::eTransferRead);
 }

@@ -135,6 +135,11 @@ ValueSpan deviationSpan(const engine::Version& field, const engine::Version& ori
   return span;
 }
 
+ValueSpan negated(const ValueSpan& span) noexcept {
+  const auto turned = [](const ValueRange& r) { return ValueRange{0.0 - r.high, 0.0 - r.low}; };
+  return {turned(span.robust), turned(span.extreme), span.empty};
+}
+
 ValueSpan join(const ValueSpan& a, const ValueSpan& b) noexcept {
   if (a.empty) return b;
   if (b.empty) return a;

@@ -25,6 +25,10 @@ struct ValueSpan {
 /// when within 1.25 times that. Tiles that the two share are not read.
 [[nodiscard]] ValueSpan deviationSpan(const engine::Version& field, const engine::Version& original);
 
+/// The span of the same values with their signs changed. Of heights and deviations alike: what heightSpan and
+/// deviationSpan give for inverted fields, but for how a percentile between two samples is rounded.
+[[nodiscard]] ValueSpan negated(const ValueSpan& span) noexcept;
+
 /// The smallest span that holds both.
 [[nodiscard]] ValueSpan join(const ValueSpan& a, const ValueSpan& b) noexcept;
 

@@ -29,7 +29,7 @@ extern "C" void* glfwGetX11Display();
 namespace fettle::render {
 namespace {
 
-using Layout = vk::ImageLayout;
+using ImageLayout = vk::ImageLayout;
 using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 
@@ -434,6 +434,9 @@ std::vector<PanelText> Window::texts() const {
 void Window::enterPanels() {
   impl_->ui->enterPanels();
 }
+void Window::leavePanels() {
+  impl_->ui->leavePanels();
+}
 void Window::beginFrame() {
   impl_->ui->beginFrame();
 }
@@ -461,7 +464,7 @@ engine::Result<LiveTarget*> Window::pictureTarget() try {
   w.target.image = w.picture.colour.image();
   w.target.view = w.picture.colour.view();
   w.target.extent = extent;
-  w.target.leaves_as = Layout::eTransferSrcOptimal;
+  w.target.leaves_as = ImageLayout::eTransferSrcOptimal;
   w.drawn = true;
   return &w.target;
 } catch (const std::exception& error) {
@@ -477,7 +480,7 @@ void Window::forgetPicture() noexcept {
 
 void Window::Impl::bringPicture(const vk::raii::CommandBuffer& commands) const {
   // Drawn by an earlier submission of this queue; its last barrier knows nothing of this copy.
-  change(commands, picture.colour, Layout::eTransferSrcOptimal, Layout::eTransferSrcOptimal,
+  change(commands, picture.colour, ImageLayout::eTransferSrcOptimal, ImageLayout::eTransferSrcOptimal,
          Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllTransfer, Access::eTransferRead);
   const vk::Extent2D frame = ui->image().extent(), size = picture.colour.extent();
   const int left = std::max(area.x, 0), top = std::max(area.y, 0);
@@ -489,8 +492,8 @@ void Window::Impl::bringPicture(const vk::raii::CommandBuffer& commands) const {
       .setDstOffset({left, top, 0})
       .setExtent({std::min(size.width, frame.width - static_cast<std::uint32_t>(left)),
                   std::min(size.height, frame.height - static_cast<std::uint32_t>(top)), 1});
-  commands.copyImage(picture.colour.image(), Layout::eTransferSrcOptimal, ui->image().image(),
-                     Layout::eTransferDstOptimal, copy);
+  commands.copyImage(picture.colour.image(), ImageLayout::eTransferSrcOptimal, ui->image().image(),
+                     ImageLayout::eTransferDstOptimal, copy);
 }
 
 engine::Result<PresentReport> Window::present() {
@@ -543,7 +546,8 @@ engine::Result<Image> Window::capture() {
       vk::BufferImageCopy copy;
       copy.setImageSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
           .setImageExtent({extent.width, extent.height, 1});
-      commands.copyImageToBuffer(w.ui->image().image(), Layout::eTransferSrcOptimal, *buffer.handle(), copy);
+      commands.copyImageToBuffer(w.ui->image().image(), ImageLayout::eTransferSrcOptimal, *buffer.handle(),
+                                 copy);
       vk::MemoryBarrier2 barrier;
       barrier.setSrcStageMask(Stage::eCopy)
           .setSrcAccessMask(Access::eTransferWrite)

@@ -137,6 +137,8 @@ class Window {
   /// Gives the keyboard to the panels until Esc or a click beside them: arrows then go from field to field.
   /// Otherwise only dialogs, menus and text fields take keys.
   void enterPanels();
+  /// Takes it from them, before Esc or a click does; closes menus and dialogs that are open.
+  void leavePanels();
   /// Starts the panels of a frame; ImGui may be called until present().
   void beginFrame();
   /// Where in the frame the picture is [pixels]; the panels have the rest, and may lie over it.

@@ -8,7 +8,7 @@
 namespace fettle::render {
 namespace {
 
-using Layout = vk::ImageLayout;
+using ImageLayout = vk::ImageLayout;
 using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 
@@ -97,8 +97,8 @@ bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::
   }
   commands_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   record(commands_);
-  change(commands_, images_[index], Layout::eUndefined, Layout::eTransferDstOptimal, Stage::eAllTransfer, {},
-         Stage::eAllTransfer, Access::eTransferWrite);
+  change(commands_, images_[index], ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal,
+         Stage::eAllTransfer, {}, Stage::eAllTransfer, Access::eTransferWrite);
   vk::ImageBlit blit;
   const std::array<vk::Offset3D, 2> all{
       vk::Offset3D{0, 0, 0},
@@ -108,10 +108,10 @@ bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::
       .setSrcOffsets(all)
       .setDstOffsets(all);
   // A blit, not a copy: it also turns red, green, blue into the order that the display wants.
-  commands_.blitImage(source, Layout::eTransferSrcOptimal, images_[index], Layout::eTransferDstOptimal, blit,
-                      vk::Filter::eNearest);
-  change(commands_, images_[index], Layout::eTransferDstOptimal, Layout::ePresentSrcKHR, Stage::eAllTransfer,
-         Access::eTransferWrite, Stage::eNone, {});
+  commands_.blitImage(source, ImageLayout::eTransferSrcOptimal, images_[index],
+                      ImageLayout::eTransferDstOptimal, blit, vk::Filter::eNearest);
+  change(commands_, images_[index], ImageLayout::eTransferDstOptimal, ImageLayout::ePresentSrcKHR,
+         Stage::eAllTransfer, Access::eTransferWrite, Stage::eNone, {});
   commands_.end();
 
   const vk::SemaphoreSubmitInfo wait(*acquired_, 0, Stage::eAllTransfer);

@@ -16,7 +16,7 @@
 namespace fettle::app {
 namespace {
 
-struct Options {
+struct AccuracyArguments {
   std::string folder;
   std::string scan;
   ScanOptions scan_options;
@@ -40,7 +40,7 @@ std::string studyNames() {
   return names;
 }
 
-engine::Result<Report> accuracy(const Options& options, engine::JobControl& job) {
+engine::Result<Report> accuracy(const AccuracyArguments& options, engine::JobControl& job) {
   for (const std::string& id : options.only)
     if (std::none_of(std::begin(kStudies), std::end(kStudies), [&](const auto& s) { return s.id == id; }))
       return engine::inputError("there is no study \"" + id + "\"", "--only", "name any of " + studyNames());
@@ -118,7 +118,7 @@ engine::Result<Report> accuracy(const Options& options, engine::JobControl& job)
                 {"answers", answers}, {"rows", rows}};
 }
 
-void print(const Report& report) {
+void printAccuracy(const Report& report) {
   for (const auto& [study, answer] : report["answers"].items())
     fmt::print("{}: {}\n\n", study, answer.get<std::string>());
   fmt::print("{}\n{}\n", report["page"].get<std::string>(), report["csv"].get<std::string>());
@@ -127,10 +127,10 @@ void print(const Report& report) {
 }  // namespace
 
 void addAccuracy(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AccuracyArguments>();
   CLI::App* command = addCommand(
       root, chosen, "accuracy", "What accuracy costs in time: a page of plots, tables and answers",
-      [options](engine::JobControl& job) { return accuracy(*options, job); }, print);
+      [options](engine::JobControl& job) { return accuracy(*options, job); }, printAccuracy);
   command->add_option("FOLDER", options->folder, "Where accuracy.html, accuracy.csv and the plots go")
       ->required();
   command->add_option("SCAN", options->scan, "A scan to study beside the made fields");

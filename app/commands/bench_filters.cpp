@@ -49,7 +49,7 @@ std::string beside(double value, double target, int digits) {
                      value >= target ? '*' : ' ');
 }
 
-void print(const Report& report) {
+void printBenchFilters(const Report& report) {
   fmt::print(
       "{}\nwhole filter with its report, million samples/s, median of {} runs; share: of plain copying of "
       "floats "
@@ -81,7 +81,7 @@ void addBenchFilters(CLI::App& bench, Chosen& chosen) {
   CLI::App* command = addCommand(
       bench, chosen, "filters",
       "Samples a second of the global filters, beside plain copying in the same run",
-      [options](engine::JobControl& job) { return measure(*options, job); }, print);
+      [options](engine::JobControl& job) { return measure(*options, job); }, printBenchFilters);
   std::map<std::string, engine::FilterKind> kinds;
   for (const engine::FilterKind kind : options->kinds) kinds[std::string(engine::name(kind))] = kind;
   std::map<std::string, bench::FilterGround> grounds;

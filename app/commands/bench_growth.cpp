@@ -14,7 +14,7 @@ namespace fettle::app {
 
 namespace {
 
-struct Options {
+struct BenchGrowthArguments {
   bench::GrowthOptions bench;
   std::string folder;
 };
@@ -45,7 +45,7 @@ std::string scriptOf(const bench::Growth& growth) {
          plots + "\n";
 }
 
-engine::Result<Report> measure(const Options& options, engine::JobControl& job) {
+engine::Result<Report> measure(const BenchGrowthArguments& options, engine::JobControl& job) {
   if (!options.folder.empty())
     if (auto ready = plotsCanBeMade(); !ready) return tl::unexpected(ready.error());
   const auto measured = bench::benchGrowth(options.bench, job);
@@ -83,7 +83,7 @@ engine::Result<Report> measure(const Options& options, engine::JobControl& job) 
   return report;
 }
 
-void print(const Report& report) {
+void printBenchGrowth(const Report& report) {
   fmt::print("{}\none thread copies {:.1f} GB/s\n", report["machine"].get<std::string>(),
              report["copy_bytes_per_second"].get<double>() * 1e-9);
   for (const Report& growth : report["growths"]) {
@@ -106,10 +106,10 @@ void print(const Report& report) {
 }  // namespace
 
 void addBenchGrowth(CLI::App& bench, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BenchGrowthArguments>();
   CLI::App* command = addCommand(
       bench, chosen, "growth", "How costs grow with the field, the window, the brush and what changed",
-      [options](engine::JobControl& job) { return measure(*options, job); }, print);
+      [options](engine::JobControl& job) { return measure(*options, job); }, printBenchGrowth);
   command->add_option("--largest", options->bench.largest, "Samples along the sides of the largest field")
       ->capture_default_str();
   command->add_option("--effort", options->bench.effort, "Share of the full work, 0.01 to 1")

@@ -32,7 +32,7 @@ engine::Result<Report> measure(const bench::ImportBenchOptions& options, engine:
   return report;
 }
 
-void print(const Report& report) {
+void printBenchImport(const Report& report) {
   fmt::print(
       "{}\nmedian of {} imports; plain: the same file read into a buffer; GDAL: its samples brought into a "
       "buffer\nby GDAL alone, the faster of two ways; both in the same run\n\n",
@@ -58,7 +58,7 @@ void addBenchImport(CLI::App& bench, Chosen& chosen) {
   auto options = std::make_shared<bench::ImportBenchOptions>();
   CLI::App* command = addCommand(
       bench, chosen, "import", "How fast each format becomes a field, beside plain reading of the same file",
-      [options](engine::JobControl& job) { return measure(*options, job); }, print);
+      [options](engine::JobControl& job) { return measure(*options, job); }, printBenchImport);
   command->add_option("SCANS", options->files, "Files to read; none: one field written in every format");
   command
       ->add_option("--side", options->side,

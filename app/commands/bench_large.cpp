@@ -65,7 +65,7 @@ std::string shortTime(double seconds) {
   return fmt::format("{:.2f} s", seconds);
 }
 
-void print(const Report& report) {
+void printBenchLarge(const Report& report) {
   constexpr double kMb = 1e-6;
   fmt::print("{}\n{} x {} samples ({:.0f} million), a file of {:.0f} MB; one thread copies {:.1f} GB/s\n",
              report["machine"].get<std::string>(), report["side"].get<int>(), report["side"].get<int>(),
@@ -121,7 +121,7 @@ void addBenchLarge(CLI::App& bench, Chosen& chosen) {
         if (!measured) return tl::unexpected(measured.error());
         return reportOf(*measured);
       },
-      print);
+      printBenchLarge);
   command->add_option("--side", options->side, "Samples along each side of the scan")->capture_default_str();
   command->add_option("--folder", options->folder,
                       "Where the files lie meanwhile; else the temporary folder");

@@ -4,6 +4,7 @@
 
 #include "app/command.h"
 #include "app/scan_options.h"
+#include "app/streams.h"
 #include "app/terminal.h"
 #include "engine/compare/compare.h"
 #include "engine/compare/deviation_field.h"
@@ -13,19 +14,21 @@ namespace fettle::app {
 
 namespace {
 
-struct Options {
+struct CompareArguments {
   std::string a;
   std::string b;
   std::string truth;
   std::string edges;
   std::string deviation;
+  Replacing replacing = Replacing::kNoWork;
+  std::string to;
   ScanOptions reading;
 };
 
 // Fields are compared sample by sample; whoever compares two that lie elsewhere or mean something else is
 // told.
-void warnOfDifferentGrids(const Options& options, const engine::Grid& a, const engine::Grid& b) {
-  const std::string both = options.a + " and " + options.b;
+void warnOfDifferentGrids(const CompareArguments& options, const engine::Grid& a, const engine::Grid& b) {
+  const std::string both = shownInput(options.a) + " and " + shownInput(options.b);
   if (a.spacingXMm() != b.spacingXMm() || a.spacingYMm() != b.spacingYMm())
     warn(both + " have different spacings and are compared sample by sample");
   if (a.origin_x * a.lateral_unit.mm != b.origin_x * b.lateral_unit.mm ||
@@ -37,11 +40,12 @@ void warnOfDifferentGrids(const Options& options, const engine::Grid& a, const e
                     a.height_unit.name, b.height_unit.name));
 }
 
-engine::Result<Report> compare(const Options& options, engine::JobControl& job) {
+engine::Result<Report> compare(const CompareArguments& options, engine::JobControl& job) {
   if (!options.edges.empty() && options.truth.empty())
     return engine::inputError("edges say nothing without a truth", "--edges", "give --truth too");
-  if (auto status = checkOutputs({{options.deviation, OutputKind::kField}},
-                                 {options.a, options.b, options.truth, options.edges});
+  if (auto status =
+          checkOutputs({{options.deviation, OutputKind::kField, options.to}},
+                       {options.a, options.b, options.truth, options.edges}, options.replacing, job);
       !status)
     return tl::unexpected(status.error());
   const auto a = loadScan(options.a, options.reading, job);
@@ -67,7 +71,7 @@ engine::Result<Report> compare(const Options& options, engine::JobControl& job) 
   if (!options.deviation.empty()) {
     const auto difference = engine::deviationField(a->field, b->field, job);
     if (!difference) return tl::unexpected(difference.error());
-    if (auto status = saveField(*difference, options.deviation, job); !status)
+    if (auto status = saveField(*difference, options.deviation, job, {}, options.to); !status)
       return tl::unexpected(status.error());
     report["deviation"] = options.deviation;
   }
@@ -93,11 +97,12 @@ engine::Result<Report> compare(const Options& options, engine::JobControl& job) 
 }  // namespace
 
 void addCompare(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareArguments>();
   CLI::App* command =
       addCommand(root, chosen, "compare", "How B deviates from A; against a truth, how wrong B is and where",
                  [options](engine::JobControl& job) { return compare(*options, job); });
-  command->add_option("A", options->a, "The scan to compare with")->required();
+  command->add_option("A", options->a, "The scan to compare with; A or B may be -, standard input")
+      ->required();
   command->add_option("B", options->b, "The scan to judge")->required();
   command->add_option("--truth", options->truth,
                       "The true surface: adds RMSE overall, on flats and near edges");
@@ -105,6 +110,8 @@ void addCompare(CLI::App& root, Chosen& chosen) {
                       "Picture of the true edges, non-zero = edge: adds the edge width");
   command->add_option("--deviation", options->deviation,
                       "Also write B - A as a scan of its own, in A's height unit, format by extension");
+  addForceOption(command, options->replacing);
+  command->add_option("--to", options->to, "With --deviation -, standard output: its format, as extension");
   addScanOptions(command, options->reading);
 }
 

@@ -3,42 +3,51 @@
 #include "app/batch.h"
 #include "app/command.h"
 #include "app/scan_options.h"
+#include "app/streams.h"
 #include "app/terminal.h"
+#include "app/write_options.h"
 #include "engine/io/export.h"
 
 namespace fettle::app {
 
 namespace {
 
-struct Options {
+struct ConvertArguments {
   BatchOptions files;
   ScanOptions reading;
   engine::ExportOptions writing;
   std::string max_error;
 };
 
-engine::Result<Report> convertOne(const Options& options, const BatchTask& task, engine::JobControl& job) {
+engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTask& task,
+                                  engine::JobControl& job) {
   const auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   engine::ExportOptions writing = options.writing;
+  writing.original = imported->original;
   if (!options.max_error.empty()) {
     const auto error = parseHeight(options.max_error, imported->field.grid(), "--max-error");
     if (!error) return tl::unexpected(error.error());
     writing.max_error = *error;
   }
-  auto written = engine::exportField(imported->field, task.out, writing, job);
-  if (!written) return tl::unexpected(written.error());
+  engine::Result<engine::Exported> written;
+  const auto done = writeTo(task.out, withDot(task.to), job, [&](const std::string& file) -> engine::Status {
+    written = engine::exportField(imported->field, file, writing, job);
+    return written ? engine::Status{} : tl::unexpected(written.error());
+  });
+  if (!done) return tl::unexpected(done.error());
   if (imported->field.reader().root().marked_children != 0 && written->format != "Fettle")
     written->warnings.push_back("the marks of the session are not kept, the format has none");
-  for (const std::string& warning : written->warnings) warn(task.out + ": " + warning);
+  for (const std::string& warning : written->warnings) warn(shownOutput(task.out) + ": " + warning);
   return Report{{"format", written->format}, {"from", imported->format}, {"warnings", written->warnings}};
 }
 
-engine::Result<Report> convert(const Options& options, engine::JobControl& job) {
+engine::Result<Report> convert(const ConvertArguments& options, engine::JobControl& job) {
   if (options.files.many() && options.files.extension.empty())
     return engine::inputError("the format to write is not said", "--to", "give it as extension: --to tif");
-  const auto tasks = batchTasks(options.files, {});
+  const auto tasks = batchTasks(options.files, {}, job);
   if (!tasks) return tl::unexpected(tasks.error());
+  if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) { return convertOne(options, task, j); };
   if (options.files.many()) return runBatch(*tasks, job, one);
   const ProgressLine progress(job);
@@ -48,7 +57,7 @@ engine::Result<Report> convert(const Options& options, engine::JobControl& job) 
 }  // namespace
 
 void addConvert(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertArguments>();
   CLI::App* command = addCommand(
       root, chosen, "convert", "Write scans in another format, named by the extension",
       [options](engine::JobControl& job) { return convert(*options, job); }, printBatch, Progress::kOwn,
@@ -65,6 +74,7 @@ void addConvert(CLI::App& root, Chosen& chosen) {
       ->add_flag("--cloud-optimised", options->writing.cloud_optimised,
                  "TIFF: laid out for reading parts over a network, with overviews")
       ->group(group);
+  addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
 }
 

@@ -8,6 +8,7 @@
 #include "app/command.h"
 #include "app/demo/demo.h"
 #include "app/scan_options.h"
+#include "app/session_guard.h"
 #include "engine/io/atomic_file.h"
 
 namespace fettle::app {
@@ -52,6 +53,10 @@ engine::Result<Report> demo(const DemoOptions& options, engine::JobControl& job)
   if (error)
     return engine::inputError(fmt::format("the folder cannot be made: {}", error.message()), options.folder,
                               "name a folder that you may write to");
+  ScanGuard guard;
+  for (std::filesystem::directory_iterator it(options.folder, error), end; !error && it != end;
+       it.increment(error))
+    if (auto status = guard.spare(it->path().string(), job); !status) return tl::unexpected(status.error());
   const auto run = runDemo(options, job);
   if (!run) return tl::unexpected(ended(run.error(), options, made));
   const std::string table_file = (std::filesystem::path(options.folder) / "table.csv").string();
@@ -78,7 +83,7 @@ engine::Result<Report> demo(const DemoOptions& options, engine::JobControl& job)
   return report;
 }
 
-void print(const Report& report) {
+void printDemo(const Report& report) {
   const auto number = [](const Report& value) {
     return value.is_null() || std::isnan(value.get<double>()) ? std::string("-")
                                                               : fmt::format("{:.4f}", value.get<double>());
@@ -101,7 +106,7 @@ void addDemo(CLI::App& root, Chosen& chosen) {
   auto options = std::make_shared<DemoOptions>();
   CLI::App* command = addCommand(
       root, chosen, "demo", "The whole process on a simulated scan: pictures, table, session",
-      [options](engine::JobControl& job) { return demo(*options, job); }, print);
+      [options](engine::JobControl& job) { return demo(*options, job); }, printDemo);
   command->add_option("DIR", options->folder, "Folder for everything it writes; made if need be")->required();
   command->add_option("--part", options->part, "The part to scan; see fettle synth --help")
       ->capture_default_str();

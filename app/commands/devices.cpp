@@ -80,7 +80,7 @@ std::string known(const Report& value, double factor, const char* unit) {
   return value.is_null() ? "-" : fmt::format("{:.3g} {}", value.get<double>() * factor, unit);
 }
 
-void print(const Report& report) {
+void printDevices(const Report& report) {
   bool any = false;
   for (const Report& d : report["devices"]) {
     any = any || d["kind"] != "built in";
@@ -107,7 +107,7 @@ void print(const Report& report) {
 void addDevices(CLI::App& root, Chosen& chosen) {
   addCommand(
       root, chosen, "devices", "What is plugged in and what it can do; use an id with fettle record --device",
-      [](engine::JobControl&) { return devices(); }, print);
+      [](engine::JobControl&) { return devices(); }, printDevices);
 }
 
 }  // namespace fettle::app

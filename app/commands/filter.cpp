@@ -12,6 +12,7 @@
 #include "app/command.h"
 #include "app/scan_options.h"
 #include "app/terminal.h"
+#include "app/write_options.h"
 #include "engine/filter/filter.h"
 #include "engine/filter/noise_range.h"
 #include "engine/io/marks.h"
@@ -21,7 +22,7 @@ namespace fettle::app {
 
 namespace {
 
-struct Options {
+struct FilterArguments {
   BatchOptions files;
   std::string filter;
   int window = 3;
@@ -31,14 +32,16 @@ struct Options {
   std::string keep;
   std::string only;
   std::string max_change;
+  std::string original;
   int threads = 0;
   bool suggest = false;
   std::string tolerance;
   std::optional<double> budget;
   ScanOptions reading;
+  engine::ExportOptions writing;
 };
 
-engine::Result<engine::FilterSpec> specOf(const Options& options) {
+engine::Result<engine::FilterSpec> specOf(const FilterArguments& options) {
   engine::FilterSpec spec;
   spec.kind = *engine::filterKindFromName(options.filter);
   spec.window = options.window;
@@ -56,10 +59,12 @@ engine::Result<engine::FilterSpec> specOf(const Options& options) {
   return spec;
 }
 
-engine::Result<Report> filterOne(const Options& options, engine::FilterSpec spec, const BatchTask& task,
-                                 engine::JobControl& job) {
+engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterSpec spec,
+                                 const BatchTask& task, engine::JobControl& job) {
   auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
+  const auto original = originalOf(*imported, options.original, options.reading, job);
+  if (!original) return tl::unexpected(original.error());
   engine::Version field = imported->field;
   if (const std::string& marks = options.only.empty() ? options.keep : options.only; !marks.empty()) {
     auto marked = engine::importMarks(field, marks);
@@ -82,10 +87,13 @@ engine::Result<Report> filterOne(const Options& options, engine::FilterSpec spec
   if (!ready) return tl::unexpected(ready.error());
   spec = *ready;
   const auto start = std::chrono::steady_clock::now();
-  const auto filtered = engine::applyFilter(field, imported->field, spec, job);
+  const auto filtered = engine::applyFilter(field, *original, spec, job);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!filtered) return tl::unexpected(filtered.error());
-  if (auto status = saveField(filtered->field, task.out, job); !status) return tl::unexpected(status.error());
+  engine::ExportOptions writing = options.writing;
+  writing.original = *original;
+  if (auto status = saveField(filtered->field, task.out, job, writing, task.to); !status)
+    return tl::unexpected(status.error());
 
   const double samples = static_cast<double>(field.grid().samples()) * spec.passes;
   return Report{{"filter", options.filter},
@@ -119,7 +127,7 @@ std::string shellWord(const std::string& text) {
 }
 
 // What is to be typed to have a candidate carried out.
-std::vector<std::string> commandsFor(const Options& options, const engine::FilterCandidate& c) {
+std::vector<std::string> commandsFor(const FilterArguments& options, const engine::FilterCandidate& c) {
   if (c.spec.window == 1) return {};
   const std::string in = shellWord(options.files.files[0]);
   const std::string out = options.files.files.size() > 1 ? shellWord(options.files.files[1]) : "OUT.tif";
@@ -215,7 +223,7 @@ Report reportOf(const engine::FilterCandidate& c) {
           {"within", c.within}};
 }
 
-engine::Result<Report> suggest(const Options& options, engine::JobControl& job) {
+engine::Result<Report> suggest(const FilterArguments& options, engine::JobControl& job) {
   const auto refused = [](const char* option, const char* why) {
     return engine::inputError(fmt::format("--suggest goes without {}", option), option, why);
   };
@@ -223,6 +231,7 @@ engine::Result<Report> suggest(const Options& options, engine::JobControl& job) 
     return refused("several scans", "give one scan, and OUT if you like: it is only named");
   if (!options.filter.empty()) return refused("--filter", "it is what is suggested");
   if (!options.only.empty()) return refused("--only", "give --keep, or nothing");
+  if (!options.original.empty()) return refused("--original", "nothing limits what it tries");
   if (options.tolerance.empty())
     return engine::inputError("no tolerance is given", "--tolerance",
                               "give the error that may be left, as 0.01 in the scan's unit or 10um");
@@ -273,7 +282,7 @@ void printSuggestion(const Report& report) {
                figure(c["error_edge"]), figure(c["seconds"]), c["within"].get<bool>() ? "  within" : "");
 }
 
-engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
+engine::Result<Report> filter(const FilterArguments& options, engine::JobControl& job) {
   if (options.suggest) return suggest(options, job);
   if (options.filter.empty())
     return engine::inputError("no filter is named", "--filter",
@@ -283,8 +292,12 @@ engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
                               options.tolerance.empty() ? "--budget" : "--tolerance", "add --suggest");
   const auto spec = specOf(options);
   if (!spec) return tl::unexpected(spec.error());
-  const auto tasks = batchTasks(options.files, {options.keep, options.only});
+  const auto tasks = batchTasks(options.files, {options.keep, options.only, options.original}, job);
   if (!tasks) return tl::unexpected(tasks.error());
+  for (const BatchTask& task : *tasks)
+    if (auto status = checkOriginal(options.original, !options.max_change.empty(), task.out); !status)
+      return tl::unexpected(status.error());
+  if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) {
     return filterOne(options, *spec, task, j);
   };
@@ -293,7 +306,7 @@ engine::Result<Report> filter(const Options& options, engine::JobControl& job) {
   return one(tasks->front(), job);
 }
 
-void print(const Report& report) {
+void printFilter(const Report& report) {
   if (report.contains("commands"))
     printSuggestion(report);
   else
@@ -303,16 +316,16 @@ void print(const Report& report) {
 }  // namespace
 
 void addFilter(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FilterArguments>();
   CLI::App* command = addCommand(
       root, chosen, "filter", "Filter whole scans, around what is marked",
-      [options](engine::JobControl& job) { return filter(*options, job); }, print, Progress::kOwn,
+      [options](engine::JobControl& job) { return filter(*options, job); }, printFilter, Progress::kOwn,
       batchStatus);
   addBatchOptions(command, options->files);
   command
       ->add_option("--filter", options->filter,
                    "box, gaussian, median, bilateral or tv (total variation); the last two keep edges")
-      ->check(CLI::IsMember({"box", "gaussian", "median", "bilateral", "tv"}));
+      ->check(oneOf({"box", "gaussian", "median", "bilateral", "tv"}));
   command->add_option("--window", options->window, "Side of the window in samples, odd, 1 to 1001")
       ->capture_default_str();
   command->add_option("--sigma", options->sigma,
@@ -326,9 +339,10 @@ void addFilter(CLI::App& root, Chosen& chosen) {
       command->add_option("--keep", options->keep, "Picture of marks: these samples keep their bits");
   command->add_option("--only", options->only, "Picture of marks: only these samples are filtered")
       ->excludes(keep);
-  command->add_option(
-      "--max-change", options->max_change,
-      "No sample ends further than this from IN; in the scan's height unit, or as 20um, 0.5mm");
+  command->add_option("--max-change", options->max_change,
+                      "No sample ends further than this from the original: that of a session, else "
+                      "--original, else IN; in the scan's height unit, or as 20um, 0.5mm");
+  addOriginalOption(command, options->original);
   command->add_option("--threads", options->threads, "Threads to use; 0 = one a core")->capture_default_str();
   command->add_flag(
       "--suggest", options->suggest,
@@ -339,6 +353,7 @@ void addFilter(CLI::App& root, Chosen& chosen) {
                       "by itself; in the scan's height unit, or as 20um");
   command->add_option("--budget", options->budget,
                       "With --suggest: seconds that filtering the scan may take");
+  addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
 }
 

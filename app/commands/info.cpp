@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/batch.h"
 #include "app/command.h"
 #include "app/scan_options.h"
 #include "app/terminal.h"
@@ -20,8 +21,8 @@ namespace fettle::app {
 
 namespace {
 
-struct Options {
-  std::string scan;
+struct InfoArguments {
+  std::vector<std::string> scans;
   ScanOptions reading;
   std::vector<std::string> at;
   std::string picture;
@@ -52,7 +53,7 @@ void printHistogram(const Report& histogram, const std::string& unit) {
 }
 
 // A coordinate system's text runs to pages; people want its name.
-void print(Report report) {
+void printOne(Report report) {
   const Report histogram = report["histogram"];
   report.erase("histogram");
   if (report["crs"].is_string()) {
@@ -62,6 +63,18 @@ void print(Report report) {
   }
   printReport(report);
   printHistogram(histogram, report["unit"]);
+}
+
+void printInfo(const Report& report) {
+  if (!report.contains("files")) return printOne(report);
+  for (const Report& file : report["files"])
+    if (file.contains("error"))
+      fmt::print("{}  failed\n\n", file["in"].get<std::string>());
+    else {
+      printOne(file);
+      fmt::print("\n");
+    }
+  fmt::print("{} read, {} failed\n", report["done"].get<std::size_t>(), report["failed"].get<std::size_t>());
 }
 
 // Where a cell is, as the file counts: rows from the top.
@@ -116,10 +129,9 @@ engine::Result<Report> samplesAt(const engine::FieldReader& field, const std::ve
   return samples;
 }
 
-engine::Result<Report> info(const Options& options, engine::JobControl& job) {
-  if (auto status = checkOutputs({{options.picture, OutputKind::kPicture}}, {options.scan}); !status)
-    return tl::unexpected(status.error());
-  const auto imported = loadScan(options.scan, options.reading, job);
+engine::Result<Report> infoOf(const InfoArguments& options, const std::string& scan,
+                              engine::JobControl& job) {
+  const auto imported = loadScan(scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const engine::Grid& grid = imported->field.grid();
   const engine::FieldSummary summary = engine::summarize(imported->field);
@@ -174,13 +186,32 @@ engine::Result<Report> info(const Options& options, engine::JobControl& job) {
   return report;
 }
 
+engine::Result<Report> info(const InfoArguments& options, engine::JobControl& job) {
+  if (auto status =
+          checkOutputs({{options.picture, OutputKind::kPicture}}, options.scans, Replacing::kNoWork, job);
+      !status)
+    return tl::unexpected(status.error());
+  if (options.scans.size() == 1) {
+    const ProgressLine progress(job);
+    return infoOf(options, options.scans.front(), job);
+  }
+  if (!options.picture.empty())
+    return engine::inputError("one picture cannot be that of several scans", "--picture",
+                              "give one scan with it");
+  std::vector<BatchTask> tasks;
+  for (const std::string& scan : options.scans) tasks.push_back({scan, {}, {}});
+  return runBatch(tasks, job,
+                  [&](const BatchTask& task, engine::JobControl& j) { return infoOf(options, task.in, j); });
+}
+
 }  // namespace
 
 void addInfo(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<InfoArguments>();
   CLI::App* command = addCommand(
       root, chosen, "info", "What a scan holds: size, spacing, units, heights, holes, noise, steepest cell",
-      [options](engine::JobControl& job) { return info(*options, job); }, print);
+      [options](engine::JobControl& job) { return info(*options, job); }, printInfo, Progress::kOwn,
+      batchStatus);
   command->footer(
       "noise: standard deviation of the finest detail, in the height unit: 1.4826 median(|d|) / 6 of d, the\n"
       "  second difference along rows and columns over 3 x 3 samples without a hole. Planes, steps along "
@@ -191,7 +222,10 @@ void addInfo(CLI::App& root, Chosen& chosen) {
       "steepest: the cell that rises most, height over distance; ROW,COLUMN of its upper left sample, and "
       "its\n"
       "  middle in the file's coordinates.");
-  command->add_option("SCAN", options->scan, "The scan")->required();
+  command
+      ->add_option("SCAN", options->scans,
+                   "The scan, or several, each with a report of its own; - for standard input")
+      ->required();
   command
       ->add_option("--at", options->at,
                    "Also the height at ROW,COLUMN of the file, both from 0; may be repeated")

@@ -3,6 +3,7 @@
 
 #include "app/command.h"
 #include "app/scan_options.h"
+#include "app/streams.h"
 #include "engine/io/marks.h"
 #include "engine/marks/edge_suggestion.h"
 
@@ -10,7 +11,7 @@ namespace fettle::app {
 
 namespace {
 
-struct Options {
+struct MarkArguments {
   std::string in;
   std::string out;
   std::string add;
@@ -21,10 +22,12 @@ struct Options {
   ScanOptions reading;
 };
 
-engine::Result<Report> mark(const Options& options, engine::JobControl& job) {
+engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& job) {
   if (!options.edges && !options.invert)
     return engine::inputError("nothing is said of what to mark", "mark", "give --edges or --invert");
-  if (auto status = checkOutputs({{options.out, OutputKind::kMarks}}, {options.in, options.add}); !status)
+  if (auto status = checkOutputs({{options.out, OutputKind::kMarks, ".png"}}, {options.in, options.add},
+                                 Replacing::kNoWork, job);
+      !status)
     return tl::unexpected(status.error());
   auto imported = loadScan(options.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
@@ -56,7 +59,9 @@ engine::Result<Report> mark(const Options& options, engine::JobControl& job) {
     field = *std::move(inverted);
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (auto status = engine::exportMarks(field, options.out); !status) return tl::unexpected(status.error());
+  const auto written = writeTo(options.out, ".png", job,
+                               [&](const std::string& file) { return engine::exportMarks(field, file); });
+  if (!written) return tl::unexpected(written.error());
   report["marked"] = engine::summarize(field).marked;
   report["seconds"] = seconds;
   return report;
@@ -65,11 +70,14 @@ engine::Result<Report> mark(const Options& options, engine::JobControl& job) {
 }  // namespace
 
 void addMark(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MarkArguments>();
   CLI::App* command = addCommand(root, chosen, "mark", "Mark what filters must not change",
                                  [options](engine::JobControl& job) { return mark(*options, job); });
-  command->add_option("SCAN", options->in, "The scan to read")->required();
-  command->add_option("MARKS", options->out, "Picture of marks to write: .png, .tif")->required();
+  command->add_option("SCAN", options->in, "The scan to read; - for standard input")->required();
+  command
+      ->add_option("MARKS", options->out,
+                   "Picture of marks to write: .png, .tif, - for a PNG on standard output")
+      ->required();
   command->add_flag("--edges", options->edges,
                     "Mark the sharp edges of the part, as the window suggests them");
   command

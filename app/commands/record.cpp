@@ -24,7 +24,7 @@ namespace fettle::app {
 
 namespace {
 
-struct Options {
+struct RecordArguments {
   std::string scan;
   std::string strokes;
   std::string out;
@@ -40,6 +40,8 @@ struct Options {
   double scale = 0.0;  // 0 = fitted
   std::optional<double> max_force_n;
   bool keys = false;
+  std::string original;
+  Replacing replacing = Replacing::kNoWork;
   ScanOptions reading;
 };
 
@@ -58,7 +60,7 @@ struct ChosenDevice {
   double plays_s = 0.0;
 };
 
-engine::Result<ChosenDevice> choose(const Options& options, const haptic::Scene& scene) {
+engine::Result<ChosenDevice> choose(const RecordArguments& options, const haptic::Scene& scene) {
   ChosenDevice chosen;
   if (options.device == "mouse")
     return engine::inputError("the mouse needs a window to point at", "--device mouse",
@@ -107,7 +109,7 @@ glm::dvec3 middleOf(const engine::Version& field) {
 }
 
 // Where the device lies in the field: --scale, or the whole field within reach unless that felt too stiff.
-engine::Result<haptic::Workspace> place(const Options& options, const engine::Version& felt,
+engine::Result<haptic::Workspace> place(const RecordArguments& options, const engine::Version& felt,
                                         const haptic::DeviceProfile& profile, const haptic::Scene& scene) {
   if (profile.space == haptic::DeviceSpace::kField) {
     if (options.scale != 0.0)
@@ -115,20 +117,36 @@ engine::Result<haptic::Workspace> place(const Options& options, const engine::Ve
                                 "--scale", "leave it out");
     return haptic::Workspace{};
   }
-  const double stiffest = stiffestScale(profile, scene.stiffness_n_per_mm);
   const double scale =
-      options.scale > 0.0 ? options.scale : fittedScale(profile, felt.grid(), scene.stiffness_n_per_mm);
-  if (profile.gives_force && scale > stiffest * (1.0 + 1e-9))
-    return engine::inputError(
-        fmt::format("at this scale the surface is felt with {:.3g} N/mm, and {} holds {:.3g} N/mm",
-                    scale * scene.stiffness_n_per_mm, profile.name, profile.max_stiffness_n_per_mm),
-        fmt::format("--scale {:g}", scale),
-        fmt::format("take a scale of at most {:.3g} or a scene with a softer spring", stiffest));
+      options.scale > 0.0 ? options.scale : fittedScale(profile, felt.grid(), scene, options.rate_hz);
   return haptic::Workspace(scale, middleOf(felt));
 }
 
+// What the device does not hold is refused where force goes to a hand, a simulated one as well, and said
+// where none does.
+engine::Status checkStability(const RecordArguments& options, const engine::Version& felt,
+                              const haptic::DeviceProfile& profile, const haptic::Scene& scene,
+                              double scale) {
+  const std::string where = options.scene.empty() ? "the default scene" : options.scene;
+  if (!profile.gives_force) {
+    if (const auto problem = problemOnEveryDevice(scene, felt.grid(), options.rate_hz))
+      warn(fmt::format("{}: {}", where, withoutForceText(*problem)));
+    return {};
+  }
+  const auto problem = haptic::stabilityProblem(scene, profile, options.rate_hz, scale);
+  if (!problem) return {};
+  // The scale that was asked for may be all that is wrong.
+  const double largest = haptic::largestStableScale(scene, profile, options.rate_hz);
+  if (options.scale > 0.0 && largest > 0.0)
+    return engine::inputError(
+        problem->what, fmt::format("--scale {:g}", scale),
+        fmt::format("take a scale of at most {:.4g}, or a scene with a softer spring: at this scale {}",
+                    largest, problem->remedy));
+  return engine::inputError(problem->what, where, problem->remedy);
+}
+
 // A device without a hand in it arms itself; one that pushes a hand waits for the person.
-engine::Result<ArmPolicy> armPolicy(const Options& options, const ChosenDevice& chosen) {
+engine::Result<ArmPolicy> armPolicy(const RecordArguments& options, const ChosenDevice& chosen) {
   const bool pushes_a_hand = chosen.device->profile().gives_force && !chosen.plays;
   if (options.arm == "auto" && pushes_a_hand)
     return engine::inputError("a device that gives force is armed by the person who holds it", "--arm auto",
@@ -137,7 +155,7 @@ engine::Result<ArmPolicy> armPolicy(const Options& options, const ChosenDevice& 
   return options.arm == "auto" ? ArmPolicy::kAuto : ArmPolicy::kAsk;
 }
 
-engine::Result<LiveSettings> settingsFor(const Options& options, const ChosenDevice& chosen,
+engine::Result<LiveSettings> settingsFor(const RecordArguments& options, const ChosenDevice& chosen,
                                          const engine::Version& felt, const haptic::Scene& scene) {
   const haptic::DeviceProfile& profile = chosen.device->profile();
   LiveSettings settings;
@@ -149,6 +167,8 @@ engine::Result<LiveSettings> settingsFor(const Options& options, const ChosenDev
   haptic::DeviceProfile limited = profile;
   // Down only: what the device can bear is not for the command line to say.
   if (options.max_force_n) limited.max_force_n = std::min(limited.max_force_n, *options.max_force_n);
+  if (auto status = checkStability(options, felt, limited, scene, workspace->scale()); !status)
+    return tl::unexpected(status.error());
   haptic::LoopOptions& loop = settings.loop.options;
   loop.limits = sessionLimits(limited);
   loop.workspace = *workspace;
@@ -172,16 +192,16 @@ engine::Result<LiveSettings> settingsFor(const Options& options, const ChosenDev
   return settings;
 }
 
-double us(std::int64_t ns) {
+double microsecondsRecord(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-3;
 }
 
 Report timingOf(const haptic::TimingFigures& f) {
-  return {{"p50_us", us(f.p50_ns)},
-          {"p99_us", us(f.p99_ns)},
-          {"p999_us", us(f.p999_ns)},
-          {"p9999_us", us(f.p9999_ns)},
-          {"worst_us", us(f.worst_ns)}};
+  return {{"p50_us", microsecondsRecord(f.p50_ns)},
+          {"p99_us", microsecondsRecord(f.p99_ns)},
+          {"p999_us", microsecondsRecord(f.p999_ns)},
+          {"p9999_us", microsecondsRecord(f.p9999_ns)},
+          {"worst_us", microsecondsRecord(f.worst_ns)}};
 }
 
 Report deviceOf(const haptic::Device& device, const haptic::DeviceCounters& c) {
@@ -198,7 +218,7 @@ Report deviceOf(const haptic::Device& device, const haptic::DeviceCounters& c) {
           {"faults", c.faults},
           {"connects", c.connects},
           {"disconnects", c.disconnects},
-          {"longest_output_us", us(c.longest_output_ns)}};
+          {"longest_output_us", microsecondsRecord(c.longest_output_ns)}};
 }
 
 Report safetyOf(const LiveOutcome& outcome, const GivenForce& given, const haptic::SafetyLimits& limits) {
@@ -226,15 +246,17 @@ Report eventsOf(const std::vector<SessionEvent>& events) {
 }
 
 struct Field {
-  engine::Version scan;   // as imported: what max_change is measured against
-  engine::Version start;  // with the marks to start from
+  engine::Version original;  // what max_change is measured against
+  engine::Version start;     // as imported, with the marks to start from
 };
 
-engine::Result<Field> load(const Options& options, engine::JobControl& job) {
+engine::Result<Field> load(const RecordArguments& options, engine::JobControl& job) {
   const ProgressLine progress(job);
   auto imported = loadScan(options.scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  Field field{imported->field, imported->field};
+  auto original = originalOf(*imported, options.original, options.reading, job);
+  if (!original) return tl::unexpected(original.error());
+  Field field{*std::move(original), imported->field};
   if (options.marks.empty()) return field;
   auto marked = engine::importMarks(field.start, options.marks);
   if (!marked) return tl::unexpected(marked.error());
@@ -243,11 +265,13 @@ engine::Result<Field> load(const Options& options, engine::JobControl& job) {
 }
 
 // What was recorded is kept whatever else goes wrong, so it comes first; and nobody can cancel it.
-engine::Status save(const Options& options, const engine::Version& field, haptic::StrokesWriter& strokes) {
+engine::Status save(const RecordArguments& options, const engine::Version& field,
+                    const engine::Version& original, haptic::StrokesWriter& strokes) {
   engine::JobControl job;
   if (engine::Status status = strokes.commit(); !status) return status;
   if (!options.out.empty())
-    if (engine::Status status = saveField(field, options.out, job); !status) return status;
+    if (engine::Status status = saveField(field, options.out, job, beginningWith(original)); !status)
+      return status;
   if (!options.marks_out.empty())
     if (engine::Status status = engine::exportMarks(field, options.marks_out); !status) return status;
   return {};
@@ -257,19 +281,22 @@ std::string hashOf(const engine::Version& field) {
   return fmt::format("{:016x}", engine::contentHash(field));
 }
 
-engine::Result<Report> record(const Options& options, engine::JobControl& job) {
+engine::Result<Report> record(const RecordArguments& options, engine::JobControl& job) {
   haptic::Scene scene = haptic::defaultScene();
   if (!options.scene.empty()) {
     auto loaded = haptic::loadScene(options.scene);
     if (!loaded) return tl::unexpected(loaded.error());
     scene = *std::move(loaded);
   }
+  if (auto status = checkOriginal(options.original, scene.max_change.has_value(), options.out); !status)
+    return tl::unexpected(status.error());
   auto chosen = choose(options, scene);
   if (!chosen) return tl::unexpected(chosen.error());
   if (auto status = checkOutputs({{options.strokes, OutputKind::kText},
                                   {options.out, OutputKind::kField},
                                   {options.marks_out, OutputKind::kMarks}},
-                                 {options.scan, options.scene, options.marks, chosen->file});
+                                 {options.scan, options.scene, options.marks, options.original, chosen->file},
+                                 options.replacing, job);
       !status)
     return tl::unexpected(status.error());
   const auto field = load(options, job);
@@ -282,15 +309,16 @@ engine::Result<Report> record(const Options& options, engine::JobControl& job) {
 
   haptic::Device& device = *chosen->device;
   SessionLog log(*strokes);
-  auto outcome = runLive(field->start, field->scan, scene, device, *settings, log, job);
+  auto outcome = runLive(field->start, field->original, scene, device, *settings, log, job);
   if (!outcome) return tl::unexpected(outcome.error());
-  if (auto status = save(options, outcome->field, *strokes); !status) return tl::unexpected(status.error());
+  if (auto status = save(options, outcome->field, field->original, *strokes); !status)
+    return tl::unexpected(status.error());
 
   // The proof that the recording is the session: the file, read back and replayed, makes the same field.
   engine::JobControl unhurried;
   const auto rows = haptic::readStrokes(options.strokes);
   if (!rows) return tl::unexpected(rows.error());
-  const auto again = haptic::replay(field->start, field->scan, *rows, scene, {}, unhurried);
+  const auto again = haptic::replay(field->start, field->original, *rows, scene, {}, unhurried);
   if (!again) return tl::unexpected(again.error());
   const std::string hash = hashOf(outcome->field);
   const std::string replayed = hashOf(again->field);
@@ -335,10 +363,11 @@ engine::Result<Report> record(const Options& options, engine::JobControl& job) {
                 {"events", eventsOf(outcome->events)}};
 }
 
-constexpr const char* kFooter =
+constexpr const char* kRecordFooter =
     R"(Safety: a device that gives force gives none until the person who holds it presses a, and again after every fault
 (50 ms without input, the device unplugged, the program held up): the force then rises in half a second. Editing
-tools act only while force is given. Zero force is sent on every way out. Keys while it runs:
+tools act only while force is given. Zero force is sent on every way out. A scene that asks for more stiffness or
+damping than the device holds is refused, with the largest that it does hold. Keys while it runs:
   a arm   d disarm   c calibrate: the stylus is held in its home pose   f feel   s smooth   m mark   u unmark   q end
 Ctrl-C ends the session and keeps it. A program that is killed leaves what was recorded up to the last second in
 a temporary file beside STROKES. The same bits: fettle replay SCAN STROKES OUT, with the same --scene and --marks.)";
@@ -346,7 +375,7 @@ a temporary file beside STROKES. The same bits: fettle replay SCAN STROKES OUT, 
 }  // namespace
 
 void addRecord(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RecordArguments>();
   CLI::App* command = addCommand(
       root, chosen, "record", "Touch a scan live with a device, and record the session for replay",
       [options](engine::JobControl& job) { return record(*options, job); }, printReport, Progress::kOwn);
@@ -363,12 +392,12 @@ void addRecord(CLI::App& root, Chosen& chosen) {
   command->add_option("--marks", options->marks, "Picture of marks to start from");
   command->add_option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");
   command->add_option("--tool", options->tool, "feel, smooth, mark or unmark, at the start")
-      ->check(CLI::IsMember({"feel", "smooth", "mark", "unmark"}))
+      ->check(oneOf({"feel", "smooth", "mark", "unmark"}))
       ->capture_default_str();
   command
       ->add_option("--switch", options->tool_switch,
                    "When the tool acts: button, or always in contact for a device without one (W8 boards)")
-      ->check(CLI::IsMember({"button", "always"}))
+      ->check(oneOf({"button", "always"}))
       ->capture_default_str();
   command->add_option("--rate", options->rate_hz, "Ticks a second, 1000 to 10000")
       ->check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
@@ -385,10 +414,12 @@ void addRecord(CLI::App& root, Chosen& chosen) {
       ->add_option("--arm", options->arm,
                    "ask: by the key a; auto: by itself, for devices without force and simulated ones, whose "
                    "default it is")
-      ->check(CLI::IsMember({"ask", "auto"}));
+      ->check(oneOf({"ask", "auto"}));
   command->add_flag("--keys", options->keys, "Take keys from standard input though it is no terminal");
+  addOriginalOption(command, options->original);
+  addForceOption(command, options->replacing);
   addScanOptions(command, options->reading);
-  command->footer(kFooter);
+  command->footer(kRecordFooter);
 }
 
 }  // namespace fettle::app

@@ -6,6 +6,7 @@
 
 #include "app/command.h"
 #include "app/scan_options.h"
+#include "app/streams.h"
 #include "app/terminal.h"
 #include "engine/io/marks.h"
 #include "render/live_picture.h"
@@ -15,7 +16,7 @@ namespace fettle::app {
 
 namespace {
 
-struct Options {
+struct RenderArguments {
   std::string scan;
   std::string png;
   std::string size = "1280x800";
@@ -39,7 +40,7 @@ struct Options {
   ScanOptions reading;
 };
 
-engine::Result<render::PictureSpec> picture(const Options& options, engine::JobControl& job) {
+engine::Result<render::PictureSpec> picture(const RenderArguments& options, engine::JobControl& job) {
   render::PictureSpec spec;
   spec.view = options.view;
   spec.cell_px = kStillCellPx;
@@ -70,7 +71,7 @@ engine::Result<render::PictureSpec> picture(const Options& options, engine::JobC
   if (!scan) return tl::unexpected(scan.error());
   spec.field = scan->field;
   const auto fileName = [](const std::string& path) {
-    return std::filesystem::path(path).filename().string();
+    return std::filesystem::path(shownInput(path)).filename().string();
   };
   spec.title_left = options.title.empty() ? fileName(options.scan) : options.title;
   if (!options.marks.empty()) {
@@ -98,9 +99,14 @@ engine::Result<render::PictureSpec> picture(const Options& options, engine::JobC
   return spec;
 }
 
+engine::Status writePicture(const render::Image& image, const std::string& path, engine::JobControl& job) {
+  return writeTo(path, ".png", job, [&](const std::string& file) { return render::writePng(image, file); });
+}
+
 // A picture for each eye. Drawn as the window draws it: one ray a pixel, every point within a quarter of a
 // pixel.
-engine::Result<Report> renderEyes(const Options& options, const render::PictureSpec& spec) {
+engine::Result<Report> renderEyes(const RenderArguments& options, const render::PictureSpec& spec,
+                                  engine::JobControl& job) {
   render::LiveOptions live;
   if (options.validate) live.validation = render::Validation::kOn;
   const auto picture = render::LivePicture::create(live);
@@ -140,7 +146,7 @@ engine::Result<Report> renderEyes(const Options& options, const render::PictureS
     upload_ms += frame.upload.ms;
   } while (frame.upload.pending_tiles > 0 || frame.residency.pages_loaded > 0);
   for (const std::string& message : (*picture)->validationMessages()) warn("validation: " + message);
-  if (auto status = render::writePng(image, options.png); !status) return tl::unexpected(status.error());
+  if (auto status = writePicture(image, options.png, job); !status) return tl::unexpected(status.error());
   return Report{{"width", image.width},
                 {"height", image.height},
                 {"frame_ms", frame.device_ms},
@@ -155,14 +161,15 @@ engine::Result<Report> renderEyes(const Options& options, const render::PictureS
                 {"stereo", options.stereo}};
 }
 
-engine::Result<Report> render(const Options& options, engine::JobControl& job) {
-  if (auto status = checkOutputs({{options.png, OutputKind::kPicture}},
-                                 {options.scan, options.compare, options.deviation, options.marks});
+engine::Result<Report> render(const RenderArguments& options, engine::JobControl& job) {
+  if (auto status = checkOutputs({{options.png, OutputKind::kPicture, ".png"}},
+                                 {options.scan, options.compare, options.deviation, options.marks},
+                                 Replacing::kNoWork, job);
       !status)
     return tl::unexpected(status.error());
   const auto spec = picture(options, job);
   if (!spec) return tl::unexpected(spec.error());
-  if (options.stereo != "off") return renderEyes(options, *spec);
+  if (options.stereo != "off") return renderEyes(options, *spec, job);
   render::RendererOptions renderer_options;
   if (options.validate) renderer_options.validation = render::Validation::kOn;
   const auto renderer = render::Renderer::create(renderer_options);
@@ -173,7 +180,7 @@ engine::Result<Report> render(const Options& options, engine::JobControl& job) {
   if (job.cancelled()) return engine::cancelled();
   for (const std::string& warning : report->warnings) warn(warning);
   for (const std::string& message : report->validation_messages) warn("validation: " + message);
-  if (auto status = render::writePng(image, options.png); !status) return tl::unexpected(status.error());
+  if (auto status = writePicture(image, options.png, job); !status) return tl::unexpected(status.error());
   return Report{{"width", report->width},
                 {"height", report->height},
                 {"frame_ms", report->frame_ms},
@@ -190,11 +197,11 @@ engine::Result<Report> render(const Options& options, engine::JobControl& job) {
 }  // namespace
 
 void addRender(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RenderArguments>();
   CLI::App* command = addCommand(root, chosen, "render", "Picture of a scan, without a window",
                                  [options](engine::JobControl& job) { return render(*options, job); });
-  command->add_option("SCAN", options->scan, "The scan to draw")->required();
-  command->add_option("PNG", options->png, "The picture to write")->required();
+  command->add_option("SCAN", options->scan, "The scan to draw; - for standard input")->required();
+  command->add_option("PNG", options->png, "The picture to write; - for standard output")->required();
   command->add_option("--size", options->size, "Pixels, WIDTHxHEIGHT")->capture_default_str();
   command
       ->add_option("--azimuth", options->view.azimuth_deg, "Turn of the camera in degrees; 0 looks along +y")
@@ -213,7 +220,7 @@ void addRender(CLI::App& root, Chosen& chosen) {
   command->add_option("--deviation", options->deviation, "Colours show the deviation from this scan");
   command->add_option("--marks", options->marks, "Picture of marks to overlay");
   command->add_option("--map", options->map, "Colour map")
-      ->check(CLI::IsMember({"auto", "viridis", "cividis", "grey", "diverging"}))
+      ->check(oneOf({"auto", "viridis", "cividis", "grey", "diverging"}))
       ->capture_default_str();
   command->add_option("--range", options->range, "Heights at the ends of the colours, LOW,HIGH")
       ->delimiter(',')
@@ -224,7 +231,7 @@ void addRender(CLI::App& root, Chosen& chosen) {
   command
       ->add_option("--stereo", options->stereo,
                    "A picture for each eye: in two halves, or for red - cyan glasses")
-      ->check(CLI::IsMember({"off", "side-by-side", "anaglyph"}))
+      ->check(oneOf({"off", "side-by-side", "anaglyph"}))
       ->capture_default_str();
   command
       ->add_option("--eye-separation", options->eyes.eye_separation,

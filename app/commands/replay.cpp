@@ -1,15 +1,20 @@
 #include <chrono>
+#include <fstream>
 #include <memory>
+#include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "app/command.h"
 #include "app/journal/session_player.h"
+#include "app/live/placement.h"
 #include "app/scan_options.h"
 #include "app/terminal.h"
 #include "app/view/open_document.h"
 #include "engine/io/marks.h"
 #include "engine/session/session.h"
+#include "haptic/loop/haptic_loop.h"
 #include "haptic/replay.h"
 #include "haptic/scene.h"
 #include "haptic/strokes.h"
@@ -18,31 +23,42 @@ namespace fettle::app {
 
 namespace {
 
-struct Options {
+struct ReplayArguments {
   std::string scan;
   std::string strokes;
   std::string out;
+  std::string to;
   std::string scene;
   std::string marks;
   std::string marks_out;
   std::string forces;
+  std::string original;
   bool certify = false;
+  Replacing replacing = Replacing::kNoWork;
   ScanOptions reading;
 };
 
 // The journal of a session, from the scan on.
-engine::Result<Report> replayJournal(const Options& options, engine::JobControl& job) {
-  if (!options.scene.empty() || !options.marks.empty() || !options.forces.empty() || options.certify)
-    return engine::inputError("a session has its own scenes and marks, and its journal no forces",
-                              options.scan, "leave --scene, --marks, --forces and --certify out");
-  if (auto status = checkOutputs({{options.out, OutputKind::kField}, {options.marks_out, OutputKind::kMarks}},
-                                 {options.scan});
+engine::Result<Report> replayJournal(const ReplayArguments& options, engine::JobControl& job) {
+  if (!options.scene.empty() || !options.marks.empty() || !options.forces.empty() || options.certify ||
+      !options.original.empty())
+    return engine::inputError("a session has its own original, scenes and marks, and its journal no forces",
+                              options.scan, "leave --original, --scene, --marks, --forces and --certify out");
+  if (auto status = checkOutputs(
+          {{options.out, OutputKind::kField, options.to}, {options.marks_out, OutputKind::kMarks}},
+          {options.scan}, options.replacing, job);
       !status)
     return tl::unexpected(status.error());
   engine::SessionOpenOptions open;
   open.history_bytes = 0;
   auto session = engine::openSession(options.scan, open, job);
   if (!session) return tl::unexpected(session.error());
+  if (const std::int64_t start = journalStart(*session);
+      start > 0 && (session->history.first() > 1 || session->history.last() < start)) {
+    open.history_bytes = engine::History::kNoBound;
+    session = engine::openSession(options.scan, open, job);
+    if (!session) return tl::unexpected(session.error());
+  }
   if (session->journal.empty() && session->history.number() > 0)
     return engine::inputError("the session has no journal", options.scan,
                               "convert or export its present state instead");
@@ -57,7 +73,8 @@ engine::Result<Report> replayJournal(const Options& options, engine::JobControl&
         fmt::format("the journal came to another field ({:016x}) than the session holds ({:016x})", made,
                     stored),
         options.scan, "the session's state is whole: convert or export it instead");
-  if (auto status = saveField(played->field, options.out, job); !status)
+  if (auto status = saveField(played->field, options.out, job, beginningWith(session->original), options.to);
+      !status)
     return tl::unexpected(status.error());
   if (!options.marks_out.empty())
     if (auto status = engine::exportMarks(played->field, options.marks_out); !status)
@@ -68,20 +85,47 @@ engine::Result<Report> replayJournal(const Options& options, engine::JobControl&
                 {"seconds", took.count()},    {"hash", fmt::format("{:016x}", made)}};
 }
 
-engine::Result<Report> replay(const Options& given, engine::JobControl& job) {
-  Options options = given;
-  // Two names: a session and where its journal's result goes.
-  if (options.out.empty()) std::swap(options.strokes, options.out);
-  if (options.strokes.empty()) {
-    if (!isSessionPath(options.scan))
-      return engine::inputError("a scan needs strokes to be replayed", options.scan,
-                                "give SCAN STROKES OUT, or SESSION OUT for a session's own journal");
-    return replayJournal(options, job);
+// Whether a file begins as a strokes file does.
+bool holdsStrokes(const std::string& path) {
+  constexpr std::string_view kHead = "t,x,y,z,tool";
+  std::string head(kHead.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head == kHead;
+}
+
+// SCAN STROKES OUT, or SESSION OUT: the first of two names decides. Anything less is refused
+// with what is missing.
+engine::Status settleNames(ReplayArguments& options) {
+  constexpr const char* kUsage = "give SCAN STROKES OUT, or SESSION OUT for a session's own journal";
+  if (!options.out.empty()) return {};
+  if (!isSessionPath(options.scan)) {
+    if (!options.strokes.empty() && !holdsStrokes(options.strokes))
+      return engine::inputError("a scan needs strokes to be replayed, and a file for what comes of it",
+                                options.scan, kUsage);
+    return engine::inputError(
+        options.strokes.empty() ? "no strokes are named, and no file to write" : "no file to write is named",
+        "OUT", kUsage);
   }
-  if (auto status = checkOutputs({{options.out, OutputKind::kField},
-                                  {options.marks_out, OutputKind::kMarks},
-                                  {options.forces, OutputKind::kText}},
-                                 {options.scan, options.strokes, options.scene, options.marks});
+  if (options.strokes.empty())
+    return engine::inputError("no file to write is named", "OUT",
+                              "give SESSION OUT, the file's extension names its format");
+  // They would be replaced by the field.
+  if (holdsStrokes(options.strokes))
+    return engine::inputError("these are strokes, and no file to write is named", options.strokes, kUsage);
+  std::swap(options.strokes, options.out);
+  return {};
+}
+
+engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& job) {
+  ReplayArguments options = given;
+  if (auto named = settleNames(options); !named) return tl::unexpected(named.error());
+  if (options.strokes.empty()) return replayJournal(options, job);
+  if (auto status =
+          checkOutputs({{options.out, OutputKind::kField, options.to},
+                        {options.marks_out, OutputKind::kMarks},
+                        {options.forces, OutputKind::kText}},
+                       {options.scan, options.strokes, options.scene, options.marks, options.original},
+                       options.replacing, job);
       !status)
     return tl::unexpected(status.error());
   haptic::Scene scene = haptic::defaultScene();
@@ -90,12 +134,16 @@ engine::Result<Report> replay(const Options& given, engine::JobControl& job) {
     if (!loaded) return tl::unexpected(loaded.error());
     scene = *std::move(loaded);
   }
+  if (auto status = checkOriginal(options.original, scene.max_change.has_value(), options.out); !status)
+    return tl::unexpected(status.error());
   const auto strokes = haptic::readStrokes(options.strokes);
   if (!strokes) return tl::unexpected(strokes.error());
   if (strokes->empty())
     return engine::inputError("the strokes hold no row", options.strokes, "give a recorded session");
   auto imported = loadScan(options.scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
+  const auto original = originalOf(*imported, options.original, options.reading, job);
+  if (!original) return tl::unexpected(original.error());
   engine::Version field = imported->field;
   if (!options.marks.empty()) {
     auto marked = engine::importMarks(field, options.marks);
@@ -106,10 +154,16 @@ engine::Result<Report> replay(const Options& given, engine::JobControl& job) {
   haptic::ReplayOptions replay_options;
   if (!options.forces.empty()) replay_options.record_forces = haptic::RecordForces::kYes;
   if (options.certify) replay_options.measure = haptic::MeasureContact::kYes;
-  const auto result = haptic::replay(field, imported->field, *strokes, scene, replay_options, job);
+  // No device, no force: nothing can buzz, and the bits do not depend on it. Who takes the scene to a device
+  // is refused there, and reads it here first.
+  if (!options.scene.empty())
+    if (const auto problem =
+            problemOnEveryDevice(scene, field.grid(), haptic::HapticLoop::Settings{}.rate_hz))
+      warn(fmt::format("{}: {}", options.scene, withoutForceText(*problem)));
+  const auto result = haptic::replay(field, *original, *strokes, scene, replay_options, job);
   if (!result) return tl::unexpected(result.error());
 
-  if (auto status = saveField(result->field, options.out, job); !status)
+  if (auto status = saveField(result->field, options.out, job, beginningWith(*original), options.to); !status)
     return tl::unexpected(status.error());
   if (!options.marks_out.empty())
     if (auto status = engine::exportMarks(result->field, options.marks_out); !status)
@@ -141,22 +195,23 @@ engine::Result<Report> replay(const Options& given, engine::JobControl& job) {
 }  // namespace
 
 void addReplay(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReplayArguments>();
   CLI::App* command = addCommand(
       root, chosen, "replay",
       "Apply recorded strokes to a scan, or make a session again from its journal: the same bits every time",
       [options](engine::JobControl& job) { return replay(*options, job); });
   command->add_option("SCAN", options->scan, "The scan to touch, or a session: NAME.fettle")->required();
-  command
-      ->add_option(
-          "STROKES", options->strokes,
-          "What to do: CSV with header t,x,y,z,tool, one row a tick; left out for a session's own journal")
-      ->required();
-  command->add_option("OUT", options->out, "The field after it, format by extension");
+  command->add_option(
+      "STROKES", options->strokes,
+      "What to do: CSV with header t,x,y,z,tool, one row a tick; left out for a session's own journal");
+  command->add_option("OUT", options->out, "The field after it, format by extension; - for standard output");
+  addStreamFormat(command, options->to);
   command->add_option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
   command->add_option("--marks", options->marks, "Picture of marks to start from");
   command->add_option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");
   command->add_option("--forces", options->forces, "Write proxy and force of every tick as CSV");
+  addOriginalOption(command, options->original);
+  addForceOption(command, options->replacing);
   command->add_flag(
       "--certify", options->certify,
       "Also count the ticks in which the chosen contact level missed the true closest point (slower)");

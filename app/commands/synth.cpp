@@ -11,28 +11,31 @@ namespace fettle::app {
 
 namespace {
 
-struct Options {
+struct SynthArguments {
   std::string out;
+  std::string to;
   std::string size = "1024x1024";
   std::string truth;
   std::string edges;
   engine::ScannerSpec spec;
+  Replacing replacing = Replacing::kNoWork;
 };
 
-engine::Result<Report> synth(Options options, engine::JobControl& job) {
+engine::Result<Report> synth(SynthArguments options, engine::JobControl& job) {
   const auto size = parseSize(options.size, "--size", kFieldSides);
   if (!size) return tl::unexpected(size.error());
   options.spec.width = size->first;
   options.spec.height = size->second;
-  if (auto status = checkOutputs({{options.out, OutputKind::kField},
+  if (auto status = checkOutputs({{options.out, OutputKind::kField, options.to},
                                   {options.truth, OutputKind::kField},
                                   {options.edges, OutputKind::kMarks}},
-                                 {});
+                                 {}, options.replacing, job);
       !status)
     return tl::unexpected(status.error());
   const auto scan = engine::simulateScan(options.spec, job);
   if (!scan) return tl::unexpected(scan.error());
-  if (auto status = saveField(scan->scan, options.out, job); !status) return tl::unexpected(status.error());
+  if (auto status = saveField(scan->scan, options.out, job, {}, options.to); !status)
+    return tl::unexpected(status.error());
   if (!options.truth.empty())
     if (auto status = saveField(scan->truth, options.truth, job); !status)
       return tl::unexpected(status.error());
@@ -50,15 +53,22 @@ engine::Result<Report> synth(Options options, engine::JobControl& job) {
 }  // namespace
 
 void addSynth(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SynthArguments>();
   CLI::App* command = addCommand(
       root, chosen, "synth", "Simulate a laser scan of a machined part, with its truth and its true edges",
       [options](engine::JobControl& job) { return synth(*options, job); });
   std::string names;
-  for (const engine::PartInfo& part : engine::parts())
+  std::vector<std::string> parts;
+  for (const engine::PartInfo& part : engine::parts()) {
+    parts.emplace_back(part.name);
     names += fmt::format("\n  {}: {}", part.name, part.description);
-  command->add_option("OUT", options->out, "The scan to write, format by extension")->required();
-  command->add_option("--part", options->spec.part, "The part:" + names)->capture_default_str();
+  }
+  command->add_option("OUT", options->out, "The scan to write, format by extension; - for standard output")
+      ->required();
+  addStreamFormat(command, options->to);
+  command->add_option("--part", options->spec.part, "The part:" + names)
+      ->check(oneOf(parts))
+      ->capture_default_str();
   command->add_option("--size", options->size, "Samples, WIDTHxHEIGHT")->capture_default_str();
   command->add_option("--noise", options->spec.noise, "Scale of the scanner's noise; 1 = realistic, 0 = none")
       ->capture_default_str();
@@ -69,6 +79,7 @@ void addSynth(CLI::App& root, Chosen& chosen) {
   command->add_option("--seed", options->spec.seed, "Same seed, same bits")
       ->check(seedProblem)
       ->capture_default_str();
+  addForceOption(command, options->replacing);
   command->add_option("--truth", options->truth, "Also write the true surface");
   command->add_option("--edges", options->edges, "Also write the true edges as a picture, non-zero = edge");
 }

@@ -11,14 +11,14 @@ namespace fettle::app {
 
 namespace {
 
-struct Options {
+struct ViewArguments {
   ViewOptions view;
   std::string scene;
   std::string size = "1280x800";
   bool validate = false;
 };
 
-engine::Result<Report> view(const Options& given, engine::JobControl& job) {
+engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job) {
   ViewOptions options = given.view;
   const auto size = parseSize(given.size, "--size", kPictureSides);
   if (!size) return tl::unexpected(size.error());
@@ -38,7 +38,7 @@ engine::Result<Report> view(const Options& given, engine::JobControl& job) {
   return report;
 }
 
-constexpr const char* kFooter =
+constexpr const char* kViewFooter =
     "F1 in the window lists the keys. Without a device that gives force the mouse is the stylus: choose a "
     "tool\n"
     "(T feel, S smooth, M mark, U unmark), press with the left button, deeper with the wheel.";
@@ -46,7 +46,7 @@ constexpr const char* kFooter =
 }  // namespace
 
 void addView(CLI::App& root, Chosen& chosen) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ViewArguments>();
   CLI::App* command = addCommand(
       root, chosen, "view", "The window: see, feel and clean a scan",
       [options](engine::JobControl& job) { return view(*options, job); }, printReport, Progress::kOwn);
@@ -76,7 +76,7 @@ void addView(CLI::App& root, Chosen& chosen) {
   command->add_flag("--validate", options->validate,
                     "Let the Vulkan validation layers watch; they must be installed");
   addScanOptions(command, options->view.reading);
-  command->footer(kFooter);
+  command->footer(kViewFooter);
 }
 
 }  // namespace fettle::app

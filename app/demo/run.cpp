@@ -39,10 +39,10 @@ std::string sceneText(const DemoOptions& options) {
       std::min(options.passes * (options.window / 2) + 3, 64));
 }
 
-haptic::OperatorSpec operatorSpec(const DemoOptions& options) {
+haptic::OperatorSpec operatorSpec(const DemoOptions& options, const engine::Grid& grid) {
   haptic::OperatorSpec spec;
   spec.seed = options.seed;
-  return spec;
+  return haptic::offTheEdges(spec, grid);
 }
 
 }  // namespace
@@ -76,7 +76,8 @@ engine::Result<DemoRun> runDemo(const DemoOptions& options, engine::JobControl& 
     return tl::unexpected(s.error());
   const auto scene = haptic::loadScene(file("scene.toml"));
   if (!scene) return tl::unexpected(scene.error());
-  const auto strokes = haptic::operatorStrokes(scan->scan, scan->edge_lines, operatorSpec(options));
+  const auto strokes =
+      haptic::operatorStrokes(scan->scan, scan->edge_lines, operatorSpec(options, scan->scan.grid()));
   if (auto s = haptic::writeStrokes(file("strokes.csv"), strokes); !s) return tl::unexpected(s.error());
 
   auto replayed = haptic::replay(scan->scan, scan->scan, strokes, *scene, {}, job);

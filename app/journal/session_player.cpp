@@ -1,5 +1,6 @@
 #include "app/journal/session_player.h"
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <memory>
@@ -36,6 +37,10 @@ class Player final : public haptic::AdoptionPort {
   Player(const engine::Session& session, engine::JobControl& job)
       : journal_(session.journal), original_(session.original), job_(job) {
     states_[0] = original_;
+    const engine::History& stored = session.history;
+    const std::int64_t start = std::min(journalStart(session), stored.last());
+    for (std::int64_t k = std::max(stored.first(), std::int64_t{1}); k <= start; ++k)
+      states_[k] = upright(stored.state(k));
   }
 
   engine::Result<PlayedSession> run() {
@@ -286,6 +291,13 @@ class Player final : public haptic::AdoptionPort {
 };
 
 }  // namespace
+
+std::int64_t journalStart(const engine::Session& session) {
+  if (session.journal.empty()) return 0;
+  const auto first = journalEntry(session.journal.front().action);
+  const auto* begin = first ? std::get_if<journal::Begin>(&*first) : nullptr;
+  return begin != nullptr ? begin->state : 0;
+}
 
 engine::Result<PlayedSession> playSession(const engine::Session& session, engine::JobControl& job) {
   return Player(session, job).run();

@@ -2,21 +2,51 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "haptic/devices/known_devices.h"
 #include "haptic/devices/workspace.h"
 
 namespace fettle::app {
 
-double stiffestScale(const haptic::DeviceProfile& profile, double stiffness_n_per_mm) noexcept {
-  return profile.max_stiffness_n_per_mm / stiffness_n_per_mm;
+namespace {
+
+double reachScale(const haptic::DeviceProfile& profile, const engine::Grid& grid) {
+  const double side = std::min((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
+  return haptic::Workspace::fit(profile, glm::dvec3(0.0), side).scale();
 }
 
-double fittedScale(const haptic::DeviceProfile& profile, const engine::Grid& grid,
-                   double stiffness_n_per_mm) noexcept {
-  const double side = std::min((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
-  const double reach = haptic::Workspace::fit(profile, glm::dvec3(0.0), side).scale();
+}  // namespace
+
+double fittedScale(const haptic::DeviceProfile& profile, const engine::Grid& grid, const haptic::Scene& scene,
+                   double rate_hz) {
+  const double reach = reachScale(profile, grid);
   const double scale =
-      profile.gives_force ? std::min(reach, stiffestScale(profile, stiffness_n_per_mm)) : reach;
+      profile.gives_force ? std::min(reach, haptic::largestStableScale(scene, profile, rate_hz)) : reach;
   return scale > 0.0 ? scale : 1.0;
+}
+
+std::optional<haptic::StabilityProblem> problemOnEveryDevice(const haptic::Scene& scene,
+                                                             const engine::Grid& grid, double rate_hz) {
+  std::optional<haptic::StabilityProblem> best;
+  double held = -1.0;  // of the scene, by the device that holds most of it
+  for (const haptic::KnownDevice& known : haptic::knownDevices()) {
+    const haptic::DeviceProfile profile = *haptic::knownProfile(known.name);
+    const double reach = reachScale(profile, grid);
+    const double scale = reach > 0.0 ? std::min(reach, 1.0) : 1.0;
+    auto problem = haptic::stabilityProblem(scene, profile, rate_hz, scale);
+    if (!problem) return std::nullopt;
+    const double share = haptic::largestStableScale(scene, profile, rate_hz) / scale;
+    if (share <= held) continue;
+    held = share;
+    best = std::move(problem);
+  }
+  return best;
+}
+
+std::string withoutForceText(const haptic::StabilityProblem& problem) {
+  return fmt::format("nothing pushes a hand here, but no known device would hold this scene: {}: {}",
+                     problem.what, problem.remedy);
 }
 
 haptic::SafetyLimits sessionLimits(haptic::DeviceProfile profile) {

@@ -1,19 +1,31 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "engine/field/grid.h"
 #include "haptic/devices/device.h"
+#include "haptic/effects/stability.h"
 #include "haptic/safety/safety_limits.h"
+#include "haptic/scene.h"
 
 namespace fettle::app {
 
-/// Stiffest scale [mm of the field a mm of the hand] at which a spring of `stiffness_n_per_mm` > 0 in the
-/// field is felt no stiffer than the device holds: it is felt as scale times that (haptic::Workspace).
-[[nodiscard]] double stiffestScale(const haptic::DeviceProfile& profile, double stiffness_n_per_mm) noexcept;
-
-/// The scale that brings the smaller side of the field within the device's reach, or the stiffest if that is
-/// less and the device gives force; 1 for a field of one row or column.
+/// The scale [mm of the field a mm of the hand] that brings the smaller side of the field within the device's
+/// reach, or for a device that gives force the largest at which it holds the scene (haptic::stability.h) if
+/// that is less; 1 for a field of one row or column. 1 as well for a device that holds nothing of the scene:
+/// its stabilityProblem says so.
 [[nodiscard]] double fittedScale(const haptic::DeviceProfile& profile, const engine::Grid& grid,
-                                 double stiffness_n_per_mm) noexcept;
+                                 const haptic::Scene& scene, double rate_hz);
+
+/// Without a device that gives force nothing can buzz. What is said of a scene that no device with known
+/// limits (haptic::knownDevices) would hold, felt at 1:1, or larger where the whole field is within reach
+/// then: the largest value on the device that holds most. Nothing when one of them holds it all.
+[[nodiscard]] std::optional<haptic::StabilityProblem> problemOnEveryDevice(const haptic::Scene& scene,
+                                                                           const engine::Grid& grid,
+                                                                           double rate_hz);
+/// The same as one line to warn with.
+[[nodiscard]] std::string withoutForceText(const haptic::StabilityProblem& problem);
 
 /// Limits of a session on this device: none but zero force for one that gives none.
 [[nodiscard]] haptic::SafetyLimits sessionLimits(haptic::DeviceProfile profile);

@@ -6,6 +6,8 @@
 #include <unistd.h>
 #include <glm/geometric.hpp>
 
+#include "app/terminal.h"
+
 namespace fettle::app {
 
 namespace {
@@ -20,7 +22,7 @@ void put(const std::string& text) {
 
 }  // namespace
 
-StatusLine::StatusLine() : terminal_(isatty(STDERR_FILENO) != 0) {}
+StatusLine::StatusLine() : terminal_(!voice().quiet && isatty(STDERR_FILENO) != 0) {}
 
 StatusLine::~StatusLine() {
   wipe();

@@ -36,6 +36,7 @@ engine::Result<Document> openSessionDocument(const std::string& file, std::size_
   }
   document.path = file;
   document.scan = std::move(session.scan);
+  document.needs_scan = session.storage == engine::OriginalStorage::kReferenced;
   document.original = std::move(session.original);
   document.history = std::move(session.history);
   std::vector<engine::Version> dropped;
@@ -96,11 +97,13 @@ engine::Result<Document> openDocument(const std::string& path, const ScanOptions
   }
   const auto import = importOptions(reading);
   if (!import) return tl::unexpected(import.error());
+  // Before the first byte: a file that is replaced while it is read shows, too.
+  const auto stamp = engine::fileStamp(path);
   auto imported = engine::importField(path, *import, job);
   if (!imported) return tl::unexpected(imported.error());
   Document document;
   document.path = path;
-  document.scan = {path, *import, imported->format};
+  document.scan = {path, *import, imported->format, stamp};
   document.original = imported->field;
   document.history = engine::History(imported->field, history_bytes);
   document.warnings = std::move(imported->warnings);

@@ -27,6 +27,7 @@ void removeSession(const std::string& path);
 struct Document {
   std::string path;            ///< as asked for: a scan or NAME.fettle
   engine::OriginalScan scan;   ///< what the work begins with
+  bool needs_scan = true;      ///< a session of it may refer to the scan's file; else it holds the scan
   engine::Version original;    ///< upright
   engine::History history;     ///< upright
   engine::SessionNotes notes;  ///< of a session

@@ -22,6 +22,11 @@ std::string settingsFolder() {
   return error ? std::string() : folder.string();
 }
 
+std::string recentFile() {
+  const std::string folder = settingsFolder();
+  return folder.empty() ? std::string() : folder + "/recent.txt";
+}
+
 RecentFiles::RecentFiles(std::string file) : file_(std::move(file)) {
   std::ifstream in(file_);
   for (std::string line; paths_.size() < kMost && std::getline(in, line);)

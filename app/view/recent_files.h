@@ -9,6 +9,9 @@ namespace fettle::app {
 /// when it is not there. Empty when it cannot be: nothing is remembered then.
 [[nodiscard]] std::string settingsFolder();
 
+/// Where the window keeps the list of files opened last; empty without that folder.
+[[nodiscard]] std::string recentFile();
+
 /// The files opened last, newest first; kept in a text file, a path a line.
 class RecentFiles {
  public:

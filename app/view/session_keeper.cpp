@@ -9,17 +9,19 @@ using engine::OriginalStorage;
 using namespace std::chrono_literals;
 
 constexpr auto kTryAgain = 5s;
+constexpr auto kLookAgain = 1s;
 
 }  // namespace
 
 SessionKeeper::SessionKeeper(Document& document)
-    : scan_(document.scan),
+    : original_scan_(document.scan),
       original_(document.original),
       start_(document.history),
       notes_(document.notes),
       writer_(std::move(document.writer)) {
   if (!isSessionPath(document.path)) recovery_path_ = recoveryPath(document.path);
   named_ = writer_ != nullptr && !document.recovered;
+  if (!document.needs_scan) scan_ = Scan::kEmbedded;
 }
 
 SessionKeeper::~SessionKeeper() {
@@ -88,9 +90,8 @@ void SessionKeeper::make(const Place& place) {
   making_place_ = place;
   tried_ = std::chrono::steady_clock::now();
   engine::Session session;
-  session.scan = scan_;
-  // A scan that is no file of its own (it came out of a session) can only be embedded.
-  session.storage = scan_.path.empty() ? OriginalStorage::kEmbedded : place.storage;
+  session.scan = original_scan_;
+  session.storage = storageFor(place.storage);
   session.original = original_;
   session.history = start_;
   session.notes = notes_;
@@ -126,15 +127,49 @@ void SessionKeeper::move(const Place& place) {
 }
 
 void SessionKeeper::saveAs(const std::string& path, OriginalStorage storage) {
-  if (closed_ || saving_.busy()) return;
-  const Place place{path, scan_.path.empty() ? OriginalStorage::kEmbedded : storage, true};
+  if (closed_ || (saving_.busy() && scan_ != Scan::kBeingPut)) return;
+  const Place place{path, storageFor(storage), true};
   saved_.reset();
-  if (making_.busy())
+  if (making_.busy() || scan_ == Scan::kBeingPut)
     wanted_ = place;
   else if (writer_)
     move(place);
   else
     make(place);
+}
+
+// A scan that is no file of its own (it came out of a session) can only be embedded.
+OriginalStorage SessionKeeper::storageFor(OriginalStorage wanted) const {
+  return original_scan_.path.empty() || scan_ != Scan::kReferenced ? OriginalStorage::kEmbedded : wanted;
+}
+
+bool SessionKeeper::scanReplaced() const {
+  return scan_ == Scan::kReferenced && original_scan_.read &&
+         engine::fileStamp(original_scan_.path) != original_scan_.read;
+}
+
+void SessionKeeper::keepScan() {
+  scan_asked_ = true;
+  scan_kept_.reset();
+  if (scan_ == Scan::kReferenced) scan_ = Scan::kWanted;
+  embedScan();
+}
+
+// As far as that can be done now; poll() comes back to it.
+void SessionKeeper::embedScan() {
+  if (scan_ == Scan::kWanted && !making_.busy() && !saving_.busy() && !wanted_) {
+    if (writer_) {
+      scan_ = Scan::kBeingPut;
+      saving_.start([writer = writer_.get()](engine::JobControl& job) -> engine::Result<bool> {
+        if (auto done = writer->saveAs(writer->path(), OriginalStorage::kEmbedded, job); !done)
+          return tl::unexpected(done.error());
+        return true;
+      });
+    } else {
+      scan_ = Scan::kEmbedded;
+    }
+  }
+  if (scan_ == Scan::kEmbedded && std::exchange(scan_asked_, false)) scan_kept_ = engine::Status{};
 }
 
 std::optional<engine::Status> SessionKeeper::saved() {
@@ -149,19 +184,29 @@ void SessionKeeper::readOlder(const engine::History& history) {
 
 void SessionKeeper::poll() {
   if (closed_) return;
-  if (auto done = making_.take()) {
-    made(std::move(*done));
-    if (auto place = std::exchange(wanted_, std::nullopt)) saveAs(place->path, place->storage);
-  }
+  if (auto done = making_.take()) made(std::move(*done));
   if (auto done = saving_.take()) {
-    if (*done) {
+    if (scan_ == Scan::kBeingPut) {
+      scan_ = *done ? Scan::kEmbedded : Scan::kReferenced;
+      if (!*done) looked_ = std::chrono::steady_clock::now() + kTryAgain;
+      if (!*done && std::exchange(scan_asked_, false)) scan_kept_ = tl::unexpected(done->error());
+    } else if (*done) {
       named_ = true;
       saved_ = engine::Status{};
     } else {
       saved_ = tl::unexpected(done->error());
     }
   }
+  if (wanted_ && !making_.busy() && !saving_.busy()) {
+    const Place place = *std::exchange(wanted_, std::nullopt);
+    saveAs(place.path, place.storage);
+  }
   const auto now = std::chrono::steady_clock::now();
+  if (now - looked_ >= kLookAgain) {
+    looked_ = now;
+    if (scanReplaced()) scan_ = Scan::kWanted;
+  }
+  embedScan();
   if (now - tried_ < kTryAgain) return;
   if (writer_ && writer_->status().error) {
     tried_ = now;
@@ -206,6 +251,9 @@ engine::Status SessionKeeper::close(Afterwards afterwards) {
   }
   if (!writer_) return waiting_.empty() || !failed_ ? engine::Status{} : tl::unexpected(*failed_);
   engine::JobControl job;
+  // What fails here is no worse than it was; the steps are written all the same.
+  if (scan_ == Scan::kWanted || scanReplaced())
+    static_cast<void>(writer_->saveAs(writer_->path(), OriginalStorage::kEmbedded, job));
   engine::Status status = writer_->close(job);
   writer_.reset();
   return status;

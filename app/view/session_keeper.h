@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/journal/session_sink.h"
@@ -19,7 +20,9 @@ namespace fettle::app {
 ///
 ///   steps, undo, journal ----> [waits while the file is made, on a thread of its own] ----> SessionWriter
 ///
-/// Nothing is made for a scan that is only looked at.
+/// Nothing is made for a scan that is only looked at. A session that refers to the scan's file gets the scan
+/// itself before the window replaces that file (keepScan), and as soon as it shows, within a second, that
+/// another program has.
 ///
 /// Threading: main; the disk is only waited for on threads of its own, close() excepted.
 class SessionKeeper final : public SessionSink {
@@ -43,11 +46,19 @@ class SessionKeeper final : public SessionSink {
   /// Puts the session at a path of the user's, whole or not at all, and goes on there; a recovery is removed.
   /// The end shows in saved().
   void saveAs(const std::string& path, engine::OriginalStorage storage);
-  [[nodiscard]] bool saving() const noexcept { return saving_.busy(); }
+  [[nodiscard]] bool saving() const noexcept { return saving_.busy() || scan_ == Scan::kWanted; }
   [[nodiscard]] double progress() const noexcept { return saving_.progress(); }
   void cancelSaving() noexcept { saving_.cancel(); }
   /// How saveAs() ended, once.
   [[nodiscard]] std::optional<engine::Status> saved();
+
+  /// Makes the work independent of the scan's file, which is about to be replaced: the session gets the scan,
+  /// and one that is made later has it from the start. The end shows in scanKept().
+  void keepScan();
+  /// How keepScan() ended, once. After an error the session refers to the file as before.
+  [[nodiscard]] std::optional<engine::Status> scanKept() { return std::exchange(scan_kept_, std::nullopt); }
+  /// The file of the scan that the work began with; empty where it has none.
+  [[nodiscard]] const std::string& scanPath() const noexcept { return original_scan_.path; }
 
   /// Reads the step before the oldest that the history holds, from the file; the end shows in older().
   void readOlder(const engine::History& history);
@@ -94,8 +105,19 @@ class SessionKeeper final : public SessionSink {
   void make(const Place& place);
   void made(engine::Result<Writer> result);
   void move(const Place& place);
+  void embedScan();
+  [[nodiscard]] bool scanReplaced() const;
+  [[nodiscard]] engine::OriginalStorage storageFor(engine::OriginalStorage wanted) const;
 
-  engine::OriginalScan scan_;
+  // What becomes of the scan in a session that refers to its file.
+  enum class Scan : std::uint8_t {
+    kReferenced,
+    kWanted,    // to be put in as soon as nothing else is done with the session
+    kBeingPut,  // by saving_
+    kEmbedded,  // in the session there is, and in each that will be made
+  };
+
+  engine::OriginalScan original_scan_;
   engine::Version original_;
   engine::History start_;
   engine::SessionNotes notes_;
@@ -111,6 +133,10 @@ class SessionKeeper final : public SessionSink {
   Place making_place_, moving_place_;
   std::optional<Place> wanted_;  // asked for while the file is being made
   std::optional<engine::Status> saved_;
+  Scan scan_ = Scan::kReferenced;
+  bool scan_asked_ = false;  // by keepScan()
+  std::optional<engine::Status> scan_kept_;
+  std::chrono::steady_clock::time_point looked_{};  // at the scan's file
   Background<Writer> making_;
   Background<bool> saving_;
   Background<engine::Step> reading_;

@@ -189,9 +189,16 @@ engine::Status Touch::startLoop() {
     const glm::dvec3 middle{
         0.5 * (grid.width - 1) * grid.spacingXMm(), 0.5 * (grid.height - 1) * grid.spacingYMm(),
         field_.reader().bounds().empty() ? 0.0 : field_.reader().bounds().max * grid.height_unit.mm};
-    const double scale = fittedScale(profile, grid, scene_.stiffness_n_per_mm);
-    settings.options.workspace = haptic::Workspace(scale, middle);
-    scale_at_start_ = scale;
+    scale_at_start_ = fittedScale(profile, grid, scene_, options_.rate_hz);
+    settings.options.workspace = haptic::Workspace(scale_at_start_, middle);
+  }
+  if (const auto problem = stabilityProblem(scene_)) {
+    haptic::Scene lowered = haptic::stableScene(scene_, profile, options_.rate_hz, scale_at_start_);
+    // A device that holds nothing at all has no such scene.
+    if (!options_.lower_scene || stabilityProblem(lowered))
+      return engine::inputError(problem->what, "scene", problem->remedy);
+    scene_ = std::move(lowered);
+    notices_.push_back({problem->what, "lowered to " + problem->remedy});
   }
   auto loop = haptic::HapticLoop::create(committed_, original_, scene_, *device_, settings);
   if (!loop) return tl::unexpected(loop.error());
@@ -210,6 +217,8 @@ engine::Status Touch::setRate(double rate_hz) {
   if (!loop_ || finished_ || rate_hz == options_.rate_hz) return {};
   if (!(rate_hz >= haptic::Pacer::kLowestRate_hz && rate_hz <= haptic::Pacer::kHighestRate_hz))
     return engine::inputError("a loop runs at 1000 to 10000 ticks a second", "rate");
+  if (const auto problem = stabilityProblem(scene_, rate_hz))
+    return engine::inputError(problem->what, "rate", "first take " + problem->remedy);
   const bool disarmed = disarmed_;
   if (mouse_ != nullptr) {
     mouse_->release();
@@ -441,7 +450,28 @@ void Touch::setTool(Tool tool) {
   send(std::move(command));
 }
 
-void Touch::setScene(const haptic::Scene& scene) {
+std::optional<haptic::StabilityProblem> Touch::stabilityProblem(const haptic::Scene& scene,
+                                                                double rate_hz) const {
+  const haptic::DeviceProfile& profile = device_->profile();
+  if (!profile.gives_force) return std::nullopt;
+  return haptic::stabilityProblem(scene, profile, rate_hz, scale_at_start_);
+}
+
+std::optional<haptic::StabilityProblem> Touch::stabilityProblem(const haptic::Scene& scene) const {
+  return stabilityProblem(scene, options_.rate_hz);
+}
+
+std::optional<double> Touch::largestStiffness() const {
+  const haptic::DeviceProfile& profile = device_->profile();
+  if (!profile.gives_force) return std::nullopt;
+  return haptic::largestStiffness(scene_, profile, options_.rate_hz, scale_at_start_);
+}
+
+engine::Status Touch::setScene(const haptic::Scene& scene) {
+  // First, as its largest value is the smaller one.
+  if (const auto problem = stabilityProblem(scene))
+    return engine::inputError(problem->what, "scene", problem->remedy);
+  if (const auto problem = haptic::sceneProblem(scene)) return engine::inputError(*problem, "scene");
   scene_ = scene;
   LoopCommand command;
   command.kind = CommandKind::kScene;
@@ -449,6 +479,7 @@ void Touch::setScene(const haptic::Scene& scene) {
   command.scene = std::make_unique<haptic::PreparedScene>(scene_, original_);
   if (sink_ != nullptr) scenes_.emplace_back(command.id, scene_);
   send(std::move(command));
+  return {};
 }
 
 void Touch::restore(const engine::Version& version) {

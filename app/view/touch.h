@@ -15,6 +15,7 @@
 #include "engine/history/history.h"
 #include "haptic/devices/device.h"
 #include "haptic/devices/mouse_stylus.h"
+#include "haptic/effects/stability.h"
 #include "haptic/loop/adopt_filtered.h"
 #include "haptic/loop/haptic_loop.h"
 #include "haptic/loop/timing.h"
@@ -27,6 +28,9 @@ struct TouchOptions {
   double rate_hz = 1000.0;
   /// Spring and depth of the mouse follow the field's spacing; off when a scene file says the spring.
   bool fit_spring = true;
+  /// What the device does not hold of the scene it begins with (haptic::stabilityProblem) is lowered to the
+  /// largest it holds, with a notice; without it such a scene is refused.
+  bool lower_scene = false;
 };
 
 /// Something the user should read.
@@ -51,7 +55,8 @@ struct Notice {
 class Touch final : public haptic::AdoptionPort {
  public:
   /// Opens and starts the device and the loop. `history` and `original` the right way up. `sink` outlives
-  /// this; null: nothing is recorded. Errors: those of openDevice, HapticLoop::create and start.
+  /// this; null: nothing is recorded. Errors: those of openDevice, HapticLoop::create and start; a scene that
+  /// the device does not hold, as in setScene().
   [[nodiscard]] static engine::Result<std::unique_ptr<Touch>> start(engine::History history,
                                                                     const engine::Version& original,
                                                                     const haptic::Scene& scene,
@@ -83,8 +88,15 @@ class Touch final : public haptic::AdoptionPort {
 
   void setTool(haptic::Tool tool);
   [[nodiscard]] haptic::Tool tool() const noexcept { return tool_; }
-  /// Takes a scene in range (sceneProblem); it is felt from the next tick or two on.
-  void setScene(const haptic::Scene& scene);
+  /// Takes a scene; it is felt from the next tick or two on. Errors (kInput), which change nothing: out of
+  /// range (sceneProblem), or more than a device that gives force holds at this rate
+  /// (haptic::stabilityProblem): what it says names the largest value that it does hold.
+  [[nodiscard]] engine::Status setScene(const haptic::Scene& scene);
+  /// What of a scene the device would not hold; nothing for one that gives no force.
+  [[nodiscard]] std::optional<haptic::StabilityProblem> stabilityProblem(const haptic::Scene& scene) const;
+  /// Largest stiffness [N/mm] that the device holds beside the rest of the scene; none when it gives no
+  /// force.
+  [[nodiscard]] std::optional<double> largestStiffness() const;
   /// What is done after an undo takes the place of the steps undone.
   void undo();
   void redo();
@@ -130,7 +142,8 @@ class Touch final : public haptic::AdoptionPort {
   /// gives force. A device that pushes is to be armed again; who had disarmed stays disarmed. Figures of the
   /// timing begin anew, and so does the way of a simulated hand. A filter under way is cancelled, and results
   /// computed before are not to be brought in afterwards: the journal has forgotten their base.
-  /// Errors: a rate out of range; those of start(), after which it runs at the old rate, or is finished().
+  /// Errors: a rate out of range, or one at which the device does not hold the scene, and nothing has
+  /// happened; those of start(), after which it runs at the old rate, or is finished().
   [[nodiscard]] engine::Status setRate(double rate_hz);
   [[nodiscard]] bool finished() const noexcept { return finished_; }
   /// Ticks a second, over the last second or so.
@@ -162,6 +175,8 @@ class Touch final : public haptic::AdoptionPort {
   [[nodiscard]] engine::Status startLoop();
   [[nodiscard]] engine::Status restartLoop();
   [[nodiscard]] bool armsItself() const;
+  [[nodiscard]] std::optional<haptic::StabilityProblem> stabilityProblem(const haptic::Scene& scene,
+                                                                         double rate_hz) const;
   void takeRecords();
   void take(haptic::LoopEvent&& event);
   void journalAnswer(const haptic::LoopEvent& event);
@@ -209,7 +224,7 @@ class Touch final : public haptic::AdoptionPort {
   std::unique_ptr<Mailbox> mailbox_;
   std::vector<Notice> notices_;
   haptic::LoopState seen_;
-  double scale_at_start_ = 1.0;
+  double scale_at_start_ = 1.0;  // the largest there is: see setView()
   double view_azimuth_deg_ = 0.0, view_zoom_ = 1.0;
 
   std::optional<std::int64_t> unshown_ns_;

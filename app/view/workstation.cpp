@@ -22,10 +22,6 @@ std::string layoutFile() {
   const std::string folder = settingsFolder();
   return folder.empty() ? std::string() : folder + "/layout.ini";
 }
-std::string recentFile() {
-  const std::string folder = settingsFolder();
-  return folder.empty() ? std::string() : folder + "/recent.txt";
-}
 std::string settingsFile() {
   const std::string folder = settingsFolder();
   return folder.empty() ? std::string() : folder + "/window.json";
@@ -91,7 +87,7 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
 }
 
 bool Workstation::active() const {
-  return stale_ || camera_motion_.owesSharp() || stylus_held_ || drag_ != Drag::kNone ||
+  return stale_ || !input_.empty() || camera_motion_.owesSharp() || stylus_held_ || drag_ != Drag::kNone ||
          figures_.upload.pending_tiles > 0;
 }
 
@@ -114,7 +110,6 @@ void Workstation::goRound() {
                        (touch_ && refinement_.owed());
   window_->poll(active() ? 0.0 : working ? kBusy_s : kIdle_s);
   whileWaiting();
-  countHands();
   handleInput();
   for (const std::string& path : window_->takeDrops()) {
     ++hands_.drops;
@@ -204,6 +199,7 @@ void Workstation::frame() {
   const bool announces = announcesPicture();
   if (touch_ && !announces) drawPicture();
   if (!touch_ && coarse_) drawCoarse();
+  if (!touch_ && !coarse_) stale_ = false;  // there is no picture to make
   const auto shown = window_->present();
   if (!shown) {
     losePicture(shown.error());
@@ -313,10 +309,15 @@ void Workstation::drawPicture() {
 
   render::Shown shown;
   shown.versions.push_back(edges_.over(touch_->field()));
+  // All of one sign: the loop inverts the field some ticks after the scene was changed, and a preview may
+  // have been computed before that.
+  const float sign = shown.versions.front().reader().sign();
+  const auto likeField = [sign](const engine::Version& v) {
+    return v.reader().sign() == sign ? v : v.inverted();
+  };
   const std::vector<FilterPreview::Picture> pictures = filters_.pictures();
-  for (const FilterPreview::Picture& picture : pictures) shown.versions.push_back(picture.field);
-  if (display_.deviation)
-    shown.original = touch_->scene().invert ? touch_->original().inverted() : touch_->original();
+  for (const FilterPreview::Picture& picture : pictures) shown.versions.push_back(likeField(picture.field));
+  if (display_.deviation) shown.original = likeField(touch_->original());
   shown.marks = display_.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
   if (edges_.suggestion() != nullptr) shown.accepted = touch_->field();
   const bool same = shown.versions == shown_.versions && shown.original == shown_.original &&
@@ -332,11 +333,12 @@ void Workstation::drawPicture() {
   }
   const render::Sharpness sharpness = seeMotion();
   const auto now = Refinement::Clock::now();
+  if (sharpness == render::Sharpness::kHalf) refinement_.restart(now);  // the view moves
   if (!stale_ && figures_.upload.pending_tiles == 0 && !refinement_.due(now)) return;
   stale_ = false;
 
   render::FrameInput input = frameInput(sharpness);
-  input.vertex_budget = refinement_.vertices(input.vertex_budget, now);
+  input.panel_vertices = refinement_.vertices(input.vertex_budget, shown_.versions.size(), now);
   if (shown_.versions.size() > 1) {
     input.titles.emplace_back("as it is");
     for (const FilterPreview::Picture& picture : pictures) input.titles.push_back(picture.title);
@@ -367,7 +369,11 @@ void Workstation::drawPicture() {
   }
   drawn_state_ = state;
   if (!submit(input)) return;
-  refinement_.drawn(figures_.redrawn == 1.0, figures_.upload.pending_tiles > 0, Refinement::Clock::now());
+  refinement_.drawn({.whole = figures_.redrawn == 1.0,
+                     .continued = figures_.continued,
+                     .tiles_coming = figures_.upload.pending_tiles > figures_.residency.pages_waiting,
+                     .pages_coming = figures_.residency.pages_waiting > 0},
+                    Refinement::Clock::now());
   force_plot_.push_back(static_cast<float>(glm::length(state.force_n)));
   if (force_plot_.size() > kPlot) force_plot_.erase(force_plot_.begin());
   touch_->setView(view_.azimuth_deg, view_.zoom);

@@ -20,8 +20,10 @@
 #include "app/view/mark_edit.h"
 #include "app/view/navigation.h"
 #include "app/view/open_document.h"
+#include "app/view/questions.h"
 #include "app/view/recent_files.h"
 #include "app/view/refinement.h"
+#include "app/view/replaced_files.h"
 #include "app/view/session_keeper.h"
 #include "app/view/settings.h"
 #include "app/view/shortcuts.h"
@@ -58,21 +60,14 @@ class Workstation {
   [[nodiscard]] engine::Result<Report> run(engine::JobControl& job);
 
  private:
-  enum class Dialog : std::uint8_t {
-    kNone,
-    kOpen,
-    kSaveAs,
-    kExport,
-    kUnsaved,
-    kRecover,
-    kShortcuts,
-    kMessage
-  };
   enum class Adjusting : std::uint8_t { kNothing, kRadius, kDepth };
-  // What the user was about to do when unsaved work stood in the way.
-  enum class AfterSaving : std::uint8_t { kNothing, kQuit, kOpen };
   // Whether what is written is where the work lives from then on, or a copy of it for others.
   enum class Keeping : std::uint8_t { kWorkThere, kCopy };
+  // Whether a path comes from a dialog that one can go back to.
+  enum class Typed : std::uint8_t { kNo, kYes };
+  [[nodiscard]] static Keeping keepingOf(Question::Kind kind) {
+    return kind == Question::Kind::kSaveAs ? Keeping::kWorkThere : Keeping::kCopy;
+  }
 
   explicit Workstation(const ViewOptions& options);
 
@@ -107,7 +102,7 @@ class Workstation {
   // workstation_told.cpp: what --events tells
   [[nodiscard]] bool announcesPicture() const;
   void noteOpening();
-  void countHands();
+  void countHand(const render::InputEvent& event);
   [[nodiscard]] Report told() const;
   void tell();
 
@@ -118,19 +113,25 @@ class Workstation {
   void disarmAtOnce(const render::InputEvent& event);
   void handleKey(const render::InputEvent& event);
   bool handleAdjusting(const render::InputEvent& event);
+  void setAdjusted(double value);
+  void leaveAdjusting();
+  void letGo();
   void act(Action action);
   bool moveCamera(Action action, const engine::Grid& grid);
   void chooseTool(std::optional<haptic::Tool> tool);
   void setBrushRadius(double samples);
   void setPressDepth(double mm);
   void setRate(double hz);
+  /// What cannot be, or what the device does not hold, is said in a notice and not done.
+  void takeScene(const haptic::Scene& scene);
+  /// A notice when no known device would hold the scene; where one is there, it is its own word that counts.
+  void noteWithoutForce(const haptic::Scene& scene);
   // Memory that undo may take; older steps are read back from the session when they are wanted.
   static constexpr std::size_t kHistoryBytes = std::size_t{1} << 30;
   // Text of the picture's furniture over that of a picture [render::layOut], at scale 1 of the display: 13
   // pixels, a little smaller than that of the panels.
   static constexpr double kFurniture = 0.87;
   [[nodiscard]] haptic::Tool toolFor(const render::Modifiers& modifiers) const;
-  [[nodiscard]] bool takeDialogKey(render::Key key);
   [[nodiscard]] bool inPicture(double x, double y) const;
   [[nodiscard]] std::optional<render::Picked> pick(double x, double y) const;
   [[nodiscard]] Drag dragOf(const render::InputEvent& event) const;
@@ -152,22 +153,32 @@ class Workstation {
   void takeDocument(Document document);
   void closeDocument(SessionKeeper::Afterwards afterwards);
   void lookAfterSession();
-  void save();
-  void startSaving(const std::string& path, Keeping keeping);
+  void save(Afterwards afterwards);
+  void askToWrite(Question from, Typed typed);
+  void startSaving(const std::string& path, Keeping keeping, Afterwards afterwards);
+  void write(const std::string& path, Keeping keeping);
+  [[nodiscard]] std::vector<std::string> outputsOf(const std::string& path, Keeping keeping) const;
   void takeSaved();
   void undo();
   void askToQuit();
   void leave();
-  void goOn();  // with what waited for saving
+  void goOn(const Afterwards& afterwards);
   [[nodiscard]] bool unsaved() const;
   /// How the work is kept, for the status bar.
   [[nodiscard]] std::string sessionText() const;
   [[nodiscard]] std::string suggestedPath(const char* ending) const;
 
   // workstation_dialogs.cpp
-  void dialogs();
-  void pathDialog(const char* title, const char* button);
+  void ask(Question question);
   void message(std::string what, std::string remedy);
+  void leavePanels();
+  void dialogs();
+  void pathDialog(Question& question);
+  void unsavedDialog(Question& question);
+  void recoverDialog(const Question& question);
+  void shortcutsDialog();
+  void messageDialog(const Question& question);
+  void replaceDialog(const Question& question);
 
   // panels/
   void panels();
@@ -218,7 +229,10 @@ class Workstation {
   Background<engine::Version> saving_;
   Background<engine::Deviation> measuring_;
   Keeping keeping_ = Keeping::kCopy;
-  bool embeds_ = true;  // the scan goes into a session saved as
+  Afterwards after_saving_;                     // of what is being saved
+  std::vector<std::string> writing_, written_;  // all files of what is being written, of save_path_
+  bool write_after_scan_ = false;               // saving_path_ waits until the session holds the scan
+  bool embeds_ = true;                          // the scan goes into a session saved as
   std::chrono::steady_clock::time_point noted_;
   bool keeping_fails_ = false;  // and the user was told
   engine::Version measured_;    // what measuring_ works on, or deviation_ is of
@@ -264,8 +278,6 @@ class Workstation {
   struct Hands {
     std::uint64_t keys = 0, buttons = 0, wheels = 0, drops = 0;
   } hands_;
-  Dialog told_dialog_ = Dialog::kNone;
-  std::uint64_t told_dialog_since_ = 0;  // frame
 
   // Marks drawn at once, and what the work changed so far.
   MarkEdit mark_edit_;
@@ -290,15 +302,8 @@ class Workstation {
   std::optional<haptic::Tool> turned_tool_;  // chosen, while Ctrl turned it into its opposite
 
   // Panels.
-  Dialog dialog_ = Dialog::kNone;
-  bool dialog_fresh_ = false;
-  std::uint64_t dialog_frame_ = 0;  // the last one with a dialog
-  std::string dialog_path_;
-  render::Key dialog_key_ = render::Key::kNone;  // pressed since the last frame
-  Notice message_;
-  AfterSaving after_saving_ = AfterSaving::kNothing;
-  std::string open_next_;
-  bool stop_asking_ = false;  // ticked in the question at quitting
+  Questions questions_;
+  std::uint64_t question_frame_ = 0;  // the last one with a dialog
   bool side_panel_ = true;
   float side_width_ = 0.0F;
   bool enter_panels_ = false;  // the keyboard goes to the panels with the next frame

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/live/placement.h"
+
 namespace fettle::app {
 namespace {
 
@@ -51,6 +53,17 @@ void Workstation::chooseTool(std::optional<Tool> tool) {
   }
 }
 
+void Workstation::takeScene(const haptic::Scene& scene) {
+  const engine::Status taken = touch_->setScene(scene);
+  if (!taken) notices_.push_back({taken.error().what, taken.error().remedy});
+}
+
+void Workstation::noteWithoutForce(const haptic::Scene& scene) {
+  if (touch_->device().profile().gives_force) return;
+  if (const auto problem = problemOnEveryDevice(scene, touch_->field().grid(), touch_->rate()))
+    notices_.push_back({withoutForceText(*problem), ""});
+}
+
 void Workstation::setBrushRadius(double samples) {
   if (!touch_ || !std::isfinite(samples)) return;
   haptic::Scene scene = touch_->scene();
@@ -59,7 +72,7 @@ void Workstation::setBrushRadius(double samples) {
   double& wanted = marking ? scene.mark_radius_samples : scene.brush_radius_samples;
   if (wanted == radius) return;
   wanted = radius;
-  touch_->setScene(scene);
+  takeScene(scene);
 }
 
 void Workstation::setPressDepth(double depth_mm) {
@@ -155,9 +168,7 @@ void Workstation::act(Action action) {
   // What needs no field.
   switch (action) {
     case Action::kOpen:
-      dialog_ = Dialog::kOpen;
-      dialog_fresh_ = true;
-      dialog_path_ = path_;
+      ask({.kind = Question::Kind::kOpen, .path = path_});
       return;
     case Action::kQuit:
       // Without the question nothing is lost either: it is there when the scan is opened again.
@@ -181,8 +192,7 @@ void Workstation::act(Action action) {
       window_->enterPanels();
       return;
     case Action::kShortcuts:
-      dialog_ = Dialog::kShortcuts;
-      dialog_fresh_ = true;
+      ask({.kind = Question::Kind::kShortcuts});
       return;
     case Action::kSidePanel:
       side_panel_ = !side_panel_;
@@ -197,13 +207,13 @@ void Workstation::act(Action action) {
   const double radius = marking ? touch_->scene().mark_radius_samples : touch_->scene().brush_radius_samples;
   switch (action) {
     case Action::kSave:
-      save();
+      save({});
       break;
     case Action::kSaveAs:
+      ask({.kind = Question::Kind::kSaveAs, .path = suggestedPath(".fettle")});
+      break;
     case Action::kExport:
-      dialog_ = action == Action::kSaveAs ? Dialog::kSaveAs : Dialog::kExport;
-      dialog_fresh_ = true;
-      dialog_path_ = suggestedPath(action == Action::kSaveAs ? ".fettle" : "_fettled.tif");
+      ask({.kind = Question::Kind::kExport, .path = suggestedPath("_fettled.tif")});
       break;
     case Action::kUndo:
       undo();
@@ -252,7 +262,7 @@ void Workstation::act(Action action) {
       haptic::Scene scene = touch_->scene();
       scene.invert = !scene.invert;
       filters_.cancel(*touch_);
-      touch_->setScene(scene);
+      takeScene(scene);
       break;
     }
     case Action::kShowMarks:
@@ -281,7 +291,7 @@ void Workstation::act(Action action) {
       haptic::Scene scene = touch_->scene();
       if (scene.max_change) most_change_ = *scene.max_change;
       scene.max_change = scene.max_change ? std::nullopt : std::optional(most_change_);
-      touch_->setScene(scene);
+      takeScene(scene);
       break;
     }
     case Action::kFilterNext:

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "app/session_guard.h"
 #include "app/terminal.h"
 #include "app/view/workstation.h"
 #include "engine/io/export.h"
@@ -88,18 +89,9 @@ std::string Workstation::suggestedPath(const char* ending) const {
   return (scan.parent_path() / (scan.stem().string() + ending)).string();
 }
 
-void Workstation::message(std::string what, std::string remedy) {
-  message_ = {std::move(what), std::move(remedy)};
-  dialog_ = Dialog::kMessage;
-  dialog_fresh_ = true;
-}
-
 void Workstation::askToOpen(const std::string& path) {
   if (unsaved()) {
-    open_next_ = path;
-    after_saving_ = AfterSaving::kOpen;
-    dialog_ = Dialog::kUnsaved;
-    dialog_fresh_ = true;
+    ask({.kind = Question::Kind::kUnsaved, .afterwards = {Afterwards::What::kOpen, path}});
   } else {
     open(path);
   }
@@ -110,16 +102,13 @@ void Workstation::askToQuit() {
     leave();
     return;
   }
-  after_saving_ = AfterSaving::kQuit;
-  stop_asking_ = false;
-  dialog_ = Dialog::kUnsaved;
-  dialog_fresh_ = true;
+  ask({.kind = Question::Kind::kUnsaved, .afterwards = {Afterwards::What::kQuit, ""}});
 }
 
-void Workstation::goOn() {
-  const AfterSaving what = std::exchange(after_saving_, AfterSaving::kNothing);
-  if (what == AfterSaving::kQuit) leave();
-  if (what == AfterSaving::kOpen) open(open_next_);
+// With what waited for an answer, or for saving.
+void Workstation::goOn(const Afterwards& afterwards) {
+  if (afterwards.what == Afterwards::What::kQuit) leave();
+  if (afterwards.what == Afterwards::What::kOpen) open(afterwards.path);
 }
 
 void Workstation::open(const std::string& path) {
@@ -127,9 +116,7 @@ void Workstation::open(const std::string& path) {
   const std::string recovery = isSessionPath(path) ? std::string() : recoveryPath(path);
   const bool own = keeper_ && keeper_->path() == recovery;
   if (!recovery.empty() && !own && fs::exists(recovery, error)) {
-    open_next_ = path;
-    dialog_ = Dialog::kRecover;
-    dialog_fresh_ = true;
+    ask({.kind = Question::Kind::kRecover, .path = path});
     return;
   }
   load(path, Recovery::kLeave);
@@ -156,6 +143,8 @@ void Workstation::takeDocument(Document document) {
     if (const auto kept = haptic::parseScene(noted->second, "the session's scene")) {
       scene = *kept;
       options.fit_spring = false;
+      // It may have been worked on with another device, and opens with this one all the same.
+      options.lower_scene = true;
     }
   } else if (!options_.scene) {
     // Wider than the seed's one sample: what a person sees under a brush.
@@ -195,6 +184,7 @@ void Workstation::takeDocument(Document document) {
   chooseTool(std::nullopt);
   recent_.add(path_);
   for (const std::string& warning : document.warnings) notices_.push_back({warning, ""});
+  if (options_.scene) noteWithoutForce(touch_->scene());
   if (document.recovered)
     notices_.push_back({fmt::format("{} steps that were not saved are here again", history.number()), ""});
   status_text_ = fmt::format("{}: {} x {} samples, {:.4g} x {:.4g} {}", nameOf(path_), grid.width,
@@ -205,8 +195,11 @@ void Workstation::takeDocument(Document document) {
 
 void Workstation::closeDocument(SessionKeeper::Afterwards afterwards) {
   if (!touch_) return;
+  letGo();
+  questions_.forgetField();
   filters_.cancel(*touch_);
   measuring_.cancel();
+  write_after_scan_ = false;
   costs_.forget();
   // A stroke that runs is a step yet.
   touch_->finish();
@@ -223,11 +216,11 @@ void Workstation::leave() {
 // Says once that the work cannot be kept, with the way out; texts that a session is opened with again.
 void Workstation::lookAfterSession() {
   const auto error = keeper_ ? keeper_->error() : std::nullopt;
-  if (error && !keeping_fails_ && dialog_ == Dialog::kNone)
+  if (error && !keeping_fails_)
     message(fmt::format("The work cannot be kept: {}", error->line()),
             "Nothing is lost while the program runs, and it tries again by itself. Save somewhere else: "
             "Ctrl+Shift+S.");
-  if (!error || dialog_ == Dialog::kMessage) keeping_fails_ = error.has_value();
+  keeping_fails_ = error.has_value();
   const auto now = std::chrono::steady_clock::now();
   if (!touch_ || now - noted_ < kNoteEvery) return;
   noted_ = now;
@@ -235,49 +228,117 @@ void Workstation::lookAfterSession() {
   keeper_->setNote("scene", haptic::sceneText(touch_->scene()));
 }
 
-void Workstation::save() {
+void Workstation::save(Afterwards afterwards) {
   if (keeper_->named()) {
-    startSaving(keeper_->path(), Keeping::kWorkThere);
+    startSaving(keeper_->path(), Keeping::kWorkThere, std::move(afterwards));
   } else if (!save_path_.empty()) {
-    startSaving(save_path_, Keeping::kWorkThere);
+    // Written there before; but marks, when there were none then, may come upon a file of another's.
+    std::vector<std::string> outputs = outputsOf(save_path_, Keeping::kWorkThere);
+    std::erase_if(outputs, [&](const std::string& path) { return std::ranges::count(written_, path) > 0; });
+    if (replacedFiles(outputs, {}).texts.empty())
+      startSaving(save_path_, Keeping::kWorkThere, std::move(afterwards));
+    else
+      askToWrite({.kind = Question::Kind::kSaveAs, .path = save_path_, .afterwards = std::move(afterwards)},
+                 Typed::kNo);
   } else {
     // Never over the scan itself without being told so.
-    dialog_ = Dialog::kSaveAs;
-    dialog_fresh_ = true;
-    dialog_path_ = suggestedPath(".fettle");
+    ask({.kind = Question::Kind::kSaveAs,
+         .path = suggestedPath(".fettle"),
+         .afterwards = std::move(afterwards)});
   }
 }
 
-void Workstation::startSaving(const std::string& path, Keeping keeping) {
-  if (auto status = checkOutputs({{path, OutputKind::kField}}, {}); !status) {
+// The files that are written, and may replace others.
+std::vector<std::string> Workstation::outputsOf(const std::string& path, Keeping keeping) const {
+  if (isSessionPath(path)) {
+    // Onto itself a session loses nothing.
+    std::error_code none;
+    const bool itself = keeping == Keeping::kWorkThere && fs::equivalent(path, keeper_->path(), none);
+    return itself ? std::vector<std::string>() : std::vector{path};
+  }
+  if (anyMark(touch_->upright())) return {path, marksPath(path)};
+  return {path};
+}
+
+// The path of `from`, a question for one, with a question where a file would be replaced. kTyped: "go back"
+// leads to `from` again.
+void Workstation::askToWrite(Question from, Typed typed) {
+  const Keeping keeping = keepingOf(from.kind);
+  std::error_code none;
+  if (keeping == Keeping::kCopy && fs::equivalent(from.path, keeper_->path(), none)) {
+    message(
+        fmt::format("{} is the session that is worked on: everything is kept there as it is done", from.path),
+        "name another file for a copy");
+    return;
+  }
+  ReplacedFiles files = replacedFiles(outputsOf(from.path, keeping), keeper_->scanPath());
+  if (files.texts.empty()) {
+    startSaving(from.path, keeping, std::move(from.afterwards));
+    return;
+  }
+  ask({.kind = Question::Kind::kReplace,
+       .path = std::move(from.path),
+       .afterwards = std::move(from.afterwards),
+       .from = from.kind,
+       .typed = typed == Typed::kYes,
+       .replaced = std::move(files.texts)});
+}
+
+void Workstation::startSaving(const std::string& path, Keeping keeping, Afterwards afterwards) {
+  if (auto status = checkPlaces({{path, OutputKind::kField}}, {}); !status) {
     message(status.error().line(), "");
     return;
   }
   saving_path_ = path;
   keeping_ = keeping;
+  after_saving_ = std::move(afterwards);
+  // A session that refers to the scan could not be opened again with another file in the scan's place.
+  if (replacedFiles(outputsOf(path, keeping), keeper_->scanPath()).scan) {
+    write_after_scan_ = true;
+    keeper_->keepScan();
+    return;
+  }
+  write(path, keeping);
+}
+
+void Workstation::write(const std::string& path, Keeping keeping) {
   if (isSessionPath(path) && keeping == Keeping::kWorkThere) {
     touch_->poll();
     keeper_->saveAs(path,
                     embeds_ ? engine::OriginalStorage::kEmbedded : engine::OriginalStorage::kReferenced);
     return;
   }
-  saving_.start(
-      [path, field = touch_->upright()](engine::JobControl& job) -> engine::Result<engine::Version> {
-        auto done = engine::exportField(field, path, {}, job);
-        if (!done) return tl::unexpected(done.error());
-        if (anyMark(field) && !isSessionPath(path))
-          if (auto marks = engine::exportMarks(field, marksPath(path)); !marks)
-            return tl::unexpected(marks.error());
-        return field;
-      });
+  writing_ = outputsOf(path, keeping);
+  saving_.start([path, field = touch_->upright(), original = touch_->original(),
+                 outputs = writing_](engine::JobControl& job) -> engine::Result<engine::Version> {
+    ScanGuard guard;  // of other sessions: this one does not need the file any more
+    for (const std::string& output : outputs)
+      if (auto spared = guard.spare(output, job); !spared) return tl::unexpected(spared.error());
+    engine::ExportOptions options;
+    options.original = original;
+    auto done = engine::exportField(field, path, options, job);
+    if (!done) return tl::unexpected(done.error());
+    if (anyMark(field) && !isSessionPath(path))
+      if (auto marks = engine::exportMarks(field, marksPath(path)); !marks)
+        return tl::unexpected(marks.error());
+    return field;
+  });
 }
 
 void Workstation::takeSaved() {
   std::optional<engine::Status> ended;
+  if (auto kept = keeper_ ? keeper_->scanKept() : std::nullopt;
+      kept && std::exchange(write_after_scan_, false)) {
+    if (*kept)
+      write(saving_path_, keeping_);
+    else
+      ended = std::move(*kept);
+  }
   if (auto done = saving_.take()) {
     ended = *done ? engine::Status{} : tl::unexpected(done->error());
     if (*done && keeping_ == Keeping::kWorkThere) {
       save_path_ = saving_path_;
+      written_ = writing_;
       saved_ = **done;
     }
   }
@@ -291,12 +352,12 @@ void Workstation::takeSaved() {
       }
     }
   if (!ended) return;
+  const Afterwards afterwards = std::exchange(after_saving_, {});
   if (*ended) {
     status_text_ = fmt::format("written: {}", saving_path_);
-    goOn();
+    goOn(afterwards);
     return;
   }
-  after_saving_ = AfterSaving::kNothing;
   if (ended->error().kind != engine::ErrorKind::kCancelled)
     message(ended->error().line(), "the work is kept here; save it elsewhere");
 }

@@ -32,7 +32,7 @@ void Workstation::toStylus(const InputEvent& event) {
   if (!touch_ || touch_->mouse() == nullptr) return;
   haptic::MouseStylus& mouse = *touch_->mouse();
   if (lasso_.active()) return;
-  if (!tool_on_ || dialog_ != Dialog::kNone) {
+  if (!tool_on_ || questions_.pending()) {
     mouse.release();
     mouse.leave();
     stylus_held_ = false;
@@ -81,13 +81,35 @@ void Workstation::handleInput() {
     here.y = last_y_;
     toStylus(here);
   }
-  for (const auto& [event, stylus_has_it] : std::exchange(input_, {})) {
+  std::vector<Pending> done = std::exchange(input_, {});
+  for (auto next = done.begin(); next != done.end(); ++next) {
+    // What comes after an answer is about what that leads to: it waits for the frame that does it.
+    if (questions_.answering()) {
+      input_.insert(input_.begin(), std::make_move_iterator(next), std::make_move_iterator(done.end()));
+      break;
+    }
+    const auto& [event, stylus_has_it] = *next;
+    countHand(event);
     if (!stylus_has_it) toStylus(event);
     if (event.kind != InputKind::kMove || !event.panels_mouse || ImGui::IsAnyMouseDown()) stale_ = true;
     handle(event);
     last_x_ = event.x;
     last_y_ = event.y;
   }
+}
+
+// Takes the hands off everything: what is held is let go, what was not confirmed is left.
+void Workstation::letGo() {
+  drag_ = Drag::kNone;
+  dragging_split_ = false;
+  stylus_held_ = false;
+  leaveAdjusting();
+  if (!touch_) return;
+  if (touch_->mouse() != nullptr) {
+    touch_->mouse()->release();
+    touch_->mouse()->leave();
+  }
+  if (turned_tool_) touch_->setTool(*std::exchange(turned_tool_, std::nullopt));
 }
 
 Drag Workstation::dragOf(const InputEvent& event) const {
@@ -111,13 +133,13 @@ Drag Workstation::dragOf(const InputEvent& event) const {
 
 void Workstation::handle(const InputEvent& event) {
   if (adjusting_ != Adjusting::kNothing && handleAdjusting(event)) return;
-  if (touch_ && lasso_.active() && dialog_ == Dialog::kNone && handleLasso(event)) return;
+  if (touch_ && lasso_.active() && !questions_.pending() && handleLasso(event)) return;
   if (event.kind == InputKind::kKeyDown) {
     handleKey(event);
     return;
   }
   const engine::Grid* const seen = seenGrid();
-  if (seen == nullptr || dialog_ != Dialog::kNone) return;
+  if (seen == nullptr || questions_.pending()) return;
   const engine::Grid& grid = *seen;
   const render::Rectangle& area = window_->pictureArea();
   const double dx = event.x - last_x_, dy = event.y - last_y_;

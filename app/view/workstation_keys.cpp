@@ -23,8 +23,7 @@ constexpr double kDepth_px = 20.0;  // ... for a tenth of the deepest press
 void Workstation::disarmAtOnce(const InputEvent& event) {
   if (!touch_ || event.kind != InputKind::kKeyDown) return;
   // For two frames ImGui still says so of the field of a dialog that was closed.
-  const bool typing =
-      ImGui::GetIO().WantTextInput && (dialog_ != Dialog::kNone || frames_ > dialog_frame_ + 3);
+  const bool typing = ImGui::GetIO().WantTextInput && (questions_.pending() || frames_ > question_frame_ + 3);
   if (!disarms(event.key, event.modifiers, typing ? Typing::kYes : Typing::kNo)) return;
   touch_->disarm();
   // What was pressed before and is not done yet must not arm after it.
@@ -33,13 +32,12 @@ void Workstation::disarmAtOnce(const InputEvent& event) {
 }
 
 void Workstation::handleKey(const InputEvent& event) {
-  if (dialog_ != Dialog::kNone) {
-    // A short press falls between two frames, and ImGui would not see it.
-    dialog_key_ = event.key;
+  if (questions_.pending()) {
+    questions_.press(event);
     return;
   }
   // A text field has it; for two frames ImGui still says so of the field of a dialog that was closed.
-  if (event.panels_key && frames_ > dialog_frame_ + 3) return;
+  if (event.panels_key && frames_ > question_frame_ + 3) return;
   const auto action = actionOf(event.key, event.modifiers);
   if (event.modifiers == render::Modifiers{true, false, false} && event.key >= render::letter('1') &&
       event.key <= render::letter('9')) {
@@ -50,10 +48,20 @@ void Workstation::handleKey(const InputEvent& event) {
   if (action) act(*action);
 }
 
+void Workstation::setAdjusted(double value) {
+  adjusting_ == Adjusting::kRadius ? setBrushRadius(value) : setPressDepth(value);
+}
+
+// As it was before.
+void Workstation::leaveAdjusting() {
+  if (adjusting_ != Adjusting::kNothing) setAdjusted(adjust_from_);
+  adjusting_ = Adjusting::kNothing;
+  typed_.clear();
+}
+
 // F and Shift+F: move or type, confirm with the left button or Enter, leave with the right one or Esc.
 bool Workstation::handleAdjusting(const InputEvent& event) {
   const bool radius = adjusting_ == Adjusting::kRadius;
-  const auto set = [&](double value) { radius ? setBrushRadius(value) : setPressDepth(value); };
   const auto end = [&] {
     adjusting_ = Adjusting::kNothing;
     typed_.clear();
@@ -62,11 +70,11 @@ bool Workstation::handleAdjusting(const InputEvent& event) {
     case InputKind::kMove: {
       if (!typed_.empty()) return true;
       const double way = event.x - adjust_x_;
-      set(adjust_from_ + (radius ? std::round(way / kRadius_px) : way / kDepth_px * 0.1 * press_mm_));
+      setAdjusted(adjust_from_ + (radius ? std::round(way / kRadius_px) : way / kDepth_px * 0.1 * press_mm_));
       return true;
     }
     case InputKind::kButtonDown:
-      if (event.button == MouseButton::kRight) set(adjust_from_);
+      if (event.button == MouseButton::kRight) setAdjusted(adjust_from_);
       end();
       return true;
     case InputKind::kKeyDown: {
@@ -84,22 +92,15 @@ bool Workstation::handleAdjusting(const InputEvent& event) {
         end();
         return true;
       } else {
-        set(adjust_from_);
-        end();
+        leaveAdjusting();
         return event.key == Key::kEscape;
       }
-      if (!typed_.empty()) set(std::strtod(typed_.c_str(), nullptr));
+      if (!typed_.empty()) setAdjusted(std::strtod(typed_.c_str(), nullptr));
       return true;
     }
     default:
       return event.kind != InputKind::kWheel;
   }
-}
-
-bool Workstation::takeDialogKey(Key key) {
-  if (dialog_key_ != key) return false;
-  dialog_key_ = Key::kNone;
-  return true;
 }
 
 }  // namespace fettle::app

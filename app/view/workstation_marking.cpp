@@ -19,14 +19,15 @@ using render::InputKind;
 using render::Key;
 using render::MouseButton;
 
-constexpr double kKey_px = 16.0;  // what an arrow key moves the cross by; Shift: one eighth
-constexpr int kLooks = 12;        // at the picture, each way
+constexpr double kCross_px = 16.0;  // what an arrow key moves the cross by; Shift: one eighth
+constexpr int kLooks = 12;          // at the picture, each way
 
 }  // namespace
 
 // The surface under a place of the picture; where there is none, the plane at half the field's height.
 std::optional<glm::dvec2> Workstation::fieldAt(const glm::dvec2& pixel) const {
   if (const auto picked = pick(pixel.x, pixel.y)) return glm::dvec2(picked->position_mm);
+  if (!picture_) return std::nullopt;  // the device is lost
   const engine::Grid& grid = touch_->field().grid();
   const engine::HeightBounds bounds = touch_->field().reader().bounds();
   if (bounds.empty()) return std::nullopt;
@@ -119,7 +120,7 @@ bool Workstation::handleLasso(const InputEvent& event) {
       if (lasso_.active() && lasso_drawn_ && lasso_.closes()) finishLasso(change);
       return true;
     case InputKind::kKeyDown: {
-      const double step = event.modifiers.shift ? kKey_px / 8.0 : kKey_px;
+      const double step = event.modifiers.shift ? kCross_px / 8.0 : kCross_px;
       const auto go = [&](double dx, double dy) {
         lasso_.move(lasso_.cross() + step * glm::dvec2(dx, dy), Lasso::Drawing::kNo);
         return true;

@@ -19,8 +19,8 @@ double rounded(double value) {
 
 // Keys are stable. Lengths are pixels of the frame, "cursor" and "picture" from its upper left corner.
 Report Workstation::told() const {
-  static constexpr const char* kDialogs[] = {"none",    "open",    "save as",   "export",
-                                             "unsaved", "recover", "shortcuts", "message"};
+  const Question* const dialog = questions_.shown();
+  static constexpr const char* kLimits[] = {"none", "under way", "memory", "vertices"};
   static constexpr const char* kTools[] = {"feel", "smooth", "mark", "unmark"};
   const render::Rectangle& area = window_->pictureArea();
   Report r{{"keys", hands_.keys},
@@ -32,26 +32,27 @@ Report Workstation::told() const {
            {"picture", {area.x, area.y, area.width, area.height}},
            {"minimised", window_->minimised()},
            {"scale", rounded(window_->scale())},
-           {"dialog", kDialogs[static_cast<std::size_t>(dialog_)]},
-           {"dialog_path", dialog_path_},
+           {"dialog", dialog != nullptr ? name(dialog->kind) : "none"},
+           {"dialog_path", dialog != nullptr ? dialog->path : ""},
            {"text_field", ImGui::GetIO().WantTextInput},
-           {"message", dialog_ == Dialog::kMessage ? message_.what : ""},
+           {"message", dialog != nullptr ? dialog->said.what : ""},
            {"status", status_text_},
            {"asks_before_quitting", settings_.ask_before_quitting},
            {"device_losses", device_losses_},
            {"loading", loading_.busy()},
            {"coarse", coarseIsShown()},
-           {"saving", saving_.busy() || (keeper_ && keeper_->saving())},
+           {"saving", saving_.busy() || write_after_scan_ || (keeper_ && keeper_->saving())},
            {"path", path_},
            {"save_path", keeper_ && keeper_->named() ? keeper_->path() : save_path_}};
   Report notices = Report::array();
   for (const Notice& notice : notices_) notices.push_back(notice.what);
   r["notices"] = notices;
-  // A dialog is laid out anew each frame, and seen from its second one on.
-  const bool moves = dialog_ == Dialog::kNone
+  // A dialog has a frame drawn each time round, and is in its place after some of them.
+  constexpr int kInPlace = 4;
+  const bool moves = !questions_.pending()
                          ? active() || (touch_ && refinement_.owed())
                          : stylus_held_ || drag_ != Drag::kNone || figures_.upload.pending_tiles > 0 ||
-                               told_dialog_ != dialog_ || frames_ < told_dialog_since_ + 3;
+                               questions_.frames() < kInPlace;
   bool settled = !moves && input_.empty() && !loading_.busy() && r["saving"] == false;
   if (seenGrid() != nullptr)
     r["view"] = {rounded(view_.azimuth_deg), rounded(view_.elevation_deg), rounded(view_.zoom),
@@ -61,6 +62,11 @@ Report Workstation::told() const {
     const haptic::LoopState now = touch_->state();
     const haptic::Scene& scene = touch_->scene();
     r["tool"] = tool_on_ ? kTools[static_cast<std::size_t>(touch_->tool())] : "view";
+    r["lasso"] = !lasso_.active() ? "" : lasso_.shape() == Lasso::Shape::kBox ? "box" : "free";
+    Report open_panels = Report::array();
+    for (const auto& [panel, open] : settings_.panels)
+      if (side_panel_ && open) open_panels.push_back(panel);
+    r["panels"] = open_panels;
     r["steps"] = touch_->history().number();
     r["last_step"] = touch_->history().last();
     r["unsaved"] = unsaved();
@@ -81,6 +87,7 @@ Report Workstation::told() const {
     r["deviation"] = display_.deviation;
     r["contours"] = display_.contours;
     r["vertices"] = display_.vertices;
+    r["colours"] = {rounded(figures_.range.low), rounded(figures_.range.high)};
     r["contact_level"] =
         scene.tip == haptic::TipShape::kSphere ? "ball" : std::string(haptic::levelName(scene.level));
     r["measured"] = {!costs_.contact().empty(), !costs_.detail().empty()};
@@ -103,6 +110,7 @@ Report Workstation::told() const {
     for (const haptic::EffectKind effect : scene.effects)
       effects.push_back(std::string(haptic::effectName(effect)));
     r["effects"] = effects;
+    r["stiffness_n_per_mm"] = rounded(scene.stiffness_n_per_mm);
     r["rate_hz"] = touch_->rate();
     r["stroke"] = stylus_held_;
     r["touching"] = drawn.contact;
@@ -116,32 +124,45 @@ Report Workstation::told() const {
         under_cursor_ ? cell(under_cursor_->position_mm.x, under_cursor_->position_mm.y) : Report();
     r["stylus_at"] = cell(drawn.endpoint_mm.x, drawn.endpoint_mm.y);
     settled = settled && (touch_->mouse() == nullptr || !touch_->mouse()->busy()) && !filters_.computing() &&
-              !filters_.applying() && shown_.accepted.value_or(shown_.versions.front()) == touch_->field() &&
-              touch_->history().current() == touch_->upright();
+              !mark_edit_.busy() && !edges_.busy() && !shown_.versions.empty() && !filters_.applying() &&
+              shown_.accepted.value_or(shown_.versions.front()) == touch_->field() &&
+              touch_->history().current() == touch_->upright() &&
+              (touch_->field().reader().sign() < 0.0F) == scene.invert;
   }
+  // How near each panel comes to the field, and what keeps it from coming nearer: of a picture at rest alone,
+  // since it differs from frame to frame.
+  Report bounds = Report::array(), limits = Report::array();
+  for (const render::PanelDetail& panel : figures_.panels) {
+    if (!settled) break;
+    bounds.push_back(rounded(panel.bound_px));
+    limits.push_back(kLimits[static_cast<std::size_t>(panel.limit)]);
+  }
+  r["bounds_px"] = bounds;
+  r["limits"] = limits;
   r["settled"] = settled;
   return r;
 }
 
-void Workstation::countHands() {
-  for (const Pending& p : input_) {
-    const render::InputKind kind = p.event.kind;
-    hands_.keys += kind == render::InputKind::kKeyDown;
-    hands_.buttons += kind == render::InputKind::kButtonDown || kind == render::InputKind::kButtonUp;
-    hands_.wheels += kind == render::InputKind::kWheel;
-  }
+void Workstation::countHand(const render::InputEvent& event) {
+  const render::InputKind kind = event.kind;
+  hands_.keys += kind == render::InputKind::kKeyDown;
+  hands_.buttons += kind == render::InputKind::kButtonDown || kind == render::InputKind::kButtonUp;
+  hands_.wheels += kind == render::InputKind::kWheel;
 }
 
 void Workstation::tell() {
   if (!events_.listens()) return;
-  if (std::exchange(told_dialog_, dialog_) != dialog_) told_dialog_since_ = frames_;
-  // What is written changes without any of the above: a menu opens, a header closes. Figures change all the
-  // time.
+  // What is written changes, or moves, without any of the above: a menu opens, a header closes, a line above
+  // grows. Figures change all the time.
   const std::vector<render::PanelText> written = window_->texts();
   std::size_t words = written.size();
-  for (const render::PanelText& text : written)
+  const auto mix = [&](std::size_t value) { words = 31 * words + value; };
+  for (const render::PanelText& text : written) {
     for (const char c : text.text)
-      if (c < '0' || c > '9') words = 31 * words + static_cast<unsigned char>(c);
+      if (c < '0' || c > '9') mix(static_cast<unsigned char>(c));
+    mix(static_cast<std::size_t>(std::lround(text.x)));
+    mix(static_cast<std::size_t>(std::lround(text.y)));
+  }
   Report state = told();
   state["words"] = words;
   events_.tell(std::move(state), [&] {

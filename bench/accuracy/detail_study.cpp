@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kAllVertices = std::int64_t{1} << 24;
 constexpr render::Sharpness kFull = render::Sharpness::kFull;
 
-constexpr DetailChoice kChoices[] = {
+constexpr DetailChoice kDetailChoices[] = {
     {"bound 8 px", 8.0, kAllVertices, kFull},
     {"bound 4 px", 4.0, kAllVertices, kFull},
     {"bound 2 px", 2.0, kAllVertices, kFull},
@@ -46,7 +46,8 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
   std::vector<StudiedScan> subjects{{"milled part, 1M samples", part->scan}};
   if (options.scan) subjects.push_back(*options.scan);
   const int views = std::max(2, static_cast<int>(std::lround(12 * options.effort)));
-  job.begin("level of detail", subjects.size() * static_cast<std::size_t>(views) * (std::size(kChoices) + 1));
+  job.begin("level of detail",
+            subjects.size() * static_cast<std::size_t>(views) * (std::size(kDetailChoices) + 1));
 
   auto created = render::LivePicture::create();
   if (!created) return tl::unexpected(created.error());
@@ -61,13 +62,13 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
     input.view.height = 800;
     input.view.azimuth_deg = 315.0;
     input.decoration = render::Decoration::kNone;
-    const auto figures = measureDetail(picture, input, views, kChoices, everySample(), job);
+    const auto figures = measureDetail(picture, input, views, kDetailChoices, everySample(), job);
     if (!figures) return tl::unexpected(figures.error());
     for (std::size_t k = 0; k < figures->size(); ++k) {
       const DetailFigures& f = (*figures)[k];
       AccuracyRow row;
       row.subject = subject.name;
-      row.method = k < std::size(kChoices) ? kChoices[k].name : everySample().name;
+      row.method = k < std::size(kDetailChoices) ? kDetailChoices[k].name : everySample().name;
       row.cost = f.ms;
       row.cost_worst = f.ms_worst;
       row.error = f.mean_codes;

@@ -9,6 +9,7 @@
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/plane.h"
 #include "bench/accuracy/studies.h"
+#include "engine/base/stopwatch.h"
 #include "engine/compare/compare.h"
 #include "engine/filter/filter.h"
 #include "engine/filter/noise_range.h"
@@ -20,10 +21,6 @@
 
 namespace fettle::bench {
 namespace {
-
-double secondsSince(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 // Where a filter starts from, and what that took of machine and hand.
 struct Start {
@@ -88,7 +85,7 @@ engine::Result<std::vector<Start>> startsOf(const engine::SimulatedScan& scan, e
     choice.thickness = kReach + 1.0;
     auto marked = engine::suggestMarks(scan.scan, *map, choice, job);
     if (!marked) return tl::unexpected(marked.error());
-    starts.push_back({"around suggested edges", std::move(marked->field), secondsSince(begin), 0.0});
+    starts.push_back({"around suggested edges", std::move(marked->field), engine::secondsSince(begin), 0.0});
   }
   for (const Care& care : kCares) {
     haptic::Scene scene = haptic::defaultScene();
@@ -99,7 +96,7 @@ engine::Result<std::vector<Start>> startsOf(const engine::SimulatedScan& scan, e
     hand.smooth_passes = care.smooth_passes;
     hand.shortest_mm = care.shortest_mm;
     const std::vector<haptic::StrokeSample> strokes =
-        haptic::operatorStrokes(scan.scan, scan.edge_lines, hand);
+        haptic::operatorStrokes(scan.scan, scan.edge_lines, haptic::offTheEdges(hand, scan.scan.grid()));
     auto touched = haptic::replay(scan.scan, scan.scan, strokes, scene, {}, job);
     if (!touched) return tl::unexpected(touched.error());
     starts.push_back({care.name, std::move(touched->field), 0.0, strokes.empty() ? 0.0 : strokes.back().t});
@@ -192,7 +189,7 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
       if (!spec) return tl::unexpected(spec.error());
       const auto filtered = engine::applyFilter(start.field, scan.scan, *spec, quiet);
       if (!filtered) return tl::unexpected(filtered.error());
-      const double seconds = start.machine_s + secondsSince(begin);
+      const double seconds = start.machine_s + engine::secondsSince(begin);
       const std::string method = fmt::format("{} {}{}", engine::name(way.kind), way.window,
                                              way.passes > 1 ? fmt::format(", {} passes", way.passes) : "");
       if (auto ok = judge(start.name, method, filtered->field, seconds, start.hand_s); !ok)

@@ -8,8 +8,8 @@ namespace fettle::engine {
 
 /// What kind of refusal an Error is; it decides the exit status of a command.
 enum class ErrorKind {
-  kInput,      ///< bad usage, bad input file, path that cannot be read or written, full disk: exit 2
-  kFailed,     ///< the machine could not do it (no Vulkan device, out of memory): exit 1
+  kInput,      ///< bad usage, bad input file, path that cannot be read or written: exit 2
+  kFailed,     ///< the machine could not do it (full disk, out of memory, no Vulkan device): exit 1
   kCancelled,  ///< the user asked to stop; nothing was written: exit 1
 };
 

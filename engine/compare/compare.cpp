@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/compare/no_figure.h"
 #include "engine/compare/plane.h"
 #include "engine/compare/tile_select.h"
 #include "engine/compare/tile_sums.h"
@@ -15,8 +16,6 @@
 namespace fettle::engine {
 
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // Two fields sample by sample, the second in the height unit of the first.
 struct Pair {
@@ -133,7 +132,7 @@ Third thirdPass(const Pair& pair, const Plane& a, const Plane& b, JobControl& jo
 }
 
 double ratio(double sum, std::int64_t samples) noexcept {
-  return samples > 0 ? sum / static_cast<double>(samples) : kNone;
+  return samples > 0 ? sum / static_cast<double>(samples) : kNoFigure;
 }
 
 }  // namespace
@@ -163,12 +162,12 @@ Result<Deviation> compareFields(const Version& a, const Version& b, JobControl& 
   result.only_b = first.only_b;
   result.mean = ratio(first.difference.value(), first.samples);
   result.rms = std::sqrt(ratio(first.square.value(), first.samples));
-  result.max_abs = first.samples > 0 ? first.max_abs : kNone;
+  result.max_abs = first.samples > 0 ? first.max_abs : kNoFigure;
   result.sq_a = std::sqrt(ratio(third.a.square.value(), first.a.samples));
   result.sa_a = ratio(third.a.absolute.value(), first.a.samples);
   result.sq_b = std::sqrt(ratio(third.b.square.value(), first.b.samples));
   result.sa_b = ratio(third.b.absolute.value(), first.b.samples);
-  result.p99 = kNone;
+  result.p99 = kNoFigure;
   if (first.samples > 0) {
     // Nearest rank ceil(0.99 n), in integers: 0.99 is no double.
     result.p99 = selectFromTiles(

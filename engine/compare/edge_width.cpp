@@ -8,11 +8,12 @@
 
 #include <glm/vec2.hpp>
 
+#include "engine/compare/no_figure.h"
+
 namespace fettle::engine {
 
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr int kCell = 16;            // one profile a cell of so many samples
 constexpr int kMaxHalf = 96;         // bound of a patch's half side, for very unlike spacings
 constexpr double kOffLine = 1.0;     // [samples] a corner's boundary is farther off the parabola than this
@@ -243,7 +244,7 @@ double rise(const std::vector<Block>& bins) {
         return pooled[i - 1].last +
                (pooled[i].first - pooled[i - 1].last) * ((level - below) / (above - below));
     }
-    return kNone;
+    return kNoFigure;
   };
   return crossing(0.9) - crossing(0.1);
 }
@@ -269,7 +270,7 @@ double widthOf(const Patch& patch, const std::vector<float>& heights, double sca
     into.weight += 1.0;
   });
   lost = static_cast<double>(valid) < kLeastValid * static_cast<double>(all);
-  if (lost) return kNone;
+  if (lost) return kNoFigure;
   std::erase_if(bins, [](const Block& b) { return b.weight == 0.0; });
   for (Block& b : bins) b.first = b.last = b.first / b.weight;
   return rise(bins);

@@ -8,13 +8,12 @@
 
 #include "engine/compare/compare.h"
 #include "engine/compare/edge_width.h"
+#include "engine/compare/no_figure.h"
 #include "engine/compare/tile_sums.h"
 
 namespace fettle::engine {
 
 namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // Squared distances [samples^2] of a tile's samples to the nearest mark of the field, exact up to `reach`,
 // beyond that just "far". Rows first, then columns (Felzenszwalb and Huttenlocher, Distance transforms of
@@ -75,7 +74,7 @@ struct Errors {
     square.add(other.square);
   }
   [[nodiscard]] double rms() const noexcept {
-    return samples > 0 ? std::sqrt(square.value() / static_cast<double>(samples)) : kNone;
+    return samples > 0 ? std::sqrt(square.value() / static_cast<double>(samples)) : kNoFigure;
   }
 };
 
@@ -89,7 +88,7 @@ struct TruthTile {
 
 // Mean of the two middle ones for an even count; NaN of nothing.
 double median(std::vector<double> values) {
-  if (values.empty()) return kNone;
+  if (values.empty()) return kNoFigure;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   if (values.size() % 2 != 0) return *middle;
@@ -171,7 +170,7 @@ TruthFigures measure(const Version& field, const Version& truth, const Version& 
   figures.rmse = all.rms();
   figures.rmse_flat = flat.rms();
   figures.rmse_edge = near.rms();
-  figures.max_abs_edge = near.samples > 0 ? near.max_abs : kNone;
+  figures.max_abs_edge = near.samples > 0 ? near.max_abs : kNoFigure;
   figures.edge_profiles = static_cast<std::int64_t>(of_field.size());
   figures.edge_width = median(of_field);
   figures.edge_width_truth = median(of_truth);

@@ -1,13 +1,19 @@
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "engine/io/crs_text.h"
 #include "engine/io/format.h"
+#include "engine/io/gdal_session.h"
 #include "engine/io/geo_reference.h"
+#include "engine/io/sidecar.h"
 #include "engine/io/text_writer.h"
 
 namespace fettle::engine {
@@ -38,12 +44,56 @@ std::string originLines(const Grid& grid) {
   return lines;
 }
 
+// Puts the grid in place, and before it the .prj that belongs to it. A .prj that is there and belongs to the
+// grid no more would be read with it: it is warned of, and not removed, for it may be another file's as well.
+Status commitBoth(AtomicFile& grid, const std::string& prj_path, const std::string& prj,
+                  std::vector<std::string>& warnings) {
+  std::error_code error;
+  const bool there = std::filesystem::exists(prj_path, error);
+  if (prj.empty()) {
+    if (there)
+      warnings.push_back(
+          fmt::format("{} is there and names a coordinate system that the grid does not have: "
+                      "remove it if it is not another file's",
+                      prj_path));
+    return grid.commit();
+  }
+  if (Status status = writeFileAtomically(prj_path, prj); !status) return status;
+  Status status = grid.commit();
+  if (!status && !there) std::filesystem::remove(prj_path, error);
+  return status;
+}
+
+// What the file and the .prj beside it do not say.
+std::vector<std::string> lostByAsciiGrid(const Grid& grid, bool system_kept) {
+  std::vector<std::string> warnings;
+  if (!grid.crs_wkt.empty() && !system_kept)
+    warnings.emplace_back("a .prj file cannot express the coordinate system, it was left out");
+  StatedUnits said;
+  std::vector<std::string> ignored;
+  if (system_kept) unitsOfCrs(grid.crs_wkt, grid.origin_y, said, ignored);
+  const LengthUnit lateral = said.lateral.value_or(LengthUnit{});
+  const bool degrees = lateral.name == "deg";
+  const LengthUnit height = said.height.value_or(degrees ? LengthUnit{"m", 1000.0} : lateral);
+  const bool lateral_kept = degrees ? grid.lateral_unit.name == "deg" : lateral == grid.lateral_unit;
+  if (lateral_kept && height == grid.height_unit) return warnings;
+  warnings.push_back(
+      grid.lateral_unit == grid.height_unit
+          ? fmt::format("an ASCII grid keeps no unit, read it with --unit {}", grid.lateral_unit.name)
+          : fmt::format("an ASCII grid keeps no units ({} across, {} up)", grid.lateral_unit.name,
+                        grid.height_unit.name));
+  return warnings;
+}
+
 }  // namespace
 
 Result<Exported> writeAsciiGrid(const Version& field, const std::string& path, const ExportOptions&,
                                 JobControl& job) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
+  std::optional<GdalSession> quiet;
+  if (!field.grid().crs_wkt.empty()) quiet.emplace();
+  const std::string prj = field.grid().crs_wkt.empty() ? std::string() : prjOf(field.grid().crs_wkt);
   const FieldReader reader = field.reader();
   const Grid& grid = field.grid();
   const float no_data = freeNoData(reader);
@@ -65,16 +115,10 @@ Result<Exported> writeAsciiGrid(const Version& field, const std::string& path, c
     job.advance();
   }
   if (Status status = out.finish(); !status) return tl::unexpected(status.error());
-  if (Status status = file->commit(); !status) return tl::unexpected(status.error());
-  Exported exported{"AAIGrid", {}};
-  if (!grid.crs_wkt.empty()) exported.warnings.emplace_back("an ASCII grid keeps no coordinate system");
-  if (grid.lateral_unit != LengthUnit{} || grid.height_unit != LengthUnit{})
-    exported.warnings.push_back(
-        grid.lateral_unit == grid.height_unit
-            ? fmt::format("an ASCII grid keeps no unit, read it with --unit {}", grid.lateral_unit.name)
-            : fmt::format("an ASCII grid keeps no units ({} across, {} up)", grid.lateral_unit.name,
-                          grid.height_unit.name));
-  return exported;
+  std::vector<std::string> warnings = lostByAsciiGrid(grid, !prj.empty());
+  if (Status status = commitBoth(*file, prjBeside(path), prj, warnings); !status)
+    return tl::unexpected(status.error());
+  return Exported{"AAIGrid", std::move(warnings)};
 }
 
 }  // namespace fettle::engine

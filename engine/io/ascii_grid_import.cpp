@@ -11,6 +11,9 @@
 
 #include "engine/io/field_limits.h"
 #include "engine/io/format.h"
+#include "engine/io/gdal_session.h"
+#include "engine/io/geo_reference.h"
+#include "engine/io/sidecar.h"
 #include "engine/io/text_reader.h"
 #include "engine/io/units.h"
 
@@ -163,10 +166,19 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
   Result<Grid> grid = gridOf(*header, file.size(), units, path);
   if (!grid) return tl::unexpected(grid.error());
   std::vector<std::string> warnings;
+  const Sidecar beside = readAuxXml(path, warnings);
+  grid->crs_wkt = readPrj(path, warnings);
+  if (grid->crs_wkt.empty()) grid->crs_wkt = beside.crs_wkt;
+  units.height = heightUnitNamed(beside.height_unit, options, warnings);
+  if (!grid->crs_wkt.empty()) {
+    const GdalSession quiet;
+    unitsOfCrs(grid->crs_wkt, grid->origin_y + 0.5 * grid->height * units.spacing->second, units, warnings);
+  }
   settleUnits(*grid, units, options, warnings);
   HeightRule rule;
   rule.scale = options.z_scale.value_or(1.0);
-  rule.declared_no_data = header->no_data.value_or(kEsriNoData);
+  const std::optional<double> declared = settledNoData(header->no_data, beside, warnings);
+  rule.declared_no_data = declared.value_or(kEsriNoData);
   rule.user_no_data = options.no_data;
   Result<FieldBuilder> builder = FieldBuilder::create(std::move(*grid), path);
   if (!builder) return tl::unexpected(builder.error());
@@ -176,11 +188,11 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
                                           : readRows<double>(text, first, rule, *builder, tally, path, job);
   if (!status) return tl::unexpected(status.error());
   tally.rounding = 0.0;  // decimal numbers are no floats to begin with
-  if (!header->no_data && tally.holes > 0)
+  if (!declared && tally.holes > 0)
     warnings.push_back("the header says no NODATA_VALUE, -9999 taken as the format has it");
   if (std::string_view rest; text.word(rest))
     warnings.push_back("there are more numbers than the header promises, the rest was left out");
-  return finishImport(std::move(*builder), tally, "AAIGrid", std::move(warnings), path);
+  return finishImport(std::move(*builder), rule, tally, "AAIGrid", std::move(warnings), path);
 }
 
 }  // namespace fettle::engine

@@ -20,7 +20,8 @@ namespace fettle::engine {
 /// device, a pipe) is refused, so /dev/full and the like are never replaced. A file that is replaced passes
 /// its permissions on.
 ///
-/// Threading: one thread at a time. All errors are ErrorKind::kInput and name the final path.
+/// Threading: one thread at a time. All errors name the final path: ErrorKind::kInput where it cannot be
+/// written, kFailed where the disk is full or broken (writeError).
 class AtomicFile {
  public:
   /// Creates the empty temporary file. It keeps the extension of the final path, for libraries that look at
@@ -38,6 +39,10 @@ class AtomicFile {
   /// with a library that writes to temporaryPath(). Errors: full disk, file size limit; after one, drop.
   [[nodiscard]] Status write(std::string_view bytes);
 
+  /// The error of a library that failed to write to temporaryPath(), or the disk's own where it takes no
+  /// more: few libraries report that. Writes to the temporary file, so call it before the file is dropped.
+  [[nodiscard]] Error explained(Error error) const;
+
   /// Flushes file and folder and renames; at most once, with no other writer open on the file. On error the
   /// temporary file is gone and the final path is untouched.
   [[nodiscard]] Status commit();
@@ -51,6 +56,13 @@ class AtomicFile {
   std::string temporary_;  // empty once committed or moved from
   int descriptor_ = -1;    // open on temporary_
 };
+
+/// Why a file could not be written, from the system's error number: kFailed for a full disk, a used-up quota,
+/// a limit on file sizes and a broken disk, kInput for a path that cannot be written.
+[[nodiscard]] tl::unexpected<Error> writeError(const std::string& path, int error);
+
+/// Whether a system's error number means that a disk takes no more (writeError: kFailed).
+[[nodiscard]] bool isDiskError(int error) noexcept;
 
 /// The whole of a small file at once: report, table, JSON, picture already encoded.
 [[nodiscard]] Status writeFileAtomically(const std::string& path, std::string_view content);

@@ -5,12 +5,14 @@
 #include <limits>
 
 #include <isa-l/igzip_lib.h>
+#include <zstd.h>
 
 namespace fettle::engine {
 
 namespace {
 
 constexpr int kLevel = 2;
+constexpr int kZstdLevel = 1;
 
 // `scratch` and `out`: 4 bytes a column. Two passes without a branch, so that both take vector instructions.
 void predictRow(const float* samples, std::size_t columns, std::uint8_t* scratch, std::uint8_t* out) {
@@ -27,12 +29,21 @@ void predictRow(const float* samples, std::size_t columns, std::uint8_t* scratch
 
 }  // namespace
 
-struct BlockPacker::Stream {
+struct BlockPacker::State {
+  struct FreeZstd {
+    void operator()(ZSTD_CCtx* context) const noexcept { ZSTD_freeCCtx(context); }
+  };
+
+  Stream kind = Stream::kDeflate;
+  std::size_t packed_bytes = 0;
   isal_zstream zlib{};
   std::array<std::uint8_t, ISAL_DEF_LVL2_DEFAULT> level{};
+  std::unique_ptr<ZSTD_CCtx, FreeZstd> zstd;
 };
 
-BlockPacker::BlockPacker() : stream_(std::make_unique<Stream>()) {}
+BlockPacker::BlockPacker(Stream stream) : state_(std::make_unique<State>()) {
+  state_->kind = stream;
+}
 BlockPacker::~BlockPacker() = default;
 BlockPacker::BlockPacker(BlockPacker&&) noexcept = default;
 BlockPacker& BlockPacker::operator=(BlockPacker&&) noexcept = default;
@@ -44,23 +55,40 @@ std::span<const std::uint8_t> BlockPacker::pack(std::span<const float> samples, 
   differences_.resize(bytes);
   for (std::size_t at = 0; at < samples.size(); at += columns)
     predictRow(samples.data() + at, columns, row_.data(), differences_.data() + 4 * at);
+  const bool done = state_->kind == Stream::kDeflate ? deflate() : zstandard();
+  if (!done) return {};
+  return {packed_.data(), state_->packed_bytes};
+}
 
+bool BlockPacker::deflate() {
   // What does not pack is stored, with a few bytes for every 64 KB.
-  packed_.resize(bytes + bytes / 8 + 4096);
-  isal_zstream& z = stream_->zlib;
+  packed_.resize(differences_.size() + differences_.size() / 8 + 4096);
+  isal_zstream& z = state_->zlib;
   isal_deflate_init(&z);
   z.level = kLevel;
-  z.level_buf = stream_->level.data();
-  z.level_buf_size = static_cast<std::uint32_t>(stream_->level.size());
+  z.level_buf = state_->level.data();
+  z.level_buf_size = static_cast<std::uint32_t>(state_->level.size());
   z.gzip_flag = IGZIP_ZLIB;
   z.end_of_stream = 1;
   z.flush = NO_FLUSH;
   z.next_in = differences_.data();
-  z.avail_in = static_cast<std::uint32_t>(bytes);
+  z.avail_in = static_cast<std::uint32_t>(differences_.size());
   z.next_out = packed_.data();
   z.avail_out = static_cast<std::uint32_t>(packed_.size());
-  if (isal_deflate(&z) != COMP_OK || z.internal_state.state != ZSTATE_END) return {};
-  return {packed_.data(), z.total_out};
+  if (isal_deflate(&z) != COMP_OK || z.internal_state.state != ZSTATE_END) return false;
+  state_->packed_bytes = z.total_out;
+  return true;
+}
+
+bool BlockPacker::zstandard() {
+  if (!state_->zstd) state_->zstd.reset(ZSTD_createCCtx());
+  if (!state_->zstd) return false;
+  packed_.resize(ZSTD_compressBound(differences_.size()));
+  const std::size_t bytes = ZSTD_compressCCtx(state_->zstd.get(), packed_.data(), packed_.size(),
+                                              differences_.data(), differences_.size(), kZstdLevel);
+  if (ZSTD_isError(bytes) != 0) return false;
+  state_->packed_bytes = bytes;
+  return true;
 }
 
 }  // namespace fettle::engine

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <fmt/format.h>
 
 #include "engine/io/atomic_file.h"
 #include "engine/io/format.h"
@@ -60,8 +62,14 @@ Result<Exported> writeExr(const Version& field, const std::string& path, const E
       return tl::unexpected(status.error());
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception&) {
-    return inputError("the file cannot be written", path, "make room on the disk or choose another folder");
+  } catch (const std::exception& error) {
+    // Its words name the temporary file.
+    const bool named = std::string_view(error.what()).find(file->temporaryPath()) != std::string_view::npos;
+    return tl::unexpected(
+        file->explained(failure(named ? "the file cannot be written"
+                                      : fmt::format("the file cannot be written: {}", error.what()),
+                                path, "look at the disk or choose another folder")
+                            .value()));
   }
   if (Status done = file->commit(); !done) return tl::unexpected(done.error());
   return Exported{

@@ -211,6 +211,9 @@ Result<Plan> planOf(const Imf::Header& header, const InputFile& file, std::vecto
   const Imf::Channel& channel = header.channels()[name];
   if (channel.xSampling != 1 || channel.ySampling != 1)
     return inputError(fmt::format("channel {} has not every sample", name), path, "export it in full");
+  if (isNoLength(name))
+    warnings.push_back(
+        fmt::format("the only channel is \"{}\", which is no length: are these heights?", name));
   Plan plan{name, false, window.min.x, window.min.y, static_cast<int>(width), static_cast<int>(height)};
   const Imf::Channel* const alpha = header.channels().findChannel("A");
   plan.alpha = alpha != nullptr && alpha->xSampling == 1 && alpha->ySampling == 1;
@@ -307,7 +310,7 @@ Result<Imported> readPicture(const InputFile& file, const ImportOptions& options
   Imf::InputPart part(picture, index);
   if (Status status = readRows(part, *plan, rule, *builder, tally, job); !status)
     return tl::unexpected(status.error());
-  return finishImport(std::move(*builder), tally, "EXR", std::move(warnings), path);
+  return finishImport(std::move(*builder), rule, tally, "EXR", std::move(warnings), path);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "engine/field/tile_store.h"
+#include "engine/io/lone_value.h"
 
 namespace fettle::engine {
 
@@ -51,14 +52,16 @@ void describeTally(const HeightTally& tally, const std::string& unit, std::vecto
                     tally.rounding, unit));
 }
 
-Result<Imported> finishImport(FieldBuilder&& builder, const HeightTally& tally, std::string format,
-                              std::vector<std::string> warnings, const std::string& path) {
+Result<Imported> finishImport(FieldBuilder&& builder, const HeightRule& rule, const HeightTally& tally,
+                              std::string format, std::vector<std::string> warnings,
+                              const std::string& path) {
   describeTally(tally, builder.grid().height_unit.name, warnings);
   Imported imported;
   imported.field = std::move(builder).build();
   if (imported.field.reader().bounds().empty())
     return inputError("the file holds no valid height, every sample is no-data", path,
                       "check the file and --no-data");
+  if (!rule.user_no_data) doubtLoneValues(imported.field, rule, warnings);
   imported.format = std::move(format);
   imported.warnings = std::move(warnings);
   return imported;

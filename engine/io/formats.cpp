@@ -173,6 +173,9 @@ Result<Exported> exportField(const Version& field, const std::string& path, cons
     return inputError("only .ply and .stl hold a mesh", path, "write one of these or leave --mesh out");
   if (options.cloud_optimised && extension != ".tif" && extension != ".tiff")
     return inputError("only .tif can be cloud-optimised", path, "write that or leave the option out");
+  if (options.tiff_compression && extension != ".tif" && extension != ".tiff")
+    return inputError("only .tif is compressed in the way that is asked for", path,
+                      "write that or leave --compress out");
   try {
     for (const Format& format : formatTable())
       if (format.write != nullptr &&

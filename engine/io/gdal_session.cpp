@@ -1,11 +1,15 @@
 #include "engine/io/gdal_session.h"
 
+#include <cerrno>
+
 #include <algorithm>
 #include <mutex>
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
 #include <gdal_frmts.h>
+
+#include "engine/io/atomic_file.h"
 
 namespace fettle::engine {
 
@@ -40,10 +44,12 @@ GdalSession::~GdalSession() {
 }
 
 void GdalSession::hear(CPLErr severity, CPLErrorNum, const char* message) {
+  const int system = errno;  // GDAL reports right after the call that failed
   auto* session = static_cast<GdalSession*>(CPLGetErrorHandlerUserData());
   if (session == nullptr || message == nullptr) return;
   if (severity >= CE_Failure) {
     if (!session->failed_) session->first_ = message;
+    if (session->disk_error_ == 0 && isDiskError(system)) session->disk_error_ = system;
     session->failed_ = true;
   } else if (severity == CE_Warning && session->warnings_.size() < 8) {
     if (std::find(session->warnings_.begin(), session->warnings_.end(), message) == session->warnings_.end())

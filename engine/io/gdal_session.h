@@ -24,6 +24,8 @@ class GdalSession {
   /// GDAL's first failure (later ones are its consequences) in words for a person: no paths, no full stop;
   /// `otherwise` if there was none.
   [[nodiscard]] std::string reason(const std::string& otherwise) const;
+  /// The system's error number behind the first failure where the disk took no more (isDiskError), else 0.
+  [[nodiscard]] int diskError() const noexcept { return disk_error_; }
   /// Warnings so far, each once.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
 
@@ -31,6 +33,7 @@ class GdalSession {
   static void hear(CPLErr severity, CPLErrorNum number, const char* message);
 
   bool failed_ = false;
+  int disk_error_ = 0;
   std::string first_;
   std::vector<std::string> warnings_;
 };

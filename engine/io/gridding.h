@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/field/grid.h"
 #include "engine/io/import.h"
 #include "engine/io/input_file.h"
 
@@ -17,18 +19,20 @@ struct PointCloud {
   std::optional<LengthUnit> unit;         ///< of x, y and, unless height_unit says otherwise, z
   std::optional<LengthUnit> height_unit;  ///< of z
   std::string crs_wkt;                    ///< coordinate system of x and y; empty if none
+  std::optional<Grid> raster;             ///< the raster that the file says its points are samples of
   std::vector<std::string> warnings;
 
   /// Takes a point, or counts it as not finite.
   void add(double px, double py, double pz);
+  /// Leaves out the points that are not finite.
+  void dropHoles();
+  /// Takes what a file states of its raster, units and all; nothing changes where it states none.
+  void takeRaster(const std::optional<Grid>& stated);
 };
 
-/// Makes a field of a cloud: on the lattice its points lie on, else on square cells of the asked or estimated
-/// size, each cell taking the median, mean or highest of its points. Sample (c, r) is the centre of its cell.
-///
-/// The estimate: cells of the size at which the area that the points really cover holds one point a cell.
-/// Errors (kInput): no finite point; a grid past Grid::kMaxSide, memory, or (estimated) of over 100 cells a
-/// point, as a stray point far away makes it: the remedy names --cell-size.
+/// Makes a field of a cloud on the cells of chooseCells, each cell taking the median, mean or highest of its
+/// points. Sample (c, r) is the centre of its cell.
+/// Errors (kInput): no finite point; as chooseCells; a grid past Grid::kMaxSide or memory.
 [[nodiscard]] Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options,
                                           std::string format, const std::string& path, JobControl& job);
 

@@ -63,6 +63,8 @@ struct GriddingReport {
 
 struct Imported {
   Version field;
+  /// Of a session: the scan that its work began with, grid and way up as those of `field`.
+  std::optional<Version> original;
   std::string format;                 ///< FormatInfo::name of the reader, e.g. "GTiff", "XYZ"
   std::vector<std::string> warnings;  ///< what was guessed, converted or lost; one line each, no full stop
   std::optional<GriddingReport> gridding;  ///< point clouds only

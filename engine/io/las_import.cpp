@@ -13,6 +13,7 @@
 
 #include "engine/io/format.h"
 #include "engine/io/gdal_session.h"
+#include "engine/io/geo_keys.h"
 #include "engine/io/geo_reference.h"
 #include "engine/io/gridding.h"
 #include "engine/io/little_endian.h"
@@ -26,6 +27,8 @@ constexpr std::size_t kSmallestHeader = 227;
 constexpr std::size_t kHeader14 = 375;
 constexpr std::size_t kRecordHeader = 54;
 constexpr std::uint16_t kGeoKeys = 34735;
+constexpr std::uint16_t kGeoNumbers = 34736;
+constexpr std::uint16_t kGeoText = 34737;
 constexpr std::uint16_t kWkt = 2112;
 // Bytes of each point format at least, 0 .. 10.
 constexpr std::array<std::uint16_t, 11> kPointBytes = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
@@ -59,8 +62,9 @@ Result<LasHeader> readHeader(const InputFile& file) {
   const auto format = static_cast<unsigned char>(h[104]);
   // LASzip marks its files in the two highest bits, which LAS leaves free.
   if ((format & 0xC0U) != 0)
-    return inputError("the points are packed (LAZ), which no library here unpacks", file.path(),
-                      "unpack it to LAS, e.g. with laszip or las2las");
+    return inputError(
+        "the points are packed (LAZ), which Fettle does not read", file.path(),
+        "unpack it to LAS first: pdal translate IN.laz OUT.las, or las2las -i IN.laz -o OUT.las");
   out.format = format;
   if (out.format >= static_cast<int>(kPointBytes.size()))
     return inputError(fmt::format("point format {} is not known", out.format), file.path(),
@@ -106,43 +110,51 @@ void takeGeoKeys(std::string_view keys, PointCloud& cloud) {
   }
 }
 
-// Coordinate system and units from the records between header and points.
+// Takes the system that a WKT names, and its units; false where it is not understood.
+[[nodiscard]] bool takeSystem(std::string wkt, const LasHeader& header, PointCloud& cloud) {
+  if (wkt.empty()) return false;
+  StatedUnits units;
+  const double middle = 0.5 * (header.low_y + header.high_y);
+  unitsOfCrs(wkt, std::isfinite(middle) ? middle : 0.0, units, cloud.warnings);
+  if (!units.lateral) return false;
+  cloud.unit = units.lateral;
+  cloud.height_unit = units.height;
+  cloud.crs_wkt = std::move(wkt);
+  return true;
+}
+
+// Coordinate system and units from the records between header and points: WKT where there is one that is
+// understood, else keys.
 void readSystem(const InputFile& file, const LasHeader& header, PointCloud& cloud) {
   std::uint64_t at = header.header_bytes;
   std::array<char, kRecordHeader> h{};
-  std::string keys;
-  bool named = false;
+  GeoKeys keys;
+  std::string wkt;
   for (std::uint32_t i = 0; i < header.records && at + kRecordHeader <= header.points_at; ++i) {
     const Result<std::size_t> got = file.read(at, h.data(), h.size());
     if (!got || *got != h.size()) break;
     const auto bytes = little<std::uint16_t>(&h[20]);
     const auto id = little<std::uint16_t>(&h[18]);
-    if ((id == kGeoKeys || id == kWkt) && std::string_view(&h[2], 15) == "LASF_Projection") {
-      named = true;
-      std::string body(bytes, '\0');
-      const Result<std::size_t> read = file.read(at + kRecordHeader, body.data(), body.size());
-      if (!read || *read != body.size()) break;
-      if (id == kGeoKeys) {
-        keys = std::move(body);
-      } else {
-        body.resize(std::min(body.find('\0'), body.size()));
-        cloud.crs_wkt = std::move(body);
-      }
+    std::string* const wanted = id == kWkt          ? &wkt
+                                : id == kGeoKeys    ? &keys.directory
+                                : id == kGeoNumbers ? &keys.numbers
+                                : id == kGeoText    ? &keys.text
+                                                    : nullptr;
+    if (wanted != nullptr && std::string_view(&h[2], 15) == "LASF_Projection") {
+      wanted->resize(bytes);
+      const Result<std::size_t> read = file.read(at + kRecordHeader, wanted->data(), bytes);
+      if (!read || *read != bytes) break;
     }
     at += kRecordHeader + bytes;
   }
-  if (!cloud.crs_wkt.empty()) {
-    const GdalSession quiet;
-    StatedUnits units;
-    const double middle = 0.5 * (header.low_y + header.high_y);
-    unitsOfCrs(cloud.crs_wkt, std::isfinite(middle) ? middle : 0.0, units, cloud.warnings);
-    cloud.unit = units.lateral;
-    cloud.height_unit = units.height;
-    if (!units.lateral) cloud.crs_wkt.clear();  // no system that is understood
-  }
-  takeGeoKeys(keys, cloud);
+  wkt.resize(std::min(wkt.find('\0'), wkt.size()));
+  const bool named = !wkt.empty() || !keys.directory.empty();
+  const GdalSession quiet;
+  if (!takeSystem(std::move(wkt), header, cloud)) (void)takeSystem(wktOfGeoKeys(keys), header, cloud);
+  takeGeoKeys(keys.directory, cloud);
   if (named && cloud.crs_wkt.empty())
-    cloud.warnings.emplace_back("the coordinate system is given by keys, of which only the unit is kept");
+    cloud.warnings.push_back(fmt::format("the file's coordinate system is not understood{}",
+                                         cloud.unit ? ", of it only the unit is kept" : ""));
 }
 
 }  // namespace

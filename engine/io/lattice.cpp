@@ -21,6 +21,8 @@ namespace {
 constexpr std::size_t kMostDistinct = std::size_t{1} << 20;
 constexpr double kLargestResidual = 0.1;  // of the spacing
 constexpr double kLeastTaken = 0.25;      // of the positions
+constexpr double kLeastSteps = 0.5;       // of the differences between neighbours, that are one step
+constexpr double kFarGap = 8.0;           // times the middle one
 
 // Set of doubles by open addressing. Clouds on a lattice name few distinct values very often: the last value
 // seen answers most questions, a table that stays in the cache the rest.
@@ -84,12 +86,17 @@ double fewestDigits(double value, double tolerance) {
   return value;
 }
 
-// Guesses at the spacing, from the gaps between neighbouring distinct values. Rounding splits one position
-// into several values close together; their small gaps are left out at ever higher thresholds.
-std::vector<double> spacingGuesses(const std::vector<double>& values) {
+// The differences between neighbouring distinct values, ascending.
+std::vector<double> gapsOf(const std::vector<double>& values) {
   std::vector<double> gaps(values.size() - 1);
   for (std::size_t i = 0; i < gaps.size(); ++i) gaps[i] = values[i + 1] - values[i];
   std::sort(gaps.begin(), gaps.end());
+  return gaps;
+}
+
+// Guesses at the spacing. Rounding splits one position into several values close together; their small gaps
+// are left out at ever higher thresholds.
+std::vector<double> spacingGuesses(const std::vector<double>& gaps) {
   std::vector<double> guesses;
   for (const double threshold : {0.0, 1e-6, 1e-4, 1e-3, 1e-2, 0.05, 0.2, 0.5}) {
     const auto first = std::lower_bound(gaps.begin(), gaps.end(), threshold * gaps.back());
@@ -102,9 +109,20 @@ std::vector<double> spacingGuesses(const std::vector<double>& values) {
   return guesses;
 }
 
+// A guess made better gap by gap, the short ones first: each gives the step so well that the steps of the
+// next longer one can be counted.
+double refined(const std::vector<double>& gaps, double guess) {
+  double length = 0.0, steps = 0.0;
+  for (auto gap = std::lower_bound(gaps.begin(), gaps.end(), 0.5 * guess); gap != gaps.end(); ++gap) {
+    steps += std::nearbyint(*gap / (steps > 0.0 ? length / steps : guess));
+    length += *gap;
+  }
+  return steps > 0.0 ? length / steps : guess;
+}
+
 std::optional<AxisLattice> fit(const std::vector<double>& values, double guess) {
   const double range = values.back() - values.front();
-  if (!(guess > 0.0) || range / guess > 4.0 * static_cast<double>(values.size()) + 8.0) return std::nullopt;
+  if (!(guess > 0.0) || range / guess > Grid::kMaxSide) return std::nullopt;
   // Positions step by step, so that an error of the guess does not add up along the axis.
   std::vector<double> index(values.size(), 0.0);
   for (std::size_t i = 1; i < values.size(); ++i)
@@ -139,9 +157,14 @@ std::optional<AxisLattice> fit(const std::vector<double>& values, double guess) 
   const double last = index.back();
   if (!(slope > 0.0L) || worst > kLargestResidual * slope) return std::nullopt;
   // Values of one position count once.
-  std::size_t taken = 1;
-  for (std::size_t i = 1; i < index.size(); ++i) taken += index[i] > index[i - 1] ? 1 : 0;
-  if (static_cast<double>(taken) < kLeastTaken * (last + 1.0)) return std::nullopt;
+  std::size_t taken = 1, single = 0;
+  for (std::size_t i = 1; i < index.size(); ++i) {
+    taken += index[i] > index[i - 1] ? 1 : 0;
+    single += index[i] == index[i - 1] + 1.0 ? 1 : 0;
+  }
+  if (static_cast<double>(taken) < kLeastTaken * (last + 1.0) &&
+      static_cast<double>(single) < kLeastSteps * static_cast<double>(taken - 1))
+    return std::nullopt;
 
   // Standard errors of slope and intercept (of the intercept at k = 0), and the least a double can tell.
   const double scatter = static_cast<double>(std::sqrt(squares / std::max(1.0L, n - 2.0L)));
@@ -159,6 +182,7 @@ std::optional<AxisLattice> fit(const std::vector<double>& values, double guess) 
   lattice.origin = fewestDigits(static_cast<double>(start + values.front()), start_error);
   lattice.count = static_cast<std::int64_t>(last) + 1;
   lattice.one_value_each = taken == values.size();
+  lattice.taken = static_cast<std::int64_t>(taken);
   return lattice;
 }
 
@@ -169,16 +193,34 @@ std::int64_t AxisLattice::indexOf(double value) const noexcept {
   return std::clamp<std::int64_t>(std::llround((value - origin) / spacing), 0, count - 1);
 }
 
-std::optional<AxisLattice> findAxisLattice(const std::vector<double>& values) {
+AxisLatticeSearch::AxisLatticeSearch(const std::vector<double>& values) {
   DistinctValues distinct;
   for (const double value : values)
-    if (!distinct.add(value)) return std::nullopt;
-  const std::vector<double> sorted = distinct.sorted();
-  if (sorted.empty()) return std::nullopt;
-  if (sorted.size() == 1) return AxisLattice{sorted.front(), 0.0, 1};
-  for (const double guess : spacingGuesses(sorted))
-    if (auto lattice = fit(sorted, guess); lattice && lattice->count <= Grid::kMaxSide) return lattice;
+    if (!distinct.add(value)) return;
+  values_ = distinct.sorted();
+  if (values_.size() < 2) return;
+  gaps_ = gapsOf(values_);
+  guesses_ = spacingGuesses(gaps_);
+}
+
+std::optional<AxisLattice> AxisLatticeSearch::next() {
+  if (values_.size() == 1 && at_++ == 0) return AxisLattice{values_.front(), 0.0, 1, true, 1};
+  const bool far = !gaps_.empty() && gaps_.back() > kFarGap * gaps_[gaps_.size() / 2];
+  while (at_ < guesses_.size()) {
+    const double guess = guesses_[at_++];
+    // A guess that is a little off miscounts the steps of a long gap; split positions mislead the better one.
+    auto lattice = far ? fit(values_, refined(gaps_, guess)) : std::nullopt;
+    if (!lattice) lattice = fit(values_, guess);
+    // A narrower one that no more positions are taken of is the same with gaps.
+    if (!lattice || lattice->count > Grid::kMaxSide || lattice->taken <= last_taken_) continue;
+    last_taken_ = lattice->taken;
+    return lattice;
+  }
   return std::nullopt;
+}
+
+std::optional<AxisLattice> findAxisLattice(const std::vector<double>& values) {
+  return AxisLatticeSearch(values).next();
 }
 
 }  // namespace fettle::engine

@@ -103,6 +103,9 @@ Result<Version> fromTiff(const Version& field, const InputFile& file) {
                            static_cast<std::int64_t>(directory->height), file.path());
       !s)
     return tl::unexpected(s.error());
+  if (directory->photometric == 0)
+    return inputError("0 is white in these marks (MINISWHITE): what is kept, white or black?", file.path(),
+                      "write them with 0 as black, e.g. as PNG");
   if (directory->cut)
     return inputError("the marks reach past the end of the file", file.path(), "the file is cut short");
   GdalSession gdal;
@@ -151,8 +154,10 @@ Status toPng(const Version& field, AtomicFile& file) {
 Status toTiff(const Version& field, const AtomicFile& file) {
   GdalSession gdal;
   const auto full = [&] {
-    return inputError("the file cannot be written: " + gdal.reason("the disk may be full"), file.finalPath(),
-                      "make room on the disk or choose another folder");
+    return tl::unexpected(
+        file.explained(failure("the file cannot be written: " + gdal.reason("the library gives no reason"),
+                               file.finalPath(), "look at the disk or choose another folder")
+                           .value()));
   };
   const std::array<const char*, 3> options{"COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", nullptr};
   const std::int32_t width = field.grid().width;

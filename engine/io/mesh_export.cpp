@@ -13,6 +13,7 @@
 
 #include "engine/io/format.h"
 #include "engine/io/mesh_export.h"
+#include "engine/io/ply_header.h"
 #include "engine/io/surface_mesh.h"
 #include "engine/io/text_writer.h"
 
@@ -144,13 +145,10 @@ Result<Exported> writePlyMesh(const Version& field, const std::string& path, con
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   TextWriter out{*file};
-  out.text = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment {}\nelement vertex {}\nproperty double x\nproperty "
-      "double y\n"
-      "property float z\nelement face {}\nproperty list uchar uint vertex_indices\nend_header\n",
-      grid.lateral_unit == grid.height_unit
-          ? fmt::format("units {}", grid.lateral_unit.name)
-          : fmt::format("x and y in {}, z in {}", grid.lateral_unit.name, grid.height_unit.name),
+  out.text = "ply\nformat binary_little_endian 1.0\n" + plyRasterComments(grid);
+  out.text += fmt::format(
+      "element vertex {}\nproperty double x\nproperty double y\nproperty float z\nelement face {}\nproperty "
+      "list uchar uint vertex_indices\nend_header\n",
       corners, all->triangles);
   const auto width = static_cast<std::uint64_t>(grid.width);
   for (std::uint64_t i = 0; i < number.size(); ++i) {

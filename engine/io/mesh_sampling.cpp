@@ -1,13 +1,13 @@
 #include "engine/io/mesh_sampling.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "engine/io/cell_choice.h"
 #include "engine/io/field_limits.h"
 #include "engine/io/lattice.h"
 #include "engine/io/units.h"
@@ -34,17 +34,12 @@ struct Extent {
 struct Axes {
   AxisLattice x, y;
   bool raster = false;  // every corner is one of its points but for the rounding of its coordinates
+  bool stated = false;  // by the file
 };
 
 AxisLattice cellsOver(const Extent& extent, double size) {
   const double steps = std::floor((extent.high - extent.low) / size + 1e-9);
   return {extent.low, size, steps < 1e15 ? static_cast<std::int64_t>(steps) + 1 : std::int64_t{1} << 52};
-}
-
-double twoDigits(double value) {
-  const std::string text = fmt::format("{:.1e}", value);
-  std::from_chars(text.data(), text.data() + text.size(), value);
-  return value;
 }
 
 std::vector<double> finiteOnes(const std::vector<double>& values) {
@@ -70,6 +65,9 @@ Result<Axes> chooseAxes(const PointCloud& corners, const ImportOptions& options,
   if (options.cell_size || options.spacing)
     return Axes{cellsOver(ex, options.cell_size ? *options.cell_size : options.spacing->first),
                 cellsOver(ey, options.cell_size ? *options.cell_size : options.spacing->second)};
+  if (const auto stated = statedCells(corners);
+      stated && stated->count() <= std::max(kMostStatedCells, kMostCellsACorner * count))
+    return Axes{stated->x, stated->y, true, true};
   const auto x = findAxisLattice(finiteOnes(corners.x));
   const auto y = x ? findAxisLattice(finiteOnes(corners.y)) : std::nullopt;
   if (x && y && x->count > 1 && y->count > 1 &&
@@ -199,6 +197,7 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
   Grid grid;
   StatedUnits units;
   units.lateral = corners.unit;
+  units.height = corners.height_unit;
   units.spacing = std::pair{1.0, 1.0};  // settled below, from the corners themselves
   ImportOptions unit_only;
   unit_only.unit = options.unit;
@@ -219,6 +218,8 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
   grid.spacing_y = axes->y.spacing;
   grid.origin_x = axes->x.origin;
   grid.origin_y = axes->y.origin;
+  if (axes->stated)
+    grid.height_per_count = corners.raster->height_per_count * std::abs(options.z_scale.value_or(1.0));
 
   const auto corner = [&](std::uint32_t i) {
     if (axes->raster)
@@ -269,7 +270,7 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
   if (job.cancelled()) return cancelled();
   warnings.push_back(fmt::format(
       "a mesh of {} triangles, sampled from above: what lies underneath is left out", mesh.triangles.size()));
-  return finishImport(std::move(*builder), tally, std::move(format), std::move(warnings), path);
+  return finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings), path);
 }
 
 }  // namespace fettle::engine

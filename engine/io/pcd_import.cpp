@@ -2,7 +2,6 @@
 // field and packed with LZF. Only x, y and z are read.
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -54,11 +53,6 @@ std::vector<std::string_view> words(std::string_view line) {
     all.push_back(line.substr(from, at - from));
   }
   return all;
-}
-
-bool wholeNumber(std::string_view word, std::uint64_t& out) {
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), out);
-  return error == std::errc{} && end == word.data() + word.size();
 }
 
 class PcdHeaderReader {
@@ -247,6 +241,7 @@ class PcdBody {
       cloud.add(point[0], point[1], point[2]);
       if (Status s = step(i); !s) return s;
     }
+    if (text_.lastLineIsOpen()) cloud.warnings.emplace_back(kOpenLastLine);
     return {};
   }
 

@@ -2,56 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "engine/io/field_limits.h"
+#include "engine/io/line_fit.h"
 #include "engine/io/units.h"
 
 namespace fettle::engine {
 
 namespace {
 
-// A straight line index = scale * value + offset, by least squares, and how far the indices are off it.
-struct Line {
-  double scale = 0.0, offset = 0.0;
-  double rms = std::numeric_limits<double>::infinity();  // [indices]
-};
-
-class LineFit {
- public:
-  void add(double value, double index) {
-    ++n_;
-    const double dv = value - mean_v_, di = index - mean_i_;
-    mean_v_ += dv / n_;
-    mean_i_ += di / n_;
-    vv_ += dv * (value - mean_v_);
-    ii_ += di * (index - mean_i_);
-    vi_ += dv * (index - mean_i_);
-  }
-  [[nodiscard]] Line line() const {
-    if (!(vv_ > 0.0) || n_ < 8.0) return {};
-    const double scale = vi_ / vv_;
-    return {scale, mean_i_ - scale * mean_v_, std::sqrt(std::max(0.0, ii_ - scale * vi_) / n_)};
-  }
-
- private:
-  double n_ = 0, mean_v_ = 0, mean_i_ = 0, vv_ = 0, ii_ = 0, vi_ = 0;
-};
-
 constexpr double kPixelOff = 0.5;      // more, and it is no camera [pixels]
 constexpr double kPositionOff = 0.05;  // less, and the points lie on a raster [spacings]
 
 struct CloudFit {
-  Line column_by_x, row_by_y;          // a raster seen from above
-  Line column_by_slope, row_by_slope;  // a camera: x / z, y / z
+  IndexLine column_by_x, row_by_y;          // a raster seen from above
+  IndexLine column_by_slope, row_by_slope;  // a camera: x / z, y / z
 };
 
 CloudFit fitCloud(const PointCloud& cloud, std::uint64_t width) {
-  LineFit x, y, x_slope, y_slope;
+  constexpr double kFewest = 8.0;
+  IndexLineFit x, y, x_slope, y_slope;
   for (std::size_t i = 0; i < cloud.z.size(); ++i) {
     if (std::isnan(cloud.z[i])) continue;
     const auto column = static_cast<double>(i % width), row = static_cast<double>(i / width);
@@ -61,7 +35,7 @@ CloudFit fitCloud(const PointCloud& cloud, std::uint64_t width) {
     x_slope.add(cloud.x[i] / cloud.z[i], column);
     y_slope.add(cloud.y[i] / cloud.z[i], row);
   }
-  return {x.line(), y.line(), x_slope.line(), y_slope.line()};
+  return {x.line(kFewest), y.line(kFewest), x_slope.line(kFewest), y_slope.line(kFewest)};
 }
 
 double medianHeight(const Version& field) {
@@ -77,17 +51,6 @@ double medianHeight(const Version& field) {
   const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
   std::nth_element(heights.begin(), middle, heights.end());
   return *middle;
-}
-
-void dropHoles(PointCloud& cloud) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < cloud.z.size(); ++i) {
-    if (std::isnan(cloud.z[i])) continue;
-    cloud.x[kept] = cloud.x[i];
-    cloud.y[kept] = cloud.y[i];
-    cloud.z[kept++] = cloud.z[i];
-  }
-  for (auto* axis : {&cloud.x, &cloud.y, &cloud.z}) axis->resize(kept);
 }
 
 }  // namespace
@@ -119,7 +82,7 @@ Result<Imported> gridOrganized(PointCloud&& cloud, std::uint64_t width, std::uin
   const bool raster = fit.column_by_x.rms < kPositionOff && fit.row_by_y.rms < kPositionOff;
   const bool camera = fit.column_by_slope.rms < kPixelOff && fit.row_by_slope.rms < kPixelOff;
   if (raster || !camera || options.cell_size || options.spacing) {
-    dropHoles(cloud);
+    cloud.dropHoles();
     return gridPoints(std::move(cloud), options, std::move(format), path, job);
   }
   if (Status fits = checkFieldSize(width, height, 0, path); !fits) return tl::unexpected(fits.error());
@@ -146,7 +109,7 @@ Result<Imported> gridOrganized(PointCloud&& cloud, std::uint64_t width, std::uin
   }
   tally.rounding = 0.0;  // floats to begin with, or doubles of a sensor that measures far less
   Result<Imported> imported =
-      finishImport(std::move(*builder), tally, std::move(format), std::move(warnings), path);
+      finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings), path);
   if (imported) {
     const DepthCamera fitted{std::abs(fit.column_by_slope.scale), std::abs(fit.row_by_slope.scale),
                              fit.column_by_slope.offset, fit.row_by_slope.offset};

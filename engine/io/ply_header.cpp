@@ -2,12 +2,12 @@
 
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstring>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "engine/io/grid_notes.h"
 #include "engine/io/text_reader.h"
 #include "engine/io/units.h"
 
@@ -52,6 +52,13 @@ T load(const char* bytes, bool swap) noexcept {
   return std::bit_cast<T>(raw);
 }
 
+// "obj_info num_cols 512": what programs of one's own may say. Lines that are not of this kind mean nothing.
+void takeObjectInfo(const std::vector<std::string_view>& words, PlyHeader& header) {
+  if (words.size() != 3) return;
+  if (words[1] == "num_cols" && !wholeNumber(words[2], header.range_columns)) header.range_columns = 0;
+  if (words[1] == "num_rows" && !wholeNumber(words[2], header.range_rows)) header.range_rows = 0;
+}
+
 // One line of the header into `header`; false if it is wrong.
 bool takeLine(const std::vector<std::string_view>& words, PlyHeader& header, bool& format_seen) {
   if (words[0] == "format" && words.size() >= 2) {
@@ -68,9 +75,7 @@ bool takeLine(const std::vector<std::string_view>& words, PlyHeader& header, boo
   }
   if (words[0] == "element" && words.size() == 3) {
     PlyElement element{std::string(words[1]), 0, {}};
-    const char* const end = words[2].data() + words[2].size();
-    const auto [stop, error] = std::from_chars(words[2].data(), end, element.count);
-    if (error != std::errc{} || stop != end) return false;
+    if (!wholeNumber(words[2], element.count)) return false;
     header.elements.push_back(std::move(element));
     return true;
   }
@@ -137,21 +142,34 @@ std::optional<std::size_t> PlyElement::indexOf(const std::string& property) cons
   return std::nullopt;
 }
 
+std::string plyRasterComments(const Grid& grid) {
+  std::string text;
+  for (const std::string& line : rasterNotes(grid)) text += "comment " + line + '\n';
+  return text;
+}
+
 Result<PlyHeader> readPlyHeader(const InputFile& file) {
   TextReader text(file);
   PlyHeader header;
   std::string_view line;
   bool format_seen = false;
+  RasterNotesReader notes;
   for (int number = 1; number <= kMostHeaderLines && text.line(line); ++number) {
     const std::vector<std::string_view> words = wordsOf(line);
-    if (words.empty() || words[0] == "ply" || words[0] == "obj_info") continue;
+    if (words.empty() || words[0] == "ply") continue;
+    if (words[0] == "obj_info") {
+      takeObjectInfo(words, header);
+      continue;
+    }
     if (words[0] == "comment") {
+      notes.take(line.substr(line.find("comment") + 7));
       if (!header.unit) header.unit = lengthUnitFromComment(line);
       continue;
     }
     if (words[0] == "end_header") {
       if (!format_seen) break;
       header.body = text.offset();
+      header.raster = notes.raster();
       return header;
     }
     if (!takeLine(words, header, format_seen))

@@ -41,8 +41,15 @@ struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::kAscii;
   std::vector<PlyElement> elements;
   std::optional<LengthUnit> unit;  ///< from a comment "units mm"
-  std::uint64_t body = 0;          ///< offset of the first byte behind the header
+  std::optional<Grid> raster;      ///< from comments such as plyRasterComments writes
+  /// From "obj_info num_cols" and "num_rows": sides of the raster that an element "range_grid" fills.
+  std::uint64_t range_columns = 0, range_rows = 0;
+  std::uint64_t body = 0;  ///< offset of the first byte behind the header
 };
+
+/// The lines of a header that state a field's raster and units, for readPlyHeader; other programs pass them
+/// over. Each with its end.
+[[nodiscard]] std::string plyRasterComments(const Grid& grid);
 
 /// Errors (kInput): not a PLY header, one that never ends, unknown types, a count that no file holds.
 [[nodiscard]] Result<PlyHeader> readPlyHeader(const InputFile& file);

@@ -7,6 +7,7 @@
 #include "engine/io/format.h"
 #include "engine/io/mesh_sampling.h"
 #include "engine/io/ply_header.h"
+#include "engine/io/range_grid.h"
 #include "engine/io/text_reader.h"
 
 namespace fettle::engine {
@@ -18,35 +19,51 @@ class PlyBody {
   PlyBody(const InputFile& file, const PlyHeader& header, JobControl& job)
       : file_(file), header_(header), text_(file, header.body), job_(job) {}
 
-  // Points, and triangles where there are faces. Elements behind the last of the two are not looked at.
-  Status read(TriangleMesh& mesh) {
-    const PlyElement* const faces = faceElement(header_);
-    mesh.corners.organized = faces != nullptr;  // faces count them
-    bool vertices_read = false;
+  // Points, and the places of a range grid or the triangles of faces where there are such. Elements behind
+  // the last of the two are not looked at.
+  Status read(TriangleMesh& mesh, RangeGrid& range) {
+    const PlyElement* const places = rangeElement(header_);
+    const PlyElement* const faces = places == nullptr ? listElement(header_, "face") : nullptr;
+    mesh.corners.organized = places != nullptr || faces != nullptr;  // they count them
+    bool vertices_read = false, lists_read = places == nullptr && faces == nullptr;
     for (const PlyElement& element : header_.elements) {
       Status status;
       if (element.name == "vertex" && !vertices_read) {
         status = readVertices(element, mesh.corners);
         vertices_read = true;
+      } else if (&element == places) {
+        status = readRange(element, range);
+        lists_read = true;
+      } else if (&element == faces) {
+        status = readLists<Fan>(element, mesh, "face");
+        lists_read = true;
       } else {
-        status = &element == faces ? readFaces(element, mesh) : skipElement(element);
+        status = skipElement(element);
       }
       if (!status) return status;
-      if (vertices_read && (faces == nullptr || &element == faces)) return {};
+      if (vertices_read && lists_read) break;
     }
-    if (vertices_read) return {};  // the faces came first
+    if (vertices_read) {
+      if (ascii() && text_.lastLineIsOpen()) mesh.corners.warnings.emplace_back(kOpenLastLine);
+      return {};
+    }
     return inputError("the file holds no vertices", file_.path(), "is this a file of points?");
   }
 
-  // The element with faces, null if there is none or it is empty.
-  static const PlyElement* faceElement(const PlyHeader& header) {
+ private:
+  // The element of a name that lists vertices, null if there is none or it is empty.
+  static const PlyElement* listElement(const PlyHeader& header, std::string_view name) {
     for (const PlyElement& element : header.elements)
-      if (element.name == "face" && element.count > 0 && cornerList(element) < element.properties.size())
+      if (element.name == name && element.count > 0 && cornerList(element) < element.properties.size())
         return &element;
     return nullptr;
   }
 
- private:
+  // Without the sides of the grid its places mean nothing, and the file is one of points.
+  static const PlyElement* rangeElement(const PlyHeader& header) {
+    return header.range_columns > 0 && header.range_rows > 0 ? listElement(header, "range_grid") : nullptr;
+  }
+
   [[nodiscard]] bool ascii() const { return header_.encoding == PlyEncoding::kAscii; }
   [[nodiscard]] std::uint64_t left() const { return file_.size() - text_.offset(); }
 
@@ -100,25 +117,55 @@ class PlyBody {
     std::uint64_t corners_ = 0;
   };
 
-  Status readFaces(const PlyElement& element, TriangleMesh& mesh) {
+  // A place of a range grid: the number of its point, or none.
+  class Place {
+   public:
+    explicit Place(RangeGrid& range) : range_(range) { range.points.push_back(RangeGrid::kNone); }
+    bool add(double index) {
+      if (!(index >= 0.0 && index < 4294967295.0)) return false;
+      if (range_.points.back() == RangeGrid::kNone) range_.points.back() = static_cast<std::uint32_t>(index);
+      return true;
+    }
+
+   private:
+    RangeGrid& range_;
+  };
+
+  Status readRange(const PlyElement& element, RangeGrid& range) {
+    range.columns = header_.range_columns;
+    range.rows = header_.range_rows;
+    if (element.count / range.columns != range.rows || element.count % range.columns != 0)
+      return inputError(
+          fmt::format("the range grid of {} x {} has {} places", range.columns, range.rows, element.count),
+          file_.path(), "the file is damaged");
+    if (promisesTooMuch(element)) return endsEarly();
+    range.points.reserve(element.count);
+    return readLists<Place>(element, range, "place");
+  }
+
+  // Lists of vertices, each into a Sink of its own on `target`: what is made when a list begins and takes the
+  // numbers in it, false for what cannot be one.
+  template <class Sink, class Target>
+  Status readLists(const PlyElement& element, Target& target, const char* what) {
     if (promisesTooMuch(element)) return endsEarly();
     const std::size_t list = cornerList(element);
     const auto damaged = [&](std::uint64_t i) {
-      return inputError(fmt::format("face {} does not hold the numbers that the header says", i + 1),
+      return inputError(fmt::format("{} {} does not hold the numbers that the header says", what, i + 1),
                         file_.path(), "the file is damaged or cut short");
     };
     std::string_view line;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       if (ascii() && !nextLine(line)) return endsEarly();
-      const bool read =
-          ascii() ? readAsciiFace(line, element, list, mesh) : readBinaryFace(element, list, mesh);
+      const bool read = ascii() ? readAsciiList<Sink>(line, element, list, target)
+                                : readBinaryList<Sink>(element, list, target);
       if (!read) return text_.status() ? Status(damaged(i)) : text_.status();
       if (Status s = step(i); !s) return s;
     }
     return {};
   }
 
-  bool readBinaryFace(const PlyElement& element, std::size_t list, TriangleMesh& mesh) {
+  template <class Sink, class Target>
+  bool readBinaryList(const PlyElement& element, std::size_t list, Target& target) {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       if (p != list) {
@@ -128,17 +175,18 @@ class PlyBody {
       const char* raw = text_.bytes(bytesOf(*property.count_type));
       if (raw == nullptr) return false;
       const double items = decodePly(raw, *property.count_type, header_.encoding);
-      Fan fan(mesh);
+      Sink sink(target);
       for (double k = 0.0; k < items; k += 1.0) {
         raw = text_.bytes(bytesOf(property.type));
-        if (raw == nullptr || !fan.add(decodePly(raw, property.type, header_.encoding))) return false;
+        if (raw == nullptr || !sink.add(decodePly(raw, property.type, header_.encoding))) return false;
       }
     }
     return true;
   }
 
-  static bool readAsciiFace(std::string_view line, const PlyElement& element, std::size_t list,
-                            TriangleMesh& mesh) {
+  template <class Sink, class Target>
+  static bool readAsciiList(std::string_view line, const PlyElement& element, std::size_t list,
+                            Target& target) {
     const char* at = line.data();
     const char* const end = at + line.size();
     const auto next = [&](double& value) {
@@ -149,9 +197,14 @@ class PlyBody {
       double value = 0.0, item = 0.0;
       if (!next(value)) return false;
       if (!element.properties[p].count_type) continue;
-      Fan fan(mesh);
+      if (p != list) {
+        for (double k = 0.0; k < value; k += 1.0)
+          if (!next(item)) return false;
+        continue;
+      }
+      Sink sink(target);
       for (double k = 0.0; k < value; k += 1.0)
-        if (!next(item) || (p == list && !fan.add(item))) return false;
+        if (!next(item) || !sink.add(item)) return false;
     }
     return true;
   }
@@ -322,7 +375,11 @@ Result<Imported> readPly(const InputFile& file, const ImportOptions& options, Jo
   job.begin("reading", file.size());
   TriangleMesh mesh;
   mesh.corners.unit = header->unit;
-  if (Status status = PlyBody(file, *header, job).read(mesh); !status) return tl::unexpected(status.error());
+  mesh.corners.takeRaster(header->raster);
+  RangeGrid range;
+  if (Status status = PlyBody(file, *header, job).read(mesh, range); !status)
+    return tl::unexpected(status.error());
+  if (range.columns > 0) return gridRange(std::move(mesh.corners), range, options, "PLY", file.path(), job);
   return mesh.corners.organized ? sampleMesh(std::move(mesh), options, "PLY", file.path(), job)
                                 : gridPoints(std::move(mesh.corners), options, "PLY", file.path(), job);
 }

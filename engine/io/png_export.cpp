@@ -68,9 +68,12 @@ Result<Exported> writePng(const Version& field, const std::string& path, const E
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   const std::string& unit = grid.height_unit.name;
-  const std::string rule =
-      q.counts_given_back ? fmt::format("height = count * {} {}, 0 = no data", q.step, unit)
-                          : fmt::format("height = {} + count * {} {}, 0 = no data", q.offset, q.step, unit);
+  std::string rule = q.counts_given_back ? fmt::format("height = count * {} {}", q.step, unit)
+                                         : fmt::format("height = {} + count * {} {}", q.offset, q.step, unit);
+  // Without holes 0 may be a height (fits).
+  const bool zero_is_height = !reader.bounds().empty() && !hasHoles(reader) &&
+                              std::nearbyint((double{reader.bounds().min} - q.offset) / q.step) < 1.0;
+  if (!zero_is_height) rule += ", 0 = no data";
   PngHeader header;
   header.width = grid.width;
   header.height = grid.height;

@@ -2,6 +2,9 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -10,6 +13,7 @@
 #include "engine/io/field_limits.h"
 #include "engine/io/format.h"
 #include "engine/io/png_stream.h"
+#include "engine/io/sidecar.h"
 #include "engine/io/units.h"
 
 namespace fettle::engine {
@@ -21,6 +25,23 @@ bool isPrintResolution(std::uint32_t per_metre) {
   for (const double inch : {72.0, 96.0, 150.0, 300.0, 600.0})
     if (std::abs(per_metre - inch / 0.0254) < 1.0) return true;
   return false;
+}
+
+// What a PNG of ours says of its counts (png_export.cpp): "height = -2 + count * 0.005 mm, 0 = no data; ...".
+// Counts stay counts, as in any PNG, but its holes are holes and the way to heights is pointed out.
+struct CountRule {
+  std::string height;  // the right-hand side
+  bool zero_is_hole = false;
+};
+
+std::optional<CountRule> countRuleOf(const std::string& description) {
+  constexpr std::string_view kBegin = "height = ", kHole = ", 0 = no data";
+  if (!description.starts_with(kBegin) || description.find("count * ") == std::string::npos)
+    return std::nullopt;
+  const std::string rule = description.substr(kBegin.size(), description.find(';') - kBegin.size());
+  const std::size_t comma = rule.find(',');
+  return CountRule{rule.substr(0, comma),
+                   comma != std::string::npos && std::string_view(rule).substr(comma) == kHole};
 }
 
 template <class T>
@@ -72,6 +93,14 @@ Result<Imported> readPng(const InputFile& file, const ImportOptions& options, Jo
   rule.scale = options.z_scale.value_or(1.0);
   rule.user_no_data = options.no_data;
   if (header.transparent) rule.declared_no_data = *header.transparent;
+  if (const auto stated = countRuleOf(header.description)) {
+    if (stated->zero_is_hole) rule.declared_no_data = 0.0;
+    if (!options.z_scale)
+      warnings.push_back(fmt::format(
+          "the file says height = {}: counts were read, --z-scale makes heights of them", stated->height));
+  }
+  const Sidecar beside = readAuxXml(file.path(), warnings);
+  rule.declared_no_data = settledNoData(rule.declared_no_data, beside, warnings);
   grid.height_per_count = std::abs(rule.scale);
 
   Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), file.path());
@@ -81,7 +110,7 @@ Result<Imported> readPng(const InputFile& file, const ImportOptions& options, Jo
   const Status status = header.bits == 16 ? readRows<std::uint16_t>(*reader, rule, *builder, tally, job)
                                           : readRows<std::uint8_t>(*reader, rule, *builder, tally, job);
   if (!status) return tl::unexpected(status.error());
-  return finishImport(std::move(*builder), tally, "PNG", std::move(warnings), file.path());
+  return finishImport(std::move(*builder), rule, tally, "PNG", std::move(warnings), file.path());
 }
 
 }  // namespace fettle::engine

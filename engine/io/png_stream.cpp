@@ -4,6 +4,7 @@
 #include <csetjmp>
 #include <cstdlib>
 #include <cstring>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <png.h>
@@ -55,6 +56,21 @@ struct PngReader::State {
   static void release(png_structp, png_voidp memory) { std::free(memory); }
   [[nodiscard]] tl::unexpected<Error> damaged() const {
     return inputError("the PNG cannot be read: " + message, file->path(), "the file is cut short or damaged");
+  }
+
+  // What stands before the samples. Texts behind them come too late for reading these.
+  [[nodiscard]] std::string description() const {
+    png_textp texts = nullptr;
+    int count = 0;
+    png_get_text(png, info, &texts, &count);
+    for (int i = 0; i < count; ++i) {
+      if (texts[i].key == nullptr || texts[i].text == nullptr ||
+          std::strcmp(texts[i].key, "Description") != 0)
+        continue;
+      const std::string_view text = texts[i].text;
+      return std::string(text.substr(0, text.find_first_of("\r\n")));
+    }
+    return {};
   }
 
   // Each returns false after a longjmp.
@@ -140,6 +156,7 @@ Status PngReader::readHeader() {
   if (png_get_pHYs(s.png, s.info, &across, &down, &unit) != 0 && unit == PNG_RESOLUTION_METER && across > 0 &&
       down > 0)
     header_.per_metre = std::pair{std::uint32_t{across}, std::uint32_t{down}};
+  header_.description = s.description();
   return s.prepare(header_.alpha) ? Status{} : s.damaged();
 }
 
@@ -194,7 +211,7 @@ struct PngWriter::State {
 
   [[nodiscard]] tl::unexpected<Error> error() const {
     if (!status) return tl::unexpected(status.error());
-    return inputError("the PNG cannot be written: " + message, file->finalPath());
+    return failure("the PNG cannot be written: " + message, file->finalPath());
   }
   bool begin(const PngHeader& header, png_textp text, int texts) {
     if (setjmp(png_jmpbuf(png)) != 0) return false;

@@ -25,6 +25,7 @@ struct PngHeader {
   bool interlaced = false;  ///< the whole picture is held while it is read
   std::optional<std::uint16_t> transparent;  ///< the one value that the file calls transparent
   std::optional<std::pair<std::uint32_t, std::uint32_t>> per_metre;  ///< pixels across, down
+  std::string description;  ///< of a file that is read: its text "Description", empty if none; one line
 };
 
 /// Reads a grey PNG. Threading: one thread at a time.
@@ -59,7 +60,8 @@ class PngReader {
 /// Writes a grey PNG of 8 or 16 bits into an AtomicFile, which it does not commit.
 class PngWriter {
  public:
-  /// `text`: a comment kept under the keyword "Description", empty for none. per_metre: see PngHeader.
+  /// `text`: a comment kept under the keyword "Description", empty for none; header.description is not looked
+  /// at. per_metre: see PngHeader.
   [[nodiscard]] static Result<PngWriter> create(AtomicFile& file, const PngHeader& header,
                                                 const std::string& text);
   PngWriter(PngWriter&&) noexcept;

@@ -12,18 +12,14 @@
 #include <fmt/format.h>
 
 #include "engine/io/format.h"
+#include "engine/io/grid_notes.h"
 #include "engine/io/mesh_export.h"
+#include "engine/io/ply_header.h"
 #include "engine/io/text_writer.h"
 
 namespace fettle::engine {
 
 namespace {
-
-std::string unitComment(const Grid& grid) {
-  return grid.lateral_unit == grid.height_unit
-             ? fmt::format("units {}", grid.lateral_unit.name)
-             : fmt::format("x and y in {}, z in {}", grid.lateral_unit.name, grid.height_unit.name);
-}
 
 std::vector<std::string> whatIsLost(const Version& field) {
   const Grid& grid = field.grid();
@@ -75,7 +71,10 @@ Result<Exported> writeXyz(const Version& field, const std::string& path, const E
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   TextWriter out{*file};
-  out.text = fmt::format("# x y z, {}\n", unitComment(field.grid()));
+  // CloudCompare takes names of columns from a first line that begins with //, GDAL passes all lines that
+  // begin with a slash over, and neither takes names or comments anywhere else.
+  out.text = "//X Y Z\n";
+  for (const std::string& line : rasterNotes(field.grid())) out.text += "// " + line + '\n';
   const Status status = writePoints(field, out, job, [](double x, double y, float z, std::string& text) {
     fmt::format_to(std::back_inserter(text), "{} {} {}\n", x, y, z);
   });
@@ -90,11 +89,10 @@ Result<Exported> writePly(const Version& field, const std::string& path, const E
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   TextWriter out{*file};
-  out.text = fmt::format(
-      "ply\nformat binary_little_endian 1.0\ncomment {}\nelement vertex {}\nproperty double x\nproperty "
-      "double y\n"
-      "property float z\nend_header\n",
-      unitComment(field.grid()), pointsIn(field));
+  out.text = "ply\nformat binary_little_endian 1.0\n" + plyRasterComments(field.grid());
+  out.text +=
+      fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty float z\nend_header\n",
+                  pointsIn(field));
   const Status status = writePoints(field, out, job, [](double x, double y, float z, std::string& text) {
     appendLittleEndian(x, text);
     appendLittleEndian(y, text);

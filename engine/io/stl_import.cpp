@@ -16,7 +16,7 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr std::uint64_t kHeader = 84;
+constexpr std::uint64_t kStlHeader = 84;
 constexpr std::uint64_t kTriangle = 50;
 constexpr std::uint64_t kLook = 65536;
 
@@ -28,7 +28,7 @@ void addTriangle(TriangleMesh& mesh) {
 Status readBytes(const InputFile& file, std::uint64_t count, TriangleMesh& mesh, JobControl& job) {
   for (auto* axis : {&mesh.corners.x, &mesh.corners.y, &mesh.corners.z}) axis->reserve(count * 3);
   mesh.triangles.reserve(count);
-  TextReader body(file, kHeader);
+  TextReader body(file, kStlHeader);
   job.begin("reading", count);
   for (std::uint64_t i = 0; i < count; ++i) {
     const char* triangle = body.bytes(kTriangle);
@@ -93,12 +93,12 @@ bool looksLikeStl(std::string_view head, std::string_view extension) {
 Result<Imported> readStl(const InputFile& file, const ImportOptions& options, JobControl& job) {
   TriangleMesh mesh;
   mesh.corners.organized = true;
-  std::array<char, kHeader> head{};
+  std::array<char, kStlHeader> head{};
   const Result<std::size_t> got = file.read(0, head.data(), head.size());
   if (!got) return tl::unexpected(got.error());
   // Files of bytes may begin with "solid" too: their size tells.
   const auto count = static_cast<std::uint64_t>(little<std::uint32_t>(&head[80]));
-  const bool whole = *got == kHeader && file.size() - kHeader >= count * kTriangle;
+  const bool whole = *got == kStlHeader && file.size() - kStlHeader >= count * kTriangle;
   const bool text = std::string_view(head.data(), 5) == "solid" && looksLikeText({head.data(), *got});
   Status status;
   if (text)

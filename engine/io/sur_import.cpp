@@ -23,7 +23,7 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr std::size_t kHeader = 512;
+constexpr std::size_t kSurHeader = 512;
 constexpr double kZlibRatio = 1032.0;  // the most that Deflate packs
 
 struct SurHeader {
@@ -48,10 +48,10 @@ std::string textAt(const char* bytes, std::size_t length) {
 }
 
 Result<SurHeader> readHeader(const InputFile& file) {
-  std::array<char, kHeader> h{};
+  std::array<char, kSurHeader> h{};
   const Result<std::size_t> got = file.read(0, h.data(), h.size());
   if (!got) return tl::unexpected(got.error());
-  if (*got < kHeader) return inputError("the header is cut short", file.path(), "the file is cut short");
+  if (*got < kSurHeader) return inputError("the header is cut short", file.path(), "the file is cut short");
   const auto at16 = [&](std::size_t i) { return little<std::int16_t>(&h[i]); };
   const auto at32 = [&](std::size_t i) { return little<std::int32_t>(&h[i]); };
   const auto real = [&](std::size_t i) { return little<float>(&h[i]); };
@@ -84,7 +84,7 @@ Result<SurHeader> readHeader(const InputFile& file) {
   out.x0 = real(466);
   out.y0 = real(470);
   out.z0 = real(474);
-  out.data = kHeader + static_cast<std::uint16_t>(at16(334)) + static_cast<std::uint16_t>(at16(336));
+  out.data = kSurHeader + static_cast<std::uint16_t>(at16(334)) + static_cast<std::uint16_t>(at16(336));
   if (out.width <= 0 || out.height <= 0 || out.points != out.width * out.height)
     return inputError(
         fmt::format("the header says {} x {} samples and {} in all", out.width, out.height, out.points),
@@ -229,7 +229,7 @@ Result<Imported> readSur(const InputFile& file, const ImportOptions& options, Jo
   std::vector<std::string> warnings;
   StatedUnits units;
   units.lateral = lengthUnitFromName(header->unit_x);
-  units.height = lengthUnitFromName(header->unit_z);
+  units.height = heightUnitNamed(header->unit_z, options, warnings);
   if (header->unit_x != header->unit_y)
     return inputError(fmt::format("x is in {}, y in {}", header->unit_x, header->unit_y), file.path(),
                       "export it with one unit");
@@ -260,7 +260,7 @@ Result<Imported> readSur(const InputFile& file, const ImportOptions& options, Jo
   if (!status) return tl::unexpected(status.error());
   // As long as each count can be told from the next, its float stands for it and nothing is lost.
   if (tally.rounding < 0.5 * std::abs(rule.scale)) tally.rounding = 0.0;
-  return finishImport(std::move(*builder), tally, "SUR", std::move(warnings), file.path());
+  return finishImport(std::move(*builder), rule, tally, "SUR", std::move(warnings), file.path());
 }
 
 }  // namespace fettle::engine

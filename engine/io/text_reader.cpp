@@ -50,6 +50,7 @@ bool TextReader::line(std::string_view& text) {
       text = {buffer_.data() + begin_, last - begin_};
       if (text.ends_with('\r')) text.remove_suffix(1);
       begin_ = found != nullptr ? last + 1 : last;
+      open_ = found == nullptr;
       return true;
     }
   }
@@ -134,6 +135,11 @@ bool parseNumber(const char*& begin, const char* end, Float& number) noexcept {
 }
 template bool parseNumber<float>(const char*&, const char*, float&) noexcept;
 template bool parseNumber<double>(const char*&, const char*, double&) noexcept;
+
+bool wholeNumber(std::string_view word, std::uint64_t& number) noexcept {
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return error == std::errc{} && end == word.data() + word.size();
+}
 
 bool looksLikeText(std::string_view head) noexcept {
   return std::ranges::none_of(head, [](char c) {

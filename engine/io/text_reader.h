@@ -27,6 +27,10 @@ class TextReader {
   /// Skips bytes; the caller has made sure that they are there.
   void skip(std::uint64_t count);
 
+  /// Whether the line given last is the file's last and has no end: a file that was cut within its last
+  /// number reads as if it held another one.
+  [[nodiscard]] bool lastLineIsOpen() const noexcept { return open_; }
+
   /// Offset in the file of what comes next.
   [[nodiscard]] std::uint64_t offset() const noexcept { return file_offset_ - (end_ - begin_); }
   [[nodiscard]] const Status& status() const noexcept { return status_; }
@@ -42,8 +46,13 @@ class TextReader {
   std::vector<char> buffer_;
   std::size_t begin_ = 0;  // of what was not given out yet
   std::size_t end_ = 0;
+  bool open_ = false;
   Status status_;
 };
+
+/// What is warned of where TextReader::lastLineIsOpen().
+inline constexpr const char* kOpenLastLine =
+    "the last line has no end: the file may be cut short inside its last number";
 
 /// Reads one decimal number (optional sign, exponent, nan, inf; never the locale's comma) from the front of
 /// [begin, end) and moves `begin` behind it. Out of range gives infinity or zero, as the exact value would
@@ -52,6 +61,9 @@ template <class Float>
 [[nodiscard]] bool parseNumber(const char*& begin, const char* end, Float& number) noexcept;
 extern template bool parseNumber<float>(const char*&, const char*, float&) noexcept;
 extern template bool parseNumber<double>(const char*&, const char*, double&) noexcept;
+
+/// Reads a number of digits alone, all of `word`. False if it is none or past 2^64.
+[[nodiscard]] bool wholeNumber(std::string_view word, std::uint64_t& number) noexcept;
 
 /// Whether bytes look like text: no control characters but white space.
 [[nodiscard]] bool looksLikeText(std::string_view head) noexcept;

@@ -17,6 +17,7 @@ enum Tag : std::uint64_t {
   kHeight = 257,
   kBits = 258,
   kCompression = 259,
+  kPhotometric = 262,
   kStripOffsets = 273,
   kSamplesPerPixel = 277,
   kStripBytes = 279,
@@ -215,6 +216,9 @@ Result<TiffDirectory> readTiffDirectory(const InputFile& file) {
         break;
       case kCompression:
         scalar(directory.compression);
+        break;
+      case kPhotometric:
+        scalar(directory.photometric);
         break;
       case kSamplesPerPixel:
         scalar(directory.samples_per_pixel);

@@ -17,6 +17,7 @@ struct TiffDirectory {
   std::uint64_t samples_per_pixel = 1;
   std::uint64_t bits = 1;         ///< of one sample of the first band
   std::uint64_t compression = 1;  ///< TIFF tag 259
+  std::uint64_t photometric = 1;  ///< tag 262: 0 white is 0, 1 black is 0, 2 colours, 3 palette ...
   std::uint64_t predictor = 1;    ///< tag 317: what was packed is 1 the numbers, 2, 3 differences of them
   bool little_endian = true;
   std::uint64_t stored_bytes = 0;     ///< of strips or tiles that lie within the file

@@ -15,7 +15,7 @@ namespace fettle::engine {
 namespace {
 
 constexpr const char* kLateral = "FETTLE_LATERAL_UNIT";
-constexpr const char* kHeight = "FETTLE_HEIGHT_UNIT";
+constexpr const char* kHeightUnitItem = "FETTLE_HEIGHT_UNIT";
 constexpr const char* kPerCount = "FETTLE_HEIGHT_PER_COUNT";
 constexpr const char* kOrigin = "FETTLE_ORIGIN";
 
@@ -49,7 +49,7 @@ void writeOwnMetadata(GDALDatasetH dataset, const Grid& grid, bool lateral_unit_
   const auto text = [](const LengthUnit& unit) { return fmt::format("{} {}", unit.name, unit.mm); };
   if (!lateral_unit_is_stated)
     GDALSetMetadataItem(dataset, kLateral, text(grid.lateral_unit).c_str(), nullptr);
-  GDALSetMetadataItem(dataset, kHeight, text(grid.height_unit).c_str(), nullptr);
+  GDALSetMetadataItem(dataset, kHeightUnitItem, text(grid.height_unit).c_str(), nullptr);
   if (grid.height_per_count > 0.0)
     GDALSetMetadataItem(dataset, kPerCount, fmt::format("{}", grid.height_per_count).c_str(), nullptr);
   const auto there = placementOf(geoTransformOf(grid), grid.width, grid.height, {});
@@ -61,7 +61,7 @@ void writeOwnMetadata(GDALDatasetH dataset, const Grid& grid, bool lateral_unit_
 void readOwnMetadata(GDALDatasetH dataset, StatedUnits& units, Grid& grid,
                      std::pair<double, double> spacing) {
   if (auto unit = unitItem(dataset, kLateral)) units.lateral = unit;
-  if (auto unit = unitItem(dataset, kHeight)) units.height = unit;
+  if (auto unit = unitItem(dataset, kHeightUnitItem)) units.height = unit;
   if (const char* item = GDALGetMetadataItem(dataset, kPerCount, nullptr); item != nullptr)
     grid.height_per_count = positiveNumber(item).value_or(grid.height_per_count);
   if (const char* item = GDALGetMetadataItem(dataset, kOrigin, nullptr); item != nullptr) {

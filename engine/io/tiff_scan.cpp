@@ -1,17 +1,16 @@
 // What a TIFF says of itself, through GDAL: geo-reference, units, no-data.
 #include "engine/io/tiff_scan.h"
 
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>
 
-#include <cpl_conv.h>
 #include <fmt/format.h>
-#include <ogr_srs_api.h>
 
+#include "engine/io/crs_text.h"
 #include "engine/io/field_limits.h"
 #include "engine/io/geo_reference.h"
+#include "engine/io/sidecar.h"
 #include "engine/io/tiff_metadata.h"
 #include "engine/io/tiff_samples.h"
 #include "engine/io/units.h"
@@ -37,7 +36,8 @@ std::optional<double> declaredNoData(GDALRasterBandH band, GDALDataType type) {
 }
 
 // The one band that holds heights; anything that is a picture rather than heights is refused.
-Result<GDALRasterBandH> heightBand(GDALDatasetH dataset, const std::string& path,
+Result<GDALRasterBandH> heightBand(GDALDatasetH dataset, const TiffDirectory& directory,
+                                   const ImportOptions& options, const std::string& path,
                                    std::vector<std::string>& warnings) {
   const int bands = GDALGetRasterCount(dataset);
   if (bands < 1) return inputError("the file holds no raster", path);
@@ -48,7 +48,12 @@ Result<GDALRasterBandH> heightBand(GDALDatasetH dataset, const std::string& path
     return inputError(fmt::format("the file holds {} bands, heights are one", bands), path,
                       "take one out, e.g. with gdal_translate -b 1");
   if (alpha) warnings.emplace_back("the second band is transparency and was left out");
-  if (GDALGetRasterColorTable(band) != nullptr)
+  // GDAL makes a palette for these, of integers only: what is white says nothing of floats.
+  const bool white_is_0 = directory.photometric == 0 && isInteger(GDALGetRasterDataType(band));
+  if (white_is_0 && !options.z_scale)
+    return inputError("0 is white in this TIFF (MINISWHITE), so that its numbers may be heights or depths",
+                      path, "give --z-scale 1 to take them as heights, --z-scale -1 as depths");
+  if (GDALGetRasterColorTable(band) != nullptr && !white_is_0)
     return inputError("the file is a picture with a palette, not heights", path,
                       "export the heights themselves");
   if (GDALDataTypeIsComplex(GDALGetRasterDataType(band)) != 0)
@@ -61,12 +66,7 @@ void readGeoReference(GDALDatasetH dataset, const TiffDirectory& directory,
                       std::vector<std::string>& warnings) {
   GeoTransform gt{};
   if (GDALGetGeoTransform(dataset, gt.data()) == CE_None) transform = gt;
-  if (OGRSpatialReferenceH crs = GDALGetSpatialRef(dataset); crs != nullptr) {
-    char* text = nullptr;
-    const std::array<const char*, 2> options{"FORMAT=WKT2_2019", nullptr};
-    if (OSRExportToWktEx(crs, &text, options.data()) == OGRERR_NONE && text != nullptr) wkt = text;
-    CPLFree(text);
-  }
+  if (OGRSpatialReferenceH crs = GDALGetSpatialRef(dataset); crs != nullptr) wkt = wktOf(crs);
   if (transform || !directory.x_per_unit || !directory.y_per_unit || directory.resolution_unit == 1) return;
   const double per_unit[2] = {*directory.x_per_unit, *directory.y_per_unit};
   if (directory.resolution_unit == 3) {
@@ -105,7 +105,7 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
   if (!dataset)
     return inputError("the TIFF cannot be opened: " + gdal.reason("damaged header"), path,
                       "the file is damaged or of a kind that the library does not know");
-  const Result<GDALRasterBandH> band = heightBand(dataset.get(), path, warnings);
+  const Result<GDALRasterBandH> band = heightBand(dataset.get(), *directory, options, path, warnings);
   if (!band) return tl::unexpected(band.error());
   const int width = GDALGetRasterXSize(dataset.get());
   const int height = GDALGetRasterYSize(dataset.get());
@@ -142,11 +142,11 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
       warnings.emplace_back(
           "the file's columns run leftwards: columns are counted from the lowest x here, in marks too");
   }
-  if (const char* name = GDALGetRasterUnitType(*band); name != nullptr && name[0] != '\0') {
-    units.height = lengthUnitFromName(name);
-    if (!units.height && !options.unit)
-      warnings.push_back(fmt::format("the height unit \"{}\" is not known, give --unit", name));
-  }
+  const Sidecar beside = readAuxXml(path, warnings);
+  if (grid.crs_wkt.empty()) grid.crs_wkt = beside.crs_wkt;
+  const char* const unit = GDALGetRasterUnitType(*band);
+  units.height =
+      heightUnitNamed(unit != nullptr && *unit != '\0' ? unit : beside.height_unit, options, warnings);
   if (!grid.crs_wkt.empty())
     unitsOfCrs(grid.crs_wkt, grid.origin_y + 0.5 * height * (units.spacing ? units.spacing->second : 0.0),
                units, warnings);
@@ -166,7 +166,7 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
     scan.rule.offset = 0.0;
   }
   if (isInteger(type)) grid.height_per_count = scan.rule.offset == 0.0 ? std::abs(scan.rule.scale) : 0.0;
-  scan.rule.declared_no_data = declaredNoData(*band, type);
+  scan.rule.declared_no_data = settledNoData(declaredNoData(*band, type), beside, warnings);
   scan.rule.user_no_data = options.no_data;
   const int mask_flags = GDALGetMaskFlags(*band);
   if ((mask_flags & GMF_PER_DATASET) != 0 && (mask_flags & GMF_ALPHA) == 0)

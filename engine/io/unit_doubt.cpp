@@ -18,6 +18,8 @@ constexpr double kBelowAtomsMm = 1e-8;
 constexpr double kClosestMm = 1e-9;
 constexpr double kBeyondPlanetsMm = 1e8;
 constexpr double kAroundTheEarthMm = 4e10;
+constexpr double kRoundTheGlobe = 361.0;  // degrees, and a sample's width for rounding
+constexpr double kPoleToPole = 181.0;
 
 double spanMm(const Version& field) {
   const HeightBounds bounds = field.reader().bounds();
@@ -57,21 +59,68 @@ std::string unitFor(double slope, const LengthUnit& said) {
   return {};
 }
 
+// Whether coordinates may be degrees although nothing says so: they would lie on the globe, and not about a
+// corner or middle of the field's own, or the spacing is a whole part or number of arc seconds.
+bool mayBeDegrees(const Grid& grid) {
+  const double extent_x = grid.width * grid.spacing_x, extent_y = grid.height * grid.spacing_y;
+  const double middle_x = grid.origin_x + 0.5 * extent_x, middle_y = grid.origin_y + 0.5 * extent_y;
+  const bool on_globe = std::abs(middle_y) + 0.5 * extent_y < 91.0 && grid.origin_x > -181.0 &&
+                        grid.origin_x + extent_x < 361.0;
+  if (!on_globe || grid.spacing_x > 1.0 || grid.spacing_y > 1.0) return false;
+  const bool elsewhere = std::abs(middle_x) > extent_x || std::abs(middle_y) > extent_y;
+  const bool whole_globe = extent_x > 350.0 && extent_y > 110.0;
+  const auto arcSeconds = [](double spacing) {
+    const double seconds = 3600.0 * spacing, whole = seconds < 1.0 ? 1.0 / seconds : seconds;
+    const double thousandths = 1000.0 * spacing;  // 0.25 is as well a decimal number
+    return std::abs(whole - std::nearbyint(whole)) < 1e-5 * whole &&
+           std::abs(thousandths - std::nearbyint(thousandths)) > 1e-6 * thousandths;
+  };
+  return elsewhere || whole_globe || (arcSeconds(grid.spacing_x) && arcSeconds(grid.spacing_y));
+}
+
 void doubtSlopes(const Version& field, std::vector<std::string>& warnings) {
+  const Grid& grid = field.grid();
+  const LengthUnit& said = grid.height_unit;
+  if (isNoLength(said.name)) return;
   const double slope = medianSlope(field);
   if (!(slope > kTooSteep)) return;
-  const LengthUnit& said = field.grid().height_unit;
+  const std::string found = fmt::format("Half of all neighbours rise by more than {:.0f} to 1", slope);
+  // What a scale of heights mends is known only where both axes are lengths.
+  if (grid.lateral_unit.name == "deg") {
+    warnings.push_back(
+        fmt::format("heights that are not in {}, or coordinates that are no degrees? {}, over columns {:.3g} "
+                    "degrees apart: look at the file's coordinate system and at the unit of its heights",
+                    said.name, found, grid.spacing_x));
+    return;
+  }
+  if (grid.crs_wkt.empty() && mayBeDegrees(grid)) {
+    warnings.push_back(fmt::format(
+        "coordinates in degrees where {} is said or assumed? They are {:.6g} to {:.6g}, {:.6g} to {:.6g}, "
+        "{:.3g} "
+        "apart. {}: reproject degrees to metres, e.g. with gdalwarp; for lengths give --spacing",
+        grid.lateral_unit.name, grid.origin_x, grid.origin_x + (grid.width - 1) * grid.spacing_x,
+        grid.origin_y, grid.origin_y + (grid.height - 1) * grid.spacing_y, grid.spacing_x, found));
+    return;
+  }
+  if (grid.height_per_count == 1.0) {
+    warnings.push_back(
+        fmt::format("counts or brightness where heights in {} are said or assumed? They come from whole "
+                    "numbers. {}: if they "
+                    "are heights, give the height of a count with --z-scale",
+                    said.name, found));
+    return;
+  }
   const std::string likely = unitFor(slope, said);
   if (likely.empty())
-    warnings.push_back(fmt::format(
-        "heights that are no lengths in {}? Half of all neighbours rise by more than {:.0f} to 1: give the "
-        "height of a count with --z-scale",
-        said.name, slope));
+    warnings.push_back(
+        fmt::format("heights that are no lengths in {}? {}: give the height of a count with --z-scale",
+                    said.name, found));
   else
     warnings.push_back(fmt::format(
-        "heights in {} where {} is said or assumed, or a spacing that is not in {}? Half of all "
-        "neighbours rise by more than {:.0f} to 1: give --z-scale {:g} or --spacing",
-        likely, said.name, field.grid().lateral_unit.name, slope, lengthUnitFromName(likely)->mm / said.mm));
+        "heights in {} where {} is said or assumed, or a spacing that is not in {}? {}: give --z-scale {:g} "
+        "or "
+        "--spacing",
+        likely, said.name, grid.lateral_unit.name, found, lengthUnitFromName(likely)->mm / said.mm));
 }
 
 }  // namespace
@@ -79,7 +128,7 @@ void doubtSlopes(const Version& field, std::vector<std::string>& warnings) {
 void doubtUnits(const Version& field, const ImportOptions& options, std::vector<std::string>& warnings) {
   const Grid& grid = field.grid();
   if (!options.z_scale && !options.spacing) doubtSlopes(field, warnings);
-  const double span = spanMm(field);
+  const double span = isNoLength(grid.height_unit.name) ? 0.0 : spanMm(field);
   if (span > 0.0 && span < kBelowAtomsMm)
     warnings.push_back(
         fmt::format("heights in another unit than {}? They span {:.3g} nm, less than an atom: give --z-scale",
@@ -88,11 +137,19 @@ void doubtUnits(const Version& field, const ImportOptions& options, std::vector<
     warnings.push_back(fmt::format(
         "heights in another unit than {}? They span {:.3g} km, more than on any planet: give --z-scale",
         grid.height_unit.name, span * 1e-6));
+  const double across = grid.width * grid.spacing_x, down = grid.height * grid.spacing_y;
   const double extent = std::max(grid.width * grid.spacingXMm(), grid.height * grid.spacingYMm());
-  if (extent > kAroundTheEarthMm)
+  if (grid.lateral_unit.name == "deg") {
+    if (across > kRoundTheGlobe || down > kPoleToPole)
+      warnings.push_back(
+          fmt::format("coordinates that are no degrees? The field spans {:.4g} x {:.4g} of them: look at its "
+                      "coordinate system",
+                      across, down));
+  } else if (extent > kAroundTheEarthMm) {
     warnings.push_back(
         fmt::format("spacing in another unit than {}? The field is {:.3g} km long: give --spacing",
                     grid.lateral_unit.name, extent * 1e-6));
+  }
   const double closest = std::min(grid.spacingXMm(), grid.spacingYMm());
   if (closest < kClosestMm)
     warnings.push_back(

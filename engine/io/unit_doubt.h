@@ -11,16 +11,18 @@ namespace fettle::engine {
 /// Appends a warning for each way in which the units of a field cannot well be what they are said to be, by
 /// what surfaces can be, not by what is usual:
 ///
-///   heights far too steep    half of all neighbours rise by more than 10 to 1 (84 degrees): heights in a
-///                            smaller unit, or counts, in a file that says otherwise; it proposes the unit;
-///                            fewer than 16 pairs of neighbours prove nothing
+///   heights far too steep    half of all neighbours rise by more than 10 to 1 (84 degrees); fewer than 16
+///                            pairs of neighbours prove nothing. Coordinates in degrees, said or likely:
+///                            it says what was found and proposes no scale. Whole numbers: counts or
+///                            brightness. Else heights in a smaller unit, which it proposes
 ///   heights below atoms      they span more than nothing and less than 0.01 nm
 ///   heights beyond planets   they span more than 100 km
-///   columns beyond planets   the field is longer than the Earth is round, 40,000 km
+///   columns beyond planets   the field is longer than the Earth is round: 40,000 km, or 360 x 180 degrees
 ///   columns below atoms      columns or rows lie less than 0.001 nm apart
 ///
-/// The first is left out where the user gave z_scale or spacing. Cost: a lattice of at most 256 x 256 pairs
-/// of neighbours, whatever the size. The same for the same field. Thread: any.
+/// Samples that are no lengths (isNoLength) are not asked for their heights. The first is left out where the
+/// user gave z_scale or spacing. Cost: a lattice of at most 256 x 256 pairs of neighbours, whatever the size.
+/// The same for the same field. Thread: any.
 void doubtUnits(const Version& field, const ImportOptions& options, std::vector<std::string>& warnings);
 
 /// For formats whose standard is about surface texture: a surface of metres, or over more than 100 m, is

@@ -1,5 +1,6 @@
 #include "engine/io/units.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -31,6 +32,18 @@ const std::array<KnownUnit, 9> kUnits{{
      {"ftus", "us survey foot", "us-ft", "foot_us", "us survey feet", "us foot", "ft us"}},
     {"in", 25.4, {"in", "inch", "inches"}},
 }};
+
+using namespace std::string_view_literals;
+
+// Lower case.
+constexpr std::array kNoLengths{
+    "intensity"sv, "amplitude"sv, "brightness"sv, "luminance"sv,  "reflectance"sv, "reflectivity"sv,
+    "albedo"sv,    "gray"sv,      "grey"sv,       "confidence"sv, "quality"sv,     "dn"sv,
+    "adu"sv,       "count"sv,     "counts"sv,     "a.u."sv,       "au"sv,          "1"sv,
+    "unitless"sv,  "%"sv,         "percent"sv,    "db"sv,         "v"sv,           "mv"sv,
+    "volt"sv,      "volts"sv,     "deg"sv,        "degree"sv,     "degrees"sv,     "\xc2\xb0"sv,
+    "rad"sv,       "radian"sv,    "radians"sv,    "k"sv,          "kelvin"sv,      "degc"sv,
+    "celsius"sv,   "s"sv,         "hz"sv};
 
 std::string lowerCase(std::string_view text) {
   std::string lower(text);
@@ -71,6 +84,25 @@ LengthUnit lengthUnitFromMetres(double metres, std::string_view name) {
   for (const KnownUnit& unit : kUnits)
     if (std::abs(metres * 1000.0 / unit.mm - 1.0) < 1e-8) return {unit.name, unit.mm};
   return {std::string(name.empty() ? "unit" : name), metres * 1000.0};
+}
+
+bool isNoLength(std::string_view name) {
+  return std::ranges::find(kNoLengths, lowerCase(name)) != kNoLengths.end();
+}
+
+std::optional<LengthUnit> heightUnitNamed(std::string_view name, const ImportOptions& options,
+                                          std::vector<std::string>& warnings) {
+  if (name.empty()) return std::nullopt;
+  if (auto unit = lengthUnitFromName(name)) return unit;
+  if (isNoLength(name)) {
+    if (!options.unit)
+      warnings.push_back(
+          fmt::format("the file's samples are in \"{}\", which is no length: are these heights?", name));
+    return LengthUnit{std::string(name), 1.0};
+  }
+  if (!options.unit)
+    warnings.push_back(fmt::format("the height unit \"{}\" is not known, give --unit", name));
+  return std::nullopt;
 }
 
 std::optional<LengthUnit> lengthUnitFromComment(std::string_view comment) {

@@ -527,7 +527,7 @@ Result<Imported> readX3p(const InputFile& file, const ImportOptions& options, Jo
   if (own && !options.z_scale) tally.rounding = 0.0;  // rounds to the very float that was written
   if (surface->z.type == 'L' && tally.rounding < 0.5 * std::abs(rule.scale)) tally.rounding = 0.0;
   Result<Imported> imported =
-      finishImport(std::move(*builder), tally, "X3P", std::move(warnings), file.path());
+      finishImport(std::move(*builder), rule, tally, "X3P", std::move(warnings), file.path());
   if (imported && !own && !options.unit) doubtTexture(imported->field, "metres", imported->warnings);
   return imported;
 }

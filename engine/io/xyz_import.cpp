@@ -1,16 +1,21 @@
-// Text with "x y z" a line: space, tab, comma or semicolon between, further columns ignored.
+// Text with "x y z" a line: space, tab, comma or semicolon between; other columns where a header names them,
+// further ones ignored.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "engine/io/format.h"
+#include "engine/io/grid_notes.h"
 #include "engine/io/gridding.h"
 #include "engine/io/text_reader.h"
 #include "engine/io/units.h"
+#include "engine/io/xyz_columns.h"
 
 namespace fettle::engine {
 
@@ -20,34 +25,6 @@ constexpr int kMostHeaderLines = 1000;
 
 bool isBlank(char c) {
   return c == ' ' || c == '\t';
-}
-
-// Reads the first three numbers of a line. `separator` (comma or semicolon, 0 for white space alone) may
-// stand between two numbers once; a field left empty by two of them is NaN. False if there are not three.
-bool readPoint(std::string_view line, char separator, std::array<double, 3>& point) {
-  const char* at = line.data();
-  const char* const end = at + line.size();
-  const auto skipBlanks = [&] {
-    while (at < end && isBlank(*at)) ++at;
-  };
-  skipBlanks();
-  bool separated = false;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const bool empty = separator != 0 && ((at < end && *at == separator) || (at == end && separated));
-    if (empty) {
-      point[k] = std::numeric_limits<double>::quiet_NaN();
-    } else {
-      if (at == end || !parseNumber(at, end, point[k])) return false;
-      if (at < end && !isBlank(*at) && (separator == 0 || *at != separator)) return false;
-    }
-    skipBlanks();
-    separated = separator != 0 && at < end && *at == separator;
-    if (separated) {
-      ++at;
-      skipBlanks();
-    }
-  }
-  return true;
 }
 
 bool isComment(std::string_view line) {
@@ -61,33 +38,74 @@ std::string_view trimmed(std::string_view line) {
   return line;
 }
 
-// "1,5 2,5 3,5" or "1,5;2,5;3,5": commas inside the numbers.
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+enum class Comma : std::uint8_t { kNone, kDecimal, kOther };
+
+// What the comma of a word is, if it has one: "3", "1,5", "-1.234,5e3" against "1,", "1,2,3", "1.5,2.5".
+// Words that are no numbers have another.
+Comma commaOf(std::string_view word) {
+  if (word.ends_with(',')) word.remove_suffix(1);  // "1,5, 2,5, 3,5"
+  const std::size_t comma = word.find(',');
+  std::string number(word);
+  if (comma != std::string_view::npos) {
+    const std::size_t first = word.find_first_of("0123456789");
+    if (first > comma || comma + 1 >= word.size() || !isDigit(word[comma + 1])) return Comma::kOther;
+    // Points before it part thousands, three digits after each.
+    for (std::size_t point = word.find('.'); point != std::string_view::npos;
+         point = word.find('.', point + 1)) {
+      const std::size_t next = std::min(word.find('.', point + 1), comma);
+      if (point > comma || next != point + 4) return Comma::kOther;
+    }
+    std::erase(number, '.');
+    number[number.find(',')] = '.';
+  }
+  double value = 0.0;
+  const char* at = number.data();
+  if (!parseNumber(at, number.data() + number.size(), value) || at != number.data() + number.size())
+    return Comma::kOther;
+  return comma == std::string_view::npos ? Comma::kNone : Comma::kDecimal;
+}
+
+// "1,5 2,5 3,5", "0 0 1,5" or "1,5;2,5;3,5": three numbers of which one at least has a comma inside, so that
+// commas do not stand between them.
 bool hasDecimalComma(std::string_view line) {
-  const auto digit = [&](std::size_t i) { return i < line.size() && line[i] >= '0' && line[i] <= '9'; };
-  int words = 0;
-  int commas = 0;
+  int words = 0, commas = 0;
   for (std::size_t i = 0; i < line.size() && words < 3;) {
     const std::size_t end = std::min(line.find_first_of(" \t;", i), line.size());
     if (end > i) {
+      const Comma comma = commaOf(line.substr(i, end - i));
+      if (comma == Comma::kOther) return false;
+      commas += comma == Comma::kDecimal ? 1 : 0;
       ++words;
-      const std::size_t comma = line.substr(0, end).find(',', i);
-      if (comma != std::string_view::npos && comma > i && digit(comma - 1) && digit(comma + 1) &&
-          line.substr(0, end).find(',', comma + 1) == std::string_view::npos)
-        ++commas;
     }
     i = end + 1;
   }
-  return words == 3 && commas >= 2;
+  return words == 3 && commas > 0;
 }
 
-// The separator of a line of points; nothing if the line holds none.
+// The separator of a line that begins with three numbers; nothing if the line does not.
 std::optional<char> separatorOf(std::string_view line) {
   std::array<double, 3> point{};
   for (const char separator : {';', ',', '\0'})
     if ((separator == 0 || line.find(separator) != std::string_view::npos) &&
-        readPoint(line, separator, point))
+        readPoint(line, separator, {}, point))
       return separator;
   return std::nullopt;
+}
+
+// 1, 2, 3 ... or 0, 1, 2 ...: numbers of rows, where x is asked for.
+bool countsRows(const std::vector<double>& values) {
+  if (values.size() < 3 || (values[0] != 0.0 && values[0] != 1.0)) return false;
+  return std::adjacent_find(values.begin(), values.end(), [](double a, double b) { return b != a + 1.0; }) ==
+         values.end();
+}
+
+std::string_view withoutCommentMark(std::string_view line) {
+  line.remove_prefix(line.starts_with("//") ? 2 : 1);
+  return line;
 }
 
 std::string_view withoutByteOrderMark(std::string_view text) {
@@ -116,10 +134,14 @@ Result<Imported> readXyz(const InputFile& file, const ImportOptions& options, Jo
   const std::string& path = file.path();
   TextReader text(file);
   PointCloud cloud;
+  XyzHeader header;
+  RasterNotesReader notes;
+  XyzColumns columns;
   std::optional<char> separator;
   std::string_view line;
   std::array<double, 3> point{};
   std::int64_t number = 0;
+  bool points_last = false;
   std::uint64_t reported = 0;
   job.begin("reading", file.size());
   while (text.line(line)) {
@@ -127,26 +149,40 @@ Result<Imported> readXyz(const InputFile& file, const ImportOptions& options, Jo
       if (job.cancelled()) return cancelled();
       job.advance(text.offset() - std::exchange(reported, text.offset()));
     }
-    if (separator && readPoint(line, *separator, point)) {
+    points_last = separator && readPoint(line, *separator, columns, point);
+    if (points_last) {
       cloud.add(point[0], point[1], point[2]);
       continue;
     }
-    line = trimmed(number == 1 ? withoutByteOrderMark(line) : line);
+    const std::string_view whole = number == 1 ? withoutByteOrderMark(line) : line;
+    line = trimmed(whole);
     if (line.empty()) continue;
     if (isComment(line)) {
       if (!cloud.unit) cloud.unit = lengthUnitFromComment(line);
+      notes.take(withoutCommentMark(line));
+      if (!separator) header.takeComment(withoutCommentMark(line));
       continue;
     }
     if (hasDecimalComma(line))
-      return inputError(fmt::format("line {} has decimal commas", number), path, "write decimal points");
+      return inputError(fmt::format("line {} has decimal commas", number), path,
+                        "write decimal points, e.g. with: tr , . <IN >OUT");
     if (separator)
       return inputError(fmt::format("line {} does not hold three numbers", number), path,
                         "the file is cut short or damaged");
-    separator = separatorOf(line);
-    if (separator && readPoint(line, *separator, point)) {
+    if (char named = 0; const auto found = header.columnsOf(whole, named)) {
+      separator = named;
+      columns = *found;
+    } else if ((separator = separatorOf(line))) {
+      const Result<XyzColumns> chosen = header.columnsBeside(line, *separator, path);
+      if (!chosen) return tl::unexpected(chosen.error());
+      columns = *chosen;
+    }
+    points_last = separator && readPoint(whole, *separator, columns, point);
+    if (points_last) {
       cloud.add(point[0], point[1], point[2]);
     } else {
       if (!cloud.unit) cloud.unit = lengthUnitFromComment(line);
+      header.takeLine(whole);
       if (number > kMostHeaderLines)
         return inputError(fmt::format("the first {} lines hold no three numbers", kMostHeaderLines), path,
                           "is this a file of points?");
@@ -154,6 +190,13 @@ Result<Imported> readXyz(const InputFile& file, const ImportOptions& options, Jo
   }
   if (!text.status()) return tl::unexpected(text.status().error());
   if (!separator) return inputError("no line holds three numbers", path, "is this a file of points?");
+  if (columns.one_unnamed && countsRows(cloud.x))
+    return inputError("the lines hold one column more than the header names and begin with 1, 2, 3 ...", path,
+                      "name the first column too, e.g. row");
+  if (points_last && text.lastLineIsOpen()) cloud.warnings.emplace_back(kOpenLastLine);
+  if (columns.lateral) cloud.unit = columns.lateral;
+  if (columns.height) cloud.height_unit = columns.height;
+  cloud.takeRaster(notes.raster());
   return gridPoints(std::move(cloud), options, "XYZ", path, job);
 }
 

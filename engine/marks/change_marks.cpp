@@ -20,7 +20,7 @@ struct FreshTile {
   TileRef tile;
 };
 
-tl::unexpected<Error> noMemory() {
+tl::unexpected<Error> noMemoryForMarks() {
   return failure("memory for the marks could not be had", "", "close other programs");
 }
 
@@ -66,14 +66,14 @@ Result<Version> changeMarks(const Version& field, TileRange range, const TileMar
     made.local().push_back({tc, tr, std::move(fresh)});
   });
   if (job.cancelled()) return cancelled();
-  if (dry.load(std::memory_order_relaxed)) return noMemory();
+  if (dry.load(std::memory_order_relaxed)) return noMemoryForMarks();
   LiveField live(field, Growth::kAllowed);
   for (std::vector<FreshTile>& tiles : made)
     for (FreshTile& t : tiles)
-      if (!live.replaceTile(t.column, t.row, std::move(t.tile))) return noMemory();
+      if (!live.replaceTile(t.column, t.row, std::move(t.tile))) return noMemoryForMarks();
   return live.snapshot();
 } catch (const std::bad_alloc&) {
-  return noMemory();
+  return noMemoryForMarks();
 }
 
 Result<Version> clearMarks(const Version& field, JobControl& job) {

@@ -25,7 +25,7 @@ constexpr double kDeviations = 1.4826;
 // a few of them.
 constexpr double kRounding = 1.0 / (1 << 19);
 
-tl::unexpected<Error> noMemory() {
+tl::unexpected<Error> noMemoryForEdges() {
   return failure("memory for looking for edges could not be had", "", "close other programs");
 }
 
@@ -267,7 +267,7 @@ Result<EdgeMap> findEdges(const Version& field, double sigma, JobControl& job) t
   for (const auto& part : found) map.candidates.insert(map.candidates.end(), part.begin(), part.end());
   return map;
 } catch (const std::bad_alloc&) {
-  return noMemory();
+  return noMemoryForEdges();
 }
 
 Result<EdgeSuggestion> suggestMarks(const Version& field, const EdgeMap& map, const EdgeChoice& choice,
@@ -327,7 +327,7 @@ Result<EdgeSuggestion> suggestMarks(const Version& field, const EdgeMap& map, co
   suggestion.field = std::move(*marked);
   return suggestion;
 } catch (const std::bad_alloc&) {
-  return noMemory();
+  return noMemoryForEdges();
 }
 
 }  // namespace fettle::engine

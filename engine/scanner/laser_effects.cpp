@@ -9,7 +9,7 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr double kHole = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDropout = std::numeric_limits<double>::quiet_NaN();
 
 template <class F>
 void forEachSample(ScanBlock& block, F&& f) {
@@ -116,7 +116,7 @@ void dropSteep(ScanBlock& block, const LaserModel& model, double scale, const Co
     const double degrees = std::atan2(rise, block.spacing_mm) * 180.0 / std::numbers::pi;
     if (degrees <= model.steep_from_deg) return;
     const double t = (degrees - model.steep_from_deg) / (model.steep_all_deg - model.steep_from_deg);
-    if (random.uniform(block.column + c, block.row + r) < scale * t * t) block.heightAt(c, r) = kHole;
+    if (random.uniform(block.column + c, block.row + r) < scale * t * t) block.heightAt(c, r) = kDropout;
   });
 }
 
@@ -132,7 +132,7 @@ void dropShadowed(ScanBlock& block, const LaserModel& model, std::span<double> h
       const double level = z - y / model.camera_tangent;
       double& highest = horizon[static_cast<std::size_t>(c)];
       // Hidden when z' > z + (y' - y) / tangent for an earlier (higher) row.
-      if (highest > level + kSlack) block.heightAt(c, r) = kHole;
+      if (highest > level + kSlack) block.heightAt(c, r) = kDropout;
       highest = std::max(highest, level);
     }
   }

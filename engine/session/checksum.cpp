@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include <sys/stat.h>
 #include <xxhash.h>
 
 #include "engine/io/input_file.h"
@@ -52,6 +53,14 @@ Result<FileChecksum> fileChecksum(const std::string& path) {
   }
   sum.xxh64 = XXH64_digest(state.get());
   return sum;
+}
+
+std::optional<FileStamp> fileStamp(const std::string& path) {
+  struct stat file {};
+  if (stat(path.c_str(), &file) != 0) return std::nullopt;
+  return FileStamp{static_cast<std::uint64_t>(file.st_dev), static_cast<std::uint64_t>(file.st_ino),
+                   static_cast<std::uint64_t>(file.st_size),
+                   std::int64_t{file.st_mtim.tv_sec} * 1'000'000'000 + file.st_mtim.tv_nsec};
 }
 
 }  // namespace fettle::engine

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -31,5 +32,16 @@ struct FileChecksum {
 };
 /// Errors (kInput): the file cannot be read.
 [[nodiscard]] Result<FileChecksum> fileChecksum(const std::string& path);
+
+/// Tells, without reading it, whether the file at a path is still the one that was there: another file put in
+/// its place has another inode, one that was written to another size or time. Wrong only where both were kept
+/// on purpose.
+struct FileStamp {
+  std::uint64_t device = 0, inode = 0, bytes = 0;
+  std::int64_t written_ns = 0;  ///< last modification, since 1970
+  friend bool operator==(const FileStamp&, const FileStamp&) = default;
+};
+/// Of the file that a path leads to, links followed; nothing where there is none.
+[[nodiscard]] std::optional<FileStamp> fileStamp(const std::string& path);
 
 }  // namespace fettle::engine

@@ -199,7 +199,7 @@ Error Database::error() const {
   };
   switch (extended & 0xff) {
     case SQLITE_FULL:
-      return input("the session cannot be written: the disk is full", kElsewhere);
+      return {ErrorKind::kFailed, "the session cannot be written: the disk is full", shown_, kElsewhere};
     case SQLITE_READONLY:
     case SQLITE_PERM:
       return input("the session cannot be written: the file or its folder is read-only",
@@ -227,7 +227,7 @@ Error Database::error() const {
         return input("the session is damaged: the file ends too early", kDamage);
       if (extended == SQLITE_IOERR_NOMEM)
         return {ErrorKind::kFailed, "memory for the session could not be had", shown_, {}};
-      return input("the session cannot be read or written: " + reason, kElsewhere);
+      return {ErrorKind::kFailed, "the session cannot be read or written: " + reason, shown_, kElsewhere};
     default:
       return input("the session cannot be read or written: " + reason, kElsewhere);
   }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "engine/field/version.h"
 #include "engine/history/history.h"
 #include "engine/io/import.h"
+#include "engine/session/checksum.h"
 
 namespace fettle::engine {
 
@@ -20,8 +22,11 @@ namespace fettle::engine {
 
 /// How a session holds the scan it began with.
 enum class OriginalStorage : std::uint8_t {
-  kEmbedded,    ///< every tile is in the session: it needs no other file
-  kReferenced,  ///< path, size and checksum; opening imports the scan again and refuses one that changed
+  kEmbedded,  ///< every tile is in the session: it needs no other file
+  /// Path, size and checksum; opening imports the scan again and refuses one that changed. A scan that could
+  /// not be found again is embedded after all: its file is no longer the one that was read
+  /// (OriginalScan::read), or it was imported in a way that the session has no column for (a depth camera).
+  kReferenced,
 };
 
 /// Where the scan of a session came from.
@@ -29,6 +34,8 @@ struct OriginalScan {
   std::string path;  ///< of the scan's file; made absolute when written. Empty for a scan that never had one
   ImportOptions import;  ///< what the user said when it was imported
   std::string format;    ///< Imported::format
+  /// The file as it was when it was read. Nothing: what lies at `path` is taken for it.
+  std::optional<FileStamp> read;
 };
 
 /// One thing the user did, as it is to be repeated: undo and redo too, in the order they were done.

@@ -31,6 +31,12 @@ Status apply(SessionTables& tables, const SessionAction& action, HeadRow& head, 
   return tables.writeHead(head);
 }
 
+// Whether what a row refers to can be read again.
+bool scanIsThere(const OriginalRow& row) {
+  const Result<FileChecksum> sum = fileChecksum(row.scan.path);
+  return sum && *sum == row.file;
+}
+
 // Tiles of state 0 get the next free ids, wherever these are: the row of step 0 says where.
 Status embedTiles(SessionTables& tables, OriginalRow row, const Version& original, HeadRow& head,
                   JobControl& job) {
@@ -100,7 +106,7 @@ Status SessionFile::copyTo(const std::string& path, const std::vector<const Sess
     if (!copied) {
       // Which of the two files failed is not told apart.
       Error error = copied.error();
-      if (error.kind == ErrorKind::kInput) error.where = fmt::format("{} to {}", path_, path);
+      if (error.kind != ErrorKind::kCancelled) error.where = fmt::format("{} to {}", path_, path);
       return tl::unexpected(error);
     }
     auto database = Database::open(file->temporaryPath(), DatabaseAccess::kWrite, path);
@@ -121,7 +127,8 @@ Status SessionFile::copyTo(const std::string& path, const std::vector<const Sess
       row->relative_path = std::filesystem::relative(row->scan.path, folder, error).string();
     }
     if (Status status = tables.writeOriginal(*row); !status) return status;
-    if (storage == OriginalStorage::kEmbedded && row->storage == OriginalStorage::kReferenced)
+    if (row->storage == OriginalStorage::kReferenced &&
+        (storage == OriginalStorage::kEmbedded || !scanIsThere(*row)))
       if (Status status = embedTiles(tables, *row, original, head, job); !status) return status;
     if (Status status = transaction->commit(); !status) return status;
   }

@@ -7,6 +7,7 @@
 
 #include "engine/io/format.h"
 #include "engine/session/session.h"
+#include "engine/session/step_tiles.h"
 #include "engine/session/tables.h"
 
 namespace fettle::engine {
@@ -32,6 +33,8 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
   if (!session) return tl::unexpected(session.error());
   Imported imported;
   imported.field = session->history.current();
+  const bool inverted = imported.field.reader().sign() != session->original.reader().sign();
+  imported.original = inverted ? session->original.inverted() : session->original;
   imported.format = "Fettle";
   Grid grid = imported.field.grid();
   if (options.spacing && *options.spacing != std::pair(grid.spacing_x, grid.spacing_y)) {
@@ -44,17 +47,25 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
                                             grid.lateral_unit.name, grid.height_unit.name));
     grid.lateral_unit = grid.height_unit = *options.unit;
   }
-  if (!(grid == imported.field.grid())) imported.field = imported.field.withGrid(std::move(grid));
+  if (!(grid == imported.field.grid())) {
+    imported.field = imported.field.withGrid(grid);
+    imported.original = imported.original->withGrid(std::move(grid));
+  }
   return imported;
 }
 
-Result<Exported> writeSession(const Version& field, const std::string& path, const ExportOptions&,
+Result<Exported> writeSession(const Version& field, const std::string& path, const ExportOptions& options,
                               JobControl& job) {
   // The right way up is what a session calls its original; an inverted field is one step away from it.
   const bool inverted = field.reader().sign() < 0;
+  const auto upright = [](const Version& version) {
+    return version.reader().sign() < 0 ? version.inverted() : version;
+  };
   Session session;
-  session.original = inverted ? field.inverted() : field;
+  session.original = upright(options.original.value_or(field));
   session.history = History(session.original);
+  if (const Version worked = upright(field); !tilesThatDiffer(session.original, worked).empty())
+    session.history.push({"Earlier steps", StepKind::kImport, stepTimeNow(), {}, 0}, worked);
   if (inverted) session.history.push({"Invert", StepKind::kInvert, stepTimeNow(), {}, 0}, field);
   if (auto saved = saveSession(session, path, job); !saved) return tl::unexpected(saved.error());
   return Exported{"Fettle", {}};

@@ -10,6 +10,7 @@
 #include "engine/field/live_field.h"
 #include "engine/io/field_limits.h"
 #include "engine/session/session_reader.h"
+#include "engine/session/session_scan.h"
 #include "engine/session/stored_tiles.h"
 
 namespace fettle::engine {
@@ -122,28 +123,21 @@ Result<Version> embeddedOriginal(SessionTables& tables, const SessionIndex& inde
 // The first of the places a referenced scan may be at where it is.
 Result<std::string> findScan(const OriginalRow& row, const SessionOpenOptions& options,
                              const std::string& session) {
-  std::vector<fs::path> places;
-  if (!options.scan_path.empty()) {
-    places.emplace_back(options.scan_path);
-  } else {
-    const fs::path folder = fs::path(session).parent_path();
-    places.emplace_back(row.scan.path);
-    if (!row.relative_path.empty()) places.push_back(folder / row.relative_path);
-    places.push_back(folder / fs::path(row.scan.path).filename());
-  }
+  std::vector<std::string> places{options.scan_path};
+  if (options.scan_path.empty()) places = scanPlaces(row, session);
   std::optional<Error> other;
-  for (const fs::path& place : places) {
+  for (const std::string& place : places) {
     std::error_code error;
     if (!fs::is_regular_file(place, error)) continue;
-    const Result<FileChecksum> sum = fileChecksum(place.string());
-    if (sum && *sum == row.file) return place.string();
-    other = sum ? inputError("the scan is not the one the session was made with: its bytes differ",
-                             place.string(), "put that one back in its place")
+    const Result<FileChecksum> sum = fileChecksum(place);
+    if (sum && *sum == row.file) return place;
+    other = sum ? inputError("the scan is not the one the session was made with: its bytes differ", place,
+                             "put that one back in its place, or beside the session")
                       .value()
                 : sum.error();
   }
   if (other) return tl::unexpected(*other);
-  return inputError(fmt::format("the scan of the session is missing: {}", places.front().string()), session,
+  return inputError(fmt::format("the scan of the session is missing: {}", places.front()), session,
                     "put it back there, or beside the session");
 }
 
@@ -151,6 +145,7 @@ Result<Version> referencedOriginal(const SessionIndex& index, const SessionOpenO
                                    OriginalScan& scan, const std::string& path, JobControl& job) {
   const Result<std::string> file = findScan(index.original, options, path);
   if (!file) return tl::unexpected(file.error());
+  scan.read = fileStamp(*file);
   Result<Imported> imported = importField(*file, index.original.scan.import, job);
   if (!imported) return tl::unexpected(imported.error());
   if (contentHash(imported->field) != index.original.content_hash || !(imported->field.grid() == index.grid))

@@ -55,9 +55,12 @@ Result<OriginalRow> describeOriginal(const OriginalScan& scan, OriginalStorage s
     const fs::path relative = fs::relative(absolute, folder.empty() ? "." : folder, error);
     if (!error) row.relative_path = relative.string();
     const Result<FileChecksum> sum = fileChecksum(scan.path);
-    if (sum)
+    // Looked at after the bytes: a file that was put there while they were read shows, too.
+    const bool as_read = !scan.read || fileStamp(scan.path) == scan.read;
+    if (!as_read || scan.import.depth_camera) row.storage = OriginalStorage::kEmbedded;
+    if (sum && as_read)
       row.file = *sum;
-    else if (storage == OriginalStorage::kReferenced)
+    else if (row.storage == OriginalStorage::kReferenced)
       return tl::unexpected(sum.error());
   } else if (storage == OriginalStorage::kReferenced) {
     return inputError("the scan has no file that the session could refer to", session_path,

@@ -19,7 +19,8 @@ namespace fettle::engine {
 [[nodiscard]] Status putNote(SessionTables& tables, const std::string& key, const std::string& text,
                              HeadRow& head);
 
-/// Facts about the scan as the file keeps them; reads the scan's file. `session_path` may not exist yet.
+/// Facts about the scan as the file keeps them; reads the scan's file. `session_path` may not exist yet. The
+/// row's storage is kEmbedded where the scan could not be found again (OriginalStorage::kReferenced).
 [[nodiscard]] Result<OriginalRow> describeOriginal(const OriginalScan& scan, OriginalStorage storage,
                                                    const Version& original, const std::string& session_path);
 

@@ -25,7 +25,7 @@ Status writeAll(SessionTables& tables, const Session& session, const OriginalRow
       0, {"Import", StepKind::kImport, {}, {}, 0}, session.original.reader().sign(), head.next_tile, 0};
   if (history.last() > history.first()) start.info.time = history.info(history.first() + 1).time;
   std::vector<TileToStore> tiles;
-  if (session.storage == OriginalStorage::kEmbedded) tiles = allTiles(session.original);
+  if (original.storage == OriginalStorage::kEmbedded) tiles = allTiles(session.original);
   start.tiles = static_cast<std::int64_t>(tiles.size());
   if (Status status = tables.insertStep(start); !status) return status;
   job.begin("writing the session", tiles.size());

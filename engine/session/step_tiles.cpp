@@ -14,7 +14,7 @@ namespace {
 
 // Packed at once and then inserted: large enough to keep all threads busy, small enough to hold (2 MB) and to
 // stop soon.
-constexpr std::size_t kBatch = 128;
+constexpr std::size_t kTilesWritten = 128;
 constexpr std::size_t kWorthThreads = 16;
 
 }  // namespace
@@ -41,11 +41,11 @@ std::vector<TileToStore> tilesThatDiffer(const Version& before, const Version& a
 
 Status storeTiles(SessionTables& tables, const std::vector<TileToStore>& tiles, std::int64_t step,
                   HeadRow& head, std::uint64_t& bytes, JobControl& job) {
-  std::vector<std::string> packed(std::min(kBatch, tiles.size()));
+  std::vector<std::string> packed(std::min(kTilesWritten, tiles.size()));
   tbb::enumerable_thread_specific<TileCodec> codecs;
-  for (std::size_t begin = 0; begin < tiles.size(); begin += kBatch) {
+  for (std::size_t begin = 0; begin < tiles.size(); begin += kTilesWritten) {
     if (job.cancelled()) return cancelled();
-    const std::size_t count = std::min(kBatch, tiles.size() - begin);
+    const std::size_t count = std::min(kTilesWritten, tiles.size() - begin);
     const auto pack = [&](std::size_t i) { codecs.local().encode(*tiles[begin + i].tile, packed[i]); };
     if (count < kWorthThreads)
       for (std::size_t i = 0; i < count; ++i) pack(i);

@@ -16,7 +16,7 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr std::size_t kBatch = 256;
+constexpr std::size_t kTilesRead = 256;
 
 bool fitsGrid(const Tile& tile, const Grid& grid, std::int64_t position) noexcept {
   const std::int64_t tile_columns = (grid.width + kTileSide - 1) / kTileSide;
@@ -47,11 +47,11 @@ Status loadTiles(SessionTables& tables, const Grid& grid, std::span<const TilePl
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t i) { return places[i].id; });
 
-  std::vector<std::string> packed(std::min(kBatch, places.size()));
+  std::vector<std::string> packed(std::min(kTilesRead, places.size()));
   tbb::enumerable_thread_specific<TileCodec> codecs;
-  for (std::size_t begin = 0; begin < order.size(); begin += kBatch) {
+  for (std::size_t begin = 0; begin < order.size(); begin += kTilesRead) {
     if (job.cancelled()) return cancelled();
-    const std::size_t count = std::min(kBatch, order.size() - begin);
+    const std::size_t count = std::min(kTilesRead, order.size() - begin);
     for (std::size_t i = 0; i < count; ++i) {
       const TilePlace& place = places[order[begin + i]];
       if (place.position >= positions) return damaged(fmt::format("tile {} is outside", place.id), path);

@@ -245,9 +245,10 @@ Result<std::vector<StepRow>> SessionTables::readSteps(const HeadRow& head) {
 }
 
 Status SessionTables::truncateSteps(std::int64_t number) {
-  // Tiles lie in the order of their steps, so theirs are the last ids: a range of the table, no search.
+  // Tiles lie in the order of their steps, so theirs are the last ids: a range of the table, no search. Only
+  // those of a scan that was embedded later lie among them or behind them.
   const Result<Statement*> tiles =
-      cached("DELETE FROM tile WHERE id>=(SELECT min(first_tile) FROM step WHERE number>?)");
+      cached("DELETE FROM tile WHERE id>=(SELECT min(first_tile) FROM step WHERE number>?1) AND step>?1");
   if (!tiles) return tl::unexpected(tiles.error());
   (*tiles)->bind(1, number);
   if (Status status = (*tiles)->run(); !status) return status;

@@ -33,7 +33,7 @@ struct OriginalRow {
   OriginalScan scan;
   OriginalStorage storage = OriginalStorage::kEmbedded;
   std::string relative_path;  ///< from the session's folder; empty when there is none
-  FileChecksum file;          ///< zeros when the file could not be read
+  FileChecksum file;          ///< zeros when the file could not be read, or was another by then
   std::uint64_t content_hash = 0;
 };
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/stopwatch.h"
 #include "engine/compare/compare.h"
 #include "engine/field/piece.h"
 #include "engine/filter/noise_range.h"
@@ -24,10 +25,6 @@ constexpr int kPiecesASide = 4;
 constexpr std::int32_t kPieceSide = 256;
 
 using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point begin) {
-  return std::chrono::duration<double>(Clock::now() - begin).count();
-}
 
 struct Spot {
   std::int32_t column, row, columns, rows;

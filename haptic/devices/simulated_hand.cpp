@@ -1,5 +1,6 @@
 #include "haptic/devices/simulated_hand.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -30,8 +31,10 @@ SimulatedHand::SimulatedHand(std::vector<HandTarget> path, const HandSpec& spec)
   profile_.space = DeviceSpace::kField;
   profile_.workspace_radius_mm = 1e9;
   profile_.max_force_n = spec.max_force_n;
-  profile_.max_stiffness_n_per_mm = 100.0;  // what it is there to find out
-  profile_.max_damping_n_s_per_mm = 1.0;
+  // K < 2 b / T of a wall, T = 1 ms, b all that damps it; b < 2 m / T of a damper (haptic/effects/spring.h,
+  // viscosity.h). Profiles say damping up to 1 N s/mm.
+  profile_.max_stiffness_n_per_mm = 2.0 * (spec.damping_n_s_per_mm + spec.device_damping_n_s_per_mm) * 1000.0;
+  profile_.max_damping_n_s_per_mm = std::min(2.0 * 1e-3 * spec.mass_kg * spec.rate_hz, 1.0);
   profile_.resolution_mm = spec.resolution_mm;
   profile_.rate_hz = spec.rate_hz;
   profile_.gives_force = true;

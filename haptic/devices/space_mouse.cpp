@@ -11,7 +11,6 @@ namespace fettle::haptic {
 
 namespace {
 
-constexpr double kFull = 350.0;
 // A loop that was held up must not make the tip jump: what it missed is not made up for.
 constexpr double kLongestStep = 0.010;  // [s]
 
@@ -28,7 +27,7 @@ DeviceProfile spaceMouseProfile(const RateControl& control) {
 }  // namespace
 
 double rateOf(std::int16_t deflection, const RateControl& control) noexcept {
-  const double d = std::min(std::abs(deflection) / kFull, 1.0);
+  const double d = std::min(std::abs(deflection) / static_cast<double>(kSpaceMouseFull), 1.0);
   if (d <= control.dead_zone) return 0.0;
   const double rate = std::pow((d - control.dead_zone) / (1.0 - control.dead_zone), control.exponent);
   return deflection < 0 ? -rate : rate;

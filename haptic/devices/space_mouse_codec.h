@@ -7,9 +7,12 @@
 
 namespace fettle::haptic {
 
+/// A full deflection of the cap, either way, in the counts of its reports.
+inline constexpr int kSpaceMouseFull = 350;
+
 /// State of a SpaceMouse as its reports tell it: deflections of the cap, not positions.
 struct SpaceMouseState {
-  /// x right, y towards the user, z down; then turns about them; -350 .. 350 at full deflection.
+  /// x right, y towards the user, z down; then turns about them; -kSpaceMouseFull .. kSpaceMouseFull.
   std::array<std::int16_t, 6> axes{};
   std::uint32_t buttons = 0;  ///< bit 0 left, bit 1 right on the two-button ones
 };

@@ -11,10 +11,10 @@ namespace {
 constexpr double kComingOn_s = 0.050;
 
 // Weights of a uniform quadratic B-spline at u in [-0.5, 0.5] from the middle of three, and their slopes.
-struct SplineWeights {
+struct QuadraticWeights {
   std::array<double, 3> value, slope;
 
-  explicit SplineWeights(double u) noexcept
+  explicit QuadraticWeights(double u) noexcept
       : value{0.5 * (0.5 - u) * (0.5 - u), 0.75 - u * u, 0.5 * (0.5 + u) * (0.5 + u)},
         slope{u - 0.5, -2.0 * u, u + 0.5} {}
 };
@@ -34,8 +34,8 @@ EdgeSnap::Potential EdgeSnap::at(double x_mm, double y_mm) const noexcept {
   const double y = std::clamp(y_mm / sy_, 0.0, static_cast<double>(height_ - 1));
   const auto column = static_cast<std::int32_t>(x + 0.5);
   const auto row = static_cast<std::int32_t>(y + 0.5);
-  const SplineWeights wx(x - column);
-  const SplineWeights wy(y - row);
+  const QuadraticWeights wx(x - column);
+  const QuadraticWeights wy(y - row);
   Potential sum;
   for (int j = 0; j < 3; ++j) {
     const std::int32_t r = std::clamp(row + j - 1, 0, height_ - 1);

@@ -14,10 +14,10 @@ constexpr double kTurnedBack = 0.5;
 // A tip at rest is where it slipped to, but for rounding.
 constexpr double kHair = 1.0 + 1e-9;
 
-void run(void* data, TickState& state) noexcept {
+void runFriction(void* data, TickState& state) noexcept {
   static_cast<Friction*>(data)->run(state);
 }
-void forget(void* data, Forget /*why*/) noexcept {
+void forgetFriction(void* data, Forget /*why*/) noexcept {
   static_cast<Friction*>(data)->forget();
 }
 
@@ -60,8 +60,8 @@ void Friction::run(TickState& state) noexcept {
 void addFriction(EffectList& list, const Scene& scene) {
   Friction& friction =
       addData(list, EffectKind::kFriction, std::make_shared<Friction>(scene.params.friction));
-  list.in_contact.push_back({&run, &friction});
-  list.resets.push_back({&forget, &friction});
+  list.in_contact.push_back({&runFriction, &friction});
+  list.resets.push_back({&forgetFriction, &friction});
 }
 
 }  // namespace fettle::haptic

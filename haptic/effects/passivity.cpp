@@ -10,10 +10,10 @@ namespace fettle::haptic {
 
 namespace {
 
-void run(void* data, TickState& state) noexcept {
+void runPassivity(void* data, TickState& state) noexcept {
   static_cast<Passivity*>(data)->run(state);
 }
-void forget(void* data, Forget why) noexcept {
+void forgetPassivity(void* data, Forget why) noexcept {
   // A contact that ended or a surface that was replaced is in the balance already.
   if (why == Forget::kInputLost) static_cast<Passivity*>(data)->inputLost();
 }
@@ -51,8 +51,8 @@ void Passivity::run(TickState& state) noexcept {
 void addPassivity(EffectList& list, const Scene& scene) {
   Passivity& passivity =
       addData(list, EffectKind::kPassivity, std::make_shared<Passivity>(scene.params.passivity));
-  list.finishing.push_back({&run, &passivity});
-  list.resets.push_back({&forget, &passivity});
+  list.finishing.push_back({&runPassivity, &passivity});
+  list.resets.push_back({&forgetPassivity, &passivity});
   needMotion(list, scene);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -10,51 +11,223 @@ namespace fettle::haptic {
 
 namespace {
 
+using std::numbers::pi;
+
+// A number that was computed to be just held is held.
+constexpr double kRounding = 1.0 + 1e-9;
+// The spring, or the friction, is named at fault while so much of what is held is left to it.
+constexpr double kLeastShare = 0.1;
+constexpr double kSplinePart = 1.02;  // of texture.h's bound on the curvature
+
 bool lists(const Scene& scene, EffectKind kind) noexcept {
   return std::find(scene.effects.begin(), scene.effects.end(), kind) != scene.effects.end();
 }
 
+// The relief's part across the surface: K (1 + slope^2) + F curvature.
+struct Relief {
+  double slope_squared = 0.0;
+  double pressed_n_per_mm = 0.0;  // F curvature
+};
+
+Relief reliefOf(const Scene& scene) noexcept {
+  if (!lists(scene, EffectKind::kTexture)) return {};
+  const TextureParams& texture = scene.params.texture;
+  const double wave = pi / texture.wavelength_mm;
+  const double slope = texture.amplitude_mm * wave;
+  return {slope * slope, scene.force_limit_n * kSplinePart * 2.0 * texture.amplitude_mm * wave * wave};
+}
+
+double across(const Scene& scene) noexcept {
+  if (!lists(scene, EffectKind::kSpring)) return 0.0;
+  const Relief relief = reliefOf(scene);
+  return scene.stiffness_n_per_mm * (1.0 + relief.slope_squared) + relief.pressed_n_per_mm;
+}
+
+double snapStiffness(const Scene& scene) noexcept {
+  if (!lists(scene, EffectKind::kEdgeSnap)) return 0.0;
+  return 4.0 * scene.params.edge_snap.force_n / scene.params.edge_snap.reach_mm;
+}
+
+double frictionStiffness(const Scene& scene) noexcept {
+  return lists(scene, EffectKind::kFriction) ? scene.params.friction.stiffness_n_per_mm : 0.0;
+}
+
+// Of the estimate of the velocity.
+double filteredDamping(const Scene& scene) noexcept {
+  double sum = 0.0;
+  if (lists(scene, EffectKind::kViscosity)) sum += scene.params.viscosity.damping_n_s_per_mm;
+  if (lists(scene, EffectKind::kCoupling)) sum += scene.params.coupling.damping_n_s_per_mm;
+  return sum;
+}
+
+double damping(const Scene& scene) noexcept {
+  return filteredDamping(scene) +
+         (lists(scene, EffectKind::kPassivity) ? scene.params.passivity.max_damping_n_s_per_mm : 0.0);
+}
+
+// To four digits: who types what is read gets no more than was meant.
+double roundedDown(double value) noexcept {
+  if (!(value > 0.0)) return 0.0;
+  if (std::isinf(value)) return value;
+  const double digits = std::floor(std::log10(value)) - 3.0;
+  // A power of ten above one is exact, below one it is not: divided by, 6 stays 6.
+  const double unit = std::pow(10.0, std::abs(digits));
+  return digits < 0.0 ? std::floor(value * unit * kRounding) / unit
+                      : std::floor(value / unit * kRounding) * unit;
+}
+
+// What a device holds of a scene, in the field's millimetres.
+class Hold {
+ public:
+  Hold(const Scene& scene, const DeviceProfile& profile, double rate_hz, double scale)
+      : scene_(scene),
+        felt_(scene),
+        device_(profile.name),
+        rate_hz_(std::min(rate_hz, profile.rate_hz)),
+        scale_(scale),
+        stiffness_(profile.max_stiffness_n_per_mm * rate_hz_ / 1000.0 / scale),
+        damping_(profile.max_damping_n_s_per_mm / scale) {
+    felt_.force_limit_n = std::min(scene.force_limit_n, profile.max_force_n);
+  }
+
+  [[nodiscard]] std::optional<StabilityProblem> problem() const {
+    if (across(felt_) > stiffness_ * kRounding) return acrossProblem();
+    if (frictionStiffness(felt_) + snapStiffness(felt_) > stiffness_ * kRounding) return alongProblem();
+    if (damping(felt_) > damping_ * kRounding) return dampingProblem();
+    return std::nullopt;
+  }
+  /// The spring's, beside the rest of what is felt across the surface.
+  [[nodiscard]] double stiffnessLeft() const noexcept {
+    const Relief relief = reliefOf(felt_);
+    return (stiffness_ - relief.pressed_n_per_mm) / (1.0 + relief.slope_squared);
+  }
+  /// Scale at which all of it is just held, were this hold's scale 1.
+  [[nodiscard]] double largestScale() const noexcept {
+    const double infinite = std::numeric_limits<double>::infinity();
+    const double stiff = std::max(across(felt_), frictionStiffness(felt_) + snapStiffness(felt_));
+    const double damps = damping(felt_);
+    return roundedDown(
+        std::min(stiff > 0.0 ? stiffness_ / stiff : infinite, damps > 0.0 ? damping_ / damps : infinite));
+  }
+
+ private:
+  // "a stiffness of 3 N/mm, felt as 9, is more than the omni holds at 1000 Hz"
+  [[nodiscard]] StabilityProblem tooMuch(const std::string& subject, double value, const char* unit,
+                                         const char* beside = "") const {
+    const std::string felt = scale_ == 1.0 ? "" : fmt::format(", felt as {:.4g},", value * scale_);
+    return {fmt::format("{} {:.6g} {}{}{} is more than the {} holds at {:.0f} Hz", subject, value, unit,
+                        beside, felt, device_, rate_hz_),
+            {},
+            0.0,
+            scene_};
+  }
+  [[nodiscard]] StabilityProblem holdsNone(const char* what) const {
+    return {fmt::format("the {} holds no {} at all", device_, what), "take another device", 0.0, scene_};
+  }
+
+  [[nodiscard]] StabilityProblem acrossProblem() const {
+    if (!(stiffness_ > 0.0)) return holdsNone("stiffness");
+    const bool texture = lists(scene_, EffectKind::kTexture);
+    const double left = stiffnessLeft();
+    if (left >= kLeastShare * stiffness_) {
+      StabilityProblem p =
+          tooMuch("a stiffness of", scene_.stiffness_n_per_mm, "N/mm", texture ? " with this texture" : "");
+      p.largest = p.mended.stiffness_n_per_mm = roundedDown(left);
+      p.remedy = fmt::format("at most {:.4g} N/mm", p.largest);
+      return p;
+    }
+    StabilityProblem p =
+        tooMuch("a texture that stiffens the surface by up to", reliefOf(felt_).pressed_n_per_mm, "N/mm");
+    const double spring = std::min(scene_.stiffness_n_per_mm, roundedDown(0.5 * stiffness_));
+    // spring (1 + A^2 wave^2) + A F 2.04 wave^2 = what is held, for A.
+    const double wave = pi / scene_.params.texture.wavelength_mm;
+    const double square = spring * wave * wave;
+    const double half = felt_.force_limit_n * kSplinePart * wave * wave;
+    const double rest = stiffness_ - spring;
+    p.largest = p.mended.params.texture.amplitude_mm =
+        roundedDown(rest / (half + std::sqrt(half * half + square * rest)));
+    p.mended.stiffness_n_per_mm = spring;
+    p.remedy =
+        fmt::format("an amplitude of at most {:.4g} mm with {:.4g} N/mm of stiffness", p.largest, spring);
+    return p;
+  }
+
+  [[nodiscard]] StabilityProblem alongProblem() const {
+    if (!(stiffness_ > 0.0)) return holdsNone("stiffness");
+    const double grip = frictionStiffness(felt_), snap = snapStiffness(felt_);
+    const double left = stiffness_ - snap;
+    if (grip > 0.0 && left >= kLeastShare * stiffness_) {
+      StabilityProblem p =
+          tooMuch("friction with a stiffness of", grip, "N/mm", snap > 0.0 ? " beside this edge snap" : "");
+      p.largest = p.mended.params.friction.stiffness_n_per_mm = roundedDown(left);
+      p.remedy = fmt::format("at most {:.4g} N/mm ([friction] stiffness_n_per_mm)", p.largest);
+      return p;
+    }
+    StabilityProblem p = tooMuch("edge snap with a stiffness of", snap, "N/mm");
+    const double held = std::min(grip, roundedDown(0.5 * stiffness_));
+    p.largest = p.mended.params.edge_snap.force_n =
+        roundedDown(0.25 * scene_.params.edge_snap.reach_mm * (stiffness_ - held));
+    p.remedy = fmt::format("a force of at most {:.4g} N ([edge_snap] force_n)", p.largest);
+    if (grip > 0.0) {
+      p.mended.params.friction.stiffness_n_per_mm = held;
+      p.remedy += fmt::format(" with {:.4g} N/mm of friction", held);
+    }
+    return p;
+  }
+
+  [[nodiscard]] StabilityProblem dampingProblem() const {
+    if (!(damping_ > 0.0)) return holdsNone("damping");
+    const double asked = damping(felt_);
+    StabilityProblem p = tooMuch("a damping of viscosity, coupling and passivity of", asked, "N s/mm");
+    p.largest = roundedDown(damping_);
+    p.remedy = fmt::format("at most {:.4g} N s/mm of them together", p.largest);
+    const double share = p.largest / asked;
+    p.mended.params.viscosity.damping_n_s_per_mm *= share;
+    p.mended.params.coupling.damping_n_s_per_mm *= share;
+    p.mended.params.passivity.max_damping_n_s_per_mm *= share;
+    return p;
+  }
+
+  const Scene& scene_;
+  Scene felt_;  // with the force that the device gives at most
+  std::string device_;
+  double rate_hz_, scale_;
+  double stiffness_, damping_;  // held
+};
+
 }  // namespace
 
 StabilityNeed stabilityNeed(const Scene& scene, double rate_hz) noexcept {
-  using std::numbers::pi;
-  const EffectParams& params = scene.params;
-  double across = 0.0, along = 0.0;
-  if (lists(scene, EffectKind::kSpring)) across = scene.stiffness_n_per_mm;
-  if (lists(scene, EffectKind::kTexture)) {
-    const double wave = pi / params.texture.wavelength_mm;
-    const double slope = params.texture.amplitude_mm * wave;
-    across += scene.stiffness_n_per_mm * slope * slope +
-              scene.force_limit_n * 1.02 * 2.0 * params.texture.amplitude_mm * wave * wave;
-  }
-  if (lists(scene, EffectKind::kFriction)) along += params.friction.stiffness_n_per_mm;
-  if (lists(scene, EffectKind::kEdgeSnap))
-    along += 4.0 * params.edge_snap.force_n / params.edge_snap.reach_mm;
-
   StabilityNeed need;
-  need.stiffness_n_per_mm = std::max(across, along);
-  double filtered = 0.0;
-  if (lists(scene, EffectKind::kViscosity)) filtered += params.viscosity.damping_n_s_per_mm;
-  if (lists(scene, EffectKind::kCoupling)) filtered += params.coupling.damping_n_s_per_mm;
-  need.damping_n_s_per_mm = filtered;
-  if (lists(scene, EffectKind::kPassivity))
-    need.damping_n_s_per_mm += params.passivity.max_damping_n_s_per_mm;
-  const double a = 1.0 / (1.0 + 1e-3 * params.velocity.filter_ms * rate_hz);
-  need.device_damping_n_s_per_mm = need.stiffness_n_per_mm / (2.0 * rate_hz) + filtered * a / (2.0 - a);
+  need.stiffness_n_per_mm = std::max(across(scene), frictionStiffness(scene) + snapStiffness(scene));
+  need.damping_n_s_per_mm = damping(scene);
+  const double a = 1.0 / (1.0 + 1e-3 * scene.params.velocity.filter_ms * rate_hz);
+  need.device_damping_n_s_per_mm =
+      need.stiffness_n_per_mm / (2.0 * rate_hz) + filteredDamping(scene) * a / (2.0 - a);
   return need;
 }
 
-std::optional<std::string> stabilityProblem(const Scene& scene, const DeviceProfile& profile,
-                                            double rate_hz) {
-  const StabilityNeed need = stabilityNeed(scene, rate_hz);
-  const double holds = profile.max_stiffness_n_per_mm * rate_hz / 1000.0;
-  if (need.stiffness_n_per_mm > holds)
-    return fmt::format("the scene is up to {:.3g} N/mm stiff, the {} holds {:.3g} at {:.0f} Hz: it may buzz",
-                       need.stiffness_n_per_mm, profile.name, holds, rate_hz);
-  if (need.damping_n_s_per_mm > profile.max_damping_n_s_per_mm)
-    return fmt::format("the scene damps with up to {:.3g} N s/mm, the {} takes {:.3g}: it may buzz",
-                       need.damping_n_s_per_mm, profile.name, profile.max_damping_n_s_per_mm);
-  return std::nullopt;
+std::optional<StabilityProblem> stabilityProblem(const Scene& scene, const DeviceProfile& profile,
+                                                 double rate_hz, double scale) {
+  return Hold(scene, profile, rate_hz, scale).problem();
+}
+
+double largestStiffness(const Scene& scene, const DeviceProfile& profile, double rate_hz, double scale) {
+  return roundedDown(Hold(scene, profile, rate_hz, scale).stiffnessLeft());
+}
+
+Scene stableScene(Scene scene, const DeviceProfile& profile, double rate_hz, double scale) {
+  // Across, along, damping: each is mended at once, and none brings another back.
+  for (int i = 0; i < 3; ++i) {
+    auto problem = stabilityProblem(scene, profile, rate_hz, scale);
+    if (!problem) break;
+    scene = std::move(problem->mended);
+  }
+  return scene;
+}
+
+double largestStableScale(const Scene& scene, const DeviceProfile& profile, double rate_hz) {
+  return Hold(scene, profile, rate_hz, 1.0).largestScale();
 }
 
 }  // namespace fettle::haptic

@@ -19,11 +19,43 @@ struct StabilityNeed {
 /// snap's 4 F / R together. `scene` in range.
 [[nodiscard]] StabilityNeed stabilityNeed(const Scene& scene, double rate_hz) noexcept;
 
-/// What of the scene is more than the device is known to hold, as one sentence for the user; nothing when all
-/// is well. A profile says how much damping a device can be asked for (B) and which stiffness it holds (K),
-/// at 1 kHz; at another rate K goes with the rate (2 b / T). Stiffness is as felt by the device: with a
-/// Workspace of scale other than 1, in the device's own millimetres.
-[[nodiscard]] std::optional<std::string> stabilityProblem(const Scene& scene, const DeviceProfile& profile,
-                                                          double rate_hz);
+/// Numbers of a scene that ask for more than a device holds.
+struct StabilityProblem {
+  std::string what;    ///< a sentence: what is asked for, and what the device holds
+  std::string remedy;  ///< names the largest stable value
+  /// That value, rounded down to four digits, so that what is read in `remedy` and typed is stable: stiffness
+  /// [N/mm], amplitude [mm], force [N] or damping [N s/mm], whichever `what` is about.
+  double largest = 0.0;
+  Scene mended;  ///< the scene with the numbers that `remedy` names, and no other, lowered to what it says
+};
+
+/// The first thing of the scene that is more than the device is known to hold; nothing when all is well.
+///
+/// A profile says how much damping a device can be asked for (B) and which stiffness it holds (K), at 1 kHz;
+/// at another rate K goes with the rate (2 b / T). A rate above what the device itself delivers holds no more
+/// than that: between two inputs the force stands still. `scale` [mm of the field a mm of the hand, > 0]:
+/// stiffness and damping of the scene are felt that many times as large (Workspace). With a texture the force
+/// goes up to the scene's limit or the device's, whichever is less.
+///
+/// Where two numbers share what is held - stiffness and a texture, friction and edge snap - the largest
+/// stiffness beside the other as it is gets named as long as that leaves a tenth of it; else the other one's
+/// largest, with the stiffness at most half of what is held.
+[[nodiscard]] std::optional<StabilityProblem> stabilityProblem(const Scene& scene,
+                                                               const DeviceProfile& profile, double rate_hz,
+                                                               double scale = 1.0);
+
+/// Largest stiffness [N/mm] of the spring that the device holds beside the rest of the scene, rounded down to
+/// four digits; 0 when it holds none. As stabilityProblem().
+[[nodiscard]] double largestStiffness(const Scene& scene, const DeviceProfile& profile, double rate_hz,
+                                      double scale = 1.0);
+
+/// The scene with every problem mended by itself (StabilityProblem::mended): the same scene when there is
+/// none.
+[[nodiscard]] Scene stableScene(Scene scene, const DeviceProfile& profile, double rate_hz,
+                                double scale = 1.0);
+
+/// The largest scale at which the device holds the scene as it is, rounded down to four digits: infinite for
+/// a scene without stiffness and damping, 0 for a device that holds none.
+[[nodiscard]] double largestStableScale(const Scene& scene, const DeviceProfile& profile, double rate_hz);
 
 }  // namespace fettle::haptic

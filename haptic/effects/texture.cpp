@@ -52,10 +52,10 @@ double splineGain(int cycles) noexcept {
 }
 
 // Weights of a uniform cubic B-spline at u in [0, 1) and their derivatives.
-struct SplineWeights {
+struct CubicWeights {
   std::array<double, 4> value, slope;
 
-  explicit SplineWeights(double u) noexcept
+  explicit CubicWeights(double u) noexcept
       : value{(1 - u) * (1 - u) * (1 - u) / 6, (3 * u * u * u - 6 * u * u + 4) / 6,
               (-3 * u * u * u + 3 * u * u + 3 * u + 1) / 6, u * u * u / 6},
         slope{-(1 - u) * (1 - u) / 2, (3 * u * u - 4 * u) / 2, (-3 * u * u + 2 * u + 1) / 2, u * u / 2} {}
@@ -95,8 +95,8 @@ TextureTable::Value TextureTable::at(double x_mm, double y_mm) const noexcept {
   const double y = y_mm * per_mm_;
   const double column = std::floor(x);
   const double row = std::floor(y);
-  const SplineWeights wx(x - column);
-  const SplineWeights wy(y - row);
+  const CubicWeights wx(x - column);
+  const CubicWeights wy(y - row);
   // Into the period as doubles: a position may be too far for an int.
   const auto within = [](double i) { return static_cast<int>(i - kSide * std::floor(i / kSide)); };
   const int c0 = within(column) - 1 + kSide;

@@ -241,6 +241,16 @@ class Hand {
 
 }  // namespace
 
+OperatorSpec offTheEdges(OperatorSpec spec, const engine::Grid& grid) {
+  constexpr double kDeviations = 4.0;
+  constexpr double kWindow = 2.0;   // [samples]
+  constexpr double kLineMm = 0.05;  // of a parallel line between the points of the edge
+  spec.smooth_clear_mm = kDeviations * std::hypot(spec.tremor_mm, spec.wander_mm) + spec.press_mm +
+                         kWindow * std::max(grid.spacingXMm(), grid.spacingYMm());
+  spec.smooth_offset_mm = spec.smooth_clear_mm + kLineMm;
+  return spec;
+}
+
 std::vector<StrokeSample> operatorStrokes(const engine::Version& scan, std::span<const engine::Edge> edges,
                                           const OperatorSpec& spec) {
   assert(spec.rate_hz >= 100.0 && spec.rate_hz <= 10000.0 && spec.speed_mm_s > 0.0 && spec.lift_mm > 0.0);

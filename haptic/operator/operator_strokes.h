@@ -28,8 +28,8 @@ struct OperatorSpec {
   int smooth_passes = 1;
   int mark_passes = 1;
   /// How far to the high side of a step (the flatter one of a crease) the smooth passes run [mm], >= 0: a
-  /// smoothing window that reaches over an edge blurs it, so a person smooths the land beside it. More than
-  /// three times the hand's own error keeps off it almost always.
+  /// smoothing window that reaches over an edge blurs it, so a person smooths the land beside it. How far is
+  /// enough: offTheEdges().
   double smooth_offset_mm = 0.6;
   /// Along a step the mark passes keep the tip down at the lower land that lies within this distance [mm],
   /// >= 0, and come down on the low side: the wall guides the tip, as a concave corner guides the paper's
@@ -45,6 +45,15 @@ struct OperatorSpec {
   /// Edges shorter than this are left out [mm], >= 0.
   double shortest_mm = 0.0;
 };
+
+/// The same person, whose smooth passes keep off the edges of a scan of this grid: offset and clearance large
+/// enough that no sample beside an edge is smoothed, however the hand wanders and trembles. The land that is
+/// smoothed begins there. What reaches over an edge otherwise, and is added up here:
+///  - the hand's own error, to four times its standard deviation;
+///  - the press: a tip that lies deeper below the land than it is away from a wall is nearer to the wall, and
+///    the contact, hence the brush, is there and no longer on the land;
+///  - the brush: its 3 x 3 window about the lower-left sample of the cell, two samples.
+[[nodiscard]] OperatorSpec offTheEdges(OperatorSpec spec, const engine::Grid& grid);
 
 /// The strokes of a person tracing the edges of a scan with a stylus: for each edge in turn, the smooth
 /// passes, then the mark passes; each stroke comes down from above, presses to `press_mm`, follows the edge

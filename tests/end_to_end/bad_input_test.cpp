@@ -1,4 +1,5 @@
-// What users do wrong, and what disks do: one clear line, exit status 2, no output file, bounded memory.
+// What users do wrong, and what disks do: one clear line, exit status 2 (1 for a full disk), no output file,
+// bounded memory.
 
 #include <filesystem>
 #include <fstream>
@@ -91,6 +92,20 @@ TEST(BadInput, StrokesAndScenesThatAreWrongNameTheLine) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("o.tif")));
 }
 
+TEST(BadInput, AReplayWithoutAFileToWriteSaysThat) {
+  const TempFolder folder;
+  const std::string scan = smallScan(folder);
+  write(folder.file("s.csv"), "t,x,y,z,tool\n0,1,1,1,feel\n");
+  expectRefused(fettle({"replay", scan, folder.file("s.csv")}), "no file to write is named");
+  expectRefused(fettle({"replay", scan}), "no strokes are named");
+  ASSERT_EQ(fettle({"convert", scan, folder.file("w.fettle")}).status, 0);
+  expectRefused(fettle({"replay", folder.file("w.fettle")}), "no file to write is named");
+  // Two names, of which the second would have been replaced by the field.
+  expectRefused(fettle({"replay", folder.file("w.fettle"), folder.file("s.csv")}), "these are strokes");
+  std::ifstream strokes(folder.file("s.csv"));
+  EXPECT_EQ(std::string((std::istreambuf_iterator<char>(strokes)), {}), "t,x,y,z,tool\n0,1,1,1,feel\n");
+}
+
 TEST(BadInput, OutputsThatCannotBeWrittenAreRefusedAndLeaveNothing) {
   const TempFolder folder;
   const std::string scan = smallScan(folder);
@@ -98,6 +113,14 @@ TEST(BadInput, OutputsThatCannotBeWrittenAreRefusedAndLeaveNothing) {
   expectRefused(fettle({"convert", scan, folder.file("o.docx")}), "docx");
   std::filesystem::create_directory(folder.path() / "d.tif");
   expectRefused(fettle({"convert", scan, folder.file("d.tif")}), "d.tif");
+  // A folder, with and without the slash, is called that, and not a format.
+  std::filesystem::create_directory(folder.path() / "e");
+  for (const char* name : {"e", "e/", "new/"}) {
+    const Outcome outcome = fettle({"convert", scan, folder.file(name)});
+    expectRefused(outcome, "the output is a folder");
+    EXPECT_NE(outcome.err.find("--out-dir"), std::string::npos) << outcome.err;
+    expectRefused(fettle({"synth", folder.file(name)}), "the output is a folder");
+  }
   // A folder in which nothing can be made, even by root.
   expectRefused(fettle({"convert", scan, "/proc/o.tif"}), "/proc");
 }
@@ -157,7 +180,7 @@ TEST(BadInput, AFullDiskLeavesTheOldFileAndNothingElse) {
   ProcessOptions full;
   full.file_limit = 20000;
   for (const char* name : {"out.tif", "out.asc", "out.xyz", "out.ply", "out.png"}) {
-    expectRefused(fettle({"convert", folder.file("s.tif"), folder.file(name)}, full), name);
+    expectFailed(fettle({"convert", folder.file("s.tif"), folder.file(name)}, full), name);
     if (std::string(name) != "out.tif") {
       EXPECT_FALSE(std::filesystem::exists(folder.file(name))) << name;
     }
@@ -167,6 +190,38 @@ TEST(BadInput, AFullDiskLeavesTheOldFileAndNothingElse) {
   int files = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) ++files;
   EXPECT_EQ(files, 2);
+}
+
+// Runs fettle where `disk` is a disk of 40 KB, and lists on standard output what is on it afterwards.
+Outcome onATinyDisk(const std::string& disk, std::vector<std::string> arguments) {
+  const std::string script =
+      "mount -t tmpfs -o size=40k tmpfs \"$0\" || exit 77; \"$@\"; status=$?; ls -A \"$0\"; exit $status";
+  arguments.insert(arguments.begin(), {"unshare", "-rm", "sh", "-c", script, disk, FETTLE_PROGRAM});
+  return runProcess(arguments);
+}
+
+TEST(BadInput, AFullDiskIsAFailureThatSaysSoAndLeavesNothing) {
+  const TempFolder folder;
+  const std::string disk = (folder.path() / "disk").string();
+  std::filesystem::create_directory(disk);
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "300x300"}).status, 0);
+  // Formats that GDAL and other libraries write, and those that write themselves; a picture of marks, too.
+  for (const char* name : {"o.tif", "o.asc", "o.xyz", "o.png", "o.exr", "o.x3p", "o.fettle"}) {
+    const Outcome full = onATinyDisk(disk, {"convert", folder.file("s.tif"), disk + "/" + name});
+    if (full.status == 77 || full.status == 127 || full.err.find("unshare:") != std::string::npos)
+      GTEST_SKIP() << "mounting is not permitted: " << full.err;
+    expectFailed(full, "the disk is full");
+    EXPECT_NE(full.err.find(name), std::string::npos) << full.err;
+  }
+  expectFailed(onATinyDisk(disk, {"convert", folder.file("s.tif"), disk + "/o.tif", "--cloud-optimised"}),
+               "the disk is full");
+  expectFailed(onATinyDisk(disk, {"filter", folder.file("s.tif"), disk + "/o.tif", "--filter", "box"}),
+               "the disk is full");
+  // Standard output is a file on it.
+  const std::string run = std::string(FETTLE_PROGRAM) + " info " + folder.file("s.tif") + " >/dev/full";
+  const Outcome report = runProcess({"sh", "-c", run});
+  EXPECT_EQ(report.status, 1);
+  EXPECT_NE(report.err.find("the disk is full"), std::string::npos) << report.err;
 }
 
 }  // namespace

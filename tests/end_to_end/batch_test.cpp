@@ -114,8 +114,8 @@ TEST_F(Batch, RefusesBeforeAnythingIsReadWhatWouldEndInOneFile) {
       fettle({"filter", folder.file("a.tif"), "--out-dir", folder.path().string(), "--filter", "box"}),
       "replace an input");
   expectRefused(
-      fettle({"filter", folder.file("a.tif"), "--out-dir", folder.file("nowhere"), "--filter", "box"}),
-      "no such folder");
+      fettle({"filter", folder.file("a.tif"), "--out-dir", folder.file("b.asc"), "--filter", "box"}),
+      "a file and no folder");
   expectRefused(
       fettle({"filter", folder.file("a.tif"), folder.file("b.asc"), folder.file("c.x3p"), "--filter", "box"}),
       "--out-dir");
@@ -124,6 +124,38 @@ TEST_F(Batch, RefusesBeforeAnythingIsReadWhatWouldEndInOneFile) {
   expectRefused(fettle({"convert", folder.file("a.tif"), out("x.asc"), "--to", "asc"}), "--out-dir");
   expectRefused(fettle({"convert", folder.file("a.tif"), "--out-dir", out(), "--to", "docx"}), "docx");
   EXPECT_EQ(written(), Names{});
+}
+
+TEST_F(Batch, MakesTheFolderAndRemovesItWhenNothingWasWritten) {
+  const std::string made = folder.file("new/er");
+  EXPECT_EQ(fettleJson({"convert", folder.file("a.tif"), "--out-dir", made, "--to", "asc"})["done"], 1);
+  EXPECT_EQ(fettle({"info", made + "/a.asc"}).status, 0);
+  const std::string in_vain = folder.file("vain");
+  EXPECT_EQ(fettle({"convert", folder.file("none.tif"), "--out-dir", in_vain, "--to", "asc"}).status, 1);
+  EXPECT_EQ(fettle({"convert", folder.file("a.tif"), "--out-dir", in_vain, "--to", "docx"}).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(in_vain));
+}
+
+TEST_F(Batch, InfoReportsEachOfSeveralScans) {
+  std::ofstream(folder.file("bad.tif")) << "no picture";
+  const Outcome outcome =
+      fettle({"info", folder.file("a.tif"), folder.file("bad.tif"), folder.file("b.asc"), "--json"});
+  EXPECT_EQ(outcome.status, 1);
+  const auto report = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(report["done"], 2);
+  EXPECT_EQ(report["failed"], 1);
+  EXPECT_EQ(report["files"][0]["width"], 64);
+  EXPECT_TRUE(report["files"][1].contains("error"));
+  EXPECT_EQ(report["files"][2]["in"], folder.file("b.asc"));
+  EXPECT_EQ(report["files"][2]["format"], "AAIGrid");
+  // One scan has the report without a list; options may stand before and behind the names.
+  EXPECT_EQ(fettleJson({"info", "--spacing", "0.5", folder.file("b.asc"), "--bins", "3"})["spacing_x"], 0.5);
+  const Outcome told = fettle({"info", folder.file("a.tif"), folder.file("c.x3p")});
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_NE(told.out.find(folder.file("c.x3p")), std::string::npos) << told.out;
+  EXPECT_TRUE(told.out.ends_with("2 read, 0 failed\n")) << told.out;
+  expectRefused(fettle({"info", folder.file("a.tif"), folder.file("b.asc"), "--picture", out("p.png")}),
+                "--picture");
 }
 
 TEST_F(Batch, ConvertsEveryScanToTheFormatThatIsAsked) {

@@ -19,8 +19,10 @@ nlohmann::json fettleJson(std::vector<std::string> arguments) {
   return nlohmann::json::parse(outcome.out);
 }
 
-void expectRefused(const Outcome& outcome, const std::string& part) {
-  EXPECT_EQ(outcome.status, 2) << outcome.err;
+namespace {
+
+void expectError(const Outcome& outcome, int status, const std::string& part) {
+  EXPECT_EQ(outcome.status, status) << outcome.err;
   EXPECT_EQ(outcome.out, "");
   // What an importer had to guess is said before; the refusal itself is one line, the last.
   std::istringstream lines(outcome.err);
@@ -30,6 +32,16 @@ void expectRefused(const Outcome& outcome, const std::string& part) {
   ASSERT_EQ(said.size(), 1U) << outcome.err;
   EXPECT_EQ(said[0].rfind("fettle: error: ", 0), 0U) << outcome.err;
   EXPECT_NE(said[0].find(part), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+
+void expectRefused(const Outcome& outcome, const std::string& part) {
+  expectError(outcome, 2, part);
+}
+
+void expectFailed(const Outcome& outcome, const std::string& part) {
+  expectError(outcome, 1, part);
 }
 
 }  // namespace fettle::tests

@@ -12,6 +12,7 @@
 #include "tests/engine/io/io_support.h"
 #include "tests/fuzz/import_fuzz.h"
 #include "tests/fuzz/seeds.h"
+#include "tests/support/source_tree.h"
 
 namespace fettle::tests {
 namespace {
@@ -80,7 +81,7 @@ TEST(Damage, IsRefusedOrHarmlessAndNeverSlow) {
 }
 
 TEST(Damage, FilesThatOnceBrokeAnImporterNoLongerDo) {
-  const std::filesystem::path folder = std::filesystem::path(FETTLE_SOURCE_DIR) / "tests/fuzz/regressions";
+  const std::filesystem::path folder = tests::inSourceTree("tests/fuzz/regressions");
   for (const auto& file : std::filesystem::directory_iterator(folder))
     importText(file.path().extension().string(), engine::readBytes(file.path().string()));
 }

@@ -43,6 +43,12 @@ std::vector<std::pair<std::string, std::string>> fuzzSeeds() {
   ExportOptions mesh;
   mesh.mesh = true;
   exported(".ply", mesh);
+  for (const TiffCompression compression :
+       {TiffCompression::kLzw, TiffCompression::kDeflate, TiffCompression::kZstd}) {
+    ExportOptions packed;
+    packed.tiff_compression = compression;
+    exported(".tif", packed);
+  }
   for (const bool packed : {false, true}) {
     seeds.emplace_back(".sur", sur<std::int16_t>(packed));
     seeds.emplace_back(".sur", sur<std::int32_t>(packed));
@@ -63,6 +69,14 @@ std::vector<std::pair<std::string, std::string>> fuzzSeeds() {
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
       "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 1\n2 0 1\n2 2 3\n0 2 3\n"
       "4 0 1 2 3\n");
+  seeds.emplace_back(
+      ".ply",
+      "ply\nformat ascii 1.0\nobj_info num_cols 3\nobj_info num_rows 2\nelement vertex 4\nproperty float x\n"
+      "property float y\nproperty float z\nelement range_grid 6\nproperty list uchar int vertex_indices\n"
+      "end_header\n0 0 5\n2 0 6\n0 1 7\n1 1 8\n1 0\n0\n1 1\n1 2\n1 3\n0\n");
+  seeds.emplace_back(".xyz",
+                     "a title\nid;\"Z [nm]\";x_um;Y (um)\nP1;5;0;0\n\"P;2\";6;1;0\nP3;;0;1\nP4;8;1;1\n");
+  seeds.emplace_back(".xyz", "x\ty\tz\nmm\tmm\tum\n0\t0\t1\n0.5\t0\t2\n0\t0.5\t3\n40\t40\t4\n");
   return seeds;
 }
 

@@ -8,6 +8,7 @@
 #include "haptic/effects/stability.h"
 #include "haptic/scene.h"
 #include "haptic/strokes.h"
+#include "tests/support/source_tree.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::haptic {
@@ -69,7 +70,7 @@ TEST(Forces, AreWrittenAsDocumented) {
 }
 
 TEST(SceneFile, TheDocumentedDefaultIsTheDefaultAndAllExamplesLoad) {
-  const std::string folder = std::string(FETTLE_SOURCE_DIR) + "/assets/scenes/";
+  const std::string folder = tests::inSourceTree("assets/scenes/");
   const auto scene = loadScene(folder + "default.toml");
   ASSERT_TRUE(scene) << scene.error().line();
   EXPECT_EQ(*scene, defaultScene());
@@ -82,7 +83,7 @@ TEST(SceneFile, TheDocumentedDefaultIsTheDefaultAndAllExamplesLoad) {
 }
 
 TEST(SceneFile, EverythingListsEveryEffectWithinWhatADeviceHolds) {
-  const auto scene = loadScene(std::string(FETTLE_SOURCE_DIR) + "/assets/scenes/everything.toml");
+  const auto scene = loadScene(tests::inSourceTree("assets/scenes/everything.toml"));
   ASSERT_TRUE(scene) << scene.error().line();
   EXPECT_EQ(scene->effects.size(), static_cast<std::size_t>(kEffectKinds));
   EXPECT_EQ(scene->params.friction.dynamic_coefficient, 0.2);

@@ -212,5 +212,37 @@ TEST(Damage, PanelsBesideEachOtherAndSplitAreDrawnInPartsEachForItself) {
   }
 }
 
+TEST(Damage, APanelThatIsRefinedOrLitFromPagesOfItsOwnIsDrawnAloneAndTheOthersStay) {
+  // Four states take 5.2 MB; of this picture their pages take less.
+  for (const std::int64_t device_bytes : {kWhole, std::int64_t{5'000'000}}) {
+    SCOPED_TRACE(device_bytes);
+    Twins twins(device_bytes);
+    const engine::Version start = part(640, 480, Holes::kNone);
+    engine::LiveField live(start, engine::Growth::kAllowed);
+    Shown shown;
+    for (int i = 0; i < 4; ++i) {
+      // Four states without a page in common, so that no panel's pages come with another's.
+      std::vector<float> z(640 * 480);
+      start.reader().readHeights(0, 0, 640, 480, z.data(), 640);
+      for (float& height : z) height *= 1.0F + 0.1F * static_cast<float>(i);
+      ASSERT_TRUE(live.writeHeights(0, 0, 640, 480, z.data(), 640));
+      shown.versions.push_back(live.snapshot());
+    }
+    ASSERT_TRUE(twins.picture().update(shown));
+    FrameInput input = smallInput();
+    input.range = ValueRange{-3, 9};
+    input.panel_vertices.assign(4, 4096);
+    EXPECT_EQ(twins.shoot(input), 1.0);
+    for (std::size_t i = 0; i < 4; ++i) {
+      input.panel_vertices[i] = 1 << 20;
+      const double share = twins.shoot(input);
+      EXPECT_EQ(twins.byNeed(), device_bytes != kWhole);
+      EXPECT_GT(share, 0.1) << i;
+      EXPECT_LE(share, 0.25) << i;
+    }
+    EXPECT_EQ(twins.shoot(input), 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace fettle::render

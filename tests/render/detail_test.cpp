@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/live_field.h"
+#include "render/kept_trees.h"
 #include "tests/render/drawn_surface.h"
 #include "tests/render/fields.h"
 
@@ -172,6 +173,75 @@ TEST(Detail, MeasuredInPartsItIsInfiniteUntilItIsTheSameBitForBit) {
         ASSERT_EQ(parts.error(level, x, y).deviation, all.error(level, x, y).deviation);
         ASSERT_EQ(parts.error(level, x, y).excess, all.error(level, x, y).excess);
       }
+}
+
+// The patches, edges and walls of a tree as plain numbers.
+std::vector<int> numbersOf(const PatchTree& tree) {
+  const PatchChoice choice = tree.list();
+  std::vector<int> numbers{static_cast<int>(choice.whole), choice.within_budget ? 1 : 0};
+  for (const auto* list : {&choice.patches, &choice.seams, &choice.walls})
+    for (const gpu::Patch& p : *list)
+      numbers.insert(numbers.end(), {p.place.x, p.place.y, p.place.z, p.place.w});
+  return numbers;
+}
+
+TEST(KeptTrees, AreWhatChoosingAgainGivesAfterEveryChange) {
+  const engine::Version field = fieldOf(gridOf(400, 300, 0.1, 0.1), rough);
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  DetailMeasure measure;
+  measure.begin(field.reader());
+  PatchQuestion q;
+  q.measure = &measure;
+  q.placing = placingOf(field.grid());
+  q.lowest = -1.0, q.highest = 1.0, q.floor_z = -1.2, q.error_px = 0.5;
+  const glm::dvec2 half = 0.5 * q.placing.extent();
+  const Box box{{-half.x, -half.y, -1.2}, {half.x, half.y, 1.0}};
+  View view;
+  q.camera = Camera::fit(view, box, box, {0, 0, 900, 600});
+  KeptTrees kept;
+  engine::Version shown = field;
+  std::vector<int> last;
+  int changes = 0;
+  const auto expectChosen = [&](const char* what) {
+    SCOPED_TRACE(what);
+    q.reader = shown.reader();
+    const std::vector<int> wanted = numbersOf(PatchTree(q));
+    for (int i = 0; i < 2; ++i) {
+      PatchTree tree = kept.tree(1, q, shown);
+      EXPECT_EQ(numbersOf(tree), wanted);
+      // What a frame makes of its own is not kept.
+      (void)tree.prune([](const PatchLeaf& leaf) { return leaf.level > 3; });
+    }
+    changes += wanted != last;
+    last = wanted;
+  };
+  expectChosen("nothing is known");
+  while (measure.unknown() > 0) {
+    (void)measure.measureSome(shown.reader(), 9);
+    expectChosen("more is known");
+  }
+  const std::vector<float> bump(20 * 20, 0.9F);
+  ASSERT_TRUE(live.writeHeights(100, 100, 20, 20, bump.data(), 20));
+  shown = live.snapshot();
+  const glm::ivec2 tile(1, 1);
+  measure.refresh(shown.reader(), std::span(&tile, 1));
+  expectChosen("an edit");
+  q.vertex_budget = 40000;
+  expectChosen("fewer vertices");
+  q.error_px = 4.0;
+  expectChosen("a larger error");
+  view.zoom = 3.0;
+  q.camera = Camera::fit(view, box, box, {0, 0, 900, 600});
+  expectChosen("another view");
+  q.mm_per_unit = 5.0;
+  expectChosen("exaggerated");
+  q.settled = [](glm::ivec2, glm::ivec2) { return false; };
+  expectChosen("samples on their way");
+  q.settled = {};
+  shown = field;
+  measure.refresh(shown.reader(), std::span(&tile, 1));
+  expectChosen("undone");
+  EXPECT_GE(changes, 6);
 }
 
 }  // namespace

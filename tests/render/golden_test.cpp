@@ -12,6 +12,7 @@
 
 #include "render/live_picture.h"
 #include "tests/render/fields.h"
+#include "tests/support/source_tree.h"
 
 namespace fettle::render {
 namespace {
@@ -37,7 +38,7 @@ engine::Version part(double noise_mm) {
 }
 
 void compareWithGolden(const std::string& name, const Image& actual) {
-  const std::string path = std::string(FETTLE_SOURCE_DIR) + "/tests/render/golden/" + name + ".png";
+  const std::string path = tests::inSourceTree("tests/render/golden/") + name + ".png";
   if (const char* update = std::getenv("FETTLE_UPDATE_GOLDEN"); update != nullptr && *update == '1') {
     ASSERT_TRUE(writePng(actual, path));
     return;

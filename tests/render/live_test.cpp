@@ -237,6 +237,105 @@ TEST(Live, AnEditMovesItsRectangleOnlyAndThePictureEqualsAFreshOne) {
   EXPECT_EQ(shoot(*picture, input).stats.upload.tiles, 0);
 }
 
+// Colours of a picture, counted coarsely: 32 steps of a channel.
+std::size_t colours(const Image& image) {
+  std::vector<int> codes;
+  for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+    codes.push_back(image.rgba[i] >> 3 << 10 | image.rgba[i + 1] >> 3 << 5 | image.rgba[i + 2] >> 3);
+  std::sort(codes.begin(), codes.end());
+  return static_cast<std::size_t>(std::unique(codes.begin(), codes.end()) - codes.begin());
+}
+
+TEST(Live, AFieldTurnedUpsideDownIsSeenLikeOneThatCameSoAndBackAgain) {
+  // Heights of which none is its own opposite: a range that stayed would leave nothing to be seen.
+  const engine::Version field =
+      fieldOf(gridOf(640, 480, 0.1, 0.1), [](int c, int r) { return 20.0 + part(c, r); });
+  const engine::Version scan =
+      fieldOf(gridOf(640, 480, 0.1, 0.1), [](int c, int r) { return 20.0 + 0.98 * part(c, r); });
+  const engine::Version another = fieldOf(gridOf(8, 8), [](int c, int) { return c; });
+  FrameInput input = bare(480, 320);
+  input.decoration = Decoration::kFull;  // with the colour bar
+  auto other = makePicture();
+  for (const std::int64_t device_bytes : {0, 1'200'000}) {
+    SCOPED_TRACE(device_bytes);
+    // By need: a part that the pages have room for.
+    if (device_bytes > 0) input.view.zoom = 6.0;
+    LiveOptions options;
+    options.validation = Validation::kOn;
+    options.memory_budget_bytes = device_bytes;
+    auto created = LivePicture::create(options);
+    ASSERT_TRUE(created);
+    LivePicture& picture = **created;
+    // As it is seen now, and as one sees it who opens just this.
+    const auto seen = [&](const Shown& shown, const char* what) {
+      SCOPED_TRACE(what);
+      EXPECT_TRUE(picture.update(shown));
+      const Frame frame = settled(picture, input);
+      EXPECT_TRUE(other->update(another));
+      EXPECT_TRUE(other->update(shown));
+      const Frame expected = settled(*other, input);
+      EXPECT_EQ(frame.stats.residency.by_need, device_bytes > 0);
+      EXPECT_EQ(frame.stats.residency.pages_beyond, 0);
+      EXPECT_EQ(frame.stats.range, expected.stats.range);
+      EXPECT_TRUE(frame.image.rgba == expected.image.rgba);
+      return frame;
+    };
+    Shown shown;
+    shown.versions = {field};
+    const Frame upright = seen(shown, "as it came");
+    const ValueRange range = upright.stats.range;
+    EXPECT_GT(range.low, 15.0);
+    const std::size_t many = colours(upright.image);
+    EXPECT_GT(many, 200U);
+    shown.versions = {field.inverted()};
+    const Frame inverted = seen(shown, "upside down");
+    EXPECT_EQ(inverted.stats.range, (ValueRange{-range.high, -range.low}));
+    EXPECT_GT(colours(inverted.image), many / 2);
+    if (device_bytes == 0) {
+      // The deviation map on and off while it is.
+      shown.original = scan.inverted();
+      (void)seen(shown, "the deviation upside down");
+      shown.original.reset();
+      EXPECT_TRUE(seen(shown, "upside down without the deviation").image.rgba == inverted.image.rgba);
+    }
+    shown.versions = {field};
+    EXPECT_TRUE(seen(shown, "back again").image.rgba == upright.image.rgba);
+    if (device_bytes == 0) {
+      shown.original = scan;
+      (void)seen(shown, "the deviation");
+      shown.versions = {field.inverted()};
+      shown.original = scan.inverted();
+      (void)seen(shown, "field and scan upside down");
+      shown.original.reset();
+    }
+    // One state of each sign: both are within the colours.
+    shown.versions = {field.inverted(), field};
+    EXPECT_EQ(seen(shown, "one of each").stats.range, (ValueRange{-range.high, range.high}));
+    shown.versions = {field, field.inverted()};
+    EXPECT_EQ(seen(shown, "the other way round").stats.range, (ValueRange{-range.high, range.high}));
+    shown.versions = {field};
+    EXPECT_TRUE(seen(shown, "and one alone").image.rgba == upright.image.rgba);
+  }
+}
+
+TEST(Live, ColoursDoNotSwimUnderABrushAndInvertingTwiceLeavesThemAsTheyWere) {
+  const engine::Version field = partField();
+  auto picture = makePicture();
+  ASSERT_TRUE(picture->update(field));
+  const FrameInput input = bare();
+  const ValueRange range = shoot(*picture, input).stats.range;
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  const std::vector<float> high(100 * 100, 30.0F);
+  ASSERT_TRUE(live.writeHeights(200, 200, 100, 100, high.data(), 100));
+  ASSERT_TRUE(picture->update(live.snapshot()));
+  const Frame edited = shoot(*picture, input);
+  EXPECT_EQ(edited.stats.range, range);
+  ASSERT_TRUE(picture->update(live.snapshot().inverted()));
+  EXPECT_EQ(shoot(*picture, input).stats.range, (ValueRange{-range.high, -range.low}));
+  ASSERT_TRUE(picture->update(live.snapshot()));
+  EXPECT_TRUE(shoot(*picture, input).image.rgba == edited.image.rgba);
+}
+
 TEST(Live, AFilterResultComesOverInSharesAndEndsAsAFreshPicture) {
   LiveOptions options;
   options.validation = Validation::kOn;

@@ -43,6 +43,21 @@ TEST(ValueRange, DeviationIsSymmetricAboutZeroAndIgnoresUntouchedSamples) {
   EXPECT_EQ(deviationSpan(a, a).robust, (ValueRange{0, 0}));
 }
 
+TEST(ValueRange, OfInvertedFieldsTheEndsChangePlacesAndSigns) {
+  const engine::Version a = fieldOf(gridOf(130, 70), [](int c, int r) { return 0.1 * c + 0.03 * r; });
+  const engine::Version b =
+      fieldOf(gridOf(130, 70), [](int c, int r) { return 0.1 * c + 0.03 * r + (c < 9 ? 0.5 : 0.0); });
+  const auto expectEqual = [](const ValueSpan& x, const ValueSpan& y) {
+    EXPECT_EQ(x.robust, y.robust);
+    EXPECT_EQ(x.extreme, y.extreme);
+    EXPECT_EQ(x.empty, y.empty);
+  };
+  expectEqual(negated(heightSpan(a)), heightSpan(a.inverted()));
+  expectEqual(negated(negated(heightSpan(a))), heightSpan(a));
+  expectEqual(negated(deviationSpan(b, a)), deviationSpan(b.inverted(), a.inverted()));
+  expectEqual(negated(heightSpan(fieldOf(gridOf(5, 5), [](int, int) { return kNan; }))), {});
+}
+
 TEST(Plan, ExaggerationIsOneForReadableReliefAndRoundOtherwise) {
   EXPECT_EQ(chooseExaggeration(10, 100), 1.0);
   EXPECT_EQ(chooseExaggeration(0, 100), 1.0);

@@ -138,6 +138,24 @@ TEST(PageSlots, TheLongestUnusedPageGoesAndOneOfThisFrameNever) {
   EXPECT_EQ(slots.fixed(), 0U);
 }
 
+TEST(PageSlots, MoreSlotsAreTakenBeforeAPageGoes) {
+  PageSlots slots(2);
+  std::vector<std::uint32_t> e(5, PageSlots::kNone);
+  ASSERT_TRUE(slots.take(&e[0], PageSlots::Hold::kWhile, 1));
+  ASSERT_TRUE(slots.take(&e[1], PageSlots::Hold::kFixed, 1));
+  slots.grow(2);
+  EXPECT_EQ(slots.count(), 4U);
+  EXPECT_EQ(slots.used(), 2U);
+  ASSERT_TRUE(slots.take(&e[2], PageSlots::Hold::kWhile, 2));
+  ASSERT_TRUE(slots.take(&e[3], PageSlots::Hold::kWhile, 2));
+  EXPECT_EQ(slots.evicted(), 0);
+  EXPECT_EQ(e[0], 0U);
+  EXPECT_EQ(e[1], 1U);
+  ASSERT_TRUE(slots.take(&e[4], PageSlots::Hold::kWhile, 3));
+  EXPECT_EQ(e[0], PageSlots::kNone);
+  EXPECT_EQ(slots.evicted(), 1);
+}
+
 TEST(PageSlots, EqualPagesShareASlotUntilItIsForgottenOrGoes) {
   PageSlots slots(2);
   std::vector<std::uint32_t> e(4, PageSlots::kNone);
@@ -491,6 +509,102 @@ TEST(Residency, PreviewsAndTheOriginalShareEqualPagesAndShowWhatTheyShould) {
   shown.original.reset();
   input.range = ValueRange{-3, 9};
   (void)compare("back to one");
+}
+
+// States of one field of which no two have a tile in common, as filters make them of every sample.
+std::vector<engine::Version> statesOf(const engine::Version& field, std::size_t count) {
+  const int width = field.grid().width, height = field.grid().height;
+  std::vector<engine::Version> states{field};
+  std::vector<float> row(static_cast<std::size_t>(width));
+  for (std::size_t i = 1; i < count; ++i) {
+    engine::LiveField live(field, engine::Growth::kAllowed);
+    for (int r = 0; r < height; ++r) {
+      field.reader().readHeights(0, r, width, 1, row.data(), width);
+      for (float& z : row) z *= 1.0F + 0.01F * static_cast<float>(i);
+      if (!live.writeHeights(0, r, width, 1, row.data(), width)) ADD_FAILURE() << "no memory";
+    }
+    states.push_back(live.snapshot());
+  }
+  return states;
+}
+
+TEST(Residency, FourStatesSideBySideComeAsNearAsASinglePicture) {
+  // Of a million samples, marks shown, three such states are there as a whole and four by need.
+  const engine::Version field =
+      fieldOf(gridOf(1000, 850, 0.05, 0.05), part, [](int c, int r) { return (c + 2 * r) % 190 < 5; });
+  auto picture = makePicture();
+  Shown shown;
+  shown.marks = MarksOverlay::kShow;
+  shown.versions = {field};
+  ASSERT_TRUE(picture->update(shown));
+  FrameInput input = bare(1);
+  // Four panels whose colours come from every sample: all of each state is asked for.
+  input.view.width = 1100;
+  input.view.height = 760;
+  constexpr std::int64_t kRest = std::int64_t{1} << 20;
+  input.panel_vertices = {kRest};
+  const Frame one = settle(*picture, input);
+  ASSERT_EQ(one.stats.panels.size(), 1U);
+  EXPECT_LE(one.stats.panels[0].bound_px, 1.0);
+  const std::vector<engine::Version> states = statesOf(field, 5);
+  for (const std::size_t count : {4U, 5U}) {
+    SCOPED_TRACE(count);
+    shown.versions.assign(states.begin(), states.begin() + static_cast<std::ptrdiff_t>(count));
+    // The last ones with a deviation map: an original is one more. Pages that are there are kept.
+    if (count == states.size()) shown.original = field;
+    ASSERT_TRUE(picture->update(shown));
+    input.panel_vertices.assign(count, kRest);
+    const Frame rest = settle(*picture, input);
+    EXPECT_TRUE(rest.stats.residency.by_need);
+    EXPECT_EQ(rest.stats.residency.pages_beyond, 0);
+    ASSERT_EQ(rest.stats.panels.size(), count);
+    for (const PanelDetail& panel : rest.stats.panels) {
+      EXPECT_LE(panel.bound_px, 1.0);
+      EXPECT_EQ(panel.limit, DetailLimit::kNone);
+    }
+  }
+  // As one sees it who opens all of them at once.
+  auto other = makePicture();
+  ASSERT_TRUE(other->update(shown));
+  picture->refreshRanges();
+  EXPECT_EQ(differing(settle(*picture, input).image, settle(*other, input).image), 0U);
+}
+
+TEST(Residency, WhatDoesNotFitIsSharedOutAmongThePanelsAndTheLimitSaid) {
+  // A twelfth of what four states take.
+  auto tight = makePicture({.budget = 2'400'000});
+  Shown shown;
+  shown.versions = statesOf(fieldOf(gridOf(kWidth, kHeight, 0.05, 0.05), part), 4);
+  ASSERT_TRUE(tight->update(shown));
+  FrameInput input = bare(1);
+  input.view.width = 640;
+  input.view.height = 400;
+  input.error_px = 0.1;
+  input.panel_vertices.assign(4, std::int64_t{1} << 20);
+  const Frame rest = settle(*tight, input);
+  EXPECT_LE(rest.stats.residency.device_bytes, 2'400'000);
+  EXPECT_GT(rest.stats.residency.pages_beyond, 0);
+  double best = 1e9, worst = 0.0;
+  for (const PanelDetail& panel : rest.stats.panels) {
+    EXPECT_EQ(panel.limit, DetailLimit::kMemory);
+    best = std::min(best, panel.bound_px);
+    worst = std::max(worst, panel.bound_px);
+  }
+  EXPECT_GT(best, 0.1);
+  EXPECT_LT(worst, 2.0 * best);
+  EXPECT_EQ(rest.stats.bound_px, worst);
+  // And of vertices.
+  auto whole = makePicture();
+  ASSERT_TRUE(whole->update(shown.versions.front()));
+  input.panel_vertices.assign(1, 4096);
+  const Frame few = settle(*whole, input);
+  EXPECT_EQ(few.stats.panels.front().limit, DetailLimit::kVertices);
+  // One number a panel, or none.
+  Image image;
+  input.panel_vertices.assign(2, 4096);
+  EXPECT_FALSE(whole->draw(input, image));
+  input.panel_vertices.assign(1, 0);
+  EXPECT_FALSE(whole->draw(input, image));
 }
 
 TEST(Residency, SuggestedMarksHaveAColourOfTheirOwnAndLoseItWhenAccepted) {

@@ -18,7 +18,8 @@ namespace fettle::tests {
 namespace {
 
 [[noreturn]] void becomeProgram(const std::vector<std::string>& arguments, const ProcessOptions& options,
-                                int out, int err) {
+                                int in, int out, int err) {
+  if (in >= 0) dup2(in, STDIN_FILENO);
   dup2(out, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
   if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) _exit(126);
@@ -47,9 +48,12 @@ Outcome runProcess(const std::vector<std::string>& arguments, const ProcessOptio
   if (pipe2(out.data(), O_CLOEXEC) != 0 || pipe2(err.data(), O_CLOEXEC) != 0)
     throw std::runtime_error("pipe failed");
   const auto start = std::chrono::steady_clock::now();
+  const int in = options.input.empty() ? -1 : open(options.input.c_str(), O_RDONLY | O_CLOEXEC);
+  if (!options.input.empty() && in < 0) throw std::runtime_error("no input");
   const pid_t pid = fork();
   if (pid < 0) throw std::runtime_error("fork failed");
-  if (pid == 0) becomeProgram(arguments, options, out[1], err[1]);
+  if (pid == 0) becomeProgram(arguments, options, in, out[1], err[1]);
+  if (in >= 0) close(in);
   close(out[1]);
   close(err[1]);
 

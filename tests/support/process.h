@@ -22,6 +22,7 @@ struct ProcessOptions {
   std::string folder;                       ///< working folder; empty = the test's own
   std::optional<std::size_t> file_limit;    ///< largest file it may write [bytes] (RLIMIT_FSIZE)
   std::optional<std::size_t> memory_limit;  ///< address space [bytes] (RLIMIT_AS)
+  std::string input;  ///< what standard input gives, from a file; empty = the test's own
   /// Called again and again with the process id while the program runs, until it returns true.
   std::function<bool(int pid)> while_running;
 };

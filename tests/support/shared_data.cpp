@@ -1,4 +1,5 @@
 #include "tests/support/shared_data.h"
+#include "tests/support/source_tree.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -9,7 +10,7 @@ std::optional<std::string> scan(const std::string& name) {
   const char* folder = std::getenv("FETTLE_SCANS");
   const std::filesystem::path path =
       (folder != nullptr ? std::filesystem::path(folder)
-                         : std::filesystem::path(FETTLE_SOURCE_DIR).parent_path() / "shared" / "data") /
+                         : std::filesystem::path(inSourceTree("../shared/data"))) /
       name;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;

@@ -136,7 +136,7 @@ void Workstation::contactChooser() {
                                  : std::nullopt)
       notices_.push_back({*problem, ""});
     else
-      touch_->setScene(scene);
+      takeScene(scene);
   }
   if (measuringLine(costs_.contactRun(), "Cancel##contact")) costs_.cancelContact();
   if (!what.empty()) wrapped(what);

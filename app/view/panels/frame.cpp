@@ -20,6 +20,7 @@ constexpr float kSide_px = 320.0F;
 }  // namespace
 
 void Workstation::panels() {
+  if (questions_.pending()) leavePanels();
   menuBar();
   const float scale = static_cast<float>(window_->scale());
   const float top = ImGui::GetFrameHeight();

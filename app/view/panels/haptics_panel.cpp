@@ -95,13 +95,6 @@ void Workstation::hapticsPanel() {
          fmt::format("{:.0f} us, p99 {:.0f}", microseconds(late.p50_ns), microseconds(late.p99_ns)));
   drawLateness(touch_->timing().lateness);
   haptic::Scene scene = touch_->scene();
-  const auto take = [&] {
-    // Effects stand on each other: what cannot be is said and not done.
-    if (const auto problem = haptic::sceneProblem(scene))
-      notices_.push_back({*problem, ""});
-    else
-      touch_->setScene(scene);
-  };
   beginFields();
   (void)field("rate", [&] {
     const double now_hz = touch_->rate();
@@ -112,13 +105,24 @@ void Workstation::hapticsPanel() {
     return false;
   });
   contactChooser();
-  if (field("stiffness",
-            [&] { return typeNumber("##stiffness", scene.stiffness_n_per_mm, 1e-6, 1000.0, "%.4g N/mm"); }))
-    take();
-  if (field("force limit",
-            [&] { return typeNumber("##limit", scene.force_limit_n, 1e-3, 1000.0, "%.3g N"); }))
-    take();
+  // A slip of the finger makes it a thousand times as stiff: what is too much is refused with words, and the
+  // number there was stays.
+  const auto type = [&](const char* name, const char* id, double& value, const char* format) {
+    return field(name, [&] {
+      const auto typed = typedNumber(id, value, format);
+      if (!typed) return false;
+      value = *typed;
+      takeScene(scene);
+      const bool taken = touch_->scene() == scene;
+      scene = touch_->scene();
+      return taken;
+    });
+  };
+  if (type("stiffness", "##stiffness", scene.stiffness_n_per_mm, "%.4g N/mm")) noteWithoutForce(scene);
+  (void)type("force limit", "##limit", scene.force_limit_n, "%.3g N");
   endFields();
+  if (const auto largest = touch_->largestStiffness())
+    figure("it holds", fmt::format("{:.4g} N/mm at most", *largest));
   ImGui::TextDisabled("effects");
   for (int i = 0; i < haptic::kEffectKinds; ++i) {
     const auto kind = static_cast<haptic::EffectKind>(i);
@@ -136,7 +140,7 @@ void Workstation::hapticsPanel() {
       scene.effects.insert(scene.effects.begin(), kind);  // before those that stand on it
     else
       scene.effects.push_back(kind);
-    take();
+    takeScene(scene);
   }
   ImGui::PushTextWrapPos(0.0F);
   for (const std::string& missing : touch_->realTime().missing)

@@ -1,5 +1,7 @@
 #include "app/view/workstation.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <imgui.h>
 #include <glm/geometric.hpp>
@@ -7,6 +9,19 @@
 #include "app/view/panels/widgets.h"
 
 namespace fettle::app {
+namespace {
+
+// Why the surface at rest is not drawn within the screen error asked for; of the panel that is farthest off.
+std::string limitOf(const std::vector<render::PanelDetail>& panels, bool more_comes) {
+  const auto worst = std::max_element(panels.begin(), panels.end(),
+                                      [](const auto& a, const auto& b) { return a.bound_px < b.bound_px; });
+  if (worst == panels.end() || more_comes) return {};
+  if (worst->limit == render::DetailLimit::kMemory) return ", device memory is full";
+  if (worst->limit == render::DetailLimit::kVertices) return ", all vertices used";
+  return {};
+}
+
+}  // namespace
 
 void Workstation::statusPanel() {
   const haptic::TimingFigures late = touch_->timing().lateness.figures();
@@ -18,7 +33,8 @@ void Workstation::statusPanel() {
   figure("missed ticks", fmt::format("{}", touch_->timing().missed.load(std::memory_order_relaxed)));
   figure("force", fmt::format("{:.2f} N{}", glm::length(state.force_n), state.contact ? ", touching" : ""));
   figure("frame", fmt::format("GPU {:.1f} ms, CPU {:.1f}", figures_.device_ms, frame_ms_));
-  figure("surface", fmt::format("{} triangles, {:.2f} px", figures_.triangles, figures_.bound_px));
+  figure("surface", fmt::format("{} triangles, {:.2f} px{}", figures_.triangles, figures_.bound_px,
+                                limitOf(figures_.panels, refinement_.owed())));
   figure("uploaded",
          fmt::format("{} tiles, {}", tiles_uploaded_, bytesText(static_cast<double>(bytes_uploaded_))));
   figure("last upload",

@@ -67,8 +67,7 @@ void Workstation::toolPanel() {
     if (!scene.max_change) return false;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
-    if (typeNumber("##most", *scene.max_change, 0.0, 1e9, "%.4g " + grid.height_unit.name))
-      touch_->setScene(scene);
+    if (typeNumber("##most", *scene.max_change, 0.0, 1e9, "%.4g " + grid.height_unit.name)) takeScene(scene);
     return false;
   });
   endFields();

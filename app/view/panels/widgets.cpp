@@ -57,15 +57,20 @@ void fieldName(const char* name) {
   if (ImGui::CalcTextSize(name).x <= room) ImGui::SameLine(left + kNames * width);
 }
 
-bool typeNumber(const char* id, double& value, double low, double high, const std::string& format) {
+std::optional<double> typedNumber(const char* id, double value, const std::string& format) {
   double typed = value;
   if (!ImGui::InputDouble(id, &typed, 0.0, 0.0, format.c_str(),
                           ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll) ||
-      !std::isfinite(typed))
-    return false;
-  typed = std::clamp(typed, low, high);
-  if (typed == value) return false;
-  value = typed;
+      !std::isfinite(typed) || typed == value)
+    return std::nullopt;
+  return typed;
+}
+
+bool typeNumber(const char* id, double& value, double low, double high, const std::string& format) {
+  const auto typed = typedNumber(id, value, format);
+  const double taken = std::clamp(typed.value_or(value), low, high);
+  if (!typed || taken == value) return false;
+  value = taken;
   return true;
 }
 

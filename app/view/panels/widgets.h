@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include <imgui.h>
@@ -33,7 +34,12 @@ bool field(const char* name, const Edit& edit) {
   return edit();
 }
 
-/// A number to be typed in, with its unit: true when it was changed and confirmed, never to what is not
+/// A number to be typed in, with its unit: what was typed and confirmed, of any size but finite; nothing
+/// while it is the value that was there. For fields whose range is a matter of its own, and is refused with
+/// words.
+[[nodiscard]] std::optional<double> typedNumber(const char* id, double value, const std::string& format);
+
+/// The same cut to a range: true when it was changed and confirmed, never to what is not
 /// finite.
 [[nodiscard]] bool typeNumber(const char* id, double& value, double low, double high,
                               const std::string& format);

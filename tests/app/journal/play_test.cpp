@@ -6,6 +6,7 @@
 
 #include "app/journal/session_player.h"
 #include "app/view/open_document.h"
+#include "engine/io/export.h"
 #include "tests/app/journal/hand_play.h"
 #include "tests/app/journal/part.h"
 #include "tests/support/temp_folder.h"
@@ -119,6 +120,44 @@ TEST(SessionJournal, ReplaysFiltersWhoseRangeWasLeftToTheNoiseToTheSameBits) {
   const auto played = app::playSession(*session, job);
   ASSERT_TRUE(played) << played.error().line();
   EXPECT_EQ(played->filters, 2);
+  EXPECT_EQ(engine::contentHash(played->field), expected);
+}
+
+TEST(SessionJournal, BeginsWithWhatACommandHadMadeOfTheScan) {
+  const TempFolder folder;
+  const std::string path = folder.file("work.fettle");
+  engine::JobControl job;
+  const engine::Version original = roughPart();
+  engine::FilterSpec spec;
+  spec.window = 5;
+  const auto filtered = engine::applyFilter(original, original, spec, job);
+  ASSERT_TRUE(filtered);
+  engine::ExportOptions options;
+  options.original = original;
+  ASSERT_TRUE(engine::exportField(filtered->field, path, options, job));
+  std::uint64_t expected = 0;
+  {
+    auto opened = app::openDocument(path, {}, app::Recovery::kLeave, kHistoryBytes, job);
+    ASSERT_TRUE(opened) << opened.error().line();
+    const engine::History history = opened->history;
+    ASSERT_EQ(history.number(), 1);
+    SessionKeeper keeper(*opened);
+    auto touch = touchOf(*opened, history, keeper);
+    ASSERT_TRUE(touch);
+    HandPlay play(*touch, keeper, 11);
+    spec.kind = engine::FilterKind::kMedian;
+    spec.max_change = 0.02;
+    play.apply(spec);
+    play.settle();
+    touch->finish();
+    expected = engine::contentHash(touch->history().current());
+    ASSERT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
+  }
+  const auto session = engine::openSession(path, {}, job);
+  ASSERT_TRUE(session) << session.error().line();
+  EXPECT_EQ(app::journalStart(*session), 1);
+  const auto played = app::playSession(*session, job);
+  ASSERT_TRUE(played) << played.error().line();
   EXPECT_EQ(engine::contentHash(played->field), expected);
 }
 

@@ -139,7 +139,7 @@ TEST_F(EdgeToolTest, it_is_seen_upside_down_as_well) {
   const engine::Version upright = seen();
   haptic::Scene scene = bench.touch().scene();
   scene.invert = true;
-  bench.touch().setScene(scene);
+  ASSERT_TRUE(bench.touch().setScene(scene));
   ASSERT_TRUE(bench.until([&] { return bench.touch().field().reader().sign() < 0.0F; }));
   const engine::Version inverted = seen();
   EXPECT_LT(inverted.reader().sign(), 0.0F);

@@ -1,6 +1,7 @@
 // The live loop as the window sees it, with a simulated hand that gives force: armed and disarmed.
 #include "app/view/touch.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <fstream>
@@ -29,6 +30,15 @@ class TouchTest : public ::testing::Test {
   // A hand that lands on a plate and lifts again, every second: one that is armed while it is deep inside
   // would feel nothing until it has come out.
   std::unique_ptr<Touch> start(const std::string& tool = "feel") {
+    auto touch = tryStart(tool, haptic::defaultScene(), false);
+    if (!touch) {
+      ADD_FAILURE() << touch.error().line();
+      return nullptr;
+    }
+    return std::move(*touch);
+  }
+  engine::Result<std::unique_ptr<Touch>> tryStart(const std::string& tool, const haptic::Scene& scene,
+                                                  bool lower_scene) {
     const std::string strokes = folder_.file("strokes.csv");
     {
       std::ofstream out(strokes);
@@ -40,13 +50,8 @@ class TouchTest : public ::testing::Test {
         64, 64, [](int, int) { return 0.0; }, 0.2, 0.2);
     TouchOptions options;
     options.device = "hand:" + strokes;
-    auto touch = Touch::start(engine::History(plate, std::size_t{1} << 20), plate, haptic::defaultScene(),
-                              options, nullptr);
-    if (!touch) {
-      ADD_FAILURE() << touch.error().line();
-      return nullptr;
-    }
-    return std::move(*touch);
+    options.lower_scene = lower_scene;
+    return Touch::start(engine::History(plate, std::size_t{1} << 20), plate, scene, options, nullptr);
   }
   // Goes round as the window does.
   static bool until(Touch& touch, const std::function<bool(const haptic::LoopState&)>& is) {
@@ -129,6 +134,57 @@ TEST_F(TouchTest, another_rate_begins_without_force_and_loses_nothing) {
   EXPECT_FALSE(touch->setRate(10001.0));
   EXPECT_EQ(touch->rate(), 1000.0);
   EXPECT_EQ(touch->state().link, haptic::LinkState::kConnected);
+}
+
+TEST_F(TouchTest, a_stiffness_that_the_hand_does_not_hold_is_refused_with_the_largest_that_it_does) {
+  const auto touch = start();
+  ASSERT_TRUE(touch);
+  ASSERT_TRUE(until(*touch, givesForce));
+  EXPECT_EQ(touch->largestStiffness(), 6.0);
+  for (const double typed : {99999.0, 1000.0, 6.01}) {
+    haptic::Scene scene = touch->scene();
+    scene.stiffness_n_per_mm = typed;
+    const engine::Status refused = touch->setScene(scene);
+    ASSERT_FALSE(refused) << typed;
+    EXPECT_EQ(refused.error().kind, engine::ErrorKind::kInput);
+    EXPECT_NE(refused.error().line().find("at most 6 N/mm"), std::string::npos) << refused.error().line();
+    EXPECT_EQ(touch->scene(), haptic::defaultScene()) << "as before";
+  }
+  haptic::Scene scene = touch->scene();
+  scene.stiffness_n_per_mm = -1.0;
+  EXPECT_FALSE(touch->setScene(scene)) << "out of range";
+  // Twice as many ticks hold twice as much, and with that there is no way back.
+  ASSERT_TRUE(touch->setRate(2000.0));
+  EXPECT_EQ(touch->largestStiffness(), 12.0);
+  scene.stiffness_n_per_mm = 10.0;
+  ASSERT_TRUE(touch->setScene(scene));
+  const engine::Status back = touch->setRate(1000.0);
+  ASSERT_FALSE(back);
+  EXPECT_NE(back.error().line().find("at most 6 N/mm"), std::string::npos) << back.error().line();
+  EXPECT_EQ(touch->rate(), 2000.0);
+  EXPECT_FALSE(touch->finished());
+  EXPECT_TRUE(until(*touch, givesForce)) << "the loop runs on";
+  scene.stiffness_n_per_mm = 6.0;
+  ASSERT_TRUE(touch->setScene(scene));
+  EXPECT_TRUE(touch->setRate(1000.0));
+}
+
+// Another device than the scene was made with.
+TEST_F(TouchTest, a_scene_too_stiff_to_begin_with_is_refused_or_lowered_with_a_notice) {
+  haptic::Scene scene;
+  scene.stiffness_n_per_mm = 40.0;
+  const auto refused = tryStart("feel", scene, false);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, engine::ErrorKind::kInput);
+  EXPECT_NE(refused.error().line().find("at most 6 N/mm"), std::string::npos) << refused.error().line();
+  const auto lowered = tryStart("feel", scene, true);
+  ASSERT_TRUE(lowered) << lowered.error().line();
+  EXPECT_EQ((*lowered)->scene().stiffness_n_per_mm, 6.0);
+  const std::vector<Notice> notices = (*lowered)->takeNotices();
+  EXPECT_TRUE(std::any_of(notices.begin(), notices.end(), [](const Notice& n) {
+    return n.what.find("40 N/mm") != std::string::npos &&
+           n.remedy.find("at most 6 N/mm") != std::string::npos;
+  }));
 }
 
 }  // namespace

@@ -79,6 +79,14 @@ bool LiveProgram::listen(int ms) {
   return true;
 }
 
+bool LiveProgram::said(const std::string& text) {
+  static_cast<void>(listen(0));
+  const std::size_t at = err_.find(text, heard_);
+  if (at == std::string::npos) return false;
+  heard_ = at + text.size();
+  return true;
+}
+
 bool LiveProgram::says(const std::string& text, std::chrono::seconds patience) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   for (;;) {

@@ -22,6 +22,8 @@ class LiveProgram {
   /// Waits until it has said `text` on stderr since the last wait that succeeded; false after `patience` or
   /// when it has ended without.
   [[nodiscard]] bool says(const std::string& text, std::chrono::seconds patience = std::chrono::seconds(60));
+  /// Whether it has said it since then, by now; as says() otherwise.
+  [[nodiscard]] bool said(const std::string& text);
   void signal(int number) const;
   /// Waits for its end. Exit status; 128 + signal when a signal ended it.
   int wait();

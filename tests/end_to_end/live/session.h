@@ -25,6 +25,9 @@ class Session {
   /// Until force is given: calibrated by the device's own button (P14) or by key (W8), armed by key.
   void arm();
   void calibrate();
+  /// A machine that holds the program up for 50 ms makes a fault of it, as it should: whether that was so
+  /// since the last wait for words. The hand has come out then, armed again and gone back to where it was.
+  bool armedAgainAfterAFault();
   /// The hand goes there [mm, desk] in so long, and the call returns when it is there.
   void goTo(const glm::dvec3& desk_mm, std::chrono::milliseconds length);
   /// From above down to the surface and `mm` of the hand into it, at the middle.
@@ -32,7 +35,8 @@ class Session {
   /// Holds the stylus button, or chooses the tool that acts always.
   void use(char tool_key);
   void release();
-  /// Waits until the device gives force, or none; fails the test when it does not within 30 s.
+  /// Waits until the device gives force, or none; fails the test when it does not within 30 s. For force,
+  /// arms again after a fault.
   void expectForce();
   void expectNoForce();
   /// Ends by key, expects success, compares the recording with a replay of its own, returns the report.
@@ -46,6 +50,9 @@ class Session {
   fake::FakeWoody woody;
   std::unique_ptr<LiveProgram> program;
   std::string scan, strokes, out, marks;
+
+ private:
+  glm::dvec3 at_{0.0};  // where the hand went last [mm, desk]
 };
 
 /// The profile's limits for woody_v2015.

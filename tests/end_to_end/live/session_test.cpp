@@ -77,8 +77,10 @@ TEST_P(LiveSession, NothingIsGivenOrEditedUntilThePersonArms) {
   session.goTo({20.0, 0.0, -3.0}, 300ms);
   EXPECT_EQ(session.woody.log().most_ma, 0);
   // Armed deep inside: still nothing, until the stylus came out once.
-  session.program->press('a');
-  ASSERT_TRUE(session.program->says("armed"));
+  ASSERT_TRUE(eventually([&] {
+    session.program->press('a');
+    return session.program->says("armed", 2s);
+  }));
   session.goTo({0.0, 0.0, -4.0}, 300ms);
   EXPECT_EQ(session.woody.log().most_ma, 0);
   session.felt("armed 2 mm inside the surface");

@@ -19,6 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr auto kGlance = 20ms;  // between two looks at the screen: the server draws it, and tells nobody
 constexpr int kLine = 20;       // pixels, about a line of a panel
+constexpr int kTries = 20;      // to point at a text that moves
 
 bool rests(const Hand::State& s) {
   return s.value("settled", false);
@@ -146,12 +147,15 @@ std::optional<Hand::Place> Hand::scrolledTo(const std::string& text) {
 }
 
 bool Hand::pointAt(const std::string& text) {
-  const auto place = scrolledTo(text);
-  if (place)
+  // What lies above it may grow while the cursor is on its way.
+  for (int tries = 0; tries < kTries; ++tries) {
+    const auto place = scrolledTo(text);
+    if (!place) break;
     at(*place);
-  else
-    ADD_FAILURE() << name_ << ": nothing to read there: " << text << "\n" << program_.now()["texts"].dump();
-  return place.has_value();
+    if (const auto still = readable(text); still && still->x == place->x && still->y == place->y) return true;
+  }
+  ADD_FAILURE() << name_ << ": nothing to read there: " << text << "\n" << program_.now()["texts"].dump();
+  return false;
 }
 
 void Hand::tap(const std::string& text) {

@@ -135,6 +135,33 @@ TEST_F(HapticsTest, the_panel_shows_the_device_arms_it_and_sets_its_rate) {
   expectSilence(*program);
 }
 
+TEST_F(HapticsTest, a_stiffness_typed_that_the_hand_does_not_hold_is_refused_in_words) {
+  const auto program = startHand();
+  Hand hand(display, *program, "stiffness");
+  program->until("force", givesForce);
+  for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)hand.click(header);
+  (void)hand.click("Haptics");
+  EXPECT_EQ(program->now()["stiffness_n_per_mm"], 1.0);
+  EXPECT_TRUE(hand.reads("6 N/mm at most")) << "beside the field";
+  const State refused = hand.enter("stiffness", "99999");
+  EXPECT_EQ(refused["stiffness_n_per_mm"], 1.0) << "what was there stays";
+  ASSERT_EQ(refused["notices"].size(), 1U) << refused["notices"];
+  const std::string said = refused["notices"][0];
+  EXPECT_NE(said.find("more than the simulated hand holds at 1000 Hz"), std::string::npos) << said;
+  EXPECT_NE(said.find("99999 N/mm"), std::string::npos) << said;
+  EXPECT_TRUE(hand.reads("at most 6")) << program->now()["texts"].dump();
+  hand.tap("Understood");
+  program->until("the panels without it", [](const State& s) {
+    return s["notices"].empty() && s["texts"].dump().find("Understood") == std::string::npos;
+  });
+  const State taken = hand.enter("stiffness", "6");
+  EXPECT_EQ(taken["stiffness_n_per_mm"], 6.0);
+  EXPECT_EQ(taken["notices"], State::array());
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
 TEST_F(HapticsTest, effects_are_ticked_off_and_on_again) {
   const auto program = start({scan});
   Hand hand(display, *program, "effects");

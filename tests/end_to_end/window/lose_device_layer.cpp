@@ -16,6 +16,8 @@
 //   outdated WHERE, suboptimal WHERE   the swap chain no longer fits the window, at acquire or present
 //   memory         the next image does not get its memory
 //
+// $FETTLE_FRAME_GATE names a socket that says when each frame may be shown: frame_gate.h.
+//
 // Layer interface: "Architecture of the Vulkan Loader Interfaces", KhronosGroup/Vulkan-Loader.
 #include <cstdlib>
 #include <cstring>
@@ -27,10 +29,55 @@
 #include <string>
 #include <vector>
 
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
 namespace {
+
+// Of frame_gate.h: what each frame passes before it is shown. One thread.
+class Gate {
+ public:
+  void pass() {
+    if (!asked_) connectTo(std::getenv("FETTLE_FRAME_GATE"));
+    if (free_) take(MSG_DONTWAIT);
+    if (free_ || socket_ < 0) return;
+    const char waits = 'w';
+    (void)send(socket_, &waits, 1, MSG_NOSIGNAL);
+    take(0);
+  }
+
+ private:
+  void connectTo(const char* path) {
+    asked_ = true;
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    if (path == nullptr || std::strlen(path) >= sizeof(address.sun_path)) return;
+    std::memcpy(address.sun_path, path, std::strlen(path));
+    socket_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) leave();
+  }
+  // An order, if there is one; waits for one unless told not to.
+  void take(int flags) {
+    char order = 0;
+    if (socket_ < 0) return;
+    const ssize_t got = recv(socket_, &order, 1, flags);
+    if (got == 1) free_ = order == 'f';
+    if (got == 0) leave();
+  }
+  void leave() {
+    close(socket_);
+    socket_ = -1;
+    free_ = true;
+  }
+
+  bool asked_ = false;
+  bool free_ = true;
+  int socket_ = -1;
+};
+Gate gate;
 
 std::mutex mutex;  // over all below
 
@@ -117,6 +164,7 @@ VKAPI_ATTR VkResult VKAPI_CALL queueSubmit2(VkQueue queue, std::uint32_t count, 
 }
 
 VKAPI_ATTR VkResult VKAPI_CALL queuePresent(VkQueue queue, const VkPresentInfoKHR* info) {
+  gate.pass();
   PFN_vkQueuePresentKHR down = nullptr;
   {
     const std::scoped_lock lock(mutex);

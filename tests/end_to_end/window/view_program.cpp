@@ -112,9 +112,22 @@ ViewProgram::State ViewProgram::now() {
   return states_.empty() ? State() : states_.back();
 }
 
+void ViewProgram::each(const std::function<void(const State&)>& look) {
+  const std::scoped_lock lock(mutex_);
+  for (; seen_ < states_.size(); ++seen_) look(states_[seen_]);
+  if (states_.size() < 2) return;
+  states_.erase(states_.begin(), states_.end() - 1);
+  seen_ = states_.size();
+}
+
 void ViewProgram::forget() {
   const std::scoped_lock lock(mutex_);
   seen_ = states_.empty() ? 0 : states_.size() - 1;
+}
+
+bool ViewProgram::ended() {
+  const std::scoped_lock lock(mutex_);
+  return ended_;
 }
 
 void ViewProgram::signal(int number) const {

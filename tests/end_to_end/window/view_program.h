@@ -35,8 +35,14 @@ class ViewProgram {
   State until(const std::string& what, const std::function<bool(const State&)>& is);
   /// The newest state told; null before the first.
   [[nodiscard]] State now();
+  /// Shows every state told since the last call of this, or of forget(), without waiting for more; what was
+  /// told before the newest is gone afterwards. For those who drive the program for a long time.
+  void each(const std::function<void(const State&)>& look);
   /// Forgets what was told up to now: until() looks at what comes from here on, beginning with the newest.
   void forget();
+
+  /// Whether all that it says has ended: it has, or is about to.
+  [[nodiscard]] bool ended();
 
   void signal(int number) const;
   /// Waits for its end. Exit status; 128 + signal when a signal ended it.

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <map>
@@ -25,6 +26,7 @@ using Reply = std::unique_ptr<T, Free>;
 using Event = Reply<xcb_generic_event_t>;
 
 constexpr auto kPatience = 60s;
+constexpr auto kStillThere = 100ms;  // between two looks whether a window is there
 constexpr std::uint32_t kXdndVersion = 5;
 
 std::string uriOf(const std::string& path) {
@@ -76,6 +78,10 @@ struct XClient::Impl {
     std::copy(data.begin(), data.end(), event.data.data32);
     xcb_send_event(x, 0, to, XCB_EVENT_MASK_NO_EVENT, reinterpret_cast<const char*>(&event));
     xcb_flush(x);
+  }
+  [[nodiscard]] bool exists(xcb_window_t window) const {
+    return Reply<xcb_get_window_attributes_reply_t>(
+               xcb_get_window_attributes_reply(x, xcb_get_window_attributes(x, window), nullptr)) != nullptr;
   }
   // The next event, or nothing when none comes in time.
   [[nodiscard]] Event next(Clock::time_point until) const {
@@ -161,7 +167,13 @@ std::string XClient::drop(std::uint32_t window, const std::vector<std::string>& 
   c.send(window, "XdndPosition", {c.own, 0, x << 16U | y, XCB_CURRENT_TIME, c.atom("XdndActionCopy")});
   const Clock::time_point until = Clock::now() + kPatience;
   bool dropped = false;
-  while (const Event event = c.next(until)) {
+  for (;;) {
+    const Event event = c.next(std::min(until, Clock::now() + kStillThere));
+    if (!event) {
+      if (!c.exists(window)) return "the window has gone";
+      if (Clock::now() >= until) break;
+      continue;
+    }
     const int kind = event->response_type & 0x7f;
     if (kind == XCB_SELECTION_REQUEST) {
       c.answer(reinterpret_cast<const xcb_selection_request_event_t&>(*event), uris);
@@ -190,6 +202,10 @@ void XClient::restore(std::uint32_t window) {
   impl_->setState(window, 1);  // NormalState
   xcb_map_window(impl_->x, window);
   xcb_flush(impl_->x);
+}
+
+void XClient::askToClose(std::uint32_t window) {
+  impl_->send(window, "WM_PROTOCOLS", {impl_->atom("WM_DELETE_WINDOW"), XCB_CURRENT_TIME, 0, 0, 0});
 }
 
 void XClient::setResources(const std::string& text) {

@@ -33,6 +33,9 @@ class XClient {
   /// (WM_STATE, Inter-Client Communication Conventions Manual 4.1.4).
   void minimise(std::uint32_t window);
   void restore(std::uint32_t window);
+  /// What a window manager does when the button that closes a window is pressed (WM_DELETE_WINDOW, same
+  /// manual, 4.2.8.1).
+  void askToClose(std::uint32_t window);
 
   /// Sets X resources ("Xft.dpi: 144"), as xrdb does. Programs started later see them.
   void setResources(const std::string& text);

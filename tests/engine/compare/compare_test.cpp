@@ -10,11 +10,10 @@
 #include <tbb/global_control.h>
 
 #include "engine/field/builder.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Grid gridOf(int width, int height) {
   Grid grid;

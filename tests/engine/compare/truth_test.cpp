@@ -9,11 +9,10 @@
 
 #include "engine/compare/compare.h"
 #include "engine/field/builder.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 struct Raster {
   Grid grid;

@@ -1,5 +1,6 @@
 // Tiles that are summed up as soon as they are whole are what they are when all wait for the end.
 #include "engine/field/builder.h"
+#include "tests/support/no_data.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,8 +14,6 @@
 
 namespace fettle::engine {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 struct Window {
   std::int32_t column, row, columns, rows;

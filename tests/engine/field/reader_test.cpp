@@ -6,12 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 Grid gridOf(std::int32_t width, std::int32_t height) {
   Grid grid;

@@ -9,11 +9,10 @@
 #include "engine/field/builder.h"
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // The field as the plainest thing it could be: what every sequence of edits is checked against.
 struct PlainField {

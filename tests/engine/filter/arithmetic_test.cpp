@@ -10,12 +10,12 @@
 #include "engine/filter/median.h"
 #include "engine/filter/ranks.h"
 #include "tests/engine/filter/reference.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine::tests {
 namespace {
 
 constexpr float kMax = std::numeric_limits<float>::max();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 // Any float but NaN and infinities, all exponents alike, often a neighbour of a round number.
 float anyFloat(std::mt19937& random) {

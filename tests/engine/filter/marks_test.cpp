@@ -8,11 +8,10 @@
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
 #include "tests/engine/filter/reference.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine::tests {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // Every sign of trouble at once: noise, spikes, holes scattered and in a block, marks scattered and in a
 // block.

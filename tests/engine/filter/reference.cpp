@@ -10,12 +10,11 @@
 #include <fmt/format.h>
 
 #include "engine/field/builder.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine::tests {
 
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 long double gaussianWeight(const FilterSpec& spec, int distance) {
   const int n = spec.window - 1;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
+#include "tests/engine/inspect/grids.h"
 
 namespace fettle::engine {
 namespace {
@@ -18,13 +19,6 @@ HeightHistogram histogram(const Version& field, int bins) {
   const auto counted = countHeights(field, bins, job);
   EXPECT_TRUE(counted);
   return counted.value_or(HeightHistogram{});
-}
-
-Grid gridOf(int width, int height) {
-  Grid grid;
-  grid.width = width;
-  grid.height = height;
-  return grid;
 }
 
 TEST(Histogram, BinsHoldTheirLowEndAndTheLastItsHighEnd) {

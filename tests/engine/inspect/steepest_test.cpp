@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
+#include "tests/engine/inspect/grids.h"
 
 namespace fettle::engine {
 namespace {
@@ -15,13 +16,6 @@ SteepestCell steepest(const Version& field) {
   const auto cell = findSteepest(field, job);
   EXPECT_TRUE(cell);
   return cell.value_or(SteepestCell{});
-}
-
-Grid gridOf(int width, int height) {
-  Grid grid;
-  grid.width = width;
-  grid.height = height;
-  return grid;
 }
 
 TEST(Steepest, IsWhereTheGradientOfTheBilinearPatchIsLongest) {

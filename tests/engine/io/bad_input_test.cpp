@@ -290,6 +290,22 @@ TEST(BadInput, PointFilesSayWhereTheyAreWrong) {
   refusalOf(folder, "a.xyz", std::string(3 << 20, '1'));
 }
 
+TEST(BadInput, DecimalCommasAnywhereInALineOfPointsAreNamed) {
+  const TempFolder folder;
+  // One in a line is enough, also of a later line: none of these is read as something else.
+  for (const char* text : {"0 0 1,5\n1 0 2,5\n", "0 0 0\n1 0 1,25\n", "0;0;3,5\n", "1,5, 2,5, 3,5\n",
+                           "1.234,5 2.000,25 3,5\n", "-1,5e1\t2\t3\t128\n"}) {
+    const Error error = refusalOf(folder, "a.xyz", text);
+    EXPECT_NE(error.what.find("decimal commas"), std::string::npos) << text << error.line();
+    EXPECT_NE(error.remedy.find("tr , ."), std::string::npos) << text;
+  }
+  // Commas that stand between numbers are none.
+  for (const char* text : {"0,0,1\n1,0,2\n0,1,3\n", "0, 0, 1\n1, 0, 2\n", "0.5,0.5 ,1\n1.5,0.5 ,2\n"}) {
+    writeBytes(folder.file("b.xyz"), text);
+    EXPECT_TRUE(load(folder.file("b.xyz"))) << text;
+  }
+}
+
 TEST(BadInput, ImpossibleOptionsAreRefused) {
   const TempFolder folder;
   writeBytes(folder.file("a.xyz"), "1 2 3\n");

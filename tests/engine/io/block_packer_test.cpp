@@ -131,44 +131,71 @@ TEST(TiffExport, GdalReadsEveryBitOfEveryLayout) {
                              {1000, 256}}) {
     const std::vector<float> heights =
         anyFloats(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), 9);
-    const std::string path = folder.file("t.tif");
-    ASSERT_TRUE(save(makeField(gridOf(w, h), heights), path));
-    GDALDatasetH dataset = GDALOpen(path.c_str(), GA_ReadOnly);
-    ASSERT_NE(dataset, nullptr);
-    EXPECT_STREQ(GDALGetMetadataItem(dataset, "COMPRESSION", "IMAGE_STRUCTURE"), "DEFLATE");
-    std::vector<float> read(heights.size());
-    ASSERT_EQ(GDALRasterIO(GDALGetRasterBand(dataset, 1), GF_Read, 0, 0, w, h, read.data(), w, h, GDT_Float32,
-                           0, 0),
-              CE_None);
-    GDALClose(dataset);
-    for (int r = 0; r < h; ++r)
-      for (int c = 0; c < w; ++c) {
-        const float wrote = heights[static_cast<std::size_t>(h - 1 - r) * static_cast<std::size_t>(w) +
-                                    static_cast<std::size_t>(c)];
-        const float got =
-            read[static_cast<std::size_t>(r) * static_cast<std::size_t>(w) + static_cast<std::size_t>(c)];
-        if (std::isnan(wrote))
-          ASSERT_TRUE(std::isnan(got)) << w << " x " << h;
-        else
-          ASSERT_EQ(std::bit_cast<std::uint32_t>(wrote), std::bit_cast<std::uint32_t>(got))
-              << w << " x " << h;
-      }
+    const Version field = makeField(gridOf(w, h), heights);
+    for (const char* name : {"none", "lzw", "deflate", "zstd"}) {
+      SCOPED_TRACE(std::string(name) + " " + std::to_string(w) + " x " + std::to_string(h));
+      const std::string path = folder.file("t.tif");
+      ExportOptions options;
+      options.tiff_compression = tiffCompressionFromName(name);
+      ASSERT_TRUE(options.tiff_compression);
+      ASSERT_TRUE(save(field, path, options));
+      GDALDatasetH dataset = GDALOpen(path.c_str(), GA_ReadOnly);
+      ASSERT_NE(dataset, nullptr);
+      std::string upper(name);
+      for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+      const char* item = GDALGetMetadataItem(dataset, "COMPRESSION", "IMAGE_STRUCTURE");
+      EXPECT_EQ(item != nullptr ? item : "NONE", upper);
+      std::vector<float> read(heights.size());
+      ASSERT_EQ(GDALRasterIO(GDALGetRasterBand(dataset, 1), GF_Read, 0, 0, w, h, read.data(), w, h,
+                             GDT_Float32, 0, 0),
+                CE_None);
+      GDALClose(dataset);
+      for (int r = 0; r < h; ++r)
+        for (int c = 0; c < w; ++c) {
+          const float wrote = heights[static_cast<std::size_t>(h - 1 - r) * static_cast<std::size_t>(w) +
+                                      static_cast<std::size_t>(c)];
+          const float got =
+              read[static_cast<std::size_t>(r) * static_cast<std::size_t>(w) + static_cast<std::size_t>(c)];
+          if (std::isnan(wrote))
+            ASSERT_TRUE(std::isnan(got));
+          else
+            ASSERT_EQ(std::bit_cast<std::uint32_t>(wrote), std::bit_cast<std::uint32_t>(got));
+        }
+      FETTLE_LOAD(again, path);
+      EXPECT_EQ(contentHash(again.field), contentHash(field));
+    }
   }
 }
 
 TEST(TiffExport, TheBytesDoNotDependOnTheNumberOfThreads) {
   const TempFolder folder;
   const Version field = makeField(gridOf(900, 1100), slope(std::size_t{900} * 1100, 900));
-  ASSERT_TRUE(save(field, folder.file("all.tif")));
-  {
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    ASSERT_TRUE(save(field, folder.file("one.tif")));
+  for (const TiffCompression compression :
+       {TiffCompression::kNone, TiffCompression::kLzw, TiffCompression::kDeflate, TiffCompression::kZstd}) {
+    ExportOptions options;
+    options.tiff_compression = compression;
+    ASSERT_TRUE(save(field, folder.file("all.tif"), options));
+    {
+      const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+      ASSERT_TRUE(save(field, folder.file("one.tif"), options));
+    }
+    const tbb::global_control many(tbb::global_control::max_allowed_parallelism, 7);
+    ASSERT_TRUE(save(field, folder.file("seven.tif"), options));
+    const std::string all = readBytes(folder.file("all.tif"));
+    EXPECT_EQ(all, readBytes(folder.file("one.tif")));
+    EXPECT_EQ(all, readBytes(folder.file("seven.tif")));
   }
-  const tbb::global_control many(tbb::global_control::max_allowed_parallelism, 7);
-  ASSERT_TRUE(save(field, folder.file("seven.tif")));
-  const std::string all = readBytes(folder.file("all.tif"));
-  EXPECT_EQ(all, readBytes(folder.file("one.tif")));
-  EXPECT_EQ(all, readBytes(folder.file("seven.tif")));
+}
+
+TEST(TiffExport, OnlyATiffTakesACompression) {
+  const TempFolder folder;
+  ExportOptions options;
+  options.tiff_compression = TiffCompression::kLzw;
+  const auto written = save(makeField(gridOf(2, 1), {1.0F, 2.0F}), folder.file("a.asc"), options);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().kind, ErrorKind::kInput);
+  EXPECT_NE(written.error().line().find("--compress"), std::string::npos);
+  EXPECT_EQ(tiffCompressionFromName("jpeg"), std::nullopt);
 }
 
 TEST(TiffExport, ACancelledOneLeavesNothing) {

@@ -110,6 +110,33 @@ inline std::string las(int minor, int format, int point_bytes, const std::vector
   return h;
 }
 
+// The same bytes with a record of the user LASF_Projection more, behind the header.
+inline std::string withLasRecord(std::string bytes, std::uint16_t id, const std::string& body) {
+  std::uint16_t header = 0;
+  std::uint32_t points_at = 0, records = 0;
+  std::memcpy(&header, &bytes[94], sizeof header);
+  std::memcpy(&points_at, &bytes[96], sizeof points_at);
+  std::memcpy(&records, &bytes[100], sizeof records);
+  std::string record(54, '\0');
+  record.replace(2, 15, "LASF_Projection");
+  put<std::uint16_t>(record, 18, id);
+  put<std::uint16_t>(record, 20, static_cast<std::uint16_t>(body.size()));
+  bytes.insert(header, record + body);
+  put<std::uint32_t>(bytes, 96, points_at + static_cast<std::uint32_t>(record.size() + body.size()));
+  put<std::uint32_t>(bytes, 100, records + 1);
+  return bytes;
+}
+
+// GeoTIFF keys: {key, where its value lies (0: here), count, value or place}.
+inline std::string geoKeys(const std::vector<std::array<std::uint16_t, 4>>& keys) {
+  std::string bytes;
+  for (const std::size_t n : {std::size_t{1}, std::size_t{1}, std::size_t{0}, keys.size()})
+    append(bytes, static_cast<std::uint16_t>(n));
+  for (const auto& key : keys)
+    for (const std::uint16_t n : key) append(bytes, n);
+  return bytes;
+}
+
 // Fields x, y, z among others, in another order; as rows of doubles per point: label, z, x, normal[2], y.
 inline std::string pcd(const std::string& data, const std::vector<std::array<double, 3>>& points, int width) {
   std::string h = fmt::format(

@@ -85,6 +85,14 @@ TEST(Sur, LyingHeadersAndCutFilesAreRefused) {
   for (std::size_t bytes = 0; bytes < packed.size(); bytes += 3) refused("a.sur", packed.substr(0, bytes));
 }
 
+TEST(Sur, HeightsThatAreNoLengthsAreNamed) {
+  std::string bytes = sur<std::int32_t>(false);
+  bytes.replace(212, 4, std::string("V\0\0\0", 4));
+  FETTLE_LOAD_BYTES(volts, "a.sur", bytes);
+  EXPECT_EQ(volts.field.grid().height_unit.name, "V");
+  EXPECT_TRUE(warned(volts.warnings, "\"V\", which is no length"));
+}
+
 const std::vector<LasPoint> kFourPoints{{0, 0, 1000}, {1, 0, -2000}, {0, 1, 3000}, {1, 1, 4001}};
 
 TEST(Las, VersionsAndPointFormatsGiveTheSameField) {
@@ -114,13 +122,66 @@ TEST(Las, TheCoordinateSystemComesAlong) {
   EXPECT_TRUE(warned(nonsense.warnings, "states no unit"));
 }
 
+// Files of version 1.2, as most are, have no WKT.
+TEST(Las, KeysAloneNameTheCoordinateSystem) {
+  const std::string plain = las(2, 3, 34, kFourPoints);
+  const auto keyed = [&](const std::vector<std::array<std::uint16_t, 4>>& keys) {
+    return withLasRecord(plain, 34735, geoKeys(keys));
+  };
+  FETTLE_LOAD_BYTES(utm, "a.las", keyed({{1024, 0, 1, 1}, {1025, 0, 1, 1}, {3072, 0, 1, 32633}}));
+  EXPECT_NE(utm.field.grid().crs_wkt.find("UTM zone 33N"), std::string::npos) << utm.field.grid().crs_wkt;
+  EXPECT_EQ(utm.field.grid().lateral_unit.name, "m");
+  EXPECT_EQ(utm.field.grid().height_unit.name, "m");
+  EXPECT_TRUE(utm.warnings.empty()) << utm.warnings.front();
+
+  // Feet across, a vertical system in metres.
+  FETTLE_LOAD_BYTES(feet, "b.las", keyed({{1024, 0, 1, 1}, {3072, 0, 1, 2994}, {4096, 0, 1, 5703}}));
+  EXPECT_NE(feet.field.grid().crs_wkt.find("NAVD88"), std::string::npos) << feet.field.grid().crs_wkt;
+  EXPECT_EQ(feet.field.grid().lateral_unit.name, "ft");
+  EXPECT_EQ(feet.field.grid().height_unit.name, "m");
+
+  // A system of its own: its parameters lie in the record of numbers, its name in that of texts.
+  std::string numbers;
+  for (const double n : {9.25, 0.9996, 500000.0}) append(numbers, n);
+  const std::string own = withLasRecord(withLasRecord(keyed({{1024, 0, 1, 1},
+                                                             {1026, 34737, 8, 0},
+                                                             {2048, 0, 1, 4326},
+                                                             {3072, 0, 1, 32767},
+                                                             {3074, 0, 1, 32767},
+                                                             {3075, 0, 1, 1},
+                                                             {3076, 0, 1, 9002},
+                                                             {3080, 34736, 1, 0},
+                                                             {3081, 34736, 1, 0},
+                                                             {3082, 34736, 1, 2},
+                                                             {3092, 34736, 1, 1}}),
+                                                      34736, numbers),
+                                        34737, "quarry 7|");
+  FETTLE_LOAD_BYTES(quarry, "c.las", own);
+  EXPECT_NE(quarry.field.grid().crs_wkt.find("9.25"), std::string::npos) << quarry.field.grid().crs_wkt;
+  EXPECT_EQ(quarry.field.grid().lateral_unit.name, "ft");
+
+  FETTLE_LOAD_BYTES(degrees, "d.las", keyed({{1024, 0, 1, 2}, {2048, 0, 1, 4326}}));
+  EXPECT_EQ(degrees.field.grid().lateral_unit.name, "deg");
+  EXPECT_EQ(degrees.field.grid().height_unit.name, "m");
+
+  // Of keys that name no system, or lie about where their values are, the unit is kept.
+  FETTLE_LOAD_BYTES(unit, "e.las", keyed({{1024, 0, 1, 1}, {3076, 0, 1, 9003}}));
+  EXPECT_EQ(unit.field.grid().lateral_unit.name, "ftUS");
+  EXPECT_EQ(unit.field.grid().crs_wkt, "");
+  EXPECT_TRUE(warned(unit.warnings, "only the unit is kept"));
+  FETTLE_LOAD_BYTES(lying, "f.las", keyed({{1024, 0, 1, 1}, {3072, 0, 1, 32767}, {3080, 34736, 9, 60000}}));
+  EXPECT_EQ(lying.field.grid().crs_wkt, "");
+}
+
 TEST(Las, PackedPointsAreRefusedByName) {
   const TempFolder folder;
   writeBytes(folder.file("a.laz"), las(2, 0x80 | 3, 34, kFourPoints));
   const auto scan = load(folder.file("a.laz"));
   ASSERT_FALSE(scan);
   EXPECT_NE(scan.error().what.find("LAZ"), std::string::npos);
-  EXPECT_NE(scan.error().remedy.find("las2las"), std::string::npos);
+  // A command to type, not a library.
+  EXPECT_NE(scan.error().remedy.find("pdal translate IN.laz OUT.las"), std::string::npos);
+  EXPECT_NE(scan.error().remedy.find("las2las -i"), std::string::npos);
 }
 
 TEST(Las, LyingHeadersAreRefused) {

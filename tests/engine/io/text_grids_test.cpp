@@ -70,6 +70,79 @@ TEST(AsciiGrid, HeightsEqualToTheUsualMarkChooseAnother) {
   EXPECT_EQ(contentHash(again.field), contentHash(field));
 }
 
+constexpr const char* kTwoSamples =
+    "ncols 2\nnrows 1\nxllcorner 500000\nyllcorner 5000000\ncellsize 1\nNODATA_value -9999\n2 3";
+
+TEST(AsciiGrid, ThePrjBesideItNamesTheCoordinateSystem) {
+  const TempFolder folder;
+  writeBytes(folder.file("a.asc"), kTwoSamples);
+  // As ArcGIS writes it.
+  writeBytes(
+      folder.file("a.prj"),
+      R"(PROJCS["NAD_1983_HARN_Oregon_Statewide_Lambert_Feet_Intl",GEOGCS["GCS_North_American_1983_HARN",)"
+      R"(DATUM["D_North_American_1983_HARN",SPHEROID["GRS_1980",6378137.0,298.257222101]],)"
+      R"(PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Lambert_Conformal_Conic"],)"
+      R"(PARAMETER["False_Easting",1312335.958],PARAMETER["False_Northing",0.0],)"
+      R"(PARAMETER["Central_Meridian",-120.5],PARAMETER["Standard_Parallel_1",43.0],)"
+      R"(PARAMETER["Standard_Parallel_2",45.5],PARAMETER["Latitude_Of_Origin",41.75],UNIT["foot",0.3048]])");
+  FETTLE_LOAD(feet, folder.file("a.asc"));
+  EXPECT_EQ(feet.field.grid().lateral_unit.name, "ft");
+  EXPECT_EQ(feet.field.grid().height_unit.name, "ft");
+  EXPECT_NE(feet.field.grid().crs_wkt.find("HARN"), std::string::npos);
+  EXPECT_TRUE(feet.warnings.empty()) << feet.warnings.front();
+
+  // The key words of old, and text that is none of all that.
+  writeBytes(folder.file("a.prj"),
+             "Projection    UTM\r\nZone          33\r\nDatum         WGS84\r\nUnits         METERS\r\n");
+  FETTLE_LOAD(old, folder.file("a.asc"));
+  EXPECT_NE(old.field.grid().crs_wkt.find("UTM"), std::string::npos) << old.field.grid().crs_wkt;
+  EXPECT_EQ(old.field.grid().lateral_unit.name, "m");
+  writeBytes(folder.file("a.prj"), "somewhere in Oregon");
+  FETTLE_LOAD(nonsense, folder.file("a.asc"));
+  EXPECT_EQ(nonsense.field.grid().crs_wkt, "");
+  EXPECT_TRUE(warned(nonsense.warnings, "a.prj"));
+}
+
+TEST(AsciiGrid, ACoordinateSystemIsWrittenToAPrjAndComesBack) {
+  const TempFolder folder;
+  writeBytes(folder.file("in.asc"), kTwoSamples);
+  writeBytes(folder.file("in.prj"),
+             "Projection    UTM\nZone          33\nDatum         WGS84\nUnits         METERS\n");
+  FETTLE_LOAD(scan, folder.file("in.asc"));
+  const auto written = save(scan.field, folder.file("out.asc"));
+  ASSERT_TRUE(written) << written.error().line();
+  EXPECT_TRUE(written->warnings.empty()) << written->warnings.front();
+  EXPECT_TRUE(readBytes(folder.file("out.prj")).starts_with("PROJCS["));
+  FETTLE_LOAD(again, folder.file("out.asc"));
+  EXPECT_NE(again.field.grid().crs_wkt.find("UTM zone 33N"), std::string::npos);
+  EXPECT_EQ(again.field.grid().lateral_unit, scan.field.grid().lateral_unit);
+  EXPECT_EQ(contentHash(again.field), contentHash(scan.field));
+
+  // One that is there and belongs to the new grid no more is not passed over.
+  const auto plain = save(makeField(gridOf(2, 1), {1, 2}), folder.file("out.asc"));
+  ASSERT_TRUE(plain);
+  EXPECT_TRUE(warned(plain->warnings, "out.prj"));
+  // And none is written where the grid is not.
+  const auto nowhere = save(scan.field, folder.file("none/out.asc"));
+  EXPECT_FALSE(nowhere);
+}
+
+TEST(AsciiGrid, AnAuxXmlBesideItSaysWhatIsAHole) {
+  const TempFolder folder;
+  writeBytes(folder.file("a.asc"), "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 3 -9999");
+  writeBytes(folder.file("a.asc.aux.xml"),
+             "<PAMDataset>\n  <PAMRasterBand band=\"1\">\n    <NoDataValue>0</NoDataValue>\n"
+             "    <UnitType>ft</UnitType>\n  </PAMRasterBand>\n</PAMDataset>\n");
+  FETTLE_LOAD(scan, folder.file("a.asc"));
+  EXPECT_EQ(summarize(scan.field).no_data, 1);
+  EXPECT_TRUE(std::isnan(stored(scan.field, 0, 0)));
+  EXPECT_EQ(scan.field.grid().height_unit.name, "ft");
+  writeBytes(folder.file("a.asc.aux.xml"), "<html>");
+  FETTLE_LOAD(other, folder.file("a.asc"));
+  EXPECT_TRUE(warned(other.warnings, "a.asc.aux.xml"));
+  EXPECT_TRUE(std::isnan(stored(other.field, 0, 2)));
+}
+
 // Writes a PNG with libpng directly.
 void makePng(const std::string& path, int width, int height, int bits, int color, bool interlaced,
              const std::vector<std::uint16_t>& values, int channels = 1) {

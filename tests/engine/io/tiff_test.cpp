@@ -226,6 +226,59 @@ TEST(Tiff, RotatedRastersAreRefused) {
   EXPECT_NE(scan.error().what.find("rotated"), std::string::npos);
 }
 
+TEST(Tiff, NoDataOfAnAuxXmlBesideItIsAHole) {
+  const TempFolder folder;
+  const auto aux = [&](const std::string& value) {
+    writeBytes(folder.file("t.tif.aux.xml"), "<PAMDataset>\n  <PAMRasterBand band=\"1\">\n    " + value +
+                                                 "\n  </PAMRasterBand>\n</PAMDataset>\n");
+  };
+  for (const char* tag : {"", "-7"}) {
+    makeTiff(folder.file("t.tif"), GDT_Int16, 2, 2, {1, -9999, -7, 4}, {}, [&](GDALDatasetH d) {
+      if (*tag != '\0') GDALSetRasterNoDataValue(GDALGetRasterBand(d, 1), -7);
+    });
+    aux("<NoDataValue>-9.99900000000000E+03</NoDataValue>");
+    FETTLE_LOAD(scan, folder.file("t.tif"));
+    EXPECT_TRUE(std::isnan(stored(scan.field, 0, 1)));
+    // It wins over the file's own, as in GDAL, and says so.
+    EXPECT_EQ(stored(scan.field, 1, 0), -7.0F);
+    EXPECT_EQ(warned(scan.warnings, "no-data -7"), *tag != '\0');
+  }
+  // The lowest float as GDAL writes it, which ends two units of its last place off.
+  makeTiff(folder.file("t.tif"), GDT_Float32, 2, 1, {std::numeric_limits<float>::lowest(), 5.0});
+  aux("<NoDataValue>-3.40282300000000E+38</NoDataValue>");
+  FETTLE_LOAD(lowest, folder.file("t.tif"));
+  EXPECT_EQ(summarize(lowest.field).no_data, 1);
+}
+
+TEST(Tiff, WhiteThatIsZeroIsNamedAndNotTakenForAPalette) {
+  const TempFolder folder;
+  for (const GDALDataType type : {GDT_Byte, GDT_UInt16}) {
+    makeTiff(folder.file("t.tif"), type, 2, 1, {3, 200}, {"PHOTOMETRIC=MINISWHITE"});
+    const auto refused = load(folder.file("t.tif"));
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().what.find("MINISWHITE"), std::string::npos) << refused.error().line();
+    EXPECT_NE(refused.error().remedy.find("--z-scale -1"), std::string::npos);
+    ImportOptions depths;
+    depths.z_scale = -1.0;
+    FETTLE_LOAD(scan, folder.file("t.tif"), depths);
+    EXPECT_EQ(stored(scan.field, 0, 1), -200.0F);
+  }
+  // Of floats it says nothing.
+  makeTiff(folder.file("t.tif"), GDT_Float32, 2, 1, {3, 200}, {"PHOTOMETRIC=MINISWHITE"});
+  FETTLE_LOAD(floats, folder.file("t.tif"));
+  EXPECT_EQ(stored(floats.field, 0, 1), 200.0F);
+}
+
+TEST(Tiff, SamplesThatAreNoLengthsAreNamedAndGivenNoUnit) {
+  const TempFolder folder;
+  makeTiff(folder.file("t.tif"), GDT_Float32, 40, 40, std::vector<double>(1600, 0.0), {},
+           [](GDALDatasetH d) { GDALSetRasterUnitType(GDALGetRasterBand(d, 1), "Intensity"); });
+  FETTLE_LOAD(scan, folder.file("t.tif"));
+  EXPECT_EQ(scan.field.grid().height_unit.name, "Intensity");
+  EXPECT_TRUE(warned(scan.warnings, "\"Intensity\", which is no length"));
+  EXPECT_FALSE(warned(scan.warnings, "not known"));
+}
+
 TEST(Tiff, UnitsComeFromTheCoordinateSystem) {
   const TempFolder folder;
   const auto withCrs = [&](int epsg, const char* unit = nullptr) {

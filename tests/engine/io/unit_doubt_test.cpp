@@ -69,6 +69,67 @@ TEST(UnitDoubt, NoUnitFitsHeightsThatAreCounts) {
   EXPECT_TRUE(told[0].starts_with("heights that are no lengths in nm?")) << told[0];
 }
 
+// What no warning about coordinates in degrees may propose.
+void expectNoScale(const std::vector<std::string>& told) {
+  for (const std::string& doubt : told) {
+    EXPECT_EQ(doubt.find("--z-scale"), std::string::npos) << doubt;
+    EXPECT_EQ(doubt.find(" nm"), std::string::npos) << doubt;
+  }
+}
+
+TEST(UnitDoubt, DegreesAreNamedAndNeverGivenAScale) {
+  // A digital elevation model in degrees and metres that does not say so, as an ASCII grid without .prj:
+  // three arc seconds in the Alps, and beside the corner of the globe's net.
+  for (const auto& [x, y] : {std::pair{7.0, 46.0}, {0.0, 0.0}}) {
+    Grid grid;
+    grid.spacing_x = grid.spacing_y = 1.0 / 1200.0;
+    grid.origin_x = x;
+    grid.origin_y = y;
+    for (const char* name : {"f.asc", "f.tif"}) {
+      const auto told = doubts(rough(grid, 60.0), {}, name);
+      ASSERT_EQ(told.size(), 1U) << name;
+      EXPECT_TRUE(told[0].starts_with("coordinates in degrees where mm is said or assumed?")) << told[0];
+      EXPECT_NE(told[0].find("0.000833 apart"), std::string::npos) << told[0];
+      expectNoScale(told);
+    }
+  }
+  // Degrees that the file says, with heights that cannot be metres.
+  const TempFolder folder;
+  std::string rows;
+  for (int i = 0; i < 1600; ++i)
+    rows += std::to_string((i * 7919) % 101 * 1000) + (i % 40 == 39 ? "\n" : " ");
+  writeBytes(folder.file("a.asc"),
+             "ncols 40\nnrows 40\nxllcorner 7\nyllcorner 46\ncellsize 0.000833333333\n" + rows);
+  writeBytes(folder.file("a.prj"),
+             R"(GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,298.257223563]],)"
+             R"(PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]])");
+  FETTLE_LOAD(scan, folder.file("a.asc"));
+  EXPECT_TRUE(warned(scan.warnings, "heights that are not in m, or coordinates that are no degrees?"));
+  expectNoScale(scan.warnings);
+  // A field of metres that is said to be in degrees.
+  Grid far = scan.field.grid();
+  far.spacing_x = far.spacing_y = 30.0;
+  const auto told = doubts(rough(far, 60.0));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_TRUE(told[0].starts_with("coordinates that are no degrees?")) << told[0];
+}
+
+TEST(UnitDoubt, WholeNumbersMayBeCountsOrBrightness) {
+  Grid grid;
+  grid.height_per_count = 1.0;  // as of any picture
+  const auto told = doubts(rough(grid, 250.0));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_TRUE(told[0].starts_with("counts or brightness where heights in mm are said or assumed?"))
+      << told[0];
+  EXPECT_EQ(told[0].find("in um"), std::string::npos) << told[0];
+  EXPECT_EQ(told[0].find("--z-scale 0"), std::string::npos) << told[0];
+  // What the file itself calls no length is not measured as one.
+  grid.height_per_count = 0.0;
+  grid.height_unit = {"intensity", 1.0};
+  for (const std::string& doubt : doubts(rough(grid, 250.0)))
+    EXPECT_NE(doubt.find("no length"), std::string::npos) << doubt;
+}
+
 TEST(UnitDoubt, WhatIsSmallerThanAtomsOrLargerThanPlanets) {
   Grid grid;
   grid.height_unit = {"nm", 1e-6};

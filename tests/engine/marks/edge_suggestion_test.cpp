@@ -13,11 +13,10 @@
 
 #include "engine/field/builder.h"
 #include "engine/scanner/scanner.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine {
 namespace {
-
-constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
 Version fieldOf(int width, int height, const std::function<double(int, int)>& z) {
   Grid grid;
@@ -200,7 +199,7 @@ TEST(EdgeSuggestion, holes_and_borders_of_a_tilted_plane_are_no_edges) {
   const std::vector<float> grain = noise(300 * 300, 4);
   const Version v = fieldOf(300, 300, [&](int c, int r) -> double {
     const bool round = std::hypot(c - 90, r - 90) < 40, lonely = (c * 7 + r * 13) % 97 == 0;
-    if (round || lonely || (c > 200 && r > 100 && r < 120)) return kHole;
+    if (round || lonely || (c > 200 && r > 100 && r < 120)) return kNan;
     return 0.5 * c - 0.3 * r + 0.02 * grain[static_cast<std::size_t>(r * 300 + c)];
   });
   EXPECT_EQ(suggested(v).samples, 0);
@@ -227,9 +226,9 @@ TEST(EdgeSuggestion, fields_of_one_row_one_column_one_sample_or_holes_alone_are_
   EXPECT_EQ(suggested(fieldOf(1, 1, [](int, int) { return 3.0; })).samples, 0);
   EXPECT_EQ(suggested(fieldOf(500, 1, [](int c, int) { return c * 0.1; })).samples, 0);
   EXPECT_EQ(suggested(fieldOf(1, 500, [](int, int) { return 2.0; })).samples, 0);
-  EXPECT_EQ(suggested(fieldOf(100, 100, [](int, int) { return double{kHole}; })).samples, 0);
+  EXPECT_EQ(suggested(fieldOf(100, 100, [](int, int) { return double{kNan}; })).samples, 0);
   EXPECT_EQ(
-      suggested(fieldOf(5, 5, [](int c, int r) { return c == 2 && r == 2 ? double{kHole} : 1.0; })).samples,
+      suggested(fieldOf(5, 5, [](int c, int r) { return c == 2 && r == 2 ? double{kNan} : 1.0; })).samples,
       0);
 }
 
@@ -240,7 +239,7 @@ TEST(EdgeSuggestion, marks_are_added_and_holes_and_heights_left_alone) {
   std::vector<std::uint8_t> marks(z.size(), 0);
   for (int r = 0; r < 128; ++r)
     for (int c = 0; c < 128; ++c) z[static_cast<std::size_t>(r * 128 + c)] = c > 64 ? 1.0F : 0.0F;
-  z[50 * 128 + 64] = kHole;
+  z[50 * 128 + 64] = kNan;
   marks[5 * 128 + 5] = 1;
   const Version v = makeField(grid, z, marks);
   const Version found = suggested(v).field;

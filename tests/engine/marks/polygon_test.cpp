@@ -9,11 +9,10 @@
 #include <tbb/global_control.h>
 
 #include "engine/field/builder.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine {
 namespace {
-
-constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
 Version field(int width, int height, float z = 1.0F) {
   Grid grid;
@@ -136,7 +135,7 @@ TEST(Polygon, holes_are_not_marked_and_are_unmarked_like_all_others) {
   Grid grid;
   grid.width = grid.height = 40;
   std::vector<float> z(1600, 2.0F);
-  for (int c = 10; c < 30; ++c) z[20 * 40 + c] = kHole;
+  for (int c = 10; c < 30; ++c) z[20 * 40 + c] = kNan;
   std::vector<std::uint8_t> marks(1600, 0);
   marks[20 * 40 + 12] = 1;
   const std::vector<glm::dvec2> all{{-1, -1}, {41, -1}, {41, 41}, {-1, 41}};
@@ -178,7 +177,7 @@ TEST(ChangeMarks, inverting_twice_gives_the_marks_of_all_but_holes_back) {
   std::mt19937 random(3);
   for (std::size_t i = 0; i < z.size(); ++i) {
     marks[i] = random() % 3 == 0;
-    if (random() % 7 == 0) z[i] = kHole, marks[i] = 0;
+    if (random() % 7 == 0) z[i] = kNan, marks[i] = 0;
   }
   JobControl job;
   const Version v = makeField(grid, z, marks);

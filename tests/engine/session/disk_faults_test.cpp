@@ -56,7 +56,7 @@ TEST_P(FaultAtEveryOperation, IsReportedKeepsTheWorkAndIsMadeGoodByTryingAgain) 
     const bool over = !disk.struck();
     if (status.error) {
       ++struck;
-      EXPECT_EQ(status.error->kind, ErrorKind::kInput);
+      EXPECT_EQ(status.error->kind, ErrorKind::kFailed);
       EXPECT_NE(status.error->line().find(path), std::string::npos) << status.error->line();
       EXPECT_NE(status.error->line().find("elsewhere"), std::string::npos) << status.error->line();
       EXPECT_GT(status.waiting, 0U);

@@ -40,6 +40,36 @@ TEST(SessionFormat, AWorkedOnSessionReadsAsItsCurrentState) {
   EXPECT_EQ(difference(play.session.history.current(), read->field), "");
 }
 
+TEST(SessionFormat, AFieldIsAStepFromTheOriginalThatItWasMadeFrom) {
+  const TempFolder folder;
+  JobControl job;
+  const std::string path = folder.file("a.fettle");
+  const Version original = strangeField(3, 333, 200), made = strangeField(4, 333, 200);
+  for (const bool inverted : {false, true}) {
+    const auto turned = [&](const Version& v) { return inverted ? v.inverted() : v; };
+    ExportOptions options;
+    options.original = turned(original);
+    ASSERT_TRUE(exportField(turned(made), path, options, job));
+    auto read = importField(path, {}, job);
+    ASSERT_TRUE(read) << read.error().line();
+    EXPECT_EQ(difference(turned(made), read->field), "");
+    ASSERT_TRUE(read->original);
+    EXPECT_EQ(difference(turned(original), *read->original), "");
+    const auto session = openSession(path, {}, job);
+    ASSERT_TRUE(session) << session.error().line();
+    EXPECT_EQ(session->history.number(), inverted ? 2 : 1);
+    EXPECT_EQ(difference(original, session->original), "");
+    // What was made of a session keeps its original, whatever is said of the grid.
+    ImportOptions other_unit;
+    other_unit.unit = lengthUnitFromName("um");
+    read = importField(path, other_unit, job);
+    ASSERT_TRUE(read);
+    EXPECT_TRUE(read->original->grid() == read->field.grid());
+  }
+  ASSERT_TRUE(exportField(made, path, {}, job));
+  EXPECT_EQ(openSession(path, {}, job)->history.number(), 0);
+}
+
 TEST(SessionFormat, OptionsThatDoNotApplyAreRefusedAndOthersWinWithAWarning) {
   const TempFolder folder;
   JobControl job;

@@ -119,7 +119,7 @@ struct Referenced {
     EXPECT_TRUE(imported);
     play.session.original = imported->field;
     play.session.history = History(imported->field);
-    play.session.scan = {scan, {}, imported->format};
+    play.session.scan = {scan, {}, imported->format, {}};
     play.session.storage = OriginalStorage::kReferenced;
     for (int a = 0; a < 10; ++a) play.act(nullptr);
     EXPECT_EQ(saved(play.session, path), "");
@@ -209,7 +209,7 @@ TEST(Session, RealScansComeBackBitForBit) {
     Session session;
     session.original = scan->field;
     session.history = History(scan->field);
-    session.scan = {path, {}, scan->format};
+    session.scan = {path, {}, scan->format, {}};
     ASSERT_EQ(saved(session, folder.file("a.fettle")), "");
     const auto back = opened(folder.file("a.fettle"));
     ASSERT_TRUE(back) << back.error().line();

@@ -73,7 +73,9 @@ void sizes(const std::string& name, const Version& field, const fs::path& folder
   const auto saved = saveSession(sessionOf(field), path, job);
   if (!saved) fail(saved.error());
   const double save_s = since(start);
-  if (const auto exported = exportField(field, tiff, {}, job); !exported) fail(exported.error());
+  ExportOptions packed;
+  packed.tiff_compression = TiffCompression::kDeflate;
+  if (const auto exported = exportField(field, tiff, packed, job); !exported) fail(exported.error());
   std::vector<double> opens;
   for (int k = 0; k < 5; ++k) {
     start = Clock::now();

@@ -154,7 +154,7 @@ TEST(SessionWriter, SaveAsCanEmbedAScanThatWasReferredTo) {
   ASSERT_TRUE(imported);
   play.session.original = imported->field;
   play.session.history = History(imported->field);
-  play.session.scan = {scan, {}, imported->format};
+  play.session.scan = {scan, {}, imported->format, {}};
   play.session.storage = OriginalStorage::kReferenced;
   auto writer = created(play.session, folder.file("a.fettle"));
   for (int a = 0; a < 10; ++a) play.act(writer.get());
@@ -171,6 +171,37 @@ TEST(SessionWriter, SaveAsCanEmbedAScanThatWasReferredTo) {
   EXPECT_EQ(differenceOnDisk(play.session, folder.file("c.fettle")), "");
   EXPECT_EQ(differenceOnDisk(other->session, folder.file("b.fettle")), "");
   EXPECT_FALSE(openSession(folder.file("a.fettle"), {}, job));
+}
+
+// Its tiles lie behind those of the steps before; steps that are undone and replaced take only theirs away.
+TEST(SessionWriter, AScanEmbeddedLaterStaysWhenTheStepsBeforeAreReplaced) {
+  const TempFolder folder;
+  const std::string scan = folder.file("scan.tif"), path = folder.file("a.fettle");
+  JobControl job;
+  Play play(8, 200, 150);
+  ASSERT_TRUE(exportField(play.session.original, scan, {}, job));
+  const auto imported = importField(scan, {}, job);
+  ASSERT_TRUE(imported);
+  play.session.original = imported->field;
+  play.session.history = History(imported->field);
+  play.session.scan = {scan, {}, imported->format, {}};
+  play.session.storage = OriginalStorage::kReferenced;
+  auto writer = created(play.session, path);
+  while (play.session.history.number() < 3) play.act(writer.get());
+  ASSERT_TRUE(writer->saveAs(folder.file("b.fettle"), OriginalStorage::kEmbedded, job));
+  ASSERT_TRUE(writer->saveAs(path, OriginalStorage::kEmbedded, job));
+  for (const std::int64_t number : {2, 0}) {
+    writer->moveTo(number, {});
+    const History& history = play.session.history;
+    writer->commit(number + 1,
+                   {{"Again", StepKind::kMark, {}, {}, 0}, history.state(number), history.state(3)}, {});
+    ASSERT_TRUE(writer->flush(job)) << number;
+    const auto after = openSession(path, {}, job);
+    ASSERT_TRUE(after) << number << ": " << after.error().line();
+    EXPECT_EQ(difference(after->original, play.session.original), "") << number;
+    EXPECT_EQ(after->history.last(), number + 1);
+    EXPECT_TRUE(verifySession(path, job)) << number;
+  }
 }
 
 TEST(SessionWriter, OlderStepsAreReadBackFromTheFile) {

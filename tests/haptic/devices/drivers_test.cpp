@@ -23,6 +23,7 @@
 #include "haptic/devices/wooden_kinematics.h"
 #include "tests/haptic/devices/fake_hidapi/fake_woody.h"
 #include "tests/haptic/devices/fake_hidapi/wire.h"
+#include "tests/support/eventually.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::haptic {
@@ -93,15 +94,6 @@ class Loop {
   std::thread thread_;
 };
 
-bool eventually(const std::function<bool()>& holds) {
-  const auto deadline = Clock::now() + 30s;
-  while (!holds()) {
-    if (Clock::now() > deadline) return false;
-    std::this_thread::sleep_for(2ms);
-  }
-  return true;
-}
-
 class Drivers : public testing::Test {
  protected:
   Drivers() { ::setenv(fake::kFolderVariable, folder_.path().c_str(), 1); }
@@ -141,12 +133,12 @@ struct Bench {
     device->stop();
   }
   [[nodiscard]] bool calibrate() {
-    if (!eventually([&] { return uncalibrated(*loop); })) return false;
+    if (!fettle::tests::eventually([&] { return uncalibrated(*loop); })) return false;
     if (firmware_ == Firmware::kP14)
       woody.pressCalibration();
     else
       device->calibrate();
-    return eventually([&] { return connected(*loop); });
+    return fettle::tests::eventually([&] { return connected(*loop); });
   }
   Firmware firmware_;
   FakeWoody woody;
@@ -165,11 +157,13 @@ TEST_P(EachFirmware, HomePoseIsReadAfterCalibrationAndMotionIsFollowed) {
   Bench bench(folder(), GetParam());
   ASSERT_TRUE(bench.started);
   ASSERT_TRUE(bench.calibrate());
-  EXPECT_TRUE(eventually([&] { return glm::length(bench.loop->input().position_mm - kHomeDesk) < 1e-9; }));
+  EXPECT_TRUE(fettle::tests::eventually(
+      [&] { return glm::length(bench.loop->input().position_mm - kHomeDesk) < 1e-9; }));
   bench.woody.turnTo({100, -200, 300});
   const WoodenConfig c = *wooden("woody_v2015");
   const glm::dvec3 expected = 1000.0 * woodenToDesk(woodenPosition(c, woodenAngles(c, {100, -200, 6300})));
-  EXPECT_TRUE(eventually([&] { return glm::length(bench.loop->input().position_mm - expected) < 1e-9; }));
+  EXPECT_TRUE(fettle::tests::eventually(
+      [&] { return glm::length(bench.loop->input().position_mm - expected) < 1e-9; }));
 }
 
 TEST_P(EachFirmware, ForceBecomesTheCurrentsOfItsPose) {
@@ -184,14 +178,15 @@ TEST_P(EachFirmware, ForceBecomesTheCurrentsOfItsPose) {
   const std::array<std::int16_t, 3> expected{static_cast<std::int16_t>(std::lround(ma.x)),
                                              static_cast<std::int16_t>(std::lround(ma.y)),
                                              static_cast<std::int16_t>(std::lround(ma.z))};
-  EXPECT_TRUE(eventually([&] { return bench.woody.log().ma == expected; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().ma == expected; }));
   EXPECT_EQ(bench.woody.log().odd_outputs, odd);
 }
 
 TEST_P(EachFirmware, NoForceReachesAnUncalibratedDevice) {
   Bench bench(folder(), GetParam());
   bench.loop->setForce({2, 2, 2});
-  ASSERT_TRUE(eventually([&] { return uncalibrated(*bench.loop) && bench.woody.log().outputs > 20; }));
+  ASSERT_TRUE(
+      fettle::tests::eventually([&] { return uncalibrated(*bench.loop) && bench.woody.log().outputs > 20; }));
   EXPECT_EQ(bench.woody.log().most_ma, 0);
 }
 
@@ -202,7 +197,7 @@ TEST_P(EachFirmware, ForceFarOverTheMotorsLimitIsScaledNotClipped) {
   const WoodenConfig c = *wooden("woody_v2015");
   const glm::dvec3 ma =
       woodenCurrents(c, woodenTorques(c, woodenAngles(c, {0, 0, 6000}), deskToWooden({30, -20, 100})));
-  ASSERT_TRUE(eventually([&] { return bench.woody.log().most_ma >= 2999; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().most_ma >= 2999; }));
   const fake::WoodyLog log = bench.woody.log();
   EXPECT_LE(log.most_ma, 3000);
   // Same direction: each current is the same share of what was asked for, but for rounding to 1 mA.
@@ -215,16 +210,18 @@ TEST_P(EachFirmware, UnplugAndReplugGoThroughDisconnectedToUncalibratedWithoutFo
   Bench bench(folder(), GetParam());
   ASSERT_TRUE(bench.calibrate());
   bench.loop->setForce({1, 0, 1});
-  ASSERT_TRUE(eventually([&] { return bench.woody.log().most_ma > 0; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().most_ma > 0; }));
   const std::uint64_t before = bench.loop->input().sequence;
   bench.woody.unplug();
-  ASSERT_TRUE(eventually([&] { return bench.loop->input().link == LinkState::kDisconnected; }));
+  ASSERT_TRUE(
+      fettle::tests::eventually([&] { return bench.loop->input().link == LinkState::kDisconnected; }));
   bench.woody.plug();
-  ASSERT_TRUE(eventually([&] { return bench.loop->input().link == LinkState::kUncalibrated; }));
-  ASSERT_TRUE(eventually([&] { return bench.loop->input().sequence > before + 50; }));
+  ASSERT_TRUE(
+      fettle::tests::eventually([&] { return bench.loop->input().link == LinkState::kUncalibrated; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return bench.loop->input().sequence > before + 50; }));
   EXPECT_EQ(bench.woody.log().most_ma, 0);  // though the loop kept on writing its force
   ASSERT_TRUE(bench.calibrate());
-  EXPECT_TRUE(eventually([&] { return bench.woody.log().most_ma > 0; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().most_ma > 0; }));
   EXPECT_EQ(bench.device->counters().disconnects, 1U);
   EXPECT_EQ(bench.device->counters().connects, 2U);
 }
@@ -233,7 +230,7 @@ TEST_P(EachFirmware, StopSendsAnExplicitZero) {
   Bench bench(folder(), GetParam());
   ASSERT_TRUE(bench.calibrate());
   bench.loop->setForce({0, 0, 1});
-  ASSERT_TRUE(eventually([&] { return bench.woody.log().most_ma > 0; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().most_ma > 0; }));
   bench.loop->stop();
   bench.device->stop();
   EXPECT_EQ(bench.woody.log().ma, (std::array<std::int16_t, 3>{}));  // at once, on return
@@ -244,14 +241,15 @@ TEST_P(EachFirmware, ForceOfALoopThatFallsSilentIsTakenBack) {
   Bench bench(folder(), GetParam());
   ASSERT_TRUE(bench.calibrate());
   bench.loop->setForce({0, 0, 1});
-  ASSERT_TRUE(eventually([&] { return bench.woody.log().most_ma > 0; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().most_ma > 0; }));
   bench.loop->setWrites(Loop::Writes::kNo);
-  EXPECT_TRUE(eventually([&] { return bench.woody.log().ma == std::array<std::int16_t, 3>{}; }));
+  EXPECT_TRUE(
+      fettle::tests::eventually([&] { return bench.woody.log().ma == std::array<std::int16_t, 3>{}; }));
   EXPECT_EQ(bench.woody.log().watchdog_fired, 0U);
   EXPECT_GT(bench.device->counters().forced_zeros, 0U);
   // And the device is kept awake: it never sees 500 ms without an output.
   const std::uint64_t outputs = bench.woody.log().outputs;
-  EXPECT_TRUE(eventually([&] { return bench.woody.log().outputs > outputs + 5; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().outputs > outputs + 5; }));
 }
 
 TEST_P(EachFirmware, ShortOversizedAndGarbageReportsAreCountedAndLeftOut) {
@@ -263,10 +261,10 @@ TEST_P(EachFirmware, ShortOversizedAndGarbageReportsAreCountedAndLeftOut) {
     bench.woody.sendRaw(std::vector<std::uint8_t>(200, 0x77));
     bench.woody.sendRaw(std::vector<std::uint8_t>(64, 0xFF));
   }
-  EXPECT_TRUE(eventually([&] { return bench.device->counters().bad_inputs >= 40; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return bench.device->counters().bad_inputs >= 40; }));
   EXPECT_EQ(bench.device->counters().bad_inputs, 40U);
   const std::uint64_t now = bench.loop->input().sequence;
-  EXPECT_TRUE(eventually([&] { return bench.loop->input().sequence > now + 20; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return bench.loop->input().sequence > now + 20; }));
   EXPECT_LT(glm::length(bench.loop->input().position_mm - kHomeDesk), 1e-9);
 }
 
@@ -277,7 +275,7 @@ TEST_P(EachFirmware, PausesOfTwentyMillisecondsLeaveTheLinkUp) {
     bench.woody.pause(20ms);
     std::this_thread::sleep_for(30ms);
     const std::uint64_t now = bench.loop->input().sequence;
-    EXPECT_TRUE(eventually([&] { return bench.loop->input().sequence > now + 10; }));
+    EXPECT_TRUE(fettle::tests::eventually([&] { return bench.loop->input().sequence > now + 10; }));
   }
   EXPECT_TRUE(connected(*bench.loop));
   EXPECT_EQ(bench.device->counters().disconnects, 0U);
@@ -287,19 +285,19 @@ TEST_F(Drivers, StalledOutNeitherStopsInputsNorHoldsTheLoop) {
   Bench bench(folder(), Firmware::kW8);
   ASSERT_TRUE(bench.calibrate());
   bench.loop->setForce({0, 0, 0.5});
-  ASSERT_TRUE(eventually([&] { return bench.woody.log().most_ma > 0; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().most_ma > 0; }));
   bench.woody.stallOut(true);
   // One write at most was under way; from then on the writer hangs, and nothing else does.
   std::this_thread::sleep_for(20ms);
   const std::uint64_t outputs = bench.woody.log().outputs;
   const std::uint64_t inputs = bench.loop->input().sequence;
   const std::uint64_t ticks = bench.loop->ticks();
-  ASSERT_TRUE(eventually([&] { return bench.loop->input().sequence > inputs + 300; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return bench.loop->input().sequence > inputs + 300; }));
   EXPECT_GT(bench.loop->ticks(), ticks + 100);
   EXPECT_EQ(bench.woody.log().outputs, outputs);
   RecordProperty("worst_loop_call_ns", std::to_string(bench.loop->worstCallNs()));
   bench.woody.stallOut(false);
-  EXPECT_TRUE(eventually([&] { return bench.woody.log().outputs > outputs + 100; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().outputs > outputs + 100; }));
   EXPECT_GT(bench.device->counters().longest_output_ns, 100'000'000);
 }
 
@@ -309,18 +307,19 @@ TEST_F(Drivers, UnplugWhileOutIsStalledIsSurvived) {
   bench.woody.stallOut(true);
   std::this_thread::sleep_for(20ms);
   bench.woody.unplug();
-  ASSERT_TRUE(eventually([&] { return bench.loop->input().link == LinkState::kDisconnected; }));
+  ASSERT_TRUE(
+      fettle::tests::eventually([&] { return bench.loop->input().link == LinkState::kDisconnected; }));
   bench.woody.stallOut(false);
   bench.woody.plug();
   ASSERT_TRUE(bench.calibrate());
   const std::uint64_t outputs = bench.woody.log().outputs;
-  EXPECT_TRUE(eventually([&] { return bench.woody.log().outputs > outputs + 20; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().outputs > outputs + 20; }));
 }
 
 TEST_F(Drivers, LockStepDeviceGetsOneReplyForEachInput) {
   Bench bench(folder(), Firmware::kP14);
   ASSERT_TRUE(bench.calibrate());
-  ASSERT_TRUE(eventually([&] { return bench.loop->input().sequence > 500; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return bench.loop->input().sequence > 500; }));
   const fake::WoodyLog log = bench.woody.log();
   // Each input was sent after the reply to the one before; what else went out are zeros of silence: at the
   // start, and when this machine held a thread up for more than 10 ms.
@@ -333,9 +332,9 @@ TEST_F(Drivers, StylusButtonOfP14IsThePrimaryOne) {
   Bench bench(folder(), Firmware::kP14);
   ASSERT_TRUE(bench.calibrate());
   bench.woody.pressStylus(true);
-  EXPECT_TRUE(eventually([&] { return bench.loop->input().buttons == kPrimaryButton; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return bench.loop->input().buttons == kPrimaryButton; }));
   bench.woody.pressStylus(false);
-  EXPECT_TRUE(eventually([&] { return bench.loop->input().buttons == 0; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return bench.loop->input().buttons == 0; }));
 }
 
 TEST_F(Drivers, DeviceThatComesLaterIsPickedUp) {
@@ -343,11 +342,11 @@ TEST_F(Drivers, DeviceThatComesLaterIsPickedUp) {
   ASSERT_TRUE(device->start());
   {
     Loop loop(*device);
-    EXPECT_TRUE(eventually([&] { return loop.ticks() > 20; }));
+    EXPECT_TRUE(fettle::tests::eventually([&] { return loop.ticks() > 20; }));
     EXPECT_EQ(loop.input().link, LinkState::kDisconnected);
     FakeWoody woody(folder(), "woody", Firmware::kW8);
     woody.plug();
-    EXPECT_TRUE(eventually([&] { return uncalibrated(loop); }));
+    EXPECT_TRUE(fettle::tests::eventually([&] { return uncalibrated(loop); }));
   }
   device->stop();
 }
@@ -369,7 +368,7 @@ TEST_F(Drivers, TwoDevicesAreToldApartBySerialNumber) {
   FakeWoody right(folder(), "right", Firmware::kW8, "R2");
   left.plug();
   right.plug();
-  ASSERT_TRUE(eventually([] { return listDevices().size() == 2; }));
+  ASSERT_TRUE(fettle::tests::eventually([] { return listDevices().size() == 2; }));
   const std::vector<DeviceInfo> found = listDevices();
   EXPECT_EQ(found[0].serial, "L1");
   EXPECT_EQ(found[1].serial, "R2");
@@ -383,7 +382,7 @@ TEST_F(Drivers, TwoDevicesAreToldApartBySerialNumber) {
   auto device = driver("R2");
   ASSERT_TRUE(device->start());
   Loop loop(*device);
-  EXPECT_TRUE(eventually([&] { return uncalibrated(loop) && right.log().inputs > 0; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return uncalibrated(loop) && right.log().inputs > 0; }));
   EXPECT_EQ(left.log().outputs, 0U);
   loop.stop();
   device->stop();
@@ -393,9 +392,9 @@ TEST_F(Drivers, ZeroOfADyingProgramGoesStraightToTheDevice) {
   Bench bench(folder(), Firmware::kW8);
   ASSERT_TRUE(bench.calibrate());
   bench.loop->setForce({0, 0, 1});
-  ASSERT_TRUE(eventually([&] { return bench.woody.log().most_ma > 0; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().most_ma > 0; }));
   EXPECT_EQ(zeroAllDevices(), 1);
-  EXPECT_TRUE(eventually([&] { return bench.woody.log().direct_zeros == 1; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return bench.woody.log().direct_zeros == 1; }));
   bench.loop->stop();
   bench.device->stop();
   EXPECT_EQ(zeroAllDevices(), 0);  // nothing is held any more
@@ -437,18 +436,18 @@ TEST_F(Drivers, SpaceMouseMovesTheTipInBothFormsAndRestsWhenReleased) {
   SpaceMouse mouse(std::make_unique<HidSource>(HidKind::kSpaceMouse));
   ASSERT_TRUE(mouse.start());
   Loop loop(mouse);
-  ASSERT_TRUE(eventually([&] { return connected(loop); }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return connected(loop); }));
   EXPECT_EQ(loop.input().position_mm, glm::dvec3{0.0});
   fake.report({{1, 100, 0, 0, 0, 0, 0}});  // right
-  ASSERT_TRUE(eventually([&] { return loop.input().position_mm.x > 1.0; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return loop.input().position_mm.x > 1.0; }));
   // Towards the user and down: y and z fall.
   fake.report({{1, 0, 0, 100, 0, 100, 0, 0, 0, 0, 0, 0, 0}, {3, 1, 0}});
-  ASSERT_TRUE(
-      eventually([&] { return loop.input().position_mm.y < -1.0 && loop.input().position_mm.z < -1.0; }));
+  ASSERT_TRUE(fettle::tests::eventually(
+      [&] { return loop.input().position_mm.y < -1.0 && loop.input().position_mm.z < -1.0; }));
   EXPECT_EQ(loop.input().buttons, kPrimaryButton);
   fake.report({{1, 0, 0, 0, 0, 0, 0}});
   glm::dvec3 last{1e9};
-  EXPECT_TRUE(eventually([&] {
+  EXPECT_TRUE(fettle::tests::eventually([&] {
     const glm::dvec3 now = loop.input().position_mm;
     const bool still = now == last;
     last = now;

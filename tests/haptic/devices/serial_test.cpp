@@ -23,6 +23,7 @@
 
 #include "haptic/devices/serial_port.h"
 #include "haptic/devices/wooden_haptics.h"
+#include "tests/support/eventually.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::haptic {
@@ -117,26 +118,17 @@ class FakeBoard {
   std::thread thread_;
 };
 
-bool eventually(const std::function<bool()>& holds) {
-  const auto deadline = std::chrono::steady_clock::now() + 30s;
-  while (!holds()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(1ms);
-  }
-  return true;
-}
-
 TEST(SerialDriver, CalibratesFollowsGivesForceAndEndsWithZero) {
   FakeBoard board;
   ASSERT_FALSE(board.path().empty());
   WoodenHaptics device(*wooden("woody_v2015"), std::make_unique<SerialSource>(board.path()), WoodenForm::kS);
   ASSERT_TRUE(device.start());
-  ASSERT_TRUE(eventually([&] { return device.read().sequence > 3; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return device.read().sequence > 3; }));
   EXPECT_EQ(device.read().link, LinkState::kUncalibrated);
   device.calibrate();
-  ASSERT_TRUE(eventually([&] { return device.read().link == LinkState::kConnected; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return device.read().link == LinkState::kConnected; }));
   EXPECT_LT(glm::length(device.read().position_mm - glm::dvec3{0.0, -25.0, 205.0}), 1e-9);
-  ASSERT_TRUE(eventually([&] {
+  ASSERT_TRUE(fettle::tests::eventually([&] {
     static_cast<void>(device.read());
     device.write({0, 0, 1});
     const std::array<int, 3> ma = board.ma();
@@ -144,12 +136,12 @@ TEST(SerialDriver, CalibratesFollowsGivesForceAndEndsWithZero) {
   }));
   const std::uint64_t before = board.replies;
   board.send("[garbage]\n[1,2\n" + std::string(1000, 'x') + "\n");
-  ASSERT_TRUE(eventually([&] { return device.counters().bad_inputs >= 3; }));
-  ASSERT_TRUE(eventually([&] { return board.replies > before + 10; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return device.counters().bad_inputs >= 3; }));
+  ASSERT_TRUE(fettle::tests::eventually([&] { return board.replies > before + 10; }));
   board.fault = 2;
-  EXPECT_TRUE(eventually([&] { return device.counters().faults > 0; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return device.counters().faults > 0; }));
   device.stop();
-  EXPECT_TRUE(eventually([&] { return board.ma() == std::array<int, 3>{}; }));
+  EXPECT_TRUE(fettle::tests::eventually([&] { return board.ma() == std::array<int, 3>{}; }));
   EXPECT_EQ(board.odd, 0U);
 }
 

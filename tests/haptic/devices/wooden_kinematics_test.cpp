@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "haptic/devices/wooden_calibration.h"
+#include "tests/support/source_tree.h"
 
 namespace fettle::haptic {
 namespace {
@@ -149,7 +150,7 @@ TEST(WoodenKinematics, DeskFrameHasRightAwayAndUp) {
 
 TEST(WoodenConfigFile, ShippedFilesAreThePublishedConfigurations) {
   for (const char* name : {"woody_v2015", "woody_v2019", "aluhaptics_v2"}) {
-    const auto file = readWoodenConfig(std::string(FETTLE_SOURCE_DIR) + "/assets/devices/" + name + ".json");
+    const auto file = readWoodenConfig(tests::inSourceTree("assets/devices/") + name + ".json");
     ASSERT_TRUE(file) << file.error().line();
     const WoodenConfig built_in = *wooden(name);
     const std::array<std::int32_t, 3> counts{123, -456, 789};
@@ -167,7 +168,7 @@ TEST(WoodenConfigFile, ShippedFilesAreThePublishedConfigurations) {
 }
 
 TEST(WoodenConfigFile, EachBadFieldIsNamed) {
-  std::ifstream file(std::string(FETTLE_SOURCE_DIR) + "/assets/devices/woody_v2015.json");
+  std::ifstream file(tests::inSourceTree("assets/devices/woody_v2015.json"));
   const nlohmann::json good = nlohmann::json::parse(file);
   ASSERT_TRUE(parseWoodenConfig(good.dump(), "x"));
   const auto problem = [&](const char* field, const nlohmann::json& value) {

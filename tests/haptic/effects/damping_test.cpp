@@ -7,16 +7,10 @@
 namespace fettle::haptic {
 namespace {
 
-using tests::fieldOf;
 using tests::HeldMass;
 using tests::sceneOf;
 using tests::Touch;
 using tests::uniform;
-
-const engine::Version& flat() {
-  static const engine::Version field = fieldOf(40, 40, [](int, int) { return 0.0; });
-  return field;
-}
 
 TEST(Velocity, SteadyMotionIsReadExactlyAndAStepWithTheStatedLag) {
   VelocityFilter filter(0.002);
@@ -64,7 +58,7 @@ Scene viscous(double b, double filter_ms = 2.0) {
 }
 
 TEST(Viscosity, TerminalForceIsDampingTimesSpeedAndStopsWithTheHand) {
-  Touch touch(flat(), viscous(0.003));
+  Touch touch(tests::flat(), viscous(0.003));
   ForceSample f;
   for (int i = 0; i < 200; ++i) f = touch.at({5.0 + 0.06 * i, 5.0 + 0.03 * i, 10.0 - 0.02 * i});
   EXPECT_FALSE(f.contact);
@@ -78,13 +72,13 @@ TEST(Viscosity, TerminalForceIsDampingTimesSpeedAndStopsWithTheHand) {
 TEST(Viscosity, OnlyWhereTheMediumIs) {
   Scene scene = viscous(0.003);
   scene.params.viscosity.medium = ViscousMedium::kContact;
-  Touch touch(flat(), scene);
+  Touch touch(tests::flat(), scene);
   for (int i = 0; i < 20; ++i) EXPECT_EQ(touch.at({5.0 + 0.1 * i, 5.0, 1.0}).force_n, glm::dvec3(0.0));
   EXPECT_LT(touch.at({7.1, 5.0, -0.1}).force_n.x, -0.1);
 }
 
 TEST(Viscosity, JumpsDropoutsAndSpikesGiveNoKick) {
-  Touch touch(flat(), viscous(0.01));
+  Touch touch(tests::flat(), viscous(0.01));
   static_cast<void>(touch.at({5.0, 5.0, 1.0}));
   EXPECT_EQ(touch.at({1e6, 5.0, 1.0}).force_n, glm::dvec3(0.0));
   EXPECT_EQ(touch.at({HUGE_VAL, 5.0, 1.0}).force_n, glm::dvec3(0.0));
@@ -105,7 +99,7 @@ TEST(Viscosity, IsStableExactlyBelowTwoMassesOverThePeriod) {
         scene.params.viscosity.damping_n_s_per_mm = factor * bound;
         ASSERT_FALSE(sceneProblem(scene));
         scene.force_limit_n = 1000.0;
-        Touch touch(flat(), scene, rate);
+        Touch touch(tests::flat(), scene, rate);
         mass.x_mm = {20.0, 20.0, 5.0};
         mass.v_mm_s.x = 1e-3;
         double early = 0.0, late = 0.0;
@@ -128,7 +122,7 @@ Scene coupled(double stiffness, double b, double filter_ms) {
 }
 
 TEST(Coupling, DampsAlongThePressAndNotAlongTheSurface) {
-  Touch touch(flat(), coupled(1.0, 0.002, 0.0));
+  Touch touch(tests::flat(), coupled(1.0, 0.002, 0.0));
   static_cast<void>(touch.at({10.0, 10.0, -1.0}));
   // 100 mm/s along, 50 mm/s in: 0.1 N on top of the spring, nothing sideways.
   const ForceSample in = touch.at({10.1, 10.0, -1.05});
@@ -147,7 +141,7 @@ TEST(Coupling, StopsTheBuzzBetweenItsTwoBounds) {
   const double k = 1.5 * 2.0 * b_device * rate;  // 3 N/mm: 0.5e-3 N s/mm is missing
   const double bound = 2.0 * m * 1e-3 * rate;    // 0.1 N s/mm
   const auto grows = [&](double b) {
-    Touch touch(flat(), coupled(k, b, 0.0), rate);
+    Touch touch(tests::flat(), coupled(k, b, 0.0), rate);
     HeldMass mass{m, b_device};
     const double press_n = 20.0;
     mass.x_mm = {20.0, 20.0, -press_n / k - 1e-3};
@@ -170,7 +164,7 @@ TEST(Coupling, StopsTheBuzzBetweenItsTwoBounds) {
 TEST(Gravity, HoldsUpTheStylusInFreeSpaceAndInTouchButNotWithoutInput) {
   Scene scene = sceneOf({EffectKind::kSpring, EffectKind::kGravity});
   scene.params.gravity.stylus_kg = 0.1;
-  Touch touch(flat(), scene);
+  Touch touch(tests::flat(), scene);
   const double weight = 0.980665;
   const ForceSample free = touch.at({5.0, 5.0, 3.0});
   EXPECT_FALSE(free.contact);
@@ -188,7 +182,7 @@ TEST(Gravity, HoldsUpTheStylusInFreeSpaceAndInTouchButNotWithoutInput) {
 TEST(Gravity, AMassThatIsHeldUpStaysWhereItIs) {
   Scene scene = sceneOf({EffectKind::kGravity});
   scene.params.gravity.stylus_kg = 0.08;
-  Touch touch(flat(), scene);
+  Touch touch(tests::flat(), scene);
   HeldMass mass{0.08};
   mass.x_mm = {5.0, 5.0, 20.0};
   for (int i = 0; i < 5000; ++i)

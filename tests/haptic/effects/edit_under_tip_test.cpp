@@ -18,12 +18,12 @@ constexpr int kStrokes = 40;  // ten times slower there
 constexpr int kStrokes = 400;
 #endif
 constexpr int kTicksAStroke = 2500;
-constexpr int kSide = 200;
+constexpr int kEditedSide = 200;
 
 // Height of the field below a point, from its samples alone.
 double heightUnder(const engine::FieldReader& field, const glm::dvec3& at) {
-  const int c = std::clamp(static_cast<int>(at.x), 0, kSide - 2);
-  const int r = std::clamp(static_cast<int>(at.y), 0, kSide - 2);
+  const int c = std::clamp(static_cast<int>(at.x), 0, kEditedSide - 2);
+  const int r = std::clamp(static_cast<int>(at.y), 0, kEditedSide - 2);
   const double u = at.x - c;
   const double v = at.y - r;
   const auto h = [&](int dc, int dr) { return static_cast<double>(field.heightAt(c + dc, r + dr)); };
@@ -32,7 +32,7 @@ double heightUnder(const engine::FieldReader& field, const glm::dvec3& at) {
 
 TEST(EditUnderTheTip, TheProxyIsOnTheSurfaceAtTheVeryNextTickInAMillionTicksOfSmoothing) {
   std::mt19937_64 random(77);
-  const engine::Version rough = fieldOf(kSide, kSide, [&](int c, int r) {
+  const engine::Version rough = fieldOf(kEditedSide, kEditedSide, [&](int c, int r) {
     return 0.4 * std::sin(0.8 * c) * std::cos(0.6 * r) + (c % 41 == 0 ? 0.6 : 0.0) +
            uniform(random, -0.2, 0.2);
   });
@@ -54,8 +54,8 @@ TEST(EditUnderTheTip, TheProxyIsOnTheSurfaceAtTheVeryNextTickInAMillionTicksOfSm
     const double speed = uniform(random, 0.005, 0.2);  // up to 200 mm/s
     const double depth = uniform(random, 0.05, 2.0);
     for (int i = 0; i < kTicksAStroke; ++i) {
-      tip.x = std::clamp(tip.x + speed * std::cos(turn + 1e-3 * i), 0.0, kSide - 1.0);
-      tip.y = std::clamp(tip.y + speed * std::sin(turn + 1e-3 * i), 0.0, kSide - 1.0);
+      tip.x = std::clamp(tip.x + speed * std::cos(turn + 1e-3 * i), 0.0, kEditedSide - 1.0);
+      tip.y = std::clamp(tip.y + speed * std::sin(turn + 1e-3 * i), 0.0, kEditedSide - 1.0);
       // Follows the surface, lifts now and then.
       tip.z = heightUnder(field.reader(), tip) - depth * (0.8 + std::sin(0.01 * i));
       const engine::Version before = field.snapshot();

@@ -22,14 +22,9 @@ Scene rough(double mu_static, double mu_dynamic, double stiffness) {
   return scene;
 }
 
-const engine::Version& flat() {
-  static const engine::Version field = fieldOf(40, 40, [](int, int) { return 0.0; });
-  return field;
-}
-
 TEST(Friction, HoldsLikeASpringUpToTheStaticCoefficientAndSlidesWithTheDynamicOne) {
   // Pressed with 2 N: holds to 0.8 N (0.4 mm at 2 N/mm), then slides with 0.6 N.
-  Touch touch(flat(), rough(0.4, 0.3, 2.0));
+  Touch touch(tests::flat(), rough(0.4, 0.3, 2.0));
   static_cast<void>(touch.at({10.0, 10.0, -2.0}));
   for (int i = 1; i <= 39; ++i)
     EXPECT_NEAR(touch.at({10.0 + 0.01 * i, 10.0, -2.0}).force_n.x, -0.02 * i, 1e-12) << i;
@@ -44,7 +39,7 @@ TEST(Friction, HoldsLikeASpringUpToTheStaticCoefficientAndSlidesWithTheDynamicOn
 }
 
 TEST(Friction, ATipAtRestSticksAgain) {
-  Touch touch(flat(), rough(0.4, 0.3, 2.0));
+  Touch touch(tests::flat(), rough(0.4, 0.3, 2.0));
   for (int i = 0; i <= 100; ++i) static_cast<void>(touch.at({10.0 + 0.01 * i, 10.0, -2.0}));
   for (int i = 0; i < 25; ++i) EXPECT_NEAR(touch.at({11.0, 10.0, -2.0}).force_n.x, -0.6, 1e-12);
   EXPECT_NEAR(touch.at({11.09, 10.0, -2.0}).force_n.x, -0.78, 1e-12);
@@ -77,7 +72,7 @@ TEST(Friction, SlipsOnASlopeExactlyAboveTheArcTangentOfTheStaticCoefficient) {
 
 TEST(Friction, StickSlipDrawsAMassOnASpringInJerks) {
   // A mass drawn by a slow spring over a rough flat: between slips it stands.
-  Touch touch(flat(), rough(0.6, 0.2, 2.0));
+  Touch touch(tests::flat(), rough(0.6, 0.2, 2.0));
   HeldMass mass{0.05, 0.003};
   mass.x_mm = {10.0, 20.0, -1.0};
   int slips = 0;
@@ -155,7 +150,7 @@ TEST(Friction, TheAnchorDoesNotDriftUnderTremorOnAPlane) {
 }
 
 TEST(Friction, NothingYanksAfterJumpsDropoutsAdoptionsAndLifting) {
-  Touch touch(flat(), rough(0.4, 0.3, 2.0));
+  Touch touch(tests::flat(), rough(0.4, 0.3, 2.0));
   const auto side = [](const ForceSample& f) { return std::hypot(f.force_n.x, f.force_n.y); };
   static_cast<void>(touch.at({5.0, 5.0, -1.0}));
   // A jump within contact: at most what friction may be.
@@ -170,7 +165,7 @@ TEST(Friction, NothingYanksAfterJumpsDropoutsAdoptionsAndLifting) {
   // Deep beyond the force limit: friction goes by the limit, not by a thousand kilometres of spring.
   Scene scene = rough(0.4, 0.3, 1000.0);
   scene.force_limit_n = 3.0;
-  Touch deep(flat(), scene);
+  Touch deep(tests::flat(), scene);
   static_cast<void>(deep.at({5.0, 5.0, -1e6}));
   const ForceSample f = deep.at({15.0, 5.0, -1e6});
   EXPECT_LE(glm::length(f.force_n), 3.0 * (1 + 1e-12));
@@ -184,7 +179,7 @@ TEST(Friction, StuckTipIsStableUpToTwiceTheDampingOverThePeriod) {
   for (const double rate : {1000.0, 4000.0}) {
     const double theory = 2.0 * b * rate;
     for (const double factor : {0.9, 1.12}) {
-      Touch touch(flat(), rough(2.0, 2.0, factor * theory), rate);
+      Touch touch(tests::flat(), rough(2.0, 2.0, factor * theory), rate);
       HeldMass mass{0.1, b};
       mass.x_mm = {20.3, 20.3, -5.0};
       static_cast<void>(touch.at(mass.x_mm));

@@ -22,6 +22,12 @@ inline Scene sceneOf(std::vector<EffectKind> effects) {
   return scene;
 }
 
+/// 40 x 40 samples at height 0.
+inline const engine::Version& flat() {
+  static const engine::Version field = fieldOf(40, 40, [](int, int) { return 0.0; });
+  return field;
+}
+
 /// A scene, a field, a tick and a clock.
 struct Touch {
   Touch(const engine::Version& start, const Scene& settings, double rate_hz = 1000.0)

@@ -23,15 +23,16 @@ using engine::FilterKind;
 using engine::FilterSpec;
 using tests::LoopBench;
 
-constexpr int kSide = 420;
+constexpr int kAdoptedSide = 420;
 
 engine::Version rough(std::uint64_t seed, double holes) {
   std::mt19937_64 random(seed);
-  engine::LiveField field(fettle::tests::randomField(random, kSide, kSide - 50, 1, 1.0, 1.0, holes),
-                          engine::Growth::kAllowed);
+  engine::LiveField field(
+      fettle::tests::randomField(random, kAdoptedSide, kAdoptedSide - 50, 1, 1.0, 1.0, holes),
+      engine::Growth::kAllowed);
   for (int i = 0; i < 3000; ++i)
-    EXPECT_TRUE(
-        field.setMark(static_cast<int>(random() % kSide), static_cast<int>(random() % (kSide - 50)), true));
+    EXPECT_TRUE(field.setMark(static_cast<int>(random() % kAdoptedSide),
+                              static_cast<int>(random() % (kAdoptedSide - 50)), true));
   return field.snapshot();
 }
 

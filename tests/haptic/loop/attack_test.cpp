@@ -20,12 +20,12 @@ namespace {
 using tests::LoopBench;
 using tests::testOptions;
 
-constexpr int kSide = 128;
+constexpr int kAttackedSide = 128;
 constexpr double kPeak = 5.0;      // woody_v2015
 constexpr double kRest_mm = -1.0;  // 1 N at the default 1 N/mm
 
 engine::Version flatAt(float height) {
-  return fettle::tests::fieldOf(kSide, kSide, [=](int, int) { return height; });
+  return fettle::tests::fieldOf(kAttackedSide, kAttackedSide, [=](int, int) { return height; });
 }
 
 // A tip that rests a millimetre inside a flat field, force active and steady; watches what the hand gets.
@@ -165,8 +165,8 @@ TEST(Attack, NoneGivesMoreThanTheProfileOrFasterThanTheSlewLimit) {
       {"version adopted 10 mm above the tip", true,
        [&](RestingTip& t) {
          engine::LiveField up(t.start(), engine::Growth::kAllowed);
-         const std::vector<float> ten(std::size_t{kSide} * kSide, 10.0F);
-         EXPECT_TRUE(up.writeHeights(0, 0, kSide, kSide, ten.data(), kSide));
+         const std::vector<float> ten(std::size_t{kAttackedSide} * kAttackedSide, 10.0F);
+         EXPECT_TRUE(up.writeHeights(0, 0, kAttackedSide, kAttackedSide, ten.data(), kAttackedSide));
          adopt(t, up.snapshot());
          t.tick(1000);
        }},

@@ -18,15 +18,15 @@ using tests::LoopBench;
 using tests::sweep;
 using tests::testOptions;
 
-constexpr int kSide = 400;
+constexpr int kMillionSide = 400;
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr std::uint64_t kTicks = 100'000;  // ten times slower there
 #else
 constexpr std::uint64_t kTicks = 1'000'000;
 #endif
 
-engine::Version bumpy() {
-  return fettle::tests::fieldOf(kSide, kSide, [](int c, int r) {
+engine::Version bumpyWithRidges() {
+  return fettle::tests::fieldOf(kMillionSide, kMillionSide, [](int c, int r) {
     return 0.3 * std::sin(0.9 * c) * std::cos(0.7 * r) + (c % 97 == 0 ? 0.5 : 0.0);
   });
 }
@@ -41,7 +41,7 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
     EXPECT_EQ(memory, nullptr);
     EXPECT_EQ(fettle::tests::AllocationGuard::calls(), before + 1);
   }
-  const engine::Version start = bumpy();
+  const engine::Version start = bumpyWithRidges();
   const auto& memory = start.memory();
   LoopBench bench(start, start, defaultScene(), testOptions(Tool::kSmooth));
   ASSERT_TRUE(bench.send(CommandKind::kArm));
@@ -59,7 +59,7 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
         if (event.kind == EventKind::kStrokeEnded) undo_to = event.version;
         if (event.kind == EventKind::kSnapshot) {
           engine::LiveField job(event.version, engine::Growth::kAllowed);
-          ASSERT_TRUE(job.setHeight(static_cast<std::int32_t>(i * 7 % kSide), 5, 0.25F));
+          ASSERT_TRUE(job.setHeight(static_cast<std::int32_t>(i * 7 % kMillionSide), 5, 0.25F));
           ASSERT_TRUE(bench.send(CommandKind::kAdopt, [&](LoopCommand& c) {
             c.id = event.id;
             c.version = job.snapshot();
@@ -91,7 +91,7 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
       }));
     }
     bench.device.input.tool = static_cast<Tool>(i / 300 % kTools);
-    bench.device.input.position_mm = sweep(i, kSide - 1.0, 0.1, 0.8);
+    bench.device.input.position_mm = sweep(i, kMillionSide - 1.0, 0.1, 0.8);
     if (i % 3001 == 0) bench.device.input.position_mm.z = std::nan("");
     const fettle::tests::AllocationGuard guard;
     bench.tick(i % 997 == 0 ? 4'000'000 : LoopBench::kPeriod_ns);
@@ -107,7 +107,7 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
 // The proxy of every tick lies on the surface as the edits of the tick before left it, never below. The
 // surface is kept a second time as a plain array and interpolated here.
 TEST(MillionTicks, AfterAnEditUnderTheTipTheProxyIsOnTheSurfaceAtTheVeryNextTick) {
-  const engine::Version start = bumpy();
+  const engine::Version start = bumpyWithRidges();
   ASSERT_TRUE(start.memory()->tiles.reserve(2000) && start.memory()->nodes.reserve(200));
   Scene scene = defaultScene();
   scene.brush_radius_samples = 1.5;
@@ -118,14 +118,14 @@ TEST(MillionTicks, AfterAnEditUnderTheTipTheProxyIsOnTheSurfaceAtTheVeryNextTick
   for (std::uint64_t i = 0; i < kTicks; ++i) {
     const std::uint64_t pass = i / 50000;
     // Presses deeper and deeper, so that smoothing always has something to do; each pass on another track.
-    const glm::dvec3 tip = sweep(i * (pass % 3 + 1) + 7919 * pass, kSide - 1.0, 0.0, 0.9);
+    const glm::dvec3 tip = sweep(i * (pass % 3 + 1) + 7919 * pass, kMillionSide - 1.0, 0.0, 0.9);
     bench.tickAt(tip);
     if (i % 64 == 0) static_cast<void>(bench.poll());
     if (!bench.loop.state().contact) continue;
     ++contacts;
     const glm::dvec3 p = bench.loop.state().proxy_mm;
-    const int c = std::min(static_cast<int>(p.x), kSide - 2);
-    const int r = std::min(static_cast<int>(p.y), kSide - 2);
+    const int c = std::min(static_cast<int>(p.x), kMillionSide - 2);
+    const int r = std::min(static_cast<int>(p.y), kMillionSide - 2);
     const double u = p.x - c;
     const double v = p.y - r;
     const auto h = [&](int dc, int dr) { return static_cast<double>(mirror.height(c + dc, r + dr)); };
@@ -139,7 +139,8 @@ TEST(MillionTicks, AfterAnEditUnderTheTipTheProxyIsOnTheSurfaceAtTheVeryNextTick
     const CellIndex cell = bench.loop.scene().tick.contact().proxy.cell;
     const std::int32_t c0 = std::max(cell.column - 2, 0);
     const std::int32_t r0 = std::max(cell.row - 2, 0);
-    mirror.take(bench.field(), {c0, r0, std::min(c0 + 5, kSide) - c0, std::min(r0 + 5, kSide) - r0});
+    mirror.take(bench.field(),
+                {c0, r0, std::min(c0 + 5, kMillionSide) - c0, std::min(r0 + 5, kMillionSide) - r0});
   }
   std::printf("%llu contact ticks of %llu, worst distance of the proxy to the surface %.1e mm\n",
               static_cast<unsigned long long>(contacts), static_cast<unsigned long long>(kTicks), worst);

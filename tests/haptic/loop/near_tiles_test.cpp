@@ -20,7 +20,7 @@ using tests::HandDevice;
 using tests::sweep;
 using tests::testOptions;
 
-constexpr int kSide = 1200;
+constexpr int kStoredSide = 1200;
 
 std::int64_t waits() {
   rusage usage{};
@@ -54,7 +54,7 @@ class NearTilesTest : public testing::Test {
     const std::string folder = folder_.path().string();
     if (const auto store = engine::TileStore::create(folder, 0); !store) GTEST_SKIP() << store.error().line();
     engine::setStorePolicy({.folder = folder, .always = true});
-    field_ = fettle::tests::fieldOf(kSide, kSide,
+    field_ = fettle::tests::fieldOf(kStoredSide, kStoredSide,
                                     [](int c, int r) { return 0.3 * std::sin(0.9 * c) * std::cos(0.7 * r); });
     ASSERT_TRUE(field_.memory()->tiles.reserve(1000) && field_.memory()->nodes.reserve(200));
     scene_ = defaultScene();
@@ -157,7 +157,7 @@ TEST_F(NearTilesTest, ALiveSessionOverTheDiskEqualsTheReplayOfWhatItWasGiven) {
     // A keeper that falls behind now and then.
     if (i % 16 == 0 && i / 1000 % 3 != 2) bench.near.bring();
     bench.device.input.tool = static_cast<Tool>(i / 500 % kTools);
-    bench.tickAt(sweep(i, kSide - 1.0, 0.1, 0.8));
+    bench.tickAt(sweep(i, kStoredSide - 1.0, 0.1, 0.8));
   }
   bench.loop.stop();
   EXPECT_GT(bench.loop.state().not_near, 100U);

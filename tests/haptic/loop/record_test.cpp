@@ -14,7 +14,7 @@ namespace {
 using tests::LoopBench;
 using tests::testOptions;
 
-engine::Version bumpy() {
+engine::Version bumpyOf200() {
   return fettle::tests::fieldOf(200, 200,
                                 [](int c, int r) { return 0.3 * std::sin(0.9 * c) * std::cos(0.7 * r); });
 }
@@ -26,7 +26,7 @@ std::vector<StrokeSample> taken(LoopBench& bench) {
 }
 
 TEST(Record, ReplayOfTheRecordGivesTheFieldOfTheLoopBitForBit) {
-  const engine::Version start = bumpy();
+  const engine::Version start = bumpyOf200();
   ASSERT_TRUE(start.memory()->tiles.reserve(200) && start.memory()->nodes.reserve(100));
   Scene scene = defaultScene();
   scene.brush_radius_samples = 1.5;
@@ -56,7 +56,7 @@ TEST(Record, ReplayOfTheRecordGivesTheFieldOfTheLoopBitForBit) {
 }
 
 TEST(Record, FullRingIsCountedAndTheLoopGoesOn) {
-  const engine::Version start = bumpy();
+  const engine::Version start = bumpyOf200();
   LoopOptions options = testOptions(Tool::kFeel);
   options.record_capacity = 64;
   LoopBench bench(start, start, defaultScene(), options);
@@ -69,7 +69,7 @@ TEST(Record, FullRingIsCountedAndTheLoopGoesOn) {
 }
 
 TEST(Record, NothingIsRecordedUnlessAskedFor) {
-  const engine::Version start = bumpy();
+  const engine::Version start = bumpyOf200();
   LoopBench bench(start, start, defaultScene(), testOptions(Tool::kFeel));
   for (int i = 0; i < 10; ++i) bench.tickAt({50.0, 50.0, 1.0});
   EXPECT_TRUE(taken(bench).empty());
@@ -77,7 +77,7 @@ TEST(Record, NothingIsRecordedUnlessAskedFor) {
 }
 
 TEST(EditRule, ToolsWaitUntilForceIsGivenAndStopWithAFault) {
-  const engine::Version start = bumpy();
+  const engine::Version start = bumpyOf200();
   ASSERT_TRUE(start.memory()->tiles.reserve(100) && start.memory()->nodes.reserve(100));
   LoopOptions options = testOptions(Tool::kSmooth);
   options.edit_rule = EditRule::kWhileForceIsGiven;

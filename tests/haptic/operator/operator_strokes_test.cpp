@@ -9,14 +9,15 @@
 
 #include "engine/field/builder.h"
 #include "haptic/operator/hand_motion.h"
+#include "haptic/replay.h"
+#include "haptic/scene.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::haptic {
 namespace {
 
 using engine::Edge;
 using engine::EdgeKind;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // 40 x 30 mm at 0.1 mm: a plane at 2 mm + 0.1 x, with a hole in the middle when asked for.
 engine::Version plane(bool holed = false) {
@@ -183,6 +184,66 @@ TEST(OperatorStrokes, SmoothPassesOnlyFeelWhereAnotherEdgeIsNear) {
     felt += row.tool == Tool::kFeel && std::abs(p.y - 10.5) < 1e-9 && p.x > 15 && p.x < 20;
   }
   EXPECT_GT(felt, 200);
+}
+
+// A rough land above a wall of 4 mm. The samples that the smooth passes change: how many, and how near to the
+// wall the nearest of them lies [samples].
+struct Smoothed {
+  std::int64_t samples = 0;
+  double nearest = std::numeric_limits<double>::infinity();
+};
+Smoothed smoothedBesideAWall(double spacing_mm, bool off_the_edges, std::uint64_t seed) {
+  engine::Grid grid;
+  grid.width = static_cast<std::int32_t>(30.0 / spacing_mm) + 1;
+  grid.height = static_cast<std::int32_t>(10.0 / spacing_mm) + 1;
+  grid.spacing_x = grid.spacing_y = spacing_mm;
+  const int wall = grid.height / 2;  // the first row of the high land
+  std::vector<float> z;
+  std::uint32_t noise = 1;
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      noise = noise * 1664525U + 1013904223U;
+      z.push_back((r < wall ? 1.0F : 5.0F) + 1e-3F * static_cast<float>(noise >> 28));
+    }
+  const engine::Version field = engine::makeField(grid, z);
+  const double y = (wall - 0.5) * spacing_mm;
+  const std::vector<Edge> edges{straight({2.0, y}, {28.0, y})};
+  OperatorSpec spec;
+  spec.seed = seed;
+  spec.mark_passes = 0;
+  spec.smooth_offset_mm = 0.6;  // more than three times the hand's own error
+  spec.smooth_clear_mm = 0.55;
+  if (off_the_edges) spec = offTheEdges(spec, grid);
+  Scene scene;
+  scene.level = ContactLevel::kCertified;
+  scene.certified_radius_cells = 8;
+  engine::JobControl job;
+  const auto after = replay(field, field, operatorStrokes(field, edges, spec), scene, {}, job);
+  EXPECT_TRUE(after);
+  Smoothed smoothed;
+  const engine::FieldReader a = field.reader(), b = after->field.reader();
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      if (a.heightAt(c, r) == b.heightAt(c, r)) continue;
+      ++smoothed.samples;
+      smoothed.nearest = std::min(smoothed.nearest, std::abs(r - (wall - 0.5)));
+    }
+  return smoothed;
+}
+
+TEST(OperatorStrokes, OffTheEdgesNothingBesideAWallIsSmoothedHoweverTheHandWanders) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (const double spacing_mm : {0.05, 0.2}) {
+      const Smoothed off = smoothedBesideAWall(spacing_mm, true, seed);
+      EXPECT_GT(off.samples, 100) << seed;
+      // "Near edges" is up to three samples.
+      EXPECT_GT(off.nearest, 3.0) << seed << ", " << spacing_mm;
+    }
+    nearest = std::min(nearest, smoothedBesideAWall(0.05, false, seed).nearest);
+  }
+  // At three times the hand's error alone the tip comes nearer to the wall than it is deep.
+  EXPECT_LT(nearest, 1.0);
 }
 
 TEST(OperatorStrokes, PassesAreAsManyAsAskedForSmoothBeforeMarkAndParallel) {

@@ -33,8 +33,8 @@ rc::Gen<Happening> happening() {
 }
 
 void happen(GuardWitness& w, const Happening& h, double& age_s) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInf = std::numeric_limits<double>::infinity();
+  constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
   for (int i = 0; i < h.ticks; ++i) {
     SafetyInput in;
     in.dt_s = 0.001;
@@ -47,10 +47,10 @@ void happen(GuardWitness& w, const Happening& h, double& age_s) {
         in.command_n = glm::dvec3(0.0);
         break;
       case 2:  // NaN pose
-        in.command_n = {0.0, kNaN, 1.0};
+        in.command_n = {0.0, kNoNumber, 1.0};
         break;
       case 3:
-        in.command_n = {kInf, -kInf, h.size};
+        in.command_n = {kEndless, -kEndless, h.size};
         break;
       case 4:
         in.command_n = glm::dvec3(h.size) * 1e306;
@@ -62,13 +62,13 @@ void happen(GuardWitness& w, const Happening& h, double& age_s) {
         if (i == 0) in.dt_s = 0.001 * h.ticks;
         break;
       case 7:
-        in.dt_s = i % 2 == 0 ? kNaN : -1.0;
+        in.dt_s = i % 2 == 0 ? kNoNumber : -1.0;
         break;
       case 8:
         in.velocity_mm_per_s = glm::dvec3(1000.0 * h.size, 0.0, 0.0);
         break;
       case 9:
-        in.velocity_mm_per_s = glm::dvec3(kNaN);
+        in.velocity_mm_per_s = glm::dvec3(kNoNumber);
         break;
       case 10:
         in.disturbance = Disturbance::kSurfaceReplaced;

@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "tests/support/no_data.h"
+
 namespace fettle::engine::tests {
 
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 // Gaussian: filter.h, (n + 4) * 2^-51.
 FilterCase gaussian(std::string name, int window, double sigma) {

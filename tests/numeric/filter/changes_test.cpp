@@ -19,12 +19,11 @@
 #include "haptic/brush.h"
 #include "tests/engine/filter/reference.h"
 #include "tests/numeric/support/work_case.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine::tests {
 
 using fettle::tests::WorkStep;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// A step in small numbers, so that it can be made smaller; numbers are taken modulo what there is.
 struct SmallStep {

@@ -10,11 +10,10 @@
 
 #include "tests/numeric/filter/cases.h"
 #include "tests/numeric/support/rare.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine::tests {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // A constant with holes, a border on every side and one odd sample in each tile; whether a window of
 // `radius` sees an odd one.

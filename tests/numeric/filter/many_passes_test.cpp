@@ -24,11 +24,11 @@
 
 #include "tests/numeric/filter/cases.h"
 #include "tests/numeric/support/rare.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine::tests {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kPasses = 10000;
 
 Version passesOf(const Version& start, FilterSpec spec, int passes) {

@@ -14,11 +14,10 @@
 #include "engine/filter/region.h"
 #include "tests/numeric/filter/cases.h"
 #include "tests/numeric/support/rare.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine::tests {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Version must(Result<Version> result) {
   EXPECT_TRUE(result.has_value());

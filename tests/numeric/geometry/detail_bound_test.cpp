@@ -16,6 +16,7 @@
 
 #include "engine/field/live_field.h"
 #include "render/patches.h"
+#include "tests/numeric/geometry/pebbles.h"
 #include "tests/numeric/support/rare.h"
 #include "tests/render/drawn_surface.h"
 #include "tests/render/fields.h"
@@ -24,11 +25,6 @@ namespace fettle::render {
 namespace {
 
 constexpr double kAnyTightness = 1e300;
-
-double pebble(int c, int r) {
-  const auto k = static_cast<std::uint32_t>(c) * 73856093U ^ static_cast<std::uint32_t>(r) * 19349663U;
-  return static_cast<double>((k * 2654435761U) >> 20U) / 4096.0;
-}
 
 std::string differing(const DetailMeasure& kept, const DetailMeasure& fresh) {
   std::string wrong;

@@ -21,6 +21,7 @@
 #include "haptic/contact.h"
 #include "render/pick.h"
 #include "tests/engine/filter/reference.h"
+#include "tests/numeric/geometry/pebbles.h"
 #include "tests/numeric/support/rare.h"
 #include "tests/render/fields.h"
 
@@ -35,11 +36,6 @@ struct PickField {
   std::string name;
   engine::Version field;
 };
-
-double pebble(int c, int r) {
-  const auto k = static_cast<std::uint32_t>(c) * 73856093U ^ static_cast<std::uint32_t>(r) * 19349663U;
-  return static_cast<double>((k * 2654435761U) >> 20U) / 4096.0;
-}
 
 // No holes: for what must hold of a closed surface.
 std::vector<PickField> closedFields() {

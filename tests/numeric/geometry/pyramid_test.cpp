@@ -19,11 +19,9 @@
 #include "engine/filter/filter.h"
 #include "engine/filter/region.h"
 #include "tests/engine/filter/reference.h"
+#include "tests/support/no_data.h"
 
 namespace fettle::engine::tests {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// One step of an editing session. Any step can be cut out, and places are numbers of a short list, taken
 /// modulo the field's size: so a failing session can be made smaller.
@@ -49,8 +47,8 @@ template <>
 struct Arbitrary<fettle::engine::tests::EditStep> {
   using Step = fettle::engine::tests::EditStep;
   static Gen<Step> arbitrary() {
-    using fettle::engine::tests::kInf;
-    using fettle::engine::tests::kNan;
+    using fettle::kInf;
+    using fettle::kNan;
     return gen::build<Step>(
         // Single samples most of all: it is they whose bounds are kept up by halves.
         gen::set(&Step::kind, gen::weightedElement<Step::Kind>({{12, Step::Kind::kSample},

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+
+namespace fettle::app {
+
+/// "-": standard input where a scan is read, standard output where one is written. Both pass through a file
+/// in a folder of their own ($TMPDIR, else /tmp), because a format is
+/// recognised by a file's content, read from several places at once and completed at the end: so every format
+/// can stream, and what comes out is whole.
+[[nodiscard]] bool isStream(const std::string& path) noexcept;
+
+/// How messages name a path: "-" is standard input, standard output.
+[[nodiscard]] std::string shownInput(const std::string& path);
+[[nodiscard]] std::string shownOutput(const std::string& path);
+
+/// A folder for one run, readable by the user alone, removed with all that is in it.
+class ScratchFolder {
+ public:
+  /// Errors (kFailed): no folder for temporary files that can be written.
+  [[nodiscard]] static engine::Result<ScratchFolder> create();
+  ScratchFolder(ScratchFolder&&) noexcept = default;
+  ScratchFolder& operator=(ScratchFolder&&) noexcept = default;
+
+  [[nodiscard]] const std::string& path() const noexcept { return *path_; }
+
+ private:
+  explicit ScratchFolder(std::string path);
+  std::shared_ptr<const std::string> path_;  // its deleter removes the folder
+};
+
+/// Standard input to its end, in a file that lives as long as this.
+class StandardInput {
+ public:
+  /// `extension` with its dot, or empty: the name the file gets. Errors: kInput, it was read before in this
+  /// process or cannot be read; kFailed, no room for it; kCancelled, within a tenth of a second.
+  [[nodiscard]] static engine::Result<StandardInput> read(const std::string& extension,
+                                                          engine::JobControl& job);
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+  /// The error with "standard input" in the place of the file's path.
+  [[nodiscard]] engine::Error renamed(engine::Error error) const;
+
+ private:
+  StandardInput(ScratchFolder folder, std::string path);
+  ScratchFolder folder_;
+  std::string path_;
+};
+
+/// From the first call on, what the program prints on standard output goes to standard error, so that data
+/// alone is on standard output. Call before anything is printed.
+void keepStandardOutputForData();
+
+/// Calls write(path) and returns its status. With "-" the path is that of a file with this extension (with
+/// its dot), which is then copied to standard output; nothing is written there when `write` fails. Errors of
+/// standard output: kFailed for a full disk and for a reader that went away.
+[[nodiscard]] engine::Status writeTo(const std::string& path, const std::string& extension,
+                                     engine::JobControl& job,
+                                     const std::function<engine::Status(const std::string&)>& write);
+
+}  // namespace fettle::app

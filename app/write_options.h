@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "app/batch.h"
+#include "engine/base/error.h"
+#include "engine/io/export.h"
+
+namespace fettle::app {
+
+/// --compress: how TIFFs that a command writes are packed.
+void addCompressOption(CLI::App* command, engine::ExportOptions& writing);
+
+/// Refuses, before anything is read or computed, --compress for an output that is no TIFF.
+[[nodiscard]] engine::Status checkCompress(const engine::ExportOptions& writing,
+                                           const std::vector<BatchTask>& tasks);
+
+}  // namespace fettle::app

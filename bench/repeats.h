@@ -1,0 +1,28 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <vector>
+
+#include "engine/base/stopwatch.h"
+
+namespace fettle::bench {
+
+/// Spacing of the synthetic parts that benchmarks touch and filter [mm], as `fettle synth` makes them.
+inline constexpr double kSpacingMm = 0.05;
+
+/// Wall time of one run of `work` [s].
+[[nodiscard]] inline double secondsOf(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return engine::secondsSince(begin);
+}
+
+/// The middle one of repeated times, the upper of two. `values` is not empty.
+[[nodiscard]] inline double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+}  // namespace fettle::bench

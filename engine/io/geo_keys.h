@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+namespace fettle::engine {
+
+/// GeoTIFF keys (OGC 19-008) outside a TIFF, as LAS keeps them: the bytes of three tags, little-endian.
+struct GeoKeys {
+  std::string directory;  ///< 34735: 16-bit numbers
+  std::string numbers;    ///< 34736: doubles
+  std::string text;       ///< 34737
+};
+
+/// The projected or geographic coordinate system that the keys name, with the vertical one where they name
+/// that too, as WKT 2; empty where they name none that is known. Call with a GdalSession alive.
+/// Errors: none, keys that are damaged name no system. Thread: any.
+[[nodiscard]] std::string wktOfGeoKeys(const GeoKeys& keys);
+
+}  // namespace fettle::engine

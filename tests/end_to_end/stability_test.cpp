@@ -1,0 +1,80 @@
+// Scenes that ask more of a device than it holds: refused where force goes to a hand, said where none does.
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/program.h"
+#include "tests/support/source_tree.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+class Stability : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(fettle({"synth", scan, "--size", "128x96", "--part", "plate"}).status, 0);
+    std::ofstream strokes(path);
+    strokes << "t,x,y,z,tool\n0,3,3,20,feel\n0.05,5,5,-1,smooth\n0.2,8,5,-1,smooth\n0.25,8,5,20,feel\n";
+  }
+  std::string scene(const std::string& text) const {
+    std::ofstream(folder.file("scene.toml")) << text;
+    return folder.file("scene.toml");
+  }
+  [[nodiscard]] Outcome record(const std::string& device, std::vector<std::string> more) const {
+    std::vector<std::string> all{"record", scan, recorded, "--device", device + path};
+    all.insert(all.end(), more.begin(), more.end());
+    return fettle(all);
+  }
+
+  TempFolder folder;
+  std::string scan = folder.file("scan.tif"), path = folder.file("path.csv"), out = folder.file("out.tif"),
+              recorded = folder.file("recorded.csv");
+};
+
+TEST_F(Stability, RecordRefusesWhatTheHandDoesNotHoldAndNamesTheLargestThatItDoes) {
+  // The largest stiffness there is, which made the hand jump to and fro between no force and all of it.
+  const Outcome stiff = record("hand:", {"--scene", scene("[force]\nstiffness_n_per_mm = 1000\n")});
+  expectRefused(stiff, "at most 6 N/mm");
+  EXPECT_NE(stiff.err.find("scene.toml"), std::string::npos) << stiff.err;
+  EXPECT_NE(stiff.err.find("simulated hand"), std::string::npos) << stiff.err;
+  EXPECT_FALSE(std::filesystem::exists(recorded));
+  // A faster loop holds more, an effect takes its part, and damping is told of likewise.
+  expectRefused(record("hand:", {"--rate", "4000", "--scene", folder.file("scene.toml")}), "at most 24 N/mm");
+  expectRefused(record("hand:", {"--scene", scene("effects = [\"spring\", \"texture\"]\n")}), "texture");
+  expectRefused(record("hand:", {"--scene", scene("effects = [\"spring\", \"viscosity\"]\n"
+                                                  "[viscosity]\ndamping_n_s_per_mm = 0.5\n")}),
+                "at most 0.3 N s/mm");
+  // What is named is taken.
+  const Outcome held = record("hand:", {"--scene", scene("[force]\nstiffness_n_per_mm = 6\n")});
+  EXPECT_EQ(held.status, 0) << held.err;
+  EXPECT_TRUE(std::filesystem::exists(recorded));
+  // A force device that is not plugged in is one, all the same.
+  expectRefused(fettle({"record", scan, recorded, "--device", "woodenhaptics", "--scale", "1", "--scene",
+                        scene("[force]\nstiffness_n_per_mm = 4\n")}),
+                "at most 1 N/mm");
+}
+
+TEST_F(Stability, WithoutADeviceASceneThatNoneHoldsIsTakenWithAWarning) {
+  const std::string stiff = scene("[force]\nstiffness_n_per_mm = 1000\n");
+  const std::string warning = "fettle: warning: " + stiff;
+  const Outcome replayed = fettle({"replay", scan, path, out, "--scene", stiff});
+  EXPECT_EQ(replayed.status, 0);
+  EXPECT_NE(replayed.err.find(warning), std::string::npos) << replayed.err;
+  EXPECT_NE(replayed.err.find("1000 N/mm"), std::string::npos) << replayed.err;
+  EXPECT_NE(replayed.err.find("at most "), std::string::npos) << replayed.err;
+  EXPECT_TRUE(std::filesystem::exists(out));
+  const Outcome played = record("replay:", {"--scene", stiff});
+  EXPECT_EQ(played.status, 0);
+  EXPECT_NE(played.err.find(warning), std::string::npos) << played.err;
+  // The project's own say nothing.
+  for (const char* name : {"default", "everything", "gentle_clean", "trace_edges"}) {
+    const std::string own = inSourceTree(std::string("assets/scenes/") + name + ".toml");
+    EXPECT_EQ(fettle({"replay", scan, path, out, "--scene", own}).err, "") << name;
+  }
+  EXPECT_EQ(fettle({"replay", scan, path, out}).err, "");
+}
+
+}  // namespace
+}  // namespace fettle::tests

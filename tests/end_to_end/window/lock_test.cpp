@@ -1,0 +1,94 @@
+// What hands do in one frame, while it takes long: no dialog is open that is not on the screen.
+#include "tests/end_to_end/window/frame_gate.h"
+#include "tests/end_to_end/window/window_fixture.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = Hand::State;
+
+bool isWritten(const State& s, const std::string& text) {
+  return s["texts"].dump().find(text) != std::string::npos;
+}
+
+class LockTest : public WindowTest {
+ protected:
+  std::unique_ptr<ViewProgram> startOpened() {
+    auto program = start({scan}, gate_.environment());
+    (void)opened(*program);
+    return program;
+  }
+  // All of it in one frame.
+  void inOneFrame(const std::vector<std::string>& words) {
+    ASSERT_TRUE(gate_.hold());
+    display.hands(words);
+    ASSERT_TRUE(gate_.step());
+    gate_.release();
+  }
+  // The list of keys is on the screen, Esc leaves it, and tools come.
+  static void listIsLeftByEsc(Hand& hand) {
+    ViewProgram& program = hand.program();
+    program.forget();
+    program.until("the list on the screen", [](const State& s) {
+      return s["dialog"] == "shortcuts" && s["settled"] == true && isWritten(s, "Ctrl+Shift+Z");
+    });
+    (void)hand.press("Escape");
+    program.until("no list", [](const State& s) {
+      return s["dialog"] == "none" && s["settled"] == true && !isWritten(s, "Ctrl+Shift+Z");
+    });
+    EXPECT_EQ(hand.key("s")["tool"], "smooth");
+    EXPECT_EQ(hand.key("Escape")["tool"], "view");
+  }
+
+  FrameGate gate_{folder.file("gate")};
+};
+
+TEST_F(LockTest, a_dialog_asked_for_with_the_keyboard_of_the_panels_is_on_the_screen_and_is_left) {
+  const auto program = startOpened();
+  Hand hand(display, *program, "lock");
+  hand.at({20, 740});
+  inOneFrame({"key", "--delay", "0", "F6", "F1"});
+  listIsLeftByEsc(hand);
+  inOneFrame({"key", "--delay", "0", "F1", "F6"});
+  listIsLeftByEsc(hand);
+  // From the menu, with the keyboard in the panels: Esc takes it from both.
+  (void)hand.press("F6");
+  hand.tap("Help");
+  program->until("the menu", [](const State& s) { return isWritten(s, "This list"); });
+  hand.tap("This list");
+  listIsLeftByEsc(hand);
+  // A click beside all that can be clicked on, when it comes.
+  const State now = program->now();
+  const int left = now["picture"][0].get<int>() + now["picture"][2].get<int>();
+  for (const char* button : {"1", "3"}) {
+    inOneFrame({"mousemove", std::to_string(left + 3), "760", "click", button, "key", "--delay", "0", "F1"});
+    hand.at({20, 740});
+    listIsLeftByEsc(hand);
+  }
+  const State report = quit(hand);
+  EXPECT_EQ(report["unsaved_changes"], false);
+}
+
+TEST_F(LockTest, what_comes_after_the_answer_in_a_frame_is_done_after_it) {
+  const auto program = startOpened();
+  Hand hand(display, *program, "after");
+  hand.at({20, 740});
+  (void)hand.press("F1");
+  program->until("a list", [](const State& s) { return s["dialog"] == "shortcuts" && s["settled"] == true; });
+  inOneFrame({"key", "--delay", "0", "Escape", "m"});
+  program->until("a tool", [](const State& s) { return s["dialog"] == "none" && s["tool"] == "mark"; });
+  // A camera that is turned when a question comes is not turned by a hand that has let go.
+  (void)hand.key("Escape");
+  hand.at({330, 400});
+  hand.down(2);
+  (void)hand.press("F1");
+  program->until("a list", [](const State& s) { return s["dialog"] == "shortcuts" && s["settled"] == true; });
+  hand.up(2);
+  const State before = hand.key("Escape");
+  hand.at({390, 460});
+  EXPECT_EQ(hand.rest()["view"], before["view"]);
+  (void)quit(hand);
+}
+
+}  // namespace
+}  // namespace fettle::tests

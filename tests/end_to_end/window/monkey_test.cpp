@@ -1,0 +1,278 @@
+// Whatever hands do, in frames of any length: the window goes on, and its journal plays to what it saved.
+#include <csignal>
+#include <cstdlib>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "engine/io/marks.h"
+#include "tests/end_to_end/window/frame_gate.h"
+#include "tests/end_to_end/window/monkey.h"
+#include "tests/end_to_end/window/window_fixture.h"
+#include "tests/support/process.h"
+
+namespace fettle::tests {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using State = Hand::State;
+
+constexpr int kSlow = 50;    // one frame in so many is held up ...
+constexpr auto kDelay = 1s;  // ... for so long
+constexpr int kProbe = 40;   // frames between two looks whether the window still does what it is asked to
+constexpr int kMostEscapes = 20;  // until nothing is open any more
+
+std::int64_t number(const char* variable, std::int64_t otherwise) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? otherwise : std::atoll(text);
+}
+
+// Nothing is left that Esc would end.
+bool calm(const State& s) {
+  return s["dialog"] == "none" && s["settled"] == true && s["text_field"] == false &&
+         s.value("tool", "view") == "view" && s.value("variants", State::array()).empty() &&
+         s.value("suggested", 0) == 0 && s.value("lasso", "") == "" && s.value("adjusting", "") == "";
+}
+
+class MonkeyTest : public WindowTest {
+ protected:
+  void SetUp() override {
+    WindowTest::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
+    // What is typed without a folder goes here.
+    before_ = fs::current_path();
+    fs::current_path(folder.path());
+    for (const std::string& copy : {second_, left_, fresh_}) fs::copy_file(scan, copy);
+    std::ofstream(broken_) << "II*";
+    // Work that was not saved, to be found again.
+    const auto program = start({left_});
+    Hand hand(display, *program, "left");
+    (void)opened(*program);
+    (void)hand.key("ctrl+i");
+    program->until("kept", [](const State& s) { return s["kept"] == true; });
+    program->signal(SIGKILL);
+    (void)program->wait();
+  }
+  void TearDown() override {
+    if (!before_.empty()) fs::current_path(before_);
+  }
+
+  // A life of the program, from its start to where a frame waits. False: it has ended already.
+  bool begin() {
+    program_ = start({scan}, gate_.environment());
+    ++lives_;
+    program_->until("something to do", [](const State& s) {
+      return s["settled"] == true && (s["path"] != "" || s["dialog"] == "recover");
+    });
+    return gate_.hold();
+  }
+  void end() {
+    count();
+    EXPECT_EQ(program_->wait(), 0) << program_->err();
+    expectSilence(*program_);
+    program_.reset();
+  }
+  void count() {
+    program_->each([&](const State& s) {
+      for (Reach& r : tools_) r.times += s.value("tool", "") == r.what || s.value("lasso", "") == r.what;
+      for (Reach& r : dialogs_) r.times += s["dialog"] == r.what;
+      const State panels = s.value("panels", State::array());
+      for (Reach& r : panels_) r.times += std::find(panels.begin(), panels.end(), r.what) != panels.end();
+      most_steps_ = std::max(most_steps_, s.value("last_step", std::int64_t{0}));
+    });
+  }
+  // May be none.
+  [[nodiscard]] std::deque<std::string> wayToTheLeast(Monkey& monkey) {
+    const Reach* least = nullptr;
+    int ties = 0;
+    for (const std::vector<Reach>* all : {&tools_, &dialogs_, &panels_})
+      for (const Reach& r : *all) {
+        if (least == nullptr || r.times < least->times) ties = 0;
+        if ((least == nullptr || r.times <= least->times) && monkey.below(++ties) == 0) least = &r;
+      }
+    // Once it has been everywhere it wanders: work that is left alone for a while makes a longer journal.
+    if (least->times > 0 && monkey.below(6) > 0) return {};
+    return {least->way.begin(), least->way.end()};
+  }
+  bool drop(const std::string& file) {
+    gate_.release();
+    (void)other.drop(other.windowOf("fettle"), {file});
+    return gate_.hold();
+  }
+  // By Esc alone everything is left that is open; then a tool comes when it is asked for. False: the program
+  // was about to end, and has.
+  bool comesToRest() {
+    gate_.release();
+    Hand hand(display, *program_, "monkey");
+    try {
+      hand.at({20, height_ - 60});
+      (void)hand.press("Escape");  // the panels may have the keyboard, which is not told
+      for (int i = 1; !calm(hand.rest()); ++i) {
+        if (i == kMostEscapes) {
+          State last = program_->now();
+          last.erase("texts");
+          ADD_FAILURE() << "Esc does not lead out of " << last.dump();
+          break;
+        }
+        (void)hand.press("Escape");
+      }
+      if (program_->now().contains("tool")) {
+        (void)hand.press("s");
+        program_->until("a tool", [](const State& s) { return s["tool"] == "smooth"; });
+        (void)hand.press("Escape");
+        program_->until("no tool", calm);
+      }
+    } catch (const std::runtime_error&) {
+      if (!program_->ended()) throw;
+      return false;
+    }
+    return true;
+  }
+
+  void play(std::int64_t actions, std::uint64_t seed) {
+    Monkey monkey(seed, width_, height_);
+    std::deque<std::string> errand;
+    for (std::int64_t done = 0; done < actions; ++frames_) {
+      if (!program_ && !begin()) {
+        end();
+        continue;
+      }
+      if (errand.empty() && monkey.below(3) == 0) errand = wayToTheLeast(monkey);
+      int things = 1;
+      std::string dropped;
+      std::vector<std::string> words;
+      if (errand.empty()) {
+        things = static_cast<int>(std::min<std::int64_t>(monkey.actions(), actions - done));
+        words = monkey.burst(things, program_->now());
+      } else {
+        if (errand.front().starts_with("drop ")) dropped = errand.front().substr(5);
+        words = monkey.step(errand.front(), program_->now());
+        errand.pop_front();
+      }
+      // The frame before waits to be shown: all of this comes to the next one.
+      if (!words.empty()) display.hands(words);
+      if (monkey.below(60) == 0) other.askToClose(other.windowOf("fettle"));
+      if (frames_ % kSlow == kSlow / 2) {
+        std::this_thread::sleep_for(kDelay);
+        ++slow_;
+      }
+      done += things;
+      most_ = std::max(most_, things);
+      bool lives = gate_.step();
+      if (lives && !dropped.empty()) lives = drop(dropped);
+      // Some frames in which hands rest: a click is done when its button is seen to be up again.
+      for (int rest = monkey.below(3); lives && rest > 0; --rest) lives = gate_.step();
+      count();
+      if (lives && frames_ % kProbe == kProbe - 1) {
+        if (words = monkey.letGo(); !words.empty()) display.hands(words);
+        lives = comesToRest() && gate_.hold();
+      }
+      if (!lives) end();
+    }
+    if (const auto words = monkey.letGo(); !words.empty()) display.hands(words);
+  }
+  // One more step; how many there are then.
+  std::int64_t invertMarks(Hand& hand) const {
+    const std::int64_t before = program_->now()["steps"];
+    (void)hand.press("ctrl+i");
+    return program_->until(
+        "a step", [&](const State& s) { return s["steps"] == before + 1 && s["settled"] == true; })["steps"];
+  }
+  void openFresh(std::uint32_t window) {
+    EXPECT_EQ(other.drop(window, {fresh_}), "");
+    program_->until("a fresh scan",
+                    [&](const State& s) { return s["path"] == fresh_ && s["settled"] == true; });
+  }
+  // Marks of a field, from a file beside it if there is one.
+  static std::int64_t marked(const std::string& field, const std::string& marks) {
+    if (!fs::exists(marks)) return 0;
+    auto with = engine::importMarks(load(field), marks);
+    EXPECT_TRUE(with) << with.error().line();
+    return with ? compare(*with, *with).marked : -1;
+  }
+
+  std::string second_ = folder.file("second.tif"), left_ = folder.file("left.tif");
+  std::string fresh_ = folder.file("fresh.tif"), broken_ = folder.file("broken.tif");
+  fs::path before_;
+  FrameGate gate_{folder.file("gate")};
+  std::unique_ptr<ViewProgram> program_;
+  int lives_ = 0, most_ = 0;
+  std::int64_t frames_ = 0, slow_ = 0;
+  std::int64_t most_steps_ = 0;
+  std::vector<Reach> tools_{{"view", {"Escape"}},        {"feel", {"Escape", "t"}},
+                            {"smooth", {"Escape", "s"}}, {"mark", {"Escape", "m"}},
+                            {"unmark", {"Escape", "u"}}, {"free", {"Escape", "l"}},
+                            {"box", {"Escape", "b"}}};
+  std::vector<Reach> dialogs_{{"open", {"Escape", "ctrl+o"}},
+                              {"save as", {"Escape", "ctrl+shift+s"}},
+                              {"export", {"Escape", "ctrl+e"}},
+                              {"unsaved", {"Escape", "ctrl+i", "drop " + second_}},
+                              {"recover", {"Escape", "drop " + left_, "d"}},
+                              {"shortcuts", {"Escape", "F1"}},
+                              {"message", {"Escape", "drop " + broken_, "d"}}};
+  std::vector<Reach> panels_ = [] {
+    std::vector<Reach> panels;
+    for (const std::string panel :
+         {"Tool", "Edges", "Filters", "Steps", "Change since the scan", "Display", "Status", "Haptics"})
+      panels.push_back({panel, {"Escape", "panel " + panel, "panel " + panel, "panel " + panel}});
+    return panels;
+  }();
+};
+
+TEST_F(MonkeyTest, hands_without_sense_leave_a_window_that_works_and_a_journal_that_plays_to_what_was_saved) {
+  const std::int64_t actions = number("FETTLE_MONKEY_ACTIONS", 1000);
+  const std::int64_t seed = number("FETTLE_MONKEY_SEED", 20261122);
+  fmt::print("seed {} (FETTLE_MONKEY_SEED), {} actions (FETTLE_MONKEY_ACTIONS)\n", seed, actions);
+  std::fflush(stdout);
+  play(actions, static_cast<std::uint64_t>(seed));
+
+  // It works: all that is open can be left, ...
+  while (!program_ || !comesToRest()) {
+    if (program_) end();
+    (void)begin();
+  }
+  count();
+  Hand hand(display, *program_, "after the monkey");
+  const std::uint32_t window = other.windowOf("fettle");
+  if (program_->now()["path"] == "") openFresh(window);
+  // ... what was done is saved, with one more step, ...
+  const std::string session = folder.file("monkey.fettle"), field = folder.file("monkey.tif");
+  const std::int64_t steps = invertMarks(hand);
+  saveAs(hand, session);
+  (void)hand.press("ctrl+e");
+  program_->until("where to", [](const State& s) { return s["dialog"] == "export" && s["settled"] == true; });
+  hand.type(field);
+  (void)hand.press("Return");
+  program_->until("written", [&](const State& s) { return s["status"] == "written: " + field; });
+  // ... another scan is opened, a step of it undone, ...
+  openFresh(window);
+  EXPECT_EQ(program_->now()["steps"], 0);
+  EXPECT_EQ(invertMarks(hand), 1);
+  EXPECT_EQ(hand.key("ctrl+z")["steps"], 0);
+  // ... and it quits.
+  (void)quit(hand);
+  program_.reset();
+
+  const std::string played = folder.file("played.tif"), marks = folder.file("played_marks.png");
+  const Outcome replayed = runProcess({FETTLE_PROGRAM, "replay", session, played, "--marks-out", marks});
+  EXPECT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_EQ(compare(load(field), load(played)).changed, 0);
+  EXPECT_EQ(marked(field, folder.file("monkey_marks.png")), marked(played, marks));
+
+  fmt::print(
+      "{} frames, {} held up for a second; at most {} things in one; {} lives; at most {} steps, {} played\n",
+      frames_, slow_, most_, lives_, most_steps_, steps);
+  for (const auto& [kind, all] : {std::pair{"tool", &tools_}, {"dialog", &dialogs_}, {"panel", &panels_}})
+    for (const Reach& r : *all) {
+      fmt::print("  {:6} told with {} {}\n", r.times, kind, r.what);
+      EXPECT_GT(r.times, 0) << kind << " " << r.what;
+    }
+  EXPECT_GE(slow_, 1);
+}
+
+}  // namespace
+}  // namespace fettle::tests
