@@ -105,9 +105,10 @@ ZipWriter::ZipWriter(AtomicFile& file) : sink_(new Sink{&file, {}}), archive_(ar
       a, sink_.get(), nullptr,
       [](archive*, void* self, const void* bytes, std::size_t count) -> la_ssize_t {
         auto* sink = static_cast<Sink*>(self);
-        // The library closes what was dropped half way by writing its end: not after an error.
+        // After an error nothing more is written, but the library is not told: an archive that has failed
+        // does not free the compressor of the entry it was in (libarchive 3.6.2).
         if (sink->status) sink->status = sink->file->write({static_cast<const char*>(bytes), count});
-        return sink->status ? static_cast<la_ssize_t>(count) : ARCHIVE_FATAL;
+        return static_cast<la_ssize_t>(count);
       },
       nullptr);
 }
@@ -127,12 +128,12 @@ Status ZipWriter::begin(const std::string& name, std::uint64_t bytes) {
   archive_entry_set_size(entry, static_cast<la_int64_t>(bytes));
   const int done = archive_write_header(archive_.get(), entry);
   archive_entry_free(entry);
-  return done == ARCHIVE_OK ? Status{} : refuse();
+  return done == ARCHIVE_OK ? sink_->status : refuse();
 }
 
 Status ZipWriter::write(const char* bytes, std::size_t count) {
   const la_ssize_t done = archive_write_data(archive_.get(), bytes, count);
-  return done == static_cast<la_ssize_t>(count) ? Status{} : refuse();
+  return done == static_cast<la_ssize_t>(count) ? sink_->status : refuse();
 }
 
 Status ZipWriter::finish() {
