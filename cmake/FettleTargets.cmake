@@ -32,10 +32,11 @@ function(fettle_room name)
   target_link_libraries(fettle_${name} PUBLIC fettle_options ${ARG_LINKS})
 endfunction()
 
-# For test programs and what only they link. Optimising the expectations of a test takes longer than running them; what
-# they call is optimised as the program is. Reference filters that run for seconds do without this.
+# For test programs and what only they link. Optimising the expectations of a test takes longer than running them, with
+# a sanitizer's checks in them twice as long as not to; what they call is optimised as the program is. Reference filters
+# that run for seconds do without this.
 function(fettle_test_options target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1> $<$<BOOL:${FETTLE_SANITIZE}>:-O0>)
   if(target STREQUAL fettle_test_support)
     target_precompile_headers(${target} PRIVATE ${FETTLE_COMMON_HEADERS} <gtest/gtest.h>)
   else()

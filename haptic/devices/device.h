@@ -59,6 +59,8 @@ struct DeviceInput {
   /// So long the report that is being written waits for the device to take it [ns]; 0 = nothing waits. When
   /// it goes on for longer than some ms, the hand does not get what the loop gives.
   std::int64_t output_waits_ns = 0;
+  /// The force written last has not reached the device, which still gives an older one.
+  bool output_pending = false;
   std::optional<Tool> tool{};  ///< set by devices that choose the tool themselves (a replayed stroke)
 
   friend bool operator==(const DeviceInput&, const DeviceInput&) = default;

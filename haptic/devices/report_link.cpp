@@ -76,7 +76,8 @@ void ReportLink::stop() noexcept {
 }
 
 void ReportLink::write(const glm::dvec3& output) noexcept {
-  output_.publish({output, steadyNs()});
+  published_ns_ = steadyNs();
+  output_.publish({output, published_ns_});
   // Adds one to a counter and, if the writer sleeps, makes one futex call that wakes it; never waits. It
   // fails only when the counter is full, and then the writer has enough to wake up for.
   sem_post(&work_);
@@ -223,7 +224,9 @@ void ReportLink::runWriter() noexcept {
     if (output_.take()) rule.force(output_.latest().written_ns);
     const auto what = rule.decide(steadyNs(), inputs_.load(std::memory_order_relaxed));
     if (what == OutputRule::Send::kNothing) continue;
-    if (send(*port, what, output_.latest().value) == PortWrite::kGone) port.reset();
+    const PortWrite outcome = send(*port, what, output_.latest().value);
+    if (outcome == PortWrite::kDone) sent_ns_.store(output_.latest().written_ns, std::memory_order_relaxed);
+    if (outcome == PortWrite::kGone) port.reset();
   }
   if (port) static_cast<void>(send(*port, OutputRule::Send::kZero, glm::dvec3{0.0}));
 }

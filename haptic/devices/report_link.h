@@ -73,6 +73,12 @@ class ReportLink {
     return writing_since_ns_.load(std::memory_order_relaxed);
   }
 
+  /// Loop thread, wait-free: whether the newest output has not been sent, so that the device holds an older one.
+  [[nodiscard]] bool outputPending() const noexcept {
+    // Relaxed: a number of its own; a late sight of it costs a tick of rise.
+    return published_ns_ != sent_ns_.load(std::memory_order_relaxed);
+  }
+
   /// Any thread. `inputs`, `bad_inputs` and the like are each right; together they may be of two moments.
   [[nodiscard]] DeviceCounters counters() const noexcept;
 
@@ -96,6 +102,8 @@ class ReportLink {
   ReportHandler& handler_;
   OutputTimes times_;
   LatestSlot<Output> output_;
+  std::int64_t published_ns_ = 0;         // loop thread's own: Output::written_ns of the newest output
+  std::atomic<std::int64_t> sent_ns_{0};  // the same of the output that was sent last
   sem_t work_{};  // posted by the loop (new force) and by the reader (new input, new port, stop)
   std::thread reader_;
   std::thread writer_;

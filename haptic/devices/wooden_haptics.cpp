@@ -26,6 +26,7 @@ DeviceInput WoodenHaptics::read() noexcept {
   DeviceInput input = state_.latest().input;
   const std::int64_t since = link_.writingSinceNs();
   input.output_waits_ns = since == 0 ? 0 : std::max<std::int64_t>(steadyNs() - since, 0);
+  input.output_pending = link_.outputPending();
   return input;
 }
 

@@ -394,7 +394,7 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   const glm::dvec3 at_rest = in_field ? weight : workspace_.forceToDevice(weight);
   const glm::dvec3 given =
       guard_.step({1e-9 * static_cast<double>(since_ns), age_s, input.link, command, velocity_, disturbance_,
-                   1e-9 * static_cast<double>(input.output_waits_ns), at_rest});
+                   1e-9 * static_cast<double>(input.output_waits_ns), at_rest, input.output_pending});
   device_.write(given);
 
   ++state_.tick;

@@ -179,6 +179,27 @@ double ForceGuard::motorFactor(const glm::dvec3& force) noexcept {
   return factor;
 }
 
+void ForceGuard::noteHeld(const SafetyInput& input, double dt_s) noexcept {
+  if (!input.output_pending) {
+    held_ = output_;
+    held_for_s_ = 0.0;
+  }
+  held_for_s_ += dt_s;
+}
+
+// A force on its way down to zero may go there whatever the device holds; from the nearest such force it may
+// differ by what the time allows. The set of these forces is convex and never shrinks while the device waits,
+// so this brings the output no farther from the one before.
+glm::dvec3 ForceGuard::limitRiseFromHeld(const glm::dvec3& force) noexcept {
+  const double square = glm::dot(held_, held_);
+  const double share = square > 0.0 ? std::clamp(glm::dot(force, held_) / square, 0.0, 1.0) : 0.0;
+  const double step_n = 1000.0 * limits_.slew_n_per_ms * std::min(held_for_s_, kLongestRise_s);
+  bool behind = false;
+  const glm::dvec3 limited = approach(held_ * share, force, step_n, behind);
+  counters_.behind += behind ? 1 : 0;
+  return limited;
+}
+
 double ForceGuard::warmth() const noexcept {
   const double allowed = limits_.continuous_force_n * limits_.continuous_force_n;
   return allowed > 0.0 ? warmth_n2_ / allowed : (warmth_n2_ > 0.0 ? 1.0 : 0.0);
@@ -204,7 +225,8 @@ glm::dvec3 ForceGuard::step(const SafetyInput& input) noexcept {
 
   advanceState(input, dt_s, std::max(good_time ? input.input_age_s : 0.0, bad_for_s_));
   if (good) rampUnexpectedRise(input, dt_s);
-  if (input.link == LinkState::kDisconnected) return output_ = slewed_ = glm::dvec3(0.0);
+  if (input.link == LinkState::kDisconnected) return output_ = slewed_ = held_ = glm::dvec3(0.0);
+  noteHeld(input, dt_s);
 
   const bool giving = (state_ == SafetyState::kRamping || state_ == SafetyState::kActive) && good && !silent_;
   const bool ramping = state_ == SafetyState::kRamping;
@@ -231,6 +253,7 @@ glm::dvec3 ForceGuard::step(const SafetyInput& input) noexcept {
     force *= thermal_n / glm::length(force);
   }
   if (limits_.peak_force_n > 0.0) force = clampForce(force, limits_.peak_force_n).force_n;
+  if (giving && input.output_pending) force = limitRiseFromHeld(force);
   return output_ = approach(output_, force, step_n, held);
 }
 

@@ -62,6 +62,8 @@ struct SafetyInput {
   /// Part of the command that is there with the hand at rest in free space (the stylus' weight) [N]: who arms
   /// waits for the rest of it to be small.
   glm::dvec3 at_rest_n{0.0};
+  /// The device has not been sent the last step's force and holds an older one.
+  bool output_pending = false;
 };
 
 /// Everything the guard ever did, counted. Plain numbers of the thread that ticks.
@@ -72,6 +74,7 @@ struct SafetyCounters {
   std::int64_t clamped = 0;          ///< |command| above the peak
   std::int64_t ceiling_held = 0;     ///< |command| above the ramp's ceiling
   std::int64_t slewed = 0;           ///< change held to the slew limit
+  std::int64_t behind = 0;           ///< rise held back until the device has the force before
   std::int64_t over_speed = 0;       ///< tip faster than the limit
   std::int64_t jumps = 0;            ///< tip faster than any hand: ramped
   std::int64_t motor_scaled = 0;     ///< factor below 1
@@ -98,6 +101,8 @@ struct SafetyCounters {
 ///   - the output is finite and |F| <= peak_force_n * (1 + 1e-12);
 ///   - it changes by at most slew * min(dt, 2 ms) a step, so a late tick is no kick; a force that fades to
 ///     zero (fault, silence, bad command) may use the whole dt, and a lost link is zero at once;
+///   - it rises by at most slew * 2 ms above what the device holds, however many steps the device has missed:
+///     a report that was held up, by the machine or by a device that answers in lock-step, brings no kick;
 ///   - a device that has not taken a report for 50 ms is a Fault as well: its own watchdog may have cut the
 ///     force meanwhile, and what it takes next must not be the force of now, at once;
 ///   - without good input for 10 ms it is on its way to zero, which takes at most peak / slew; after 50 ms
@@ -151,6 +156,8 @@ class ForceGuard {
   [[nodiscard]] glm::dvec3 limitSpeed(const glm::dvec3& force, const glm::dvec3& velocity) noexcept;
   [[nodiscard]] double motorFactor(const glm::dvec3& force) noexcept;
   [[nodiscard]] double thermalLimit() const noexcept;
+  void noteHeld(const SafetyInput& input, double dt_s) noexcept;
+  [[nodiscard]] glm::dvec3 limitRiseFromHeld(const glm::dvec3& force) noexcept;
 
   SafetyLimits limits_;
   SafetyState state_ = SafetyState::kDisconnected;
@@ -158,6 +165,8 @@ class ForceGuard {
   SafetyCounters counters_;
   glm::dvec3 output_{0.0};
   glm::dvec3 slewed_{0.0};  // before the brake and the motors' factors, which must not add up over ticks
+  glm::dvec3 held_{0.0};    // what the device is known to have been sent
+  double held_for_s_ = 0.0;
   double ceiling_n_ = 0.0;  // of the ramp; the peak when there is none
   double warmth_n2_ = 0.0;  // q
   double bad_for_s_ = 0.0;  // since the last good number

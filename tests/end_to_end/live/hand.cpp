@@ -56,8 +56,9 @@ glm::dvec3 forceOf(const std::array<std::int16_t, 3>& ma, const std::array<std::
   return haptic::woodenToDesk(glm::inverse(glm::transpose(jacobian)) * torques);
 }
 
-Felt feltIn(const std::vector<fake::WoodyCurrents>& history, std::size_t from) {
+Felt feltIn(const std::vector<fake::WoodyCurrents>& history, double slew_n_per_ms, std::size_t from) {
   Felt felt;
+  double ahead_n = 0.0;
   glm::dvec3 last{0.0};
   for (std::size_t i = from; i < history.size(); ++i) {
     const fake::WoodyCurrents& now = history[i];
@@ -69,7 +70,10 @@ Felt feltIn(const std::vector<fake::WoodyCurrents>& history, std::size_t from) {
       const double apart = std::chrono::duration<double, std::milli>(now.at - history[i - 1].at).count();
       const double ms = std::clamp(apart, 1.0, 2.0);
       felt.rate_n_per_ms = std::max(felt.rate_n_per_ms, glm::length(force - last) / ms);
-      felt.rise_n_per_ms = std::max(felt.rise_n_per_ms, (glm::length(force) - glm::length(last)) / ms);
+      const double rise_n = glm::length(force) - glm::length(last);
+      felt.rise_n = std::max(felt.rise_n, rise_n);
+      ahead_n = std::max(ahead_n + rise_n - slew_n_per_ms * std::max(apart, 1.0), 0.0);
+      felt.ahead_n = std::max(felt.ahead_n, ahead_n);
     }
     last = force;
     ++felt.reports;

@@ -25,13 +25,16 @@ namespace fettle::tests {
 struct Felt {
   double peak_n = 0.0;
   int peak_ma = 0;
-  /// Largest change and largest rise of the force from one report to the next, over the time between them, of
-  /// which 1 ms counts at least (reports of a busy machine come in bursts) and 2 at most: a device holds what
-  /// it has, so a step is a step however long ago the report before was.
+  /// Largest change of the force from one report to the next, over the time between them, of which 1 ms counts
+  /// at least (reports of a busy machine come in bursts) and 2 at most: a device holds what it has, so a step is
+  /// a step however long ago the report before was.
   double rate_n_per_ms = 0.0;
-  double rise_n_per_ms = 0.0;
+  double rise_n = 0.0;  ///< largest rise of the force from one report to the next
+  /// Most by which rises ran ahead of the slew limit over any time, each report counting for 1 ms at least [N].
+  double ahead_n = 0.0;
   std::size_t reports = 0;
 };
-[[nodiscard]] Felt feltIn(const std::vector<fake::WoodyCurrents>& history, std::size_t from = 0);
+[[nodiscard]] Felt feltIn(const std::vector<fake::WoodyCurrents>& history, double slew_n_per_ms,
+                          std::size_t from = 0);
 
 }  // namespace fettle::tests

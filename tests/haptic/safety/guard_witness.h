@@ -38,6 +38,10 @@ class GuardWitness {
     if (gone && size != 0.0) return broken("force without a device", f);
     // 1e-9 N: roundings of vectors of newtons.
     if (!gone && change > 1000.0 * limits.slew_n_per_ms * dt_s + 1e-9) return broken("slew exceeded", f);
+    if (!input.output_pending) held_ = previous;
+    if (gone) held_ = glm::dvec3(0.0);
+    if (input.output_pending && size > glm::length(held_) + 2.0 * limits.slew_n_per_ms + 1e-9)
+      return broken("a kick after missed reports", f);
     const SafetyState state = guard_.state();
     const bool may_rise = state == SafetyState::kRamping || state == SafetyState::kActive;
     if (!may_rise && size > glm::length(previous) + 1e-12)
@@ -70,6 +74,7 @@ class GuardWitness {
   }
 
   ForceGuard guard_;
+  glm::dvec3 held_{0.0};  // what the device has while it waits for a report
   bool armed_since_fault_ = false;
   std::optional<std::string> problem_;
   double peak_n_ = 0.0, peak_rate_n_per_s_ = 0.0, peak_rise_n_ = 0.0;

@@ -29,7 +29,7 @@ rc::Gen<Happening> happening() {
       [](int kind, int ticks, int exponent, int mantissa) {
         return Happening{kind, ticks, std::ldexp(static_cast<double>(mantissa), exponent)};
       },
-      rc::gen::inRange(0, 16), rc::gen::inRange(1, 700), rc::gen::inRange(-8, 12), rc::gen::inRange(-9, 10));
+      rc::gen::inRange(0, 17), rc::gen::inRange(1, 700), rc::gen::inRange(-8, 12), rc::gen::inRange(-9, 10));
 }
 
 void happen(GuardWitness& w, const Happening& h, double& age_s) {
@@ -84,6 +84,9 @@ void happen(GuardWitness& w, const Happening& h, double& age_s) {
         break;
       case 14:  // opposite forces in turn
         in.command_n *= i % 2 == 0 ? 1.0 : -1.0;
+        break;
+      case 15:  // reports that do not get out
+        in.output_pending = true;
         break;
       default:
         break;

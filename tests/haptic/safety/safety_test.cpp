@@ -201,6 +201,35 @@ TEST(ForceGuard, DeviceThatTakesNoReportForFiftyMillisecondsIsAFaultAndCanNotBeA
   EXPECT_FALSE(w.problem()) << *w.problem();
 }
 
+TEST(ForceGuard, ADeviceThatMissesReportsIsGivenNoMoreThanTwoMillisecondsOfRiseAtOnce) {
+  GuardWitness w = active();
+  SafetyInput missed = pressing(4.0);
+  EXPECT_DOUBLE_EQ(w.step(missed).z, 1.0);  // sent
+  missed.output_pending = true;
+  SafetyInput sent = missed;
+  sent.output_pending = false;
+  EXPECT_DOUBLE_EQ(w.step(sent).z, 2.0);
+  for (int i = 0; i < 20; ++i) EXPECT_LE(w.step(missed).z, 3.0) << i;  // the device still holds 1 N
+  EXPECT_DOUBLE_EQ(w.guard().force().z, 3.0);
+  EXPECT_EQ(w.guard().counters().behind, 19);
+  EXPECT_DOUBLE_EQ(w.step(sent).z, 4.0);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
+TEST(ForceGuard, AForceThatTurnsRoundWhileReportsAreMissedPassesZeroByTwoMillisecondsOfRise) {
+  GuardWitness w = active();
+  run(w, pressing(4.0), 20);
+  SafetyInput missed = pressing(-4.0);
+  missed.output_pending = true;
+  run(w, missed, 4);
+  EXPECT_DOUBLE_EQ(w.guard().force().z, 0.0);  // a force that falls is not held up
+  run(w, missed, 20);
+  EXPECT_DOUBLE_EQ(w.guard().force().z, -2.0);
+  run(w, pressing(-4.0), 2);
+  EXPECT_DOUBLE_EQ(w.guard().force().z, -4.0);
+  EXPECT_FALSE(w.problem()) << *w.problem();
+}
+
 TEST(ForceGuard, UnplugIsZeroAtOnceAndNeedsReArmingAfterRePlug) {
   GuardWitness w = active();
   run(w, pressing(4.0), 20);
