@@ -36,7 +36,10 @@ endfunction()
 # a sanitizer's checks in them twice as long as not to; what they call is optimised as the program is. Reference filters
 # that run for seconds do without this.
 function(fettle_test_options target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1> $<$<BOOL:${FETTLE_SANITIZE}>:-O0>)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  if(FETTLE_SANITIZE)
+    target_compile_options(${target} PRIVATE -O0)
+  endif()
   if(target STREQUAL fettle_test_support)
     target_precompile_headers(${target} PRIVATE ${FETTLE_COMMON_HEADERS} <gtest/gtest.h>)
   else()
