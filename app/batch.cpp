@@ -71,21 +71,18 @@ std::string counted(std::size_t number, const char* what) {
 
 }  // namespace
 
-void addBatchOptions(CLI::App* command, BatchOptions& options) {
+void addBatchOptions(Command command, BatchOptions& options) {
   command
-      ->add_option(
-          "FILES", options.files,
-          "IN OUT: the scan to read and the file to write, format by extension, - for standard input "
-          "and output; with --out-dir all are scans to read")
-      ->required();
-  command->add_option(
-      "--out-dir", options.out_dir,
-      "Folder for what is written, each under its scan's name, made when it is not there; goes on "
-      "where a scan fails");
-  command->add_option(
-      "--to", options.extension,
-      "With --out-dir, or - for OUT: format of what is written, as extension; in a folder the "
-      "scan's own without it, or tif");
+      .option("FILES", options.files,
+              "IN OUT: the scan to read and the file to write, format by extension, - for standard input "
+              "and output; with --out-dir all are scans to read")
+      .required();
+  command.option("--out-dir", options.out_dir,
+                 "Folder for what is written, each under its scan's name, made when it is not there; goes on "
+                 "where a scan fails");
+  command.option("--to", options.extension,
+                 "With --out-dir, or - for OUT: format of what is written, as extension; in a folder the "
+                 "scan's own without it, or tif");
   addForceOption(command, options.replacing);
 }
 

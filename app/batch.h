@@ -20,7 +20,7 @@ struct BatchOptions {
 
   [[nodiscard]] bool many() const noexcept { return !out_dir.empty(); }
 };
-void addBatchOptions(CLI::App* command, BatchOptions& options);
+void addBatchOptions(Command command, BatchOptions& options);
 
 /// One scan to read and where it goes.
 struct BatchTask {

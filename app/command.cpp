@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -66,41 +67,41 @@ void printReport(const Report& report) {
   printIndented(report, 0);
 }
 
-CLI::Validator within(double lowest, double highest) {
-  return CLI::Validator(
-      [lowest, highest](const std::string& text) {
-        double value = 0.0;
-        if (CLI::detail::lexical_cast(text, value) && value >= lowest && value <= highest)
-          return std::string();
-        return fmt::format("{} is not a number from {:g} to {:g}", text, lowest, highest);
-      },
-      fmt::format("FLOAT in [{:g} - {:g}]", lowest, highest));
+Check within(double lowest, double highest) {
+  return {[lowest, highest](const std::string& typed) {
+            // As options of this type are read; NaN fails both comparisons.
+            char* end = nullptr;
+            const auto value = static_cast<double>(std::strtold(typed.c_str(), &end));
+            if (!typed.empty() && end == typed.c_str() + typed.size() && value >= lowest && value <= highest)
+              return std::string();
+            return fmt::format("{} is not a number from {:g} to {:g}", typed, lowest, highest);
+          },
+          fmt::format("FLOAT in [{:g} - {:g}]", lowest, highest)};
 }
 
-CLI::Validator oneOf(const std::vector<std::string>& words) {
-  return CLI::Validator(
-      [words](const std::string& typed) {
-        if (std::find(words.begin(), words.end(), typed) != words.end()) return std::string();
-        const std::string meant = didYouMean(typed, words);
-        return fmt::format("{} is none of {}{}{}", typed, fmt::join(words, ", "), meant.empty() ? "" : "; ",
-                           meant);
-      },
-      fmt::format("{{{}}}", fmt::join(words, ",")));
+Check oneOf(const std::vector<std::string>& words) {
+  return {[words](const std::string& typed) {
+            if (std::find(words.begin(), words.end(), typed) != words.end()) return std::string();
+            const std::string meant = didYouMean(typed, words);
+            return fmt::format("{} is none of {}{}{}", typed, fmt::join(words, ", "),
+                               meant.empty() ? "" : "; ", meant);
+          },
+          fmt::format("{{{}}}", fmt::join(words, ","))};
 }
 
-void addOutputFlags(CLI::App& app, Chosen& chosen) {
-  app.add_flag("--json", chosen.json,
-               "Print one JSON object on stdout instead of text, an error as one on stderr");
-  app.add_flag("-q,--quiet", chosen.quiet, "Say nothing but errors: no report, warnings or progress");
+void addOutputFlags(Command app, Chosen& chosen) {
+  app.flag("--json", chosen.json,
+           "Print one JSON object on stdout instead of text, an error as one on stderr");
+  app.flag("-q,--quiet", chosen.quiet, "Say nothing but errors: no report, warnings or progress");
 }
 
-CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
-                     std::function<engine::Result<Report>(engine::JobControl&)> run,
-                     std::function<void(const Report&)> print, Progress progress,
-                     std::function<int(const Report&)> status) {
-  CLI::App* command = root.add_subcommand(name, description);
-  addOutputFlags(*command, chosen);
-  command->callback(
+Command addCommand(Command root, Chosen& chosen, const std::string& name, const std::string& description,
+                   std::function<engine::Result<Report>(engine::JobControl&)> run,
+                   std::function<void(const Report&)> print, Progress progress,
+                   std::function<int(const Report&)> status) {
+  Command command = root.subcommand(name, description);
+  addOutputFlags(command, chosen);
+  command.onChosen(
       [&chosen, run = std::move(run), print = std::move(print), progress, status = std::move(status)] {
         chosen.run = run;
         chosen.print = print;

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "app/command_line.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 
@@ -41,33 +41,33 @@ void addKeptWarnings(Report& report);
 void printReport(const Report& report);
 
 /// Adds --json and --quiet, which a command takes before and behind its name.
-void addOutputFlags(CLI::App& app, Chosen& chosen);
+void addOutputFlags(Command app, Chosen& chosen);
 
 /// Adds a subcommand with --json and --quiet. `run` is stored in `chosen` when the command line names it.
-CLI::App* addCommand(CLI::App& root, Chosen& chosen, const std::string& name, const std::string& description,
-                     std::function<engine::Result<Report>(engine::JobControl&)> run,
-                     std::function<void(const Report&)> print = printReport,
-                     Progress progress = Progress::kLine, std::function<int(const Report&)> status = {});
+Command addCommand(Command root, Chosen& chosen, const std::string& name, const std::string& description,
+                   std::function<engine::Result<Report>(engine::JobControl&)> run,
+                   std::function<void(const Report&)> print = printReport,
+                   Progress progress = Progress::kLine, std::function<int(const Report&)> status = {});
 
-/// For CLI::Option::check: a number from `lowest` to `highest`. CLI::Range lets NaN through.
-[[nodiscard]] CLI::Validator within(double lowest, double highest);
+/// For Option::check: a number from `lowest` to `highest`, and not NaN.
+[[nodiscard]] Check within(double lowest, double highest);
 
-/// For CLI::Option::check: one of these words. Another is refused with what it may stand for.
-[[nodiscard]] CLI::Validator oneOf(const std::vector<std::string>& words);
+/// For Option::check: one of these words. Another is refused with what it may stand for.
+[[nodiscard]] Check oneOf(const std::vector<std::string>& words);
 
-void addInfo(CLI::App& root, Chosen& chosen);
-void addSynth(CLI::App& root, Chosen& chosen);
-void addFilter(CLI::App& root, Chosen& chosen);
-void addMark(CLI::App& root, Chosen& chosen);
-void addReplay(CLI::App& root, Chosen& chosen);
-void addRecord(CLI::App& root, Chosen& chosen);
-void addRender(CLI::App& root, Chosen& chosen);
-void addCompare(CLI::App& root, Chosen& chosen);
-void addConvert(CLI::App& root, Chosen& chosen);
-void addDevices(CLI::App& root, Chosen& chosen);
-void addView(CLI::App& root, Chosen& chosen);
-void addAccuracy(CLI::App& root, Chosen& chosen);
-void addBench(CLI::App& root, Chosen& chosen);
-void addDemo(CLI::App& root, Chosen& chosen);
+void addInfo(Command root, Chosen& chosen);
+void addSynth(Command root, Chosen& chosen);
+void addFilter(Command root, Chosen& chosen);
+void addMark(Command root, Chosen& chosen);
+void addReplay(Command root, Chosen& chosen);
+void addRecord(Command root, Chosen& chosen);
+void addRender(Command root, Chosen& chosen);
+void addCompare(Command root, Chosen& chosen);
+void addConvert(Command root, Chosen& chosen);
+void addDevices(Command root, Chosen& chosen);
+void addView(Command root, Chosen& chosen);
+void addAccuracy(Command root, Chosen& chosen);
+void addBench(Command root, Chosen& chosen);
+void addDemo(Command root, Chosen& chosen);
 
 }  // namespace fettle::app

@@ -2,7 +2,7 @@
 
 int main(int argc, char** argv) {
   using namespace fettle::app;
-  return runProgram(argc, argv, [](CLI::App& root, Chosen& chosen) {
+  return runProgram(argc, argv, [](Command root, Chosen& chosen) {
     addInfo(root, chosen);
     addSynth(root, chosen);
     addFilter(root, chosen);

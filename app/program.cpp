@@ -15,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include "app/command_line.h"
 #include "app/spelling.h"
 #include "app/terminal.h"
 
@@ -77,53 +78,32 @@ void takeHelpForOption(std::vector<std::string>& arguments) {
   arguments.emplace_back("--help");
 }
 
-std::vector<std::string> commandNames(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
-  return names;
-}
-
-std::vector<std::string> optionNames(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
-}
-
 // The error of a command line that could not be parsed: the word that is wrong, and what it may stand for.
-Error usageError(const CLI::App& root, const CLI::ParseError& error) {
-  const CLI::App* used = &root;
-  std::string command;
-  while (!used->get_subcommands().empty()) {
-    used = used->get_subcommands().front();
-    command += used->get_name() + " ";
-  }
-  const std::string help = fmt::format("see fettle {}--help", command);
+Error usageError(const Misread& misread) {
+  const std::string help = fmt::format("see fettle {}--help", misread.command);
   const auto refused = [&](std::string what, const std::string& meant) {
     return Error{ErrorKind::kInput, std::move(what), "",
                  meant.empty() ? help : fmt::format("{} {}", meant, help)};
   };
-  const std::vector<std::string> rest = root.remaining(true);
+  const std::vector<std::string>& rest = misread.rest;
   // A word that stands in the place of a command comes first: all behind it belongs to it.
-  const bool takes_commands = !commandNames(*used).empty();
   const auto word = std::find_if(rest.begin(), rest.end(), [](const auto& w) { return !w.starts_with("-"); });
-  if (takes_commands && word != rest.end())
-    return refused(fmt::format("there is no command {}{}", command, *word),
-                   didYouMean(*word, commandNames(*used)));
+  if (!misread.known_commands.empty() && word != rest.end())
+    return refused(fmt::format("there is no command {}{}", misread.command, *word),
+                   didYouMean(*word, misread.known_commands));
   // Then options: one that is misspelt leaves the value of another missing, or its own value over.
   for (const std::string& option : rest) {
     if (!option.starts_with("-") || option == "-") continue;
     const std::string name = option.substr(0, option.find('='));
-    const std::string meant = didYouMean(name.starts_with("--") ? name : "-" + name, optionNames(*used));
-    return refused(fmt::format("there is no option {}", name), meant);
+    return refused(fmt::format("there is no option {}", name),
+                   didYouMean(name.starts_with("--") ? name : "-" + name, misread.known_options));
   }
-  return refused(error.what(), "");
+  return refused(misread.what, "");
 }
 
 }  // namespace
 
-int runProgram(int argc, char** argv, const std::function<void(CLI::App&, Chosen&)>& add_commands) {
+int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)>& add_commands) {
   // A limit on file sizes then fails the write, as a full disk does, instead of ending the program between a
   // temporary file and its removal.
   std::signal(SIGXFSZ, SIG_IGN);
@@ -135,24 +115,21 @@ int runProgram(int argc, char** argv, const std::function<void(CLI::App&, Chosen
   setVoice(voice);
   if (const auto error = emptyArgument(arguments)) return report(*error);
   takeHelpForOption(arguments);
-  CLI::App root{"Fettle cleans up large scanned height fields by touch.", "fettle"};
-  root.require_subcommand(1);
-  root.set_version_flag("-V,--version", "fettle " FETTLE_VERSION);
+  CommandLine line("fettle", "Fettle cleans up large scanned height fields by touch.",
+                   "fettle " FETTLE_VERSION);
+  Command root = line.root();
+  root.requireSubcommand();
   Chosen chosen;
   addOutputFlags(root, chosen);
   add_commands(root, chosen);
   // Replaced by takeHelpForOption() before it could be chosen.
-  root.add_subcommand("help", "The help of a command, as its --help: fettle help filter");
+  root.subcommand("help", "The help of a command, as its --help: fettle help filter");
 
-  try {
-    std::vector<std::string> backwards(arguments.rbegin(), arguments.rend() - (argc > 0 ? 1 : 0));
-    root.parse(std::move(backwards));
-  } catch (const CLI::ParseError& error) {
-    // "fitler --help" asks for the help of a command that is not there, not for that of the program.
-    const auto rest = root.remaining();
-    const bool misspelt = root.get_subcommands().empty() && !rest.empty() && !rest[0].starts_with("-");
-    if (error.get_exit_code() == 0 && !misspelt) return finish(root.exit(error));  // --help and --version
-    return report(usageError(root, error));
+  const auto text = line.parse(arguments);
+  if (!text) return report(usageError(text.error()));
+  if (!text->empty()) {
+    std::fputs(text->c_str(), stdout);
+    return finish(0);
   }
   voice.json = chosen.json;
   voice.quiet = chosen.quiet;

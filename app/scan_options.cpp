@@ -34,9 +34,9 @@ std::vector<std::string> extensions(bool engine::FormatInfo::*able) {
 
 }  // namespace
 
-void addStoreOption(CLI::App* command) {
+void addStoreOption(Command command) {
   command
-      ->add_option_function<std::string>(
+      .onOption(
           "--store",
           [](const std::string& folder) {
             engine::StorePolicy policy;
@@ -45,52 +45,49 @@ void addStoreOption(CLI::App* command) {
             engine::setStorePolicy(policy);
           },
           "Folder on a disk for the samples, so that they may be more than memory holds")
-      ->group(kReading);
+      .group(kReading);
 }
 
-void addScanOptions(CLI::App* command, ScanOptions& options) {
+void addScanOptions(Command command, ScanOptions& options) {
   const std::string group = kReading;
   addStoreOption(command);
+  command.option("--no-data", options.no_data, "Height that means a hole, besides what the file declares")
+      .group(group);
   command
-      ->add_option("--no-data", options.no_data, "Height that means a hole, besides what the file declares")
-      ->group(group);
+      .option("--spacing", options.spacing,
+              "Sample spacing X[,Y] in the scan's unit, where the file has none")
+      .delimiter(',')
+      .oneValueEach()  // "--spacing 0.5 SCAN": what follows is the scan
+      .group(group);
+  command.option("--z-scale", options.z_scale, "Height of one count of the file").group(group);
   command
-      ->add_option("--spacing", options.spacing,
-                   "Sample spacing X[,Y] in the scan's unit, where the file has none")
-      ->delimiter(',')
-      ->allow_extra_args(false)  // "--spacing 0.5 SCAN": what follows is the scan
-      ->group(group);
-  command->add_option("--z-scale", options.z_scale, "Height of one count of the file")->group(group);
+      .option("--unit", options.unit, "Unit of the file's lengths, where it has none (nm, um, mm, m, in, ft)")
+      .group(group);
+  command.option("--cell-size", options.cell_size, "Point clouds: side of a grid cell in the scan's unit")
+      .group(group);
+  command.option("--cell-rule", options.cell_rule, "Point clouds: height of a cell with several points")
+      .check(oneOf({"median", "mean", "highest"}))
+      .group(group);
   command
-      ->add_option("--unit", options.unit,
-                   "Unit of the file's lengths, where it has none (nm, um, mm, m, in, ft)")
-      ->group(group);
+      .option("--depth-camera", options.depth_camera,
+              "PNG, TIFF: distances from a camera with FX,FY,CX,CY in pixels, kept in its perspective")
+      .delimiter(',')
+      .expected(4)
+      .group(group);
   command
-      ->add_option("--cell-size", options.cell_size, "Point clouds: side of a grid cell in the scan's unit")
-      ->group(group);
-  command->add_option("--cell-rule", options.cell_rule, "Point clouds: height of a cell with several points")
-      ->check(oneOf({"median", "mean", "highest"}))
-      ->group(group);
-  command
-      ->add_option("--depth-camera", options.depth_camera,
-                   "PNG, TIFF: distances from a camera with FX,FY,CX,CY in pixels, kept in its perspective")
-      ->delimiter(',')
-      ->expected(4)
-      ->group(group);
-  command
-      ->add_option("--from", options.from,
-                   "Format of standard input (-), as extension, where its content leaves doubt")
-      ->check([](const std::string& typed) {
+      .option("--from", options.from,
+              "Format of standard input (-), as extension, where its content leaves doubt")
+      .check({[](const std::string& typed) {
         const auto known = extensions(&engine::FormatInfo::reads);
         if (std::find(known.begin(), known.end(), withDot(typed)) != known.end()) return std::string();
         const std::string meant = didYouMean(withDot(typed), known);
         return fmt::format("{} is no format that can be read{}{}", typed, meant.empty() ? "" : "; ", meant);
-      })
-      ->group(group);
+      }})
+      .group(group);
 }
 
-void addStreamFormat(CLI::App* command, std::string& to) {
-  command->add_option("--to", to, "With - for OUT, standard output: its format, as extension");
+void addStreamFormat(Command command, std::string& to) {
+  command.option("--to", to, "With - for OUT, standard output: its format, as extension");
 }
 
 std::string scanOptionsText(const ScanOptions& options) {
@@ -150,10 +147,10 @@ engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOpt
   return warned(std::move(imported), shownInput(path));
 }
 
-void addOriginalOption(CLI::App* command, std::string& original) {
-  command->add_option("--original", original,
-                      "The scan that the work began with: changes are limited against it; without it against "
-                      "what is read, or against the original that a session has");
+void addOriginalOption(Command command, std::string& original) {
+  command.option("--original", original,
+                 "The scan that the work began with: changes are limited against it; without it against "
+                 "what is read, or against the original that a session has");
 }
 
 engine::Result<engine::Version> originalOf(const engine::Imported& imported, const std::string& given,
@@ -334,10 +331,9 @@ engine::Status checkPlaces(const std::vector<Output>& outputs, const std::vector
   return {};
 }
 
-void addForceOption(CLI::App* command, Replacing& replacing) {
-  command->add_flag_function(
-      "--force", [&replacing](std::int64_t) { replacing = Replacing::kAnything; },
-      "Replace a session that has a journal");
+void addForceOption(Command command, Replacing& replacing) {
+  command.onFlagAnyhow(
+      "--force", [&replacing] { replacing = Replacing::kAnything; }, "Replace a session that has a journal");
 }
 
 engine::Status checkOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs,

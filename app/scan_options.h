@@ -5,8 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "app/command.h"
 #include "engine/field/version.h"
 #include "engine/io/export.h"
@@ -29,11 +27,11 @@ struct ScanOptions {
   std::vector<double> depth_camera;  ///< fx, fy, cx, cy [pixels]; empty = none
   std::string from;                  ///< format of standard input as extension; empty = by its content
 };
-void addScanOptions(CLI::App* command, ScanOptions& options);
+void addScanOptions(Command command, ScanOptions& options);
 
 /// --store FOLDER: every field of this process lies there (engine/field/tile_store.h). Part of
 /// addScanOptions.
-void addStoreOption(CLI::App* command);
+void addStoreOption(Command command);
 
 /// The options as they were typed, each with a blank before it; empty without any.
 [[nodiscard]] std::string scanOptionsText(const ScanOptions& options);
@@ -47,7 +45,7 @@ void addStoreOption(CLI::App* command);
                                                         engine::JobControl& job);
 
 /// --original SCAN: what a limit of change is measured against, for files; a session has its own.
-void addOriginalOption(CLI::App* command, std::string& original);
+void addOriginalOption(Command command, std::string& original);
 
 /// What the work on `imported` began with: `given` (--original) read as `reading` says, else the session's
 /// own original, else the field itself. Grid and way up are the field's. A session given as --original stands
@@ -75,7 +73,7 @@ void addOriginalOption(CLI::App* command, std::string& original);
                                        const std::string& to = {});
 
 /// --to EXT for a command whose OUT may be "-".
-void addStreamFormat(CLI::App* command, std::string& to);
+void addStreamFormat(Command command, std::string& to);
 
 /// A length as the user types it, in height units of the field: "0.5" is in the field's own height unit,
 /// "0.5mm", "20um" in the unit that is named. Errors: not a number, unknown unit, negative, not finite.
@@ -94,7 +92,7 @@ inline constexpr SideRange kPictureSides{16, 16384};
 [[nodiscard]] engine::Result<std::pair<int, int>> parseSize(const std::string& text,
                                                             const std::string& option, SideRange sides);
 
-/// What is wrong with a seed as typed; empty when nothing is. For CLI::Option::check.
+/// What is wrong with a seed as typed; empty when nothing is. For Option::check.
 [[nodiscard]] std::string seedProblem(const std::string& text);
 
 /// The extension with its dot, lower case; empty without one.
@@ -124,7 +122,7 @@ enum class Replacing {
   kNoWork,   ///< any file but a session that has a journal
   kAnything  ///< --force
 };
-void addForceOption(CLI::App* command, Replacing& replacing);
+void addForceOption(Command command, Replacing& replacing);
 
 /// Refuses, before anything is read or computed, what would fail or destroy something at the end: an
 /// extension nobody writes, a folder that is not there or not writable, a target that is a folder or no

@@ -4,17 +4,17 @@
 
 namespace fettle::app {
 
-void addCompressOption(CLI::App* command, engine::ExportOptions& writing) {
+void addCompressOption(Command command, engine::ExportOptions& writing) {
   command
-      ->add_option_function<std::string>(
+      .onOption(
           "--compress",
           [&writing](const std::string& name) {
             writing.tiff_compression = engine::tiffCompressionFromName(name);
           },
           "TIFF: none (every program reads it; the default), lzw, deflate or zstd; who reads which is in "
           "docs/formats.md")
-      ->check(CLI::IsMember({"none", "lzw", "deflate", "zstd"}))
-      ->group("Writing");
+      .check(memberOf({"none", "lzw", "deflate", "zstd"}))
+      .group("Writing");
 }
 
 engine::Status checkCompress(const engine::ExportOptions& writing, const std::vector<BatchTask>& tasks) {

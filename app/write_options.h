@@ -3,8 +3,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "app/batch.h"
 #include "engine/base/error.h"
 #include "engine/io/export.h"
@@ -12,7 +10,7 @@
 namespace fettle::app {
 
 /// --compress: how TIFFs that a command writes are packed.
-void addCompressOption(CLI::App* command, engine::ExportOptions& writing);
+void addCompressOption(Command command, engine::ExportOptions& writing);
 
 /// Refuses, before anything is read or computed, --compress for an output that is no TIFF.
 [[nodiscard]] engine::Status checkCompress(const engine::ExportOptions& writing,

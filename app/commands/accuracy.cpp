@@ -126,20 +126,18 @@ void printAccuracy(const Report& report) {
 
 }  // namespace
 
-void addAccuracy(CLI::App& root, Chosen& chosen) {
+void addAccuracy(Command root, Chosen& chosen) {
   auto options = std::make_shared<AccuracyArguments>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       root, chosen, "accuracy", "What accuracy costs in time: a page of plots, tables and answers",
       [options](engine::JobControl& job) { return accuracy(*options, job); }, printAccuracy);
-  command->add_option("FOLDER", options->folder, "Where accuracy.html, accuracy.csv and the plots go")
-      ->required();
-  command->add_option("SCAN", options->scan, "A scan to study beside the made fields");
-  command->add_option("--only", options->only, "Studies to make: " + studyNames() + "; none: all");
+  command.option("FOLDER", options->folder, "Where accuracy.html, accuracy.csv and the plots go").required();
+  command.option("SCAN", options->scan, "A scan to study beside the made fields");
+  command.option("--only", options->only, "Studies to make: " + studyNames() + "; none: all");
   command
-      ->add_option("--effort", options->effort,
-                   "Share of the full work, 0.01 to 1; less is quicker and coarser")
-      ->check(within(0.01, 1.0))
-      ->capture_default_str();
+      .option("--effort", options->effort, "Share of the full work, 0.01 to 1; less is quicker and coarser")
+      .check(within(0.01, 1.0))
+      .showDefault();
   addScanOptions(command, options->scan_options);
 }
 

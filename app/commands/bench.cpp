@@ -284,81 +284,74 @@ void printPicture(const Report& report) {
 
 }  // namespace
 
-void addBench(CLI::App& root, Chosen& chosen) {
-  CLI::App* bench =
-      root.add_subcommand("bench", "Benchmarks: median, spread, worst, machine, hash of the result");
-  bench->require_subcommand(1);
+void addBench(Command root, Chosen& chosen) {
+  Command bench = root.subcommand("bench", "Benchmarks: median, spread, worst, machine, hash of the result");
+  bench.requireSubcommand();
 
   auto haptic_options = std::make_shared<bench::HapticBenchOptions>();
-  CLI::App* ticks = addCommand(
-      *bench, chosen, "haptic", "Ticks a second of contact, force and local smoothing",
+  Command ticks = addCommand(
+      bench, chosen, "haptic", "Ticks a second of contact, force and local smoothing",
       [haptic_options](engine::JobControl& job) { return haptic(*haptic_options, job); }, printHaptic);
-  ticks->add_option("--side", haptic_options->side, "Samples along each side of the field")
-      ->capture_default_str();
-  ticks->add_option("--ticks", haptic_options->ticks, "Ticks of each run")->capture_default_str();
-  ticks->add_option("--repeats", haptic_options->repeats, "Runs of each row")->capture_default_str();
-  ticks->add_option("--speed", haptic_options->speeds_mm_s, "Speeds of the hand, mm/s")
-      ->delimiter(',')
-      ->capture_default_str();
+  ticks.option("--side", haptic_options->side, "Samples along each side of the field").showDefault();
+  ticks.option("--ticks", haptic_options->ticks, "Ticks of each run").showDefault();
+  ticks.option("--repeats", haptic_options->repeats, "Runs of each row").showDefault();
+  ticks.option("--speed", haptic_options->speeds_mm_s, "Speeds of the hand, mm/s")
+      .delimiter(',')
+      .showDefault();
 
   auto effects_options = std::make_shared<bench::EffectsBenchOptions>();
-  CLI::App* prices = addCommand(
-      *bench, chosen, "effects", "What each effect of a scene costs a tick, and what it holds",
+  Command prices = addCommand(
+      bench, chosen, "effects", "What each effect of a scene costs a tick, and what it holds",
       [effects_options](engine::JobControl& job) { return effects(*effects_options, job); }, printEffects);
-  prices->add_option("--side", effects_options->side, "Samples along each side of the field")
-      ->capture_default_str();
-  prices->add_option("--ticks", effects_options->ticks, "Ticks of each run")->capture_default_str();
-  prices->add_option("--repeats", effects_options->repeats, "Runs of each row")->capture_default_str();
+  prices.option("--side", effects_options->side, "Samples along each side of the field").showDefault();
+  prices.option("--ticks", effects_options->ticks, "Ticks of each run").showDefault();
+  prices.option("--repeats", effects_options->repeats, "Runs of each row").showDefault();
 
   auto loop_options = std::make_shared<haptic::LoopBenchOptions>();
   auto busy = std::make_shared<bool>(false);
-  CLI::App* lateness = addCommand(
-      *bench, chosen, "loop", "Lateness of the live loop beside cyclictest in the same run",
+  Command lateness = addCommand(
+      bench, chosen, "loop", "Lateness of the live loop beside cyclictest in the same run",
       [loop_options, busy](engine::JobControl& job) {
         haptic::LoopBenchOptions options = *loop_options;
         options.load = *busy ? haptic::BenchLoad::kBusy : haptic::BenchLoad::kIdle;
         return loop(options, job);
       },
       printLoop);
-  lateness->add_option("--seconds", loop_options->seconds, "How long to measure")->capture_default_str();
-  lateness->add_option("--rate", loop_options->rate_hz, "Ticks a second")->capture_default_str();
+  lateness.option("--seconds", loop_options->seconds, "How long to measure").showDefault();
+  lateness.option("--rate", loop_options->rate_hz, "Ticks a second").showDefault();
   auto sweep_options = std::make_shared<bench::StiffnessSweepOptions>();
-  CLI::App* sweep = addCommand(
-      *bench, chosen, "stability", "Stiffness at which a felt wall starts to buzz, against b > K T / 2",
+  Command sweep = addCommand(
+      bench, chosen, "stability", "Stiffness at which a felt wall starts to buzz, against b > K T / 2",
       [sweep_options](engine::JobControl& job) { return stability(*sweep_options, job); }, printStability);
-  sweep->add_option("--damping", sweep_options->damping_n_s_per_mm, "Damping of the device, N s/mm")
-      ->capture_default_str();
-  sweep->add_option("--mass", sweep_options->mass_kg, "Moving mass, kg")->capture_default_str();
-  sweep->add_option("--press", sweep_options->press_n, "Constant press, N")->capture_default_str();
-  sweep->add_option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
+  sweep.option("--damping", sweep_options->damping_n_s_per_mm, "Damping of the device, N s/mm").showDefault();
+  sweep.option("--mass", sweep_options->mass_kg, "Moving mass, kg").showDefault();
+  sweep.option("--press", sweep_options->press_n, "Constant press, N").showDefault();
+  sweep.option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
 
-  addBenchGrowth(*bench, chosen);
-  addBenchLarge(*bench, chosen);
-  addBenchImport(*bench, chosen);
-  addBenchFilters(*bench, chosen);
+  addBenchGrowth(bench, chosen);
+  addBenchLarge(bench, chosen);
+  addBenchImport(bench, chosen);
+  addBenchFilters(bench, chosen);
 
   auto render_options = std::make_shared<bench::RenderBenchOptions>();
-  CLI::App* drawing = addCommand(
-      *bench, chosen, "render", "Frames of a field that changes: time, vertices, screen error, uploads",
+  Command drawing = addCommand(
+      bench, chosen, "render", "Frames of a field that changes: time, vertices, screen error, uploads",
       [render_options](engine::JobControl& job) { return picture(*render_options, job); }, printPicture);
-  drawing->add_option("--side", render_options->sides,
-                      "Samples along each side, one field each (10240: 100M, 31623: 1G)");
-  drawing
-      ->add_option("--loop", render_options->loop_seconds, "Seconds of drawing beside a haptic loop; 0: none")
-      ->capture_default_str();
-  drawing->add_option("--scene", render_options->scenes, "Rows to measure, by name; none: all");
-  drawing->add_flag_callback(
+  drawing.option("--side", render_options->sides,
+                 "Samples along each side, one field each (10240: 100M, 31623: 1G)");
+  drawing.option("--loop", render_options->loop_seconds, "Seconds of drawing beside a haptic loop; 0: none")
+      .showDefault();
+  drawing.option("--scene", render_options->scenes, "Rows to measure, by name; none: all");
+  drawing.onFlag(
       "--sharp", [render_options] { render_options->in_motion = render::Sharpness::kFull; },
       "Draw every pixel while the camera moves, too");
-  drawing->add_option("--frames", render_options->frames, "Frames of each row")->capture_default_str();
-  drawing->add_option("--error", render_options->error_px, "Screen error wanted, px")->capture_default_str();
-  drawing->add_option("--vertices", render_options->vertex_budget, "Vertices a frame at most")
-      ->capture_default_str();
-  drawing->add_option(
-      "--device-memory", render_options->memory_budget_bytes,
-      "Bytes that samples may take on the device, the rest comes by need; 0: half of its memory");
+  drawing.option("--frames", render_options->frames, "Frames of each row").showDefault();
+  drawing.option("--error", render_options->error_px, "Screen error wanted, px").showDefault();
+  drawing.option("--vertices", render_options->vertex_budget, "Vertices a frame at most").showDefault();
+  drawing.option("--device-memory", render_options->memory_budget_bytes,
+                 "Bytes that samples may take on the device, the rest comes by need; 0: half of its memory");
 
-  lateness->add_flag("--busy", *busy, "Keep every core busy by other processes meanwhile");
+  lateness.flag("--busy", *busy, "Keep every core busy by other processes meanwhile");
 }
 
 }  // namespace fettle::app

@@ -76,9 +76,9 @@ void printBenchFilters(const Report& report) {
 
 }  // namespace
 
-void addBenchFilters(CLI::App& bench, Chosen& chosen) {
+void addBenchFilters(Command bench, Chosen& chosen) {
   auto options = std::make_shared<bench::FiltersBenchOptions>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       bench, chosen, "filters",
       "Samples a second of the global filters, beside plain copying in the same run",
       [options](engine::JobControl& job) { return measure(*options, job); }, printBenchFilters);
@@ -86,22 +86,15 @@ void addBenchFilters(CLI::App& bench, Chosen& chosen) {
   for (const engine::FilterKind kind : options->kinds) kinds[std::string(engine::name(kind))] = kind;
   std::map<std::string, bench::FilterGround> grounds;
   for (const bench::FilterGround ground : options->grounds) grounds[bench::groundName(ground)] = ground;
-  command->add_option("--side", options->side, "Samples along each side of the field")->capture_default_str();
-  command->add_option("--kind", options->kinds, "Filters; none: all")
-      ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(kinds));
-  command->add_option("--window", options->windows, "Sides of the window, samples")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_option("--ground", options->grounds, "plain, holes, marks; none: all")
-      ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(grounds));
-  command->add_option("--threads", options->threads, "Threads")->delimiter(',')->capture_default_str();
-  command->add_option("--repeats", options->repeats, "Runs of each row")->capture_default_str();
+  command.option("--side", options->side, "Samples along each side of the field").showDefault();
+  command.choices("--kind", kinds, options->kinds, "Filters; none: all").delimiter(',');
+  command.option("--window", options->windows, "Sides of the window, samples").delimiter(',').showDefault();
+  command.choices("--ground", grounds, options->grounds, "plain, holes, marks; none: all").delimiter(',');
+  command.option("--threads", options->threads, "Threads").delimiter(',').showDefault();
+  command.option("--repeats", options->repeats, "Runs of each row").showDefault();
   command
-      ->add_option("--limit", options->limit_s,
-                   "Seconds for all runs of a row; a slower one gets a smaller field")
-      ->capture_default_str();
+      .option("--limit", options->limit_s, "Seconds for all runs of a row; a slower one gets a smaller field")
+      .showDefault();
 }
 
 }  // namespace fettle::app

@@ -5,6 +5,6 @@
 namespace fettle::app {
 
 /// `fettle bench filters`.
-void addBenchFilters(CLI::App& bench, Chosen& chosen);
+void addBenchFilters(Command bench, Chosen& chosen);
 
 }  // namespace fettle::app

@@ -105,17 +105,16 @@ void printBenchGrowth(const Report& report) {
 
 }  // namespace
 
-void addBenchGrowth(CLI::App& bench, Chosen& chosen) {
+void addBenchGrowth(Command bench, Chosen& chosen) {
   auto options = std::make_shared<BenchGrowthArguments>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       bench, chosen, "growth", "How costs grow with the field, the window, the brush and what changed",
       [options](engine::JobControl& job) { return measure(*options, job); }, printBenchGrowth);
-  command->add_option("--largest", options->bench.largest, "Samples along the sides of the largest field")
-      ->capture_default_str();
-  command->add_option("--effort", options->bench.effort, "Share of the full work, 0.01 to 1")
-      ->capture_default_str();
-  command->add_option("--plots", options->folder, "Folder for a picture of each");
-  command->add_flag_callback(
+  command.option("--largest", options->bench.largest, "Samples along the sides of the largest field")
+      .showDefault();
+  command.option("--effort", options->bench.effort, "Share of the full work, 0.01 to 1").showDefault();
+  command.option("--plots", options->folder, "Folder for a picture of each");
+  command.onFlag(
       "--no-picture", [options] { options->bench.picture = false; },
       "Leave out uploads: no Vulkan device is needed");
 }

@@ -5,6 +5,6 @@
 namespace fettle::app {
 
 /// `fettle bench growth`, added to `fettle bench`.
-void addBenchGrowth(CLI::App& bench, Chosen& chosen);
+void addBenchGrowth(Command bench, Chosen& chosen);
 
 }  // namespace fettle::app

@@ -54,17 +54,15 @@ void printBenchImport(const Report& report) {
 
 }  // namespace
 
-void addBenchImport(CLI::App& bench, Chosen& chosen) {
+void addBenchImport(Command bench, Chosen& chosen) {
   auto options = std::make_shared<bench::ImportBenchOptions>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       bench, chosen, "import", "How fast each format becomes a field, beside plain reading of the same file",
       [options](engine::JobControl& job) { return measure(*options, job); }, printBenchImport);
-  command->add_option("SCANS", options->files, "Files to read; none: one field written in every format");
-  command
-      ->add_option("--side", options->side,
-                   "Samples along each side of that field; above 2048: GeoTIFF alone")
-      ->capture_default_str();
-  command->add_option("--repeats", options->repeats, "Imports of each file")->capture_default_str();
+  command.option("SCANS", options->files, "Files to read; none: one field written in every format");
+  command.option("--side", options->side, "Samples along each side of that field; above 2048: GeoTIFF alone")
+      .showDefault();
+  command.option("--repeats", options->repeats, "Imports of each file").showDefault();
 }
 
 }  // namespace fettle::app

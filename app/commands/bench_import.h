@@ -5,6 +5,6 @@
 namespace fettle::app {
 
 /// `fettle bench import`, added to `fettle bench`.
-void addBenchImport(CLI::App& bench, Chosen& chosen);
+void addBenchImport(Command bench, Chosen& chosen);
 
 }  // namespace fettle::app

@@ -112,9 +112,9 @@ void printBenchLarge(const Report& report) {
 
 }  // namespace
 
-void addBenchLarge(CLI::App& bench, Chosen& chosen) {
+void addBenchLarge(Command bench, Chosen& chosen) {
   auto options = std::make_shared<bench::LargeOptions>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       bench, chosen, "large", "A very large scan the whole way: open, feel, edit, filter, undo, draw, save",
       [options](engine::JobControl& job) -> engine::Result<Report> {
         const auto measured = bench::benchLarge(*options, job);
@@ -122,11 +122,10 @@ void addBenchLarge(CLI::App& bench, Chosen& chosen) {
         return reportOf(*measured);
       },
       printBenchLarge);
-  command->add_option("--side", options->side, "Samples along each side of the scan")->capture_default_str();
-  command->add_option("--folder", options->folder,
-                      "Where the files lie meanwhile; else the temporary folder");
-  command->add_option("--effort", options->effort, "Share of the ticks, 0.01 to 1")->capture_default_str();
-  command->add_flag_callback(
+  command.option("--side", options->side, "Samples along each side of the scan").showDefault();
+  command.option("--folder", options->folder, "Where the files lie meanwhile; else the temporary folder");
+  command.option("--effort", options->effort, "Share of the ticks, 0.01 to 1").showDefault();
+  command.onFlag(
       "--no-picture", [options] { options->picture = false; },
       "Leave out drawing: no Vulkan device is needed");
   addStoreOption(command);

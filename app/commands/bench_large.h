@@ -5,6 +5,6 @@
 namespace fettle::app {
 
 /// `fettle bench large`, added to `fettle bench`.
-void addBenchLarge(CLI::App& bench, Chosen& chosen);
+void addBenchLarge(Command bench, Chosen& chosen);
 
 }  // namespace fettle::app

@@ -96,22 +96,20 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
 
 }  // namespace
 
-void addCompare(CLI::App& root, Chosen& chosen) {
+void addCompare(Command root, Chosen& chosen) {
   auto options = std::make_shared<CompareArguments>();
-  CLI::App* command =
+  Command command =
       addCommand(root, chosen, "compare", "How B deviates from A; against a truth, how wrong B is and where",
                  [options](engine::JobControl& job) { return compare(*options, job); });
-  command->add_option("A", options->a, "The scan to compare with; A or B may be -, standard input")
-      ->required();
-  command->add_option("B", options->b, "The scan to judge")->required();
-  command->add_option("--truth", options->truth,
-                      "The true surface: adds RMSE overall, on flats and near edges");
-  command->add_option("--edges", options->edges,
-                      "Picture of the true edges, non-zero = edge: adds the edge width");
-  command->add_option("--deviation", options->deviation,
-                      "Also write B - A as a scan of its own, in A's height unit, format by extension");
+  command.option("A", options->a, "The scan to compare with; A or B may be -, standard input").required();
+  command.option("B", options->b, "The scan to judge").required();
+  command.option("--truth", options->truth, "The true surface: adds RMSE overall, on flats and near edges");
+  command.option("--edges", options->edges,
+                 "Picture of the true edges, non-zero = edge: adds the edge width");
+  command.option("--deviation", options->deviation,
+                 "Also write B - A as a scan of its own, in A's height unit, format by extension");
   addForceOption(command, options->replacing);
-  command->add_option("--to", options->to, "With --deviation -, standard output: its format, as extension");
+  command.option("--to", options->to, "With --deviation -, standard output: its format, as extension");
   addScanOptions(command, options->reading);
 }
 

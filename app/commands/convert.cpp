@@ -56,24 +56,23 @@ engine::Result<Report> convert(const ConvertArguments& options, engine::JobContr
 
 }  // namespace
 
-void addConvert(CLI::App& root, Chosen& chosen) {
+void addConvert(Command root, Chosen& chosen) {
   auto options = std::make_shared<ConvertArguments>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       root, chosen, "convert", "Write scans in another format, named by the extension",
       [options](engine::JobControl& job) { return convert(*options, job); }, printBatch, Progress::kOwn,
       batchStatus);
   addBatchOptions(command, options->files);
   const std::string group = "Writing";
-  command->add_flag("--mesh", options->writing.mesh, "PLY: triangles instead of points (STL always)")
-      ->group(group);
+  command.flag("--mesh", options->writing.mesh, "PLY: triangles instead of points (STL always)").group(group);
   command
-      ->add_option("--max-error", options->max_error,
-                   "Mesh: as few triangles as keep every sample within this height, e.g. 0.5 or 20um")
-      ->group(group);
+      .option("--max-error", options->max_error,
+              "Mesh: as few triangles as keep every sample within this height, e.g. 0.5 or 20um")
+      .group(group);
   command
-      ->add_flag("--cloud-optimised", options->writing.cloud_optimised,
-                 "TIFF: laid out for reading parts over a network, with overviews")
-      ->group(group);
+      .flag("--cloud-optimised", options->writing.cloud_optimised,
+            "TIFF: laid out for reading parts over a network, with overviews")
+      .group(group);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
 }

@@ -102,30 +102,23 @@ void printDemo(const Report& report) {
 
 }  // namespace
 
-void addDemo(CLI::App& root, Chosen& chosen) {
+void addDemo(Command root, Chosen& chosen) {
   auto options = std::make_shared<DemoOptions>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       root, chosen, "demo", "The whole process on a simulated scan: pictures, table, session",
       [options](engine::JobControl& job) { return demo(*options, job); }, printDemo);
-  command->add_option("DIR", options->folder, "Folder for everything it writes; made if need be")->required();
-  command->add_option("--part", options->part, "The part to scan; see fettle synth --help")
-      ->capture_default_str();
-  command->add_option("--side", options->side, "Samples along each side")
-      ->check(CLI::Range(64, 16384))
-      ->capture_default_str();
-  command->add_option("--noise", options->noise, "Scale of the scanner's noise")->capture_default_str();
-  command->add_option("--outliers", options->outliers, "Share of mixed pixels beside steps")
-      ->capture_default_str();
-  command->add_option("--dropouts", options->dropouts, "Scale of lost samples")->capture_default_str();
-  command->add_option("--window", options->window, "Window of the global filters")->capture_default_str();
-  command->add_option("--passes", options->passes, "Passes of the global filters")->capture_default_str();
-  command
-      ->add_option("--look-at", options->look_at, "Where the close-ups look, as fractions X,Y of the field")
-      ->delimiter(',')
-      ->expected(2);
-  command->add_option("--seed", options->seed, "Same seed, same bits")
-      ->check(seedProblem)
-      ->capture_default_str();
+  command.option("DIR", options->folder, "Folder for everything it writes; made if need be").required();
+  command.option("--part", options->part, "The part to scan; see fettle synth --help").showDefault();
+  command.option("--side", options->side, "Samples along each side").check(inRange(64, 16384)).showDefault();
+  command.option("--noise", options->noise, "Scale of the scanner's noise").showDefault();
+  command.option("--outliers", options->outliers, "Share of mixed pixels beside steps").showDefault();
+  command.option("--dropouts", options->dropouts, "Scale of lost samples").showDefault();
+  command.option("--window", options->window, "Window of the global filters").showDefault();
+  command.option("--passes", options->passes, "Passes of the global filters").showDefault();
+  command.option("--look-at", options->look_at, "Where the close-ups look, as fractions X,Y of the field")
+      .delimiter(',')
+      .expected(2);
+  command.option("--seed", options->seed, "Same seed, same bits").check({seedProblem}).showDefault();
 }
 
 }  // namespace fettle::app

@@ -104,7 +104,7 @@ void printDevices(const Report& report) {
 
 }  // namespace
 
-void addDevices(CLI::App& root, Chosen& chosen) {
+void addDevices(Command root, Chosen& chosen) {
   addCommand(
       root, chosen, "devices", "What is plugged in and what it can do; use an id with fettle record --device",
       [](engine::JobControl&) { return devices(); }, printDevices);

@@ -315,44 +315,40 @@ void printFilter(const Report& report) {
 
 }  // namespace
 
-void addFilter(CLI::App& root, Chosen& chosen) {
+void addFilter(Command root, Chosen& chosen) {
   auto options = std::make_shared<FilterArguments>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       root, chosen, "filter", "Filter whole scans, around what is marked",
       [options](engine::JobControl& job) { return filter(*options, job); }, printFilter, Progress::kOwn,
       batchStatus);
   addBatchOptions(command, options->files);
   command
-      ->add_option("--filter", options->filter,
-                   "box, gaussian, median, bilateral or tv (total variation); the last two keep edges")
-      ->check(oneOf({"box", "gaussian", "median", "bilateral", "tv"}));
-  command->add_option("--window", options->window, "Side of the window in samples, odd, 1 to 1001")
-      ->capture_default_str();
-  command->add_option("--sigma", options->sigma,
-                      "Gaussian: standard deviation in samples; without it the weights are binomial. "
-                      "Bilateral: likewise; without it a quarter of the window");
-  command->add_option("--range-sigma", options->range_sigma,
-                      "Bilateral, tv: how large a difference is noise, as 20um; without it 4 (bilateral) or "
-                      "1 (tv) standard deviations of the scan's noise");
-  command->add_option("--passes", options->passes, "How often the filter is applied")->capture_default_str();
-  CLI::Option* keep =
-      command->add_option("--keep", options->keep, "Picture of marks: these samples keep their bits");
-  command->add_option("--only", options->only, "Picture of marks: only these samples are filtered")
-      ->excludes(keep);
-  command->add_option("--max-change", options->max_change,
-                      "No sample ends further than this from the original: that of a session, else "
-                      "--original, else IN; in the scan's height unit, or as 20um, 0.5mm");
+      .option("--filter", options->filter,
+              "box, gaussian, median, bilateral or tv (total variation); the last two keep edges")
+      .check(oneOf({"box", "gaussian", "median", "bilateral", "tv"}));
+  command.option("--window", options->window, "Side of the window in samples, odd, 1 to 1001").showDefault();
+  command.option("--sigma", options->sigma,
+                 "Gaussian: standard deviation in samples; without it the weights are binomial. "
+                 "Bilateral: likewise; without it a quarter of the window");
+  command.option("--range-sigma", options->range_sigma,
+                 "Bilateral, tv: how large a difference is noise, as 20um; without it 4 (bilateral) or "
+                 "1 (tv) standard deviations of the scan's noise");
+  command.option("--passes", options->passes, "How often the filter is applied").showDefault();
+  const Option keep =
+      command.option("--keep", options->keep, "Picture of marks: these samples keep their bits");
+  command.option("--only", options->only, "Picture of marks: only these samples are filtered").excludes(keep);
+  command.option("--max-change", options->max_change,
+                 "No sample ends further than this from the original: that of a session, else "
+                 "--original, else IN; in the scan's height unit, or as 20um, 0.5mm");
   addOriginalOption(command, options->original);
-  command->add_option("--threads", options->threads, "Threads to use; 0 = one a core")->capture_default_str();
-  command->add_flag(
-      "--suggest", options->suggest,
-      "Filter nothing: try filters on pieces of IN, say which to take for --tolerance, why, and "
-      "what to type");
-  command->add_option("--tolerance", options->tolerance,
-                      "With --suggest: root mean square error that may be left on flats and near edges, each "
-                      "by itself; in the scan's height unit, or as 20um");
-  command->add_option("--budget", options->budget,
-                      "With --suggest: seconds that filtering the scan may take");
+  command.option("--threads", options->threads, "Threads to use; 0 = one a core").showDefault();
+  command.flag("--suggest", options->suggest,
+               "Filter nothing: try filters on pieces of IN, say which to take for --tolerance, why, and "
+               "what to type");
+  command.option("--tolerance", options->tolerance,
+                 "With --suggest: root mean square error that may be left on flats and near edges, each "
+                 "by itself; in the scan's height unit, or as 20um");
+  command.option("--budget", options->budget, "With --suggest: seconds that filtering the scan may take");
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
 }

@@ -206,13 +206,13 @@ engine::Result<Report> info(const InfoArguments& options, engine::JobControl& jo
 
 }  // namespace
 
-void addInfo(CLI::App& root, Chosen& chosen) {
+void addInfo(Command root, Chosen& chosen) {
   auto options = std::make_shared<InfoArguments>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       root, chosen, "info", "What a scan holds: size, spacing, units, heights, holes, noise, steepest cell",
       [options](engine::JobControl& job) { return info(*options, job); }, printInfo, Progress::kOwn,
       batchStatus);
-  command->footer(
+  command.footer(
       "noise: standard deviation of the finest detail, in the height unit: 1.4826 median(|d|) / 6 of d, the\n"
       "  second difference along rows and columns over 3 x 3 samples without a hole. Planes, steps along "
       "rows\n"
@@ -223,17 +223,16 @@ void addInfo(CLI::App& root, Chosen& chosen) {
       "its\n"
       "  middle in the file's coordinates.");
   command
-      ->add_option("SCAN", options->scans,
-                   "The scan, or several, each with a report of its own; - for standard input")
-      ->required();
+      .option("SCAN", options->scans,
+              "The scan, or several, each with a report of its own; - for standard input")
+      .required();
   command
-      ->add_option("--at", options->at,
-                   "Also the height at ROW,COLUMN of the file, both from 0; may be repeated")
-      ->allow_extra_args(false);
-  command->add_option("--picture", options->picture, "Also a thumbnail, PNG of 320 x 240 pixels");
-  command->add_option("--bins", options->bins, "Bins of the histogram, from the lowest to the highest sample")
-      ->check(CLI::Range(1, engine::kMostBins))
-      ->capture_default_str();
+      .option("--at", options->at, "Also the height at ROW,COLUMN of the file, both from 0; may be repeated")
+      .oneValueEach();
+  command.option("--picture", options->picture, "Also a thumbnail, PNG of 320 x 240 pixels");
+  command.option("--bins", options->bins, "Bins of the histogram, from the lowest to the highest sample")
+      .check(inRange(1, engine::kMostBins))
+      .showDefault();
   addScanOptions(command, options->reading);
 }
 

@@ -69,30 +69,27 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
 
 }  // namespace
 
-void addMark(CLI::App& root, Chosen& chosen) {
+void addMark(Command root, Chosen& chosen) {
   auto options = std::make_shared<MarkArguments>();
-  CLI::App* command = addCommand(root, chosen, "mark", "Mark what filters must not change",
-                                 [options](engine::JobControl& job) { return mark(*options, job); });
-  command->add_option("SCAN", options->in, "The scan to read; - for standard input")->required();
+  Command command = addCommand(root, chosen, "mark", "Mark what filters must not change",
+                               [options](engine::JobControl& job) { return mark(*options, job); });
+  command.option("SCAN", options->in, "The scan to read; - for standard input").required();
   command
-      ->add_option("MARKS", options->out,
-                   "Picture of marks to write: .png, .tif, - for a PNG on standard output")
-      ->required();
-  command->add_flag("--edges", options->edges,
-                    "Mark the sharp edges of the part, as the window suggests them");
+      .option("MARKS", options->out, "Picture of marks to write: .png, .tif, - for a PNG on standard output")
+      .required();
+  command.flag("--edges", options->edges, "Mark the sharp edges of the part, as the window suggests them");
   command
-      ->add_option("--scale", options->scale,
-                   "Edges: scale of the search in samples, 0.7 to 8; larger finds fainter ones")
-      ->capture_default_str();
+      .option("--scale", options->scale,
+              "Edges: scale of the search in samples, 0.7 to 8; larger finds fainter ones")
+      .showDefault();
   command
-      ->add_option("--sensitivity", options->choice.sensitivity,
-                   "Edges: 0 takes the strongest alone, 1 all that stand out of the noise")
-      ->capture_default_str();
-  command->add_option("--thickness", options->choice.thickness, "Edges: marked to this distance, in samples")
-      ->capture_default_str();
-  command->add_option("--add", options->add, "Picture of marks to begin with");
-  command->add_flag("--invert", options->invert,
-                    "Afterwards, mark what is not marked and the other way round");
+      .option("--sensitivity", options->choice.sensitivity,
+              "Edges: 0 takes the strongest alone, 1 all that stand out of the noise")
+      .showDefault();
+  command.option("--thickness", options->choice.thickness, "Edges: marked to this distance, in samples")
+      .showDefault();
+  command.option("--add", options->add, "Picture of marks to begin with");
+  command.flag("--invert", options->invert, "Afterwards, mark what is not marked and the other way round");
   addScanOptions(command, options->reading);
 }
 

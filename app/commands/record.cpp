@@ -374,52 +374,52 @@ a temporary file beside STROKES. The same bits: fettle replay SCAN STROKES OUT, 
 
 }  // namespace
 
-void addRecord(CLI::App& root, Chosen& chosen) {
+void addRecord(Command root, Chosen& chosen) {
   auto options = std::make_shared<RecordArguments>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       root, chosen, "record", "Touch a scan live with a device, and record the session for replay",
       [options](engine::JobControl& job) { return record(*options, job); }, printReport, Progress::kOwn);
-  command->add_option("SCAN", options->scan, "The scan to touch")->required();
-  command->add_option("STROKES", options->strokes, "Where the session goes: CSV t,x,y,z,tool, one row a tick")
-      ->required();
-  command->add_option("OUT", options->out, "The field after it, format by extension");
+  command.option("SCAN", options->scan, "The scan to touch").required();
+  command.option("STROKES", options->strokes, "Where the session goes: CSV t,x,y,z,tool, one row a tick")
+      .required();
+  command.option("OUT", options->out, "The field after it, format by extension");
   command
-      ->add_option("--device", options->device,
-                   "An id of fettle devices, woodenhaptics, serial, spacemouse, hand:STROKES (simulated, in "
-                   "closed loop) or replay:STROKES (in real time)")
-      ->required();
-  command->add_option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
-  command->add_option("--marks", options->marks, "Picture of marks to start from");
-  command->add_option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");
-  command->add_option("--tool", options->tool, "feel, smooth, mark or unmark, at the start")
-      ->check(oneOf({"feel", "smooth", "mark", "unmark"}))
-      ->capture_default_str();
+      .option("--device", options->device,
+              "An id of fettle devices, woodenhaptics, serial, spacemouse, hand:STROKES (simulated, in "
+              "closed loop) or replay:STROKES (in real time)")
+      .required();
+  command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
+  command.option("--marks", options->marks, "Picture of marks to start from");
+  command.option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");
+  command.option("--tool", options->tool, "feel, smooth, mark or unmark, at the start")
+      .check(oneOf({"feel", "smooth", "mark", "unmark"}))
+      .showDefault();
   command
-      ->add_option("--switch", options->tool_switch,
-                   "When the tool acts: button, or always in contact for a device without one (W8 boards)")
-      ->check(oneOf({"button", "always"}))
-      ->capture_default_str();
-  command->add_option("--rate", options->rate_hz, "Ticks a second, 1000 to 10000")
-      ->check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
-      ->capture_default_str();
-  command->add_option("--seconds", options->seconds, "End after so long; otherwise by q or Ctrl-C")
-      ->check(within(1e-3, 86400.0));
+      .option("--switch", options->tool_switch,
+              "When the tool acts: button, or always in contact for a device without one (W8 boards)")
+      .check(oneOf({"button", "always"}))
+      .showDefault();
+  command.option("--rate", options->rate_hz, "Ticks a second, 1000 to 10000")
+      .check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
+      .showDefault();
+  command.option("--seconds", options->seconds, "End after so long; otherwise by q or Ctrl-C")
+      .check(within(1e-3, 86400.0));
   command
-      ->add_option("--scale", options->scale,
-                   "Millimetres of the field a millimetre of the hand; fitted to the scan without it")
-      ->check(within(1e-6, 1e6));
-  command->add_option("--max-force", options->max_force_n, "Newtons, below what the device's profile allows")
-      ->check(within(0.0, 1000.0));
+      .option("--scale", options->scale,
+              "Millimetres of the field a millimetre of the hand; fitted to the scan without it")
+      .check(within(1e-6, 1e6));
+  command.option("--max-force", options->max_force_n, "Newtons, below what the device's profile allows")
+      .check(within(0.0, 1000.0));
   command
-      ->add_option("--arm", options->arm,
-                   "ask: by the key a; auto: by itself, for devices without force and simulated ones, whose "
-                   "default it is")
-      ->check(oneOf({"ask", "auto"}));
-  command->add_flag("--keys", options->keys, "Take keys from standard input though it is no terminal");
+      .option("--arm", options->arm,
+              "ask: by the key a; auto: by itself, for devices without force and simulated ones, whose "
+              "default it is")
+      .check(oneOf({"ask", "auto"}));
+  command.flag("--keys", options->keys, "Take keys from standard input though it is no terminal");
   addOriginalOption(command, options->original);
   addForceOption(command, options->replacing);
   addScanOptions(command, options->reading);
-  command->footer(kRecordFooter);
+  command.footer(kRecordFooter);
 }
 
 }  // namespace fettle::app

@@ -196,58 +196,53 @@ engine::Result<Report> render(const RenderArguments& options, engine::JobControl
 
 }  // namespace
 
-void addRender(CLI::App& root, Chosen& chosen) {
+void addRender(Command root, Chosen& chosen) {
   auto options = std::make_shared<RenderArguments>();
-  CLI::App* command = addCommand(root, chosen, "render", "Picture of a scan, without a window",
-                                 [options](engine::JobControl& job) { return render(*options, job); });
-  command->add_option("SCAN", options->scan, "The scan to draw; - for standard input")->required();
-  command->add_option("PNG", options->png, "The picture to write; - for standard output")->required();
-  command->add_option("--size", options->size, "Pixels, WIDTHxHEIGHT")->capture_default_str();
+  Command command = addCommand(root, chosen, "render", "Picture of a scan, without a window",
+                               [options](engine::JobControl& job) { return render(*options, job); });
+  command.option("SCAN", options->scan, "The scan to draw; - for standard input").required();
+  command.option("PNG", options->png, "The picture to write; - for standard output").required();
+  command.option("--size", options->size, "Pixels, WIDTHxHEIGHT").showDefault();
+  command.option("--azimuth", options->view.azimuth_deg, "Turn of the camera in degrees; 0 looks along +y")
+      .showDefault();
   command
-      ->add_option("--azimuth", options->view.azimuth_deg, "Turn of the camera in degrees; 0 looks along +y")
-      ->capture_default_str();
+      .option("--elevation", options->view.elevation_deg, "Camera above the horizon in degrees; 90 = a map")
+      .showDefault();
+  command.option("--zoom", options->view.zoom, "1 shows the whole field").showDefault();
+  command.option("--centre", options->centre, "Middle of the picture as fractions X,Y of the field")
+      .delimiter(',')
+      .expected(2);
+  command.option("--exaggerate", options->view.vertical_exaggeration, "Factor on heights; 0 chooses one")
+      .showDefault();
+  command.option("--compare", options->compare, "Second scan, drawn at the right with the same camera");
+  command.option("--deviation", options->deviation, "Colours show the deviation from this scan");
+  command.option("--marks", options->marks, "Picture of marks to overlay");
+  command.option("--map", options->map, "Colour map")
+      .check(oneOf({"auto", "viridis", "cividis", "grey", "diverging"}))
+      .showDefault();
+  command.option("--range", options->range, "Heights at the ends of the colours, LOW,HIGH")
+      .delimiter(',')
+      .expected(2);
+  command.option("--title", options->title, "Title; the file's name by default");
+  command.option("--compare-title", options->compare_title, "Title of the second scan");
+  command.flag("--perspective", options->perspective, "Perspective instead of parallel projection");
   command
-      ->add_option("--elevation", options->view.elevation_deg,
-                   "Camera above the horizon in degrees; 90 = a map")
-      ->capture_default_str();
-  command->add_option("--zoom", options->view.zoom, "1 shows the whole field")->capture_default_str();
-  command->add_option("--centre", options->centre, "Middle of the picture as fractions X,Y of the field")
-      ->delimiter(',')
-      ->expected(2);
-  command->add_option("--exaggerate", options->view.vertical_exaggeration, "Factor on heights; 0 chooses one")
-      ->capture_default_str();
-  command->add_option("--compare", options->compare, "Second scan, drawn at the right with the same camera");
-  command->add_option("--deviation", options->deviation, "Colours show the deviation from this scan");
-  command->add_option("--marks", options->marks, "Picture of marks to overlay");
-  command->add_option("--map", options->map, "Colour map")
-      ->check(oneOf({"auto", "viridis", "cividis", "grey", "diverging"}))
-      ->capture_default_str();
-  command->add_option("--range", options->range, "Heights at the ends of the colours, LOW,HIGH")
-      ->delimiter(',')
-      ->expected(2);
-  command->add_option("--title", options->title, "Title; the file's name by default");
-  command->add_option("--compare-title", options->compare_title, "Title of the second scan");
-  command->add_flag("--perspective", options->perspective, "Perspective instead of parallel projection");
+      .option("--stereo", options->stereo, "A picture for each eye: in two halves, or for red - cyan glasses")
+      .check(oneOf({"off", "side-by-side", "anaglyph"}))
+      .showDefault();
   command
-      ->add_option("--stereo", options->stereo,
-                   "A picture for each eye: in two halves, or for red - cyan glasses")
-      ->check(oneOf({"off", "side-by-side", "anaglyph"}))
-      ->capture_default_str();
+      .option("--eye-separation", options->eyes.eye_separation,
+              "Between the eyes, as a share of their distance from the field")
+      .showDefault();
   command
-      ->add_option("--eye-separation", options->eyes.eye_separation,
-                   "Between the eyes, as a share of their distance from the field")
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--screen-distance", options->eyes.screen_distance,
-          "Where both eyes see the same, as a share of that distance; 0: at the middle of the picture")
-      ->capture_default_str();
-  command->add_flag("--contours", options->contours, "Contour lines at the steps of the colour bar");
-  command->add_flag("--dark", options->dark, "Light text on a dark ground");
-  command->add_flag("--bare", options->bare, "The surface alone: no titles, bars or legend");
-  command->add_flag("--invert", options->invert, "Draw the field upside down");
-  command->add_flag("--validate", options->validate,
-                    "Load the Vulkan validation layers and show what they say");
+      .option("--screen-distance", options->eyes.screen_distance,
+              "Where both eyes see the same, as a share of that distance; 0: at the middle of the picture")
+      .showDefault();
+  command.flag("--contours", options->contours, "Contour lines at the steps of the colour bar");
+  command.flag("--dark", options->dark, "Light text on a dark ground");
+  command.flag("--bare", options->bare, "The surface alone: no titles, bars or legend");
+  command.flag("--invert", options->invert, "Draw the field upside down");
+  command.flag("--validate", options->validate, "Load the Vulkan validation layers and show what they say");
   addScanOptions(command, options->reading);
 }
 

@@ -194,25 +194,25 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
 
 }  // namespace
 
-void addReplay(CLI::App& root, Chosen& chosen) {
+void addReplay(Command root, Chosen& chosen) {
   auto options = std::make_shared<ReplayArguments>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       root, chosen, "replay",
       "Apply recorded strokes to a scan, or make a session again from its journal: the same bits every time",
       [options](engine::JobControl& job) { return replay(*options, job); });
-  command->add_option("SCAN", options->scan, "The scan to touch, or a session: NAME.fettle")->required();
-  command->add_option(
+  command.option("SCAN", options->scan, "The scan to touch, or a session: NAME.fettle").required();
+  command.option(
       "STROKES", options->strokes,
       "What to do: CSV with header t,x,y,z,tool, one row a tick; left out for a session's own journal");
-  command->add_option("OUT", options->out, "The field after it, format by extension; - for standard output");
+  command.option("OUT", options->out, "The field after it, format by extension; - for standard output");
   addStreamFormat(command, options->to);
-  command->add_option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
-  command->add_option("--marks", options->marks, "Picture of marks to start from");
-  command->add_option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");
-  command->add_option("--forces", options->forces, "Write proxy and force of every tick as CSV");
+  command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
+  command.option("--marks", options->marks, "Picture of marks to start from");
+  command.option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");
+  command.option("--forces", options->forces, "Write proxy and force of every tick as CSV");
   addOriginalOption(command, options->original);
   addForceOption(command, options->replacing);
-  command->add_flag(
+  command.flag(
       "--certify", options->certify,
       "Also count the ticks in which the chosen contact level missed the true closest point (slower)");
   addScanOptions(command, options->reading);

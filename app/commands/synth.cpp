@@ -52,36 +52,31 @@ engine::Result<Report> synth(SynthArguments options, engine::JobControl& job) {
 
 }  // namespace
 
-void addSynth(CLI::App& root, Chosen& chosen) {
+void addSynth(Command root, Chosen& chosen) {
   auto options = std::make_shared<SynthArguments>();
-  CLI::App* command = addCommand(
-      root, chosen, "synth", "Simulate a laser scan of a machined part, with its truth and its true edges",
-      [options](engine::JobControl& job) { return synth(*options, job); });
+  Command command = addCommand(root, chosen, "synth",
+                               "Simulate a laser scan of a machined part, with its truth and its true edges",
+                               [options](engine::JobControl& job) { return synth(*options, job); });
   std::string names;
   std::vector<std::string> parts;
   for (const engine::PartInfo& part : engine::parts()) {
     parts.emplace_back(part.name);
     names += fmt::format("\n  {}: {}", part.name, part.description);
   }
-  command->add_option("OUT", options->out, "The scan to write, format by extension; - for standard output")
-      ->required();
+  command.option("OUT", options->out, "The scan to write, format by extension; - for standard output")
+      .required();
   addStreamFormat(command, options->to);
-  command->add_option("--part", options->spec.part, "The part:" + names)
-      ->check(oneOf(parts))
-      ->capture_default_str();
-  command->add_option("--size", options->size, "Samples, WIDTHxHEIGHT")->capture_default_str();
-  command->add_option("--noise", options->spec.noise, "Scale of the scanner's noise; 1 = realistic, 0 = none")
-      ->capture_default_str();
-  command->add_option("--outliers", options->spec.outliers, "Share of samples near edges that are outliers")
-      ->capture_default_str();
-  command->add_option("--dropouts", options->spec.dropouts, "Scale of dropouts by slope and shadow")
-      ->capture_default_str();
-  command->add_option("--seed", options->spec.seed, "Same seed, same bits")
-      ->check(seedProblem)
-      ->capture_default_str();
+  command.option("--part", options->spec.part, "The part:" + names).check(oneOf(parts)).showDefault();
+  command.option("--size", options->size, "Samples, WIDTHxHEIGHT").showDefault();
+  command.option("--noise", options->spec.noise, "Scale of the scanner's noise; 1 = realistic, 0 = none")
+      .showDefault();
+  command.option("--outliers", options->spec.outliers, "Share of samples near edges that are outliers")
+      .showDefault();
+  command.option("--dropouts", options->spec.dropouts, "Scale of dropouts by slope and shadow").showDefault();
+  command.option("--seed", options->spec.seed, "Same seed, same bits").check({seedProblem}).showDefault();
   addForceOption(command, options->replacing);
-  command->add_option("--truth", options->truth, "Also write the true surface");
-  command->add_option("--edges", options->edges, "Also write the true edges as a picture, non-zero = edge");
+  command.option("--truth", options->truth, "Also write the true surface");
+  command.option("--edges", options->edges, "Also write the true edges as a picture, non-zero = edge");
 }
 
 }  // namespace fettle::app

@@ -45,38 +45,37 @@ constexpr const char* kViewFooter =
 
 }  // namespace
 
-void addView(CLI::App& root, Chosen& chosen) {
+void addView(Command root, Chosen& chosen) {
   auto options = std::make_shared<ViewArguments>();
-  CLI::App* command = addCommand(
+  Command command = addCommand(
       root, chosen, "view", "The window: see, feel and clean a scan",
       [options](engine::JobControl& job) { return view(*options, job); }, printReport, Progress::kOwn);
-  command->add_option("SCAN", options->view.scan, "The scan to open; without it, drop one on the window");
-  command->add_option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
+  command.option("SCAN", options->view.scan, "The scan to open; without it, drop one on the window");
+  command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
   command
-      ->add_option("--device", options->view.touch.device,
-                   "mouse, an id of fettle devices, woodenhaptics, serial, spacemouse, hand:STROKES")
-      ->capture_default_str();
-  command->add_option("--rate", options->view.touch.rate_hz, "Ticks of the loop a second, 1000 to 10000")
-      ->check(CLI::Range(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
-      ->capture_default_str();
-  command->add_option("--size", options->size, "Pixels of the window, WIDTHxHEIGHT")->capture_default_str();
+      .option("--device", options->view.touch.device,
+              "mouse, an id of fettle devices, woodenhaptics, serial, spacemouse, hand:STROKES")
+      .showDefault();
+  command.option("--rate", options->view.touch.rate_hz, "Ticks of the loop a second, 1000 to 10000")
+      .check(inRange(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
+      .showDefault();
+  command.option("--size", options->size, "Pixels of the window, WIDTHxHEIGHT").showDefault();
   command
-      ->add_option("--ui-scale", options->view.window.scale,
-                   "Factor on the size of text and panels, 0.5 to 4; without it, what the display says")
-      ->check(within(0.5, 4.0));
-  command->add_flag("--sharp-motion", options->view.sharp_motion,
-                    "Draw every pixel while the view moves, too; without it, every second one each way");
-  command->add_option("--seconds", options->view.seconds, "End after so long")
-      ->check(CLI::Range(1e-3, 86400.0));
+      .option("--ui-scale", options->view.window.scale,
+              "Factor on the size of text and panels, 0.5 to 4; without it, what the display says")
+      .check(within(0.5, 4.0));
+  command.flag("--sharp-motion", options->view.sharp_motion,
+               "Draw every pixel while the view moves, too; without it, every second one each way");
+  command.option("--seconds", options->view.seconds, "End after so long").check(inRange(1e-3, 86400.0));
   command
-      ->add_option("--events", options->view.events,
-                   "Tell there what the window shows and was told to do: a JSON object a line, for scripts")
-      ->type_name("FILE");
-  command->add_option("--gpu", options->view.window.device, "Use the Vulkan device whose name holds this");
-  command->add_flag("--validate", options->validate,
-                    "Let the Vulkan validation layers watch; they must be installed");
+      .option("--events", options->view.events,
+              "Tell there what the window shows and was told to do: a JSON object a line, for scripts")
+      .typeName("FILE");
+  command.option("--gpu", options->view.window.device, "Use the Vulkan device whose name holds this");
+  command.flag("--validate", options->validate,
+               "Let the Vulkan validation layers watch; they must be installed");
   addScanOptions(command, options->view.reading);
-  command->footer(kViewFooter);
+  command.footer(kViewFooter);
 }
 
 }  // namespace fettle::app

@@ -4,7 +4,7 @@
 
 int main(int argc, char** argv) {
   using namespace fettle::app;
-  return runProgram(argc, argv, [](CLI::App& root, Chosen& chosen) {
+  return runProgram(argc, argv, [](Command root, Chosen& chosen) {
     addReplay(root, chosen);
     addRecord(root, chosen);
     addDevices(root, chosen);
