@@ -2,7 +2,7 @@
 # standard library's and other libraries' headers, and into template code that every file makes again.
 
 # fettle_sources(target files... [APART files...]): adds sources of the current folder to a target. The files are
-# compiled together, some ten to a translation unit, so names in anonymous namespaces are unique within a folder.
+# compiled together, some fifteen to a translation unit, so names in anonymous namespaces are unique within a folder.
 # APART: each by itself, for kernels whose code must not depend on their neighbours and for -inl.h files that are
 # included once per instruction set. With FETTLE_TOGETHER=OFF every file is apart (what clang-tidy reads).
 option(FETTLE_TOGETHER "Compile the files of a folder together" ON)
@@ -16,7 +16,7 @@ function(fettle_sources target)
     return()
   endif()
   file(RELATIVE_PATH folder ${CMAKE_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
-  math(EXPR units "(${count} + 9) / 10")
+  math(EXPR units "(${count} + 14) / 15")
   foreach(unit RANGE 1 ${units})
     math(EXPR begin "${count} * (${unit} - 1) / ${units}")
     math(EXPR length "${count} * ${unit} / ${units} - ${begin}")
