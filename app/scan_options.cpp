@@ -154,6 +154,45 @@ void addOriginalOption(Command command, std::string& original) {
 }
 
 engine::Result<engine::Version> originalOf(const engine::Imported& imported, const std::string& given,
+namespace {
+
+// Whether files of a format say where samples lie.
+bool keepsPlace(const engine::Imported& scan) {
+  return scan.format != "PNG" && scan.format != "STL";
+}
+
+// How far two numbers are apart. A format that loses the unit keeps the number: then that is what must agree.
+double apart(double a, double b, const engine::Grid& of_a, const engine::Grid& of_b) {
+  return std::min(std::abs(a - b),
+                  std::abs(a * of_a.lateral_unit.mm - b * of_b.lateral_unit.mm) / of_b.lateral_unit.mm);
+}
+
+// Whether two grids of the same sides put each sample in the same place, but for the rounding of a format.
+engine::Status checkSamePlace(const engine::Grid& original, const engine::Grid& scan,
+                              const std::string& where) {
+  constexpr double kPartOfSample = 0.05;
+  constexpr const char* kRemedy = "give the scan that this one was made from";
+  const auto refused = [&](const char* what, double ax, double ay, double bx, double by) {
+    return engine::inputError(
+        fmt::format(
+            "the {} of the original is {:.10g} x {:.10g} {} and that of the scan {:.10g} x {:.10g} {}", what,
+            ax, ay, original.lateral_unit.name, bx, by, scan.lateral_unit.name),
+        where, kRemedy);
+  };
+  // At the far side, where a wrong spacing adds up.
+  if (apart(original.spacing_x, scan.spacing_x, original, scan) * scan.width >
+          kPartOfSample * scan.spacing_x ||
+      apart(original.spacing_y, scan.spacing_y, original, scan) * scan.height >
+          kPartOfSample * scan.spacing_y)
+    return refused("spacing", original.spacing_x, original.spacing_y, scan.spacing_x, scan.spacing_y);
+  if (apart(original.origin_x, scan.origin_x, original, scan) > kPartOfSample * scan.spacing_x ||
+      apart(original.origin_y, scan.origin_y, original, scan) > kPartOfSample * scan.spacing_y)
+    return refused("origin", original.origin_x, original.origin_y, scan.origin_x, scan.origin_y);
+  return {};
+}
+
+}  // namespace
+
                                            const ScanOptions& reading, engine::JobControl& job) {
   if (given.empty()) return imported.original.value_or(imported.field);
   if (imported.original)
@@ -171,6 +210,8 @@ engine::Result<engine::Version> originalOf(const engine::Imported& imported, con
                                           is.height_unit.name, wanted.height_unit.name),
                               given, "convert one of them, or say --unit where a file states none");
   return original.withGrid(wanted);
+  if (keepsPlace(*other) && keepsPlace(imported))
+    if (auto same = checkSamePlace(is, wanted, given); !same) return tl::unexpected(same.error());
 }
 
 engine::Status checkOriginal(const std::string& given, bool limited, const std::string& out) {
