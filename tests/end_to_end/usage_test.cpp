@@ -70,6 +70,29 @@ TEST(Usage, QuietSaysNothingButErrors) {
   expectRefused(fettle({"info", folder.file("none.tif"), "-q"}), "none.tif");
 }
 
+TEST(Usage, QuietRecordsWithoutAWordOfTheDevice) {
+  const TempFolder folder;
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "64x64", "-q"}).status, 0);
+  std::ofstream strokes(folder.file("st.csv"));
+  strokes << "t,x,y,z,tool\n";
+  for (int k = 0; k < 100; ++k) strokes << 0.001 * k << ",3,3,40,feel\n";
+  strokes.close();
+  const std::vector<std::string> record{"record",
+                                        folder.file("s.tif"),
+                                        folder.file("q.csv"),
+                                        "--device",
+                                        "hand:" + folder.file("st.csv"),
+                                        "--seconds",
+                                        "0.05"};
+  std::vector<std::string> quiet = record;
+  quiet.insert(quiet.begin(), "-q");
+  const Outcome told = fettle(quiet);
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_EQ(told.err, "");
+  EXPECT_EQ(told.out, "");
+  EXPECT_NE(fettle(record).err.find("fettle: "), std::string::npos);
+}
+
 // One line with one object.
 nlohmann::json errorOf(const Outcome& outcome, int status) {
   EXPECT_EQ(outcome.status, status) << outcome.err;
