@@ -102,7 +102,7 @@ engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
     if (!options.extension.empty() && !isStream(out))
       return engine::inputError("--to needs --out-dir", "--to", "the extension of OUT names the format");
     std::error_code error;
-    if (out.ends_with('/') || std::filesystem::is_directory(out, error))
+    if (!isStream(out) && (out.ends_with('/') || std::filesystem::is_directory(out, error)))
       return engine::inputError("the output is a folder", out, "name a file in it, or give it as --out-dir");
     tasks.push_back({options.files[0], out, options.extension});
   } else {

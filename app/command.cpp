@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "app/spelling.h"
+#include "app/streams.h"
 #include "app/terminal.h"
 
 namespace fettle::app {
@@ -92,6 +93,24 @@ Check oneOf(const std::vector<std::string>& words) {
 void addOutputFlags(Command app, Chosen& chosen) {
   app.flag("--json", chosen.json,
            "Print one JSON object on stdout instead of text, an error as one on stderr");
+Check fileName() {
+  return {[](const std::string& typed) {
+    return isStream(typed) ? std::string(
+                                 "takes no -, standard input or standard output: name a file, ./- for one "
+                                 "of that name")
+                           : std::string();
+  }};
+}
+
+Check folderName() {
+  return {[](const std::string& typed) {
+    return isStream(typed) ? std::string(
+                                 "- is standard output, and no folder: name a folder, ./- for one of "
+                                 "that name")
+                           : std::string();
+  }};
+}
+
   app.flag("-q,--quiet", chosen.quiet, "Say nothing but errors: no report, warnings or progress");
 }
 

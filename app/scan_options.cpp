@@ -45,6 +45,7 @@ void addStoreOption(Command command) {
             engine::setStorePolicy(policy);
           },
           "Folder on a disk for the samples, so that they may be more than memory holds")
+      .check(folderName())
       .group(kReading);
 }
 
@@ -153,7 +154,6 @@ void addOriginalOption(Command command, std::string& original) {
                  "what is read, or against the original that a session has");
 }
 
-engine::Result<engine::Version> originalOf(const engine::Imported& imported, const std::string& given,
 namespace {
 
 // Whether files of a format say where samples lie.
@@ -193,6 +193,7 @@ engine::Status checkSamePlace(const engine::Grid& original, const engine::Grid& 
 
 }  // namespace
 
+engine::Result<engine::Version> originalOf(const engine::Imported& imported, const std::string& given,
                                            const ScanOptions& reading, engine::JobControl& job) {
   if (given.empty()) return imported.original.value_or(imported.field);
   if (imported.original)
@@ -209,9 +210,9 @@ engine::Status checkSamePlace(const engine::Grid& original, const engine::Grid& 
     return engine::inputError(fmt::format("heights of the original are in {} and those of the scan in {}",
                                           is.height_unit.name, wanted.height_unit.name),
                               given, "convert one of them, or say --unit where a file states none");
-  return original.withGrid(wanted);
   if (keepsPlace(*other) && keepsPlace(imported))
     if (auto same = checkSamePlace(is, wanted, given); !same) return tl::unexpected(same.error());
+  return original.withGrid(wanted);
 }
 
 engine::Status checkOriginal(const std::string& given, bool limited, const std::string& out) {
@@ -363,7 +364,9 @@ engine::Status checkPlaces(const std::vector<Output>& outputs, const std::vector
   for (const Output& output : outputs) {
     if (output.path.empty()) continue;
     if (auto status = checkOutput(output); !status) return status;
-    const auto [earlier, fresh] = taken.emplace(placeOf(output.path), Use::kOutput);
+    // A file or folder of that name is another place than standard output.
+    const auto place = isStream(output.path) ? std::filesystem::path() : placeOf(output.path);
+    const auto [earlier, fresh] = taken.emplace(place, Use::kOutput);
     if (!fresh)
       return engine::inputError(earlier->second == Use::kInput ? "the output would replace an input"
                                                                : "two outputs are in the same place",
