@@ -65,7 +65,10 @@ void addKeptWarnings(Report& report) {
 }
 
 void printReport(const Report& report) {
-  printIndented(report, 0);
+  // Each was said on stderr when it was found.
+  Report shown = report;
+  shown.erase("warnings");
+  printIndented(shown, 0);
 }
 
 Check within(double lowest, double highest) {
@@ -90,9 +93,6 @@ Check oneOf(const std::vector<std::string>& words) {
           fmt::format("{{{}}}", fmt::join(words, ","))};
 }
 
-void addOutputFlags(Command app, Chosen& chosen) {
-  app.flag("--json", chosen.json,
-           "Print one JSON object on stdout instead of text, an error as one on stderr");
 Check fileName() {
   return {[](const std::string& typed) {
     return isStream(typed) ? std::string(
@@ -111,6 +111,9 @@ Check folderName() {
   }};
 }
 
+void addOutputFlags(Command app, Chosen& chosen) {
+  app.flag("--json", chosen.json,
+           "Print one JSON object on stdout instead of text, an error as one on stderr");
   app.flag("-q,--quiet", chosen.quiet, "Say nothing but errors: no report, warnings or progress");
 }
 
