@@ -77,12 +77,15 @@ void addBatchOptions(Command command, BatchOptions& options) {
               "IN OUT: the scan to read and the file to write, format by extension, - for standard input "
               "and output; with --out-dir all are scans to read")
       .required();
-  command.option("--out-dir", options.out_dir,
-                 "Folder for what is written, each under its scan's name, made when it is not there; goes on "
-                 "where a scan fails");
-  command.option("--to", options.extension,
-                 "With --out-dir, or - for OUT: format of what is written, as extension; in a folder the "
-                 "scan's own without it, or tif");
+  command
+      .option("--out-dir", options.out_dir,
+              "Folder for what is written, each under its scan's name, made when it is not there; goes on "
+              "where a scan fails")
+      .check(folderName());
+  command.option(
+      "--to", options.extension,
+      "With --out-dir, or - for OUT: format of what is written, as extension; without it in a folder "
+      "the scan's own, or tif where that cannot be written");
   addForceOption(command, options.replacing);
 }
 
@@ -99,7 +102,7 @@ engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
     if (!options.extension.empty() && !isStream(out))
       return engine::inputError("--to needs --out-dir", "--to", "the extension of OUT names the format");
     std::error_code error;
-    if (out.ends_with('/') || std::filesystem::is_directory(out, error))
+    if (!isStream(out) && (out.ends_with('/') || std::filesystem::is_directory(out, error)))
       return engine::inputError("the output is a folder", out, "name a file in it, or give it as --out-dir");
     tasks.push_back({options.files[0], out, options.extension});
   } else {

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "app/spelling.h"
+#include "app/streams.h"
 #include "app/terminal.h"
 
 namespace fettle::app {
@@ -64,7 +65,10 @@ void addKeptWarnings(Report& report) {
 }
 
 void printReport(const Report& report) {
-  printIndented(report, 0);
+  // Each was said on stderr when it was found.
+  Report shown = report;
+  shown.erase("warnings");
+  printIndented(shown, 0);
 }
 
 Check within(double lowest, double highest) {
@@ -87,6 +91,24 @@ Check oneOf(const std::vector<std::string>& words) {
                                meant.empty() ? "" : "; ", meant);
           },
           fmt::format("{{{}}}", fmt::join(words, ","))};
+}
+
+Check fileName() {
+  return {[](const std::string& typed) {
+    return isStream(typed) ? std::string(
+                                 "takes no -, standard input or standard output: name a file, ./- for one "
+                                 "of that name")
+                           : std::string();
+  }};
+}
+
+Check folderName() {
+  return {[](const std::string& typed) {
+    return isStream(typed) ? std::string(
+                                 "- is standard output, and no folder: name a folder, ./- for one of "
+                                 "that name")
+                           : std::string();
+  }};
 }
 
 void addOutputFlags(Command app, Chosen& chosen) {

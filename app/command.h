@@ -37,7 +37,8 @@ struct Chosen {
 /// that it holds already, with or without the file's name before them. Without any the report stays as it is.
 void addKeptWarnings(Report& report);
 
-/// "key  value" lines; nested objects are indented, null prints as "-".
+/// "key  value" lines; nested objects are indented, null prints as "-". Not its `warnings`: they were said on
+/// stderr.
 void printReport(const Report& report);
 
 /// Adds --json and --quiet, which a command takes before and behind its name.
@@ -54,6 +55,13 @@ Command addCommand(Command root, Chosen& chosen, const std::string& name, const 
 
 /// For Option::check: one of these words. Another is refused with what it may stand for.
 [[nodiscard]] Check oneOf(const std::vector<std::string>& words);
+
+/// For Option::check of a file: not "-", which is no standard input or output there.
+[[nodiscard]] Check fileName();
+
+/// For Option::check of a folder: not "-". A folder of that name would stand in the way of every command that
+/// writes to standard output.
+[[nodiscard]] Check folderName();
 
 void addInfo(Command root, Chosen& chosen);
 void addSynth(Command root, Chosen& chosen);

@@ -25,8 +25,11 @@ Misread misreadOf(const CLI::App& root, const std::string& what) {
   }
   for (const CLI::App* command : used->get_subcommands([](const CLI::App*) { return true; }))
     misread.known_commands.push_back(command->get_name());
-  for (const CLI::Option* option : used->get_options())
+  for (const CLI::Option* option : used->get_options()) {
     for (const std::string& name : option->get_lnames()) misread.known_options.push_back("--" + name);
+    for (const std::string& name : option->get_snames())
+      misread.known_options.push_back(std::string("-").append(name));
+  }
   return misread;
 }
 
@@ -162,8 +165,12 @@ tl::expected<std::string, Misread> CommandLine::parse(const std::vector<std::str
     return std::string();
   } catch (const CLI::ParseError& error) {
     // "fitler --help" asks for the help of a command that is not there, not for that of the program.
-    const auto rest = app_->remaining();
-    const bool misspelt = app_->get_subcommands().empty() && !rest.empty() && !rest[0].starts_with("-");
+    // So does "bench hapitc --help".
+    const CLI::App* used = app_.get();
+    while (!used->get_subcommands().empty()) used = used->get_subcommands().front();
+    const bool takes_command = !used->get_subcommands([](const CLI::App*) { return true; }).empty();
+    const auto rest = used->remaining();
+    const bool misspelt = takes_command && !rest.empty() && !rest[0].starts_with("-");
     if (error.get_exit_code() != 0 || misspelt) return tl::unexpected(misreadOf(*app_, error.what()));
     std::ostringstream shown;  // --help and --version
     app_->exit(error, shown, shown);

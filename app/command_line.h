@@ -119,7 +119,7 @@ struct Misread {
   std::string command;                      ///< "bench haptic ": the commands that were, a blank behind each
   std::vector<std::string> rest;            ///< words that nothing took
   std::vector<std::string> known_commands;  ///< that may stand behind `command`
-  std::vector<std::string> known_options;   ///< of `command`, "--name"
+  std::vector<std::string> known_options;   ///< of `command`, "--name" and "-n"
 };
 
 /// The commands and options of a program, and how its arguments are understood by them.

@@ -70,10 +70,14 @@ std::optional<Error> emptyArgument(const std::vector<std::string>& arguments) {
   return std::nullopt;
 }
 
-// "help filter" is "filter --help", and "help" alone "--help".
+// "help filter" is "filter --help", and "help" alone "--help"; with --json and --quiet as well, which change
+// nothing of it.
 void takeHelpForOption(std::vector<std::string>& arguments) {
-  if (arguments.size() < 2 || arguments[1] != "help") return;
-  arguments.erase(arguments.begin() + 1);
+  if (arguments.empty()) return;
+  const auto help = std::find_if(arguments.begin() + 1, arguments.end(),
+                                 [](const std::string& a) { return !a.starts_with("-"); });
+  if (help == arguments.end() || *help != "help") return;
+  arguments.erase(help);
   std::erase_if(arguments, [](const std::string& a) { return a.starts_with("-"); });
   arguments.emplace_back("--help");
 }
@@ -95,6 +99,11 @@ Error usageError(const Misread& misread) {
   for (const std::string& option : rest) {
     if (!option.starts_with("-") || option == "-") continue;
     const std::string name = option.substr(0, option.find('='));
+    // It is right, but before the word of the command.
+    if (!misread.command.empty() &&
+        std::ranges::find(misread.known_options, name) != misread.known_options.end())
+      return Error{ErrorKind::kInput, fmt::format("{} stands before the command that takes it", name), "",
+                   fmt::format("put it behind: fettle {}{}", misread.command, name)};
     return refused(fmt::format("there is no option {}", name),
                    didYouMean(name.starts_with("--") ? name : "-" + name, misread.known_options));
   }

@@ -45,6 +45,7 @@ void addStoreOption(Command command) {
             engine::setStorePolicy(policy);
           },
           "Folder on a disk for the samples, so that they may be more than memory holds")
+      .check(folderName())
       .group(kReading);
 }
 
@@ -153,6 +154,45 @@ void addOriginalOption(Command command, std::string& original) {
                  "what is read, or against the original that a session has");
 }
 
+namespace {
+
+// Whether files of a format say where samples lie.
+bool keepsPlace(const engine::Imported& scan) {
+  return scan.format != "PNG" && scan.format != "STL";
+}
+
+// How far two numbers are apart. A format that loses the unit keeps the number: then that is what must agree.
+double apart(double a, double b, const engine::Grid& of_a, const engine::Grid& of_b) {
+  return std::min(std::abs(a - b),
+                  std::abs(a * of_a.lateral_unit.mm - b * of_b.lateral_unit.mm) / of_b.lateral_unit.mm);
+}
+
+// Whether two grids of the same sides put each sample in the same place, but for the rounding of a format.
+engine::Status checkSamePlace(const engine::Grid& original, const engine::Grid& scan,
+                              const std::string& where) {
+  constexpr double kPartOfSample = 0.05;
+  constexpr const char* kRemedy = "give the scan that this one was made from";
+  const auto refused = [&](const char* what, double ax, double ay, double bx, double by) {
+    return engine::inputError(
+        fmt::format(
+            "the {} of the original is {:.10g} x {:.10g} {} and that of the scan {:.10g} x {:.10g} {}", what,
+            ax, ay, original.lateral_unit.name, bx, by, scan.lateral_unit.name),
+        where, kRemedy);
+  };
+  // At the far side, where a wrong spacing adds up.
+  if (apart(original.spacing_x, scan.spacing_x, original, scan) * scan.width >
+          kPartOfSample * scan.spacing_x ||
+      apart(original.spacing_y, scan.spacing_y, original, scan) * scan.height >
+          kPartOfSample * scan.spacing_y)
+    return refused("spacing", original.spacing_x, original.spacing_y, scan.spacing_x, scan.spacing_y);
+  if (apart(original.origin_x, scan.origin_x, original, scan) > kPartOfSample * scan.spacing_x ||
+      apart(original.origin_y, scan.origin_y, original, scan) > kPartOfSample * scan.spacing_y)
+    return refused("origin", original.origin_x, original.origin_y, scan.origin_x, scan.origin_y);
+  return {};
+}
+
+}  // namespace
+
 engine::Result<engine::Version> originalOf(const engine::Imported& imported, const std::string& given,
                                            const ScanOptions& reading, engine::JobControl& job) {
   if (given.empty()) return imported.original.value_or(imported.field);
@@ -170,6 +210,8 @@ engine::Result<engine::Version> originalOf(const engine::Imported& imported, con
     return engine::inputError(fmt::format("heights of the original are in {} and those of the scan in {}",
                                           is.height_unit.name, wanted.height_unit.name),
                               given, "convert one of them, or say --unit where a file states none");
+  if (keepsPlace(*other) && keepsPlace(imported))
+    if (auto same = checkSamePlace(is, wanted, given); !same) return tl::unexpected(same.error());
   return original.withGrid(wanted);
 }
 
@@ -322,7 +364,9 @@ engine::Status checkPlaces(const std::vector<Output>& outputs, const std::vector
   for (const Output& output : outputs) {
     if (output.path.empty()) continue;
     if (auto status = checkOutput(output); !status) return status;
-    const auto [earlier, fresh] = taken.emplace(placeOf(output.path), Use::kOutput);
+    // A file or folder of that name is another place than standard output.
+    const auto place = isStream(output.path) ? std::filesystem::path() : placeOf(output.path);
+    const auto [earlier, fresh] = taken.emplace(place, Use::kOutput);
     if (!fresh)
       return engine::inputError(earlier->second == Use::kInput ? "the output would replace an input"
                                                                : "two outputs are in the same place",

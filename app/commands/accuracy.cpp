@@ -131,7 +131,9 @@ void addAccuracy(Command root, Chosen& chosen) {
   Command command = addCommand(
       root, chosen, "accuracy", "What accuracy costs in time: a page of plots, tables and answers",
       [options](engine::JobControl& job) { return accuracy(*options, job); }, printAccuracy);
-  command.option("FOLDER", options->folder, "Where accuracy.html, accuracy.csv and the plots go").required();
+  command.option("FOLDER", options->folder, "Where accuracy.html, accuracy.csv and the plots go")
+      .check(folderName())
+      .required();
   command.option("SCAN", options->scan, "A scan to study beside the made fields");
   command.option("--only", options->only, "Studies to make: " + studyNames() + "; none: all");
   command

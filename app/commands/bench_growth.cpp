@@ -113,7 +113,7 @@ void addBenchGrowth(Command bench, Chosen& chosen) {
   command.option("--largest", options->bench.largest, "Samples along the sides of the largest field")
       .showDefault();
   command.option("--effort", options->bench.effort, "Share of the full work, 0.01 to 1").showDefault();
-  command.option("--plots", options->folder, "Folder for a picture of each");
+  command.option("--plots", options->folder, "Folder for a picture of each").check(folderName());
   command.onFlag(
       "--no-picture", [options] { options->bench.picture = false; },
       "Leave out uploads: no Vulkan device is needed");

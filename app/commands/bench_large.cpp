@@ -123,7 +123,8 @@ void addBenchLarge(Command bench, Chosen& chosen) {
       },
       printBenchLarge);
   command.option("--side", options->side, "Samples along each side of the scan").showDefault();
-  command.option("--folder", options->folder, "Where the files lie meanwhile; else the temporary folder");
+  command.option("--folder", options->folder, "Where the files lie meanwhile; else the temporary folder")
+      .check(folderName());
   command.option("--effort", options->effort, "Share of the ticks, 0.01 to 1").showDefault();
   command.onFlag(
       "--no-picture", [options] { options->picture = false; },

@@ -104,8 +104,8 @@ void addCompare(Command root, Chosen& chosen) {
   command.option("A", options->a, "The scan to compare with; A or B may be -, standard input").required();
   command.option("B", options->b, "The scan to judge").required();
   command.option("--truth", options->truth, "The true surface: adds RMSE overall, on flats and near edges");
-  command.option("--edges", options->edges,
-                 "Picture of the true edges, non-zero = edge: adds the edge width");
+  command.option("--edges", options->edges, "Picture of the true edges, non-zero = edge: adds the edge width")
+      .check(fileName());
   command.option("--deviation", options->deviation,
                  "Also write B - A as a scan of its own, in A's height unit, format by extension");
   addForceOption(command, options->replacing);

@@ -43,8 +43,6 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
 }
 
 engine::Result<Report> convert(const ConvertArguments& options, engine::JobControl& job) {
-  if (options.files.many() && options.files.extension.empty())
-    return engine::inputError("the format to write is not said", "--to", "give it as extension: --to tif");
   const auto tasks = batchTasks(options.files, {}, job);
   if (!tasks) return tl::unexpected(tasks.error());
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());

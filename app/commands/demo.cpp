@@ -107,7 +107,9 @@ void addDemo(Command root, Chosen& chosen) {
   Command command = addCommand(
       root, chosen, "demo", "The whole process on a simulated scan: pictures, table, session",
       [options](engine::JobControl& job) { return demo(*options, job); }, printDemo);
-  command.option("DIR", options->folder, "Folder for everything it writes; made if need be").required();
+  command.option("DIR", options->folder, "Folder for everything it writes; made if need be")
+      .check(folderName())
+      .required();
   command.option("--part", options->part, "The part to scan; see fettle synth --help").showDefault();
   command.option("--side", options->side, "Samples along each side").check(inRange(64, 16384)).showDefault();
   command.option("--noise", options->noise, "Scale of the scanner's noise").showDefault();

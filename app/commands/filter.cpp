@@ -335,8 +335,11 @@ void addFilter(Command root, Chosen& chosen) {
                  "1 (tv) standard deviations of the scan's noise");
   command.option("--passes", options->passes, "How often the filter is applied").showDefault();
   const Option keep =
-      command.option("--keep", options->keep, "Picture of marks: these samples keep their bits");
-  command.option("--only", options->only, "Picture of marks: only these samples are filtered").excludes(keep);
+      command.option("--keep", options->keep, "Picture of marks: these samples keep their bits")
+          .check(fileName());
+  command.option("--only", options->only, "Picture of marks: only these samples are filtered")
+      .check(fileName())
+      .excludes(keep);
   command.option("--max-change", options->max_change,
                  "No sample ends further than this from the original: that of a session, else "
                  "--original, else IN; in the scan's height unit, or as 20um, 0.5mm");

@@ -229,7 +229,8 @@ void addInfo(Command root, Chosen& chosen) {
   command
       .option("--at", options->at, "Also the height at ROW,COLUMN of the file, both from 0; may be repeated")
       .oneValueEach();
-  command.option("--picture", options->picture, "Also a thumbnail, PNG of 320 x 240 pixels");
+  command.option("--picture", options->picture, "Also a thumbnail, PNG of 320 x 240 pixels")
+      .check(fileName());
   command.option("--bins", options->bins, "Bins of the histogram, from the lowest to the highest sample")
       .check(inRange(1, engine::kMostBins))
       .showDefault();

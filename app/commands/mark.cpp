@@ -88,7 +88,7 @@ void addMark(Command root, Chosen& chosen) {
       .showDefault();
   command.option("--thickness", options->choice.thickness, "Edges: marked to this distance, in samples")
       .showDefault();
-  command.option("--add", options->add, "Picture of marks to begin with");
+  command.option("--add", options->add, "Picture of marks to begin with").check(fileName());
   command.flag("--invert", options->invert, "Afterwards, mark what is not marked and the other way round");
   addScanOptions(command, options->reading);
 }

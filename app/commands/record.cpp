@@ -381,16 +381,19 @@ void addRecord(Command root, Chosen& chosen) {
       [options](engine::JobControl& job) { return record(*options, job); }, printReport, Progress::kOwn);
   command.option("SCAN", options->scan, "The scan to touch").required();
   command.option("STROKES", options->strokes, "Where the session goes: CSV t,x,y,z,tool, one row a tick")
+      .check(fileName())
       .required();
-  command.option("OUT", options->out, "The field after it, format by extension");
+  command.option("OUT", options->out, "The field after it, format by extension").check(fileName());
   command
       .option("--device", options->device,
               "An id of fettle devices, woodenhaptics, serial, spacemouse, hand:STROKES (simulated, in "
               "closed loop) or replay:STROKES (in real time)")
       .required();
-  command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
-  command.option("--marks", options->marks, "Picture of marks to start from");
-  command.option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");
+  command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)")
+      .check(fileName());
+  command.option("--marks", options->marks, "Picture of marks to start from").check(fileName());
+  command.option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF")
+      .check(fileName());
   command.option("--tool", options->tool, "feel, smooth, mark or unmark, at the start")
       .check(oneOf({"feel", "smooth", "mark", "unmark"}))
       .showDefault();

@@ -216,7 +216,7 @@ void addRender(Command root, Chosen& chosen) {
       .showDefault();
   command.option("--compare", options->compare, "Second scan, drawn at the right with the same camera");
   command.option("--deviation", options->deviation, "Colours show the deviation from this scan");
-  command.option("--marks", options->marks, "Picture of marks to overlay");
+  command.option("--marks", options->marks, "Picture of marks to overlay").check(fileName());
   command.option("--map", options->map, "Colour map")
       .check(oneOf({"auto", "viridis", "cividis", "grey", "diverging"}))
       .showDefault();

@@ -10,6 +10,7 @@
 #include "app/journal/session_player.h"
 #include "app/live/placement.h"
 #include "app/scan_options.h"
+#include "app/streams.h"
 #include "app/terminal.h"
 #include "app/view/open_document.h"
 #include "engine/io/marks.h"
@@ -120,6 +121,9 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   ReplayArguments options = given;
   if (auto named = settleNames(options); !named) return tl::unexpected(named.error());
   if (options.strokes.empty()) return replayJournal(options, job);
+  if (isStream(options.strokes))
+    return engine::inputError("STROKES takes no -, standard input", "-",
+                              "name a file, ./- for one of that name");
   if (auto status =
           checkOutputs({{options.out, OutputKind::kField, options.to},
                         {options.marks_out, OutputKind::kMarks},
@@ -206,10 +210,12 @@ void addReplay(Command root, Chosen& chosen) {
       "What to do: CSV with header t,x,y,z,tool, one row a tick; left out for a session's own journal");
   command.option("OUT", options->out, "The field after it, format by extension; - for standard output");
   addStreamFormat(command, options->to);
-  command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
-  command.option("--marks", options->marks, "Picture of marks to start from");
-  command.option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF");
-  command.option("--forces", options->forces, "Write proxy and force of every tick as CSV");
+  command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)")
+      .check(fileName());
+  command.option("--marks", options->marks, "Picture of marks to start from").check(fileName());
+  command.option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF")
+      .check(fileName());
+  command.option("--forces", options->forces, "Write proxy and force of every tick as CSV").check(fileName());
   addOriginalOption(command, options->original);
   addForceOption(command, options->replacing);
   command.flag(

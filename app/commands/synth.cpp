@@ -75,8 +75,9 @@ void addSynth(Command root, Chosen& chosen) {
   command.option("--dropouts", options->spec.dropouts, "Scale of dropouts by slope and shadow").showDefault();
   command.option("--seed", options->spec.seed, "Same seed, same bits").check({seedProblem}).showDefault();
   addForceOption(command, options->replacing);
-  command.option("--truth", options->truth, "Also write the true surface");
-  command.option("--edges", options->edges, "Also write the true edges as a picture, non-zero = edge");
+  command.option("--truth", options->truth, "Also write the true surface").check(fileName());
+  command.option("--edges", options->edges, "Also write the true edges as a picture, non-zero = edge")
+      .check(fileName());
 }
 
 }  // namespace fettle::app

@@ -45,6 +45,7 @@ void StatusLine::show(const haptic::LoopState& state, const haptic::LoopTiming& 
 }
 
 void StatusLine::tell(const SessionEvent& event) {
+  if (voice().quiet) return;  // the report has every event
   wipe();
   put(fmt::format("fettle: {:.3f} s: {}{}{}\n", event.t, event.what, event.remedy.empty() ? "" : ": ",
                   event.remedy));

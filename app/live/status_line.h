@@ -9,7 +9,7 @@
 namespace fettle::app {
 
 /// What a live session shows: one line on stderr that is kept up to date, when stderr is a terminal, and a
-/// line for each event, always. One thread.
+/// line for each event; nothing with Voice::quiet. One thread.
 class StatusLine {
  public:
   StatusLine();

@@ -190,6 +190,7 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
   tally.rounding = 0.0;  // decimal numbers are no floats to begin with
   if (!declared && tally.holes > 0)
     warnings.push_back("the header says no NODATA_VALUE, -9999 taken as the format has it");
+  if (text.lastLineIsOpen()) warnings.emplace_back(kOpenLastLine);
   if (std::string_view rest; text.word(rest))
     warnings.push_back("there are more numbers than the header promises, the rest was left out");
   return finishImport(std::move(*builder), rule, tally, "AAIGrid", std::move(warnings), path);

@@ -61,7 +61,7 @@ Result<Imported> finishImport(FieldBuilder&& builder, const HeightRule& rule, co
   if (imported.field.reader().bounds().empty())
     return inputError("the file holds no valid height, every sample is no-data", path,
                       "check the file and --no-data");
-  if (!rule.user_no_data) doubtLoneValues(imported.field, rule, warnings);
+  imported.lone_values = doubtLoneValues(imported.field, rule, warnings);
   imported.format = std::move(format);
   imported.warnings = std::move(warnings);
   return imported;

@@ -27,9 +27,9 @@ namespace fettle::engine {
 [[nodiscard]] Status checkPacking(std::uint64_t raw_bytes, std::uint64_t stored_bytes,
                                   const std::string& path);
 
-/// Builds the field, refuses one without any height, and puts the tally's warnings in place, and one for a
-/// value that looks like an undeclared hole (lone_value.h) unless the user named one. `rule` is the one that
-/// the heights were made by.
+/// Builds the field, refuses one without any height, and puts the tally's warnings in place, and one for
+/// each value that looks like an undeclared hole (lone_value.h). `rule` is the one that the heights were made
+/// by.
 [[nodiscard]] Result<Imported> finishImport(FieldBuilder&& builder, const HeightRule& rule,
                                             const HeightTally& tally, std::string format,
                                             std::vector<std::string> warnings, const std::string& path);

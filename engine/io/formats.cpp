@@ -113,7 +113,7 @@ Result<Imported> import(const std::string& path, const ImportOptions& options, J
       Result<Imported> imported = options.depth_camera ? readDepthImage(format, *file, options, job)
                                                        : format.read(*file, options, job);
       // A session's units were settled when its scan was imported.
-      if (imported && imported->format != "Fettle") doubtUnits(imported->field, options, imported->warnings);
+      if (imported && imported->format != "Fettle") doubtUnits(*imported, options);
       return imported;
     }
   return inputError("the file is in no format that is known", path,

@@ -81,6 +81,14 @@ void unitsOfCrs(const std::string& wkt, double y, StatedUnits& units, std::vecto
   if (!crs) return;
   char* name = nullptr;  // owned by the reference system
   if (OSRIsGeographic(crs.get()) != 0) {
+    if (std::abs(y) > 90.0) {
+      warnings.push_back(fmt::format(
+          "coordinates that are no degrees? The coordinate system has degrees, and the field would "
+          "lie at latitude {:.8g}: metres taken, look at the coordinate system, or give --unit",
+          y));
+      units.lateral = LengthUnit{"m", 1000.0};
+      return;
+    }
     const double latitude = std::fmin(std::abs(y), 89.0);
     const auto [north, east] = degreeLengths(latitude);
     // One unit for both axes: the geometric mean keeps areas.

@@ -40,6 +40,7 @@ struct RasterPlacement {
 
 /// Lateral and height units of a coordinate system given as WKT; `y` is a world y near the field's middle,
 /// for the length of a degree. Appends to `warnings` for a geographic system.
+/// One whose latitude `y` would lie beyond a pole has no degrees: metres are taken.
 void unitsOfCrs(const std::string& wkt, double y, StatedUnits& units, std::vector<std::string>& warnings);
 
 }  // namespace fettle::engine

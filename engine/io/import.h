@@ -68,6 +68,8 @@ struct Imported {
   std::string format;                 ///< FormatInfo::name of the reader, e.g. "GTiff", "XYZ"
   std::vector<std::string> warnings;  ///< what was guessed, converted or lost; one line each, no full stop
   std::optional<GriddingReport> gridding;  ///< point clouds only
+  /// Heights that look like holes which the file does not declare (lone_value.h); `warnings` name each.
+  std::vector<float> lone_values;
 };
 
 /// Reads a height field from a file of any format of formats() that can be read. The format is recognised by

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <ogr_srs_api.h>
 
 #include "engine/io/format.h"
 #include "engine/io/gdal_session.h"
@@ -36,6 +37,7 @@ constexpr std::array<std::uint16_t, 11> kPointBytes = {20, 28, 26, 34, 57, 63, 3
 struct LasHeader {
   int minor = 0;
   int format = 0;
+  bool wkt_holds = false;
   std::uint16_t header_bytes = 0;
   std::uint32_t records = 0;
   std::uint64_t points_at = 0;
@@ -56,6 +58,8 @@ Result<LasHeader> readHeader(const InputFile& file) {
   if (h[24] != 1 || out.minor > 4)
     return inputError(fmt::format("LAS {}.{} is not known", static_cast<int>(h[24]), out.minor), file.path(),
                       "write it as LAS 1.2 or 1.4");
+  constexpr unsigned kWktBit = 1U << 4;  // of the global encoding
+  out.wkt_holds = (little<std::uint16_t>(&h[6]) & kWktBit) != 0;
   out.header_bytes = little<std::uint16_t>(&h[94]);
   out.points_at = little<std::uint32_t>(&h[96]);
   out.records = little<std::uint32_t>(&h[100]);
@@ -123,8 +127,29 @@ void takeGeoKeys(std::string_view keys, PointCloud& cloud) {
   return true;
 }
 
-// Coordinate system and units from the records between header and points: WKT where there is one that is
-// understood, else keys.
+// Whether two texts name one place on the Earth: vertical systems, which one of them may leave out, aside.
+bool sameSystem(const std::string& a, const std::string& b) {
+  const auto horizontal = [](const std::string& wkt) {
+    OGRSpatialReferenceH crs = OSRNewSpatialReference(wkt.c_str());
+    if (crs != nullptr) OSRStripVertical(crs);
+    return crs;
+  };
+  OGRSpatialReferenceH one = horizontal(a), other = horizontal(b);
+  const char* const options[] = {"CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS",
+                                 "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
+  const bool same = one != nullptr && other != nullptr && OSRIsSameEx(one, other, options) != 0;
+  OSRRelease(one);
+  OSRRelease(other);
+  return same;
+}
+
+std::string shownSystem(const std::string& wkt) {
+  const std::size_t open = wkt.find('"');
+  return open == std::string::npos ? wkt : wkt.substr(open + 1, wkt.find('"', open + 1) - open - 1);
+}
+
+// Coordinate system and units from the records between header and points: keys, or WKT where the header's bit
+// for it is set (LAS 1.4 - R15, "global encoding"); the other where that one is missing or not understood.
 void readSystem(const InputFile& file, const LasHeader& header, PointCloud& cloud) {
   std::uint64_t at = header.header_bytes;
   std::array<char, kRecordHeader> h{};
@@ -150,9 +175,20 @@ void readSystem(const InputFile& file, const LasHeader& header, PointCloud& clou
   wkt.resize(std::min(wkt.find('\0'), wkt.size()));
   const bool named = !wkt.empty() || !keys.directory.empty();
   const GdalSession quiet;
-  if (!takeSystem(std::move(wkt), header, cloud)) (void)takeSystem(wktOfGeoKeys(keys), header, cloud);
+  const std::string keyed = wktOfGeoKeys(keys);
+  const std::string &first = header.wkt_holds ? wkt : keyed, &second = header.wkt_holds ? keyed : wkt;
+  if (!takeSystem(first, header, cloud)) {
+    (void)takeSystem(second, header, cloud);
+  } else if (!second.empty() && !sameSystem(first, second)) {
+    cloud.warnings.push_back(
+        fmt::format("the file names two coordinate systems, {} in {} and {} in {}: the first was taken, as "
+                    "its header's bit "
+                    "for WKT says",
+                    shownSystem(first), header.wkt_holds ? "WKT" : "GeoTIFF keys", shownSystem(second),
+                    header.wkt_holds ? "GeoTIFF keys" : "WKT"));
+  }
   takeGeoKeys(keys.directory, cloud);
-  if (named && cloud.crs_wkt.empty())
+  if (named && cloud.crs_wkt.empty() && cloud.warnings.empty())
     cloud.warnings.push_back(fmt::format("the file's coordinate system is not understood{}",
                                          cloud.unit ? ", of it only the unit is kept" : ""));
 }

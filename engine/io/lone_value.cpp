@@ -1,6 +1,7 @@
 #include "engine/io/lone_value.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -12,130 +13,329 @@ namespace fettle::engine {
 namespace {
 
 constexpr double kLeastShare = 0.01;         // of the samples that are no holes
-constexpr double kLeastDistance = 0.1;       // of the range of the other heights
 constexpr std::int64_t kFewestSamples = 16;  // samples with the value; other heights
 constexpr double kFlat = 0.04;               // of the samples: another height that so many have
 constexpr double kFlatBeside = 0.25;         // of those with the value, likewise
+constexpr double kScattered = 0.1;           // of a frequent height's samples: those of one beside it
+constexpr double kMostEqual = 0.6;           // of neighbouring samples in coarse counts with noise
+constexpr double kNoHeight = 1e20;           // no surface is so high in any unit
 constexpr std::size_t kMostLoneValues = 2;
-constexpr std::int32_t kLattice = 256;
+constexpr std::size_t kMostNumbers = 4;  // written for holes, at either end
+constexpr int kMostPasses = 4;
+constexpr std::int32_t kSketchSide = 256;
 
-// Heights on a lattice over the field, ascending.
-std::vector<float> sampledHeights(const Version& field) {
+// Least distances, in ranges of the rest.
+constexpr double kFromNoise = 0.1;
+constexpr double kWrittenForHoles = 1.0;
+constexpr double kFromCounts = 1.0;
+constexpr double kFarBeyond = 100.0;
+
+// A height and how many samples of the lattice have it.
+struct Level {
+  float value = 0.0F;
+  std::ptrdiff_t samples = 0;
+};
+
+// What a lattice over the field shows.
+struct Sketch {
+  std::vector<Level> levels;  // ascending
+  std::ptrdiff_t samples = 0;
+  std::ptrdiff_t pairs = 0;  // of neighbours in a row
+  std::ptrdiff_t equal = 0;  // pairs of one height
+};
+
+Sketch sketchOf(const Version& field) {
   const FieldReader reader = field.reader();
   const Grid& grid = field.grid();
-  const std::int32_t by_column = (grid.width + kLattice - 1) / kLattice;
-  const std::int32_t by_row = (grid.height + kLattice - 1) / kLattice;
+  const std::int32_t by_column = (grid.width + kSketchSide - 1) / kSketchSide;
+  const std::int32_t by_row = (grid.height + kSketchSide - 1) / kSketchSide;
+  Sketch sketch;
   std::vector<float> heights;
   for (std::int32_t r = 0; r < grid.height; r += by_row)
-    for (std::int32_t c = 0; c < grid.width; c += by_column)
-      if (const float z = reader.heightAt(c, r); !std::isnan(z)) heights.push_back(z);
+    for (std::int32_t c = 0; c < grid.width; c += by_column) {
+      const float z = reader.heightAt(c, r);
+      if (std::isnan(z)) continue;
+      heights.push_back(z);
+      const float beside = c + 1 < grid.width ? reader.heightAt(c + 1, r) : z;
+      if (c + 1 >= grid.width || std::isnan(beside)) continue;
+      ++sketch.pairs;
+      sketch.equal += static_cast<std::ptrdiff_t>(beside == z);
+    }
   std::sort(heights.begin(), heights.end());
-  return heights;
+  sketch.samples = std::ssize(heights);
+  for (auto first = heights.begin(); first != heights.end();) {
+    const auto last = std::upper_bound(first, heights.end(), *first);
+    sketch.levels.push_back({*first, last - first});
+    first = last;
+  }
+  return sketch;
 }
 
-// A value and the heights around it.
-struct Lone {
-  float value = 0.0F;
-  std::int64_t samples = 0, all = 0;                      // with the value; that are no holes
-  float below = -std::numeric_limits<float>::infinity();  // nearest other heights
-  float above = std::numeric_limits<float>::infinity();
-  float lowest = std::numeric_limits<float>::infinity();  // of the others
+// The file's number for a height, as a float, so that a scale leaves no digits of its rounding behind.
+float storedNumber(float height, const HeightRule& rule) {
+  return HeightRule::toFloat((double{height} - rule.offset) / rule.scale);
+}
+
+// Whether programs write a number where there is no height.
+bool writtenForHoles(float stored) {
+  constexpr std::array kHoleNumbers{-32768.0F,     32767.0F,      -32767.0F, 65535.0F, -2147483648.0F,
+                                    2147483648.0F, 4294967296.0F, 999.0F,    9999.0F,  99999.0F,
+                                    999999.0F,     9999999.0F,    -999.0F,   -9999.0F, -99999.0F,
+                                    -999999.0F,    -9999999.0F};
+  return std::abs(stored) >= kNoHeight || std::ranges::find(kHoleNumbers, stored) != kHoleNumbers.end();
+}
+
+// The heights that are not lone.
+struct Rest {
+  float lowest = std::numeric_limits<float>::infinity();
   float highest = -std::numeric_limits<float>::infinity();
+  std::ptrdiff_t heights = 0;  // different ones, of the lattice
 
   void take(float z) {
-    if (std::isnan(z)) return;
-    ++all;
-    if (z == value) {
-      ++samples;
-      return;
-    }
-    if (z < value)
-      below = std::max(below, z);
-    else
-      above = std::min(above, z);
     lowest = std::min(lowest, z);
     highest = std::max(highest, z);
   }
-  [[nodiscard]] double distance() const {
-    return std::min(double{value} - double{below}, double{above} - double{value});
+  [[nodiscard]] double range() const { return double{highest} - double{lowest}; }
+  // From outside; negative within.
+  [[nodiscard]] double distance(float z) const {
+    return std::max(double{lowest} - double{z}, double{z} - double{highest});
   }
-  [[nodiscard]] bool far() const {
-    return lowest < highest && distance() >= kLeastDistance * (double{highest} - double{lowest});
-  }
-  [[nodiscard]] double share() const { return static_cast<double>(samples) / static_cast<double>(all); }
 };
 
-// The values of the sampled heights that may be lone ones; a value has half its share there at least.
-std::vector<float> candidates(const std::vector<float>& sampled) {
-  std::vector<float> found;
-  const auto fewest = std::max<std::ptrdiff_t>(
-      kFewestSamples / 4,
-      static_cast<std::ptrdiff_t>(0.5 * kLeastShare * static_cast<double>(sampled.size())));
-  for (auto first = sampled.begin(); first != sampled.end();) {
-    const auto last = std::upper_bound(first, sampled.end(), *first);
-    if (last - first >= fewest) {
-      Lone lone{*first};
-      if (first != sampled.begin()) {
-        lone.lowest = std::min(lone.lowest, sampled.front());
-        lone.below = *(first - 1);
-        lone.highest = std::max(lone.highest, lone.below);
-      }
-      if (last != sampled.end()) {
-        lone.highest = std::max(lone.highest, sampled.back());
-        lone.above = *last;
-        lone.lowest = std::min(lone.lowest, lone.above);
-      }
-      if (lone.far()) found.push_back(*first);
+bool isOneOf(const std::vector<float>& values, float z) {
+  return std::find(values.begin(), values.end(), z) != values.end();
+}
+
+Rest restOf(const std::vector<Level>& levels, const std::vector<float>& without) {
+  Rest rest;
+  for (const Level& level : levels)
+    if (!isOneOf(without, level.value)) {
+      rest.take(level.value);
+      ++rest.heights;
     }
-    first = last;
+  return rest;
+}
+
+// Whether a number that is written for holes stands where it must be one.
+bool besideSurface(float value, const Rest& rest, const HeightRule& rule) {
+  const bool levels = rest.lowest < rest.highest || std::abs(storedNumber(value, rule)) >= kNoHeight;
+  return levels && rest.distance(value) >= kWrittenForHoles * rest.range() && rest.distance(value) > 0.0;
+}
+
+// Of the numbers that are written for holes, those that lie far from all the rest.
+std::vector<float> holeNumbers(const std::vector<Level>& levels, const HeightRule& rule) {
+  std::vector<float> found;
+  const auto take = [&](auto first, auto last) {
+    for (std::size_t k = 0; k < kMostNumbers && first != last; ++k, ++first) {
+      if (!writtenForHoles(storedNumber(first->value, rule))) return;
+      if (!isOneOf(found, first->value)) found.push_back(first->value);
+    }
+  };
+  // They lie outside of the rest.
+  take(levels.begin(), levels.end());
+  take(levels.rbegin(), levels.rend());
+  // One that may be a height belongs to the rest; the nearest first, for others may be far from it.
+  while (!found.empty()) {
+    const Rest rest = restOf(levels, found);
+    if (rest.heights == 0) return {};
+    const auto nearest = std::min_element(
+        found.begin(), found.end(), [&](float a, float b) { return rest.distance(a) < rest.distance(b); });
+    if (besideSurface(*nearest, rest, rule)) break;
+    found.erase(nearest);
   }
   return found;
 }
 
-// Whether the other heights are those of a noisy surface: many, none of them nearly as frequent.
-bool amongNoise(const std::vector<float>& sampled, float value) {
-  std::ptrdiff_t distinct = 0, most = 0, here = 0;
-  for (auto first = sampled.begin(); first != sampled.end();) {
-    const auto last = std::upper_bound(first, sampled.end(), *first);
-    if (*first == value) {
-      here = last - first;
-    } else {
-      ++distinct;
-      most = std::max(most, last - first);
-    }
-    first = last;
+// How far a height must be from the others, in their range, to be lone among their noise; nothing where they
+// are not those of a noisy surface.
+std::optional<double> leastFromNoise(const Sketch& sketch, std::size_t lone) {
+  std::vector<Level> others = sketch.levels;
+  others.erase(others.begin() + static_cast<std::ptrdiff_t>(lone));
+  if (std::ssize(others) < kFewestSamples) return std::nullopt;
+  const auto flat = std::max(kFlat * static_cast<double>(sketch.samples),
+                             kFlatBeside * static_cast<double>(sketch.levels[lone].samples));
+  bool any = false;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const auto most = static_cast<double>(others[i].samples);
+    if (most <= flat) continue;
+    any = true;
+    const auto beside = std::max(i > 0 ? others[i - 1].samples : 0,
+                                 i + 1 < others.size() ? others[i + 1].samples : std::ptrdiff_t{0});
+    if (static_cast<double>(beside) < kScattered * most) return std::nullopt;
   }
-  const double flat =
-      std::max(kFlat * static_cast<double>(sampled.size()), kFlatBeside * static_cast<double>(here));
-  return distinct >= kFewestSamples && static_cast<double>(most) <= flat;
+  if (!any) return kFromNoise;
+  // Steps or a slope in coarse counts but without noise: neighbours are equal.
+  if (static_cast<double>(sketch.equal) > kMostEqual * static_cast<double>(sketch.pairs)) return std::nullopt;
+  return kFromCounts;
 }
 
-}  // namespace
+// A value that may stand for holes, and what the whole field says of it.
+struct Suspect {
+  float value = 0.0F;
+  double least_ranges = 0.0;    // from the rest
+  double least_distance = 0.0;  // [height unit], likewise
+  bool hole_number = false;     // a number that is written for holes
+  std::int64_t samples = 0;
+  float below = -std::numeric_limits<float>::infinity();  // nearest of the rest
+  float above = std::numeric_limits<float>::infinity();
 
-void doubtLoneValues(const Version& field, const HeightRule& rule, std::vector<std::string>& warnings) {
-  const std::vector<float> sampled = sampledHeights(field);
-  std::vector<Lone> lone;
-  for (const float value : candidates(sampled))
-    if (amongNoise(sampled, value)) lone.push_back({value});
-  if (lone.empty() || lone.size() > kMostLoneValues) return;
+  [[nodiscard]] double distance() const {
+    return std::min(double{value} - double{below}, double{above} - double{value});
+  }
+};
+
+// Heights as frequent as a lone value: half its share is on the lattice at least.
+std::ptrdiff_t fewestOnLattice(const Sketch& sketch) {
+  return std::max<std::ptrdiff_t>(
+      kFewestSamples / 4,
+      static_cast<std::ptrdiff_t>(0.5 * kLeastShare * static_cast<double>(sketch.samples)));
+}
+
+std::vector<Suspect> amongNoise(const Sketch& sketch) {
+  std::vector<Suspect> found;
+  const std::vector<Level>& levels = sketch.levels;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    if (levels[i].samples < fewestOnLattice(sketch)) continue;
+    Suspect one{levels[i].value};
+    if (i > 0) one.below = levels[i - 1].value;
+    if (i + 1 < levels.size()) one.above = levels[i + 1].value;
+    const Rest rest = restOf(levels, {one.value});
+    if (!(rest.lowest < rest.highest) || one.distance() < kFromNoise * rest.range()) continue;
+    const auto least = leastFromNoise(sketch, i);
+    if (!least || one.distance() < *least * rest.range()) continue;
+    one.least_ranges = *least;
+    found.push_back(one);
+  }
+  return found.size() > kMostLoneValues ? std::vector<Suspect>() : found;
+}
+
+// The outermost heights, as many as are far beyond all others.
+std::vector<Suspect> farBeyond(const Sketch& sketch, double least_distance) {
+  const std::vector<Level>& levels = sketch.levels;
+  for (std::size_t count = kMostLoneValues; count > 0; --count)
+    for (std::size_t low = 0; low <= count && levels.size() > count; ++low) {
+      std::vector<Suspect> outer;
+      std::vector<float> values;
+      for (std::size_t k = 0; k < count; ++k) {
+        const Level& level = k < low ? levels[k] : levels[levels.size() - 1 - (k - low)];
+        if (level.samples < fewestOnLattice(sketch)) break;
+        outer.push_back({level.value, kFarBeyond, least_distance});
+        values.push_back(level.value);
+      }
+      const Rest rest = restOf(levels, values);
+      if (outer.size() == count && rest.heights >= kFewestSamples &&
+          std::all_of(values.begin(), values.end(), [&](float value) {
+            return rest.distance(value) >= std::max(kFarBeyond * rest.range(), least_distance);
+          }))
+        return outer;
+    }
+  return {};
+}
+
+// What every sample of the field says of the suspects.
+struct Tally {
+  Rest rest;
+  std::int64_t all = 0;  // samples that are no holes
+};
+
+Tally tallyOf(const Version& field, std::vector<Suspect>& suspects) {
+  Tally tally;
+  for (Suspect& one : suspects) one = {one.value, one.least_ranges, one.least_distance, one.hole_number};
   const FieldReader reader = field.reader();
   const Grid& grid = field.grid();
   std::vector<float> row(static_cast<std::size_t>(grid.width));
   for (std::int32_t r = 0; r < grid.height; ++r) {
     reader.readHeights(0, r, grid.width, 1, row.data(), grid.width);
-    for (Lone& one : lone)
-      for (const float z : row) one.take(z);
+    for (const float z : row) {
+      if (std::isnan(z)) continue;
+      ++tally.all;
+      const auto same =
+          std::find_if(suspects.begin(), suspects.end(), [&](const Suspect& s) { return s.value == z; });
+      if (same != suspects.end()) {
+        ++same->samples;
+        continue;
+      }
+      tally.rest.take(z);
+      for (Suspect& one : suspects)
+        if (z < one.value)
+          one.below = std::max(one.below, z);
+        else
+          one.above = std::min(one.above, z);
+    }
   }
-  for (const Lone& one : lone) {
-    if (one.samples < kFewestSamples || one.share() <= kLeastShare || !one.far()) continue;
-    // As a float, so that a scale leaves no digits of its rounding behind.
-    const float stored = HeightRule::toFloat((double{one.value} - rule.offset) / rule.scale);
-    warnings.push_back(
-        fmt::format("{:.3g} % of the samples are exactly {} {}, {:.6g} away from every other height: if they "
-                    "are holes, give "
-                    "--no-data {}",
-                    100.0 * one.share(), one.value, grid.height_unit.name, one.distance(), stored));
+  return tally;
+}
+
+bool isLone(const Suspect& one, const Tally& tally, const HeightRule& rule) {
+  if (one.hole_number) {
+    const std::int64_t fewest = std::abs(storedNumber(one.value, rule)) >= kNoHeight ? 1 : kFewestSamples;
+    return one.samples >= fewest && besideSurface(one.value, tally.rest, rule);
   }
+  return one.samples >= kFewestSamples &&
+         static_cast<double>(one.samples) > kLeastShare * static_cast<double>(tally.all) &&
+         tally.rest.lowest < tally.rest.highest &&
+         one.distance() >= std::max(one.least_ranges * tally.rest.range(), one.least_distance);
+}
+
+std::vector<Suspect> suspectsOf(const Version& field, const HeightRule& rule) {
+  Sketch sketch = sketchOf(field);
+  // The lattice may have missed a rare value, the bounds have not.
+  const HeightBounds bounds = field.reader().bounds();
+  if (!bounds.empty() && !sketch.levels.empty()) {
+    if (bounds.min < sketch.levels.front().value)
+      sketch.levels.insert(sketch.levels.begin(), Level{bounds.min, 0});
+    if (bounds.max > sketch.levels.back().value) sketch.levels.push_back({bounds.max, 0});
+  }
+  std::vector<Suspect> suspects;
+  const std::vector<float> numbers = holeNumbers(sketch.levels, rule);
+  for (const float value : numbers) suspects.push_back({value, kWrittenForHoles, 0.0, true});
+  if (rule.user_no_data) return suspects;
+  for (const float value : numbers)
+    std::erase_if(sketch.levels, [&](const Level& level) {
+      if (level.value != value) return false;
+      sketch.samples -= level.samples;
+      return true;
+    });
+  const Grid& grid = field.grid();
+  const double longest = std::max(grid.width * grid.spacingXMm(), grid.height * grid.spacingYMm());
+  std::vector<Suspect> others = amongNoise(sketch);
+  if (others.empty()) others = farBeyond(sketch, longest / grid.height_unit.mm);
+  suspects.insert(suspects.end(), others.begin(), others.end());
+  return suspects;
+}
+
+}  // namespace
+
+std::vector<float> doubtLoneValues(const Version& field, const HeightRule& rule,
+                                   std::vector<std::string>& warnings) {
+  std::vector<Suspect> suspects = suspectsOf(field, rule);
+  if (suspects.empty()) return {};
+  Tally tally;
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    tally = tallyOf(field, suspects);
+    // Behind a rare number there may be another, which the lattice missed as well.
+    const std::size_t known = suspects.size();
+    for (const float end : {tally.rest.lowest, tally.rest.highest})
+      if (std::isfinite(end) && writtenForHoles(storedNumber(end, rule)) && tally.rest.range() > 0.0)
+        suspects.push_back({end, kWrittenForHoles, 0.0, true});
+    if (suspects.size() == known) break;
+  }
+  std::vector<float> lone;
+  for (const Suspect& one : suspects) {
+    if (!isLone(one, tally, rule)) continue;
+    const float stored = storedNumber(one.value, rule);
+    warnings.push_back(fmt::format(
+        "{:.3g} % of the samples are exactly {} {}, {:.6g} away from every other height: if they are holes{}",
+        100.0 * static_cast<double>(one.samples) / static_cast<double>(tally.all), one.value,
+        field.grid().height_unit.name, one.distance(),
+        lone.empty()
+            ? fmt::format(", give --no-data {}", stored)
+            : fmt::format(" too, convert with the other number and read the result with --no-data {}, "
+                          "which takes one at a time",
+                          stored)));
+    lone.push_back(one.value);
+  }
+  return lone;
 }
 
 }  // namespace fettle::engine

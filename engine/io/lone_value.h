@@ -8,16 +8,31 @@
 
 namespace fettle::engine {
 
-/// Appends a warning that names --no-data for a value that looks like a hole of which the file says nothing:
-/// one height, exactly the same over more than 1 % of all that are no holes, that lies farther from every
-/// other height than a tenth of the range of the others. At most two such values; where there are more, the
-/// field is one of few levels, and nothing is said; nor where another height is as exactly that of more than
-/// 4 % of the samples and of a quarter as many, as the flats of a part without noise are. Fewer than 16
-/// samples with the value, or than 16 other heights, prove nothing.
+/// Values that look like holes of which the file says nothing: each is one height, exactly the same over many
+/// samples, far from every other. A warning for each is appended, which names --no-data. The values are
+/// returned, so that nothing else is concluded from them. All distances are from the rest: the heights
+/// without any of these values. There are three ways to be one:
+///
+///   a number that programs write for holes   the lowest or highest of an integer type, 999, 9999, 99999 and
+///                                            so on, their negatives, anything from 1e20 on: no nearer than
+///                                            the range of the rest, whatever the rest looks like
+///   one height among noise                   over more than 1 % of the samples, and farther than a tenth of
+///                                            the range of the rest, which must be noisy: no height in it
+///                                            has more than 4 % of the samples and a quarter as many. Where
+///                                            counts are coarse, its frequent heights may scatter over
+///                                            neighbouring counts instead; the distance is then the range
+///   far beyond the surface                   over more than 1 % of the samples, a hundred ranges of the rest
+///                                            away and farther than the field is long
+///
+/// So the flats of a part without noise, two steps, and a deep bore or a floor below a flat plate are none.
+/// Fewer than 16 samples with the value (but one is enough from 1e20 on) prove nothing; nor do, but for the
+/// first, fewer than 16 other heights, or more than two such values: the field is one of few levels.
 ///
 /// `rule` is the one by which the file's numbers became heights: the warning names the number as --no-data
-/// takes it. Cost: a lattice of at most 256 x 256 samples, and one pass over the field when that finds
-/// something. The same for the same field. Thread: any.
-void doubtLoneValues(const Version& field, const HeightRule& rule, std::vector<std::string>& warnings);
+/// takes it. Where the user named a number, only the first way is looked for. Cost: a lattice of at most
+/// 256 x 256 samples, and passes over the field when that finds something, mostly one. The same for the same
+/// field. Thread: any.
+std::vector<float> doubtLoneValues(const Version& field, const HeightRule& rule,
+                                   std::vector<std::string>& warnings);
 
 }  // namespace fettle::engine

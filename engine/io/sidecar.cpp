@@ -79,7 +79,12 @@ Sidecar readAuxXml(const std::string& path, std::vector<std::string>& warnings) 
 }
 
 std::string prjBeside(const std::string& path) {
-  return std::filesystem::path(path).replace_extension(".prj").string();
+  const std::filesystem::path usual = std::filesystem::path(path).replace_extension(".prj");
+  std::error_code error;
+  for (const char* extension : {".prj", ".PRJ", ".Prj", ".pRJ", ".prJ", ".pRj", ".PRj", ".PrJ"})
+    if (auto there = usual; std::filesystem::exists(there.replace_extension(extension), error))
+      return there.string();
+  return usual.string();
 }
 
 std::string readPrj(const std::string& path, std::vector<std::string>& warnings) {

@@ -18,7 +18,8 @@ struct Sidecar {
 /// scales and offsets of heights. Thread: any.
 [[nodiscard]] Sidecar readAuxXml(const std::string& path, std::vector<std::string>& warnings);
 
-/// The .prj file of a scan: its path with another extension.
+/// The .prj file of a scan: its path with another extension, in whatever case there is one; in lower case
+/// where there is none.
 [[nodiscard]] std::string prjBeside(const std::string& path);
 
 /// The coordinate system that the .prj file beside `path` names, as WKT 2; empty where there is none, or none

@@ -77,6 +77,7 @@ bool TextReader::word(std::string_view& text) {
   if (!status_) return false;
   text = {buffer_.data() + begin_, stop - begin_};
   begin_ = stop;
+  open_ = stop == end_;
   return true;
 }
 

@@ -27,8 +27,8 @@ class TextReader {
   /// Skips bytes; the caller has made sure that they are there.
   void skip(std::uint64_t count);
 
-  /// Whether the line given last is the file's last and has no end: a file that was cut within its last
-  /// number reads as if it held another one.
+  /// Whether the line or word given last is the file's last and nothing stands behind it, no line end and no
+  /// space: a file that was cut within its last number reads as if it held another one.
   [[nodiscard]] bool lastLineIsOpen() const noexcept { return open_; }
 
   /// Offset in the file of what comes next.

@@ -21,27 +21,49 @@ constexpr double kAroundTheEarthMm = 4e10;
 constexpr double kRoundTheGlobe = 361.0;  // degrees, and a sample's width for rounding
 constexpr double kPoleToPole = 181.0;
 
-double spanMm(const Version& field) {
-  const HeightBounds bounds = field.reader().bounds();
-  return (double{bounds.max} - bounds.min) * field.grid().height_unit.mm;
+bool isLoneValue(const Imported& imported, float z) {
+  return std::find(imported.lone_values.begin(), imported.lone_values.end(), z) != imported.lone_values.end();
+}
+
+double spanMm(const Imported& imported) {
+  const FieldReader reader = imported.field.reader();
+  const Grid& grid = imported.field.grid();
+  HeightBounds bounds = reader.bounds();
+  if (!imported.lone_values.empty()) {
+    bounds = {std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+    std::vector<float> row(static_cast<std::size_t>(grid.width));
+    for (std::int32_t r = 0; r < grid.height; ++r) {
+      reader.readHeights(0, r, grid.width, 1, row.data(), grid.width);
+      for (const float z : row) {
+        if (std::isnan(z) || isLoneValue(imported, z)) continue;
+        bounds.min = std::min(bounds.min, z);
+        bounds.max = std::max(bounds.max, z);
+      }
+    }
+  }
+  return bounds.empty() ? 0.0 : (double{bounds.max} - bounds.min) * grid.height_unit.mm;
 }
 
 // Median of |rise| over distance between neighbours of a row and of a column, on a lattice over the field;
 // NaN where fewer than kFewest pairs
 // of valid samples are neighbours: they prove nothing.
-double medianSlope(const Version& field) {
+double medianSlope(const Imported& imported) {
   constexpr std::int32_t kLattice = 256;
   constexpr std::size_t kFewest = 16;
-  const FieldReader reader = field.reader();
-  const Grid& grid = field.grid();
+  const FieldReader reader = imported.field.reader();
+  const Grid& grid = imported.field.grid();
+  const auto heightAt = [&](std::int32_t c, std::int32_t r) {
+    const float z = reader.heightAt(c, r);
+    return isLoneValue(imported, z) ? std::numeric_limits<double>::quiet_NaN() : double{z};
+  };
   const std::int32_t by_column = grid.width / kLattice + 1;
   const std::int32_t by_row = grid.height / kLattice + 1;
   std::vector<double> slopes;
   for (std::int32_t r = 0; r < grid.height; r += by_row)
     for (std::int32_t c = 0; c < grid.width; c += by_column) {
-      const double z = reader.heightAt(c, r);
-      if (c + 1 < grid.width) slopes.push_back(std::abs(reader.heightAt(c + 1, r) - z) / grid.spacingXMm());
-      if (r + 1 < grid.height) slopes.push_back(std::abs(reader.heightAt(c, r + 1) - z) / grid.spacingYMm());
+      const double z = heightAt(c, r);
+      if (c + 1 < grid.width) slopes.push_back(std::abs(heightAt(c + 1, r) - z) / grid.spacingXMm());
+      if (r + 1 < grid.height) slopes.push_back(std::abs(heightAt(c, r + 1) - z) / grid.spacingYMm());
     }
   std::erase_if(slopes, [](double slope) { return std::isnan(slope); });
   if (slopes.size() < kFewest) return std::numeric_limits<double>::quiet_NaN();
@@ -78,11 +100,22 @@ bool mayBeDegrees(const Grid& grid) {
   return elsewhere || whole_globe || (arcSeconds(grid.spacing_x) && arcSeconds(grid.spacing_y));
 }
 
-void doubtSlopes(const Version& field, std::vector<std::string>& warnings) {
-  const Grid& grid = field.grid();
+// Whether nothing rules degrees out: a length is only assumed, numbers of that size occur on the globe, and
+// the spacing is none of whole samples.
+bool canBeDegrees(const Grid& grid, const ImportOptions& options) {
+  if (options.unit || grid.lateral_unit != LengthUnit{}) return false;
+  const double right = grid.origin_x + grid.width * grid.spacing_x;
+  const double top = grid.origin_y + grid.height * grid.spacing_y;
+  return grid.spacing_x < 1.0 && grid.spacing_y < 1.0 && grid.origin_x > -181.0 && right < 361.0 &&
+         grid.origin_y > -91.0 && top < 91.0;
+}
+
+void doubtSlopes(Imported& imported, const ImportOptions& options) {
+  std::vector<std::string>& warnings = imported.warnings;
+  const Grid& grid = imported.field.grid();
   const LengthUnit& said = grid.height_unit;
   if (isNoLength(said.name)) return;
-  const double slope = medianSlope(field);
+  const double slope = medianSlope(imported);
   if (!(slope > kTooSteep)) return;
   const std::string found = fmt::format("Half of all neighbours rise by more than {:.0f} to 1", slope);
   // What a scale of heights mends is known only where both axes are lengths.
@@ -93,13 +126,23 @@ void doubtSlopes(const Version& field, std::vector<std::string>& warnings) {
                     said.name, found, grid.spacing_x));
     return;
   }
+  const std::string lies =
+      fmt::format("They are {:.6g} to {:.6g}, {:.6g} to {:.6g}, {:.3g} apart. {}", grid.origin_x,
+                  grid.origin_x + (grid.width - 1) * grid.spacing_x, grid.origin_y,
+                  grid.origin_y + (grid.height - 1) * grid.spacing_y, grid.spacing_x, found);
   if (grid.crs_wkt.empty() && mayBeDegrees(grid)) {
-    warnings.push_back(fmt::format(
-        "coordinates in degrees where {} is said or assumed? They are {:.6g} to {:.6g}, {:.6g} to {:.6g}, "
-        "{:.3g} "
-        "apart. {}: reproject degrees to metres, e.g. with gdalwarp; for lengths give --spacing",
-        grid.lateral_unit.name, grid.origin_x, grid.origin_x + (grid.width - 1) * grid.spacing_x,
-        grid.origin_y, grid.origin_y + (grid.height - 1) * grid.spacing_y, grid.spacing_x, found));
+    warnings.push_back(
+        fmt::format("coordinates in degrees where {} is said or assumed? {}: reproject degrees to metres, "
+                    "e.g. with gdalwarp; for lengths give --spacing",
+                    grid.lateral_unit.name, lies));
+    return;
+  }
+  if (grid.crs_wkt.empty() && canBeDegrees(grid, options)) {
+    warnings.push_back(
+        fmt::format("coordinates in degrees, or heights in another unit than coordinates, where {0} is said "
+                    "or assumed for both? {1}: reproject degrees to metres, e.g. with gdalwarp; for lengths "
+                    "give --spacing in the unit of the heights",
+                    grid.lateral_unit.name, lies));
     return;
   }
   if (grid.height_per_count == 1.0) {
@@ -125,10 +168,11 @@ void doubtSlopes(const Version& field, std::vector<std::string>& warnings) {
 
 }  // namespace
 
-void doubtUnits(const Version& field, const ImportOptions& options, std::vector<std::string>& warnings) {
-  const Grid& grid = field.grid();
-  if (!options.z_scale && !options.spacing) doubtSlopes(field, warnings);
-  const double span = isNoLength(grid.height_unit.name) ? 0.0 : spanMm(field);
+void doubtUnits(Imported& imported, const ImportOptions& options) {
+  std::vector<std::string>& warnings = imported.warnings;
+  const Grid& grid = imported.field.grid();
+  if (!options.z_scale && !options.spacing) doubtSlopes(imported, options);
+  const double span = isNoLength(grid.height_unit.name) ? 0.0 : spanMm(imported);
   if (span > 0.0 && span < kBelowAtomsMm)
     warnings.push_back(
         fmt::format("heights in another unit than {}? They span {:.3g} nm, less than an atom: give --z-scale",
@@ -157,12 +201,12 @@ void doubtUnits(const Version& field, const ImportOptions& options, std::vector<
                     grid.lateral_unit.name, closest * 1e6));
 }
 
-void doubtTexture(const Version& field, const std::string& standard, std::vector<std::string>& warnings) {
-  const Grid& grid = field.grid();
-  const double span = spanMm(field) / 1000.0;
+void doubtTexture(Imported& imported, const std::string& standard) {
+  const Grid& grid = imported.field.grid();
+  const double span = spanMm(imported) / 1000.0;
   const double extent = std::max(grid.width * grid.spacingXMm(), grid.height * grid.spacingYMm()) / 1000.0;
   if (span > 1.0 || grid.spacingXMm() > 100.0 || extent > 100.0)
-    warnings.push_back(fmt::format(
+    imported.warnings.push_back(fmt::format(
         "heights in micrometres in a file whose standard says {}? They span {:.3g} m over {:.3g} m: if so, "
         "give --unit um",
         standard, span, extent));

@@ -528,7 +528,7 @@ Result<Imported> readX3p(const InputFile& file, const ImportOptions& options, Jo
   if (surface->z.type == 'L' && tally.rounding < 0.5 * std::abs(rule.scale)) tally.rounding = 0.0;
   Result<Imported> imported =
       finishImport(std::move(*builder), rule, tally, "X3P", std::move(warnings), file.path());
-  if (imported && !own && !options.unit) doubtTexture(imported->field, "metres", imported->warnings);
+  if (imported && !own && !options.unit) doubtTexture(*imported, "metres");
   return imported;
 }
 

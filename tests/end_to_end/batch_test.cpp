@@ -120,7 +120,6 @@ TEST_F(Batch, RefusesBeforeAnythingIsReadWhatWouldEndInOneFile) {
       fettle({"filter", folder.file("a.tif"), folder.file("b.asc"), folder.file("c.x3p"), "--filter", "box"}),
       "--out-dir");
   expectRefused(fettle({"filter", folder.file("a.tif"), "--filter", "box"}), "IN OUT");
-  expectRefused(fettle({"convert", folder.file("a.tif"), "--out-dir", out()}), "--to");
   expectRefused(fettle({"convert", folder.file("a.tif"), out("x.asc"), "--to", "asc"}), "--out-dir");
   expectRefused(fettle({"convert", folder.file("a.tif"), "--out-dir", out(), "--to", "docx"}), "docx");
   EXPECT_EQ(written(), Names{});
@@ -194,6 +193,20 @@ TEST_F(Batch, CtrlCLeavesWholeFilesAlone) {
       << outcome.err;
   EXPECT_EQ(written(), Names{"a.tif"});
   EXPECT_EQ(fettle({"info", first}).status, 0);
+}
+
+TEST_F(Batch, WithoutToConvertKeepsAFormatThatCanBeWrittenAndNeverReplacesAScan) {
+  std::ofstream(folder.file("d.pcd")) << "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
+                                         "WIDTH 4\nHEIGHT 1\nPOINTS 4\nDATA ascii\n"
+                                         "0 0 1\n1 0 2\n0 1 3\n1 1 4\n";
+  const auto report = fettleJson(
+      {"convert", folder.file("a.tif"), folder.file("b.asc"), folder.file("d.pcd"), "--out-dir", out()});
+  EXPECT_EQ(report["done"], 3);
+  EXPECT_EQ(written(), (Names{"a.tif", "b.asc", "d.tif"}));
+  expectRefused(fettle({"convert", folder.file("a.tif"), "--out-dir", folder.path().string()}),
+                "would replace an input");
+  const std::string help = fettle({"convert", "--help"}).out;
+  EXPECT_NE(help.find("the scan's own, or tif"), std::string::npos) << help;
 }
 
 }  // namespace

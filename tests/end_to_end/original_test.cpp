@@ -3,11 +3,14 @@
 #include <cmath>
 #include <cstdlib>
 
+#include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include <gtest/gtest.h>
 
 #include "engine/filter/filter.h"
+#include "engine/io/export.h"
 #include "engine/io/import.h"
 #include "engine/session/session.h"
 #include "tests/end_to_end/program.h"
@@ -137,6 +140,41 @@ TEST_F(Original, ThatCannotBeOneIsRefused) {
   expectRefused(
       fettle({"replay", scan, file("strokes.csv"), file("out.tif"), "--original", file("small.tif")}),
       "nothing limits them");
+}
+
+TEST_F(Original, OnAnotherGridIsRefusedWithWhatDiffers) {
+  const auto ask = [&](const std::string& in, const std::string& original) {
+    return fettle(
+        {"filter", in, file("out.tif"), "--filter", "box", "--max-change", "0.01", "--original", original});
+  };
+  engine::JobControl job;
+  const auto imported = engine::importField(scan, {}, job);
+  ASSERT_TRUE(imported);
+  const auto placed = [&](const std::string& name, const std::function<void(engine::Grid&)>& change) {
+    engine::Grid grid = imported->field.grid();
+    change(grid);
+    EXPECT_TRUE(engine::exportField(imported->field.withGrid(grid), file(name), {}, job));
+    return file(name);
+  };
+  expectRefused(ask(scan, placed("shift.tif", [](engine::Grid& g) { g.origin_x += 100.0; })),
+                "the origin of the original is ");
+  expectRefused(ask(scan, placed("half.tif", [](engine::Grid& g) { g.origin_y += 0.5 * g.spacing_y; })),
+                "the origin of the original is ");
+  expectRefused(ask(scan, placed("wide.tif", [](engine::Grid& g) { g.spacing_x *= 1.01; })),
+                "the spacing of the original is ");
+  EXPECT_FALSE(std::filesystem::exists(file("out.tif")));
+  // What a format rounds or does not keep is no other grid.
+  const std::string close = placed("close.tif", [](engine::Grid& g) {
+    g.origin_x += 1e-3 * g.spacing_x;
+    g.spacing_y *= 1.0 + 1e-7;
+  });
+  for (const std::string& name : {close, file("a.asc"), file("a.xyz"), file("a.png"), file("a.ply")}) {
+    if (name != close) {
+      ASSERT_EQ(fettle({"convert", scan, name}).status, 0);
+    }
+    const Outcome taken = ask(name, scan);
+    EXPECT_EQ(taken.status, 0) << name << ": " << taken.err;
+  }
 }
 
 }  // namespace

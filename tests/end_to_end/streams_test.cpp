@@ -122,5 +122,53 @@ TEST_F(Streams, CtrlCEndsTheWaitForInputAndLeavesNothingBehind) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("o.tif")));
 }
 
+// For its lifetime the process, and what it starts, stands in a folder.
+class StandingIn {
+ public:
+  explicit StandingIn(const std::filesystem::path& folder) : before_(std::filesystem::current_path()) {
+    std::filesystem::current_path(folder);
+  }
+  ~StandingIn() { std::filesystem::current_path(before_); }
+  StandingIn(const StandingIn&) = delete;
+  StandingIn& operator=(const StandingIn&) = delete;
+
+ private:
+  std::filesystem::path before_;
+};
+
+TEST_F(Streams, AFolderOfThatNameIsNeitherInTheWayNorMade) {
+  const StandingIn here(folder.path());
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"accuracy", "-", "--only", "energy", "--effort", "0.01"},
+        {"demo", "-", "--side", "64"},
+        {"convert", "s.tif", "--out-dir", "-", "--to", "asc"},
+        {"filter", "s.tif", "--out-dir", "-", "--filter", "box"},
+        {"info", "s.tif", "--store", "-"},
+        {"bench", "growth", "--plots", "-"}}) {
+    expectRefused(fettle(arguments), "- is standard output, and no folder");
+    EXPECT_FALSE(std::filesystem::exists("-")) << arguments.front();
+  }
+  std::filesystem::create_directory("-");
+  const Outcome sent = fettle({"convert", "s.tif", "-", "--to", "asc"});
+  EXPECT_EQ(sent.status, 0) << sent.err;
+  EXPECT_TRUE(sent.out.starts_with("ncols")) << sent.out.substr(0, 80);
+}
+
+TEST_F(Streams, ArgumentsThatTakeNoneSaySo) {
+  const std::string scan = folder.file("s.tif"), out = folder.file("o.tif");
+  for (const auto& [arguments, name] :
+       {std::pair{std::vector<std::string>{"replay", scan, "-", out}, "STROKES"},
+        {std::vector<std::string>{"replay", scan, "strokes.csv", out, "--forces", "-"}, "--forces"},
+        {std::vector<std::string>{"replay", scan, "strokes.csv", out, "--scene", "-"}, "--scene"},
+        {std::vector<std::string>{"record", scan, "-", "--device", "hand:x"}, "STROKES"},
+        {std::vector<std::string>{"info", scan, "--picture", "-"}, "--picture"},
+        {std::vector<std::string>{"filter", scan, out, "--filter", "box", "--keep", "-"}, "--keep"},
+        {std::vector<std::string>{"synth", out, "--truth", "-"}, "--truth"}}) {
+    const Outcome told = fettle(arguments);
+    expectRefused(told, "takes no -");
+    EXPECT_NE(told.err.find(name), std::string::npos) << told.err;
+  }
+}
+
 }  // namespace
 }  // namespace fettle::tests

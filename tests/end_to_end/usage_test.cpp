@@ -70,6 +70,29 @@ TEST(Usage, QuietSaysNothingButErrors) {
   expectRefused(fettle({"info", folder.file("none.tif"), "-q"}), "none.tif");
 }
 
+TEST(Usage, QuietRecordsWithoutAWordOfTheDevice) {
+  const TempFolder folder;
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "64x64", "-q"}).status, 0);
+  std::ofstream strokes(folder.file("st.csv"));
+  strokes << "t,x,y,z,tool\n";
+  for (int k = 0; k < 100; ++k) strokes << 0.001 * k << ",3,3,40,feel\n";
+  strokes.close();
+  const std::vector<std::string> record{"record",
+                                        folder.file("s.tif"),
+                                        folder.file("q.csv"),
+                                        "--device",
+                                        "hand:" + folder.file("st.csv"),
+                                        "--seconds",
+                                        "0.05"};
+  std::vector<std::string> quiet = record;
+  quiet.insert(quiet.begin(), "-q");
+  const Outcome told = fettle(quiet);
+  EXPECT_EQ(told.status, 0) << told.err;
+  EXPECT_EQ(told.err, "");
+  EXPECT_EQ(told.out, "");
+  EXPECT_NE(fettle(record).err.find("fettle: "), std::string::npos);
+}
+
 // One line with one object.
 nlohmann::json errorOf(const Outcome& outcome, int status) {
   EXPECT_EQ(outcome.status, status) << outcome.err;
@@ -124,6 +147,47 @@ TEST(Usage, UnderJsonAnErrorIsOneObjectOnStderr) {
     EXPECT_TRUE(object["error"].is_string());
   }
   EXPECT_EQ(objects, 2);
+}
+
+TEST(Usage, HelpIsHelpWithOutputFlagsAndKnowsTheCommandsOfACommand) {
+  const std::string info = fettle({"help", "info"}).out;
+  for (const char* flag : {"-q", "--quiet", "--json"}) {
+    const Outcome told = fettle({flag, "help", "info"});
+    EXPECT_EQ(told.status, 0) << told.err;
+    EXPECT_EQ(told.out, info) << flag;
+  }
+  expectRefused(fettle({"help", "bench", "hapitc"}),
+                "there is no command bench hapitc, did you mean haptic?");
+  expectRefused(fettle({"help", "bench", "nope"}), "there is no command bench nope");
+  expectRefused(fettle({"bench", "hapitc", "--help"}), "did you mean haptic?");
+}
+
+TEST(Usage, AnOptionBeforeItsCommandIsSentBehindIt) {
+  const Outcome told = fettle({"--compress", "lzw", "convert", "a.tif", "b.tif"});
+  expectRefused(told, "--compress stands before the command that takes it");
+  EXPECT_NE(told.err.find("put it behind: fettle convert --compress"), std::string::npos) << told.err;
+  expectRefused(fettle({"bench", "-q", "haptic"}), "put it behind: fettle bench haptic -q");
+  EXPECT_NE(fettle({"bench", "--json", "haptic"}).err.find("put it behind: fettle bench haptic --json"),
+            std::string::npos);
+}
+
+TEST(Usage, AWarningIsPrintedOnce) {
+  const TempFolder folder;
+  const std::string scan = scanWithoutUnit(folder);
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", scan}, {"convert", scan, folder.file("o.stl")}}) {
+    const Outcome told = fettle(arguments);
+    EXPECT_NE(told.err.find("fettle: warning: "), std::string::npos);
+    EXPECT_EQ(told.out.find("warning"), std::string::npos) << told.out;
+    EXPECT_EQ(told.out.find("states no unit"), std::string::npos) << told.out;
+  }
+  EXPECT_EQ(fettleJson({"info", scan})["warnings"].size(), 1U);
+}
+
+TEST(Usage, AVersionThatCannotBePrintedSaysWhy) {
+  const std::string program = FETTLE_PROGRAM;
+  for (const std::string asked : {"-V", "--version", "--help"})
+    expectFailed(runProcess({"sh", "-c", program + " " + asked + " >/dev/full"}), "the disk is full");
 }
 
 }  // namespace

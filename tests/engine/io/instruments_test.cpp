@@ -173,6 +173,47 @@ TEST(Las, KeysAloneNameTheCoordinateSystem) {
   EXPECT_EQ(lying.field.grid().crs_wkt, "");
 }
 
+// LAS 1.4 - R15, "global encoding": bit 4 says that WKT holds, else keys do.
+TEST(Las, OfKeysAndWktTheOneThatTheHeaderSaysHoldsAndADifferenceIsSaid) {
+  const std::string wkt =
+      R"(PROJCS["WGS 84 / UTM zone 32N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],)"
+      R"(PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],)"
+      R"(PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],)"
+      R"(PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]])";
+  const auto both = [&](int minor, std::uint16_t zone, bool wkt_holds) {
+    std::string bytes =
+        withLasRecord(las(minor, 3, 34, kFourPoints, wkt), 34735,
+                      geoKeys({{1024, 0, 1, 1}, {1025, 0, 1, 1}, {3072, 0, 1, zone}, {4096, 0, 1, 5703}}));
+    put<std::uint16_t>(bytes, 6, wkt_holds ? 0x10 : 0);
+    return bytes;
+  };
+  for (const int minor : {2, 4}) {
+    FETTLE_LOAD_BYTES(keys, "a.las", both(minor, 32633, false));
+    EXPECT_NE(keys.field.grid().crs_wkt.find("zone 33N"), std::string::npos) << keys.field.grid().crs_wkt;
+    EXPECT_TRUE(warned(keys.warnings, "names two coordinate systems"));
+    EXPECT_TRUE(warned(keys.warnings, "in GeoTIFF keys and WGS 84 / UTM zone 32N in WKT"))
+        << keys.warnings.front();
+  }
+  FETTLE_LOAD_BYTES(text, "b.las", both(4, 32633, true));
+  EXPECT_NE(text.field.grid().crs_wkt.find("zone 32N"), std::string::npos) << text.field.grid().crs_wkt;
+  EXPECT_TRUE(warned(text.warnings, "names two coordinate systems"));
+  // A vertical system that only one of them has is no difference.
+  FETTLE_LOAD_BYTES(same, "c.las", both(2, 32632, false));
+  EXPECT_TRUE(same.warnings.empty()) << same.warnings.front();
+}
+
+TEST(Las, DegreesBeyondThePolesAreDoubtedAndNotComputedWith) {
+  std::string bytes =
+      withLasRecord(las(2, 3, 34, kFourPoints), 34735, geoKeys({{1024, 0, 1, 2}, {2048, 0, 1, 4326}}));
+  put<double>(bytes, 195, 4500100.0);
+  put<double>(bytes, 203, 4500000.0);
+  FETTLE_LOAD_BYTES(scan, "a.las", bytes);
+  EXPECT_EQ(scan.field.grid().lateral_unit.name, "m");
+  EXPECT_TRUE(warned(scan.warnings, "coordinates that are no degrees?"));
+  EXPECT_TRUE(warned(scan.warnings, "latitude 4500050"));
+  EXPECT_FALSE(warned(scan.warnings, "1 deg taken as"));
+}
+
 TEST(Las, PackedPointsAreRefusedByName) {
   const TempFolder folder;
   writeBytes(folder.file("a.laz"), las(2, 0x80 | 3, 34, kFourPoints));

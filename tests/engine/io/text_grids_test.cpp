@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -42,7 +43,7 @@ TEST(AsciiGrid, WithoutAKeyMinus9999IsTheHole) {
 
 TEST(AsciiGrid, TheUnitTakenIsSaidUnlessItIsGiven) {
   const TempFolder folder;
-  writeBytes(folder.file("a.asc"), "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n2 3");
+  writeBytes(folder.file("a.asc"), "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n2 3\n");
   FETTLE_LOAD(scan, folder.file("a.asc"));
   EXPECT_EQ(scan.warnings,
             std::vector<std::string>{"the file states no unit, mm taken: give it with --unit"});
@@ -71,7 +72,7 @@ TEST(AsciiGrid, HeightsEqualToTheUsualMarkChooseAnother) {
 }
 
 constexpr const char* kTwoSamples =
-    "ncols 2\nnrows 1\nxllcorner 500000\nyllcorner 5000000\ncellsize 1\nNODATA_value -9999\n2 3";
+    "ncols 2\nnrows 1\nxllcorner 500000\nyllcorner 5000000\ncellsize 1\nNODATA_value -9999\n2 3\n";
 
 TEST(AsciiGrid, ThePrjBesideItNamesTheCoordinateSystem) {
   const TempFolder folder;
@@ -230,6 +231,54 @@ TEST(Formats, TheTableNamesWhatCanBeReadAndWritten) {
   }
   EXPECT_EQ(table,
             "GTiff rw PNG rw PLY rw PCD r LAS r SUR r X3P rw EXR rw STL rw AAIGrid rw Fettle rw XYZ rw ");
+}
+
+TEST(AsciiGrid, ThatIsCutInsideItsLastNumberIsWarnedOf) {
+  const TempFolder folder;
+  std::string text = "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n4 5 67.25\n";
+  writeBytes(folder.file("whole.asc"), text);
+  FETTLE_LOAD(whole, folder.file("whole.asc"));
+  EXPECT_FALSE(warned(whole.warnings, "may be cut short"));
+  writeBytes(folder.file("cut.asc"), text.substr(0, text.size() - 3));
+  FETTLE_LOAD(cut, folder.file("cut.asc"));
+  EXPECT_EQ(stored(cut.field, 1, 2), 67.0F);
+  EXPECT_TRUE(warned(cut.warnings, "may be cut short inside its last number"));
+  // What stands behind the last number ends it, and what is left out is not it.
+  writeBytes(folder.file("blank.asc"), text.substr(0, text.size() - 1) + " ");
+  FETTLE_LOAD(blank, folder.file("blank.asc"));
+  EXPECT_FALSE(warned(blank.warnings, "may be cut short"));
+  writeBytes(folder.file("more.asc"), text + "8");
+  FETTLE_LOAD(more, folder.file("more.asc"));
+  EXPECT_FALSE(warned(more.warnings, "may be cut short"));
+}
+
+TEST(TextGrids, WhatFettleWritesEndsWithALineEnd) {
+  const TempFolder folder;
+  for (const char* name : {"f.asc", "f.xyz"}) {
+    ASSERT_TRUE(save(makeField(gridOf(3, 2), {1, 2, 3, 4, 5, kNan}), folder.file(name)));
+    EXPECT_TRUE(readBytes(folder.file(name)).ends_with('\n')) << name;
+    FETTLE_LOAD(again, folder.file(name));
+    EXPECT_FALSE(warned(again.warnings, "may be cut short")) << name;
+  }
+}
+
+TEST(AsciiGrid, APrjBesideItIsFoundWhateverItsCase) {
+  const std::string prj =
+      R"(PROJCS["WGS_1984_UTM_Zone_33N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",)"
+      R"(6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],)"
+      R"(PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",500000.0],PARAMETER["False_Northing",0.0],)"
+      R"(PARAMETER["Central_Meridian",15.0],PARAMETER["Scale_Factor",0.9996],)"
+      R"(PARAMETER["Latitude_Of_Origin",0.0],UNIT["Meter",1.0]])";
+  for (const char* name : {"U.PRJ", "U.Prj", "U.prj"}) {
+    const TempFolder folder;
+    writeBytes(folder.file("U.ASC"), "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n");
+    writeBytes(folder.file(name), prj);
+    FETTLE_LOAD(scan, folder.file("U.ASC"));
+    EXPECT_NE(scan.field.grid().crs_wkt.find("33N"), std::string::npos) << name;
+    // Written again it takes the place of that one.
+    ASSERT_TRUE(save(scan.field, folder.file("U.ASC")));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2) << name;
+  }
 }
 
 }  // namespace

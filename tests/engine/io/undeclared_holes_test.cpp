@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -112,6 +113,133 @@ TEST(UndeclaredHoles, SurfacesThatHaveAFlatAreNotDoubted) {
     ASSERT_TRUE(save(makeField(gridOf(100, 100), z), folder.file("flat.tif")));
     FETTLE_LOAD(scan, folder.file("flat.tif"));
     EXPECT_FALSE(warned(scan.warnings, "--no-data")) << scan.warnings.front();
+  }
+}
+
+// 200 x 150 heights of a part in counts of 0.01 mm, with noise: most of the samples share a few heights.
+std::vector<float> quantised() {
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  std::vector<float> z(30000);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const std::size_t column = i % 200;
+    const double height = column < 60    ? 0.0
+                          : column < 120 ? 8.0
+                                         : 18.0 - 0.1 * static_cast<double>(column % 80);
+    z[i] = static_cast<float>(std::round((height + noise(random)) * 100.0) / 100.0);
+  }
+  return z;
+}
+
+// So many of the samples, every 14th from the first one, replaced by `value`.
+std::vector<float> with(std::vector<float> z, std::size_t count, float value, std::size_t first = 3) {
+  for (std::size_t i = 0; i < count; ++i) z[(first + 14 * i) % z.size()] = value;
+  return z;
+}
+
+// Heights of a landscape from 150 to 600, a third of them a lake at exactly 190.
+std::vector<float> landscape() {
+  std::mt19937 random(5);
+  std::vector<float> z(30000);
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const double hill = 375.0 + 225.0 * std::sin(static_cast<double>(i % 200) * 0.05);
+    z[i] = i / 200 < 50 ? 190.0F : static_cast<float>(hill + static_cast<double>(random() % 1000) * 0.001);
+  }
+  return z;
+}
+
+class LoneValues : public testing::Test {
+ protected:
+  // What is said of a field, and that nothing is concluded from its lone values.
+  std::vector<std::string> said(const std::vector<float>& z, double spacing = 1.0) {
+    Grid grid = gridOf(200, 150);
+    grid.spacing_x = grid.spacing_y = spacing;
+    EXPECT_TRUE(save(makeField(grid, z), folder.file("f.tif")));
+    const auto scan = load(folder.file("f.tif"));
+    EXPECT_TRUE(scan) << scan.error().line();
+    EXPECT_FALSE(warned(scan->warnings, "--z-scale")) << scan->warnings.back();
+    return scan->warnings;
+  }
+  TempFolder folder;
+};
+
+TEST_F(LoneValues, NumbersThatStandForHolesAreSaidOnAQuantisedPart) {
+  const auto two = said(with(with(quantised(), 2000, -9999.0F), 900, -32768.0F, 7), 0.1);
+  EXPECT_TRUE(warned(two, "--no-data -9999"));
+  EXPECT_TRUE(warned(two, "--no-data -32768"));
+  EXPECT_TRUE(warned(two, "one at a time"));
+  EXPECT_TRUE(warned(said(with(quantised(), 2000, -3.4028235e38F), 0.1), "--no-data -3.4028235e+38"));
+  // One sample of it is enough to spoil every figure.
+  EXPECT_TRUE(warned(said(with(quantised(), 1, 1e38F), 0.1), "--no-data 1e+38"));
+  EXPECT_TRUE(warned(said(with(quantised(), 20, -9999.0F), 0.1), "--no-data -9999"));
+}
+
+TEST_F(LoneValues, NumbersThatStandForHolesAreSaidBesideALake) {
+  const auto one = said(with(landscape(), 2025, -9999.0F));
+  EXPECT_TRUE(warned(one, "6.75 % of the samples are exactly -9999 mm"));
+  EXPECT_FALSE(warned(one, "190 mm"));
+  const auto two = said(with(with(landscape(), 2000, 32767.0F), 900, 65535.0F, 7));
+  EXPECT_TRUE(warned(two, "--no-data 32767"));
+  EXPECT_TRUE(warned(two, "--no-data 65535"));
+  // Hundreds of ranges away and farther than the field is long: no number that is known to stand for holes.
+  EXPECT_TRUE(warned(said(with(landscape(), 2025, -123456.0F)), "--no-data -123456"));
+  const auto both = said(with(with(landscape(), 2025, -123456.0F), 900, 200000.0F, 7));
+  EXPECT_TRUE(warned(both, "--no-data -123456"));
+  EXPECT_TRUE(warned(both, "--no-data 200000"));
+}
+
+TEST_F(LoneValues, ZeroIsSaidAmongHeightsInCoarseCounts) {
+  std::mt19937 random(2);
+  std::vector<float> z(30000);
+  for (float& height : z) height = 20.0F + static_cast<float>(random() % 20) * 0.01F;
+  EXPECT_TRUE(warned(said(with(z, 2000, 0.0F)), "--no-data 0"));
+}
+
+TEST_F(LoneValues, TheOtherIsSaidWhenOneOfTwoIsTakenOut) {
+  Grid grid = gridOf(200, 150);
+  ASSERT_TRUE(save(makeField(grid, with(with(landscape(), 2000, -9999.0F), 900, -32768.0F, 7)),
+                   folder.file("two.tif")));
+  ImportOptions options;
+  options.no_data = -9999.0;
+  FETTLE_LOAD(one, folder.file("two.tif"), options);
+  EXPECT_FALSE(warned(one.warnings, "exactly -9999"));
+  EXPECT_TRUE(warned(one.warnings, "--no-data -32768"));
+  ASSERT_TRUE(save(one.field, folder.file("one.tif")));
+  options.no_data = -32768.0;
+  FETTLE_LOAD(none, folder.file("one.tif"), options);
+  EXPECT_FALSE(warned(none.warnings, "--no-data"));
+  EXPECT_EQ(summarize(none.field).no_data, 2900);
+}
+
+TEST_F(LoneValues, UnitsAreDoubtedWithoutThem) {
+  // Said once, as a hole, and not again as a height that is too far or too steep.
+  for (const float value : {-3.4028235e38F, 1e38F}) {
+    const auto told = said(with(landscape(), 2025, value));
+    EXPECT_TRUE(warned(told, "--no-data"));
+    EXPECT_FALSE(warned(told, "more than on any planet"));
+    EXPECT_FALSE(warned(told, "Half of all neighbours"));
+  }
+}
+
+TEST_F(LoneValues, PartsWithALevelOfTheirOwnAreNotDoubted) {
+  std::mt19937 random(9);
+  std::vector<float> block, counted, plate, floor, mask, black;
+  for (int i = 0; i < 30000; ++i) {
+    const int column = i % 200, row = i / 200;
+    const bool in_bore = std::hypot(column - 100, row - 75) < 30;
+    const auto count = static_cast<float>(static_cast<int>(random() % 3) - 1) * 0.01F;
+    block.push_back(column < 70 ? -9.999F : 0.0F);    // a gauge block without noise
+    counted.push_back(column < 70 ? -10.0F : count);  // and in counts
+    mask.push_back(column < 70 ? 65535.0F : 0.0F);    // a picture of two colours
+    black.push_back(column < 70 ? 0.0F : 2.0F + 0.01F * count);
+    // A lapped plate whose chamfer and form are a hundredth of a millimetre, and a bore deep below them.
+    plate.push_back(in_bore ? -50.0F : row < 20 ? 0.0F : 0.0001F * static_cast<float>(row - 20));
+    // A floor that lies below all of a part, exactly flat.
+    floor.push_back(row < 60 ? -150.0F : column < 100 ? 0.0F : 0.01F * static_cast<float>(column - 100));
+  }
+  for (const std::vector<float>& z : {block, counted, plate, floor, mask, black}) {
+    const auto told = said(z);
+    EXPECT_FALSE(warned(told, "--no-data")) << told.back();
   }
 }
 

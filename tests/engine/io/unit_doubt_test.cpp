@@ -114,6 +114,31 @@ TEST(UnitDoubt, DegreesAreNamedAndNeverGivenAScale) {
   EXPECT_TRUE(told[0].starts_with("coordinates that are no degrees?")) << told[0];
 }
 
+TEST(UnitDoubt, NearTheCornerOfTheGlobesNetDegreesAreGivenNoScaleEither) {
+  // Not quite an arc second, rounded as people type it, beside (0, 0), across it and in the middle of it.
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.00013885, -0.00151615}, {-0.005, -0.005}})
+    for (const char* name : {"f.asc", "f.tif", "f.xyz"}) {
+      Grid grid;
+      grid.spacing_x = grid.spacing_y = 0.0002777;
+      grid.origin_x = x;
+      grid.origin_y = y;
+      const TempFolder folder;
+      ASSERT_TRUE(save(rough(grid, 60.0), folder.file(name)));
+      FETTLE_LOAD(scan, folder.file(name));
+      EXPECT_TRUE(warned(scan.warnings, "coordinates in degrees")) << name;
+      EXPECT_TRUE(warned(scan.warnings, "0.000278 apart")) << name;
+      expectNoScale(scan.warnings);
+    }
+  // Where the user says a unit of length they are none.
+  ImportOptions options;
+  options.unit = lengthUnitFromName("mm");
+  Grid grid;
+  grid.spacing_x = grid.spacing_y = 0.01;
+  const auto told = doubts(rough(grid, 1.0), options);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_TRUE(told[0].starts_with("heights in um where mm")) << told[0];
+}
+
 TEST(UnitDoubt, WholeNumbersMayBeCountsOrBrightness) {
   Grid grid;
   grid.height_per_count = 1.0;  // as of any picture
