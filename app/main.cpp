@@ -1,4 +1,4 @@
-#include "app/program.h"
+#include "app/commands/program.h"
 
 int main(int argc, char** argv) {
   using namespace fettle::app;

@@ -5,17 +5,17 @@
 #include <string>
 #include <utility>
 
-#include "app/journal/recorder.h"
-#include "bench/hand_stroke.h"
 #include "bench/own_folder.h"
 #include "engine/base/stopwatch.h"
 #include "engine/field/live_field.h"
 #include "engine/field/tile_store.h"
 #include "engine/history/history.h"
 #include "engine/session/session_writer.h"
-#include "haptic/loop/rt_thread.h"
-#include "haptic/scene.h"
-#include "haptic/tick.h"
+#include "haptic/base/rt_thread.h"
+#include "haptic/journal/recorder.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/tick.h"
+#include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {
 
@@ -38,13 +38,13 @@ engine::Result<CommitTimes> commitTimes(const engine::Version& field, int stroke
 
   haptic::Scene scene = haptic::defaultScene();
   scene.brush_radius_samples = 8.0;
-  HandMotion motion;
+  trials::HandMotion motion;
   motion.ticks = kStrokeTicks * strokes;
   motion.tool = haptic::Tool::kSmooth;
-  const std::vector<haptic::StrokeSample> ticks = handStroke(field, motion);
+  const std::vector<haptic::StrokeSample> ticks = trials::handStroke(field, motion);
   engine::LiveField live(field, engine::Growth::kAllowed);
   haptic::Tick tick(scene, live, field);
-  app::Recorder recorder;
+  haptic::Recorder recorder;
   engine::History& history = session.history;
   CommitTimes times;
   for (std::int64_t stroke = 0; stroke < strokes; ++stroke) {
@@ -61,11 +61,11 @@ engine::Result<CommitTimes> commitTimes(const engine::Version& field, int stroke
     info.time = engine::stepTimeNow();
     if (!history.push(std::move(info), live.snapshot())) continue;  // a hand that touched nothing
     const std::int64_t number = history.number();
-    recorder.add(app::journal::StepMade{number,
-                                        "smoothing",
-                                        engine::StepKind::kStroke,
-                                        {static_cast<std::uint64_t>((stroke + 1) * kStrokeTicks), false},
-                                        false});
+    recorder.add(haptic::journal::StepMade{number,
+                                           "smoothing",
+                                           engine::StepKind::kStroke,
+                                           {static_cast<std::uint64_t>((stroke + 1) * kStrokeTicks), false},
+                                           false});
     (*writer)->commit(number, history.step(number), recorder.take());
     const double waited = engine::msSince(end);
     if (engine::Status flushed = (*writer)->flush(job); !flushed) return tl::unexpected(flushed.error());

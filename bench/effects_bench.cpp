@@ -7,13 +7,13 @@
 
 #include <fmt/format.h>
 
-#include "bench/hand_stroke.h"
 #include "bench/machine.h"
 #include "bench/repeats.h"
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
-#include "haptic/loop/rt_thread.h"
-#include "haptic/tick.h"
+#include "haptic/base/rt_thread.h"
+#include "haptic/tick/tick.h"
+#include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {
 
@@ -26,7 +26,7 @@ constexpr std::size_t kCountedBallTicks = 2;
 constexpr int kTouchingBefore = 20;
 constexpr std::size_t kTicksBetweenLooks = 4096;
 
-struct Case {
+struct EffectCase {
   std::string name;
   haptic::Scene scene;
   std::optional<haptic::EffectKind> effect;  // whose bytes the row tells
@@ -40,8 +40,8 @@ haptic::Scene sceneOf(std::vector<haptic::EffectKind> effects) {
 
 // Every kind there is: a new one appears by itself. Those that need the spring come with it, and their name
 // says so.
-std::vector<Case> cases() {
-  std::vector<Case> all = {{"none", sceneOf({}), std::nullopt}};
+std::vector<EffectCase> cases() {
+  std::vector<EffectCase> all = {{"none", sceneOf({}), std::nullopt}};
   std::vector<haptic::EffectKind> kinds;
   for (int k = 0; k < haptic::kEffectKinds; ++k) {
     const auto kind = static_cast<haptic::EffectKind>(k);
@@ -53,7 +53,7 @@ std::vector<Case> cases() {
       all.push_back({"spring + " + name, sceneOf({haptic::EffectKind::kSpring, kind}), kind});
   }
   all.push_back({"all", sceneOf(kinds), std::nullopt});
-  Case ball{"sphere tip, none", sceneOf({}), std::nullopt};
+  EffectCase ball{"sphere tip, none", sceneOf({}), std::nullopt};
   ball.scene.tip = haptic::TipShape::kSphere;
   ball.scene.tip_radius_mm = kBallSamples * kSpacingMm;
   all.push_back(ball);
@@ -65,7 +65,7 @@ std::vector<Case> cases() {
 
 // The workpiece with a marked line every 64 rows: something for edge snap to pull to.
 engine::Version markedWorkpiece(std::int32_t side) {
-  const engine::Version plain = workpiece(side, kSpacingMm);
+  const engine::Version plain = trials::workpiece(side, kSpacingMm);
   const auto samples = static_cast<std::size_t>(side);
   std::vector<float> heights(samples * samples);
   plain.reader().readHeights(0, 0, side, side, heights.data(), side);
@@ -92,7 +92,7 @@ double raiseFor(const haptic::Scene& scene) noexcept {
   return scene.tip == haptic::TipShape::kSphere ? scene.tip_radius_mm : 0.0;
 }
 
-engine::Result<Outcome> run(const Case& what, const engine::Version& field,
+engine::Result<Outcome> run(const EffectCase& what, const engine::Version& field,
                             std::span<const haptic::StrokeSample> strokes, engine::JobControl& job) {
   engine::LiveField live(field, engine::Growth::kAllowed);
   haptic::Tick tick(what.scene, live, field);
@@ -124,7 +124,7 @@ engine::Result<Outcome> run(const Case& what, const engine::Version& field,
 }
 
 // Once the tip has been touching for a while: ticks in free space cost next to nothing in any scene.
-InstructionCount count(const Case& what, const engine::Version& field,
+InstructionCount count(const EffectCase& what, const engine::Version& field,
                        std::span<const haptic::StrokeSample> strokes) {
   engine::LiveField live(field, engine::Growth::kAllowed);
   haptic::Tick tick(what.scene, live, field);
@@ -153,11 +153,11 @@ engine::Result<EffectsBenchReport> benchEffects(const EffectsBenchOptions& optio
   EffectsBenchReport report;
   report.machine = machine();
   const engine::Version field = markedWorkpiece(options.side);
-  HandMotion motion;
+  trials::HandMotion motion;
   motion.ticks = options.ticks;
   motion.tool = haptic::Tool::kSmooth;  // does nothing where the scene has no smoothing
-  const std::vector<haptic::StrokeSample> strokes = handStroke(field, motion);
-  const std::vector<Case> all = cases();
+  const std::vector<haptic::StrokeSample> strokes = trials::handStroke(field, motion);
+  const std::vector<EffectCase> all = cases();
   std::vector<std::vector<double>> times(all.size());
   report.rows.resize(all.size());
   job.begin("measuring", all.size() * (static_cast<std::size_t>(options.repeats) + 1));

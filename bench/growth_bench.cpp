@@ -9,17 +9,17 @@
 #include <fmt/format.h>
 
 #include "bench/commit_times.h"
-#include "bench/hand_stroke.h"
 #include "bench/machine.h"
 #include "bench/repeats.h"
 #include "engine/field/live_field.h"
 #include "engine/field/tile.h"
 #include "engine/filter/filter.h"
 #include "engine/history/history.h"
-#include "haptic/loop/rt_thread.h"
-#include "haptic/scene.h"
-#include "haptic/tick.h"
-#include "render/live_picture.h"
+#include "haptic/base/rt_thread.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/tick.h"
+#include "haptic/trials/hand_stroke.h"
+#include "render/live/live_picture.h"
 
 namespace fettle::bench {
 namespace {
@@ -44,11 +44,11 @@ void add(Growth& growth, const std::string& series, const GrowthPoint& point, do
 // Nanoseconds a tick, single ones by the clock left out: the whole way through, three times.
 GrowthPoint ticks(const engine::Version& field, const haptic::Scene& scene, haptic::Tool tool, double work,
                   double effort) {
-  HandMotion motion;
+  trials::HandMotion motion;
   motion.ticks = std::llround(kTicks * effort);
   motion.speed_mm_s = 20.0;
   motion.tool = tool;
-  const std::vector<haptic::StrokeSample> strokes = handStroke(field, motion);
+  const std::vector<haptic::StrokeSample> strokes = trials::handStroke(field, motion);
   std::vector<double> ns;
   const haptic::DenormalScope as_in_the_loop;
   for (int i = 0; i < 3; ++i) {
@@ -130,7 +130,7 @@ engine::Result<Growth> uploads(engine::JobControl& job) {
                 "time on the drawing thread [ms]",
                 "1: only what changed is compared and moved",
                 {}};
-  const engine::Version start = workpiece(4096, kSpacingMm);
+  const engine::Version start = trials::workpiece(4096, kSpacingMm);
   auto created = render::LivePicture::create();
   if (!created) return tl::unexpected(created.error());
   render::LivePicture& picture = **created;
@@ -229,7 +229,7 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
   haptic::Scene scene = haptic::defaultScene();
   for (auto side = sides.rbegin(); side != sides.rend(); ++side) {
     if (job.cancelled()) return engine::cancelled();
-    const engine::Version field = workpiece(*side, kSpacingMm);
+    const engine::Version field = trials::workpiece(*side, kSpacingMm);
     const double samples = static_cast<double>(*side) * *side;
     add(tick, "feel", ticks(field, scene, haptic::Tool::kFeel, samples, options.effort));
     add(tick, "3 x 3 smoothing", ticks(field, scene, haptic::Tool::kSmooth, samples, options.effort));
@@ -246,7 +246,7 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
   {
     const auto window_side = static_cast<std::int32_t>(kWindowSide * std::sqrt(options.effort));
     const double samples = static_cast<double>(window_side) * window_side;
-    const engine::Version field = workpiece(window_side, kSpacingMm);
+    const engine::Version field = trials::workpiece(window_side, kSpacingMm);
     for (const int side : kWindows) {
       for (const FilterKind kind : kKinds) {
         const auto point = filtering(field, kind, side, 1, side, 1e9 / samples, job);
@@ -257,7 +257,7 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
     }
   }
   {
-    const engine::Version field = workpiece(kBrushSide, kSpacingMm);
+    const engine::Version field = trials::workpiece(kBrushSide, kSpacingMm);
     for (const double radius : kBrushes) {
       if (job.cancelled()) return engine::cancelled();
       scene.brush_radius_samples = radius;

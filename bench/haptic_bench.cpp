@@ -7,16 +7,16 @@
 
 #include <fmt/format.h>
 
-#include "bench/hand_stroke.h"
 #include "bench/hard_grounds.h"
 #include "bench/machine.h"
 #include "bench/plain_search.h"
 #include "bench/repeats.h"
 #include "engine/field/live_field.h"
-#include "haptic/loop/rt_thread.h"
-#include "haptic/replay.h"
-#include "haptic/scene.h"
-#include "haptic/tick.h"
+#include "haptic/base/rt_thread.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/replay.h"
+#include "haptic/tick/tick.h"
+#include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {
 
@@ -146,10 +146,10 @@ struct Touched {
 
 engine::Status touch(const Touched& what, const HapticBenchOptions& options, engine::JobControl& job,
                      HapticBenchReport& report) {
-  HandMotion motion;
+  trials::HandMotion motion;
   motion.ticks = what.ticks;
   motion.speed_mm_s = what.speed_mm_s;
-  std::vector<haptic::StrokeSample> strokes = handStroke(what.field, motion);
+  std::vector<haptic::StrokeSample> strokes = trials::handStroke(what.field, motion);
   const auto add = [&](engine::Result<HapticBenchRow> row) -> engine::Status {
     if (!row) return tl::unexpected(row.error());
     row->ground = what.ground;
@@ -178,11 +178,11 @@ engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options,
   report.copy_bytes_per_s = copyBytesPerSecond();
   constexpr std::int32_t kSmallSide = 1024;
   constexpr double kSpeed = 20.0;
-  const engine::Version part = workpiece(options.side, kSpacingMm);
+  const engine::Version part = trials::workpiece(options.side, kSpacingMm);
   for (const double speed : options.speeds_mm_s)
     if (auto done = touch({"rough part", part, speed, options.ticks}, options, job, report); !done)
       return tl::unexpected(done.error());
-  const engine::Version clean = workpiece(std::min(options.side, kSmallSide), kSpacingMm, 0.0);
+  const engine::Version clean = trials::workpiece(std::min(options.side, kSmallSide), kSpacingMm, 0.0);
   if (auto done = touch({"clean part", clean, kSpeed, options.ticks}, options, job, report); !done)
     return tl::unexpected(done.error());
   for (const HardGround& ground : hardGrounds()) {

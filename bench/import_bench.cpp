@@ -7,20 +7,20 @@
 #include <utility>
 
 #include "bench/gdal_yardstick.h"
-#include "bench/hand_stroke.h"
 #include "bench/import_files.h"
 #include "bench/machine.h"
 #include "bench/own_folder.h"
 #include "bench/repeats.h"
 #include "engine/io/export.h"
 #include "engine/io/import.h"
+#include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {
 
 namespace {
 
 namespace fs = std::filesystem;
-using Seconds = std::chrono::duration<double>;
+using WallSeconds = std::chrono::duration<double>;
 
 constexpr std::int32_t kEveryFormat = 2048;  // largest side
 constexpr std::int32_t kLargest = 16384;
@@ -32,7 +32,7 @@ struct Case {
 
 engine::Result<std::vector<Case>> makeFiles(const fs::path& folder, std::int32_t side,
                                             engine::JobControl& job) {
-  const engine::Version field = workpiece(side, kSpacingMm);
+  const engine::Version field = trials::workpiece(side, kSpacingMm);
   std::vector<Case> cases;
   engine::Status status;
   const auto add = [&](const std::string& name, const std::string& file, const auto& write) {
@@ -85,7 +85,7 @@ engine::Result<std::vector<Case>> makeFiles(const fs::path& folder, std::int32_t
   return cases;
 }
 
-// Seconds to read the whole file; the bytes are looked at by nobody, as with `cat FILE > /dev/null`.
+// WallSeconds to read the whole file; the bytes are looked at by nobody, as with `cat FILE > /dev/null`.
 engine::Result<double> readPlainly(const std::string& path) {
   std::vector<char> buffer(std::size_t{1} << 20);
   const auto start = std::chrono::steady_clock::now();
@@ -95,7 +95,7 @@ engine::Result<double> readPlainly(const std::string& path) {
   while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()))) {
   }
   if (!file.eof()) return engine::inputError("the file cannot be read", path);
-  return Seconds(std::chrono::steady_clock::now() - start).count();
+  return WallSeconds(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options,
       if (!alone) return tl::unexpected(alone.error());
       const auto start = std::chrono::steady_clock::now();
       const auto imported = engine::importField(cases[k].path, {}, job);
-      const double seconds = Seconds(std::chrono::steady_clock::now() - start).count();
+      const double seconds = WallSeconds(std::chrono::steady_clock::now() - start).count();
       if (!imported) return tl::unexpected(imported.error());
       const std::uint64_t hash = engine::contentHash(imported->field);
       ImportBenchRow& row = report.rows[k];

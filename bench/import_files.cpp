@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/io/atomic_file.h"
+#include "engine/io/files/atomic_file.h"
 
 namespace fettle::bench {
 

@@ -16,7 +16,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "bench/hand_stroke.h"
 #include "bench/large_picture.h"
 #include "bench/large_scan.h"
 #include "bench/machine.h"
@@ -29,11 +28,12 @@
 #include "engine/history/history.h"
 #include "engine/io/export.h"
 #include "engine/io/import.h"
-#include "haptic/devices/replay_device.h"
+#include "haptic/base/rt_thread.h"
+#include "haptic/devices/virtual/replay_device.h"
 #include "haptic/loop/haptic_loop.h"
-#include "haptic/loop/rt_thread.h"
-#include "haptic/scene.h"
-#include "haptic/tick.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/tick.h"
+#include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {
 
@@ -126,12 +126,12 @@ engine::Result<double> plainly(const std::string& from, const std::string& to) {
 LargeTicks ticks(const engine::Version& large, const engine::Version& small, haptic::Tool tool,
                  const std::string& name, double effort) {
   const haptic::Scene scene = haptic::defaultScene();
-  HandMotion motion;
+  trials::HandMotion motion;
   motion.ticks = std::llround(kLargeTicks * effort);
   motion.speed_mm_s = 20.0;
   motion.tool = tool;
-  const std::vector<haptic::StrokeSample> on_large = handStroke(large, motion);
-  const std::vector<haptic::StrokeSample> on_small = handStroke(small, motion);
+  const std::vector<haptic::StrokeSample> on_large = trials::handStroke(large, motion);
+  const std::vector<haptic::StrokeSample> on_small = trials::handStroke(small, motion);
   const haptic::DenormalScope as_in_the_loop;
   const auto time = [&](const engine::Version& field, const std::vector<haptic::StrokeSample>& strokes) {
     engine::LiveField live(field, engine::Growth::kAllowed);
@@ -172,10 +172,10 @@ LargeTicks ticks(const engine::Version& large, const engine::Version& small, hap
 // In real time, as in the window: what the loop felt and what it waited for.
 engine::Status liveLoop(const engine::Version& field, double effort, Stages& stages, LargeLoop& result,
                         engine::JobControl& job) {
-  HandMotion motion;
+  trials::HandMotion motion;
   motion.ticks = std::llround(kLoopSeconds * effort * 1000.0);
   motion.tool = haptic::Tool::kSmooth;
-  haptic::ReplayDevice device(handStroke(field, motion));
+  haptic::ReplayDevice device(trials::handStroke(field, motion));
   // All other samples, so that memory smaller than the field has forgotten those under the hand.
   stages.run("read every sample", static_cast<double>(field.grid().samples()),
              [&] { static_cast<void>(engine::summarize(field)); });
@@ -328,7 +328,7 @@ engine::Result<LargeReport> benchLarge(const LargeOptions& options, engine::JobC
   (*opened)->plain = "read the file";
 
   {
-    const engine::Version small = workpiece(kSmallSide, kSpacingMm);
+    const engine::Version small = trials::workpiece(kSmallSide, kSpacingMm);
     stages.run("feel", 0.0, [&] {
       report.ticks.push_back(ticks(field, small, haptic::Tool::kFeel, "feel", options.effort));
       report.ticks.push_back(ticks(field, small, haptic::Tool::kSmooth, "3 x 3 smoothing", options.effort));
@@ -342,10 +342,10 @@ engine::Result<LargeReport> benchLarge(const LargeOptions& options, engine::JobC
   {
     haptic::Scene scene = haptic::defaultScene();
     scene.brush_radius_samples = 8.0;
-    HandMotion motion;
+    trials::HandMotion motion;
     motion.ticks = kStrokeTicks;
     motion.tool = haptic::Tool::kSmooth;
-    const std::vector<haptic::StrokeSample> stroke = handStroke(history.current(), motion);
+    const std::vector<haptic::StrokeSample> stroke = trials::handStroke(history.current(), motion);
     haptic::Tick tick(scene, live, history.current());
     LargeStage& edited = stages.run("brush stroke", 0.0, [&] {
       for (const haptic::StrokeSample& s : stroke) (void)tick.run(s);

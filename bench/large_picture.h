@@ -5,7 +5,7 @@
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
-#include "render/live_picture.h"
+#include "render/live/live_picture.h"
 
 namespace fettle::bench {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "haptic/patch.h"
+#include "haptic/contact/patch.h"
 
 namespace fettle::bench {
 

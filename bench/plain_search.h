@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/field/version.h"
-#include "haptic/surface.h"
+#include "haptic/contact/surface.h"
 
 namespace fettle::bench {
 

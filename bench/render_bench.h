@@ -6,7 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
-#include "render/live_picture.h"
+#include "render/live/live_picture.h"
 
 namespace fettle::bench {
 

@@ -5,8 +5,8 @@
 
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
-#include "haptic/devices/simulated_hand.h"
-#include "haptic/tick.h"
+#include "haptic/devices/virtual/simulated_hand.h"
+#include "haptic/tick/tick.h"
 
 namespace fettle::bench {
 

@@ -88,7 +88,8 @@ FETTLE_CONST kFillScene = 3;    // uv: ray of the scene image
 FETTLE_CONST kFillUp = 4;       // triangle standing on the quad's lower edge, colour as kFillColours
 FETTLE_CONST kFillDown = 5;     // triangle hanging from the quad's upper edge
 
-// How a page table is read (render/page_table.h): one entry a page, the field's, then the original's.
+// How a page table is read (render/residency/page_table.h): one entry a page, the field's, then the
+// original's.
 struct PageHead {
   ivec4 level[kDataLevels];  // entry of a level's first page; pages across; columns, rows of samples
   ivec4 pool;  // log2 of a page's side; the rim's first entry; number of its row's first sample; entries of a

@@ -4,14 +4,14 @@
 
 #include <fmt/format.h>
 
-#include "app/accuracy/page.h"
-#include "app/accuracy/plot.h"
-#include "app/command.h"
-#include "app/plots/gnuplot.h"
-#include "app/scan_options.h"
+#include "app/commands/accuracy_page/page.h"
+#include "app/commands/accuracy_page/plot.h"
+#include "app/commands/command.h"
+#include "app/commands/plots/gnuplot.h"
+#include "app/commands/scan_options.h"
 #include "bench/accuracy/studies.h"
 #include "bench/machine.h"
-#include "engine/io/atomic_file.h"
+#include "engine/io/files/atomic_file.h"
 
 namespace fettle::app {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "app/command.h"
 #include "app/commands/bench_filters.h"
 #include "app/commands/bench_growth.h"
 #include "app/commands/bench_import.h"
 #include "app/commands/bench_large.h"
+#include "app/commands/command.h"
 #include "bench/effects_bench.h"
 #include "bench/haptic_bench.h"
 #include "bench/machine.h"

@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "app/plots/gnuplot.h"
+#include "app/commands/plots/gnuplot.h"
 #include "bench/growth_bench.h"
-#include "engine/io/atomic_file.h"
+#include "engine/io/files/atomic_file.h"
 
 namespace fettle::app {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "app/scan_options.h"
+#include "app/commands/scan_options.h"
 #include "bench/large_bench.h"
 
 namespace fettle::app {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/command.h"
+#include "app/commands/command.h"
 
 namespace fettle::app {
 

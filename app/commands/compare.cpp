@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "app/command.h"
-#include "app/scan_options.h"
-#include "app/streams.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
 #include "app/terminal.h"
+#include "app/work/streams.h"
 #include "engine/compare/compare.h"
 #include "engine/compare/deviation_field.h"
-#include "engine/io/marks.h"
+#include "engine/io/raster/marks.h"
 
 namespace fettle::app {
 

@@ -1,11 +1,11 @@
 #include <memory>
 
-#include "app/batch.h"
-#include "app/command.h"
-#include "app/scan_options.h"
-#include "app/streams.h"
+#include "app/commands/batch.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
+#include "app/commands/write_options.h"
 #include "app/terminal.h"
-#include "app/write_options.h"
+#include "app/work/streams.h"
 #include "engine/io/export.h"
 
 namespace fettle::app {

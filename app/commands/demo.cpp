@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
-#include "app/command.h"
-#include "app/demo/demo.h"
-#include "app/scan_options.h"
-#include "app/session_guard.h"
-#include "engine/io/atomic_file.h"
+#include "app/commands/command.h"
+#include "app/commands/demo/demo.h"
+#include "app/commands/scan_options.h"
+#include "app/work/session_guard.h"
+#include "engine/io/files/atomic_file.h"
 
 namespace fettle::app {
 

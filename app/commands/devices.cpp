@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "app/command.h"
+#include "app/commands/command.h"
 #include "haptic/devices/enumerate.h"
-#include "haptic/devices/mouse_stylus.h"
-#include "haptic/devices/simulated_hand.h"
+#include "haptic/devices/virtual/mouse_stylus.h"
+#include "haptic/devices/virtual/simulated_hand.h"
 
 namespace fettle::app {
 

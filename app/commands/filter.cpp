@@ -8,14 +8,14 @@
 
 #include <fmt/format.h>
 
-#include "app/batch.h"
-#include "app/command.h"
-#include "app/scan_options.h"
+#include "app/commands/batch.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
+#include "app/commands/write_options.h"
 #include "app/terminal.h"
-#include "app/write_options.h"
 #include "engine/filter/filter.h"
 #include "engine/filter/noise_range.h"
-#include "engine/io/marks.h"
+#include "engine/io/raster/marks.h"
 #include "engine/suggest/filter_suggestion.h"
 
 namespace fettle::app {

@@ -8,14 +8,14 @@
 
 #include <fmt/format.h>
 
-#include "app/batch.h"
-#include "app/command.h"
-#include "app/scan_options.h"
+#include "app/commands/batch.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
 #include "app/terminal.h"
 #include "engine/inspect/histogram.h"
 #include "engine/inspect/noise.h"
 #include "engine/inspect/steepest.h"
-#include "render/picture.h"
+#include "render/plan/picture.h"
 
 namespace fettle::app {
 

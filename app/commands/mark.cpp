@@ -1,10 +1,10 @@
 #include <chrono>
 #include <memory>
 
-#include "app/command.h"
-#include "app/scan_options.h"
-#include "app/streams.h"
-#include "engine/io/marks.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
+#include "app/work/streams.h"
+#include "engine/io/raster/marks.h"
 #include "engine/marks/edge_suggestion.h"
 
 namespace fettle::app {

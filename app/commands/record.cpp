@@ -6,19 +6,19 @@
 
 #include <fmt/format.h>
 
-#include "app/command.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
 #include "app/live/live_session.h"
 #include "app/live/placement.h"
-#include "app/scan_options.h"
 #include "app/terminal.h"
-#include "engine/io/marks.h"
+#include "engine/io/raster/marks.h"
+#include "haptic/base/strokes.h"
 #include "haptic/devices/enumerate.h"
-#include "haptic/devices/simulated_hand.h"
+#include "haptic/devices/virtual/simulated_hand.h"
 #include "haptic/devices/workspace.h"
 #include "haptic/loop/pacer.h"
-#include "haptic/replay.h"
-#include "haptic/scene.h"
-#include "haptic/strokes.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/replay.h"
 
 namespace fettle::app {
 

@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
-#include "app/command.h"
-#include "app/scan_options.h"
-#include "app/streams.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
 #include "app/terminal.h"
-#include "engine/io/marks.h"
-#include "render/live_picture.h"
-#include "render/picture.h"
+#include "app/work/streams.h"
+#include "engine/io/raster/marks.h"
+#include "render/live/live_picture.h"
+#include "render/plan/picture.h"
 
 namespace fettle::app {
 

@@ -6,19 +6,19 @@
 
 #include <fmt/format.h>
 
-#include "app/command.h"
-#include "app/journal/session_player.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
 #include "app/live/placement.h"
-#include "app/scan_options.h"
-#include "app/streams.h"
 #include "app/terminal.h"
-#include "app/view/open_document.h"
-#include "engine/io/marks.h"
+#include "app/work/open_document.h"
+#include "app/work/streams.h"
+#include "engine/io/raster/marks.h"
 #include "engine/session/session.h"
+#include "haptic/base/strokes.h"
+#include "haptic/journal/session_player.h"
 #include "haptic/loop/haptic_loop.h"
-#include "haptic/replay.h"
-#include "haptic/scene.h"
-#include "haptic/strokes.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/replay.h"
 
 namespace fettle::app {
 
@@ -54,7 +54,7 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
   open.history_bytes = 0;
   auto session = engine::openSession(options.scan, open, job);
   if (!session) return tl::unexpected(session.error());
-  if (const std::int64_t start = journalStart(*session);
+  if (const std::int64_t start = haptic::journalStart(*session);
       start > 0 && (session->history.first() > 1 || session->history.last() < start)) {
     open.history_bytes = engine::History::kNoBound;
     session = engine::openSession(options.scan, open, job);
@@ -64,7 +64,7 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
     return engine::inputError("the session has no journal", options.scan,
                               "convert or export its present state instead");
   const auto begin = std::chrono::steady_clock::now();
-  const auto played = playSession(*session, job);
+  const auto played = haptic::playSession(*session, job);
   if (!played) return tl::unexpected(played.error());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   const std::uint64_t made = engine::contentHash(played->field);

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "app/command.h"
-#include "app/scan_options.h"
-#include "engine/io/marks.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
+#include "engine/io/raster/marks.h"
 #include "engine/scanner/scanner.h"
 
 namespace fettle::app {

@@ -1,11 +1,11 @@
 #include <memory>
 
-#include "app/command.h"
-#include "app/scan_options.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
 #include "app/terminal.h"
-#include "app/view/workstation.h"
+#include "app/window/workstation.h"
 #include "haptic/loop/pacer.h"
-#include "haptic/scene.h"
+#include "haptic/scene/scene.h"
 
 namespace fettle::app {
 

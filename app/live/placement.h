@@ -7,7 +7,7 @@
 #include "haptic/devices/device.h"
 #include "haptic/effects/stability.h"
 #include "haptic/safety/safety_limits.h"
-#include "haptic/scene.h"
+#include "haptic/scene/scene.h"
 
 namespace fettle::app {
 

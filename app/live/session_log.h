@@ -7,8 +7,8 @@
 #include <glm/vec3.hpp>
 
 #include "engine/base/error.h"
+#include "haptic/base/strokes.h"
 #include "haptic/loop/messages.h"
-#include "haptic/strokes.h"
 
 namespace fettle::app {
 

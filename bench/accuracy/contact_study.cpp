@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "bench/accuracy/contact_trial.h"
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "bench/accuracy/subjects.h"
+#include "haptic/trials/contact_trial.h"
 
 namespace fettle::bench {
 namespace {
@@ -14,8 +14,8 @@ namespace {
 constexpr int kRepeats = 5;
 constexpr double kCellMm = 0.05;  // of the subjects made here, and what others are brought to
 
-AccuracyRow rowFor(const std::string& subject, const ContactChoice& choice, const ContactFigures& figures,
-                   double newtons_a_mm) {
+AccuracyRow rowFor(const std::string& subject, const trials::ContactChoice& choice,
+                   const trials::ContactFigures& figures, double newtons_a_mm) {
   AccuracyRow row;
   row.subject = subject;
   row.method = choice.name;
@@ -47,19 +47,20 @@ engine::Result<Study> contactStudy(const AccuracyOptions& options, engine::JobCo
   if (!made) return tl::unexpected(made.error());
   std::vector<Subject> subjects = *std::move(made);
   if (options.scan) subjects.push_back({options.scan->name, options.scan->field});
-  const std::span<const ContactChoice> choices = contactChoices();
+  const std::span<const trials::ContactChoice> choices = trials::contactChoices();
   job.begin("contact levels", subjects.size() * choices.size());
   const std::int64_t ticks = std::max<std::int64_t>(200, std::llround(50'000 * options.effort));
   double point_doubt = 0.0, ball_doubt = 0.0;
   for (const Subject& subject : subjects) {
     const double newtons_a_mm = kCellMm / subject.field.grid().spacingXMm();
-    std::optional<ContactTrial> trial;
+    std::optional<trials::ContactTrial> trial;
     double tried = -1.0;  // the tip that the trial is for
-    for (const ContactChoice& choice : choices) {
+    for (const trials::ContactChoice& choice : choices) {
       if (choice.ball_radius_cells != tried) {
         tried = choice.ball_radius_cells;
         // A ball takes a hundred times as long as a point.
-        auto next = ContactTrial::make(subject.field, tried, tried > 0.0 ? (ticks + 9) / 10 : ticks, job);
+        auto next =
+            trials::ContactTrial::make(subject.field, tried, tried > 0.0 ? (ticks + 9) / 10 : ticks, job);
         if (!next) return tl::unexpected(next.error());
         trial = *std::move(next);
         if (trial && tried > 0.0)

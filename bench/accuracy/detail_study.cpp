@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include "bench/accuracy/detail_trial.h"
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "engine/scanner/scanner.h"
-#include "render/live_picture.h"
+#include "render/live/live_picture.h"
+#include "render/trials/detail_trial.h"
 
 namespace fettle::bench {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kAllVertices = std::int64_t{1} << 24;
 constexpr render::Sharpness kFull = render::Sharpness::kFull;
 
-constexpr DetailChoice kDetailChoices[] = {
+constexpr trials::DetailChoice kDetailChoices[] = {
     {"bound 8 px", 8.0, kAllVertices, kFull},
     {"bound 4 px", 4.0, kAllVertices, kFull},
     {"bound 2 px", 2.0, kAllVertices, kFull},
@@ -62,13 +62,14 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
     input.view.height = 800;
     input.view.azimuth_deg = 315.0;
     input.decoration = render::Decoration::kNone;
-    const auto figures = measureDetail(picture, input, views, kDetailChoices, everySample(), job);
+    const auto figures =
+        trials::measureDetail(picture, input, views, kDetailChoices, trials::everySample(), job);
     if (!figures) return tl::unexpected(figures.error());
     for (std::size_t k = 0; k < figures->size(); ++k) {
-      const DetailFigures& f = (*figures)[k];
+      const trials::DetailFigures& f = (*figures)[k];
       AccuracyRow row;
       row.subject = subject.name;
-      row.method = k < std::size(kDetailChoices) ? kDetailChoices[k].name : everySample().name;
+      row.method = k < std::size(kDetailChoices) ? kDetailChoices[k].name : trials::everySample().name;
       row.cost = f.ms;
       row.cost_worst = f.ms_worst;
       row.error = f.mean_codes;
@@ -83,7 +84,7 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
   study.reference = fmt::format(
       "The picture of every sample, drawn by the same shaders on {}, 1280 x 800, from {} sides. The "
       "geometric bound "
-      "is proved (render/detail.h) and held against brute force by ctest -R Detail.",
+      "is proved (render/detail/detail.h) and held against brute force by ctest -R Detail.",
       picture.device(), views);
   const std::string& name = subjects.front().name;
   const AccuracyRow& usual = rowOf(study, name, "64 k vertices");

@@ -10,6 +10,7 @@
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "bench/accuracy/subjects.h"
+#include "engine/base/statistics.h"
 #include "engine/filter/filter.h"
 
 namespace fettle::bench {
@@ -138,7 +139,7 @@ engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobCon
           out = *std::move(made);
         }
         spread(std::move(ns), row);
-        row.hash = hashOf(out.z);
+        row.hash = engine::hashOf(out.z);
         if (exact.z.empty()) {
           exact = out;
           for (int i = 0; i < 60; ++i) {

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
+#include <string>
 #include <vector>
 
 #include "bench/accuracy/study.h"
@@ -13,9 +12,6 @@ void summarise(std::vector<double> errors, AccuracyRow& row);
 
 /// Median and largest of repeated times.
 void spread(std::vector<double> costs, AccuracyRow& row);
-
-/// FNV-1a over the bytes of doubles.
-[[nodiscard]] std::uint64_t hashOf(std::span<const double> values);
 
 /// The rows of one method or subject that an answer speaks of; the first with both names. Asserts that there
 /// is one.

@@ -9,10 +9,11 @@
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "bench/accuracy/subjects.h"
+#include "engine/base/statistics.h"
 #include "engine/field/live_field.h"
-#include "haptic/devices/simulated_hand.h"
-#include "haptic/loop/rt_thread.h"
-#include "haptic/tick.h"
+#include "haptic/base/rt_thread.h"
+#include "haptic/devices/virtual/simulated_hand.h"
+#include "haptic/tick/tick.h"
 
 namespace fettle::bench {
 namespace {
@@ -134,7 +135,7 @@ engine::Result<Study> rateStudy(const AccuracyOptions& options, engine::JobContr
         flat.push_back(pressed.force_n[i].z);
       }
       summarise(std::move(errors), row);
-      row.hash = hashOf(flat);
+      row.hash = engine::hashOf(flat);
       row.wrong = std::numeric_limits<double>::quiet_NaN();
       study.rows.push_back(std::move(row));
       job.advance();
@@ -186,7 +187,7 @@ engine::Result<Study> energyStudy(const AccuracyOptions& options, engine::JobCon
       spread(std::move(shares), row);
       row.error = std::max(0.0, pressed.work_mj);
       row.error_p99 = row.error_worst = row.wrong = std::numeric_limits<double>::quiet_NaN();
-      row.hash = hashOf({&pressed.work_mj, 1});
+      row.hash = engine::hashOf({&pressed.work_mj, 1});
       if (pressed.work_mj < 0.0) row.note = fmt::format("the surface took {:.3f} mJ", -pressed.work_mj);
       study.rows.push_back(std::move(row));
       job.advance();

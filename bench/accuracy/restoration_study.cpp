@@ -17,7 +17,7 @@
 #include "engine/marks/edge_suggestion.h"
 #include "engine/scanner/scanner.h"
 #include "haptic/operator/operator_strokes.h"
-#include "haptic/replay.h"
+#include "haptic/tick/replay.h"
 
 namespace fettle::bench {
 namespace {
@@ -30,12 +30,12 @@ struct Start {
   double hand_s = 0.0;
 };
 
-struct Way {
+struct FilterWay {
   engine::FilterKind kind;
   int window;
   int passes;
 };
-constexpr Way kWays[] = {
+constexpr FilterWay kFilterWays[] = {
     {engine::FilterKind::kBox, 3, 2},
     {engine::FilterKind::kBox, 5, 2},
     {engine::FilterKind::kBox, 9, 2},
@@ -55,7 +55,7 @@ constexpr double kReach = 2 * (9 / 2);
 
 enum Column : std::uint8_t { kFlats, kNearEdges, kWidth, kHand };
 
-engine::FilterSpec specOf(const Way& way) {
+engine::FilterSpec specOf(const FilterWay& way) {
   engine::FilterSpec spec;
   spec.kind = way.kind;
   spec.window = way.window;
@@ -158,7 +158,7 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
   const auto starts = startsOf(scan, job);
   if (!starts) return tl::unexpected(starts.error());
 
-  job.begin("restoration", starts->size() * std::size(kWays) + 1);
+  job.begin("restoration", starts->size() * std::size(kFilterWays) + 1);
   const auto judge = [&](const std::string& subject, const std::string& method, const engine::Version& field,
                          double seconds, double hand_s) -> engine::Status {
     engine::JobControl quiet;
@@ -181,7 +181,7 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
   if (auto ok = judge("scan as it came", "nothing", scan.scan, 0.0, 0.0); !ok)
     return tl::unexpected(ok.error());
   for (const Start& start : *starts)
-    for (const Way& way : kWays) {
+    for (const FilterWay& way : kFilterWays) {
       if (job.cancelled()) return engine::cancelled();
       engine::JobControl quiet;
       const auto begin = std::chrono::steady_clock::now();

@@ -11,8 +11,9 @@
 
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
-#include "haptic/certified.h"
-#include "haptic/patch.h"
+#include "engine/base/statistics.h"
+#include "haptic/contact/certified.h"
+#include "haptic/contact/patch.h"
 
 namespace fettle::bench {
 namespace {
@@ -182,7 +183,7 @@ engine::Result<Study> surfaceStudy(const AccuracyOptions& options, engine::JobCo
         errors.push_back(glm::length(points[i] - truth[i]));
         flat.insert(flat.end(), {points[i].x, points[i].y, points[i].z});
       }
-      row.hash = hashOf(flat);
+      row.hash = engine::hashOf(flat);
       row.wrong = std::numeric_limits<double>::quiet_NaN();
       summarise(std::move(errors), row);
       // A method in float comes after its twin in double.

@@ -7,6 +7,7 @@
 
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
+#include "engine/base/statistics.h"
 #include "engine/field/tile.h"
 #include "engine/scanner/scanner.h"
 
@@ -80,7 +81,7 @@ engine::Result<Study> uploadStudy(const AccuracyOptions& options, engine::JobCon
       row.subject = subject.name;
       row.method = method;
       row.cost = row.cost_worst = bytes;
-      row.hash = hashOf(errors);
+      row.hash = engine::hashOf(errors);
       row.wrong = std::numeric_limits<double>::quiet_NaN();
       summarise(std::move(errors), row);
       study.rows.push_back(std::move(row));

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "engine/filter/block.h"
-#include "engine/filter/cpu.h"
+#include "engine/simd/cpu.h"
 #ifdef FETTLE_CPU_LEVELS
 #include <immintrin.h>
 #endif
@@ -27,7 +27,7 @@ constexpr int kChunk = 32;       // outputs whose sums stay in registers
 constexpr float kBeyond = 6.0F;  // [range sigmas], past the last weight at sqrt(32)
 
 #define FETTLE_KERNEL "engine/filter/bilateral-inl.h"
-#include "engine/filter/each_cpu-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
 FETTLE_EACH_CPU void finishRow(const float* centre, const double* __restrict sum,
                                const double* __restrict sum_weight, double range, int n,

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "engine/base/job.h"
-#include "engine/filter/cpu.h"
 #include "engine/filter/filter.h"
+#include "engine/simd/cpu.h"
 
 // The hot loops are compiled once for each kind of processor and chosen when the program starts. The bits are
 // the same for all: every kernel fixes its order of operations, and contraction to fused multiply-adds is

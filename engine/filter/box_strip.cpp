@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "engine/filter/cpu.h"
+#include "engine/simd/cpu.h"
 
 #ifdef FETTLE_CPU_LEVELS
 #include <immintrin.h>

@@ -15,7 +15,7 @@
 #include <tbb/cache_aligned_allocator.h>
 
 #include "engine/filter/block.h"
-#include "engine/filter/cpu.h"
+#include "engine/simd/cpu.h"
 
 #ifdef FETTLE_CPU_LEVELS
 #include <immintrin.h>
@@ -82,7 +82,7 @@ constexpr int kLargeRows = 32;
 constexpr int kSide = 16;
 
 #define FETTLE_KERNEL "engine/filter/gaussian-inl.h"
-#include "engine/filter/each_cpu-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
 using Kernel = void (*)(const GaussianGroup&, bool holes);
 

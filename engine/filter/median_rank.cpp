@@ -15,9 +15,9 @@
 #include <cstring>
 #include <vector>
 
-#include "engine/filter/cpu.h"
 #include "engine/filter/median.h"
 #include "engine/filter/ranks.h"
+#include "engine/simd/cpu.h"
 
 #ifdef FETTLE_CPU_LEVELS
 #include <immintrin.h>
@@ -51,7 +51,7 @@ struct WindowGroup {
 };
 
 #define FETTLE_KERNEL "engine/filter/median_rank-inl.h"
-#include "engine/filter/each_cpu-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
 class RankMedian final : public BlockFilter {
  public:

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/filter/cpu.h"
 #include "engine/filter/median.h"
 #include "engine/filter/sorting_network.h"
+#include "engine/simd/cpu.h"
 
 #ifdef FETTLE_CPU_LEVELS
 #include <immintrin.h>
@@ -32,7 +32,7 @@ struct Merging {
 };
 
 #define FETTLE_KERNEL "engine/filter/median_small-inl.h"
-#include "engine/filter/each_cpu-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
 using Strip = void (*)(const float* corner, std::ptrdiff_t stride, int last_row, int out_rows, float* out,
                        std::ptrdiff_t out_stride);

@@ -11,7 +11,7 @@ namespace fettle::engine {
 namespace {
 
 #define FETTLE_KERNEL "engine/filter/merge-inl.h"
-#include "engine/filter/each_cpu-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
 }  // namespace
 

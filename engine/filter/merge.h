@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "engine/field/tile.h"
-#include "engine/filter/cpu.h"
 #include "engine/filter/filter.h"
+#include "engine/simd/cpu.h"
 
 namespace fettle::engine {
 

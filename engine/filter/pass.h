@@ -5,9 +5,9 @@
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
-#include "engine/filter/cpu.h"
 #include "engine/filter/filter.h"
 #include "engine/filter/merge.h"
+#include "engine/simd/cpu.h"
 
 namespace fettle::engine {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "engine/io/export.h"
+#include "engine/io/files/input_file.h"
 #include "engine/io/import.h"
-#include "engine/io/input_file.h"
 #include "engine/io/preview.h"
 
 namespace fettle::engine {

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "engine/io/perspective.h"
+#include "engine/io/points/perspective.h"
 #include "engine/io/preview.h"
 #include "engine/io/unit_doubt.h"
 

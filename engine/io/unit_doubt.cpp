@@ -48,7 +48,7 @@ double spanMm(const Imported& imported) {
 // NaN where fewer than kFewest pairs
 // of valid samples are neighbours: they prove nothing.
 double medianSlope(const Imported& imported) {
-  constexpr std::int32_t kLattice = 256;
+  constexpr std::int32_t kLatticeUnits = 256;
   constexpr std::size_t kFewest = 16;
   const FieldReader reader = imported.field.reader();
   const Grid& grid = imported.field.grid();
@@ -56,8 +56,8 @@ double medianSlope(const Imported& imported) {
     const float z = reader.heightAt(c, r);
     return isLoneValue(imported, z) ? std::numeric_limits<double>::quiet_NaN() : double{z};
   };
-  const std::int32_t by_column = grid.width / kLattice + 1;
-  const std::int32_t by_row = grid.height / kLattice + 1;
+  const std::int32_t by_column = grid.width / kLatticeUnits + 1;
+  const std::int32_t by_row = grid.height / kLatticeUnits + 1;
   std::vector<double> slopes;
   for (std::int32_t r = 0; r < grid.height; r += by_row)
     for (std::int32_t c = 0; c < grid.width; c += by_column) {

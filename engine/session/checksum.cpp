@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <xxhash.h>
 
-#include "engine/io/input_file.h"
+#include "engine/io/files/input_file.h"
 
 namespace fettle::engine {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <new>
 
-#include "engine/io/atomic_file.h"
+#include "engine/io/files/atomic_file.h"
 #include "engine/session/session_rows.h"
 
 namespace fettle::engine {

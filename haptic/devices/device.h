@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/base/error.h"
-#include "haptic/strokes.h"
+#include "haptic/base/strokes.h"
 
 namespace fettle::haptic {
 

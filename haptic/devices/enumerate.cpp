@@ -13,13 +13,13 @@
 
 #include <fmt/format.h>
 
-#include "haptic/devices/hid_port.h"
-#include "haptic/devices/mouse_stylus.h"
-#include "haptic/devices/replay_device.h"
-#include "haptic/devices/serial_port.h"
-#include "haptic/devices/simulated_hand.h"
-#include "haptic/devices/space_mouse.h"
-#include "haptic/devices/wooden_haptics.h"
+#include "haptic/devices/hid/hid_port.h"
+#include "haptic/devices/hid/space_mouse.h"
+#include "haptic/devices/virtual/mouse_stylus.h"
+#include "haptic/devices/virtual/replay_device.h"
+#include "haptic/devices/virtual/simulated_hand.h"
+#include "haptic/devices/wooden/serial_port.h"
+#include "haptic/devices/wooden/wooden_haptics.h"
 
 namespace fettle::haptic {
 

@@ -10,7 +10,7 @@
 
 #include "engine/base/error.h"
 #include "haptic/devices/device.h"
-#include "haptic/devices/simulated_hand.h"
+#include "haptic/devices/virtual/simulated_hand.h"
 
 namespace fettle::haptic {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "haptic/effect.h"
+#include "haptic/effects/effect.h"
 
 namespace fettle::haptic {
 

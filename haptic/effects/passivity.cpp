@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "haptic/force.h"
+#include "haptic/base/force.h"
 
 namespace fettle::haptic {
 

@@ -2,7 +2,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "haptic/effect.h"
+#include "haptic/effects/effect.h"
 
 namespace fettle::haptic {
 

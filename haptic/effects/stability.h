@@ -4,7 +4,7 @@
 #include <string>
 
 #include "haptic/devices/device.h"
-#include "haptic/scene.h"
+#include "haptic/scene/scene.h"
 
 namespace fettle::haptic {
 

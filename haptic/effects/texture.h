@@ -4,7 +4,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "haptic/effect.h"
+#include "haptic/effects/effect.h"
 
 namespace fettle::haptic {
 

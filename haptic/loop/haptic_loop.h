@@ -6,10 +6,10 @@
 #include <thread>
 
 #include "engine/base/error.h"
+#include "haptic/base/rt_thread.h"
 #include "haptic/loop/loop_tick.h"
 #include "haptic/loop/near_tiles.h"
 #include "haptic/loop/pool_keeper.h"
-#include "haptic/loop/rt_thread.h"
 #include "haptic/loop/timing.h"
 
 namespace fettle::haptic {

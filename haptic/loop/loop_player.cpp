@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/field/node_pool.h"
-#include "haptic/loop/rt_thread.h"
+#include "haptic/base/rt_thread.h"
 
 namespace fettle::haptic {
 

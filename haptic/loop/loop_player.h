@@ -5,7 +5,7 @@
 
 #include "engine/base/error.h"
 #include "haptic/loop/loop_tick.h"
-#include "haptic/scene.h"
+#include "haptic/scene/scene.h"
 
 namespace fettle::haptic {
 

@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <memory>
 
+#include "haptic/base/latest_slot.h"
+#include "haptic/base/rings.h"
 #include "haptic/devices/device.h"
-#include "haptic/devices/latest_slot.h"
 #include "haptic/loop/messages.h"
 #include "haptic/loop/near_tiles.h"
-#include "haptic/loop/rings.h"
 #include "haptic/safety/safety.h"
 
 namespace fettle::haptic {

@@ -7,12 +7,12 @@
 
 #include "engine/field/live_field.h"
 #include "engine/field/version.h"
+#include "haptic/base/strokes.h"
 #include "haptic/devices/device.h"
 #include "haptic/devices/workspace.h"
 #include "haptic/safety/safety.h"
-#include "haptic/scene.h"
-#include "haptic/strokes.h"
-#include "haptic/tick.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/tick.h"
 
 namespace fettle::haptic {
 

@@ -9,8 +9,8 @@
 
 #include "engine/field/live_field.h"
 #include "engine/field/version.h"
+#include "haptic/base/rings.h"
 #include "haptic/loop/messages.h"
-#include "haptic/loop/rings.h"
 
 namespace fettle::haptic {
 

@@ -6,7 +6,7 @@
 
 #include "engine/field/version.h"
 #include "engine/scanner/scanner.h"
-#include "haptic/strokes.h"
+#include "haptic/base/strokes.h"
 
 namespace fettle::haptic {
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bench/instructions.h"
-#include "haptic/scene.h"
+#include "haptic/scene/scene.h"
 
 namespace fettle::bench {
 namespace {

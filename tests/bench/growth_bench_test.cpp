@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bench/commit_times.h"
-#include "bench/hand_stroke.h"
+#include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {
 namespace {
@@ -47,7 +47,7 @@ TEST(GrowthBench, EverySeriesHasAllItsSizes) {
 
 TEST(GrowthBench, EveryStrokeIsTimedUntilItIsOnTheDisk) {
   engine::JobControl job;
-  const auto times = commitTimes(workpiece(256, 0.05), 4, job);
+  const auto times = commitTimes(trials::workpiece(256, 0.05), 4, job);
   ASSERT_TRUE(times) << times.error().line();
   ASSERT_EQ(times->durable_ms.size(), 4U);
   ASSERT_EQ(times->waits_ms.size(), 4U);

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "bench/hand_stroke.h"
 #include "engine/io/import.h"
+#include "haptic/trials/hand_stroke.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::bench {
@@ -24,7 +24,7 @@ TEST(ImportBench, HasARowForEveryFormatThatIsRead) {
       return row.format == format.name;
     })) << format.name;
   }
-  const std::uint64_t written = engine::contentHash(workpiece(48, 0.05));
+  const std::uint64_t written = engine::contentHash(trials::workpiece(48, 0.05));
   for (const ImportBenchRow& row : report->rows) {
     EXPECT_EQ(row.samples, 48 * 48) << row.name;
     EXPECT_GT(row.bytes, 48 * 48) << row.name;

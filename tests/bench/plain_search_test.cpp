@@ -6,17 +6,17 @@
 
 #include <glm/geometric.hpp>
 
-#include "bench/hand_stroke.h"
 #include "engine/field/live_field.h"
-#include "haptic/scene.h"
-#include "haptic/tick.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/tick.h"
+#include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {
 namespace {
 
 TEST(PlainSearch, PushesAsTheTickDoesOnASmoothPart) {
-  const engine::Version field = workpiece(200, 0.05, 0.0);
-  HandMotion motion;
+  const engine::Version field = trials::workpiece(200, 0.05, 0.0);
+  trials::HandMotion motion;
   motion.ticks = 20'000;
   motion.press_mm = 0.1;
   const haptic::Scene scene = haptic::defaultScene();
@@ -25,7 +25,7 @@ TEST(PlainSearch, PushesAsTheTickDoesOnASmoothPart) {
   PlainSearch plain(field);
   int contacts = 0;
   int same = 0;
-  for (const haptic::StrokeSample& sample : handStroke(field, motion)) {
+  for (const haptic::StrokeSample& sample : trials::handStroke(field, motion)) {
     const haptic::ForceSample ours = tick.run(sample);
     const glm::dvec3 theirs = plain.tick(sample.tip_mm, scene.stiffness_n_per_mm);
     if (!ours.contact) continue;

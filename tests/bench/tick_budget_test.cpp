@@ -5,12 +5,12 @@
 
 #include <optional>
 
-#include "bench/hand_stroke.h"
 #include "bench/instructions.h"
 #include "engine/field/live_field.h"
-#include "haptic/loop/rt_thread.h"
-#include "haptic/scene.h"
-#include "haptic/tick.h"
+#include "haptic/base/rt_thread.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/tick.h"
+#include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {
 namespace {
@@ -42,12 +42,12 @@ constexpr Budget kBudgets[] = {
 
 // Ticks spread over a hand's way: each counted one follows on its predecessor, as the rest do.
 std::optional<double> instructionsOf(const Budget& budget) {
-  const engine::Version field = workpiece(256, kSpacingMm);
-  HandMotion motion;
+  const engine::Version field = trials::workpiece(256, kSpacingMm);
+  trials::HandMotion motion;
   motion.ticks = 20'000;
   motion.speed_mm_s = 20.0;
   motion.tool = budget.tool;
-  std::vector<haptic::StrokeSample> strokes = handStroke(field, motion);
+  std::vector<haptic::StrokeSample> strokes = trials::handStroke(field, motion);
   haptic::Scene scene = haptic::defaultScene();
   scene.level = budget.level;
   if (budget.ball_cells > 0.0) {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/io/import.h"
-#include "engine/io/marks.h"
+#include "engine/io/raster/marks.h"
 #include "engine/marks/edge_suggestion.h"
 #include "tests/end_to_end/program.h"
 #include "tests/support/temp_folder.h"

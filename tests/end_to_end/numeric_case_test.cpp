@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic/tick.h"
+#include "haptic/tick/tick.h"
 #include "tests/end_to_end/program.h"
 #include "tests/numeric/support/touch_case.h"
 #include "tests/support/temp_folder.h"

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "tests/engine/io/instrument_files.h"
 #include "tests/engine/io/io_support.h"
+#include "tests/engine/io/surface/instrument_files.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::tests {

@@ -8,7 +8,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include "haptic/devices/wooden_kinematics.h"
+#include "haptic/devices/wooden/wooden_kinematics.h"
 
 namespace fettle::tests {
 

@@ -7,7 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "haptic/devices/wooden_config.h"
+#include "haptic/devices/wooden/wooden_config.h"
 #include "tests/haptic/devices/fake_hidapi/fake_woody.h"
 
 namespace fettle::tests {
@@ -25,12 +25,13 @@ namespace fettle::tests {
 struct Felt {
   double peak_n = 0.0;
   int peak_ma = 0;
-  /// Largest change of the force from one report to the next, over the time between them, of which 1 ms counts
-  /// at least (reports of a busy machine come in bursts) and 2 at most: a device holds what it has, so a step is
-  /// a step however long ago the report before was.
+  /// Largest change of the force from one report to the next, over the time between them, of which 1 ms
+  /// counts at least (reports of a busy machine come in bursts) and 2 at most: a device holds what it has, so
+  /// a step is a step however long ago the report before was.
   double rate_n_per_ms = 0.0;
   double rise_n = 0.0;  ///< largest rise of the force from one report to the next
-  /// Most by which rises ran ahead of the slew limit over any time, each report counting for 1 ms at least [N].
+  /// Most by which rises ran ahead of the slew limit over any time, each report counting for 1 ms at least
+  /// [N].
   double ahead_n = 0.0;
   std::size_t reports = 0;
 };

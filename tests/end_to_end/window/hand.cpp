@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "render/picture.h"
+#include "render/plan/picture.h"
 
 namespace fettle::tests {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "app/view/shortcuts.h"
+#include "app/window/shortcuts.h"
 
 namespace fettle::tests {
 namespace {

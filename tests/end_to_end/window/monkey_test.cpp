@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/io/marks.h"
+#include "engine/io/raster/marks.h"
 #include "tests/end_to_end/window/frame_gate.h"
 #include "tests/end_to_end/window/monkey.h"
 #include "tests/end_to_end/window/window_fixture.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "engine/filter/filter.h"
-#include "engine/io/marks.h"
+#include "engine/io/raster/marks.h"
 #include "tests/end_to_end/window/window_fixture.h"
 
 namespace fettle::tests {

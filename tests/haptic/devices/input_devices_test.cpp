@@ -10,11 +10,11 @@
 #include <glm/geometric.hpp>
 
 #include "haptic/devices/enumerate.h"
-#include "haptic/devices/hid_port.h"
+#include "haptic/devices/hid/hid_port.h"
+#include "haptic/devices/hid/space_mouse.h"
 #include "haptic/devices/known_devices.h"
-#include "haptic/devices/mouse_stylus.h"
-#include "haptic/devices/replay_device.h"
-#include "haptic/devices/space_mouse.h"
+#include "haptic/devices/virtual/mouse_stylus.h"
+#include "haptic/devices/virtual/replay_device.h"
 #include "haptic/devices/workspace.h"
 #include "tests/support/temp_folder.h"
 

@@ -1,4 +1,4 @@
-#include "haptic/devices/latest_slot.h"
+#include "haptic/base/latest_slot.h"
 
 #include <array>
 #include <atomic>

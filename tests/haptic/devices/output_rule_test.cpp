@@ -1,4 +1,4 @@
-#include "haptic/devices/output_rule.h"
+#include "haptic/devices/hid/output_rule.h"
 
 #include <algorithm>
 #include <cstdint>

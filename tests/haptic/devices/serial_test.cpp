@@ -21,8 +21,8 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "haptic/devices/serial_port.h"
-#include "haptic/devices/wooden_haptics.h"
+#include "haptic/devices/wooden/serial_port.h"
+#include "haptic/devices/wooden/wooden_haptics.h"
 #include "tests/support/eventually.h"
 #include "tests/support/temp_folder.h"
 

@@ -1,4 +1,4 @@
-#include "haptic/devices/simulated_hand.h"
+#include "haptic/devices/virtual/simulated_hand.h"
 
 #include <cmath>
 #include <limits>

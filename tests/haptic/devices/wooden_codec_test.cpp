@@ -1,4 +1,4 @@
-#include "haptic/devices/wooden_codec.h"
+#include "haptic/devices/codecs/wooden_codec.h"
 
 #include <array>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic/devices/encoder_unwrap.h"
+#include "haptic/devices/wooden/encoder_unwrap.h"
 
 namespace fettle::haptic {
 namespace {

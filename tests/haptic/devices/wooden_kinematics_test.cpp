@@ -1,4 +1,4 @@
-#include "haptic/devices/wooden_kinematics.h"
+#include "haptic/devices/wooden/wooden_kinematics.h"
 
 #include <cmath>
 #include <fstream>
@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "haptic/devices/wooden_calibration.h"
+#include "haptic/devices/wooden/wooden_calibration.h"
 #include "tests/support/source_tree.h"
 
 namespace fettle::haptic {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "bench/hand_stroke.h"
-#include "haptic/replay.h"
+#include "haptic/tick/replay.h"
+#include "haptic/trials/hand_stroke.h"
 #include "tests/haptic/effects/touch.h"
 
 namespace fettle::haptic {
@@ -62,11 +62,11 @@ TEST(Compose, TheBigTablesAreThoseOfTextureAndEdgeSnap) {
 
 TEST(Compose, StrengthOfTheBrushIsThePressAloneWhateverElseIsFelt) {
   // Pressed the same way, with and without effects that do not press: the same bits of the field.
-  const engine::Version field = bench::workpiece(200, 0.05);
-  bench::HandMotion motion;
+  const engine::Version field = trials::workpiece(200, 0.05);
+  trials::HandMotion motion;
   motion.ticks = 5000;
   motion.tool = Tool::kSmooth;
-  const std::vector<StrokeSample> strokes = bench::handStroke(field, motion);
+  const std::vector<StrokeSample> strokes = trials::handStroke(field, motion);
   const auto hashOf = [&](std::vector<EffectKind> effects) {
     engine::JobControl job;
     const auto result = replay(field, field, strokes, sceneOf(std::move(effects)), {}, job);
@@ -82,10 +82,10 @@ TEST(Compose, StrengthOfTheBrushIsThePressAloneWhateverElseIsFelt) {
 }
 
 TEST(Compose, ReplayOfEverythingGivesTheSameBitsTwiceAndForcesWithinTheLimit) {
-  const engine::Version field = bench::workpiece(200, 0.05);
-  bench::HandMotion motion;
+  const engine::Version field = trials::workpiece(200, 0.05);
+  trials::HandMotion motion;
   motion.ticks = 20000;
-  std::vector<StrokeSample> strokes = bench::handStroke(field, motion);
+  std::vector<StrokeSample> strokes = trials::handStroke(field, motion);
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     strokes[i].tool = static_cast<Tool>(i / 700 % kTools);
     if (i % 3001 == 5) strokes[i].tip_mm.y = std::nan("");

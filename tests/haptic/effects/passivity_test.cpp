@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "haptic/devices/simulated_hand.h"
+#include "haptic/devices/virtual/simulated_hand.h"
 #include "tests/haptic/effects/touch.h"
 
 namespace fettle::haptic {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "bench/stiffness_sweep.h"
-#include "haptic/devices/simulated_hand.h"
+#include "haptic/devices/virtual/simulated_hand.h"
 #include "haptic/loop/loop_tick.h"
 #include "tests/haptic/effects/touch.h"
 #include "tests/haptic/loop/hand_device.h"

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "haptic/devices/known_devices.h"
-#include "haptic/devices/simulated_hand.h"
-#include "haptic/tick.h"
+#include "haptic/devices/virtual/simulated_hand.h"
+#include "haptic/tick/tick.h"
 #include "tests/haptic/effects/touch.h"
 #include "tests/support/source_tree.h"
 

@@ -7,7 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/field/live_field.h"
-#include "haptic/tick.h"
+#include "haptic/tick/tick.h"
 #include "tests/haptic/support/fields.h"
 
 namespace fettle::haptic::tests {

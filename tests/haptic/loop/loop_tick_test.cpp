@@ -7,7 +7,7 @@
 
 #include "engine/field/difference.h"
 #include "haptic/loop/adoption.h"
-#include "haptic/replay.h"
+#include "haptic/tick/replay.h"
 #include "tests/haptic/loop/hand_device.h"
 #include "tests/haptic/support/fields.h"
 

@@ -7,7 +7,7 @@
 #include <sys/resource.h>
 
 #include "engine/field/tile_store.h"
-#include "haptic/replay.h"
+#include "haptic/tick/replay.h"
 #include "tests/haptic/loop/hand_device.h"
 #include "tests/haptic/support/fields.h"
 #include "tests/support/mapped_pages.h"

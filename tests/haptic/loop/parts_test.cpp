@@ -13,10 +13,10 @@
 
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
+#include "haptic/base/rings.h"
+#include "haptic/base/rt_thread.h"
 #include "haptic/loop/adoption.h"
 #include "haptic/loop/pacer.h"
-#include "haptic/loop/rings.h"
-#include "haptic/loop/rt_thread.h"
 #include "haptic/loop/timing.h"
 #include "tests/haptic/support/fields.h"
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic/loop/rt_thread.h"
-#include "haptic/replay.h"
+#include "haptic/base/rt_thread.h"
+#include "haptic/tick/replay.h"
 #include "tests/haptic/loop/hand_device.h"
 #include "tests/haptic/support/fields.h"
 

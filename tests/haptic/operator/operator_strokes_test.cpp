@@ -9,8 +9,8 @@
 
 #include "engine/field/builder.h"
 #include "haptic/operator/hand_motion.h"
-#include "haptic/replay.h"
-#include "haptic/scene.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/replay.h"
 #include "tests/support/no_data.h"
 
 namespace fettle::haptic {

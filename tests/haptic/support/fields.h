@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/field/builder.h"
-#include "haptic/surface.h"
+#include "haptic/contact/surface.h"
 
 namespace fettle::tests {
 

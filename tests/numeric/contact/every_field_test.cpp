@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "haptic/certified.h"
-#include "haptic/tick.h"
+#include "haptic/contact/certified.h"
+#include "haptic/tick/tick.h"
 #include "tests/haptic/support/fields.h"
 #include "tests/numeric/support/hard_fields.h"
 
@@ -145,7 +145,7 @@ TEST_P(EveryField, ProxyLiesOnTheSurface) {
 // step, 1e-7 of a cell, leaves a slope of its square, times curvature, at most 1 + slope^2: nothing beside
 // the step of 1e-7 itself, which is allowed here.
 TEST_P(EveryField, NoPointAroundTheProxyIsNearer) {
-  if (ball()) GTEST_SKIP() << "a ball is held by several points: tests/haptic/sphere_tip_test.cpp";
+  if (ball()) GTEST_SKIP() << "a ball is held by several points: tests/haptic/contact/sphere_tip_test.cpp";
   if (hard().slope > 100.0) GTEST_SKIP() << "rounding of a place is more than 1e-6 of what a wall rises";
   engine::LiveField live(hard().field, engine::Growth::kAllowed);
   Tick tick(scene(), live, hard().field);

@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 
 #include "engine/io/import.h"
-#include "haptic/replay.h"
-#include "haptic/tick.h"
+#include "haptic/tick/replay.h"
+#include "haptic/tick/tick.h"
 #include "tests/numeric/support/touch_case.h"
 #include "tests/support/temp_folder.h"
 

@@ -15,8 +15,8 @@
 
 #include "engine/field/live_field.h"
 #include "engine/io/import.h"
-#include "engine/io/marks.h"
-#include "haptic/brush.h"
+#include "engine/io/raster/marks.h"
+#include "haptic/tick/brush.h"
 #include "tests/engine/filter/reference.h"
 #include "tests/numeric/support/work_case.h"
 #include "tests/support/no_data.h"

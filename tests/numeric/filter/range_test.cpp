@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/live_field.h"
-#include "haptic/brush.h"
+#include "haptic/tick/brush.h"
 #include "tests/numeric/filter/cases.h"
 #include "tests/numeric/support/rare.h"
 

@@ -1,7 +1,7 @@
 // How far a coarse surface may lie from the fine one, on fields made to defeat it: spikes of one sample at
 // any place, steps beside the borders of patches, waves that every vertex of a level meets at the same
-// height. The twin is both surfaces themselves in double precision (tests/render/drawn_surface.h); on the
-// screen the same two, projected.
+// height. The twin is both surfaces themselves in double precision (tests/render/support/drawn_surface.h); on
+// the screen the same two, projected.
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,11 @@
 #include <glm/geometric.hpp>
 
 #include "engine/field/live_field.h"
-#include "render/patches.h"
+#include "render/detail/patches.h"
 #include "tests/numeric/geometry/pebbles.h"
 #include "tests/numeric/support/rare.h"
-#include "tests/render/drawn_surface.h"
-#include "tests/render/fields.h"
+#include "tests/render/support/drawn_surface.h"
+#include "tests/render/support/fields.h"
 
 namespace fettle::render {
 namespace {

@@ -16,14 +16,14 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "haptic/certified.h"
-#include "haptic/collision.h"
-#include "haptic/contact.h"
-#include "render/pick.h"
+#include "haptic/contact/certified.h"
+#include "haptic/contact/collision.h"
+#include "haptic/contact/contact.h"
+#include "render/detail/pick.h"
 #include "tests/engine/filter/reference.h"
 #include "tests/numeric/geometry/pebbles.h"
 #include "tests/numeric/support/rare.h"
-#include "tests/render/fields.h"
+#include "tests/render/support/fields.h"
 
 namespace fettle::render {
 namespace {

@@ -33,12 +33,12 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "haptic/devices/simulated_hand.h"
+#include "haptic/devices/virtual/simulated_hand.h"
 #include "haptic/effects/edge_snap.h"
 #include "haptic/effects/friction.h"
 #include "haptic/effects/stability.h"
 #include "haptic/effects/texture.h"
-#include "haptic/tick.h"
+#include "haptic/tick/tick.h"
 #include "tests/haptic/support/fields.h"
 #include "tests/numeric/support/hard_fields.h"
 

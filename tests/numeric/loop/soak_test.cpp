@@ -15,7 +15,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "haptic/tick.h"
+#include "haptic/tick/tick.h"
 #include "tests/haptic/support/fields.h"
 #include "tests/numeric/support/hard_fields.h"
 

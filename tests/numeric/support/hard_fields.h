@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "engine/field/version.h"
-#include "haptic/scene.h"
-#include "haptic/strokes.h"
-#include "haptic/tick_counters.h"
+#include "haptic/base/strokes.h"
+#include "haptic/base/tick_counters.h"
+#include "haptic/scene/scene.h"
 
 namespace fettle::tests {
 

@@ -9,8 +9,8 @@
 #include <rapidcheck.h>
 
 #include "engine/field/version.h"
-#include "haptic/scene.h"
-#include "haptic/strokes.h"
+#include "haptic/base/strokes.h"
+#include "haptic/scene/scene.h"
 #include "tests/numeric/support/hard_fields.h"
 
 namespace fettle::tests {

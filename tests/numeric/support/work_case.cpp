@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "engine/io/export.h"
-#include "engine/io/marks.h"
-#include "haptic/replay.h"
+#include "engine/io/raster/marks.h"
+#include "haptic/tick/replay.h"
 
 namespace fettle::tests {
 

@@ -7,8 +7,8 @@
 
 #include "engine/field/version.h"
 #include "engine/filter/filter.h"
-#include "haptic/scene.h"
-#include "haptic/strokes.h"
+#include "haptic/base/strokes.h"
+#include "haptic/scene/scene.h"
 
 namespace fettle::tests {
 

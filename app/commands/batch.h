@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "app/commands/scan_options.h"
+
+namespace fettle::app {
+
+/// The files of a command that writes a scan for each that it reads, as typed: IN OUT, or any number of IN
+/// with a folder for what is written.
+struct BatchOptions {
+  std::vector<std::string> files;
+  std::string out_dir;  ///< empty: one scan, IN OUT
+  std::string
+      extension;  ///< of what is written to out_dir or to "-", with or without a dot; empty: batchTasks
+  Replacing replacing = Replacing::kNoWork;
+
+  [[nodiscard]] bool many() const noexcept { return !out_dir.empty(); }
+};
+void addBatchOptions(Command command, BatchOptions& options);
+
+/// One scan to read and where it goes.
+struct BatchTask {
+  std::string in;
+  std::string out;  ///< empty: nothing is written
+  std::string to;   ///< format of an `out` that is "-", as extension
+};
+
+/// What is to be done, in the order typed. In out_dir a scan keeps its name; its extension is that of
+/// `options`, else its own where that format can be written, else .tif. Refuses before anything is read
+/// (kInput): not exactly IN and OUT without out_dir, an extension without out_dir or "-", two scans that
+/// would go to one file (naming both), and whatever checkOutputs refuses. `others` are further inputs that no
+/// output may replace.
+[[nodiscard]] engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
+                                                                const std::vector<std::string>& others,
+                                                                engine::JobControl& job);
+
+/// Does one task after another with one progress line for all, and goes on where one fails. Failures are
+/// errors on stderr at the end, one line each. The report holds `done`, `failed` and `files`: one object a
+/// task, with `in`, `out` (where there is one) and what `one` reported, or `in` and `error`. batchStatus
+/// makes the exit status.
+///
+/// A folder to write to that is not there is made, and removed again when nothing was written.
+/// Cancelling ends the task at work, which leaves nothing, and starts no other: kCancelled, saying how many
+/// files are there and whole.
+[[nodiscard]] engine::Result<Report> runBatch(
+    const std::vector<BatchTask>& tasks, engine::JobControl& job,
+    const std::function<engine::Result<Report>(const BatchTask&, engine::JobControl&)>& one);
+
+/// 0, or 1 when a task of the batch failed; 0 for reports of a single scan.
+[[nodiscard]] int batchStatus(const Report& report);
+
+/// A line a task for a batch, printReport for a single scan.
+void printBatch(const Report& report);
+
+}  // namespace fettle::app

@@ -1,0 +1,136 @@
+#include "app/commands/command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/terminal.h"
+#include "app/work/spelling.h"
+#include "app/work/streams.h"
+
+namespace fettle::app {
+
+namespace {
+
+std::string text(const Report& value) {
+  if (value.is_null()) return "-";
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return fmt::format("{:.9g}", value.get<double>());
+  return value.dump();
+}
+
+// "row 3, column 5, height 9.792"; a string as it is.
+std::string line(const Report& object) {
+  if (!object.is_object()) return text(object);
+  std::string joined;
+  for (const auto& [key, value] : object.items())
+    joined += fmt::format("{}{} {}", joined.empty() ? "" : ", ", key, text(value));
+  return joined;
+}
+
+bool isList(const Report& value) {
+  return value.is_array() && !value.empty() && (value.front().is_object() || value.front().is_string());
+}
+
+void printIndented(const Report& report, int indent) {
+  std::size_t widest = 0;
+  for (const auto& [key, value] : report.items()) widest = std::max(widest, key.size());
+  for (const auto& [key, value] : report.items()) {
+    if (value.is_object()) {
+      fmt::print("{:{}}{}\n", "", indent, key);
+      printIndented(value, indent + 2);
+    } else if (isList(value)) {
+      fmt::print("{:{}}{}\n", "", indent, key);
+      for (const Report& entry : value) fmt::print("{:{}}  {}\n", "", indent, line(entry));
+    } else if (!(value.is_array() && value.empty())) {
+      fmt::print("{:{}}{:<{}}  {}\n", "", indent, key, widest, text(value));
+    }
+  }
+}
+
+}  // namespace
+
+void addKeptWarnings(Report& report) {
+  for (const std::string& warning : takeWarnings()) {
+    Report& list = report["warnings"];
+    if (!list.is_array()) list = Report::array();
+    const bool there = std::any_of(list.begin(), list.end(), [&](const Report& held) {
+      return held.is_string() && warning.ends_with(held.get<std::string>());
+    });
+    if (!there) list.push_back(warning);
+  }
+}
+
+void printReport(const Report& report) {
+  // Each was said on stderr when it was found.
+  Report shown = report;
+  shown.erase("warnings");
+  printIndented(shown, 0);
+}
+
+Check within(double lowest, double highest) {
+  return {[lowest, highest](const std::string& typed) {
+            // As options of this type are read; NaN fails both comparisons.
+            char* end = nullptr;
+            const auto value = static_cast<double>(std::strtold(typed.c_str(), &end));
+            if (!typed.empty() && end == typed.c_str() + typed.size() && value >= lowest && value <= highest)
+              return std::string();
+            return fmt::format("{} is not a number from {:g} to {:g}", typed, lowest, highest);
+          },
+          fmt::format("FLOAT in [{:g} - {:g}]", lowest, highest)};
+}
+
+Check oneOf(const std::vector<std::string>& words) {
+  return {[words](const std::string& typed) {
+            if (std::find(words.begin(), words.end(), typed) != words.end()) return std::string();
+            const std::string meant = didYouMean(typed, words);
+            return fmt::format("{} is none of {}{}{}", typed, fmt::join(words, ", "),
+                               meant.empty() ? "" : "; ", meant);
+          },
+          fmt::format("{{{}}}", fmt::join(words, ","))};
+}
+
+Check fileName() {
+  return {[](const std::string& typed) {
+    return isStream(typed) ? std::string(
+                                 "takes no -, standard input or standard output: name a file, ./- for one "
+                                 "of that name")
+                           : std::string();
+  }};
+}
+
+Check folderName() {
+  return {[](const std::string& typed) {
+    return isStream(typed) ? std::string(
+                                 "- is standard output, and no folder: name a folder, ./- for one of "
+                                 "that name")
+                           : std::string();
+  }};
+}
+
+void addOutputFlags(Command app, Chosen& chosen) {
+  app.flag("--json", chosen.json,
+           "Print one JSON object on stdout instead of text, an error as one on stderr");
+  app.flag("-q,--quiet", chosen.quiet, "Say nothing but errors: no report, warnings or progress");
+}
+
+Command addCommand(Command root, Chosen& chosen, const std::string& name, const std::string& description,
+                   std::function<engine::Result<Report>(engine::JobControl&)> run,
+                   std::function<void(const Report&)> print, Progress progress,
+                   std::function<int(const Report&)> status) {
+  Command command = root.subcommand(name, description);
+  addOutputFlags(command, chosen);
+  command.onChosen(
+      [&chosen, run = std::move(run), print = std::move(print), progress, status = std::move(status)] {
+        chosen.run = run;
+        chosen.print = print;
+        chosen.progress = progress;
+        chosen.status = status;
+      });
+  return command;
+}
+
+}  // namespace fettle::app

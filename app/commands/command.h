@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/report.h"
+
+#include "app/commands/command_line.h"
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+
+namespace fettle::app {
+
+/// Who shows how far a command is.
+enum class Progress : std::uint8_t {
+  kLine,  ///< the progress line that all commands share
+  kOwn,   ///< the command itself
+};
+
+/// The command that the command line chose, ready to run. `run` does the work and returns what --json prints;
+/// `print` shows the same to a person on stdout (printReport by default).
+struct Chosen {
+  std::function<engine::Result<Report>(engine::JobControl&)> run;
+  std::function<void(const Report&)> print;
+  std::function<int(const Report&)> status;  ///< exit status of what `run` reported; empty: 0
+  Progress progress = Progress::kLine;
+  bool json = false;
+  bool quiet = false;  ///< nothing is said but errors
+};
+
+/// Puts the warnings that --json kept back (takeWarnings) into the report's list `warnings`, but for those
+/// that it holds already, with or without the file's name before them. Without any the report stays as it is.
+void addKeptWarnings(Report& report);
+
+/// "key  value" lines; nested objects are indented, null prints as "-". Not its `warnings`: they were said on
+/// stderr.
+void printReport(const Report& report);
+
+/// Adds --json and --quiet, which a command takes before and behind its name.
+void addOutputFlags(Command app, Chosen& chosen);
+
+/// Adds a subcommand with --json and --quiet. `run` is stored in `chosen` when the command line names it.
+Command addCommand(Command root, Chosen& chosen, const std::string& name, const std::string& description,
+                   std::function<engine::Result<Report>(engine::JobControl&)> run,
+                   std::function<void(const Report&)> print = printReport,
+                   Progress progress = Progress::kLine, std::function<int(const Report&)> status = {});
+
+/// For Option::check: a number from `lowest` to `highest`, and not NaN.
+[[nodiscard]] Check within(double lowest, double highest);
+
+/// For Option::check: one of these words. Another is refused with what it may stand for.
+[[nodiscard]] Check oneOf(const std::vector<std::string>& words);
+
+/// For Option::check of a file: not "-", which is no standard input or output there.
+[[nodiscard]] Check fileName();
+
+/// For Option::check of a folder: not "-". A folder of that name would stand in the way of every command that
+/// writes to standard output.
+[[nodiscard]] Check folderName();
+
+void addInfo(Command root, Chosen& chosen);
+void addSynth(Command root, Chosen& chosen);
+void addFilter(Command root, Chosen& chosen);
+void addMark(Command root, Chosen& chosen);
+void addReplay(Command root, Chosen& chosen);
+void addRecord(Command root, Chosen& chosen);
+void addRender(Command root, Chosen& chosen);
+void addCompare(Command root, Chosen& chosen);
+void addConvert(Command root, Chosen& chosen);
+void addDevices(Command root, Chosen& chosen);
+void addView(Command root, Chosen& chosen);
+void addAccuracy(Command root, Chosen& chosen);
+void addBench(Command root, Chosen& chosen);
+void addDemo(Command root, Chosen& chosen);
+
+}  // namespace fettle::app

@@ -1,0 +1,157 @@
+#include "app/commands/program.h"
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands/command_line.h"
+#include "app/terminal.h"
+#include "app/work/spelling.h"
+
+namespace fettle::app {
+
+namespace {
+
+using engine::Error;
+using engine::ErrorKind;
+using engine::JobControl;
+
+int reportUnwritten(const char* remedy) {
+  return report({ErrorKind::kFailed, "the report could not be written", "standard output", remedy});
+}
+
+// A report that did not reach standard output is a failure, whatever else went well.
+int finish(int status) {
+  const bool flushed = std::fflush(stdout) == 0;
+  const int error = errno;
+  if (!flushed && error == ENOSPC) return reportUnwritten("the disk is full: make room on it");
+  if (!flushed || std::ferror(stdout) != 0) return reportUnwritten("");
+  return status;
+}
+
+int runChosen(const Chosen& chosen) {
+  JobControl job;
+  const InterruptGuard interrupt(job);
+  auto result = [&] {
+    std::optional<ProgressLine> progress;
+    if (chosen.progress == Progress::kLine) progress.emplace(job);
+    return chosen.run(job);
+  }();
+  if (!result) return report(result.error());
+  // Printing throws when standard output is full or closed; the work is done then, and says so by its files.
+  if (chosen.json) {
+    addKeptWarnings(*result);
+    // A path may hold bytes that are not UTF-8: they are replaced in the report, never in the file system.
+    fmt::print("{}\n", result->dump(2, ' ', false, Report::error_handler_t::replace));
+  } else if (!chosen.quiet) {
+    chosen.print(*result);
+  }
+  return finish(chosen.status ? chosen.status(*result) : 0);
+}
+
+// `--keep "$MARKS"` with MARKS unset would mean "no marks": the protection that was asked for, silently gone.
+// Only a title may be empty.
+std::optional<Error> emptyArgument(const std::vector<std::string>& arguments) {
+  for (std::size_t i = 1; i < arguments.size(); ++i)
+    if (arguments[i].empty() && !arguments[i - 1].ends_with("title"))
+      return Error{ErrorKind::kInput, fmt::format("argument {} is empty", i), arguments[i - 1],
+                   "is a shell variable unset?"};
+  return std::nullopt;
+}
+
+// "help filter" is "filter --help", and "help" alone "--help"; with --json and --quiet as well, which change
+// nothing of it.
+void takeHelpForOption(std::vector<std::string>& arguments) {
+  if (arguments.empty()) return;
+  const auto help = std::find_if(arguments.begin() + 1, arguments.end(),
+                                 [](const std::string& a) { return !a.starts_with("-"); });
+  if (help == arguments.end() || *help != "help") return;
+  arguments.erase(help);
+  std::erase_if(arguments, [](const std::string& a) { return a.starts_with("-"); });
+  arguments.emplace_back("--help");
+}
+
+// The error of a command line that could not be parsed: the word that is wrong, and what it may stand for.
+Error usageError(const Misread& misread) {
+  const std::string help = fmt::format("see fettle {}--help", misread.command);
+  const auto refused = [&](std::string what, const std::string& meant) {
+    return Error{ErrorKind::kInput, std::move(what), "",
+                 meant.empty() ? help : fmt::format("{} {}", meant, help)};
+  };
+  const std::vector<std::string>& rest = misread.rest;
+  // A word that stands in the place of a command comes first: all behind it belongs to it.
+  const auto word = std::find_if(rest.begin(), rest.end(), [](const auto& w) { return !w.starts_with("-"); });
+  if (!misread.known_commands.empty() && word != rest.end())
+    return refused(fmt::format("there is no command {}{}", misread.command, *word),
+                   didYouMean(*word, misread.known_commands));
+  // Then options: one that is misspelt leaves the value of another missing, or its own value over.
+  for (const std::string& option : rest) {
+    if (!option.starts_with("-") || option == "-") continue;
+    const std::string name = option.substr(0, option.find('='));
+    // It is right, but before the word of the command.
+    if (!misread.command.empty() &&
+        std::ranges::find(misread.known_options, name) != misread.known_options.end())
+      return Error{ErrorKind::kInput, fmt::format("{} stands before the command that takes it", name), "",
+                   fmt::format("put it behind: fettle {}{}", misread.command, name)};
+    return refused(fmt::format("there is no option {}", name),
+                   didYouMean(name.starts_with("--") ? name : "-" + name, misread.known_options));
+  }
+  return refused(misread.what, "");
+}
+
+}  // namespace
+
+int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)>& add_commands) {
+  // A limit on file sizes then fails the write, as a full disk does, instead of ending the program between a
+  // temporary file and its removal.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+  std::vector<std::string> arguments(argv, argv + argc);
+  // Errors of the command line itself have the form that is asked for, too.
+  Voice voice;
+  voice.json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
+  setVoice(voice);
+  if (const auto error = emptyArgument(arguments)) return report(*error);
+  takeHelpForOption(arguments);
+  CommandLine line("fettle", "Fettle cleans up large scanned height fields by touch.",
+                   "fettle " FETTLE_VERSION);
+  Command root = line.root();
+  root.requireSubcommand();
+  Chosen chosen;
+  addOutputFlags(root, chosen);
+  add_commands(root, chosen);
+  // Replaced by takeHelpForOption() before it could be chosen.
+  root.subcommand("help", "The help of a command, as its --help: fettle help filter");
+
+  const auto text = line.parse(arguments);
+  if (!text) return report(usageError(text.error()));
+  if (!text->empty()) {
+    std::fputs(text->c_str(), stdout);
+    return finish(0);
+  }
+  voice.json = chosen.json;
+  voice.quiet = chosen.quiet;
+  setVoice(voice);
+  try {
+    return runChosen(chosen);
+  } catch (const std::system_error& error) {
+    return reportUnwritten(error.what());
+  } catch (const std::bad_alloc&) {
+    return report({ErrorKind::kFailed, "memory ran out", "", "close other programs or take a smaller scan"});
+  } catch (const std::exception& error) {
+    return report({ErrorKind::kFailed, error.what(), "", "this should not happen, please report it"});
+  }
+}
+
+}  // namespace fettle::app

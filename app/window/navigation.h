@@ -1,0 +1,44 @@
+#pragma once
+
+#include "engine/field/grid.h"
+#include "render/plan/picture.h"
+
+namespace fettle::app {
+
+/// Whose habits the mouse follows where it moves the view. In all of them: wheel = zoom to the cursor, and
+/// Alt+left drag = turn. While a tool is on, the left button is the stylus.
+enum class Habits : std::uint8_t {
+  kBlender,       ///< middle = turn, Shift+middle = pan, Ctrl+middle = zoom
+  kCloudCompare,  ///< left = turn, right = pan
+  kMeshLab,       ///< middle = turn, right = pan
+};
+
+/// What a drag does to the view.
+enum class Drag : std::uint8_t { kNone, kTurn, kPan, kZoom };
+
+/// Moves of the camera about a field: pure arithmetic on render::View.
+///
+/// A turntable: the vertical stays upright. A drag moves what is under the cursor with it: exactly when
+/// panning in a parallel projection, at the middle of the picture otherwise.
+class Navigation {
+ public:
+  /// The view that shows all of the field from where it stands.
+  static void showAll(render::View& view) noexcept;
+  /// Turns by a drag of so many pixels: half a turn for the picture's width.
+  static void turn(render::View& view, double dx_px, double dy_px, double picture_px) noexcept;
+  /// Shifts by a drag. `pixels_per_mm`: of the last frame.
+  static void pan(render::View& view, const engine::Grid& grid, double dx_px, double dy_px,
+                  double pixels_per_mm) noexcept;
+  /// Nearer by `steps` of the wheel (farther below zero), (dx, dy) from the picture's middle staying in
+  /// place.
+  static void zoom(render::View& view, const engine::Grid& grid, double steps, double dx_px, double dy_px,
+                   double pixels_per_mm) noexcept;
+  /// Looks at a place of the field [mm].
+  static void centreOn(render::View& view, const engine::Grid& grid, double x_mm, double y_mm) noexcept;
+
+  static constexpr double kLowestElevation_deg = 3.0;
+  static constexpr double kLargestZoom = 1e5;
+  static constexpr double kSmallestZoom = 0.1;
+};
+
+}  // namespace fettle::app

@@ -1,0 +1,84 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/panels/widgets.h"
+#include "app/window/workstation.h"
+
+namespace fettle::app {
+namespace {
+
+// How often each change occurs; bars grow with the logarithm of the count, for one sample in a million
+// counts.
+void drawHistogram(const engine::ChangeHistogram& histogram, const std::string& unit) {
+  constexpr int kClasses = engine::ChangeHistogram::kClasses;
+  const float height = 5.0F * ImGui::GetTextLineHeight();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 64.0F);
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton("##histogram", ImVec2(width, height));
+  const bool hovered = ImGui::IsItemHovered();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(corner, ImVec2(corner.x + width, corner.y + height),
+                     ImGui::GetColorU32(ImGuiCol_FrameBg), 3.0F);
+  std::int64_t most = 1;
+  for (const std::int64_t n : histogram.counts) most = std::max(most, n);
+  const float bar = width / kClasses;
+  const auto pointed = static_cast<int>((ImGui::GetIO().MousePos.x - corner.x) / bar);
+  for (int i = 0; i < kClasses; ++i) {
+    const std::int64_t n = histogram.counts[static_cast<std::size_t>(i)];
+    if (n == 0) continue;
+    const auto share =
+        static_cast<float>(std::log1p(static_cast<double>(n)) / std::log1p(static_cast<double>(most)));
+    const float x = corner.x + static_cast<float>(i) * bar;
+    // Blue for lower, red for higher: as the colours of the change on the surface.
+    const ImU32 colour = i < kClasses / 2 ? IM_COL32(105, 155, 225, 255) : IM_COL32(225, 115, 100, 255);
+    list.AddRectFilled(ImVec2(x, corner.y + height * (1.0F - share)),
+                       ImVec2(x + std::max(bar - 1.0F, 1.0F), corner.y + height), colour);
+  }
+  const float middle = corner.x + 0.5F * width;
+  list.AddLine(ImVec2(middle, corner.y), ImVec2(middle, corner.y + height),
+               ImGui::GetColorU32(ImGuiCol_TextDisabled));
+  if (hovered && pointed >= 0 && pointed < kClasses)
+    ImGui::SetTooltip("%s", fmt::format("{:.3g} to {:.3g} {}: {} samples", histogram.lowEnd(pointed),
+                                        histogram.lowEnd(pointed + 1), unit,
+                                        histogram.counts[static_cast<std::size_t>(pointed)])
+                                .c_str());
+  // The axis: its ends and zero.
+  const std::string low = fmt::format("-{:.3g}", histogram.reach),
+                    high = fmt::format("+{:.3g} {}", histogram.reach, unit);
+  ImGui::TextDisabled("%s", low.c_str());
+  ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + 0.5F * width - 0.5F * ImGui::CalcTextSize("0").x);
+  ImGui::TextDisabled("0");
+  ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + width - ImGui::CalcTextSize(high.c_str()).x);
+  ImGui::TextDisabled("%s", high.c_str());
+}
+
+}  // namespace
+
+void Workstation::deviationPanel() {
+  const std::string& unit = touch_->field().grid().height_unit.name;
+  const auto& live = change_.figures();
+  if (!live) {
+    ImGui::TextDisabled("measuring ...");
+    return;
+  }
+  const engine::ChangeHistogram& h = live->histogram;
+  figure("largest", fmt::format("{:.4g} {}", live->max_abs, unit));
+  figure("rms", fmt::format("{:.4g} {}", live->rms, unit));
+  // Exact figures of the whole field follow when the hand rests.
+  const bool settled = deviation_ && !measuring_.busy() && measured_ == touch_->upright();
+  figure("99 % within", settled ? fmt::format("{:.4g} {}", deviation_->p99, unit) : std::string("..."));
+  figure("Sq before, now", fmt::format("{:.4g}, {:.4g} {}", live->sq_original, live->sq, unit));
+  figure("Sa before, now", fmt::format("{:.4g}, {:.4g} {}", settled ? deviation_->sa_a : live->sa_original,
+                                       settled ? deviation_->sa_b : live->sa, unit));
+  const double share = live->samples > 0
+                           ? 100.0 * static_cast<double>(h.unchanged) / static_cast<double>(live->samples)
+                           : 100.0;
+  figure("unchanged", fmt::format("{:.4g} %", share));
+  if (h.reach > 0.0) drawHistogram(h, unit);
+}
+
+}  // namespace fettle::app

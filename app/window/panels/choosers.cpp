@@ -1,0 +1,180 @@
+// Where accuracy is chosen, with what each choice costs and gives away on this very scan.
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/panels/widgets.h"
+#include "app/window/workstation.h"
+#include "haptic/contact/sphere_tip.h"
+
+namespace fettle::app {
+namespace {
+
+struct Entry {
+  const char* name;
+  std::string off;  // by how much; empty: not measured
+  std::string cost;
+};
+
+// A list to choose from, figures beside the names. The entry chosen, or -1. `opened`: the list is open.
+int chooser(const char* id, const std::string& now, const std::vector<Entry>& entries, const char* off_title,
+            const char* cost_title, bool& opened) {
+  int chosen = -1;
+  opened = ImGui::BeginCombo(id, now.c_str(), ImGuiComboFlags_HeightLargest);
+  if (!opened) return chosen;
+  std::string widest;
+  for (const Entry& entry : entries)
+    if (widest.size() < std::string_view(entry.name).size()) widest = entry.name;
+  if (ImGui::BeginTable("##choices", 3, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) {
+    // As wide as figures will need once they are measured.
+    const auto column = [](const char* title, const std::string& text) {
+      ImGui::TableSetupColumn(title, ImGuiTableColumnFlags_WidthFixed,
+                              ImGui::CalcTextSize(text.c_str()).x + ImGui::GetFontSize());
+    };
+    column("choice", widest);
+    column(off_title, "12.5 px, 0.025 codes");
+    column(cost_title, "33.4 us");
+    ImGui::TableHeadersRow();
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      if (ImGui::Selectable(entries[i].name, now == entries[i].name, ImGuiSelectableFlags_SpanAllColumns))
+        chosen = static_cast<int>(i);
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(entries[i].off.c_str());
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(entries[i].cost.c_str());
+    }
+    ImGui::EndTable();
+  }
+  ImGui::EndCombo();
+  return chosen;
+}
+
+// Below a chooser: the figures of what is chosen, or how far measuring is.
+template <class Run>
+bool measuringLine(const Run& run, const char* cancel_id) {
+  if (!run.busy()) return false;
+  ImGui::ProgressBar(static_cast<float>(run.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
+                     "measuring on this scan");
+  ImGui::SameLine();
+  return ImGui::Button(cancel_id);
+}
+
+void wrapped(const std::string& text) {
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextDisabled("%s", text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+std::string duration(double ns) {
+  return ns < 999.5 ? fmt::format("{:.0f} ns", ns) : fmt::format("{:.3g} us", 1e-3 * ns);
+}
+
+// Of what may be rounding alone.
+std::string length(double mm) {
+  if (mm < 1e-7) return "0 um";
+  return mm < 0.0995 ? fmt::format("{:.2g} um", 1e3 * mm) : fmt::format("{:.3g} mm", mm);
+}
+
+bool sameChoice(const haptic::Scene& scene, const trials::ContactChoice& choice, const engine::Grid& grid) {
+  const haptic::Scene chosen = choice.in(scene, grid);
+  if (chosen.tip != scene.tip) return false;
+  if (scene.tip == haptic::TipShape::kSphere)
+    return chosen.tip_radius_mm == scene.tip_radius_mm && chosen.search_rounds == scene.search_rounds;
+  return chosen.level == scene.level && (scene.level == haptic::ContactLevel::kCertified
+                                             ? chosen.certified_radius_cells == scene.certified_radius_cells
+                                             : chosen.search_rounds == scene.search_rounds);
+}
+
+std::string described(const haptic::Scene& scene) {
+  if (scene.tip == haptic::TipShape::kSphere)
+    return scene.search_rounds > haptic::kSphereSteps
+               ? fmt::format("ball, radius {:.3g} mm", scene.tip_radius_mm)
+               : fmt::format("ball, radius {:.3g} mm, {} steps", scene.tip_radius_mm,
+                             scene.search_rounds - 1);
+  if (scene.level == haptic::ContactLevel::kCertified)
+    return fmt::format("certified, {} cells", scene.certified_radius_cells);
+  return fmt::format("paper, {} steps a tick", scene.search_rounds - 1);
+}
+
+}  // namespace
+
+void Workstation::contactChooser() {
+  haptic::Scene scene = touch_->scene();
+  const engine::Grid& grid = touch_->field().grid();
+  const std::span<const trials::ContactChoice> choices = trials::contactChoices();
+  const std::vector<trials::ContactFigures>& measured = costs_.contact();
+  std::vector<Entry> entries;
+  std::string now = described(scene), what;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    Entry& entry = entries.emplace_back(Entry{choices[i].name, "", ""});
+    const bool chosen = sameChoice(scene, choices[i], grid);
+    if (chosen) now = choices[i].name;
+    if (measured.empty() || measured[i].ticks == 0) continue;
+    const trials::ContactFigures& m = measured[i];
+    entry.off = length(m.mean_mm);
+    entry.cost = duration(m.ns);
+    if (chosen)
+      what = fmt::format(
+          "the point felt is off by {} on average, {} at worst, {:.2g} % of them not the nearest; {} a tick",
+          length(m.mean_mm), length(m.worst_mm), 100.0 * m.wrong, duration(m.ns));
+  }
+  bool opened = false;
+  int chosen = -1;
+  (void)field("contact", [&] {
+    chosen = chooser("##contact", now, entries, "off by", "a tick", opened);
+    return false;
+  });
+  if (opened && measured.empty() && !costs_.contactRun().busy()) costs_.measureContact(touch_->field());
+  if (chosen >= 0) {
+    scene = choices[static_cast<std::size_t>(chosen)].in(scene, grid);
+    if (const auto problem = scene.tip == haptic::TipShape::kSphere
+                                 ? haptic::sphereProblem(scene.tip_radius_mm, grid)
+                                 : std::nullopt)
+      notices_.push_back({*problem, ""});
+    else
+      takeScene(scene);
+  }
+  if (measuringLine(costs_.contactRun(), "Cancel##contact")) costs_.cancelContact();
+  if (!what.empty()) wrapped(what);
+}
+
+void Workstation::detailChooser() {
+  const std::span<const trials::DetailChoice> choices = detailChoices();
+  const std::vector<trials::DetailFigures>& measured = costs_.detail();
+  std::vector<Entry> entries;
+  std::string now = fmt::format("{} vertices", display_.vertices), what;
+  for (std::size_t i = 0; i < choices.size(); ++i) {
+    Entry& entry = entries.emplace_back(Entry{choices[i].name, "", ""});
+    const bool chosen = display_.vertices == choices[i].vertices;
+    if (chosen) now = choices[i].name;
+    if (measured.empty()) continue;
+    const trials::DetailFigures& m = measured[i];
+    entry.off = fmt::format("{:.2g} px, {:.2g} codes", m.bound_px, m.mean_codes);
+    entry.cost = fmt::format("{:.3g} ms", m.ms);
+    if (chosen)
+      what = fmt::format(
+          "surface within {:.2g} px, colours {:.2g} of 255 off on average, {:.2g} % of pixels by more than "
+          "16; {:.3g} ms a whole frame. Once nothing moves it is drawn as finely as within 1 px",
+          m.bound_px, m.mean_codes, 100.0 * m.far_off, m.ms);
+  }
+  bool opened = false;
+  int chosen = -1;
+  (void)field("detail", [&] {
+    chosen = chooser("##detail", now, entries, "off by", "a frame", opened);
+    return false;
+  });
+  if (opened && measured.empty() && !costs_.detailRun().busy() && view_.width > 0)
+    costs_.measureDetail(touch_->field(), view_);
+  if (chosen >= 0) {
+    display_.vertices = choices[static_cast<std::size_t>(chosen)].vertices;
+    stale_ = true;
+  }
+  if (measuringLine(costs_.detailRun(), "Cancel##detail")) costs_.cancelDetail();
+  wrapped(what.empty() ? fmt::format("surface within {:.2g} px now", figures_.bound_px) : what);
+}
+
+}  // namespace fettle::app

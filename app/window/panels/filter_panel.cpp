@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/panels/widgets.h"
+#include "app/window/workstation.h"
+
+namespace fettle::app {
+
+void Workstation::filterPanel() {
+  engine::FilterSpec& spec = filters_.spec;
+  const engine::Grid& grid = touch_->field().grid();
+  beginFields();
+  const char* names[] = {"Box", "Gaussian", "Median", "Bilateral", "Total variation"};
+  int kind = static_cast<int>(spec.kind);
+  if (field("filter",
+            [&] { return ImGui::Combo("##filter", &kind, names, static_cast<int>(std::size(names))); }))
+    spec.kind = static_cast<engine::FilterKind>(kind);
+  if (spec.kind != engine::FilterKind::kGaussian) spec.sigma = 0.0;
+  if (!engine::hasRange(spec.kind)) spec.range_sigma = 0.0;
+  if (field("window", [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
+    spec.window = std::clamp(spec.window | 1, 1, engine::FilterSpec::kMaxWindow);
+  // In millimetres across the columns; the nearest odd number of samples is taken.
+  double window_mm = spec.window * grid.spacingXMm();
+  if (field("", [&] {
+        return typeNumber("##window_mm", window_mm, grid.spacingXMm(),
+                          engine::FilterSpec::kMaxWindow * grid.spacingXMm(), "%.4g mm");
+      }))
+    spec.window =
+        std::clamp(2 * static_cast<int>(std::lround(0.5 * (window_mm / grid.spacingXMm() - 1.0))) + 1, 1,
+                   engine::FilterSpec::kMaxWindow);
+  if (field("passes", [&] { return ImGui::InputInt("##passes", &spec.passes, 1, 5); }))
+    spec.passes = std::clamp(spec.passes, 1, engine::FilterSpec::kMaxPasses);
+  if (spec.kind == engine::FilterKind::kGaussian)
+    (void)field("sigma", [&] {
+      return typeNumber("##sigma", spec.sigma, 0.0, 1000.0,
+                        spec.sigma > 0.0 ? "%.2f samples" : "0: binomial");
+    });
+  if (engine::hasRange(spec.kind))
+    (void)field("range sigma", [&] {
+      return typeNumber("##range", spec.range_sigma, 0.0, engine::FilterSpec::kMostRange,
+                        spec.range_sigma > 0.0 ? "%.4g " + grid.height_unit.name : "0: from the noise");
+    });
+  bool limited = spec.max_change.has_value();
+  (void)field("max change", [&] {
+    if (ImGui::Checkbox("##maxchange", &limited)) act(Action::kFilterMaxChange);
+    tip(Action::kFilterMaxChange);
+    if (!spec.max_change) return false;
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(-1.0F);
+    return typeNumber("##most", *spec.max_change, 0.0, 1e9, "%.4g " + grid.height_unit.name);
+  });
+  endFields();
+  int scope = static_cast<int>(spec.scope);
+  ImGui::RadioButton("keep marks", &scope, 0);
+  besideOrBelow("only marks", Beside::kTick);
+  ImGui::RadioButton("only marks", &scope, 1);
+  tip(Action::kFilterScope);
+  spec.scope = static_cast<engine::FilterScope>(scope);
+  if (filters_.computing() || filters_.applying()) {
+    ImGui::ProgressBar(static_cast<float>(filters_.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
+                       filters_.applying() ? "applying" : "filtering");
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel")) filters_.cancel(*touch_);
+  } else {
+    if (ImGui::Button("Preview")) act(Action::kFilterPreview);
+    tip(Action::kFilterPreview);
+    besideOrBelow("Beside");
+    if (ImGui::Button("Beside")) act(Action::kFilterBeside);
+    tip(Action::kFilterBeside);
+    besideOrBelow("Apply");
+    if (ImGui::Button("Apply")) filters_.apply(*touch_);
+    tip(Action::kFilterApply);
+  }
+  std::optional<std::size_t> dropped;
+  for (std::size_t i = 0; i < filters_.variants().size(); ++i) {
+    const FilterPreview::Variant& v = filters_.variants()[i];
+    if (ImGui::SmallButton(fmt::format("x##{}", i).c_str())) dropped = i;
+    ImGui::SameLine();
+    ImGui::PushTextWrapPos(0.0F);
+    // Broken here, or a narrow panel would break a number at its point.
+    ImGui::TextUnformatted(fmt::format("{}\n{} changed, max {:.3g} {}", filterName(v.spec),
+                                       v.result.report.changed, v.result.report.max_change,
+                                       grid.height_unit.name)
+                               .c_str());
+    ImGui::PopTextWrapPos();
+  }
+  if (dropped) filters_.drop(*dropped);
+  if (filters_.variants().size() == 1) ImGui::Checkbox("split line", &display_.split);
+}
+
+}  // namespace fettle::app

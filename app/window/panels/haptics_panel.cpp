@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/panels/widgets.h"
+#include "app/window/workstation.h"
+
+namespace fettle::app {
+namespace {
+
+// Late ticks by how late: octaves from a microsecond to four milliseconds, bars by the logarithm of the
+// count.
+void drawLateness(const haptic::TimingHistogram& lateness) {
+  constexpr int kOctaves = 12;
+  std::array<std::uint64_t, kOctaves> counts{};
+  std::uint64_t most = 1;
+  for (int i = 0; i < kOctaves; ++i) {
+    const std::int64_t low = std::int64_t{1000} << i;
+    const std::uint64_t above = lateness.countAbove(low), far = lateness.countAbove(2 * low);
+    counts[static_cast<std::size_t>(i)] = above > far ? above - far : 0;
+    most = std::max(most, counts[static_cast<std::size_t>(i)]);
+  }
+  const float height = 4.0F * ImGui::GetTextLineHeight();
+  const float width = std::max(ImGui::GetContentRegionAvail().x, 64.0F), bar = width / kOctaves;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton("##lateness", ImVec2(width, height));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(corner, ImVec2(corner.x + width, corner.y + height),
+                     ImGui::GetColorU32(ImGuiCol_FrameBg), 3.0F);
+  for (int i = 0; i < kOctaves; ++i) {
+    const auto n = static_cast<double>(counts[static_cast<std::size_t>(i)]);
+    const auto share = static_cast<float>(std::log1p(n) / std::log1p(static_cast<double>(most)));
+    const float x = corner.x + static_cast<float>(i) * bar;
+    list.AddRectFilled(ImVec2(x, corner.y + height * (1.0F - share)),
+                       ImVec2(x + bar - 2.0F, corner.y + height), ImGui::GetColorU32(ImGuiCol_PlotHistogram));
+  }
+  const int pointed = static_cast<int>((ImGui::GetIO().MousePos.x - corner.x) / bar);
+  if (ImGui::IsItemHovered() && pointed >= 0 && pointed < kOctaves)
+    ImGui::SetTooltip("%s", fmt::format("{} to {} us late: {} ticks", 1 << pointed, 2 << pointed,
+                                        counts[static_cast<std::size_t>(pointed)])
+                                .c_str());
+  const float left = ImGui::GetStyle().WindowPadding.x;
+  const auto mark = [&](int octave, const char* text) {
+    if (octave > 0) ImGui::SameLine(left + bar * static_cast<float>(octave));
+    ImGui::TextDisabled("%s", text);
+  };
+  mark(0, "1 us");
+  mark(3, "8");
+  mark(6, "64");
+  mark(9, "0.5 ms");
+}
+
+std::string rateText(double hz) {
+  return fmt::format("{:g} kHz", 1e-3 * hz);
+}
+
+}  // namespace
+
+void Workstation::hapticsPanel() {
+  const haptic::LoopState state = touch_->state();
+  const haptic::DeviceProfile& profile = touch_->device().profile();
+  figure("device", profile.name + (profile.gives_force ? "" : ", no force"));
+  // A mouse is no device to plug in or to fear.
+  const bool mouse = touch_->mouse() != nullptr;
+  figure("link",
+         mouse ? (state.link == haptic::LinkState::kConnected ? "on the surface" : "no tool on the surface")
+         : state.link == haptic::LinkState::kConnected    ? "connected"
+         : state.link == haptic::LinkState::kUncalibrated ? "not calibrated"
+                                                          : "not plugged in");
+  figure("safety", mouse ? "no force to guard" : std::string(haptic::name(state.safety)));
+  ImGui::BeginDisabled(mouse);
+  if (ImGui::Button("Arm")) act(Action::kArm);
+  tip(Action::kArm);
+  besideOrBelow("Disarm");
+  if (ImGui::Button("Disarm")) act(Action::kDisarm);
+  tip(Action::kDisarm);
+  besideOrBelow("Calibrate");
+  if (ImGui::Button("Calibrate")) act(Action::kCalibrate);
+  tip(Action::kCalibrate);
+  ImGui::EndDisabled();
+  const auto limit = static_cast<float>(touch_->scene().force_limit_n);
+  if (!force_plot_.empty())
+    ImGui::PlotLines("##force", force_plot_.data(), static_cast<int>(force_plot_.size()), 0,
+                     fmt::format("force, 0 to {:.3g} N", limit).c_str(), 0.0F, limit,
+                     ImVec2(ImGui::GetContentRegionAvail().x, 4.0F * ImGui::GetTextLineHeight()));
+  const haptic::TimingFigures compute = touch_->timing().compute.figures();
+  const haptic::TimingFigures late = touch_->timing().lateness.figures();
+  figure("ticks", fmt::format("{:.0f} of {:.0f} a second", touch_->measuredRate(), touch_->rate()));
+  figure("a tick takes",
+         fmt::format("{:.1f} us, p99 {:.1f}", microseconds(compute.p50_ns), microseconds(compute.p99_ns)));
+  figure("ticks late by",
+         fmt::format("{:.0f} us, p99 {:.0f}", microseconds(late.p50_ns), microseconds(late.p99_ns)));
+  drawLateness(touch_->timing().lateness);
+  haptic::Scene scene = touch_->scene();
+  beginFields();
+  (void)field("rate", [&] {
+    const double now_hz = touch_->rate();
+    if (!ImGui::BeginCombo("##rate", rateText(now_hz).c_str())) return false;
+    for (int khz = 1; khz <= 10; ++khz)
+      if (const double hz = 1000.0 * khz; ImGui::Selectable(rateText(hz).c_str(), hz == now_hz)) setRate(hz);
+    ImGui::EndCombo();
+    return false;
+  });
+  contactChooser();
+  // A slip of the finger makes it a thousand times as stiff: what is too much is refused with words, and the
+  // number there was stays.
+  const auto type = [&](const char* name, const char* id, double& value, const char* format) {
+    return field(name, [&] {
+      const auto typed = typedNumber(id, value, format);
+      if (!typed) return false;
+      value = *typed;
+      takeScene(scene);
+      const bool taken = touch_->scene() == scene;
+      scene = touch_->scene();
+      return taken;
+    });
+  };
+  if (type("stiffness", "##stiffness", scene.stiffness_n_per_mm, "%.4g N/mm")) noteWithoutForce(scene);
+  (void)type("force limit", "##limit", scene.force_limit_n, "%.3g N");
+  endFields();
+  if (const auto largest = touch_->largestStiffness())
+    figure("it holds", fmt::format("{:.4g} N/mm at most", *largest));
+  ImGui::TextDisabled("effects");
+  for (int i = 0; i < haptic::kEffectKinds; ++i) {
+    const auto kind = static_cast<haptic::EffectKind>(i);
+    const auto listed = std::find(scene.effects.begin(), scene.effects.end(), kind);
+    bool on = listed != scene.effects.end();
+    std::string name(haptic::effectName(kind));
+    std::replace(name.begin(), name.end(), '_', ' ');
+    // In two columns, in one where the panels are narrow.
+    const float half = 0.5F * ImGui::GetWindowWidth();
+    if (i % 2 != 0 && half > 8.0F * ImGui::GetFontSize()) ImGui::SameLine(half);
+    if (!ImGui::Checkbox(name.c_str(), &on)) continue;
+    if (!on)
+      scene.effects.erase(listed);
+    else if (kind == haptic::EffectKind::kSpring)
+      scene.effects.insert(scene.effects.begin(), kind);  // before those that stand on it
+    else
+      scene.effects.push_back(kind);
+    takeScene(scene);
+  }
+  ImGui::PushTextWrapPos(0.0F);
+  for (const std::string& missing : touch_->realTime().missing)
+    ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s", missing.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+}  // namespace fettle::app

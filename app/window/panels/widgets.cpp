@@ -1,0 +1,84 @@
+#include "app/window/panels/widgets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace fettle::app {
+namespace {
+
+constexpr float kNames = 0.36F;  // of a panel's width, for the names of fields and figures
+
+}  // namespace
+
+void figure(const char* name, const std::string& value) {
+  const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
+  ImGui::TextDisabled("%s", name);
+  const float column = left + kNames * width;
+  ImGui::SameLine(std::max(column, left + ImGui::CalcTextSize(name).x + ImGui::GetStyle().ItemSpacing.x));
+  const float room = ImGui::GetContentRegionAvail().x;
+  if (ImGui::CalcTextSize(value.c_str()).x <= room) {
+    ImGui::TextUnformatted(value.c_str());
+    return;
+  }
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextUnformatted(value.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+void tip(Action action) {
+  if (!ImGui::IsItemHovered()) return;
+  const Shortcut& s = shortcutOf(action);
+  ImGui::SetTooltip("%s", fmt::format("{}: {}", s.name, keyText(s.key, s.modifiers)).c_str());
+}
+
+void besideOrBelow(const char* text, Beside what) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float beside = what == Beside::kButton ? style.FramePadding.x * 2.0F
+                                               : ImGui::GetFrameHeight() + style.ItemInnerSpacing.x;
+  ImGui::SameLine();
+  if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(text).x + beside) ImGui::NewLine();
+}
+
+void beginFields() {
+  ImGui::PushItemWidth(-1.0F);
+}
+
+void endFields() {
+  ImGui::PopItemWidth();
+}
+
+void fieldName(const char* name) {
+  const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("%s", name);
+  const float room = kNames * width - ImGui::GetStyle().ItemInnerSpacing.x;
+  if (ImGui::CalcTextSize(name).x <= room) ImGui::SameLine(left + kNames * width);
+}
+
+std::optional<double> typedNumber(const char* id, double value, const std::string& format) {
+  double typed = value;
+  if (!ImGui::InputDouble(id, &typed, 0.0, 0.0, format.c_str(),
+                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll) ||
+      !std::isfinite(typed) || typed == value)
+    return std::nullopt;
+  return typed;
+}
+
+bool typeNumber(const char* id, double& value, double low, double high, const std::string& format) {
+  const auto typed = typedNumber(id, value, format);
+  const double taken = std::clamp(typed.value_or(value), low, high);
+  if (!typed || taken == value) return false;
+  value = taken;
+  return true;
+}
+
+std::string bytesText(double bytes) {
+  if (bytes < 1e4) return fmt::format("{:.0f} B", bytes);
+  if (bytes < 1e7) return fmt::format("{:.1f} kB", bytes * 1e-3);
+  if (bytes < 1e10) return fmt::format("{:.1f} MB", bytes * 1e-6);
+  return fmt::format("{:.1f} GB", bytes * 1e-9);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,147 @@
+#include "app/window/questions.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include <imgui.h>
+#include <imgui_internal.h>  // a popup by its number, at any level
+
+namespace fettle::app {
+namespace {
+
+using Kind = Question::Kind;
+using render::Key;
+
+struct KindInfo {
+  Kind kind;
+  const char* name;
+  const char* title;
+  std::string_view letters;  // that answer it, besides Esc and (where there is something to confirm) Enter
+  bool enter;
+  bool of_field;  // about the field that is open
+  ImGuiWindowFlags flags;
+};
+
+constexpr std::array kKinds{
+    KindInfo{Kind::kOpen, "open", "Open a scan", "", true, false, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kSaveAs, "save as", "Save as", "", true, true, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kExport, "export", "Export", "", true, true, ImGuiWindowFlags_NoResize},
+    KindInfo{Kind::kUnsaved, "unsaved", "Unsaved changes", "DN", true, true,
+             ImGuiWindowFlags_AlwaysAutoResize},
+    KindInfo{Kind::kReplace, "replace", "Replace?", "R", false, true, ImGuiWindowFlags_AlwaysAutoResize},
+    KindInfo{Kind::kRecover, "recover", "Unsaved work", "S", true, false, ImGuiWindowFlags_AlwaysAutoResize},
+    KindInfo{Kind::kShortcuts, "shortcuts", "Shortcuts", "", false, false, ImGuiWindowFlags_None},
+    KindInfo{Kind::kMessage, "message", "Fettle", "", true, false, ImGuiWindowFlags_AlwaysAutoResize},
+};
+
+const KindInfo& infoOf(Kind kind) {
+  return *std::find_if(kKinds.begin(), kKinds.end(), [&](const KindInfo& k) { return k.kind == kind; });
+}
+
+bool isMessage(const Question& question) {
+  return question.kind == Kind::kMessage;
+}
+
+bool sameMessage(const Question& a, const Question& b) {
+  return isMessage(a) && isMessage(b) && a.said.what == b.said.what && a.said.remedy == b.said.remedy;
+}
+
+}  // namespace
+
+const char* name(Question::Kind kind) {
+  return infoOf(kind).name;
+}
+
+const Question* Questions::shown() const {
+  return shown_ && ImGui::IsPopupOpen(id_, ImGuiPopupFlags_AnyPopupLevel) ? &*shown_ : nullptr;
+}
+
+void Questions::ask(Question question) {
+  if (isMessage(question)) {
+    const auto same = [&](const Question& other) { return sameMessage(other, question); };
+    if ((shown_ && same(*shown_)) || std::any_of(waiting_.begin(), waiting_.end(), same)) return;
+  } else {
+    std::erase_if(waiting_, [](const Question& other) { return !isMessage(other); });
+    if (shown_ && !isMessage(*shown_)) drop();
+  }
+  waiting_.push_back(std::move(question));
+}
+
+void Questions::forgetField() {
+  const auto of_field = [](const Question& question) { return infoOf(question.kind).of_field; };
+  std::erase_if(waiting_, of_field);
+  if (shown_ && of_field(*shown_)) drop();
+}
+
+// From outside of its popup.
+void Questions::drop() {
+  const ImVector<ImGuiPopupData>& popups = ImGui::GetCurrentContext()->OpenPopupStack;
+  for (int level = 0; level < popups.Size; ++level)
+    if (popups[level].PopupId == id_) {
+      ImGui::ClosePopupToLevel(level, true);
+      break;
+    }
+  shown_.reset();
+}
+
+void Questions::press(const render::InputEvent& event) {
+  const Question* const question = shown();
+  if (question == nullptr || frames_ == 0 || event.modifiers.control || event.modifiers.alt) return;
+  const KindInfo& info = infoOf(question->kind);
+  const Key key = event.key == Key::kKeypadEnter ? Key::kEnter : event.key;
+  const int code = static_cast<int>(key);
+  const bool letter =
+      code > 0 && code < 128 && info.letters.find(static_cast<char>(code)) != info.letters.npos;
+  if (letter || key == Key::kEscape || (info.enter && key == Key::kEnter)) key_ = key;
+}
+
+Question* Questions::next() {
+  if (shown_ && shown() == nullptr) {
+    if (unseen()) waiting_.push_front(*std::move(shown_));
+    shown_.reset();
+  }
+  if (!shown_) {
+    key_ = Key::kNone;
+    if (waiting_.empty()) return nullptr;
+    shown_ = std::move(waiting_.front());
+    waiting_.pop_front();
+    frames_ = 0;
+    const char* const title = infoOf(shown_->kind).title;
+    id_ = ImGui::GetID(title);
+    ImGui::OpenPopup(title);
+  }
+  return &*shown_;
+}
+
+bool Questions::begin() {
+  const KindInfo& info = infoOf(shown_->kind);
+  const ImVec2 middle(0.5F * ImGui::GetIO().DisplaySize.x, 0.5F * ImGui::GetIO().DisplaySize.y);
+  ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
+  if (!ImGui::BeginPopupModal(info.title, nullptr, info.flags)) {
+    key_ = Key::kNone;  // there is no room for it on the screen, and input does not wait for that
+    return false;
+  }
+  ++frames_;
+  return true;
+}
+
+void Questions::end() {
+  key_ = Key::kNone;
+  ImGui::EndPopup();
+}
+
+bool Questions::take(Key key) {
+  if (key_ != key) return false;
+  key_ = Key::kNone;
+  return true;
+}
+
+Question Questions::close() {
+  Question answered = *std::exchange(shown_, std::nullopt);
+  ImGui::CloseCurrentPopup();
+  return answered;
+}
+
+}  // namespace fettle::app

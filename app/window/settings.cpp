@@ -1,0 +1,106 @@
+#include "app/window/settings.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+namespace fettle::app {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::array kMaps{"automatic", "viridis", "cividis", "grey", "diverging"};
+constexpr std::array kHabits{"blender", "cloudcompare", "meshlab"};
+
+void take(const json& from, const char* name, bool& value) {
+  if (const auto it = from.find(name); it != from.end() && it->is_boolean()) value = it->get<bool>();
+}
+template <class T>
+void take(const json& from, const char* name, T low, T high, T& value) {
+  const auto it = from.find(name);
+  if (it == from.end() || !it->is_number()) return;
+  const double number = it->get<double>();
+  if (number >= static_cast<double>(low) && number <= static_cast<double>(high))
+    value = static_cast<T>(number);
+}
+template <std::size_t N, class Enum>
+void take(const json& from, const char* name, const std::array<const char*, N>& words, Enum& value) {
+  const auto it = from.find(name);
+  if (it == from.end() || !it->is_string()) return;
+  for (std::size_t i = 0; i < N; ++i)
+    if (it->get<std::string>() == words[i]) value = static_cast<Enum>(i);
+}
+
+}  // namespace
+
+std::string Settings::text() const {
+  const Display& d = display;
+  return json{{"marks", d.marks},
+              {"deviation", d.deviation},
+              {"contours", d.contours},
+              {"split", d.split},
+              {"split_at", d.split_at},
+              {"colours", kMaps[static_cast<std::size_t>(d.map)]},
+              {"light_background", d.theme == render::Theme::kLight},
+              {"marks_opacity", d.marks_opacity},
+              {"light_azimuth", d.light_azimuth_deg},
+              {"light_elevation", d.light_elevation_deg},
+              {"furniture", d.furniture},
+              {"half_in_motion", d.half_in_motion},
+              {"vertices", d.vertices},
+              {"mouse", kHabits[static_cast<std::size_t>(habits)]},
+              {"side_panel", side_panel},
+              {"side_width", side_width},
+              {"panels", panels},
+              {"ask_before_quitting", ask_before_quitting}}
+      .dump(2);
+}
+
+Settings Settings::load(const std::string& path) {
+  Settings settings;
+  std::ifstream in(path);
+  const json file = json::parse(in, nullptr, false);
+  if (!file.is_object()) return settings;
+  Display& d = settings.display;
+  take(file, "marks", d.marks);
+  take(file, "deviation", d.deviation);
+  take(file, "contours", d.contours);
+  take(file, "split", d.split);
+  take(file, "split_at", 0.02, 0.98, d.split_at);
+  take(file, "colours", kMaps, d.map);
+  bool light = false;
+  take(file, "light_background", light);
+  d.theme = light ? render::Theme::kLight : render::Theme::kDark;
+  take(file, "marks_opacity", 0.0F, 1.0F, d.marks_opacity);
+  take(file, "light_azimuth", 0.0F, 360.0F, d.light_azimuth_deg);
+  take(file, "light_elevation", 5.0F, 90.0F, d.light_elevation_deg);
+  take(file, "furniture", d.furniture);
+  take(file, "half_in_motion", d.half_in_motion);
+  take(file, "vertices", std::int64_t{4096}, std::int64_t{1} << 22, d.vertices);
+  take(file, "mouse", kHabits, settings.habits);
+  take(file, "side_panel", settings.side_panel);
+  take(file, "side_width", 0.0F, 4096.0F, settings.side_width);
+  if (const auto it = file.find("panels"); it != file.end() && it->is_object())
+    for (const auto& [name, open] : it->items())
+      if (open.is_boolean()) settings.panels[name] = open.get<bool>();
+  take(file, "ask_before_quitting", settings.ask_before_quitting);
+  return settings;
+}
+
+void Settings::save(const std::string& path) const {
+  if (path.empty()) return;
+  const std::string beside = path + ".new";
+  {
+    std::ofstream out(beside, std::ios::trunc);
+    out << text() << '\n';
+    if (!out.flush()) return;
+  }
+  std::error_code ignored;
+  std::filesystem::rename(beside, path, ignored);
+}
+
+}  // namespace fettle::app

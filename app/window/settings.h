@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "app/window/navigation.h"
+#include "render/plan/picture.h"
+#include "render/plan/stereo.h"
+
+namespace fettle::app {
+
+/// How the field is shown: what a person chooses and finds again the next time.
+struct Display {
+  bool marks = true;
+  bool deviation = false;
+  bool contours = false;
+  bool split = true;
+  double split_at = 0.5;
+  render::ColourMap map = render::ColourMap::kAuto;
+  render::Theme theme = render::Theme::kDark;
+  float marks_opacity = 0.65F;
+  float light_azimuth_deg = 135.0F;
+  float light_elevation_deg = 45.0F;
+  bool furniture = true;
+  std::int64_t vertices = 65536;  ///< a frame may cost, 4096 .. 2^22
+  bool half_in_motion = true;     ///< the picture is half as sharp while the view moves (CameraMotion)
+  // Not remembered: whoever comes next may have no glasses on.
+  render::StereoMode stereo = render::StereoMode::kOff;
+  float eye_separation = 1.0F / 30.0F;
+};
+
+/// What the window remembers about its user besides the files: a JSON file in the settings folder.
+struct Settings {
+  Display display;
+  Habits habits = Habits::kBlender;
+  bool side_panel = true;
+  float side_width = 0.0F;             ///< [pixels at scale 1]; 0: as the program thinks
+  std::map<std::string, bool> panels;  ///< which ones stand open, by their names
+  bool ask_before_quitting = true;     ///< with work that is not saved; it is kept either way
+
+  /// Reads a file that save() wrote. What it lacks, what is of a wrong type or out of range stays as it is by
+  /// itself; a file that cannot be read says nothing.
+  [[nodiscard]] static Settings load(const std::string& path);
+  /// Writes all of it, whole or not at all; an empty path is none. Nobody is told of a failure: the next
+  /// start is as the one before.
+  void save(const std::string& path) const;
+
+  friend bool operator==(const Settings& a, const Settings& b) { return a.text() == b.text(); }
+
+ private:
+  [[nodiscard]] std::string text() const;
+};
+
+}  // namespace fettle::app

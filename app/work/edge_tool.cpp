@@ -1,0 +1,101 @@
+#include "app/work/edge_tool.h"
+
+#include "engine/field/difference.h"
+#include "engine/field/live_field.h"
+
+namespace fettle::app {
+
+void EdgeTool::search(const Touch& touch) {
+  drop();
+  using Found = std::shared_ptr<const engine::EdgeMap>;
+  searching_.start([field = touch.newest(), scale = sigma](engine::JobControl& job) -> engine::Result<Found> {
+    auto map = engine::findEdges(field, scale, job);
+    if (!map) return tl::unexpected(map.error());
+    return std::make_shared<const engine::EdgeMap>(std::move(*map));
+  });
+}
+
+void EdgeTool::redraw(const Touch& touch) {
+  if (!map_) return;
+  if (drawing_.busy()) {
+    draw_again_ = true;
+    return;
+  }
+  draw_again_ = false;
+  drawing_.start(
+      [base = touch.newest(), map = map_, what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
+        auto suggestion = engine::suggestMarks(base, *map, what, job);
+        if (!suggestion) return tl::unexpected(suggestion.error());
+        return Drawn{base, std::move(*suggestion)};
+      });
+}
+
+void EdgeTool::drop() {
+  searching_.cancel();
+  drawing_.cancel();
+  draw_again_ = false;
+  map_.reset();
+  shown_.reset();
+  base_ = under_ = over_ = {};
+}
+
+bool EdgeTool::accept(Touch& touch) {
+  if (!shown_) return false;
+  if (!(shown_->field == base_)) touch.replaceMarks(base_, shown_->field, "Edge suggestion");
+  drop();
+  return true;
+}
+
+bool EdgeTool::poll(Touch& touch, std::vector<Notice>& notices) {
+  bool changed = false;
+  const auto refused = [&](const engine::Error& error) {
+    if (error.kind != engine::ErrorKind::kCancelled) notices.push_back({error.what, error.remedy});
+  };
+  // What was dropped may have been done by then.
+  const bool search_dropped = searching_.cancelling(), drawing_dropped = drawing_.cancelling();
+  if (auto found = searching_.take(); found && !search_dropped) {
+    changed = true;
+    if (*found) {
+      map_ = std::move(**found);
+      redraw(touch);
+    } else {
+      refused(found->error());
+    }
+  }
+  if (auto drawn = drawing_.take(); drawn && !drawing_dropped) {
+    changed = true;
+    if (*drawn) {
+      base_ = (*drawn)->base;
+      shown_ = std::move((*drawn)->suggestion);
+      under_ = base_;
+      over_ = shown_->field;
+    } else {
+      refused(drawn->error());
+    }
+    if (draw_again_) redraw(touch);
+  }
+  return changed;
+}
+
+engine::Version EdgeTool::over(const engine::Version& live) {
+  if (!shown_) return live;
+  const engine::Version upright = Touch::upright(live);
+  if (!(upright == under_)) {
+    engine::LiveField field(over_, engine::Growth::kAllowed);
+    const engine::FieldReader marks = shown_->field.reader();
+    for (const engine::TileChange& change : engine::changedTiles(under_, upright)) {
+      engine::TileRef tile = field.newTile();
+      if (!tile) return live;
+      *tile = *change.after;
+      const engine::Tile& wanted = marks.tile(change.tile_column, change.tile_row);
+      for (std::size_t r = 0; r < tile->marks.size(); ++r) tile->marks[r] |= wanted.marks[r];
+      engine::refreshMarks(*tile);
+      if (!field.replaceTile(change.tile_column, change.tile_row, std::move(tile))) return live;
+    }
+    over_ = field.snapshot();
+    under_ = upright;
+  }
+  return live.reader().sign() < 0.0F ? over_.inverted() : over_;
+}
+
+}  // namespace fettle::app

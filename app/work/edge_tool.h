@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "app/work/background.h"
+#include "app/work/touch.h"
+#include "engine/marks/edge_suggestion.h"
+
+namespace fettle::app {
+
+/// The suggestion of edges in the window: looked for in the background, shown as marks that are not there
+/// yet, and taken as one step or dropped. While it is shown the field may be worked on; it stays where it was
+/// found. Threading: main.
+class EdgeTool {
+ public:
+  double sigma = engine::EdgeMap::kUsualSigma;  ///< of the next search [samples]
+  engine::EdgeChoice choice;                    ///< followed while shown
+
+  /// Looks for edges on the field as it is now.
+  void search(const Touch& touch);
+  /// The choice was turned: draws the suggestion anew from what was found.
+  void redraw(const Touch& touch);
+  void drop();
+  /// Makes a step of what is shown. False when nothing is.
+  bool accept(Touch& touch);
+  /// True when something to be seen changed.
+  [[nodiscard]] bool poll(Touch& touch, std::vector<Notice>& notices);
+
+  /// Searching, drawing or showing.
+  [[nodiscard]] bool on() const noexcept { return searching_.busy() || drawing_.busy() || shown_; }
+  [[nodiscard]] bool busy() const noexcept { return searching_.busy() || drawing_.busy(); }
+  [[nodiscard]] double progress() const noexcept { return searching_.progress(); }
+  [[nodiscard]] const engine::EdgeSuggestion* suggestion() const noexcept {
+    return shown_ ? &*shown_ : nullptr;
+  }
+  [[nodiscard]] const engine::EdgeMap* map() const noexcept { return map_.get(); }
+
+  /// `live` with the suggested marks on it, to be drawn in its place; `live` itself when there are none. Cost
+  /// follows the tiles that changed since the last call.
+  [[nodiscard]] engine::Version over(const engine::Version& live);
+
+ private:
+  struct Drawn {
+    engine::Version base;
+    engine::EdgeSuggestion suggestion;
+  };
+  Background<std::shared_ptr<const engine::EdgeMap>> searching_;
+  Background<Drawn> drawing_;
+  bool draw_again_ = false;
+  std::shared_ptr<const engine::EdgeMap> map_;
+  engine::Version base_;  // upright: what shown_ was drawn on
+  std::optional<engine::EdgeSuggestion> shown_;
+  // over(): under_ with the marks is over_.
+  engine::Version under_, over_;
+};
+
+}  // namespace fettle::app

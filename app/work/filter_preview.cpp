@@ -1,0 +1,168 @@
+#include "app/work/filter_preview.h"
+
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "engine/filter/noise_range.h"
+#include "engine/filter/region.h"
+
+namespace fettle::app {
+namespace {
+
+// Rounds of adoption: each leaves only what a hand edited in some milliseconds, so a still hand needs one.
+constexpr int kMostRounds = 50;
+constexpr std::chrono::milliseconds kSeenFirst{1000};
+constexpr std::int32_t kFarthestReach = 512;  // [samples]
+
+bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
+  return a.kind == b.kind && a.window == b.window && a.sigma == b.sigma && a.range_sigma == b.range_sigma &&
+         a.passes == b.passes && a.scope == b.scope && a.max_change == b.max_change;
+}
+
+// Filters what is seen and tells `done` after each part. Where that is most of the field, the second for
+// which it is worth doing twice is soon over.
+template <class Done>
+void filterSeen(const engine::Version& base, const engine::Version& original, const engine::FilterSpec& spec,
+                const std::vector<engine::TileRange>& seen, engine::JobControl& job, const Done& done) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  std::int64_t tiles = 0;
+  for (const engine::TileRange& range : seen) tiles += range.tiles();
+  // With a filter that reaches far, a part takes as long as the whole.
+  if (engine::reachOf(spec) > kFarthestReach) return;
+  const bool most = 2 * tiles > engine::allTiles(base.grid()).tiles();
+  engine::Version so_far = base;
+  for (const engine::TileRange& range : seen) {
+    if (job.cancelled() || (most && Clock::now() - begin > kSeenFirst)) return;
+    auto next = engine::filterRange(base, original, so_far, spec, range, job);
+    if (!next) return;  // the whole will say why
+    so_far = std::move(*next);
+    done(so_far);
+  }
+}
+
+}  // namespace
+
+std::string filterName(const engine::FilterSpec& spec) {
+  constexpr const char* kTitles[] = {"Box", "Gaussian", "Median", "Bilateral", "Total variation"};
+  std::string text = kTitles[static_cast<int>(spec.kind)];
+  text += fmt::format(" {} x {}", spec.window, spec.window);
+  if (spec.passes > 1) text += fmt::format(", {} passes", spec.passes);
+  if (spec.scope == engine::FilterScope::kOnlyMarks) text += ", only marks";
+  return text;
+}
+
+void FilterPreview::compute(Touch& touch, Keep keep, std::vector<engine::TileRange> seen_first) {
+  keep_ = keep;
+  apply_when_done_ = false;
+  so_far_ = std::make_shared<SoFar>();
+  so_far_->spec = spec;
+  seen_so_far_ = {};
+  computing_.start([base = touch.field(), id = touch.noteFilterBase(), so_far = so_far_,
+                    seen = std::move(seen_first), original = touch.original(), asked = spec,
+                    inverted = touch.scene().invert](engine::JobControl& job) -> engine::Result<Variant> {
+    const engine::Version limit = inverted ? original.inverted() : original;
+    // Before any part of it is filtered: the result is brought into the field in parts, and replayed.
+    const auto ready = engine::withMeasuredRange(asked, base, job);
+    if (!ready) return tl::unexpected(ready.error());
+    const engine::FilterSpec& what = *ready;
+    filterSeen(base, limit, what, seen, job, [&](const engine::Version& part) {
+      const std::scoped_lock lock(so_far->mutex);
+      so_far->field = part;
+    });
+    auto result = engine::applyFilter(base, limit, what, job);
+    if (!result) return tl::unexpected(result.error());
+    return Variant{asked, what, base, std::move(*result), id};
+  });
+}
+
+void FilterPreview::apply(Touch& touch) {
+  if (applying()) return;
+  if (!variants_.empty() && same(variants_.back().asked, spec)) {
+    adopt(touch, variants_.back());
+    return;
+  }
+  if (!computing()) compute(touch, Keep::kReplace);
+  apply_when_done_ = true;
+}
+
+void FilterPreview::adopt(Touch& touch, Variant variant) {
+  touch.noteFilterBegun(variant.base_id, variant.spec, filterName(variant.spec));
+  touch.allowPort();
+  applying_.start([port = &touch, original = touch.original(), inverted = touch.scene().invert,
+                   v = std::move(variant)](engine::JobControl& job) {
+    return haptic::adoptFiltered(*port, v.base, v.result.field, inverted ? original.inverted() : original,
+                                 v.spec, kMostRounds, job);
+  });
+}
+
+void FilterPreview::cancel(Touch& touch) {
+  computing_.cancel();
+  applying_.cancel();
+  if (applying_.busy()) touch.closePort();
+  apply_when_done_ = false;
+  variants_.clear();
+  so_far_.reset();
+  seen_so_far_ = {};
+}
+
+void FilterPreview::drop(std::size_t variant) {
+  if (variant < variants_.size()) variants_.erase(variants_.begin() + static_cast<std::ptrdiff_t>(variant));
+}
+
+std::vector<FilterPreview::Picture> FilterPreview::pictures() const {
+  std::vector<Picture> pictures;
+  const bool beside = seen_so_far_.empty() || keep_ == Keep::kBeside;
+  if (beside)
+    for (const Variant& variant : variants_)
+      pictures.push_back({variant.result.field, filterName(variant.spec)});
+  if (!seen_so_far_.empty()) pictures.push_back({seen_so_far_, filterName(so_far_->spec) + " ..."});
+  if (pictures.size() > kMostVariants)
+    pictures.erase(pictures.begin(), pictures.end() - static_cast<std::ptrdiff_t>(kMostVariants));
+  return pictures;
+}
+
+bool FilterPreview::poll(Touch& touch, std::vector<Notice>& notices) {
+  bool changed = false;
+  if (so_far_) {
+    const std::scoped_lock lock(so_far_->mutex);
+    if (!(so_far_->field == seen_so_far_) && !computing_.cancelling()) {
+      seen_so_far_ = so_far_->field;
+      changed = true;
+    }
+  }
+  // What was cancelled may have been done by then.
+  const bool dropped = computing_.cancelling();
+  if (auto done = computing_.take(); done && dropped) {
+    changed = true;
+  } else if (done) {
+    changed = true;
+    so_far_.reset();
+    seen_so_far_ = {};
+    if (*done) {
+      if (keep_ == Keep::kReplace) variants_.clear();
+      if (variants_.size() == kMostVariants) variants_.erase(variants_.begin());
+      variants_.push_back(std::move(**done));
+      if (apply_when_done_) adopt(touch, variants_.back());
+    } else if (done->error().kind != engine::ErrorKind::kCancelled) {
+      notices.push_back({done->error().what, done->error().remedy});
+    }
+    apply_when_done_ = false;
+  }
+  if (auto done = applying_.take()) {
+    changed = true;
+    if (*done) {
+      ++applied_;
+      variants_.clear();
+      if (!(*done)->rest.empty())
+        notices.push_back({fmt::format("{} tiles under the brush are not filtered", (*done)->rest.size()),
+                           "apply again when the stroke has ended"});
+    } else if (done->error().kind != engine::ErrorKind::kCancelled) {
+      notices.push_back({done->error().what, done->error().remedy});
+    }
+  }
+  return changed;
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,43 @@
+#include "app/work/live_change.h"
+
+#include <chrono>
+
+namespace fettle::app {
+
+void LiveChange::begin(const engine::Version& original) {
+  deviation_.reset();
+  figures_.reset();
+  looked_at_ = {};
+  working_.start([original](engine::JobControl& job) -> engine::Result<Work> {
+    auto deviation = engine::LiveDeviation::create(original, job);
+    if (!deviation) return tl::unexpected(deviation.error());
+    return Work{std::make_shared<engine::LiveDeviation>(std::move(*deviation)), std::nullopt, 0.0};
+  });
+}
+
+bool LiveChange::poll(const Touch& touch) {
+  bool changed = false;
+  if (auto done = working_.take(); done && *done) {
+    deviation_ = std::move((*done)->deviation);
+    if ((*done)->figures) {
+      figures_ = (*done)->figures;
+      took_ms_ = (*done)->ms;
+      changed = true;
+    }
+  }
+  if (working_.busy() || !deviation_) return changed;
+  engine::Version now = touch.upright();
+  if (now == looked_at_) return changed;
+  looked_at_ = now;
+  working_.start([deviation = std::move(deviation_), now](engine::JobControl& job) -> engine::Result<Work> {
+    const auto begin = std::chrono::steady_clock::now();
+    auto figures = deviation->update(now, job);
+    // Without memory the figures stay as they were, and the next ones may do.
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    return Work{deviation, figures ? std::optional(*figures) : std::nullopt, ms};
+  });
+  return changed;
+}
+
+}  // namespace fettle::app

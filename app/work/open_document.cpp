@@ -1,0 +1,113 @@
+#include "app/work/open_document.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "engine/session/checksum.h"
+
+namespace fettle::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The session itself, to go on writing to it where that can be.
+engine::Result<Document> openSessionDocument(const std::string& file, std::size_t history_bytes,
+                                             engine::JobControl& job) {
+  Document document;
+  engine::SessionOpenOptions options;
+  options.history_bytes = history_bytes;
+  options.journal = engine::JournalReading::kLeave;
+  auto resumed = engine::SessionWriter::open(file, options, {}, job);
+  engine::Session session;
+  if (resumed) {
+    document.writer = std::move(resumed->writer);
+    session = std::move(resumed->session);
+  } else {
+    if (resumed.error().kind == engine::ErrorKind::kCancelled) return tl::unexpected(resumed.error());
+    auto read = engine::openSession(file, options, job);
+    if (!read) return tl::unexpected(read.error());
+    session = *std::move(read);
+    document.warnings.push_back(fmt::format(
+        "{}: work is not written to this session; save it under another name", resumed.error().what));
+  }
+  document.path = file;
+  document.scan = std::move(session.scan);
+  document.needs_scan = session.storage == engine::OriginalStorage::kReferenced;
+  document.original = std::move(session.original);
+  document.history = std::move(session.history);
+  std::vector<engine::Version> dropped;
+  document.history.setBound(history_bytes, dropped);
+  document.notes = std::move(session.notes);
+  return document;
+}
+
+}  // namespace
+
+std::string recoveryFolder() {
+  fs::path folder;
+  if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0')
+    folder = state;
+  else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+    folder = fs::path(home) / ".local" / "state";
+  else
+    return {};
+  folder /= "fettle";
+  std::error_code error;
+  fs::create_directories(folder, error);
+  return error ? std::string() : folder.string();
+}
+
+std::string recoveryPath(const std::string& scan) {
+  const std::string folder = recoveryFolder();
+  if (folder.empty()) return {};
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(scan, error);
+  const std::string whole = error ? scan : real.string();
+  return (fs::path(folder) /
+          fmt::format("{}-{:016x}.fettle", fs::path(scan).stem().string(),
+                      static_cast<std::uint64_t>(engine::RowChecksum().text(whole).value())))
+      .string();
+}
+
+bool isSessionPath(const std::string& path) {
+  std::string extension = fs::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".fettle";
+}
+
+void removeSession(const std::string& path) {
+  std::error_code ignored;
+  for (const char* suffix : {"", "-wal", "-shm", "-lock"}) fs::remove(path + suffix, ignored);
+}
+
+engine::Result<Document> openDocument(const std::string& path, const ScanOptions& reading, Recovery recovery,
+                                      std::size_t history_bytes, engine::JobControl& job) {
+  if (isSessionPath(path)) return openSessionDocument(path, history_bytes, job);
+  if (recovery == Recovery::kTake) {
+    auto document = openSessionDocument(recoveryPath(path), history_bytes, job);
+    if (!document) return document;
+    document->path = path;
+    document->recovered = true;
+    return document;
+  }
+  const auto import = importOptions(reading);
+  if (!import) return tl::unexpected(import.error());
+  // Before the first byte: a file that is replaced while it is read shows, too.
+  const auto stamp = engine::fileStamp(path);
+  auto imported = engine::importField(path, *import, job);
+  if (!imported) return tl::unexpected(imported.error());
+  Document document;
+  document.path = path;
+  document.scan = {path, *import, imported->format, stamp};
+  document.original = imported->field;
+  document.history = engine::History(imported->field, history_bytes);
+  document.warnings = std::move(imported->warnings);
+  return document;
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,43 @@
+#include "app/work/scan_reading.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace fettle::app {
+
+std::string scanOptionsText(const ScanOptions& options) {
+  std::string text;
+  if (options.no_data) text += fmt::format(" --no-data {}", *options.no_data);
+  if (!options.spacing.empty()) text += fmt::format(" --spacing {}", fmt::join(options.spacing, ","));
+  if (options.z_scale) text += fmt::format(" --z-scale {}", *options.z_scale);
+  if (!options.unit.empty()) text += " --unit " + options.unit;
+  if (options.cell_size) text += fmt::format(" --cell-size {}", *options.cell_size);
+  if (!options.cell_rule.empty()) text += " --cell-rule " + options.cell_rule;
+  if (!options.depth_camera.empty())
+    text += fmt::format(" --depth-camera {}", fmt::join(options.depth_camera, ","));
+  return text;
+}
+
+engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options) {
+  engine::ImportOptions import;
+  import.no_data = options.no_data;
+  if (options.spacing.size() > 2)
+    return engine::inputError(fmt::format("{} numbers are no spacing", options.spacing.size()), "--spacing",
+                              "give X[,Y]");
+  if (!options.spacing.empty()) import.spacing = {options.spacing.front(), options.spacing.back()};
+  import.z_scale = options.z_scale;
+  import.cell_size = options.cell_size;
+  if (const auto& camera = options.depth_camera; camera.size() == 4)
+    import.depth_camera = engine::DepthCamera{camera[0], camera[1], camera[2], camera[3]};
+  if (options.cell_rule == "mean") import.cell_rule = engine::CellRule::kMean;
+  if (options.cell_rule == "highest") import.cell_rule = engine::CellRule::kHighest;
+  if (!options.unit.empty()) {
+    import.unit = engine::lengthUnitFromName(options.unit);
+    if (!import.unit)
+      return engine::inputError(fmt::format("unknown unit {}", options.unit), "--unit",
+                                "take one of nm, um, mm, cm, m, km, in, ft");
+  }
+  return import;
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,262 @@
+#include "app/work/session_keeper.h"
+
+#include <utility>
+
+namespace fettle::app {
+namespace {
+
+using engine::OriginalStorage;
+using namespace std::chrono_literals;
+
+constexpr auto kTryAgain = 5s;
+constexpr auto kLookAgain = 1s;
+
+}  // namespace
+
+SessionKeeper::SessionKeeper(Document& document)
+    : original_scan_(document.scan),
+      original_(document.original),
+      start_(document.history),
+      notes_(document.notes),
+      writer_(std::move(document.writer)) {
+  if (!isSessionPath(document.path)) recovery_path_ = recoveryPath(document.path);
+  named_ = writer_ != nullptr && !document.recovered;
+  if (!document.needs_scan) scan_ = Scan::kEmbedded;
+}
+
+SessionKeeper::~SessionKeeper() {
+  static_cast<void>(close(Afterwards::kKeep));
+}
+
+void SessionKeeper::commit(std::int64_t number, engine::Step step,
+                           std::vector<engine::JournalEntry> journal) {
+  hand({Waiting::Kind::kCommit, number, std::move(step), std::move(journal), {}, {}});
+}
+
+void SessionKeeper::moveTo(std::int64_t number, std::vector<engine::JournalEntry> journal) {
+  hand({Waiting::Kind::kMove, number, {}, std::move(journal), {}, {}});
+}
+
+void SessionKeeper::note(std::vector<engine::JournalEntry> journal) {
+  hand({Waiting::Kind::kJournal, 0, {}, std::move(journal), {}, {}});
+}
+
+void SessionKeeper::setNote(const std::string& key, const std::string& text) {
+  if (auto known = notes_.find(key); known != notes_.end() && known->second == text) return;
+  notes_[key] = text;
+  // A file that is made later begins with the notes there are then.
+  if (writer_)
+    writer_->setNote(key, text);
+  else if (making_.busy())
+    waiting_.push_back({Waiting::Kind::kNote, 0, {}, {}, key, text});
+}
+
+void SessionKeeper::hand(Waiting&& what) {
+  if (closed_) return;
+  if (writer_) {
+    give(std::move(what));
+    return;
+  }
+  const bool step = what.kind == Waiting::Kind::kCommit;
+  waiting_.push_back(std::move(what));
+  // The first step is what makes a session worth having.
+  if (step && !making_.busy() && !failed_) {
+    if (recovery_path_.empty())
+      failed_ = engine::Error{engine::ErrorKind::kFailed, "there is no place to keep unsaved work", "",
+                              "save the session under a name"};
+    else
+      make({recovery_path_, OriginalStorage::kReferenced, false});
+  }
+}
+
+void SessionKeeper::give(Waiting&& what) {
+  switch (what.kind) {
+    case Waiting::Kind::kCommit:
+      writer_->commit(what.number, std::move(what.step), std::move(what.journal));
+      break;
+    case Waiting::Kind::kMove:
+      writer_->moveTo(what.number, std::move(what.journal));
+      break;
+    case Waiting::Kind::kJournal:
+      for (engine::JournalEntry& entry : what.journal) writer_->addJournal(std::move(entry));
+      break;
+    case Waiting::Kind::kNote:
+      writer_->setNote(what.key, what.text);
+      break;
+  }
+}
+
+void SessionKeeper::make(const Place& place) {
+  making_place_ = place;
+  tried_ = std::chrono::steady_clock::now();
+  engine::Session session;
+  session.scan = original_scan_;
+  session.storage = storageFor(place.storage);
+  session.original = original_;
+  session.history = start_;
+  session.notes = notes_;
+  making_.start([session = std::move(session), path = place.path](engine::JobControl& job) {
+    return engine::SessionWriter::create(session, path, {}, job);
+  });
+}
+
+void SessionKeeper::made(engine::Result<Writer> result) {
+  if (!result) {
+    failed_ = result.error();
+    if (making_place_.named) saved_ = tl::unexpected(result.error());
+    return;
+  }
+  failed_.reset();
+  writer_ = *std::move(result);
+  for (Waiting& what : std::exchange(waiting_, {})) give(std::move(what));
+  if (!making_place_.named) return;
+  named_ = true;
+  saved_ = engine::Status{};
+  if (!recovery_path_.empty()) removeSession(recovery_path_);
+}
+
+void SessionKeeper::move(const Place& place) {
+  moving_place_ = place;
+  const std::string left = named_ ? std::string() : writer_->path();
+  saving_.start([writer = writer_.get(), place, left](engine::JobControl& job) -> engine::Result<bool> {
+    if (auto moved = writer->saveAs(place.path, place.storage, job); !moved)
+      return tl::unexpected(moved.error());
+    if (!left.empty() && left != place.path) removeSession(left);
+    return true;
+  });
+}
+
+void SessionKeeper::saveAs(const std::string& path, OriginalStorage storage) {
+  if (closed_ || (saving_.busy() && scan_ != Scan::kBeingPut)) return;
+  const Place place{path, storageFor(storage), true};
+  saved_.reset();
+  if (making_.busy() || scan_ == Scan::kBeingPut)
+    wanted_ = place;
+  else if (writer_)
+    move(place);
+  else
+    make(place);
+}
+
+// A scan that is no file of its own (it came out of a session) can only be embedded.
+OriginalStorage SessionKeeper::storageFor(OriginalStorage wanted) const {
+  return original_scan_.path.empty() || scan_ != Scan::kReferenced ? OriginalStorage::kEmbedded : wanted;
+}
+
+bool SessionKeeper::scanReplaced() const {
+  return scan_ == Scan::kReferenced && original_scan_.read &&
+         engine::fileStamp(original_scan_.path) != original_scan_.read;
+}
+
+void SessionKeeper::keepScan() {
+  scan_asked_ = true;
+  scan_kept_.reset();
+  if (scan_ == Scan::kReferenced) scan_ = Scan::kWanted;
+  embedScan();
+}
+
+// As far as that can be done now; poll() comes back to it.
+void SessionKeeper::embedScan() {
+  if (scan_ == Scan::kWanted && !making_.busy() && !saving_.busy() && !wanted_) {
+    if (writer_) {
+      scan_ = Scan::kBeingPut;
+      saving_.start([writer = writer_.get()](engine::JobControl& job) -> engine::Result<bool> {
+        if (auto done = writer->saveAs(writer->path(), OriginalStorage::kEmbedded, job); !done)
+          return tl::unexpected(done.error());
+        return true;
+      });
+    } else {
+      scan_ = Scan::kEmbedded;
+    }
+  }
+  if (scan_ == Scan::kEmbedded && std::exchange(scan_asked_, false)) scan_kept_ = engine::Status{};
+}
+
+std::optional<engine::Status> SessionKeeper::saved() {
+  return std::exchange(saved_, std::nullopt);
+}
+
+void SessionKeeper::readOlder(const engine::History& history) {
+  if (!writer_ || closed_) return;
+  reading_.start(
+      [writer = writer_.get(), history](engine::JobControl& job) { return writer->loadOlder(history, job); });
+}
+
+void SessionKeeper::poll() {
+  if (closed_) return;
+  if (auto done = making_.take()) made(std::move(*done));
+  if (auto done = saving_.take()) {
+    if (scan_ == Scan::kBeingPut) {
+      scan_ = *done ? Scan::kEmbedded : Scan::kReferenced;
+      if (!*done) looked_ = std::chrono::steady_clock::now() + kTryAgain;
+      if (!*done && std::exchange(scan_asked_, false)) scan_kept_ = tl::unexpected(done->error());
+    } else if (*done) {
+      named_ = true;
+      saved_ = engine::Status{};
+    } else {
+      saved_ = tl::unexpected(done->error());
+    }
+  }
+  if (wanted_ && !making_.busy() && !saving_.busy()) {
+    const Place place = *std::exchange(wanted_, std::nullopt);
+    saveAs(place.path, place.storage);
+  }
+  const auto now = std::chrono::steady_clock::now();
+  if (now - looked_ >= kLookAgain) {
+    looked_ = now;
+    if (scanReplaced()) scan_ = Scan::kWanted;
+  }
+  embedScan();
+  if (now - tried_ < kTryAgain) return;
+  if (writer_ && writer_->status().error) {
+    tried_ = now;
+    writer_->retry();
+  } else if (!writer_ && failed_ && !making_.busy() && !recovery_path_.empty()) {
+    make({recovery_path_, OriginalStorage::kReferenced, false});
+  }
+}
+
+std::string SessionKeeper::path() const {
+  return writer_ ? writer_->path() : std::string();
+}
+
+engine::SessionStatus SessionKeeper::status() const {
+  return writer_ ? writer_->status() : engine::SessionStatus{};
+}
+
+std::size_t SessionKeeper::waiting() const {
+  return waiting_.size() + (making_.busy() ? 1 : 0) + (writer_ ? writer_->status().waiting : 0);
+}
+
+std::optional<engine::Error> SessionKeeper::error() const {
+  return writer_ ? writer_->status().error : failed_;
+}
+
+engine::Status SessionKeeper::close(Afterwards afterwards) {
+  if (std::exchange(closed_, true)) return {};
+  const bool discard = afterwards == Afterwards::kDiscard && !named_;
+  if (discard) {
+    making_.cancel();
+    saving_.cancel();
+  }
+  reading_.cancel();
+  static_cast<void>(reading_.wait());
+  static_cast<void>(saving_.wait());
+  if (auto done = making_.wait()) made(std::move(*done));
+  if (discard) {
+    const std::string path = writer_ ? writer_->path() : std::string();
+    writer_.reset();
+    if (!path.empty()) removeSession(path);
+    return {};
+  }
+  if (!writer_) return waiting_.empty() || !failed_ ? engine::Status{} : tl::unexpected(*failed_);
+  engine::JobControl job;
+  // What fails here is no worse than it was; the steps are written all the same.
+  if (scan_ == Scan::kWanted || scanReplaced())
+    static_cast<void>(writer_->saveAs(writer_->path(), OriginalStorage::kEmbedded, job));
+  engine::Status status = writer_->close(job);
+  writer_.reset();
+  return status;
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,76 @@
+#include "engine/io/files/gdal_session.h"
+
+#include <cerrno>
+
+#include <algorithm>
+#include <mutex>
+
+#include <cpl_conv.h>
+#include <cpl_error.h>
+#include <gdal_frmts.h>
+
+#include "engine/io/files/atomic_file.h"
+
+namespace fettle::engine {
+
+namespace {
+
+void setUp() {
+  // One driver by its own entry: GDALAllRegister would load plugins and open the door to 200 formats, some of
+  // which read whatever path or address a file names.
+  CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");  // no .aux.xml beside the user's file, read or written
+  CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE");
+  CPLSetConfigOption("GTIFF_IGNORE_READ_ERRORS", "NO");
+  CPLSetConfigOption("CPL_DEBUG", "OFF");
+  GDALSetCacheMax64(GIntBig{64} << 20);
+  GDALRegister_GTiff();
+  GDALRegister_COG();  // written only: importers name their driver
+  // Threads of GDAL's own have no session on their stack; what they hit comes back as a failed call.
+  CPLSetErrorHandler(CPLQuietErrorHandler);
+}
+
+}  // namespace
+
+GdalSession::GdalSession() {
+  static std::once_flag once;
+  std::call_once(once, setUp);
+  CPLErrorReset();
+  CPLPushErrorHandlerEx(&GdalSession::hear, this);
+}
+
+GdalSession::~GdalSession() {
+  CPLPopErrorHandler();
+  CPLErrorReset();
+}
+
+void GdalSession::hear(CPLErr severity, CPLErrorNum, const char* message) {
+  const int system = errno;  // GDAL reports right after the call that failed
+  auto* session = static_cast<GdalSession*>(CPLGetErrorHandlerUserData());
+  if (session == nullptr || message == nullptr) return;
+  if (severity >= CE_Failure) {
+    if (!session->failed_) session->first_ = message;
+    if (session->disk_error_ == 0 && isDiskError(system)) session->disk_error_ = system;
+    session->failed_ = true;
+  } else if (severity == CE_Warning && session->warnings_.size() < 8) {
+    if (std::find(session->warnings_.begin(), session->warnings_.end(), message) == session->warnings_.end())
+      session->warnings_.emplace_back(message);
+  }
+}
+
+std::string GdalSession::reason(const std::string& otherwise) const {
+  std::string text = first_.empty() ? otherwise : first_;
+  // "path: Function:what" and "path, band 1: what" say the path that our own line says already.
+  for (std::size_t colon; (colon = text.find(':')) != std::string::npos && colon + 1 < text.size();) {
+    const std::string before = text.substr(0, colon);
+    const bool path = before.find('/') != std::string::npos || before.find(".fettle-") != std::string::npos;
+    const bool function = before.find(' ') == std::string::npos;
+    if (!path && !function) break;
+    text = text.substr(text.find_first_not_of(' ', colon + 1) == std::string::npos
+                           ? colon + 1
+                           : text.find_first_not_of(' ', colon + 1));
+  }
+  while (!text.empty() && (text.back() == '.' || text.back() == ' ' || text.back() == '\n')) text.pop_back();
+  return text.empty() ? otherwise : text;
+}
+
+}  // namespace fettle::engine

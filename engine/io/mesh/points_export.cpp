@@ -1,0 +1,106 @@
+// A field as points, XYZ text and PLY: every sample that is no hole, row by row from the lowest y.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "engine/io/files/text_writer.h"
+#include "engine/io/format.h"
+#include "engine/io/grid_notes.h"
+#include "engine/io/mesh/mesh_export.h"
+#include "engine/io/mesh/ply_header.h"
+
+namespace fettle::engine {
+
+namespace {
+
+std::vector<std::string> whatIsLost(const Version& field) {
+  const Grid& grid = field.grid();
+  std::vector<std::string> warnings;
+  if (field.reader().root().holed_children != 0)
+    warnings.emplace_back("holes are no points and were left out");
+  if (!grid.crs_wkt.empty()) warnings.emplace_back("points keep no coordinate system");
+  if (grid.lateral_unit != grid.height_unit)
+    warnings.push_back(fmt::format("x and y are in {}, z in {}: the file says so in a comment only",
+                                   grid.lateral_unit.name, grid.height_unit.name));
+  return warnings;
+}
+
+// Calls append(x, y, z, text) for each point and hands the text on.
+template <class Append>
+Status writePoints(const Version& field, TextWriter& out, JobControl& job, Append&& append) {
+  const FieldReader reader = field.reader();
+  const Grid& grid = field.grid();
+  std::vector<float> heights(static_cast<std::size_t>(grid.width));
+  job.begin("writing", static_cast<std::uint64_t>(grid.height));
+  for (std::int32_t row = 0; row < grid.height; ++row) {
+    reader.readHeights(0, row, grid.width, 1, heights.data(), grid.width);
+    const double y = grid.origin_y + row * grid.spacing_y;
+    for (std::int32_t c = 0; c < grid.width; ++c)
+      if (!std::isnan(heights[static_cast<std::size_t>(c)]))
+        append(grid.origin_x + c * grid.spacing_x, y, heights[static_cast<std::size_t>(c)], out.text);
+    if (Status status = out.settle(); !status) return status;
+    if (job.cancelled()) return cancelled();
+    job.advance();
+  }
+  return out.finish();
+}
+
+template <class Number>
+void appendLittleEndian(Number number, std::string& text) {
+  auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
+  if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
+  text.append(raw.data(), raw.size());
+}
+
+std::int64_t pointsIn(const Version& field) {
+  return field.grid().samples() - summarize(field).no_data;
+}
+
+}  // namespace
+
+Result<Exported> writeXyz(const Version& field, const std::string& path, const ExportOptions&,
+                          JobControl& job) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  TextWriter out{*file};
+  // CloudCompare takes names of columns from a first line that begins with //, GDAL passes all lines that
+  // begin with a slash over, and neither takes names or comments anywhere else.
+  out.text = "//X Y Z\n";
+  for (const std::string& line : rasterNotes(field.grid())) out.text += "// " + line + '\n';
+  const Status status = writePoints(field, out, job, [](double x, double y, float z, std::string& text) {
+    fmt::format_to(std::back_inserter(text), "{} {} {}\n", x, y, z);
+  });
+  if (!status) return tl::unexpected(status.error());
+  if (Status done = file->commit(); !done) return tl::unexpected(done.error());
+  return Exported{"XYZ", whatIsLost(field)};
+}
+
+Result<Exported> writePly(const Version& field, const std::string& path, const ExportOptions& options,
+                          JobControl& job) {
+  if (options.mesh || options.max_error) return writePlyMesh(field, path, options, job);
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  TextWriter out{*file};
+  out.text = "ply\nformat binary_little_endian 1.0\n" + plyRasterComments(field.grid());
+  out.text +=
+      fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty float z\nend_header\n",
+                  pointsIn(field));
+  const Status status = writePoints(field, out, job, [](double x, double y, float z, std::string& text) {
+    appendLittleEndian(x, text);
+    appendLittleEndian(y, text);
+    appendLittleEndian(z, text);
+  });
+  if (!status) return tl::unexpected(status.error());
+  if (Status done = file->commit(); !done) return tl::unexpected(done.error());
+  return Exported{"PLY", whatIsLost(field)};
+}
+
+}  // namespace fettle::engine

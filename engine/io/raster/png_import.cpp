@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "engine/io/field_limits.h"
+#include "engine/io/format.h"
+#include "engine/io/geo/sidecar.h"
+#include "engine/io/raster/png_stream.h"
+#include "engine/io/units.h"
+
+namespace fettle::engine {
+
+namespace {
+
+// Pixels per metre that stand for 72, 96, 150, 300 and 600 an inch, rounded either way.
+bool isPrintResolution(std::uint32_t per_metre) {
+  for (const double inch : {72.0, 96.0, 150.0, 300.0, 600.0})
+    if (std::abs(per_metre - inch / 0.0254) < 1.0) return true;
+  return false;
+}
+
+// What a PNG of ours says of its counts (png_export.cpp): "height = -2 + count * 0.005 mm, 0 = no data; ...".
+// Counts stay counts, as in any PNG, but its holes are holes and the way to heights is pointed out.
+struct CountRule {
+  std::string height;  // the right-hand side
+  bool zero_is_hole = false;
+};
+
+std::optional<CountRule> countRuleOf(const std::string& description) {
+  constexpr std::string_view kBegin = "height = ", kHole = ", 0 = no data";
+  if (!description.starts_with(kBegin) || description.find("count * ") == std::string::npos)
+    return std::nullopt;
+  const std::string rule = description.substr(kBegin.size(), description.find(';') - kBegin.size());
+  const std::size_t comma = rule.find(',');
+  return CountRule{rule.substr(0, comma),
+                   comma != std::string::npos && std::string_view(rule).substr(comma) == kHole};
+}
+
+template <class T>
+Status readRows(PngReader& reader, const HeightRule& rule, FieldBuilder& builder, HeightTally& tally,
+                JobControl& job) {
+  const std::int32_t width = builder.grid().width;
+  std::vector<T> numbers(static_cast<std::size_t>(width));
+  std::vector<float> heights(static_cast<std::size_t>(width));
+  for (std::int32_t row = builder.grid().height - 1; row >= 0; --row) {
+    if (Status status = reader.readRow(reinterpret_cast<unsigned char*>(numbers.data())); !status)
+      return status;
+    if (job.cancelled()) return cancelled();
+    rule.convert(numbers.data(), heights.data(), numbers.size(), tally);
+    builder.writeHeights(0, row, width, 1, heights.data(), width);
+    job.advance();
+  }
+  return reader.finish();
+}
+
+}  // namespace
+
+bool looksLikePng(std::string_view head, std::string_view) {
+  return head.starts_with(std::string_view("\x89PNG\r\n\x1a\n", 8));
+}
+
+Result<Imported> readPng(const InputFile& file, const ImportOptions& options, JobControl& job) {
+  Result<PngReader> reader = PngReader::open(file);
+  if (!reader) return tl::unexpected(reader.error());
+  const PngHeader& header = reader->header();
+  std::vector<std::string> warnings;
+  if (header.alpha) warnings.emplace_back("the second band is transparency and was left out");
+  if (header.bits <= 8)
+    warnings.push_back(fmt::format("the PNG has {} bits, heights come in {} steps only", header.bits,
+                                   (1 << header.bits) - 1));
+  StatedUnits units;
+  if (header.per_metre) {
+    const auto [across, down] = *header.per_metre;
+    if (isPrintResolution(across) && isPrintResolution(down))
+      warnings.push_back(
+          fmt::format("the file says {} samples a metre, a print resolution: not believed", across));
+    else
+      units.spacing_mm = std::pair{1000.0 / across, 1000.0 / down};
+  }
+  Grid grid;
+  grid.width = header.width;
+  grid.height = header.height;
+  settleUnits(grid, units, options, warnings);
+  HeightRule rule;
+  rule.scale = options.z_scale.value_or(1.0);
+  rule.user_no_data = options.no_data;
+  if (header.transparent) rule.declared_no_data = *header.transparent;
+  if (const auto stated = countRuleOf(header.description)) {
+    if (stated->zero_is_hole) rule.declared_no_data = 0.0;
+    if (!options.z_scale)
+      warnings.push_back(fmt::format(
+          "the file says height = {}: counts were read, --z-scale makes heights of them", stated->height));
+  }
+  const Sidecar beside = readAuxXml(file.path(), warnings);
+  rule.declared_no_data = settledNoData(rule.declared_no_data, beside, warnings);
+  grid.height_per_count = std::abs(rule.scale);
+
+  Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), file.path());
+  if (!builder) return tl::unexpected(builder.error());
+  job.begin("reading", static_cast<std::uint64_t>(header.height));
+  HeightTally tally;
+  const Status status = header.bits == 16 ? readRows<std::uint16_t>(*reader, rule, *builder, tally, job)
+                                          : readRows<std::uint8_t>(*reader, rule, *builder, tally, job);
+  if (!status) return tl::unexpected(status.error());
+  return finishImport(std::move(*builder), rule, tally, "PNG", std::move(warnings), file.path());
+}
+
+}  // namespace fettle::engine

@@ -1,0 +1,111 @@
+// TIFF and GeoTIFF: every real sample type, strips and tiles, all compressions of the GDAL package.
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "engine/io/field_limits.h"
+#include "engine/io/format.h"
+#include "engine/io/tiff/tiff_samples.h"
+#include "engine/io/tiff/tiff_scan.h"
+
+namespace fettle::engine {
+
+namespace {
+
+// Turns a piece into heights where it belongs, tile by tile, so that each is whole while it lies in the
+// cache.
+template <class T>
+void placeTiles(const TiffScan& scan, const TiffPiece& piece, FieldBuilder& builder, HeightTally& tally) {
+  const std::int32_t height = builder.grid().height;
+  const TiffWindow& w = piece.window;
+  const std::int32_t low = scan.top_down ? height - w.row - w.rows : w.row;
+  const std::int32_t right = w.column + w.columns;
+  for (std::int32_t bottom = low; bottom < low + w.rows;) {
+    const std::int32_t top = std::min(low + w.rows, (bottom | (kTileSide - 1)) + 1);
+    for (std::int32_t left = w.column; left < right;) {
+      const std::int32_t end = std::min(right, (left | (kTileSide - 1)) + 1);
+      Tile& tile = builder.tile(left / kTileSide, bottom / kTileSide);
+      for (std::int32_t row = bottom; row < top; ++row) {
+        const std::int32_t r = scan.top_down ? height - 1 - row - w.row : row - w.row;
+        scan.rule.convert(
+            static_cast<const T*>(piece.numbers) + std::ptrdiff_t{r} * piece.stride + (left - w.column),
+            tile.samples.data() + (row % kTileSide) * kTileSide + left % kTileSide,
+            static_cast<std::size_t>(end - left), tally);
+      }
+      builder.wrote(left / kTileSide, bottom / kTileSide, (end - left) * (top - bottom));
+      left = end;
+    }
+    bottom = top;
+  }
+}
+
+// The same where the file has a mask or runs leftwards. `row` holds a row of the piece.
+template <class T>
+void placeRows(const TiffScan& scan, const TiffPiece& piece, FieldBuilder& builder, std::vector<float>& row,
+               HeightTally& tally) {
+  const Grid& grid = builder.grid();
+  const TiffWindow& w = piece.window;
+  const std::int32_t first = scan.right_to_left ? grid.width - w.column - w.columns : w.column;
+  row.resize(static_cast<std::size_t>(w.columns));
+  for (std::int32_t r = 0; r < w.rows; ++r) {
+    const T* numbers = static_cast<const T*>(piece.numbers) + std::ptrdiff_t{r} * piece.stride;
+    const std::int32_t to = scan.top_down ? grid.height - 1 - (w.row + r) : w.row + r;
+    scan.rule.convert(numbers, row.data(), row.size(), tally);
+    for (std::size_t k = 0; piece.mask != nullptr && k < row.size(); ++k)
+      if (piece.mask[static_cast<std::size_t>(r) * row.size() + k] == 0)
+        row[k] = std::numeric_limits<float>::quiet_NaN();
+    if (scan.right_to_left) std::reverse(row.begin(), row.end());
+    builder.writeHeights(first, to, w.columns, 1, row.data(), w.columns);
+  }
+}
+
+template <class T>
+Status readSamples(const TiffScan& scan, TiffSamples& samples, FieldBuilder& builder, HeightTally& total,
+                   JobControl& job) {
+  struct Worker {
+    std::vector<float> row;
+    HeightTally tally;
+  };
+  tbb::enumerable_thread_specific<Worker> workers;
+  Status status = samples.readAll(job, [&](const TiffPiece& piece) {
+    Worker& worker = workers.local();
+    if (piece.mask == nullptr && !scan.right_to_left)
+      placeTiles<T>(scan, piece, builder, worker.tally);
+    else
+      placeRows<T>(scan, piece, builder, worker.row, worker.tally);
+  });
+  for (const Worker& worker : workers) total.merge(worker.tally);
+  return status;
+}
+
+}  // namespace
+
+bool looksLikeTiff(std::string_view head, std::string_view) {
+  using namespace std::string_view_literals;
+  return head.starts_with("II*\0"sv) || head.starts_with("MM\0*"sv) || head.starts_with("II+\0"sv) ||
+         head.starts_with("MM\0+"sv);
+}
+
+Result<Imported> readTiff(const InputFile& file, const ImportOptions& options, JobControl& job) {
+  const std::string& path = file.path();
+  GdalSession gdal;
+  Result<TiffScan> scan = openTiffScan(file, options, gdal);
+  if (!scan) return tl::unexpected(scan.error());
+  TiffSamples samples(file, *scan);
+  Result<FieldBuilder> builder =
+      FieldBuilder::create(std::move(scan->grid), path, FieldBuilder::Start::kUnwritten);
+  if (!builder) return tl::unexpected(builder.error());
+  HeightTally tally;
+  Status status;
+  const bool known = withSampleType(
+      *scan, [&](auto zero) { status = readSamples<decltype(zero)>(*scan, samples, *builder, tally, job); });
+  if (!known) return inputError("the samples are of a type that cannot be heights", path);
+  if (!status) return tl::unexpected(status.error());
+  return finishImport(std::move(*builder), scan->rule, tally, "GTiff", std::move(scan->warnings), path);
+}
+
+}  // namespace fettle::engine

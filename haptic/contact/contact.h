@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+
+#include "haptic/base/tick_counters.h"
+#include "haptic/contact/normal.h"
+#include "haptic/contact/surface.h"
+#include "haptic/scene/scene.h"
+
+namespace fettle::haptic {
+
+/// The outcome of one tick's contact.
+struct Contact {
+  bool touching = false;
+  // The rest means something only while touching.
+  SurfacePoint proxy;
+  glm::dvec3 penetration_mm{0.0};  ///< proxy minus endpoint; surfaceNormal() gives the normal to who needs it
+};
+
+/// The two modes of the seed paper, as a state machine over ticks.
+///
+///                   search found, test positive
+///        +------+  ----------------------------->  +------------+
+///        | free |                                  | in contact |  keeps the proxy's cell and parameters
+///        +------+  <-----------------------------  +------------+
+///                   test not positive and none on the ray; endpoint beside the field or over a hole;
+///                   bad input
+///
+/// Test: dot(proxy - endpoint, normal) > 0. Exactly zero, an endpoint on the surface for one, is no contact;
+/// its force would be zero.
+///
+/// Level paper. In contact, the search for the local closest point starts at the previous proxy. Free, or
+/// when that comes to nothing, it starts from the cells under the haptic ray (previous to current endpoint),
+/// one after the other until the test is positive. All below the surface is material: an endpoint that is
+/// below the surface of its own cell is found whatever the ray was, because its own cell is the ray's last.
+/// When it is not, only a ray that comes down through a patch counts (it went through a wall within one
+/// tick), so that a tip that clears a ridge is not held by it. So a fast hand can not fall through, and one
+/// that is pushed out of the far side of a wall stays with the near side until its proxy slides off.
+///
+/// Level certified. Has no memory but the endpoint: the tip touches when it is below the surface of its own
+/// cell, and the proxy is the true closest point within the radius.
+///
+/// At both levels the tip touches only over a cell without holes: beside the field and over holes there is
+/// nothing to feel (counted). The side of the field and the walls of holes are no surface; who enters the
+/// material through them is in contact at once (counted).
+///
+/// At a point that is a local minimum of the distance over all cells that share it the penetration vector is
+/// a combination of their normals with weights of one sign, and all of these have z > 0: the sign of proxy.z
+/// - endpoint.z is the test, and no normal is worked out. Only where a hole, the border or the search's bound
+/// cuts the search short the mean normal is. It can point to the wrong side, at a pit with slopes of 1 and
+/// 1000 for one; where the two disagree over four cells the sign decides (counted).
+///
+/// Threading: one thread; wait-free, noexcept, allocates nothing.
+class ContactTracker {
+ public:
+  ContactTracker(ContactLevel level, int certified_radius_cells, int search_rounds) noexcept
+      : level_(level), radius_cells_(certified_radius_cells), search_rounds_(search_rounds) {}
+
+  /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt.
+  /// `contact` is overwritten (in place, because it is 100 bytes a tick).
+  void update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters,
+              Contact& contact) noexcept;
+
+  /// Forgets contact and previous endpoint, as before the first tick: the next ray is a point.
+  void reset() noexcept {
+    touching_ = false;
+    has_previous_ = false;
+  }
+
+ private:
+  [[nodiscard]] bool track(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters,
+                           Contact& out) noexcept;
+  [[nodiscard]] bool collide(Surface& surface, const glm::dvec3& endpoint, bool below, CellIndex own,
+                             TickCounters& counters, Contact& out) noexcept;
+
+  /// Whether a ray within one cell stays above its patch: no walk is needed to see that it hits nothing.
+  [[nodiscard]] bool staysAbove(CellIndex own, const Patch& own_patch, const glm::dvec3& endpoint,
+                                bool below) const noexcept;
+
+  ContactLevel level_;
+  int radius_cells_;
+  int search_rounds_;
+  bool touching_ = false;
+  bool has_previous_ = false;
+  bool previous_over_cell_ = false;
+  CellIndex previous_cell_;  // under previous_, if any
+  glm::dvec3 previous_{0.0};
+  CellIndex cell_;  // of the previous proxy, while touching
+  double u_ = 0.0, v_ = 0.0;
+};
+
+/// The contact test by the mean normal at any surface point (see ContactTracker); fills proxy and
+/// penetration.
+[[nodiscard]] bool contactTest(Surface& surface, const SurfacePoint& proxy, const glm::dvec3& endpoint,
+                               TickCounters& counters, Contact& out) noexcept;
+
+}  // namespace fettle::haptic

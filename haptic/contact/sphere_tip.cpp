@@ -1,0 +1,385 @@
+#include "haptic/contact/sphere_tip.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "haptic/contact/sphere_solve.h"
+
+namespace fettle::haptic {
+
+namespace {
+
+constexpr double kTolerance = 1e-6;
+constexpr double kRest = 1e-4;
+// What the window is loaded with around the centre, in steps: a hand at 50 mm/s over cells of 0.05 mm.
+constexpr double kRoomSteps = 2.0;
+// A step is tried again with what it ran into, and at last shorter.
+constexpr int kCutRounds = 6;
+constexpr int kHalvings = 12;
+
+double smallerSpacing(const engine::Grid& grid) noexcept {
+  return std::min(grid.spacingXMm(), grid.spacingYMm());
+}
+
+double length2(const glm::dvec3& a) noexcept {
+  return glm::dot(a, a);
+}
+
+}  // namespace
+
+std::optional<std::string> sphereProblem(double radius_mm, const engine::Grid& grid) {
+  const double most = kMostSphereCells * smallerSpacing(grid);
+  if (radius_mm > 0.0 && radius_mm <= most) return std::nullopt;
+  return fmt::format("the tip's radius must be above 0 and at most {} mm on this field, {} of its cells",
+                     most, kMostSphereCells);
+}
+
+SphereTracker::SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps) noexcept
+    : most_steps_(std::clamp(most_steps, 1, kSphereSteps)) {
+  const double cell = smallerSpacing(grid);
+  radius_ = std::min(radius_mm, kMostSphereCells * cell);
+  // The lens that a step s cuts from a ball is s^2 / (8 r) deep: cell / 16 in the middle of the range.
+  step_ = cell * std::clamp(std::sqrt(0.5 * radius_ / cell), 0.25, 1.0);
+  slack_ = radius_ < cell ? step_ : 0.1 * cell;
+  tolerance_ = kTolerance * std::min(radius_, cell);
+}
+
+double SphereTracker::toleranceMm(double height_mm) const noexcept {
+  return tolerance_ + 1e-14 * (std::abs(height_mm) + radius_) +
+         8e-16 * (std::abs(centre_.x) + std::abs(centre_.y));
+}
+
+// Whether nothing reaches up to the ball anywhere in the box around a and b.
+bool SphereTracker::clearOfAll(const Surface& surface, const glm::dvec3& a,
+                               const glm::dvec3& b) const noexcept {
+  const engine::FieldReader& reader = surface.reader();
+  const double low = std::min(a.z, b.z) - radius_;
+  const auto below = [&](const engine::HeightBounds& bounds) {
+    return bounds.empty() || static_cast<double>(bounds.max) * surface.heightUnit() < low;
+  };
+  if (below(reader.bounds())) return true;
+  const double x0 = (std::min(a.x, b.x) - radius_) / surface.spacingX();
+  const double x1 = (std::max(a.x, b.x) + radius_) / surface.spacingX();
+  const double y0 = (std::min(a.y, b.y) - radius_) / surface.spacingY();
+  const double y1 = (std::max(a.y, b.y) + radius_) / surface.spacingY();
+  if (!(x0 <= surface.cellColumns() && x1 >= 0.0 && y0 <= surface.cellRows() && y1 >= 0.0)) return true;
+  const auto block = [](double x, std::int32_t samples) {
+    return static_cast<std::int32_t>(std::clamp(x, 0.0, samples - 1.0)) >> 3;
+  };
+  // One sample more to the right and up: the far corners of the last cells.
+  const std::int32_t c0 = block(x0, reader.width());
+  const std::int32_t c1 = block(x1 + 1.0, reader.width());
+  const std::int32_t r0 = block(y0, reader.height());
+  const std::int32_t r1 = block(y1 + 1.0, reader.height());
+  if (c1 - c0 > 7 || r1 - r0 > 7) return false;
+  for (std::int32_t r = r0; r <= r1; ++r)
+    for (std::int32_t c = c0; c <= c1; ++c)
+      if (!below(reader.bounds(0, c, r))) return false;
+  return true;
+}
+
+void SphereTracker::look(const Surface& surface, const glm::dvec3& centre, TouchList& out) noexcept {
+  const double reach = radius_ + slack_;
+  if (!window_.holds(centre)) window_.load(surface, centre, reach, kRoomSteps * step_);
+  window_.touches(centre, reach, out);
+  out.below = window_.heightUnder(centre) > centre.z;
+  looked_from_[&out == &lists_[0] ? 0 : 1] = centre;
+}
+
+// What an earlier tick knows of the surface goes when the surface may be another.
+void SphereTracker::forgetEdited(const Surface& surface) noexcept {
+  if (felt_ == &surface && felt_refreshes_ == surface.refreshes()) return;
+  felt_ = &surface;
+  felt_refreshes_ = surface.refreshes();
+  window_.forget();
+  looked_from_.fill(glm::dvec3(NAN));
+}
+
+// Out of the material, straight up: the material grown by the ball is all below one height, so that halving
+// finds it. Ends less than the tolerance above it.
+void SphereTracker::lift(const Surface& surface) noexcept {
+  TouchList& near = lists_[here_];
+  const auto isFree = [&](double z) {
+    look(surface, {centre_.x, centre_.y, z}, near);
+    return !near.below && near.nearest_mm >= radius_;
+  };
+  if (isFree(centre_.z)) return;
+  double low = centre_.z;
+  double high = std::max(low, window_.highest()) + 1.001 * radius_;
+  const double enough = 0.5 * toleranceMm(std::max(std::abs(low), std::abs(high)));
+  for (int i = 0; i < 200 && high - low > enough; ++i) {
+    const double middle = 0.5 * (low + high);
+    (isFree(middle) ? high : low) = middle;
+  }
+  centre_.z = high;
+  look(surface, centre_, near);
+}
+
+// What a touch of the goal asks of a step from the centre: the surface's own plane there when the centre
+// respects it (flat and concave parts), else the plane square to the line from the point to the centre, which
+// it always does (Newton's step towards touching the point).
+HalfSpace SphereTracker::cutFor(const glm::dvec3& point, const glm::dvec3& normal) const noexcept {
+  const glm::dvec3 from = centre_ - point;
+  const double offset = radius_ - glm::dot(normal, from);
+  if (offset <= 0.0) return {normal, offset};
+  const double distance = glm::length(from);
+  if (!(distance > 0.0)) return {normal, offset};
+  return {from / distance, radius_ - distance};
+}
+
+int SphereTracker::halfSpacesAt(const TouchList& near) noexcept {
+  for (int i = 0; i < near.count; ++i) {
+    const Touch& t = near.touches[static_cast<std::size_t>(i)];
+    half_spaces_[static_cast<std::size_t>(i)] = {t.normal, radius_ - t.distance_mm};
+  }
+  return near.count;
+}
+
+// Adds what the ball ran into at a goal: the two deepest touches there, or the surface above its centre.
+int SphereTracker::addCuts(const glm::dvec3& to, TouchList& there, double tolerance, int seen,
+                           int cuts) noexcept {
+  const auto add = [&](const Touch& t) {
+    // The oldest makes room.
+    const int at = cuts < kMostCuts ? cuts++ : oldest_cut_++ % kMostCuts;
+    half_spaces_[static_cast<std::size_t>(seen + at)] = cutFor(t.point_mm, t.normal);
+    cuts_[static_cast<std::size_t>(at)] = t;
+  };
+  Touch under;
+  if (there.below) {
+    if (window_.under(to, under)) add(under);
+    return cuts;
+  }
+  for (int n = 0; n < 2; ++n) {
+    Touch* deepest = nullptr;
+    for (int i = 0; i < there.count; ++i) {
+      Touch& t = there.touches[static_cast<std::size_t>(i)];
+      if (t.distance_mm < radius_ - tolerance && (deepest == nullptr || t.distance_mm < deepest->distance_mm))
+        deepest = &t;
+    }
+    if (deepest == nullptr) break;
+    add(*deepest);
+    deepest->distance_mm = radius_;  // taken; the list is looked up anew after this
+  }
+  return cuts;
+}
+
+// The part of a step along the planes that hold it.
+glm::dvec3 SphereTracker::slideOf(const Projection& step) const noexcept {
+  const auto normal = [&](int k) -> const glm::dvec3& {
+    return half_spaces_[static_cast<std::size_t>(step.active[static_cast<std::size_t>(k)])].normal;
+  };
+  if (step.count == 1) return step.y - glm::dot(step.y, normal(0)) * normal(0);
+  if (step.count == 2) {
+    const glm::dvec3 along = glm::cross(normal(0), normal(1));
+    return along * (glm::dot(along, step.y) / glm::dot(along, along));
+  }
+  return glm::dvec3(0.0);
+}
+
+// The step with what holds the ball taken as curved, as it is: along it Newton's step for the distance to the
+// endpoint (the second derivative of the Lagrangian function; Nocedal and Wright 2006, "Numerical
+// Optimization", section 18.1), out of it by what the curve rises on the way. False when it is the plain step
+// or no minimum is that way.
+bool SphereTracker::bentStep(const Projection& step, const glm::dvec3& slide, int seen,
+                             glm::dvec3& out) const noexcept {
+  if (step.count < 1 || step.count > 2) return false;
+  const double long2 = length2(slide);
+  if (!(long2 > 1e-20 * step_ * step_)) return false;
+  const auto touch = [&](int k) -> const Touch& {
+    const int index = step.active[static_cast<std::size_t>(k)];
+    return index < seen ? lists_[static_cast<std::size_t>(here_)].touches[static_cast<std::size_t>(index)]
+                        : cuts_[static_cast<std::size_t>(index - seen)];
+  };
+  const auto normal = [&](int k) -> const glm::dvec3& {
+    return half_spaces_[static_cast<std::size_t>(step.active[static_cast<std::size_t>(k)])].normal;
+  };
+  const glm::dvec3 a = slide / std::sqrt(long2);
+  glm::dvec3 along;
+  double rise[2] = {0.0, 0.0};
+  if (step.count == 2) {
+    const double bend0 = window_.bend(centre_, touch(0), a, a);
+    const double bend1 = window_.bend(centre_, touch(1), a, a);
+    const double stiff = 1.0 - step.share[0] * bend0 - step.share[1] * bend1;
+    if (!(stiff > 0.05)) return false;
+    along = slide / stiff;
+    rise[0] = -0.5 * bend0 * length2(along);
+    rise[1] = -0.5 * bend1 * length2(along);
+    const double g = glm::dot(normal(0), normal(1));
+    const double det = 1.0 - g * g;
+    if (!(det > 1e-6)) return false;
+    out = step.y - slide + along + ((rise[0] - g * rise[1]) / det) * normal(0) +
+          ((rise[1] - g * rise[0]) / det) * normal(1);
+    return true;
+  }
+  const glm::dvec3 b = glm::cross(normal(0), a);
+  const double aa = window_.bend(centre_, touch(0), a, a);
+  const double ab = window_.bend(centre_, touch(0), a, b);
+  const double bb = window_.bend(centre_, touch(0), b, b);
+  const double m00 = 1.0 - step.share[0] * aa;
+  const double m01 = -step.share[0] * ab;
+  const double m11 = 1.0 - step.share[0] * bb;
+  const double det = m00 * m11 - m01 * m01;
+  if (!(m00 > 0.05 && m11 > 0.05 && det > 0.05 * 0.05)) return false;
+  const double sa = std::sqrt(long2) * m11 / det;
+  const double sb = -std::sqrt(long2) * m01 / det;
+  along = sa * a + sb * b;
+  out = step.y - slide + along - 0.5 * (sa * sa * aa + 2.0 * sa * sb * ab + sb * sb * bb) * normal(0);
+  return true;
+}
+
+// Moves a step that came a little into the material out of it by the shortest way, as the touches there have
+// it.
+bool SphereTracker::liftedOut(const TouchList& there, glm::dvec3& step) noexcept {
+  if (there.below || there.nearest_mm < radius_ - slack_) return false;
+  const int count = halfSpacesAt(there);
+  const Projection out = projectOnHalfSpaces(glm::dvec3(0.0), half_spaces_.data(), count, 0.01 * tolerance_);
+  if (!out.solved) return false;
+  step += out.y;
+  return true;
+}
+
+SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dvec3& endpoint,
+                                           TickCounters& counters) noexcept {
+  const double tolerance = toleranceMm(std::max(std::abs(centre_.z), std::abs(endpoint.z)));
+  const double rest = tolerance * (kRest / kTolerance);
+  Projection step;
+  int seen = 0;
+  int cuts = 0;
+  int made_from = here_;  // the list that the last step's half-spaces are of
+  int steps = 0;
+  oldest_cut_ = 0;
+  glm::dvec3 last{0.0};  // the step before
+  double longest = step_;
+  Arrival arrival = Arrival::kBound;
+  for (; steps < most_steps_ && arrival == Arrival::kBound; ++steps) {
+    const glm::dvec3 goal = endpoint - centre_;
+    made_from = here_;
+    const auto takeHalfSpaces = [&] {
+      seen = halfSpacesAt(lists_[here_]);
+      for (int k = 0; k < cuts; ++k) {
+        const glm::dvec3 from = centre_ - cuts_[static_cast<std::size_t>(k)].point_mm;
+        const double distance = glm::length(from);
+        half_spaces_[static_cast<std::size_t>(seen + k)] = {from / distance, radius_ - distance};
+      }
+    };
+    takeHalfSpaces();
+    // An edit may have raised the surface into the ball: half of it comes out a step.
+    const double reach_in = std::max(tolerance, 0.5 * (radius_ - lists_[here_].nearest_mm));
+    TouchList& there = lists_[1 - here_];
+    const glm::dvec3 start = centre_;
+    const auto tryOut = [&](const glm::dvec3& to) {
+      look(surface, to, there);
+      if (there.below || !(there.nearest_mm >= radius_ - reach_in)) return false;
+      centre_ = to;
+      return true;
+    };
+    double part = 1.0;
+    double went2 = -1.0;  // squared length of a bent step that was taken
+    bool moved = false;
+    glm::dvec3 slide{0.0};
+    for (int round = 0; round < kCutRounds + kHalvings && !moved; ++round) {
+      if (round < kCutRounds) {
+        step = projectOnHalfSpaces(goal, half_spaces_.data(), seen + cuts, 0.01 * tolerance);
+        if (!step.solved) break;
+        const double far = glm::length(step.y);
+        const double back = glm::dot(step.y, last);
+        if (round == 0) {
+          // Back where it came from, as in a bowl narrower than the press is deep, where each step
+          // overshoots: half as far as it came, and slowly more again, so that steps shrink whatever the
+          // curvature.
+          const double came = glm::length(last);
+          longest = back < 0.0 && -2.0 * back > far * came ? 0.5 * came : std::min(step_, 1.3 * longest);
+        }
+        part = far > longest ? longest / far : 1.0;
+        slide = slideOf(step);
+        glm::dvec3 bent;
+        if (round == 0 && bentStep(step, slide, seen, bent) && length2(bent) <= longest * longest) {
+          const auto nearer = [&] { return length2(goal - bent) < length2(goal); };
+          if (nearer()) {
+            moved = tryOut(centre_ + bent);
+            if (!moved && liftedOut(there, bent) && nearer()) moved = tryOut(centre_ + bent);
+          }
+          went2 = length2(bent);
+          if (moved) break;
+          went2 = -1.0;
+          takeHalfSpaces();
+        }
+      } else {
+        part *= 0.5;
+      }
+      const glm::dvec3 to = centre_ + part * step.y;
+      moved = tryOut(to);
+      if (!moved && round < kCutRounds - 1) cuts = addCuts(to, there, tolerance, seen, cuts);
+    }
+    if (!moved) {
+      // Nowhere to go but for rounding: held where it is.
+      counters.search_bound_hits += step.solved ? 0 : 1;
+      arrival = Arrival::kTouching;
+      break;
+    }
+    here_ = 1 - here_;
+    const double length_2 = went2 >= 0.0 ? went2 : part * part * length2(step.y);
+    if (step.count == 0 && part == 1.0)
+      arrival = Arrival::kFree;
+    else if (length_2 <= rest * rest)
+      arrival = Arrival::kTouching;
+    else if (length_2 > 0.01 * step_ * step_)
+      cuts = 0;
+    last = centre_ - start;
+  }
+  counters.longest_search = std::max<std::int64_t>(counters.longest_search, steps);
+  counters.search_bound_hits += arrival == Arrival::kBound ? 1 : 0;
+  if (arrival == Arrival::kFree) {
+    centre_ = endpoint;
+    return arrival;
+  }
+  int most = 0;
+  for (int k = 1; k < step.count; ++k)
+    if (step.share[static_cast<std::size_t>(k)] > step.share[static_cast<std::size_t>(most)]) most = k;
+  if (step.count > 0) {
+    const int index = step.active[static_cast<std::size_t>(most)];
+    pressed_ = index < seen ? lists_[made_from].touches[static_cast<std::size_t>(index)]
+                            : cuts_[static_cast<std::size_t>(index - seen)];
+  }
+  return arrival;
+}
+
+Contact SphereTracker::update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters) noexcept {
+  Contact contact;
+  const bool was_placed = placed_;
+  const glm::dvec3 moved = endpoint - previous_;
+  previous_ = endpoint;
+  placed_ = true;
+  if (!touching_ && clearOfAll(surface, was_placed ? centre_ : endpoint, endpoint)) {
+    centre_ = endpoint;
+    CellIndex cell;
+    counters.outside += surface.cellUnder(endpoint, cell) ? 0 : 1;
+    return contact;
+  }
+  const double farthest = kSphereSteps * step_;
+  forgetEdited(surface);
+  if (!was_placed || !(length2(moved) <= farthest * farthest)) {
+    centre_ = endpoint;
+    lift(surface);
+  } else {
+    // A ball that rests was looked at by the last tick.
+    if (looked_from_[static_cast<std::size_t>(here_)] != centre_) look(surface, centre_, lists_[here_]);
+    if (lists_[here_].below || lists_[here_].nearest_mm < 0.5 * radius_) lift(surface);
+  }
+  const Arrival arrival = walk(surface, endpoint, counters);
+  if (lists_[here_].nearest_mm < radius_ - toleranceMm(centre_.z)) lift(surface);  // still not out of an edit
+  touching_ = arrival != Arrival::kFree;
+  if (!touching_) return contact;
+
+  contact.touching = true;
+  contact.penetration_mm = centre_ - endpoint;
+  const glm::dvec3 away = pressed_.point_mm - endpoint;
+  contact.proxy = {pressed_.cell, pressed_.u, pressed_.v, pressed_.point_mm, length2(away)};
+  return contact;
+}
+
+}  // namespace fettle::haptic

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+
+#include "haptic/contact/surface.h"
+#include "haptic/contact/touch_lanes.h"
+
+namespace fettle::haptic {
+
+/// The material around a ball's centre, and where its distance to the centre is a local minimum.
+///
+/// The material M is everything at or below the bilinear surface of the cells without holes: the surface
+/// itself, and vertical walls below the rims of holes and below the field's own edges. Where the ball touches
+/// at rest, the point of M that it touches is a local minimum of the distance over M; such points are of four
+/// kinds, each with a test of its own that neighbouring cells agree on, so that a seam between two cells that
+/// lie in one plane is no contact (the "internal edge" of physics engines):
+///   a sample: the centre is on the far side of the planes square to its edges;
+///   an edge: square to the foot, and the two cells beside it lead away from the centre;
+///   a cell's inside: the surface's normal there goes through the centre;
+///   a wall: level with the centre, out of the rim's side.
+
+/// A point of the material where the distance to the centre is a local minimum.
+struct Touch {
+  glm::dvec3 point_mm{0.0};
+  glm::dvec3 normal{0.0, 0.0, 1.0};  ///< from the point to the centre, unit length, z >= 0; z = 0 at a wall
+  double distance_mm = 0.0;          ///< from the point to the centre
+  CellIndex cell;                    ///< a cell without holes that holds the point, or the rim above it
+  double u = 0.0, v = 0.0;           ///< of the point (the rim above it) in that cell
+};
+
+/// Touches near one centre, in a fixed order of cells.
+struct TouchList {
+  static constexpr int kMost = 96;
+  std::array<Touch, kMost> touches;
+  int count = 0;
+  /// Nearest distance among all found [mm]; HUGE_VAL when there is none.
+  double nearest_mm = 0.0;
+  /// Whether the centre is below the surface; then the touches mean nothing.
+  bool below = false;
+};
+
+/// A copy of the samples around a ball, in millimetres.
+///
+/// Threading: one thread; nothing allocates, locks or throws. About 25 kB.
+class SphereWindow {
+ public:
+  /// Samples along a side at most: a ball of 16 cells radius and room to move.
+  static constexpr std::int32_t kMostSide = 44;
+
+  /// Copies what a ball of radius `reach_mm` needs anywhere within `room_mm` (horizontally) of `centre`,
+  /// which is finite. What does not fit kMostSide is left out: keep (reach + room) / spacing <= 20.
+  void load(const Surface& surface, const glm::dvec3& centre, double reach_mm, double room_mm) noexcept;
+  /// Whether a ball at `centre` still lies within what was loaded.
+  [[nodiscard]] bool holds(const glm::dvec3& centre) const noexcept;
+
+  /// To be called when the field may have changed: the next centre is not held.
+  void forget() noexcept { low_x_ = HUGE_VAL; }
+
+  /// All touches nearer than `reach_mm` (at most what load() was given); when there are more than fit, the
+  /// nearest ones.
+  void touches(const glm::dvec3& centre, double reach_mm, TouchList& out) const noexcept;
+  /// The same, bit for bit, one cell after the other: what touches() does at holes and rims, and what its
+  /// cells abreast (touch_lanes.h) are tested against.
+  void touchesCellByCell(const glm::dvec3& centre, double reach_mm, TouchList& out) const noexcept;
+
+  /// Height of the surface under (x, y) [mm]; -HUGE_VAL over holes and beside the field.
+  [[nodiscard]] double heightUnder(const glm::dvec3& at) const noexcept;
+  /// The point of the surface straight above or below `at`, and the surface's normal there; false over holes
+  /// and beside the field.
+  [[nodiscard]] bool under(const glm::dvec3& at, Touch& out) const noexcept;
+  /// How the distance to what is touched bends: the second derivative's bilinear form [1/mm] at `centre` for
+  /// two directions square to the line to the point; 0 for a plane, 1 / distance for a sample.
+  [[nodiscard]] double bend(const glm::dvec3& centre, const Touch& touch, const glm::dvec3& a,
+                            const glm::dvec3& b) const noexcept;
+  /// Highest sample within the window [mm]; -HUGE_VAL when there is none.
+  [[nodiscard]] double highest() const noexcept { return highest_; }
+
+ private:
+  struct Corners {
+    double z00, z10, z01, z11;
+  };
+  [[nodiscard]] Corners corners(std::int32_t i, std::int32_t j) const noexcept {
+    const double* z = z_.data() + j * columns_ + i;
+    return {z[0], z[1], z[columns_], z[columns_ + 1]};
+  }
+  [[nodiscard]] bool valid(std::int32_t i, std::int32_t j) const noexcept;
+  void collect(const glm::dvec3& centre, double reach_mm, TouchList& out, bool abreast) const noexcept;
+  class Collector;
+  class Valley;
+
+  std::array<double, kMostSide * kMostSide + kTouchLanes> z_{};  // lanes may read on past the last sample
+  std::array<float, kMostSide * kMostSide> raw_{};
+  std::int32_t column_ = 0, row_ = 0;    // field sample of z_[0]
+  std::int32_t columns_ = 0, rows_ = 0;  // samples
+  double sx_ = 1.0, sy_ = 1.0;
+  double low_x_ = 0.0, high_x_ = 0.0, low_y_ = 0.0, high_y_ = 0.0;  // centres it holds [mm]
+  double highest_ = 0.0;
+  bool whole_ = false;  // no NaN in it
+};
+
+}  // namespace fettle::haptic

@@ -1,0 +1,140 @@
+#pragma once
+
+#include <semaphore.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <thread>
+
+#include <glm/vec3.hpp>
+
+#include "engine/base/error.h"
+#include "haptic/base/latest_slot.h"
+#include "haptic/devices/device.h"
+#include "haptic/devices/hid/output_rule.h"
+#include "haptic/devices/hid/report_port.h"
+
+namespace fettle::haptic {
+
+/// What a driver knows of its device's reports; called by the threads of a ReportLink.
+class ReportHandler {
+ public:
+  ReportHandler() = default;
+  virtual ~ReportHandler() = default;
+  ReportHandler(const ReportHandler&) = delete;
+  ReportHandler& operator=(const ReportHandler&) = delete;
+
+  /// Reader thread: the device was opened; `input_bytes` as in OpenedPorts. Returns how it wants output, as
+  /// far as that is known yet (see onCaughtUp).
+  virtual Pacing onOpen(std::size_t input_bytes) noexcept = 0;
+  /// Reader thread: one report. False when it is none of this device's: it is counted and left out.
+  virtual bool onReport(std::span<const std::uint8_t> report, std::int64_t arrival_ns) noexcept = 0;
+  /// Reader thread: all reports that had come are in, `inputs` good ones since start(); what the loop sees is
+  /// to be brought up to date. Returns the pacing, which may have become known.
+  virtual Pacing onCaughtUp(std::uint64_t inputs) noexcept = 0;
+  /// Reader thread: the device is gone, or the link stops.
+  virtual void onLost() noexcept = 0;
+  /// Writer thread: one output report; `currents` is what the loop wrote, or zero. Returns its length; 0 =
+  /// nothing can be sent.
+  virtual std::size_t encode(const glm::dvec3& output, std::span<std::uint8_t> report) noexcept = 0;
+};
+
+/// The threads between a loop that must never wait and a wire that may: a reader thread (wait at most 5 ms,
+/// then drain to the newest report) and a writer thread (a write may block for 5 s on hidraw when the device
+/// stops taking reports). The loop touches neither: what it writes goes through a LatestSlot, what it reads
+/// comes from the slot that the handler publishes to.
+///
+///     device --report--> reader thread --handler--> [slot] --> loop --> [slot] --> writer thread --> device
+///                             `------- count of inputs, wake-up -------------------^
+///
+/// Two ports for one device: hidapi's read and write both replace the error text of their handle, so one
+/// handle shared by two threads is a race that frees twice (hidapi 0.13, register_device_error).
+class ReportLink {
+ public:
+  ReportLink(std::unique_ptr<ReportSource> source, ReportHandler& handler, const OutputTimes& times = {});
+  ~ReportLink();
+  ReportLink(const ReportLink&) = delete;
+  ReportLink& operator=(const ReportLink&) = delete;
+
+  [[nodiscard]] engine::Status start();
+  /// See Device::stop().
+  void stop() noexcept;
+
+  /// Loop thread, wait-free: output for the device (motor currents, whatever encode() takes).
+  void write(const glm::dvec3& output) noexcept;
+
+  /// Any thread, wait-free: since when a write has been waiting for the device [ns of steadyNs]; 0 = none is.
+  [[nodiscard]] std::int64_t writingSinceNs() const noexcept {
+    // Relaxed: a number of its own, looked at once a tick.
+    return writing_since_ns_.load(std::memory_order_relaxed);
+  }
+
+  /// Loop thread, wait-free: whether the newest output has not been sent, so that the device holds an older
+  /// one.
+  [[nodiscard]] bool outputPending() const noexcept {
+    // Relaxed: a number of its own; a late sight of it costs a tick of rise.
+    return published_ns_ != sent_ns_.load(std::memory_order_relaxed);
+  }
+
+  /// Any thread. `inputs`, `bad_inputs` and the like are each right; together they may be of two moments.
+  [[nodiscard]] DeviceCounters counters() const noexcept;
+
+ private:
+  struct Output {
+    glm::dvec3 value{0.0};
+    std::int64_t written_ns = 0;
+  };
+
+  void runReader() noexcept;
+  void runWriter() noexcept;
+  enum class Ended : std::uint8_t { kGone, kStopping };
+  [[nodiscard]] Ended readWhileConnected(ReportPort& port) noexcept;
+  void handOver(std::unique_ptr<ReportPort> port, Pacing pacing) noexcept;
+  void setPacing(Pacing pacing) noexcept;
+  [[nodiscard]] bool waitForPlug() noexcept;
+  void waitForWork(std::int64_t until_ns) noexcept;
+  [[nodiscard]] PortWrite send(ReportPort& port, OutputRule::Send what, const glm::dvec3& value) noexcept;
+
+  std::unique_ptr<ReportSource> source_;
+  ReportHandler& handler_;
+  OutputTimes times_;
+  LatestSlot<Output> output_;
+  std::int64_t published_ns_ = 0;         // loop thread's own: Output::written_ns of the newest output
+  std::atomic<std::int64_t> sent_ns_{0};  // the same of the output that was sent last
+  sem_t work_{};  // posted by the loop (new force) and by the reader (new input, new port, stop)
+  std::thread reader_;
+  std::thread writer_;
+
+  // Reader to writer, neither of them the loop: a lock is fine.
+  std::mutex mutex_;
+  std::condition_variable stopped_;
+  bool stopping_ = false;
+  std::unique_ptr<ReportPort> new_port_;
+  bool replace_port_ = false;  // by new_port_, which may be null
+  Pacing pacing_ = Pacing::kNone;
+  std::uint64_t inputs_at_open_ = 0;
+  std::uint64_t generation_ = 0;  // one more with each change of port or pacing
+
+  // Counters: relaxed throughout, each is a number of its own. `inputs_` also tells the writer that there is
+  // something to answer; a late sight of it is mended by the semaphore, whose post follows the increment and
+  // synchronises with its wait.
+  std::atomic<std::uint64_t> inputs_{0};
+  std::atomic<std::uint64_t> skipped_{0};
+  std::atomic<std::uint64_t> bad_inputs_{0};
+  std::atomic<std::uint64_t> outputs_{0};
+  std::atomic<std::uint64_t> forced_zeros_{0};
+  std::atomic<std::uint64_t> failed_outputs_{0};
+  std::atomic<std::uint64_t> connects_{0};
+  std::atomic<std::uint64_t> disconnects_{0};
+  std::atomic<std::int64_t> longest_output_ns_{0};
+  std::atomic<std::int64_t> writing_since_ns_{0};
+};
+
+/// std::chrono::steady_clock in nanoseconds, the clock of DeviceInput::arrival_ns.
+[[nodiscard]] std::int64_t steadyNs() noexcept;
+
+}  // namespace fettle::haptic

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "haptic/devices/codecs/wooden_codec.h"
+#include "haptic/devices/wooden/encoder_unwrap.h"
+
+namespace fettle::haptic {
+
+/// Where the stylus is, from encoders that only know how far it moved: the user holds it in its home pose,
+/// and from then on the counts are right. Pure state, no clock, no thread; the reader thread's own.
+class WoodenCalibration {
+ public:
+  enum class Method : std::uint8_t {
+    kHost,    ///< W8, S: the difference to the home pose's counts is kept here
+    kDevice,  ///< P14: the device is told to preset its encoders, and is believed when they read so
+  };
+
+  WoodenCalibration(Method method, const std::array<std::int16_t, 3>& home) noexcept
+      : method_(method), home_(home) {}
+
+  /// Takes one report. `requested`: the user asked for a calibration since the last one; the device's own
+  /// button (latched) asks for it too, once a press. `presets_sent` counts the presets sent so far.
+  void onReport(const WoodenReport& report, bool requested, std::uint32_t presets_sent) noexcept {
+    const bool pressed = report.calibration_latched && !was_latched_;
+    was_latched_ = report.calibration_latched;
+    if (requested || pressed) begin(report, presets_sent);
+    if (preset_wanted_ && presets_sent != presets_before_ && nearHome(report)) {
+      preset_wanted_ = false;
+      calibrated_ = true;
+      for (EncoderUnwrap& u : unwrap_) u.reset();
+    }
+    for (std::size_t i = 0; i < 3; ++i) counts_[i] = unwrap_[i].next(report.encoders[i]) + offset_[i];
+  }
+
+  [[nodiscard]] bool calibrated() const noexcept { return calibrated_; }
+  /// The device is to be told to preset its encoders.
+  [[nodiscard]] bool presetWanted() const noexcept { return preset_wanted_; }
+  /// Encoders a, b, c of the last report, unwrapped; they mean something once calibrated() is true.
+  [[nodiscard]] const std::array<std::int32_t, 3>& counts() const noexcept { return counts_; }
+
+ private:
+  // A hand that holds the pose trembles by some counts between the preset and the report that shows it.
+  static constexpr int kNear = 200;
+
+  void begin(const WoodenReport& report, std::uint32_t presets_sent) noexcept {
+    for (EncoderUnwrap& u : unwrap_) u.reset();
+    if (method_ == Method::kHost) {
+      for (std::size_t i = 0; i < 3; ++i) offset_[i] = home_[i] - report.encoders[i];
+      calibrated_ = true;
+      return;
+    }
+    calibrated_ = false;
+    preset_wanted_ = true;
+    presets_before_ = presets_sent;
+  }
+
+  [[nodiscard]] bool nearHome(const WoodenReport& report) const noexcept {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int off = report.encoders[i] - home_[i];
+      if (off > kNear || off < -kNear) return false;
+    }
+    return true;
+  }
+
+  Method method_;
+  std::array<std::int16_t, 3> home_;
+  std::array<EncoderUnwrap, 3> unwrap_;
+  std::array<std::int32_t, 3> offset_{};
+  std::array<std::int32_t, 3> counts_{};
+  std::uint32_t presets_before_ = 0;
+  bool was_latched_ = false;
+  bool preset_wanted_ = false;
+  bool calibrated_ = false;
+};
+
+}  // namespace fettle::haptic

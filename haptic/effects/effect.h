@@ -1,0 +1,127 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "engine/field/live_field.h"
+#include "engine/field/version.h"
+#include "haptic/base/strokes.h"
+#include "haptic/base/tick_counters.h"
+#include "haptic/contact/contact.h"
+#include "haptic/contact/surface.h"
+#include "haptic/effects/velocity.h"
+#include "haptic/scene/scene.h"
+
+namespace fettle::haptic {
+
+/// The samples [column, column + columns) x [row, row + rows) whose marks a tool may have changed; they may
+/// reach beyond the field. Empty while columns is 0.
+struct MarkedRect {
+  std::int32_t column = 0, row = 0;
+  std::int32_t columns = 0, rows = 0;
+};
+
+/// What effects see and change within one tick.
+struct TickState {
+  const Contact& contact;
+  engine::LiveField& field;
+  Surface& surface;
+  TickCounters& counters;
+  double t_s = 0.0;                        ///< of the sample
+  glm::dvec3 endpoint_mm{0.0};             ///< finite
+  const VelocityFilter* motion = nullptr;  ///< of the endpoint; null when no effect of the scene needs it
+  double force_limit_n = 0.0;              ///< of the scene
+
+  glm::dvec3 force_n{0.0};   ///< force effects add to it [N]; clamped before finishing effects and tools
+  glm::dvec3 press_n{0.0};   ///< part of it with which the tip presses on the surface (spring) [N]
+  glm::dvec3 weight_n{0.0};  ///< part of it that only holds up the stylus [N]
+  double stored_mj = 0.0;    ///< energy that the forces so far can give back [N mm], at most
+  double strength = 0.0;     ///< for tools: pressing force over limit, 0 .. 1
+  MarkedRect marked{};       ///< set by the marking tools
+};
+
+/// Why an effect has to forget.
+enum class Forget : std::uint8_t {
+  kContactEnded,  ///< the tip left the surface
+  kInputLost,     ///< an input that is none: zero force was given, and where the hand goes now is unknown
+  kFieldChanged,  ///< the field was replaced from outside (adoption, undo, scene)
+};
+
+/// One effect as the tick calls it: a plain function and its data. noexcept is part of the type.
+struct EffectStep {
+  void (*run)(void* data, TickState& state) noexcept = nullptr;
+  void* data = nullptr;
+};
+
+/// What an effect does when it has to forget. None may raise the force.
+struct EffectReset {
+  void (*run)(void* data, Forget why) noexcept = nullptr;
+  void* data = nullptr;
+};
+
+/// Data of one effect.
+struct EffectData {
+  EffectKind kind = EffectKind::kSpring;
+  std::shared_ptr<void> memory;
+  std::size_t bytes = 0;  ///< all of it: the object and what it holds
+};
+
+/// The effects of one scene, composed once. A tick calls, each list in the scene's order:
+///
+///   contact --> in_contact --> always --> clamp --> finishing --> tool --> upkeep
+///               (touching)     (free too)           (|F| <= limit)  (touching)
+///
+/// What the scene does not list is in none of them, and its data does not exist: no memory, no call, and no
+/// velocity is estimated unless a listed effect needs it.
+///
+/// A new effect is a file in effects/ with an `add...` function, a word in EffectKind, its parameters, and a
+/// line in composeEffects; the tick does not change.
+struct EffectList {
+  std::vector<EffectStep> in_contact;    ///< forces while touching
+  std::vector<EffectStep> always;        ///< forces in every tick with good input
+  std::vector<EffectStep> finishing;     ///< after the clamp; keep |F| <= limit
+  std::array<EffectStep, kTools> tools;  ///< by Tool; an empty step does nothing
+  std::vector<EffectStep> upkeep;        ///< after the tool: bounded work on data that edits touch
+  std::vector<EffectReset> resets;       ///< called when contact, input or field is lost
+  std::optional<VelocityFilter> motion;  ///< there when a listed effect needs it
+  std::vector<EffectData> data;          ///< what the steps point to
+  std::shared_ptr<void> marking;         ///< the disc of the marking tools, which every scene has
+
+  /// Whether a tick without contact has nothing to do but to say so.
+  [[nodiscard]] bool onlyInContact() const noexcept {
+    return always.empty() && finishing.empty() && upkeep.empty();
+  }
+  /// Bytes that the data of an effect takes; 0 when the scene does not list it, or it needs none.
+  [[nodiscard]] std::size_t bytesOf(EffectKind kind) const noexcept;
+  /// Bytes of all effects together, the list itself left out.
+  [[nodiscard]] std::size_t bytes() const noexcept;
+};
+
+/// Builds what `scene` lists. `original` is what Scene::max_change is measured against, with the same way up
+/// as `now`, the live field: its marks are what edge snap pulls to at first. Deterministic. May allocate and
+/// take its time (edge snap: a look at every tile); not for the haptic thread.
+[[nodiscard]] EffectList composeEffects(const Scene& scene, const engine::Version& original,
+                                        const engine::Version& now);
+
+/// Makes the data of an effect, which the list then owns, counted with what it holds beside itself.
+template <class T>
+T& addData(EffectList& list, EffectKind kind, std::shared_ptr<T> data, std::size_t held_beside = 0) {
+  T& reference = *data;
+  list.data.push_back({kind, std::move(data), sizeof(T) + held_beside});
+  return reference;
+}
+
+/// Makes the list estimate the endpoint's velocity.
+void needMotion(EffectList& list, const Scene& scene);
+
+void addSmoothing(EffectList& list, const Scene& scene, const engine::Version& original);
+/// Marking is a tool of every scene, not an effect.
+void addMarking(EffectList& list, const Scene& scene);
+
+}  // namespace fettle::haptic

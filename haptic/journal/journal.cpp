@@ -1,0 +1,158 @@
+#include "haptic/journal/journal.h"
+
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace fettle::haptic {
+namespace {
+
+using nlohmann::json;
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+constexpr std::array<std::string_view, 5> kFilters = {"box", "gaussian", "median", "bilateral", "tv"};
+constexpr std::array<std::string_view, 2> kScopes = {"keep", "only"};
+
+template <std::size_t N>
+std::size_t wordOf(const json& value, const std::array<std::string_view, N>& words) {
+  const auto& text = value.get_ref<const std::string&>();
+  for (std::size_t i = 0; i < N; ++i)
+    if (text == words[i]) return i;
+  throw std::out_of_range(fmt::format("\"{}\" is none of {}", text, fmt::join(words, ", ")));
+}
+
+void put(json& out, const LoopPlace& at) {
+  out["tick"] = at.tick;
+  if (at.answered) out["answered"] = true;
+}
+
+LoopPlace placeOf(const json& in) {
+  return {in.at("tick").get<std::uint64_t>(), in.value("answered", false)};
+}
+
+void put(json& out, const engine::FilterSpec& spec) {
+  out["filter"] = kFilters[static_cast<std::size_t>(spec.kind)];
+  out["window"] = spec.window;
+  if (spec.sigma > 0.0) out["sigma"] = spec.sigma;
+  if (spec.range_sigma > 0.0) out["range_sigma"] = spec.range_sigma;
+  out["passes"] = spec.passes;
+  out["marks"] = kScopes[static_cast<std::size_t>(spec.scope)];
+  if (spec.max_change) out["max_change"] = *spec.max_change;
+}
+
+engine::FilterSpec specOf(const json& in) {
+  engine::FilterSpec spec;
+  spec.kind = static_cast<engine::FilterKind>(wordOf(in.at("filter"), kFilters));
+  spec.window = in.at("window").get<int>();
+  spec.sigma = in.value("sigma", 0.0);
+  spec.range_sigma = in.value("range_sigma", 0.0);
+  spec.passes = in.at("passes").get<int>();
+  spec.scope = static_cast<engine::FilterScope>(wordOf(in.at("marks"), kScopes));
+  if (in.contains("max_change")) spec.max_change = in.at("max_change").get<double>();
+  return spec;
+}
+
+haptic::Scene sceneOf(const json& in) {
+  auto scene = haptic::parseScene(in.at("scene").get_ref<const std::string&>(), "scene");
+  if (!scene) throw std::out_of_range(scene.error().line());
+  return *std::move(scene);
+}
+
+journal::Entry entryOf(const json& in) {
+  const auto& what = in.at("do").get_ref<const std::string&>();
+  const auto id = [&] { return in.at("id").get<std::uint64_t>(); };
+  const auto state = [&] { return in.at("state").get<std::int64_t>(); };
+  const auto count = [&] { return in.at("count").get<std::int64_t>(); };
+  if (what == "begin") return journal::Begin{state(), sceneOf(in)};
+  if (what == "ticks") return journal::Ticks{count()};
+  if (what == "lost") return journal::Lost{count()};
+  if (what == "scene") return journal::SceneSet{placeOf(in), sceneOf(in)};
+  if (what == "step") {
+    const auto kind = engine::stepKindFromName(in.at("kind").get_ref<const std::string&>());
+    if (!kind) throw std::out_of_range("an unknown kind of step");
+    return journal::StepMade{state(), in.at("name").get<std::string>(), *kind, placeOf(in),
+                             in.value("marks", false)};
+  }
+  if (what == "restore") return journal::RestoreAsked{id(), state()};
+  if (what == "restored") return journal::Restored{id(), placeOf(in)};
+  if (what == "base") return journal::FilterBase{id(), placeOf(in)};
+  if (what == "filter") return journal::FilterBegun{id(), specOf(in)};
+  if (what == "snapshot") return journal::Snapshot{placeOf(in)};
+  if (what == "offered") return journal::Offered{placeOf(in), in.at("taken").get<bool>()};
+  throw std::out_of_range(fmt::format("unknown action \"{}\"", what));
+}
+
+}  // namespace
+
+std::string journalText(const journal::Entry& entry) {
+  json out;
+  std::visit(
+      Overloaded{
+          [&](const journal::Begin& e) {
+            out = {{"do", "begin"}, {"state", e.state}, {"scene", haptic::sceneText(e.scene)}};
+          },
+          [&](const journal::Ticks& e) {
+            out = {{"do", "ticks"}, {"count", e.count}};
+          },
+          [&](const journal::Lost& e) {
+            out = {{"do", "lost"}, {"count", e.count}};
+          },
+          [&](const journal::SceneSet& e) {
+            out = {{"do", "scene"}, {"scene", haptic::sceneText(e.scene)}};
+            put(out, e.at);
+          },
+          [&](const journal::StepMade& e) {
+            out = {
+                {"do", "step"}, {"state", e.state}, {"name", e.name}, {"kind", engine::stepKindName(e.kind)}};
+            if (e.marks) out["marks"] = true;
+            put(out, e.at);
+          },
+          [&](const journal::RestoreAsked& e) {
+            out = {{"do", "restore"}, {"id", e.id}, {"state", e.state}};
+          },
+          [&](const journal::Restored& e) {
+            out = {{"do", "restored"}, {"id", e.id}};
+            put(out, e.at);
+          },
+          [&](const journal::FilterBase& e) {
+            out = {{"do", "base"}, {"id", e.id}};
+            put(out, e.at);
+          },
+          [&](const journal::FilterBegun& e) {
+            out = {{"do", "filter"}, {"id", e.id}};
+            put(out, e.spec);
+          },
+          [&](const journal::Snapshot& e) {
+            out = {{"do", "snapshot"}};
+            put(out, e.at);
+          },
+          [&](const journal::Offered& e) {
+            out = {{"do", "offered"}, {"taken", e.taken}};
+            put(out, e.at);
+          },
+      },
+      entry);
+  return out.dump();
+}
+
+engine::Result<journal::Entry> journalEntry(const std::string& text) {
+  try {
+    return entryOf(json::parse(text));
+  } catch (const json::exception& error) {
+    return engine::inputError(fmt::format("a journal entry that cannot be read: {}", error.what()),
+                              "journal");
+  } catch (const std::out_of_range& error) {
+    return engine::inputError(fmt::format("a journal entry that cannot be read: {}", error.what()),
+                              "journal");
+  }
+}
+
+}  // namespace fettle::haptic

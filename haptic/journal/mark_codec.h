@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "engine/base/error.h"
+#include "engine/field/version.h"
+
+namespace fettle::haptic {
+
+/// The samples whose marks differ between two versions of one grid, and what they are afterwards: for each
+/// tile with any, its column and row [32-bit little-endian each] and twice 512 bytes, one bit a sample,
+/// row-major: which change, and to what. Bytes in proportion to what differs; a session keeps them
+/// compressed.
+[[nodiscard]] std::string packMarkChanges(const engine::Version& before, const engine::Version& after);
+
+/// `before` with these samples' marks as they were afterwards. Errors: kInput for bytes that do not fit its
+/// grid, kFailed when memory runs out.
+[[nodiscard]] engine::Result<engine::Version> applyMarkChanges(const engine::Version& before,
+                                                               std::string_view changes);
+
+}  // namespace fettle::haptic

@@ -1,0 +1,306 @@
+#include "haptic/journal/session_player.h"
+
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "haptic/journal/journal.h"
+#include "haptic/journal/mark_codec.h"
+#include "haptic/journal/tick_codec.h"
+#include "haptic/loop/adopt_filtered.h"
+#include "haptic/loop/loop_player.h"
+
+namespace fettle::haptic {
+namespace {
+
+using engine::Version;
+using haptic::CommandKind;
+using haptic::EventKind;
+using haptic::LoopCommand;
+
+// More rounds than any adoption was allowed (FilterPreview): the journal says where it ended.
+constexpr int kMostRounds = 1000;
+
+Version upright(const Version& version) {
+  return version.reader().sign() < 0.0F ? version.inverted() : version;
+}
+
+class Player final : public haptic::AdoptionPort {
+ public:
+  Player(const engine::Session& session, engine::JobControl& job)
+      : journal_(session.journal), original_(session.original), job_(job) {
+    states_[0] = original_;
+    const engine::History& stored = session.history;
+    const std::int64_t start = std::min(journalStart(session), stored.last());
+    for (std::int64_t k = std::max(stored.first(), std::int64_t{1}); k <= start; ++k)
+      states_[k] = upright(stored.state(k));
+  }
+
+  engine::Result<PlayedSession> run() {
+    job_.begin("replaying", journal_.size());
+    while (next_ < journal_.size())
+      if (auto done = playNext(); !done) return tl::unexpected(done.error());
+    played_.field = states_.at(played_.state);
+    return std::move(played_);
+  }
+
+  // What the adoption asks for, given where the journal says it was.
+  engine::Result<Version> snapshot() override {
+    snapshot_.reset();
+    if (auto done = playUntil([&] { return snapshot_.has_value(); }); !done)
+      return tl::unexpected(done.error());
+    return *snapshot_;
+  }
+  engine::Result<Answer> adopt(Version version) override {
+    offer_ = std::move(version);
+    answer_.reset();
+    if (auto done = playUntil([&] { return answer_.has_value(); }); !done)
+      return tl::unexpected(done.error());
+    return *std::exchange(answer_, std::nullopt);
+  }
+  void pause() override {}
+
+ private:
+  // As far as the adoption under way goes: the next filter's begin, a new loop or the journal's end show that
+  // it was cancelled there.
+  template <class Done>
+  engine::Status playUntil(const Done& done) {
+    while (!done()) {
+      if (next_ == journal_.size()) return engine::cancelled();
+      auto entry = entryAt(next_);
+      if (!entry) return tl::unexpected(entry.error());
+      if (std::holds_alternative<journal::FilterBegun>(*entry) ||
+          std::holds_alternative<journal::Begin>(*entry))
+        return engine::cancelled();
+      if (auto status = playNext(); !status) return status;
+    }
+    return {};
+  }
+
+  engine::Result<journal::Entry> entryAt(std::size_t i) const { return journalEntry(journal_[i].action); }
+
+  engine::Status playNext() {
+    if (job_.cancelled()) return engine::cancelled();
+    auto entry = entryAt(next_);
+    if (!entry) return tl::unexpected(entry.error());
+    const std::string& data = journal_[next_].data;
+    ++next_;
+    job_.advance(1);
+    return std::visit([&](const auto& what) { return play(what, data); }, *entry);
+  }
+
+  tl::unexpected<engine::Error> mismatch(const char* what) const {
+    return engine::inputError(fmt::format("the journal does not fit itself: {}", what),
+                              fmt::format("journal entry {}", next_),
+                              "the session's stored states are not touched by this: open or export them");
+  }
+
+  engine::Status play(const journal::Begin& begin, const std::string&) {
+    const auto state = states_.find(begin.state);
+    if (state == states_.end()) return mismatch("work begins on a state that was never made");
+    auto loop = haptic::LoopPlayer::create(state->second, original_, begin.scene);
+    if (!loop) return tl::unexpected(loop.error());
+    loop_ = std::move(*loop);
+    inverted_ = begin.scene.invert;
+    played_.state = begin.state;
+    ticks_.clear();
+    bases_.clear();
+    asked_.clear();
+    answered_tick_.reset();
+    ++played_.loops;
+    return {};
+  }
+
+  engine::Status play(const journal::Ticks& what, const std::string& data) {
+    auto ticks = unpackTicks(data);
+    if (!ticks) return tl::unexpected(ticks.error());
+    if (static_cast<std::int64_t>(ticks->size()) != what.count) return mismatch("a block of ticks is short");
+    ticks_.insert(ticks_.end(), ticks->begin(), ticks->end());
+    return {};
+  }
+
+  engine::Status play(const journal::Lost& lost, const std::string&) {
+    return engine::inputError(
+        fmt::format("{} ticks were not recorded: the window stood still for too long", lost.count),
+        fmt::format("journal entry {}", next_),
+        "what comes after cannot be made again; the session's stored states hold it");
+  }
+
+  engine::Status play(const journal::SceneSet& set, const std::string&) {
+    LoopCommand command;
+    command.kind = CommandKind::kScene;
+    command.scene = std::make_unique<haptic::PreparedScene>(set.scene, original_);
+    inverted_ = set.scene.invert;
+    return give(std::move(command), set.at);
+  }
+
+  engine::Status play(const journal::StepMade& step, const std::string& data) {
+    Version state;
+    if (step.marks) {
+      const auto before = states_.find(step.state - 1);
+      if (before == states_.end()) return mismatch("marks on a state that was never made");
+      auto marked = applyMarkChanges(before->second, data);
+      if (!marked) return tl::unexpected(marked.error());
+      state = *std::move(marked);
+    } else {
+      auto there = versionAt(step.at);
+      if (!there) return tl::unexpected(there.error());
+      state = upright(*there);
+    }
+    states_[step.state] = std::move(state);
+    // Steps after it are gone.
+    states_.erase(states_.upper_bound(step.state), states_.end());
+    played_.state = step.state;
+    ++played_.steps;
+    return {};
+  }
+
+  engine::Status play(const journal::RestoreAsked& asked, const std::string&) {
+    const auto state = states_.find(asked.state);
+    if (state == states_.end()) return mismatch("a state is restored that was never made");
+    asked_[asked.id] = state->second;
+    played_.state = asked.state;
+    return {};
+  }
+
+  engine::Status play(const journal::Restored& restored, const std::string&) {
+    const auto version = asked_.find(restored.id);
+    if (version == asked_.end()) return mismatch("a state is restored that nobody asked for");
+    LoopCommand command;
+    command.kind = CommandKind::kRestore;
+    command.version = inverted_ ? version->second.inverted() : version->second;
+    asked_.erase(version);
+    return give(std::move(command), restored.at);
+  }
+
+  engine::Status play(const journal::FilterBase& base, const std::string&) {
+    auto version = versionAt(base.at);
+    if (!version) return tl::unexpected(version.error());
+    bases_[base.id] = *std::move(version);
+    return {};
+  }
+
+  engine::Status play(const journal::FilterBegun& filter, const std::string&) {
+    const auto base = bases_.find(filter.id);
+    if (base == bases_.end()) return mismatch("a filter without the field it worked on");
+    const Version input = base->second;
+    const Version original = input.reader().sign() < 0.0F ? original_.inverted() : original_;
+    engine::JobControl own;  // its stages are not this job's
+    auto result = engine::applyFilter(input, original, filter.spec, own);
+    if (!result) return tl::unexpected(result.error());
+    ++played_.filters;
+    const auto adopted =
+        haptic::adoptFiltered(*this, input, result->field, original, filter.spec, kMostRounds, own);
+    if (!adopted && adopted.error().kind != engine::ErrorKind::kCancelled)
+      return tl::unexpected(adopted.error());
+    if (job_.cancelled()) return engine::cancelled();
+    return {};
+  }
+
+  engine::Status play(const journal::Snapshot& snapshot, const std::string&) {
+    LoopCommand command;
+    command.kind = CommandKind::kSnapshot;
+    command.id = ++snapshot_id_;
+    if (auto done = give(std::move(command), snapshot.at); !done) return done;
+    snapshot_ = answered_;
+    return {};
+  }
+
+  engine::Status play(const journal::Offered& offered, const std::string&) {
+    if (!offer_) return mismatch("a filter's result is offered that was not computed");
+    LoopCommand command;
+    command.kind = CommandKind::kAdopt;
+    command.id = snapshot_id_;
+    command.version = *std::exchange(offer_, std::nullopt);
+    if (auto done = give(std::move(command), offered.at); !done) return done;
+    const bool taken = answer_kind_ == EventKind::kAdopted;
+    if (taken != offered.taken) return mismatch("a filter's result was taken there and is refused here");
+    answer_ = Answer{taken, answered_};
+    return {};
+  }
+
+  // Runs the ticks up to a place. Places never go back: entries were written in the order of the loop's
+  // answers.
+  engine::Status advance(std::uint64_t tick) {
+    if (!loop_) return mismatch("something happened before work began");
+    while (loop_->ticks() < tick) {
+      if ((loop_->ticks() & 4095U) == 0 && job_.cancelled()) return engine::cancelled();
+      if (ticks_.empty()) return mismatch("ticks are missing");
+      if (auto done = loop_->run(takeTick()); !done) return done;
+    }
+    return {};
+  }
+
+  haptic::StrokeSample takeTick() {
+    const haptic::StrokeSample tick = ticks_.front();
+    ticks_.pop_front();
+    ++played_.ticks;
+    return tick;
+  }
+
+  engine::Status give(LoopCommand&& command, const LoopPlace& at) {
+    if (auto done = advance(at.tick); !done) return done;
+    if (loop_->ticks() != at.tick) return mismatch("a command comes too late");
+    if (ticks_.empty()) return mismatch("ticks are missing");
+    auto answer = loop_->run(takeTick(), std::move(command));
+    if (!answer) return tl::unexpected(answer.error());
+    answered_ = answer->version;
+    answer_kind_ = answer->kind;
+    answered_tick_ = at.tick;
+    return {};
+  }
+
+  engine::Result<Version> versionAt(const LoopPlace& at) {
+    if (at.answered) {
+      if (answered_tick_ != at.tick) return mismatch("a state after a command that was not given");
+      return answered_;
+    }
+    if (auto done = advance(at.tick); !done) return tl::unexpected(done.error());
+    if (loop_->ticks() != at.tick) return mismatch("a state of an earlier tick");
+    return loop_->field();
+  }
+
+  const std::vector<engine::JournalEntry>& journal_;
+  const Version original_;
+  engine::JobControl& job_;
+  std::size_t next_ = 0;
+  PlayedSession played_;
+
+  std::map<std::int64_t, Version> states_;  // upright
+  std::map<std::uint64_t, Version> asked_;  // by id of the restore, upright
+  std::map<std::uint64_t, Version> bases_;  // by id, as felt
+  std::unique_ptr<haptic::LoopPlayer> loop_;
+  bool inverted_ = false;
+  std::deque<haptic::StrokeSample> ticks_;  // recorded, not run yet
+
+  Version answered_;  // by the last command, as felt
+  EventKind answer_kind_ = EventKind::kSnapshot;
+  std::optional<std::uint64_t> answered_tick_;
+
+  std::uint64_t snapshot_id_ = 0;
+  std::optional<Version> snapshot_;
+  std::optional<Version> offer_;
+  std::optional<Answer> answer_;
+};
+
+}  // namespace
+
+std::int64_t journalStart(const engine::Session& session) {
+  if (session.journal.empty()) return 0;
+  const auto first = journalEntry(session.journal.front().action);
+  const auto* begin = first ? std::get_if<journal::Begin>(&*first) : nullptr;
+  return begin != nullptr ? begin->state : 0;
+}
+
+engine::Result<PlayedSession> playSession(const engine::Session& session, engine::JobControl& job) {
+  return Player(session, job).run();
+}
+
+}  // namespace fettle::haptic

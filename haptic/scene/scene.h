@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "haptic/scene/parameters.h"
+
+namespace fettle::haptic {
+
+/// Shape of the stylus tip.
+enum class TipShape : std::uint8_t {
+  kPoint,   ///< a point: the seed paper's
+  kSphere,  ///< a ball: sphere_tip.h
+};
+
+/// How the closest point of the surface is found.
+/// For the point tip; a ball has one way, sphere_tip.h.
+enum class ContactLevel : std::uint8_t {
+  kPaper,      ///< local search from the previous proxy's cell (Potter, Johnson, Cohen 2004)
+  kCertified,  ///< the true closest point of all cells within a radius, by branch and bound
+};
+
+/// What a scene may list. What it does not list is not built, not stored and not called.
+enum class EffectKind : std::uint8_t {
+  kSpring,     ///< force along the penetration vector and proportional to it
+  kSmoothing,  ///< local smoothing of the field by force, with Tool::kSmooth
+  kFriction,   ///< Coulomb friction with stick-slip; needs the spring
+  kViscosity,  ///< against the endpoint's velocity
+  kEdgeSnap,   ///< pull towards marked samples, for tracing
+  kTexture,    ///< relief finer than the grid; needs the spring
+  kGravity,    ///< holds up the stylus, in free space too
+  kCoupling,   ///< damping between proxy and endpoint; needs the spring
+  kPassivity,  ///< no more energy comes out than was put in
+};
+
+inline constexpr int kEffectKinds = 9;
+
+/// "spring", "smoothing", "friction", "viscosity", "edge_snap", "texture", "gravity", "coupling",
+/// "passivity".
+[[nodiscard]] std::string_view effectName(EffectKind effect) noexcept;
+/// "paper", "certified".
+[[nodiscard]] std::string_view levelName(ContactLevel level) noexcept;
+
+/// How a field is felt and worked on: all that a tick depends on besides the field and the hand. Values, no
+/// behaviour; a scene is turned into a tick once, when it is loaded.
+struct Scene {
+  TipShape tip = TipShape::kPoint;
+  /// Ball's radius [mm]; the endpoint is its centre. > 0 .. 100, and at most 16 cells of the field that is
+  /// touched (sphereProblem). Nothing to a point.
+  double tip_radius_mm = 0.1;
+
+  ContactLevel level = ContactLevel::kPaper;
+  /// Level certified: all cells whose horizontal distance to the endpoint is at most this many times the
+  /// larger spacing are searched, so the result is the true closest point of the whole field whenever it is
+  /// nearer than that. [cells], 1 .. 64. Also the radius when a replay measures level paper.
+  int certified_radius_cells = 2;
+  /// Level paper: rounds a search may take in one tick, 2 .. 2048; each looks at a patch and takes a step,
+  /// the last one only looks. As many as there are: to rest. Fewer bound the tick's time and lag behind a
+  /// fast hand. A ball takes one step fewer, and never more than kSphereSteps.
+  int search_rounds = 2048;
+
+  /// Spring: newtons a millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.
+  double stiffness_n_per_mm = 1.0;
+  /// Largest force [N], and what counts as full strength for smoothing. > 0 .. 1000; devices: 3 to 20.
+  double force_limit_n = 8.0;
+
+  /// Smoothing replaces all samples within this distance of the brush's centre, which is the lower-left
+  /// sample of the proxy's cell. [samples], 0 .. 64; 0 is the paper's one sample.
+  double brush_radius_samples = 0.0;
+  /// Marking and unmarking, likewise. [samples], 0 .. 64.
+  double mark_radius_samples = 0.0;
+  /// Smoothing keeps every sample within this of the ORIGINAL field, over all strokes and filters together.
+  /// [height unit of the field], >= 0; none = no limit.
+  std::optional<double> max_change;
+
+  /// Feel and edit the field upside down (z -> -z); the result comes out the right way up again.
+  bool invert = false;
+
+  /// Parameters of the other effects. Those of an effect that is not listed mean nothing.
+  EffectParams params;
+
+  /// Which effects there are; each kind at most once. Forces act in this order, the spring before those that
+  /// need it.
+  std::vector<EffectKind> effects = {EffectKind::kSpring, EffectKind::kSmoothing};
+
+  friend bool operator==(const Scene&, const Scene&) = default;
+};
+
+/// The scene of `fettle replay` without --scene; the same as assets/scenes/default.toml.
+[[nodiscard]] Scene defaultScene();
+
+/// A range violated by a scene put together in code, as one sentence; nothing when all is well.
+[[nodiscard]] std::optional<std::string> sceneProblem(const Scene& scene);
+
+/// Reads a scene file (TOML; assets/scenes/default.toml documents every key). What the file leaves out keeps
+/// defaultScene()'s value. Errors (kInput, naming file and line): unreadable, no TOML, an unknown key or
+/// effect, a value of the wrong type or out of range. Thread: any.
+[[nodiscard]] engine::Result<Scene> loadScene(const std::string& path);
+/// The same from a text that calls itself `name` in errors.
+[[nodiscard]] engine::Result<Scene> parseScene(const std::string& text, const std::string& name);
+/// A scene file's text that parseScene reads back to the very same scene (in range).
+[[nodiscard]] std::string sceneText(const Scene& scene);
+
+}  // namespace fettle::haptic

@@ -1,0 +1,160 @@
+#include "haptic/tick/brush.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <memory>
+
+#include "engine/filter/limit_change.h"
+#include "haptic/effects/effect.h"
+
+namespace fettle::haptic {
+
+namespace {
+
+constexpr double kBinomial[3][3] = {{1, 2, 1}, {2, 4, 2}, {1, 2, 1}};
+
+// The sums of blend() where the window has holes: no weight, the rest is renormalised.
+struct WindowSums {
+  double gauss = 0.0, gauss_weight = 0.0;
+  double box = 0.0, box_weight = 0.0;
+};
+
+WindowSums sumsAroundHoles(const float* centre, std::ptrdiff_t stride) noexcept {
+  WindowSums sums;
+  for (int r = -1; r <= 1; ++r)
+    for (int c = -1; c <= 1; ++c) {
+      const auto z = static_cast<double>(centre[r * stride + c]);
+      if (std::isnan(z)) continue;
+      const double w = kBinomial[r + 1][c + 1];
+      sums.gauss += w * z;
+      sums.gauss_weight += w;
+      sums.box += z;
+      sums.box_weight += 1.0;
+    }
+  return sums;
+}
+
+// The blend over one 3 x 3 window around `centre` (stride in elements); the centre is no hole.
+double blend(const float* centre, std::ptrdiff_t stride, double strength) noexcept {
+  WindowSums sums{0.0, 16.0, 0.0, 9.0};
+  for (int r = -1; r <= 1; ++r)
+    for (int c = -1; c <= 1; ++c) {
+      const auto z = static_cast<double>(centre[r * stride + c]);
+      sums.gauss += kBinomial[r + 1][c + 1] * z;
+      sums.box += z;
+    }
+  // Nine floats cannot overflow a double: a NaN among them, and nothing else, makes the sum NaN.
+  if (std::isnan(sums.box)) [[unlikely]]
+    sums = sumsAroundHoles(centre, stride);
+  const double gauss = sums.gauss / sums.gauss_weight;
+  const double box = sums.box / sums.box_weight;
+  // In this form a flat window stays flat to the bit.
+  return gauss + strength * (box - gauss);
+}
+
+// heightAt multiplies by the sign, which on the haptic thread makes a denormal zero.
+float exactHeight(const engine::FieldReader& reader, std::int32_t column, std::int32_t row) noexcept {
+  using engine::kTileShift;
+  using engine::kTileSide;
+  const engine::Tile& tile = reader.tile(column >> kTileShift, row >> kTileShift);
+  const float height = tile.samples[static_cast<std::size_t>((row & (kTileSide - 1)) * kTileSide +
+                                                             (column & (kTileSide - 1)))];
+  return reader.sign() < 0.0F ? -height : height;
+}
+
+// By its bits: to the haptic thread it compares equal to zero.
+bool isDenormal(float height) noexcept {
+  const auto size = std::bit_cast<std::uint32_t>(height) & 0x7fffffffU;
+  return size != 0 && size < 0x00800000U;
+}
+
+}  // namespace
+
+Brush::Brush(double radius, std::optional<double> max_change, const engine::Version& original)
+    : disc_(radius), max_change_(max_change) {
+  if (max_change_) original_ = original;
+  const auto side = static_cast<std::size_t>(2 * disc_.reach + 1);
+  before_.resize((side + 2) * (side + 2));
+  after_.resize(side * side);
+  marked_.resize(side * side);
+}
+
+float Brush::limited(double height, float old, std::int32_t column, std::int32_t row) const noexcept {
+  if (!max_change_) return static_cast<float>(height);
+  const float origin = exactHeight(original_.reader(), column, row);
+  // A denormal is zero to the haptic thread, which cannot measure how far from it a height is.
+  if (std::isnan(origin) || isDenormal(origin)) return old;
+  return engine::limitedChange(static_cast<float>(height), origin, *max_change_);
+}
+
+// The paper's brush of one sample, whose window is mostly within one tile: read where it lies.
+bool Brush::applyToOne(engine::LiveField& field, std::int32_t column, std::int32_t row,
+                       double strength) noexcept {
+  using engine::kTileShift;
+  using engine::kTileSide;
+  const engine::FieldReader reader = field.reader();
+  const int c = column & (kTileSide - 1);
+  const int r = row & (kTileSide - 1);
+  const engine::Tile& tile = reader.tile(column >> kTileShift, row >> kTileShift);
+  if (tile.marked(c, r)) return true;
+  const float* centre = tile.samples.data() + r * kTileSide + c;
+  std::ptrdiff_t stride = kTileSide;
+  const bool within = c > 0 && c < kTileSide - 1 && r > 0 && r < kTileSide - 1;
+  if (!within || reader.sign() < 0.0F) {
+    stride = 3;
+    reader.readHeights(column - 1, row - 1, 3, 3, before_.data(), stride);
+    centre = before_.data() + stride + 1;
+  }
+  const float old = *centre;
+  if (std::isnan(old)) return true;
+  return field.setHeight(column, row, limited(blend(centre, stride, strength), old, column, row));
+}
+
+bool Brush::apply(engine::LiveField& field, std::int32_t column, std::int32_t row, double strength) noexcept {
+  if (disc_.reach == 0 && field.grid().contains(column, row)) return applyToOne(field, column, row, strength);
+  const engine::FieldReader reader = field.reader();
+  const std::int32_t reach = disc_.reach;
+  const std::int32_t side = 2 * reach + 1;
+  const std::int32_t stride = side + 2;
+  reader.readHeights(column - reach - 1, row - reach - 1, stride, stride, before_.data(), stride);
+  reader.readMarks(column - reach, row - reach, side, side, marked_.data(), side);
+  for (std::int32_t dr = 0; dr < side; ++dr) {
+    const float* before = before_.data() + (dr + 1) * stride + 1;
+    float* after = after_.data() + dr * side;
+    std::copy_n(before, side, after);
+    const std::int32_t half = disc_.half_width[static_cast<std::size_t>(dr)];
+    for (std::int32_t dc = reach - half; dc <= reach + half; ++dc) {
+      if (std::isnan(before[dc]) || marked_[static_cast<std::size_t>(dr * side + dc)] != 0) continue;
+      after[dc] =
+          limited(blend(before + dc, stride, strength), before[dc], column - reach + dc, row - reach + dr);
+    }
+  }
+  // Only what lies in the field can be written.
+  const std::int32_t c0 = std::max(column - reach, 0);
+  const std::int32_t r0 = std::max(row - reach, 0);
+  const std::int32_t c1 = std::min(column + reach + 1, reader.width());
+  const std::int32_t r1 = std::min(row + reach + 1, reader.height());
+  return field.writeHeights(c0, r0, c1 - c0, r1 - r0,
+                            after_.data() + (r0 - row + reach) * side + (c0 - column + reach), side);
+}
+
+namespace {
+
+void runSmoothing(void* data, TickState& state) noexcept {
+  const CellIndex centre = state.contact.proxy.cell;
+  if (!static_cast<Brush*>(data)->apply(state.field, centre.column, centre.row, state.strength))
+    ++state.counters.refused_edits;
+  state.surface.refresh(state.field.reader());
+}
+
+}  // namespace
+
+void addSmoothing(EffectList& list, const Scene& scene, const engine::Version& original) {
+  auto made = std::make_shared<Brush>(scene.brush_radius_samples, scene.max_change, original);
+  const std::size_t held = made->bytesHeld();
+  Brush& brush = addData(list, EffectKind::kSmoothing, std::move(made), held);
+  list.tools[static_cast<std::size_t>(Tool::kSmooth)] = {&runSmoothing, &brush};
+}
+
+}  // namespace fettle::haptic

@@ -1,0 +1,204 @@
+#include "haptic/trials/contact_trial.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+
+#include "engine/base/statistics.h"
+#include "engine/field/live_field.h"
+#include "haptic/base/rt_thread.h"
+#include "haptic/contact/certified.h"
+#include "haptic/contact/surface.h"
+#include "haptic/tick/tick.h"
+#include "haptic/trials/grown_surface.h"
+#include "haptic/trials/hand_stroke.h"
+
+namespace fettle::trials {
+namespace {
+
+using haptic::ContactLevel;
+using haptic::Surface;
+
+constexpr int kReachCells = 16;
+constexpr std::int32_t kBallSide = 97;  // samples of the square that a ball is tried on
+constexpr int kFiner = 8;               // of the grown surface
+constexpr int kDoubted = 12;            // ticks
+
+constexpr ContactChoice kChoices[] = {
+    {"paper, 1 Newton step a tick", ContactLevel::kPaper, 2},
+    {"paper, 2 steps a tick", ContactLevel::kPaper, 3},
+    {"paper, 4 steps a tick", ContactLevel::kPaper, 5},
+    {"paper, 8 steps a tick", ContactLevel::kPaper, 9},
+    {"paper, to rest", ContactLevel::kPaper, 2048},
+    {"certified, 1 cell", ContactLevel::kCertified, 2048, 1},
+    {"certified, 2 cells", ContactLevel::kCertified, 2048, 2},
+    {"certified, 4 cells", ContactLevel::kCertified, 2048, 4},
+    {"certified, 6 cells", ContactLevel::kCertified, 2048, 6},  // what the window has for a mouse
+    {"certified, 8 cells", ContactLevel::kCertified, 2048, 8},
+    {"ball, radius 1 cell", ContactLevel::kPaper, 2048, 2, 1.0},
+    {"ball, 2 cells, 4 steps a tick", ContactLevel::kPaper, 5, 2, 2.0},
+    {"ball, radius 2 cells", ContactLevel::kPaper, 2048, 2, 2.0},
+};
+
+double cellMm(const engine::Grid& grid) {
+  return std::max(grid.spacingXMm(), grid.spacingYMm());
+}
+
+// The patch above or below a point, where there is one.
+bool patchAt(Surface& surface, const glm::dvec3& point, haptic::Patch& patch, double& height_mm) {
+  haptic::CellIndex cell;
+  if (!surface.cellUnder(point, cell) || !surface.patch(cell, patch)) return false;
+  height_mm = patch.heightAt((point.x - patch.x0) / patch.sx, (point.y - patch.y0) / patch.sy);
+  return true;
+}
+
+}  // namespace
+
+haptic::Scene ContactChoice::in(haptic::Scene scene, const engine::Grid& grid) const {
+  scene.tip = ball_radius_cells > 0.0 ? haptic::TipShape::kSphere : haptic::TipShape::kPoint;
+  if (ball_radius_cells > 0.0) {
+    scene.tip_radius_mm = ball_radius_cells * cellMm(grid);
+    scene.search_rounds = search_rounds;
+    return scene;
+  }
+  scene.level = level;
+  scene.search_rounds = search_rounds;
+  if (level == ContactLevel::kCertified) scene.certified_radius_cells = certified_radius_cells;
+  return scene;
+}
+
+std::span<const ContactChoice> contactChoices() {
+  return kChoices;
+}
+
+engine::Result<std::optional<ContactTrial>> ContactTrial::make(const engine::Version& field,
+                                                               double ball_radius_cells, std::int64_t ticks,
+                                                               const engine::JobControl& job) {
+  ContactTrial trial;
+  trial.field_ = trial.surface_ = field;
+  const double cell = cellMm(field.grid());
+  trial.reach_mm_ = kReachCells * cell;
+  if (field.grid().width < 2 || field.grid().height < 2) return std::nullopt;
+  if (ball_radius_cells > 0.0) {
+    const auto square = wholeSquare(field, kBallSide);
+    if (!square) return std::nullopt;
+    trial.radius_mm_ = ball_radius_cells * cell;
+    trial.field_ = *square;
+    trial.surface_ = grownByBall(*square, trial.radius_mm_, kFiner);
+  }
+  HandMotion motion;
+  motion.ticks = ticks;
+  motion.speed_mm_s = 400.0 * cell;
+  motion.press_mm = 6.0 * cell;
+  motion.lift_mm = cell;
+  motion.tremor_mm = 0.4 * cell;
+  trial.strokes_ = handStroke(trial.surface_, motion);
+  Surface surface(trial.surface_.reader());
+  trial.truths_.reserve(trial.strokes_.size());
+  for (const haptic::StrokeSample& s : trial.strokes_) {
+    if (trial.truths_.size() % 64 == 0 && job.cancelled()) return engine::cancelled();
+    Truth& truth = trial.truths_.emplace_back();
+    haptic::Patch patch;
+    double height_mm = 0.0;
+    if (!patchAt(surface, s.tip_mm, patch, height_mm) || !(s.tip_mm.z < height_mm)) continue;
+    haptic::SurfacePoint closest;
+    truth.beyond = !haptic::certifiedClosest(surface, s.tip_mm, trial.reach_mm_, closest) ||
+                   closest.distance2_mm2 >= trial.reach_mm_ * trial.reach_mm_;
+    truth.penetration_mm = closest.position_mm - s.tip_mm;
+    truth.distance_mm = std::sqrt(closest.distance2_mm2);
+  }
+  return trial;
+}
+
+engine::Result<ContactFigures> ContactTrial::measure(const ContactChoice& choice, int repeats,
+                                                     const engine::JobControl& job) const {
+  haptic::Scene scene = haptic::defaultScene();
+  scene.effects = {haptic::EffectKind::kSpring};
+  scene = choice.in(scene, field_.grid());
+  if (radius_mm_ > 0.0) scene.tip_radius_mm = radius_mm_;
+  ContactFigures figures;
+  const haptic::DenormalScope as_in_the_loop;
+  std::vector<double> ns;
+  for (int i = 0; i < repeats; ++i) {
+    engine::LiveField live(field_, engine::Growth::kAllowed);
+    haptic::Tick tick(scene, live, field_);
+    const auto begin = std::chrono::steady_clock::now();
+    for (const haptic::StrokeSample& s : strokes_) (void)tick.run(s);
+    ns.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count() /
+                 static_cast<double>(strokes_.size()));
+    if (job.cancelled()) return engine::cancelled();
+  }
+  const engine::TimeSpread times = engine::timeSpread(std::move(ns));
+  figures.ns = times.median;
+  figures.ns_worst = times.worst;
+
+  // What of the grown surface is not the ball's own fault, see doubt(): a millionth of a cell for a point.
+  const double rounding = radius_mm_ > 0.0 ? 0.02 * cellMm(field_.grid()) : 1e-12;
+  engine::LiveField live(field_, engine::Growth::kAllowed);
+  haptic::Tick tick(scene, live, field_);
+  std::vector<double> errors, results;
+  std::int64_t wrong = 0;
+  for (std::size_t i = 0; i < strokes_.size(); ++i) {
+    (void)tick.run(strokes_[i]);
+    const haptic::Contact& contact = tick.contact();
+    const glm::dvec3 felt = contact.touching ? contact.penetration_mm : glm::dvec3(0.0);
+    results.insert(results.end(), {felt.x, felt.y, felt.z});
+    if (truths_[i].beyond) {
+      ++figures.beyond;
+      continue;
+    }
+    const double distance_mm = truths_[i].distance_mm;
+    if (!(distance_mm > 0.0) && !contact.touching) continue;
+    errors.push_back(glm::length(felt - truths_[i].penetration_mm));
+    // More than rounding farther than the closest point, or there where nothing is to be felt, or not.
+    const bool same =
+        contact.touching == (distance_mm > 0.0) || std::max(glm::length(felt), distance_mm) <= rounding;
+    wrong += !same || glm::length(felt) > distance_mm * (1.0 + 1e-9) + rounding;
+  }
+  figures.ticks = static_cast<std::int64_t>(errors.size());
+  figures.wrong = errors.empty() ? 0.0 : static_cast<double>(wrong) / static_cast<double>(errors.size());
+  const engine::ErrorSummary summary = engine::errorSummary(std::move(errors));
+  figures.mean_mm = summary.mean;
+  figures.p99_mm = summary.p99;
+  figures.worst_mm = summary.worst;
+  figures.hash = engine::hashOf(results);
+  return figures;
+}
+
+double ContactTrial::doubt() const {
+  Surface surface(field_.reader());
+  double worst = 0.0;
+  int looked = 0;
+  for (std::size_t i = 0; i < truths_.size() && looked < kDoubted;
+       i += std::max<std::size_t>(1, truths_.size() / 97)) {
+    if (truths_[i].beyond || truths_[i].distance_mm == 0.0) continue;
+    ++looked;
+    const glm::dvec3& e = strokes_[i].tip_mm;
+    if (radius_mm_ > 0.0) {
+      haptic::SurfacePoint foot;
+      if (haptic::certifiedClosest(surface, e + truths_[i].penetration_mm, reach_mm_, foot))
+        worst = std::max(worst, std::abs(std::sqrt(foot.distance2_mm2) - radius_mm_));
+      continue;
+    }
+    haptic::CellIndex own;
+    if (!surface.cellUnder(e, own)) continue;
+    double nearest2 = std::numeric_limits<double>::infinity();
+    for (int dr = -kReachCells; dr <= kReachCells; ++dr)
+      for (int dc = -kReachCells; dc <= kReachCells; ++dc) {
+        const haptic::CellIndex cell{own.column + dc, own.row + dr};
+        haptic::Patch patch;
+        if (!surface.hasCell(cell) || !surface.patch(cell, patch)) continue;
+        for (int k = 0; k < 33 * 33; ++k) {
+          const glm::dvec3 d = patch.at(k % 33 / 32.0, k / 33 / 32.0) - e;
+          nearest2 = std::min(nearest2, glm::dot(d, d));
+        }
+      }
+    worst = std::max(worst, truths_[i].distance_mm - std::sqrt(nearest2));
+  }
+  return worst;
+}
+
+}  // namespace fettle::trials

@@ -1,0 +1,226 @@
+#include "render/detail/damage.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+namespace fettle::render {
+namespace {
+
+constexpr double kMarginPx = 3.0;
+
+// A rectangle of samples, last ones included.
+struct Samples {
+  glm::ivec2 first{0}, last{-1};
+  [[nodiscard]] bool empty() const noexcept { return last.x < first.x || last.y < first.y; }
+  [[nodiscard]] Samples grown(int by) const noexcept { return {first - by, last + by}; }
+  [[nodiscard]] Samples cut(const Samples& to) const noexcept {
+    return {glm::max(first, to.first), glm::min(last, to.last)};
+  }
+};
+
+Rectangle cut(const Rectangle& a, const Rectangle& b) {
+  const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+  const int right = std::min(a.x + a.width, b.x + b.width), top = std::min(a.y + a.height, b.y + b.height);
+  return {x, y, std::max(0, right - x), std::max(0, top - y)};
+}
+
+bool empty(const Rectangle& r) {
+  return r.width <= 0 || r.height <= 0;
+}
+
+void join(Rectangle& a, const Rectangle& b) {
+  if (empty(b)) return;
+  if (empty(a)) {
+    a = b;
+    return;
+  }
+  const int right = std::max(a.x + a.width, b.x + b.width), low = std::max(a.y + a.height, b.y + b.height);
+  a.x = std::min(a.x, b.x);
+  a.y = std::min(a.y, b.y);
+  a.width = right - a.x;
+  a.height = low - a.y;
+}
+
+// Where the surface over some samples is seen.
+class Screen {
+ public:
+  Screen(const PatchQuestion& q, const engine::FieldReader* before, const Rectangle& visible)
+      : q_(q), before_(before), visible_(visible), all_{glm::ivec2(0), q.placing.size - 1} {
+    holed_ = holed(q.reader) || (before != nullptr && holed(*before));
+  }
+  [[nodiscard]] const Samples& all() const noexcept { return all_; }
+  [[nodiscard]] bool holed() const noexcept { return holed_; }
+  // Samples of a patch, its upper and right rim included.
+  [[nodiscard]] Samples square(const gpu::Patch& patch) const {
+    const glm::ivec2 first(patch.place.x, patch.place.y);
+    return Samples{first, first + DetailMeasure::side(patch.place.z)}.cut(all_);
+  }
+
+  // Pixels of what is drawn over `s`, and of the wall below where it is at the rim. Heights may be taken from
+  // `reach` samples around.
+  [[nodiscard]] Rectangle pixels(const Samples& s, int reach) const {
+    if (s.empty()) return {};
+    const Samples from = s.grown(reach).cut(all_);
+    double low = q_.highest, high = q_.lowest;
+    bool any = false;
+    for (const engine::FieldReader* reader : {&q_.reader, before_}) {
+      if (reader == nullptr) continue;
+      const engine::HeightBounds b = heightsWithin(*reader, from.first, from.last);
+      if (b.empty()) continue;
+      any = true;
+      low = std::min(low, std::clamp<double>(b.min, q_.lowest, q_.highest));
+      high = std::max(high, std::clamp<double>(b.max, q_.lowest, q_.highest));
+    }
+    if (!any) return {};
+    Box box{{0.0, 0.0, (low - q_.reference) * q_.mm_per_unit},
+            {0.0, 0.0, (high - q_.reference) * q_.mm_per_unit}};
+    const bool rim = s.first.x == 0 || s.first.y == 0 || s.last.x == all_.last.x || s.last.y == all_.last.y;
+    // A vertex with no height around it is drawn on the plate.
+    if (rim || holed_) box.low.z = std::min(box.low.z, q_.floor_z);
+    const glm::dvec2 a = q_.placing.first + q_.placing.spacing * glm::dvec2(s.first);
+    const glm::dvec2 b = q_.placing.first + q_.placing.spacing * glm::dvec2(s.last);
+    box.low.x = a.x, box.low.y = a.y, box.high.x = b.x, box.high.y = b.y;
+    glm::dvec2 least(1e9), most(-1e9);
+    for (const glm::dvec3& corner : corners(box)) {
+      const glm::dvec4 clip = q_.camera.clipFromScene() * glm::dvec4(corner, 1.0);
+      if (!(clip.w > 0.0) || clip.z < 0.0) return visible_;
+      const glm::dvec2 at = q_.camera.pixelOf(corner);
+      least = glm::min(least, at);
+      most = glm::max(most, at);
+    }
+    const glm::dvec2 edge(visible_.x, visible_.y), end = edge + glm::dvec2(visible_.width, visible_.height);
+    least = glm::clamp(glm::floor(least - kMarginPx), edge, end);
+    most = glm::clamp(glm::ceil(most + kMarginPx), edge, end);
+    const glm::ivec2 first(least), size = glm::ivec2(most) - first;
+    return {first.x, first.y, size.x, size.y};
+  }
+
+ private:
+  static bool holed(const engine::FieldReader& reader) { return reader.root().holed_children != 0; }
+
+  const PatchQuestion& q_;
+  const engine::FieldReader* before_;
+  Rectangle visible_;
+  Samples all_;
+  bool holed_ = false;
+};
+
+// Samples of a tile in which heights or marks differ.
+Samples changedIn(const engine::TileChange& change) {
+  constexpr int kSide = engine::kTileSide;
+  const engine::Tile &a = *change.before, &b = *change.after;
+  Samples s{glm::ivec2(kSide), glm::ivec2(-1)};
+  for (int r = 0; r < kSide; ++r) {
+    const float* x = a.samples.data() + r * kSide;
+    const float* y = b.samples.data() + r * kSide;
+    int first = kSide, last = -1;
+    if (std::memcmp(x, y, sizeof(float) * kSide) != 0) {
+      first = 0, last = kSide - 1;
+      while (std::memcmp(x + first, y + first, sizeof(float)) == 0) ++first;
+      while (std::memcmp(x + last, y + last, sizeof(float)) == 0) --last;
+    }
+    const std::uint64_t marks = a.marks[static_cast<std::size_t>(r)] ^ b.marks[static_cast<std::size_t>(r)];
+    if (marks != 0) {
+      first = std::min(first, std::countr_zero(marks));
+      last = std::max(last, kSide - 1 - std::countl_zero(marks));
+    }
+    if (last < 0) continue;
+    s.first = glm::min(s.first, glm::ivec2(first, r));
+    s.last = glm::max(s.last, glm::ivec2(last, r));
+  }
+  const glm::ivec2 tile = glm::ivec2(change.tile_column, change.tile_row) * kSide;
+  return {s.first + tile, s.last + tile};
+}
+
+// Place, level, and whether holes are looked for: a patch drawn by another pipeline may differ in the last
+// bit.
+using Key = std::array<int, 4>;
+
+std::vector<Key> keysOf(const PatchChoice& choice) {
+  std::vector<Key> keys;
+  for (std::size_t i = 0; i < choice.patches.size(); ++i) {
+    const gpu::Patch& p = choice.patches[i];
+    keys.push_back({p.place.x, p.place.y, p.place.z, i < choice.whole ? 0 : 1});
+  }
+  std::sort(keys.begin(), keys.end());
+  return keys;
+}
+
+}  // namespace
+
+Rectangle damageOf(const DamageQuestion& question) {
+  // A stroke changes a few tiles; a filter's result, all of them.
+  if (question.tiles.size() > 256) return question.visible;
+  const PatchQuestion& q = question.now;
+  const Screen screen(q, &question.before, question.visible);
+  Rectangle damage{};
+  const auto reachOf = [&](int level) { return screen.holed() ? 1 << level : 0; };
+
+  const std::vector<Key> before = keysOf(*question.chosen_before), after = keysOf(*question.chosen_after);
+  std::vector<Key> differ;
+  std::set_symmetric_difference(before.begin(), before.end(), after.begin(), after.end(),
+                                std::back_inserter(differ));
+  for (const auto& [x, y, level, holed] : differ)
+    join(damage, screen.pixels(screen.square({{x, y, level, level}}), reachOf(level)));
+
+  for (const engine::TileChange& tile : question.tiles) {
+    const Samples changed = changedIn(tile);
+    if (changed.empty()) continue;
+    for (const gpu::Patch& patch : question.chosen_after->patches) {
+      const int level = patch.place.z, stride = 1 << level;
+      // A vertex has cells of a stride around it; a hole's vertex looks a stride farther. A colour looks at
+      // its cell and one sample beyond each way, among those that colours come from.
+      const int cells = (screen.holed() ? 2 : 1) * stride;
+      const Samples part = changed.grown(std::max(cells, 3 * q.shade_step)).cut(screen.square(patch));
+      join(damage, screen.pixels(part, std::max(reachOf(level), stride)));
+    }
+  }
+  if (empty(damage)) return {};
+  // Whole squares of two by two: fragments compare themselves within those, and what lies outside has the
+  // depth of walls and plate in it by now.
+  const int right = damage.x + damage.width, low = damage.y + damage.height;
+  damage.x &= ~1;
+  damage.y &= ~1;
+  damage.width = ((right + 1) & ~1) - damage.x;
+  damage.height = ((low + 1) & ~1) - damage.y;
+  return cut(damage, question.visible);
+}
+
+PatchChoice within(const PatchChoice& choice, const PatchQuestion& question, const Rectangle& pixels) {
+  const Screen screen(question, nullptr, pixels);
+  const auto seen = [&](const Samples& s, int reach) { return !empty(screen.pixels(s, reach)); };
+  // An edge of a patch, from the sample where it begins.
+  const auto edge = [&](const gpu::Patch& p, int level, int side) {
+    const glm::ivec2 first(p.place.x, p.place.y);
+    const glm::ivec2 along = (side & 1) == 0 ? glm::ivec2(1, 0) : glm::ivec2(0, 1);
+    return Samples{first, first + along * DetailMeasure::side(level)}.cut(screen.all());
+  };
+  PatchChoice part;
+  part.bound_px = choice.bound_px;
+  part.within_budget = choice.within_budget;
+  if (empty(pixels)) return part;
+  for (std::size_t i = 0; i < choice.patches.size(); ++i) {
+    const gpu::Patch& p = choice.patches[i];
+    if (!seen(screen.square(p), screen.holed() ? 1 << p.place.z : 0)) continue;
+    part.patches.push_back(p);
+    part.whole += i < choice.whole ? 1 : 0;
+  }
+  for (const gpu::Patch& p : choice.seams) {
+    const int level = p.place.z & 255, other = p.place.z >> 8;
+    if (seen(edge(p, level, p.place.w), (screen.holed() ? 2 : 1) << other)) part.seams.push_back(p);
+  }
+  for (const gpu::Patch& p : choice.walls) {
+    const int level = p.place.z;
+    if (seen(edge(p, level, p.place.w >> 8), screen.holed() ? 1 << level : 0)) part.walls.push_back(p);
+  }
+  return part;
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,310 @@
+#include "render/live/live_fields.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "engine/base/stopwatch.h"
+#include "engine/field/difference.h"
+#include "render/live/live_frame.h"
+
+namespace fettle::render {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// The coarsest copy of a field that comes by need is all that the first picture waits for.
+constexpr std::uint64_t kFixedBytes = std::uint64_t{8} << 20U;
+
+// What a view asks for follows its pixels, not the samples or the versions: at most 16 samples of 5 bytes a
+// pixel, where none of its panels shares a page with another. A picture of 3840 x 2160 pixels asks for 0.7 GB
+// at worst. A pool takes no more than this, nor than all that is shown takes as a whole, with room for one
+// state more beside a single one.
+constexpr std::uint64_t kPoolBytes = std::uint64_t{2} << 30U;
+
+// The finest level that stays on the device for good: what kFixedBytes and a quarter of the pool hold if
+// `textures` of them do. The coarsest patch, which is drawn when nothing else can be, has vertices every
+// 2^top samples and looks for heights beside holes at an eighth of that: those are there in any case.
+int fixedLevel(const engine::Grid& grid, const PagePool& pool, std::size_t textures) {
+  int top = 0;
+  while ((std::max(grid.width, grid.height) - 2) / DetailMeasure::side(top) > 0) ++top;
+  const int coarsest = std::clamp((top - 3) / 2, 0, kDataLevels - 1);
+  const PageGrid pages(grid.width, grid.height, pool.log2Side());
+  const auto fits = [&](int level) {
+    const auto fixed = static_cast<std::uint64_t>(PageSet::fixedPages(pages, level));
+    return fixed * textures * 4 <= pool.slots().count() &&
+           fixed << (2 * pool.log2Side()) <= kFixedBytes / sizeof(float);
+  };
+  int level = 0;
+  while (level < coarsest && !fits(level)) ++level;
+  return level;
+}
+
+std::uint64_t largestHeap(const vk::raii::PhysicalDevice& device) {
+  const vk::PhysicalDeviceMemoryProperties memory = device.getMemoryProperties();
+  vk::DeviceSize largest = 0;
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+    if (memory.memoryHeaps[i].flags & vk::MemoryHeapFlagBits::eDeviceLocal)
+      largest = std::max(largest, memory.memoryHeaps[i].size);
+  return largest;
+}
+
+// The signs of all that is shown, the original's last: nothing on the device depends on them, but ranges do.
+// Without repetition, so that one more state of the same sign is no change.
+struct Signs {
+  float first = 1.0F;
+  bool mixed = false;  // some version has another one
+  float original = 0.0F;
+  explicit Signs(const Shown& shown) {
+    if (shown.versions.empty()) return;
+    first = shown.versions.front().reader().sign();
+    for (const engine::Version& v : shown.versions) mixed = mixed || v.reader().sign() != first;
+    if (shown.original) original = shown.original->reader().sign();
+  }
+  [[nodiscard]] Signs inverted() const {
+    Signs other = *this;
+    other.first = -first;
+    other.original = -original;
+    return other;
+  }
+  friend bool operator==(const Signs&, const Signs&) = default;
+};
+
+}  // namespace
+
+bool related(const engine::Version& a, const engine::Version& b) {
+  return !a.empty() && !b.empty() && a.memory() == b.memory() && a.grid().width == b.grid().width &&
+         a.grid().height == b.grid().height;
+}
+
+LiveFields::LiveFields(Context& context, Submissions& submissions, StagingRing& staging,
+                       const LiveOptions& options)
+    : context_(context), submissions_(submissions), staging_(staging), options_(options) {
+  max_side_ = context.limits().maxImageDimension2D;
+  if (options.max_image_side > 0)
+    max_side_ = std::min(max_side_, static_cast<std::uint32_t>(std::max(64, options.max_image_side)));
+  memory_budget_ = static_cast<std::uint64_t>(std::max<std::int64_t>(0, options.memory_budget_bytes));
+  if (memory_budget_ == 0) memory_budget_ = largestHeap(context.physical()) / 2;
+}
+
+// All that is pending, however long it takes: of a small field, or of coarse copies.
+void LiveFields::bringAll(LiveTexture& texture) {
+  std::vector<glm::ivec2> moved;
+  while (texture.pending() > 0) {
+    if (submissions_.begin() > 0.5) ++uploaded_.stalls;
+    staging_.release(submissions_.done());
+    UploadStatistics count;
+    texture.pump(staging_, submissions_.next(), submissions_.commands(), std::int64_t{16} << 20U, count,
+                 moved);
+    uploaded_.tiles += count.tiles;
+    uploaded_.bytes += count.bytes;
+    uploaded_.changed_samples += count.changed_samples;
+    submissions_.submit({});
+  }
+}
+
+// Whether what is to be shown comes by need.
+bool LiveFields::wantsPool(const Shown& next) const {
+  // Back from a pool means to bring all of a field at once: not between versions of one.
+  if (pool_ && !shown_.versions.empty() && related(shown_.versions.front(), next.versions.front()))
+    return true;
+  const std::uint64_t most = std::min(memory_budget_, kWholeBytes);
+  std::uint64_t all = 0;
+  const auto add = [&](const engine::Version& v, MarksOverlay marks) {
+    const std::uint64_t bytes = LiveTexture::bytesOfWhole(context_, v.grid(), marks, max_side_);
+    all = bytes == 0 ? most + 1 : all + bytes;
+    return all <= most;
+  };
+  for (const engine::Version& v : next.versions)
+    if (!add(v, next.marks)) return true;
+  return next.original && !add(*next.original, MarksOverlay::kHide);
+}
+
+// What a pool for `next` may take [bytes]: room for all that is shown, so that a picture of several states of
+// which every page differs comes to the same rest as a picture of one.
+std::uint64_t LiveFields::poolBudget(const Shown& next) const {
+  const engine::Grid& grid = next.versions.front().grid();
+  const PageGrid pages(grid.width, grid.height, 8);
+  const std::uint64_t textures =
+      std::max<std::uint64_t>(2, next.versions.size() + (next.original.has_value() ? 1 : 0));
+  const std::uint64_t bytes = textures * static_cast<std::uint64_t>(pages.entries() + 2)
+                              << (2 * pages.log2Side());
+  const bool marks = next.marks == MarksOverlay::kShow || (pool_ && pool_->hasMarks());
+  // Of whole layers a pool may lose an eighth of its pages (choosePool).
+  return std::min({memory_budget_, kPoolBytes, bytes * (marks ? 5 : 4) / 8 * 9});
+}
+
+// The pool that `next` takes, with nothing in it when it is another one than before.
+void LiveFields::arrangePool(const Shown& next) {
+  const bool wants = wantsPool(next);
+  const bool marks = next.marks == MarksOverlay::kShow;
+  const engine::Grid& grid = next.versions.front().grid();
+  const bool fits = !pool_ || shown_.versions.empty() ||
+                    (grid.width == shown_.versions.front().grid().width &&
+                     grid.height == shown_.versions.front().grid().height);
+  if (wants == (pool_ != nullptr) && (!wants || (fits && (pool_->hasMarks() || !marks)))) {
+    // More states than it was made for. What is there stays, and so does the larger pool when fewer are
+    // shown.
+    if (!wants || poolBudget(next) <= pool_budget_) return;
+    pool_budget_ = poolBudget(next);
+    pool_->grow(context_, pool_budget_, max_side_, submissions_);
+    return;
+  }
+  submissions_.finish();
+  // The measures are kept: they are of the versions that were wanted as soon as the pending tiles are in
+  // them.
+  for (Field& f : fields_) {
+    if (f.texture.pending() > 0) f.measure.forget(f.texture.version().reader(), f.texture.pendingTiles());
+    f.texture.clear();
+  }
+  original_.clear();
+  pool_.reset();
+  if (!wants) return;
+  pool_budget_ = poolBudget(next);  // after the old pool is gone
+  pool_ = std::make_unique<PagePool>(context_, pool_budget_,
+                                     marks ? PagePool::Marks::kBeside : PagePool::Marks::kNone, max_side_);
+}
+
+engine::Result<LiveTexture::Freshness> LiveFields::want(LiveTexture& texture, const Shown& next,
+                                                        const engine::Version& version, MarksOverlay marks,
+                                                        const engine::Version& accepted) {
+  // Whatever is let go may be read by frames in flight.
+  const auto idle = [this] { submissions_.finish(); };
+  if (!pool_) return texture.want(context_, version, marks, max_side_, idle, accepted);
+  return texture.want(*pool_, fixedLevel(version.grid(), *pool_, next.versions.size() + 1), version, idle,
+                      accepted);
+}
+
+// Version `i` of `next`; whether it is another field than before.
+engine::Result<bool> LiveFields::wantField(std::size_t i, const Shown& next) {
+  Field& field = fields_[i];
+  const engine::Version& v = next.versions[i];
+  const auto state = want(field.texture, next, v, next.marks,
+                          i == 0 ? next.accepted.value_or(engine::Version()) : engine::Version());
+  if (!state) return tl::unexpected(state.error());
+  if (*state != LiveTexture::Freshness::kFresh) {
+    if (!shown_.versions.empty() && field.texture.pending() > 0 && next.marks != shown_.marks) {
+      const std::vector<glm::ivec2> tiles = field.texture.pendingTiles();
+      bringAll(field.texture);
+      field.measure.forget(v.reader(), tiles);
+    }
+    field.measured = v;
+    return false;
+  }
+  bringAll(field.texture);
+  const bool known = related(field.measured, v);
+  if (known || (i > 0 && related(next.versions[0], v))) {
+    std::vector<glm::ivec2> tiles;
+    if (!known) {
+      field.measure = fields_[0].measure;
+      tiles = fields_[0].texture.pendingTiles();
+    }
+    for (const engine::TileChange& c : engine::changedTiles(known ? field.measured : next.versions[0], v))
+      tiles.emplace_back(c.tile_column, c.tile_row);
+    field.measure.forget(v.reader(), tiles);
+  } else {
+    field.measure.begin(v.reader());
+  }
+  field.measured = v;
+  return !known;
+}
+
+engine::Result<LiveFields::Novelty> LiveFields::update(const Shown& next) {
+  const auto start = Clock::now();
+  if (next.versions.empty() || next.versions.size() > LiveFrame::kMostPanels)
+    return engine::inputError(fmt::format("{} versions in one picture", next.versions.size()), "picture",
+                              "show one to four");
+  const auto fits = [&](const engine::Version& v) {
+    return !v.empty() && v.grid().width == next.versions.front().grid().width &&
+           v.grid().height == next.versions.front().grid().height;
+  };
+  if (!std::all_of(next.versions.begin(), next.versions.end(), fits) ||
+      (next.original && !fits(*next.original)) ||
+      (next.accepted && !related(*next.accepted, next.versions.front())))
+    return engine::inputError("the versions have different sizes, or one is empty", "picture",
+                              "show states of one field");
+  // A field that fails halfway is forgotten.
+  const bool was_broken = broken_;
+  broken_ = true;
+  if (was_broken) {
+    submissions_.finish();
+    fields_.clear();
+    original_.clear();
+  }
+  arrangePool(next);
+  bool another = next.original.has_value() != shown_.original.has_value();
+  if (fields_.size() > next.versions.size()) submissions_.finish();
+  fields_.resize(next.versions.size());
+  for (std::size_t i = 0; i < fields_.size(); ++i) {
+    const engine::Result<bool> fresh = wantField(i, next);
+    if (!fresh) return tl::unexpected(fresh.error());
+    another = another || (i == 0 && *fresh);
+  }
+  if (next.original) {
+    const auto state = want(original_, next, *next.original, MarksOverlay::kHide);
+    if (!state) return tl::unexpected(state.error());
+    if (*state == LiveTexture::Freshness::kFresh) {
+      bringAll(original_);
+      another = true;
+    }
+  } else if (!original_.version().empty()) {
+    submissions_.finish();
+    original_.clear();
+  }
+  const Signs before(shown_), now(next);
+  const bool inverted = !shown_.versions.empty() && now == before.inverted();
+  another = another || !(inverted || now == before);
+  shown_ = next;
+  broken_ = false;
+  uploaded_.ms += engine::msSince(start);
+  return another ? Novelty::kAnother : inverted ? Novelty::kInverted : Novelty::kChanged;
+}
+
+void LiveFields::pump(UploadStatistics& all) {
+  const auto start = Clock::now();
+  UploadStatistics count;
+  std::vector<glm::ivec2> moved;
+  for (Field& f : fields_) {
+    moved.clear();
+    f.texture.pump(staging_, submissions_.next(), submissions_.commands(), options_.upload_bytes_a_frame,
+                   count, moved);
+    const engine::FieldReader reader = f.texture.version().reader();
+    if (!moved.empty()) f.measure.forget(reader, moved);
+    count.measured_tiles += static_cast<std::int64_t>(f.measure.measureSome(reader, kMeasuredAFrame));
+    count.unmeasured_tiles += static_cast<std::int64_t>(f.measure.unknown());
+  }
+  moved.clear();
+  if (!original_.version().empty())
+    original_.pump(staging_, submissions_.next(), submissions_.commands(), options_.upload_bytes_a_frame,
+                   count, moved);
+  bytes_left_ = options_.upload_bytes_a_frame - count.bytes;
+  all = uploaded_;
+  all.tiles += count.tiles;
+  all.bytes += count.bytes;
+  all.changed_samples += count.changed_samples;
+  all.measured_tiles = count.measured_tiles;
+  all.unmeasured_tiles = count.unmeasured_tiles;
+  all.pending_tiles = count.pending_tiles + count.unmeasured_tiles;
+  all.ms += engine::msSince(start);
+  uploaded_ = {};
+}
+
+void LiveFields::bringPages(PageDemand& demand, FrameStatistics& stats) {
+  UploadStatistics count;
+  ResidencyStatistics& r = stats.residency;
+  const PageDemand::Outcome outcome =
+      demand.settle(*pool_, staging_, submissions_.next(), submissions_.commands(), bytes_left_, count);
+  stats.upload.bytes += count.bytes;
+  stats.upload.pending_tiles += count.pending_tiles;
+  r.by_need = true;
+  r.device_bytes = static_cast<std::int64_t>(pool_->bytes());
+  r.pages = pool_->slots().count();
+  r.pages_used = pool_->slots().used();
+  r.pages_asked = outcome.asked;
+  r.pages_loaded = outcome.loaded;
+  r.pages_waiting = outcome.waiting;
+  r.pages_beyond = outcome.beyond;
+}
+
+}  // namespace fettle::render

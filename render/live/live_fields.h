@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/field/version.h"
+#include "render/detail/detail.h"
+#include "render/live/live_picture.h"
+#include "render/residency/live_texture.h"
+#include "render/residency/page_demand.h"
+#include "render/residency/page_pool.h"
+#include "render/vulkan/submissions.h"
+
+namespace fettle::render {
+
+/// Device bytes of samples, coarse copies and marks up to which all that is shown is brought over before the
+/// first picture: some 3.7 million samples. What takes more comes by need, so that no picture waits for it
+/// and the device holds no more than was looked at.
+inline constexpr std::uint64_t kWholeBytes = std::uint64_t{16} << 20U;
+
+/// Whether two versions are states of one field, so that only what differs needs to be looked at.
+[[nodiscard]] bool related(const engine::Version& a, const engine::Version& b);
+
+/// What the device holds of the versions that are shown, and how well it is known (render/detail/detail.h).
+///
+/// Threading: as Context. Throws vk::SystemError.
+class LiveFields {
+ public:
+  /// The submissions and the ring outlive this.
+  LiveFields(Context& context, Submissions& submissions, StagingRing& staging, const LiveOptions& options);
+
+  enum class Novelty {
+    kChanged,   ///< states of the field shown before
+    kInverted,  ///< the same, but every sign is the other one: so are the ends of all ranges
+    kAnother,   ///< another field, an original came or went, or some signs changed and others did not: ranges
+                ///< are not what they were
+  };
+  /// As LivePicture::update.
+  [[nodiscard]] engine::Result<Novelty> update(const Shown& next);
+
+  /// Takes the next share of what is pending along with the submission that is being recorded, and measures
+  /// some tiles. Adds what update() moved since the last call.
+  void pump(UploadStatistics& count);
+  /// Brings pages that a frame asks for, within what pump() left of upload_bytes_a_frame; only by need.
+  void bringPages(PageDemand& demand, FrameStatistics& stats);
+
+  /// Whether there is something to draw: update() succeeded.
+  [[nodiscard]] bool ready() const noexcept { return !shown_.versions.empty() && !broken_; }
+  [[nodiscard]] const Shown& shown() const noexcept { return shown_; }
+  [[nodiscard]] bool byNeed() const noexcept { return pool_ != nullptr; }
+  /// Of version `i` of shown().
+  [[nodiscard]] LiveTexture& texture(std::size_t i) noexcept { return fields_[i].texture; }
+  [[nodiscard]] const DetailMeasure& measure(std::size_t i) const noexcept { return fields_[i].measure; }
+  [[nodiscard]] std::size_t count() const noexcept { return fields_.size(); }
+  /// Of shown().original; its version is empty when there is none.
+  [[nodiscard]] LiveTexture& original() noexcept { return original_; }
+
+ private:
+  struct Field {
+    LiveTexture texture;
+    DetailMeasure measure;
+    engine::Version measured;  // what `measure` is of, when no tile of the texture is pending
+  };
+  [[nodiscard]] bool wantsPool(const Shown& next) const;
+  [[nodiscard]] std::uint64_t poolBudget(const Shown& next) const;
+  void arrangePool(const Shown& next);
+  void bringAll(LiveTexture& texture);
+  [[nodiscard]] engine::Result<LiveTexture::Freshness> want(LiveTexture& texture, const Shown& next,
+                                                            const engine::Version& version,
+                                                            MarksOverlay marks,
+                                                            const engine::Version& accepted = {});
+  [[nodiscard]] engine::Result<bool> wantField(std::size_t i, const Shown& next);
+
+  Context& context_;
+  Submissions& submissions_;
+  StagingRing& staging_;
+  LiveOptions options_;
+  std::uint32_t max_side_ = 0;
+  std::uint64_t memory_budget_ = 0;
+  Shown shown_;
+  std::unique_ptr<PagePool> pool_;  // null unless pages are there by need
+  std::uint64_t pool_budget_ = 0;   // what it was made for [bytes]
+  std::vector<Field> fields_;
+  LiveTexture original_;
+  UploadStatistics uploaded_;    // since the last frame
+  std::int64_t bytes_left_ = 0;  // of this frame
+  bool broken_ = false;          // an upload was left half done
+};
+
+}  // namespace fettle::render

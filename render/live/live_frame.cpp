@@ -1,0 +1,500 @@
+#include "render/live/live_frame.h"
+#include "render/vulkan/barrier.h"
+#include "render/vulkan/descriptor_writes.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace fettle::render {
+namespace {
+
+using ImageLayout = vk::ImageLayout;
+using Stage = vk::PipelineStageFlagBits2;
+using Access = vk::AccessFlagBits2;
+constexpr auto kGraphics = vk::PipelineBindPoint::eGraphics;
+
+vk::Rect2D rectOf(const Rectangle& r) {
+  return {
+      {r.x, r.y},
+      {static_cast<std::uint32_t>(std::max(0, r.width)), static_cast<std::uint32_t>(std::max(0, r.height))}};
+}
+
+vk::AttachmentLoadOp loadOf(LiveFrame::Redraw redraw) {
+  return redraw == LiveFrame::Redraw::kAll ? vk::AttachmentLoadOp::eClear : vk::AttachmentLoadOp::eLoad;
+}
+
+constexpr auto kColour = vk::ImageAspectFlagBits::eColor;
+constexpr auto kDepth = vk::ImageAspectFlagBits::eDepth;
+constexpr auto kDepthStages = Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
+constexpr auto kDepthAccess = Access::eDepthStencilAttachmentRead | Access::eDepthStencilAttachmentWrite;
+constexpr auto kColourAccess = Access::eColorAttachmentRead | Access::eColorAttachmentWrite;
+const Barriers::Access kColourWritten{ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
+                                      Access::eColorAttachmentWrite};
+const Barriers::Access kColourUsed{ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
+                                   kColourAccess};
+
+// The same bytes without a curve between them and amounts of light.
+vk::Format codesOf(vk::Format colour) {
+  switch (colour) {
+    case vk::Format::eR8G8B8A8Srgb:
+      return vk::Format::eR8G8B8A8Unorm;
+    case vk::Format::eB8G8R8A8Srgb:
+      return vk::Format::eB8G8R8A8Unorm;
+    default:
+      return colour;
+  }
+}
+
+// The pixels of half the size that a part of the picture has a share in.
+Rectangle halved(const Rectangle& r) {
+  const int x = r.x / 2, y = r.y / 2;
+  return {x, y, (r.x + r.width + 1) / 2 - x, (r.y + r.height + 1) / 2 - y};
+}
+
+vk::RenderingAttachmentInfo attachment(vk::ImageView view, ImageLayout layout, vk::AttachmentLoadOp load,
+                                       vk::ClearValue clear = {}) {
+  vk::RenderingAttachmentInfo info;
+  info.setImageView(view)
+      .setImageLayout(layout)
+      .setLoadOp(load)
+      .setStoreOp(vk::AttachmentStoreOp::eStore)
+      .setClearValue(clear);
+  return info;
+}
+
+Pipelines::Paged pagedOf(const LivePanel& p) {
+  return p.variant.by_need ? Pipelines::Paged::kByNeed
+         : p.variant.paged ? Pipelines::Paged::kYes
+                           : Pipelines::Paged::kNo;
+}
+Pipelines::Holes holesOf(const LivePanel& p) {
+  return p.variant.holes ? Pipelines::Holes::kYes : Pipelines::Holes::kNo;
+}
+
+bool empty(const Rectangle& r) {
+  return r.width <= 0 || r.height <= 0;
+}
+
+const Rectangle& partOf(const LivePanel& p, LiveFrame::Redraw redraw) {
+  return redraw == LiveFrame::Redraw::kAll ? p.visible : p.redraw;
+}
+
+// Sets a part of the attachment of the rendering under way back to where nothing is drawn.
+void clear(const vk::raii::CommandBuffer& commands, vk::ImageAspectFlags aspect, const vk::ClearValue& value,
+           const Rectangle& part) {
+  commands.clearAttachments(vk::ClearAttachment{aspect, 0, value}, vk::ClearRect{rectOf(part), 0, 1});
+}
+
+}  // namespace
+
+LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views)
+    : context_(context),
+      colour_(colour),
+      layers_(views == Pipelines::Views::kBoth ? 2 : 1),
+      view_mask_(views == Pipelines::Views::kBoth ? gpu::kBothViews : 0),
+      pipelines_(context, colour, views) {
+  constexpr auto kSlots = static_cast<std::uint32_t>(Submissions::kInFlight);
+  constexpr std::uint32_t kSets = kSlots * (5 * kMostPanels + 1);
+  const std::array sizes{vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, kSets},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eSampledImage, 5 * kSets},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, 2 * kSets},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eSampler, kSets},
+                         vk::DescriptorPoolSize{vk::DescriptorType::eUniformTexelBuffer, kSets}};
+  vk::DescriptorPoolCreateInfo info{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, kSets};
+  pool_ = vk::raii::DescriptorPool(context.device(), info.setPoolSizes(sizes));
+  const auto setOf = [&](vk::DescriptorSetLayout layout) {
+    vk::DescriptorSetAllocateInfo wanted{*pool_};
+    return std::move(vk::raii::DescriptorSets(context.device(), wanted.setSetLayouts(layout)).front());
+  };
+  no_pages_ = Buffer(context, Packing::kAlign, vk::BufferUsageFlagBits::eUniformTexelBuffer);
+  no_pages_view_ = vk::raii::BufferView(context.device(),
+                                        {{}, *no_pages_.handle(), vk::Format::eR32Uint, 0, VK_WHOLE_SIZE});
+  for (Slot& slot : slots_) {
+    for (PanelSets& p : slot.panels)
+      for (vk::raii::DescriptorSet* set : {&p.surface, &p.seams, &p.walls, &p.in_scene, &p.on_top})
+        *set = setOf(pipelines_.sceneSet());
+    slot.picture = setOf(pipelines_.pictureSet());
+  }
+}
+
+void LiveFrame::bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging,
+                            std::uint64_t submission, const Glyphs& glyphs) {
+  if (glyph_generation_ == glyphs.generation()) return;
+  constexpr std::uint32_t kSide = Glyphs::kSide;
+  const bool first = glyph_generation_ == 0;
+  if (first)
+    glyphs_ = GpuImage(context_, vk::Format::eR8Unorm, {kSide, kSide}, 1, GpuImage::Kind::kPlane,
+                       vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst,
+                       vk::ImageAspectFlagBits::eColor);
+  const std::optional<vk::DeviceSize> at = staging.take(glyphs.image().size(), submission);
+  // No room: the letters come with a later frame.
+  if (!at && !first) return;
+  if (at) std::memcpy(staging.buffer().data() + *at, glyphs.image().data(), glyphs.image().size());
+  change(commands, glyphs_, first ? ImageLayout::eUndefined : ImageLayout::eShaderReadOnlyOptimal,
+         ImageLayout::eTransferDstOptimal, Stage::eFragmentShader, Access::eShaderRead, Stage::eCopy,
+         Access::eTransferWrite);
+  if (at) {
+    vk::BufferImageCopy copy;
+    copy.setBufferOffset(*at)
+        .setImageSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
+        .setImageExtent({kSide, kSide, 1});
+    commands.copyBufferToImage(*staging.buffer().handle(), glyphs_.image(), ImageLayout::eTransferDstOptimal,
+                               copy);
+    glyph_generation_ = glyphs.generation();
+  }
+  change(commands, glyphs_, ImageLayout::eTransferDstOptimal, ImageLayout::eShaderReadOnlyOptimal,
+         Stage::eCopy, Access::eTransferWrite, Stage::eFragmentShader, Access::eShaderRead);
+}
+
+void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness) {
+  const bool half = sharpness == Sharpness::kHalf;
+  if (whole_.extent == extent && (!half || half_.extent == extent)) return;
+  // The frame in flight draws with the old ones.
+  submissions.finish();
+  using Usage = vk::ImageUsageFlagBits;
+  const GpuImage::Kind kind = layers_ == 1 ? GpuImage::Kind::kPlane : GpuImage::Kind::kArray;
+  // Of even size, so that one pixel of half_ is two of whole_ each way, and copied as code values.
+  const vk::Extent2D small{(extent.width + 1) / 2, (extent.height + 1) / 2};
+  const auto make = [&](Layers& layers, vk::Extent2D base) {
+    layers.extent = extent;
+    layers.depth = GpuImage(context_, kDepthFormat, &layers == &half_ ? base : extent, layers_, kind,
+                            Usage::eDepthStencilAttachment | Usage::eSampled, kDepth);
+    layers.base = GpuImage(context_, codesOf(colour_), base, layers_, kind,
+                           Usage::eColorAttachment | Usage::eTransferSrc | Usage::eSampled, kColour, colour_);
+  };
+  if (whole_.extent != extent) make(whole_, {2 * small.width, 2 * small.height});
+  half_.scale = 0.5F;
+  if (!half) return;
+  make(half_, small);
+  if (!enlarge_) enlarge_ = std::make_unique<Enlarge>(context_, vk::Format::eB8G8R8A8Unorm);
+  enlarge_->set(half_.base, whole_.base, layers_);
+}
+
+void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+                     const Layers& layers) {
+  Packing packing;
+  struct Blocks {
+    Packing::Block uniforms, patches, seams, walls, in_scene, on_top, pages;
+  };
+  std::vector<Blocks> blocks;
+  for (const LivePanel& p : panels)
+    blocks.push_back({packing.add<gpu::PanelUniforms>(std::span(&p.uniforms, 1)),
+                      packing.add<gpu::Patch>(p.choice->patches), packing.add<gpu::Patch>(p.choice->seams),
+                      packing.add<gpu::Patch>(p.choice->walls), packing.add<gpu::Line>(p.in_scene),
+                      packing.add<gpu::Line>(p.on_top), packing.add<std::uint32_t>(p.pages)});
+  const auto quads = packing.add<gpu::Quad>(furniture);
+  if (slot.arena.bytes() < packing.bytes())
+    slot.arena = Buffer(context_, std::max<vk::DeviceSize>(2 * packing.bytes(), 1 << 16),
+                        vk::BufferUsageFlagBits::eUniformBuffer | vk::BufferUsageFlagBits::eStorageBuffer |
+                            vk::BufferUsageFlagBits::eUniformTexelBuffer);
+  packing.write(slot.arena.data());
+
+  DescriptorWrites writes;
+  constexpr auto kUniform = vk::DescriptorType::eUniformBuffer, kStorage = vk::DescriptorType::eStorageBuffer;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const LivePanel& p = panels[i];
+    PanelSets& sets = slot.panels[i];
+    if (p.variant.by_need)
+      sets.pages = vk::raii::BufferView(
+          context_.device(),
+          {{}, *slot.arena.handle(), vk::Format::eR32Uint, blocks[i].pages.first, blocks[i].pages.second});
+    for (const auto& [set, list] : {std::pair{*sets.surface, blocks[i].patches},
+                                    {*sets.seams, blocks[i].seams},
+                                    {*sets.walls, blocks[i].walls}}) {
+      writes.buffer(set, gpu::kBindPanel, kUniform, slot.arena, blocks[i].uniforms);
+      writes.image(set, gpu::kBindHeights, p.field->heights(0));
+      writes.image(set, gpu::kBindShade, p.field->heights(p.shade_level));
+      writes.image(set, gpu::kBindMarks, p.field->marks(p.shade_level));
+      writes.image(set, gpu::kBindOriginal,
+                   (p.original != nullptr ? p.original : p.field)->heights(p.shade_level));
+      writes.buffer(set, gpu::kBindPatches, kStorage, slot.arena, list);
+      writes.texels(set, gpu::kBindPages, p.variant.by_need ? *sets.pages : *no_pages_view_);
+    }
+    writes.image(*sets.surface, gpu::kBindDepth, layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal);
+    for (const auto& [set, list] :
+         {std::pair{*sets.in_scene, blocks[i].in_scene}, {*sets.on_top, blocks[i].on_top}}) {
+      writes.buffer(set, gpu::kBindPanel, kUniform, slot.arena, blocks[i].uniforms);
+      writes.buffer(set, gpu::kBindLines, kStorage, slot.arena, list);
+    }
+  }
+  if (!furniture.empty()) {
+    writes.image(*slot.picture, gpu::kBindScene, glyphs_.view());  // live frames draw straight to the picture
+    writes.image(*slot.picture, gpu::kBindGlyphs, glyphs_.view());
+    writes.buffer(*slot.picture, gpu::kBindQuads, kStorage, slot.arena, quads);
+    writes.buffer(*slot.picture, gpu::kBindMap, kUniform, slot.arena, blocks.front().uniforms);
+  }
+  writes.apply(context_.device());
+}
+
+// Shaders count pixels of the whole picture, whatever the scale.
+void LiveFrame::beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel,
+                           const Rectangle& part, float scale) {
+  const vk::Rect2D plot = rectOf(panel.plot);
+  commands.setViewport(
+      0, vk::Viewport{scale * static_cast<float>(plot.offset.x), scale * static_cast<float>(plot.offset.y),
+                      scale * static_cast<float>(plot.extent.width),
+                      scale * static_cast<float>(plot.extent.height), 0.0F, 1.0F});
+  commands.setScissor(0, rectOf(scale == 1.0F ? part : halved(part)));
+  const gpu::vec4 size{plot.extent.width, plot.extent.height, plot.offset.x, plot.offset.y};
+  commands.pushConstants<gpu::vec4>(pipelines_.sceneLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
+}
+
+void LiveFrame::instances(const vk::raii::CommandBuffer& commands, vk::Pipeline pipeline,
+                          vk::DescriptorSet set, std::uint32_t vertices, std::size_t first,
+                          std::size_t count) const {
+  commands.bindPipeline(kGraphics, pipeline);
+  commands.bindDescriptorSets(kGraphics, pipelines_.sceneLayout(), 0, set, {});
+  commands.draw(vertices, static_cast<std::uint32_t>(count), 0, static_cast<std::uint32_t>(first));
+}
+
+void LiveFrame::recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                            std::span<const LivePanel> panels, const Layers& layers, Redraw redraw) {
+  using Geometry = Pipelines::Geometry;
+  const vk::RenderingAttachmentInfo depth =
+      attachment(layers.depth.view(), ImageLayout::eDepthAttachmentOptimal, loadOf(redraw),
+                 vk::ClearDepthStencilValue{1.0F, 0});
+  vk::RenderingInfo rendering;
+  rendering.setRenderArea({{0, 0}, layers.depth.extent()})
+      .setLayerCount(1)
+      .setViewMask(view_mask_)
+      .setPDepthAttachment(&depth);
+  commands.beginRendering(rendering);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const LivePanel& p = panels[i];
+    const Rectangle& part = partOf(p, redraw);
+    if (empty(part)) continue;
+    beginPanel(commands, p, part, layers.scale);
+    if (redraw == Redraw::kParts) clear(commands, kDepth, vk::ClearDepthStencilValue{1.0F, 0}, part);
+    const PanelSets& sets = slot.panels[i];
+    const auto paged = pagedOf(p);
+    const std::size_t all = p.choice->patches.size(), whole = p.variant.holes ? p.choice->whole : all;
+    if (whole > 0)
+      instances(commands, pipelines_.depth({Geometry::Kind::kPatches, paged, Pipelines::Holes::kNo}),
+                *sets.surface, gpu::kPatchVertices, 0, whole);
+    if (whole < all)
+      instances(commands, pipelines_.depth({Geometry::Kind::kPatches, paged, Pipelines::Holes::kYes}),
+                *sets.surface, gpu::kPatchVertices, whole, all - whole);
+    if (!p.choice->seams.empty())
+      instances(commands, pipelines_.depth({Geometry::Kind::kSeams, paged, holesOf(p)}), *sets.seams,
+                gpu::kSeamStripVertices, 0, 2 * p.choice->seams.size());
+  }
+  commands.endRendering();
+}
+
+void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                           std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
+                           Redraw redraw) {
+  const vk::ClearColorValue nothing(std::array<float, 4>{ground.x, ground.y, ground.z, 1.0F});
+  const vk::RenderingAttachmentInfo cleared =
+      attachment(layers.base.view(), ImageLayout::eColorAttachmentOptimal, loadOf(redraw), nothing);
+  vk::RenderingInfo rendering;
+  const vk::RenderingAttachmentInfo read =
+      attachment(layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal, vk::AttachmentLoadOp::eLoad);
+  rendering.setRenderArea({{0, 0}, layers.depth.extent()})
+      .setLayerCount(1)
+      .setViewMask(view_mask_)
+      .setColorAttachments(cleared)
+      .setPDepthAttachment(&read);
+  commands.beginRendering(rendering);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const Rectangle& part = partOf(panels[i], redraw);
+    if (empty(part)) continue;
+    beginPanel(commands, panels[i], part, layers.scale);
+    if (redraw == Redraw::kParts) clear(commands, kColour, nothing, part);
+    instances(commands, pipelines_.shade(panels[i].variant), *slot.panels[i].surface, 4, 0, 1);
+  }
+  commands.endRendering();
+
+  Barriers again;
+  again.add(layers.depth.image(), kDepth,
+            {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader, Access::eShaderRead},
+            {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
+  again.add(layers.base.image(), kColour, kColourWritten, kColourUsed);
+  again.record(commands);
+  const vk::RenderingAttachmentInfo colour =
+      attachment(layers.base.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  const vk::RenderingAttachmentInfo depth =
+      attachment(layers.depth.view(), ImageLayout::eDepthAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  rendering.setColorAttachments(colour).setPDepthAttachment(&depth);
+  commands.beginRendering(rendering);
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const LivePanel& p = panels[i];
+    const Rectangle& part = partOf(p, redraw);
+    if (empty(part)) continue;
+    beginPanel(commands, p, part, layers.scale);
+    // The plate is seen through holes alone.
+    if (p.variant.holes) instances(commands, pipelines_.floor(), *slot.panels[i].surface, 4, 0, 1);
+    if (!p.choice->walls.empty())
+      instances(commands, pipelines_.wall(pagedOf(p), holesOf(p)), *slot.panels[i].walls, gpu::kWallVertices,
+                0, p.choice->walls.size());
+  }
+  // Else they are drawn over the copy, so that they move without the surface being shaded again.
+  if (layers.scale != 1.0F) recordLines(commands, slot, panels, Pipelines::Lines::kInScene, layers.scale);
+  commands.endRendering();
+}
+
+void LiveFrame::recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                            std::span<const LivePanel> panels, Pipelines::Lines depth, float scale) {
+  const bool in_scene = depth == Pipelines::Lines::kInScene;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const LivePanel& p = panels[i];
+    const std::vector<gpu::Line>& lines = in_scene ? p.in_scene : p.on_top;
+    if (empty(p.visible) || lines.empty()) continue;
+    beginPanel(commands, p, p.visible, scale);
+    instances(commands, pipelines_.lines(depth), in_scene ? *slot.panels[i].in_scene : *slot.panels[i].on_top,
+              4, 0, lines.size());
+  }
+}
+
+void LiveFrame::recordEnlarged(const vk::raii::CommandBuffer& commands) {
+  Barriers before;
+  before.add(half_.base.image(), kColour, kColourWritten,
+             {ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader, Access::eShaderRead});
+  before.add(whole_.base.image(), kColour, {ImageLayout::eUndefined, Stage::eCopy, Access::eTransferRead},
+             kColourUsed);
+  before.record(commands);
+  enlarge_->record(commands);
+}
+
+void LiveFrame::recordFurniture(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                                std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+                                Redraw redraw) {
+  if (furniture.empty()) return;
+  Barriers over;
+  over.add(whole_.base.image(), kColour, kColourWritten, kColourUsed);
+  over.record(commands);
+  const vk::Extent2D extent = whole_.extent;
+  const vk::RenderingAttachmentInfo colour =
+      attachment(whole_.base.view(), ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  vk::RenderingInfo rendering;
+  rendering.setRenderArea({{0, 0}, extent})
+      .setLayerCount(1)
+      .setViewMask(view_mask_)
+      .setColorAttachments(colour);
+  commands.beginRendering(rendering);
+  commands.setViewport(0, vk::Viewport{0.0F, 0.0F, static_cast<float>(extent.width),
+                                       static_cast<float>(extent.height), 0.0F, 1.0F});
+  commands.setScissor(0, vk::Rect2D{{0, 0}, extent});
+  commands.bindPipeline(kGraphics, pipelines_.quads());
+  const gpu::vec4 size{extent.width, extent.height, 0, 0};
+  commands.pushConstants<gpu::vec4>(pipelines_.pictureLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
+  commands.bindDescriptorSets(kGraphics, pipelines_.pictureLayout(), 0, *slot.picture, {});
+  const auto quads = static_cast<std::uint32_t>(furniture.size());
+  if (redraw == Redraw::kAll) commands.draw(4, quads, 0, 0);
+  // Drawn over what is new alone: over what is there already its soft edges would grow.
+  for (const LivePanel& p : panels)
+    if (redraw == Redraw::kParts && !empty(p.redraw)) {
+      commands.setScissor(0, rectOf(p.redraw));
+      commands.draw(4, quads, 0, 0);
+    }
+  commands.endRendering();
+}
+
+void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                             std::span<const LivePanel> panels, const LiveTarget& target,
+                             Sharpness sharpness) {
+  const bool in_scene = sharpness == Sharpness::kFull;  // lines of that kind are still to be drawn
+  vk::ImageCopy copy;
+  copy.setSrcSubresource({kColour, 0, 0, layers_})
+      .setDstSubresource({kColour, 0, 0, layers_})
+      .setExtent({target.extent.width, target.extent.height, 1});
+  commands.copyImage(whole_.base.image(), ImageLayout::eTransferSrcOptimal, target.image,
+                     ImageLayout::eTransferDstOptimal, copy);
+  const bool lines = std::any_of(panels.begin(), panels.end(), [&](const LivePanel& p) {
+    return !empty(p.visible) && ((in_scene && !p.in_scene.empty()) || !p.on_top.empty());
+  });
+  const bool copied = target.leaves_as == ImageLayout::eTransferSrcOptimal;
+  const vk::PipelineStageFlags2 next = copied ? Stage::eCopy : Stage::eBottomOfPipe;
+  const auto reads = copied ? vk::AccessFlags2(Access::eTransferRead) : vk::AccessFlags2{};
+  if (!lines && !target.over) {
+    change(commands, target.image, ImageLayout::eTransferDstOptimal, target.leaves_as, Stage::eCopy,
+           Access::eTransferWrite, next, reads);
+    return;
+  }
+  change(commands, target.image, ImageLayout::eTransferDstOptimal, ImageLayout::eColorAttachmentOptimal,
+         Stage::eCopy, Access::eTransferWrite, Stage::eColorAttachmentOutput, kColourAccess);
+  const vk::RenderingAttachmentInfo colour =
+      attachment(target.view, ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
+  // At half sharpness nothing is in it, and lines on top do not look.
+  const vk::RenderingAttachmentInfo depth =
+      attachment(whole_.depth.view(), ImageLayout::eDepthAttachmentOptimal,
+                 in_scene ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eDontCare);
+  vk::RenderingInfo rendering;
+  rendering.setRenderArea({{0, 0}, target.extent})
+      .setLayerCount(1)
+      .setViewMask(view_mask_)
+      .setColorAttachments(colour);
+  if (lines) {
+    if (!in_scene)
+      change(commands, whole_.depth, ImageLayout::eUndefined, ImageLayout::eDepthAttachmentOptimal,
+             kDepthStages, kDepthAccess, kDepthStages, kDepthAccess);
+    rendering.setPDepthAttachment(&depth);
+    commands.beginRendering(rendering);
+    if (in_scene) recordLines(commands, slot, panels, Pipelines::Lines::kInScene, 1.0F);
+    recordLines(commands, slot, panels, Pipelines::Lines::kOnTop, 1.0F);
+    commands.endRendering();
+  }
+  if (target.over) {
+    if (lines)
+      change(commands, target.image, ImageLayout::eColorAttachmentOptimal,
+             ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
+             Access::eColorAttachmentWrite, Stage::eColorAttachmentOutput, kColourAccess);
+    rendering.setPDepthAttachment(nullptr);
+    commands.beginRendering(rendering);
+    target.over(*commands);
+    commands.endRendering();
+  }
+  change(commands, target.image, ImageLayout::eColorAttachmentOptimal, target.leaves_as,
+         Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, next, reads);
+}
+
+void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
+                       const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
+                       const LiveTarget& target, Redraw redraw, Sharpness sharpness) {
+  const vk::raii::CommandBuffer& commands = submissions.commands();
+  Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
+  if (!furniture.empty()) bringGlyphs(commands, staging, submissions.next(), glyphs);
+  makeLayers(submissions, target.extent, sharpness);
+  const bool half = sharpness == Sharpness::kHalf;
+  const Layers& layers = half ? half_ : whole_;
+  fill(slot, panels, furniture, layers);
+
+  const bool all = redraw == Redraw::kAll;
+  const bool anew =
+      all || std::any_of(panels.begin(), panels.end(), [](const LivePanel& p) { return !empty(p.redraw); });
+  const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};
+  const Barriers::Access enlarged{ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader,
+                                  Access::eShaderRead};
+  Barriers compose;
+  if (anew) {
+    // The frame before may still draw lines against this depth, and copy out of that base.
+    Barriers begin;
+    begin.add(layers.depth.image(), kDepth,
+              {all ? ImageLayout::eUndefined : ImageLayout::eDepthAttachmentOptimal, kDepthStages,
+               Access::eDepthStencilAttachmentWrite},
+              {ImageLayout::eDepthAttachmentOptimal, kDepthStages, kDepthAccess});
+    begin.record(commands);
+    recordDepth(commands, slot, panels, layers, redraw);
+    Barriers shade;
+    shade.add(layers.depth.image(), kDepth,
+              {ImageLayout::eDepthAttachmentOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite},
+              {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
+               Access::eDepthStencilAttachmentRead | Access::eShaderRead});
+    Barriers::Access before = half ? enlarged : copied;
+    if (all) before.layout = ImageLayout::eUndefined;
+    shade.add(layers.base.image(), kColour, before, kColourUsed);
+    shade.record(commands);
+    recordBase(commands, slot, panels, ground, layers, redraw);
+    if (half) recordEnlarged(commands);
+    recordFurniture(commands, slot, panels, furniture, redraw);
+    compose.add(whole_.base.image(), kColour, kColourWritten, copied);
+  }
+  // The acquired image is waited for at these stages: the change of layout comes after it.
+  compose.add(target.image, kColour,
+              {ImageLayout::eUndefined, Stage::eColorAttachmentOutput | Stage::eCopy, {}},
+              {ImageLayout::eTransferDstOptimal, Stage::eCopy, Access::eTransferWrite});
+  compose.record(commands);
+  recordTarget(commands, slot, panels, target, sharpness);
+}
+
+}  // namespace fettle::render

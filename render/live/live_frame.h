@@ -1,0 +1,130 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "render/detail/patches.h"
+#include "render/live/enlarge.h"
+#include "render/plan/glyphs.h"
+#include "render/plan/plan.h"
+#include "render/residency/live_texture.h"
+#include "render/vulkan/live_target.h"
+#include "render/vulkan/pipelines.h"
+#include "render/vulkan/submissions.h"
+
+namespace fettle::render {
+
+/// One panel of a live frame.
+struct LivePanel {
+  Rectangle plot;     ///< where the camera's picture lies [px]
+  Rectangle visible;  ///< the part of it that is drawn
+  Rectangle redraw;   ///< the part of that which is drawn anew; `choice` needs to cover no more
+  gpu::PanelUniforms uniforms{};
+  const PatchChoice* choice = nullptr;
+  const LiveTexture* field = nullptr;
+  const LiveTexture* original = nullptr;  ///< null for heights
+  int shade_level = 0;                    ///< of LiveTexture
+  SurfaceVariant variant;
+  std::vector<std::uint32_t> pages;  ///< of pageTable; empty unless by need
+  std::vector<gpu::Line> in_scene, on_top;
+};
+
+/// Records a frame in three layers, each of which is left alone while nothing in it changes:
+///
+///   depth    of the surface, its seams, rim walls and plate: geometry, drawn without a colour
+///   base     the surface shaded from that depth, once a pixel (shaders/shade.frag); then what is shaded
+///            triangle by triangle, plate and walls; then the furniture
+///   target   a copy of base; then overlay lines; then whatever the target wants over it
+///
+/// At Sharpness::kHalf depth, shading and the lines hidden by the surface go to layers of half the size each
+/// way; base is those enlarged, then the furniture as ever.
+///
+/// A second eye (stereo) is a second layer of depth and base and a second element of
+/// PanelUniforms::views; the passes are the same, drawn with a view mask.
+///
+/// What a frame in flight reads is kept until its turn comes round.
+///
+/// Threading: as Context. Throws vk::SystemError.
+class LiveFrame {
+ public:
+  static constexpr std::size_t kMostPanels = 5;
+
+  /// kBoth: targets have two layers, one for each eye of PanelUniforms::views.
+  LiveFrame(Context& context, vk::Format colour, Pipelines::Views views = Pipelines::Views::kOne);
+
+  /// Whether the layers hold a sharp picture of this size, and whether furniture would be drawn with these
+  /// very letters.
+  [[nodiscard]] bool holds(vk::Extent2D extent) const noexcept { return whole_.extent == extent; }
+  [[nodiscard]] bool holds(const Glyphs& glyphs) const noexcept {
+    return glyph_generation_ == glyphs.generation();
+  }
+  enum class Redraw {
+    kAll,    ///< every layer, whatever LivePanel::redraw says
+    kParts,  ///< of depth and base what the panels ask for; the rest stays as it is. kFull alone, after a
+             ///< frame of kFull
+  };
+  /// Records into submissions.commands(). `staging` carries new letters.
+  void record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
+              const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
+              const LiveTarget& target, Redraw redraw, Sharpness sharpness);
+
+  [[nodiscard]] const Pipelines& pipelines() const noexcept { return pipelines_; }
+
+ private:
+  struct PanelSets {
+    vk::raii::DescriptorSet surface = nullptr, seams = nullptr, walls = nullptr, in_scene = nullptr,
+                            on_top = nullptr;
+    vk::raii::BufferView pages = nullptr;  // of the arena
+  };
+  struct Slot {
+    Buffer arena;
+    std::array<PanelSets, kMostPanels> panels;
+    vk::raii::DescriptorSet picture = nullptr;
+  };
+  // What the surface is drawn to.
+  struct Layers {
+    vk::Extent2D extent;  // of the picture they are for
+    float scale = 1.0F;   // their pixels a pixel of that
+    GpuImage depth, base;
+  };
+  void bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging, std::uint64_t submission,
+                   const Glyphs& glyphs);
+  void makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness);
+  void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+            const Layers& layers);
+  void beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel, const Rectangle& part,
+                  float scale = 1.0F);
+  void instances(const vk::raii::CommandBuffer& commands, vk::Pipeline pipeline, vk::DescriptorSet set,
+                 std::uint32_t vertices, std::size_t first, std::size_t count) const;
+  void recordDepth(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                   std::span<const LivePanel> panels, const Layers& layers, Redraw redraw);
+  void recordBase(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                  std::span<const LivePanel> panels, const glm::vec3& ground, const Layers& layers,
+                  Redraw redraw);
+  void recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                   std::span<const LivePanel> panels, Pipelines::Lines depth, float scale);
+  void recordFurniture(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                       std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+                       Redraw redraw);
+  void recordEnlarged(const vk::raii::CommandBuffer& commands);
+  void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                    std::span<const LivePanel> panels, const LiveTarget& target, Sharpness sharpness);
+
+  Context& context_;
+  vk::Format colour_;
+  std::uint32_t layers_;     // of depth_, base_ and targets
+  std::uint32_t view_mask_;  // 0: there is one
+  Pipelines pipelines_;
+  vk::raii::DescriptorPool pool_ = nullptr;
+  std::array<Slot, Submissions::kInFlight> slots_;
+  Buffer no_pages_;  // what is bound where the shader does not look
+  vk::raii::BufferView no_pages_view_ = nullptr;
+  Layers whole_, half_;  // half_: made when first asked for
+  std::unique_ptr<Enlarge> enlarge_;
+  GpuImage glyphs_;
+  std::uint64_t glyph_generation_ = 0;
+};
+
+}  // namespace fettle::render

@@ -1,0 +1,178 @@
+#include "render/live/live_panels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/live/live_overlay.h"
+#include "render/live/live_plan.h"
+#include "render/plan/live_view.h"
+
+namespace fettle::render {
+namespace {
+
+constexpr float kSeamPx = 0.25F;
+
+bool holed(const engine::Version& v) {
+  return v.reader().root().holed_children != 0;
+}
+
+// Left and right of the split; on an even column of the picture: no square of two by two fragments belongs
+// to both sides.
+Rectangle sideOf(const Rectangle& plot, double split, bool right) {
+  const int wanted = static_cast<int>(std::lround(split * plot.width));
+  const int at = std::min(wanted + ((plot.x + wanted) & 1), plot.width);
+  Rectangle side = plot;
+  side.width = at;
+  if (right) side = {plot.x + at, plot.y, plot.width - at, plot.height};
+  return side;
+}
+
+glm::vec3 towardsLight(const FrameInput& input, const Camera& camera) {
+  const double azimuth = input.light_azimuth_deg * std::numbers::pi / 180.0;
+  const double up = std::sin(input.light_elevation_deg * std::numbers::pi / 180.0);
+  const glm::dvec3 right = camera.right();
+  const glm::dvec3 away{-right.y, right.x, 0.0};
+  const glm::dvec3 level = std::cos(azimuth) * right + std::sin(azimuth) * away;
+  return std::sqrt(std::max(0.0, 1.0 - up * up)) * level + glm::dvec3(0.0, 0.0, up);
+}
+
+}  // namespace
+
+LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields, KeptTrees& kept)
+    : fields_(fields) {
+  const bool split = input.arrangement == Arrangement::kSplit && fields.count() >= 2;
+  const std::size_t count = split ? 2 : plan.panels.size();
+  const bool stereo = input.stereo.mode != StereoMode::kOff;
+  const double window = !stereo                              ? 1.0
+                        : input.stereo.screen_distance > 0.0 ? input.stereo.screen_distance
+                                                             : windowAtMiddle(plan.panels.front());
+  std::vector<OverlayLine> lines = input.overlays.lines;
+  for (const Overlays::Ring& ring : input.overlays.rings)
+    appendRing(fields.shown().versions.front().reader(), ring, lines);
+  trees_.reserve(count);
+  kept.keepOnly(count);
+  choices_.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const PanelPlan& p = plan.panels[i];
+    if (stereo) eyes_.push_back(eyesOf(p.camera, input.stereo, window));
+    questions_.push_back(questionOf(i, input, p,
+                                    input.panel_vertices.empty()
+                                        ? input.vertex_budget / static_cast<std::int64_t>(count)
+                                        : input.panel_vertices[i]));
+    panels_.push_back(panelOf(i, input, plan, lines));
+    panels_.back().visible = split ? sideOf(p.plot, input.split, i > 0) : p.plot;
+    questions_.back().shade_step = 1 << LiveTexture::shift(panels_.back().shade_level);
+    trees_.push_back(kept.tree(i, questions_.back(), p.field));
+  }
+}
+
+PatchQuestion LivePanels::questionOf(std::size_t i, const FrameInput& input, const PanelPlan& p,
+                                     std::int64_t vertices) const {
+  PatchQuestion q;
+  q.measure = &fields_.measure(i);
+  q.reader = p.field.reader();
+  if (fields_.texture(i).pending() > 0)
+    q.settled = [&texture = fields_.texture(i)](glm::ivec2 first, glm::ivec2 last) {
+      return !texture.anyPending(first / engine::kTileSide, last / engine::kTileSide);
+    };
+  q.placing = p.placing;
+  q.camera = p.camera;
+  if (!eyes_.empty()) {
+    q.camera = eyes_[i][0];
+    q.other_eye = eyes_[i][1];
+  }
+  q.mm_per_unit = p.mm_per_unit;
+  q.reference = p.reference;
+  q.lowest = p.lowest;
+  q.highest = p.highest;
+  q.floor_z = p.floor_z;
+  q.error_px = input.error_px;
+  q.vertex_budget = vertices;
+  return q;
+}
+
+LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const PicturePlan& plan,
+                              const std::vector<OverlayLine>& lines) const {
+  const PanelPlan& p = plan.panels[i];
+  const PatchQuestion& q = questions_[i];
+  const LiveTexture& original = fields_.original();
+  LivePanel panel;
+  // Colours from samples about a pixel apart: in perspective the near part is larger than the middle.
+  const glm::dvec2 px = cellPixels(p.placing, p.camera);
+  const double nearer = input.view.projection == Projection::kPerspective ? 2.0 : 1.0;
+  while (panel.shade_level + 1 < LiveTexture::kLevels &&
+         std::ldexp(std::max(px.x, px.y) * nearer, LiveTexture::shift(panel.shade_level + 1)) <= 1.0)
+    ++panel.shade_level;
+  const int shift = LiveTexture::shift(panel.shade_level);
+  panel.plot = p.plot;
+  panel.field = &fields_.texture(i);
+  panel.original = original.version().empty() ? nullptr : &original;
+  panel.uniforms = p.uniforms;
+  gpu::PanelUniforms& u = panel.uniforms;
+  if (shift > 0) {
+    u.shade = glm::ivec4(shift, 0, glm::max((p.placing.true_size - 1) / (1 << shift) + 1, glm::ivec2(2)));
+    u.paging.w = std::max(
+        1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::ldexp(std::min(px.x, px.y), shift)))));
+  }
+  u.seam.x = input.sharpness == Sharpness::kHalf ? 2.0F * kSeamPx : kSeamPx;
+  u.views[0] = viewOf(q.camera, p.placing, p.plot);
+  if (q.other_eye) u.views[1] = viewOf(*q.other_eye, p.placing, p.plot);
+  u.ground = glm::vec4(plan.palette.ground, 1.0F);
+  const Paging& paging = panel.field->paging();
+  u.paging.x = paging.log2_columns;
+  u.paging.y = paging.log2_rows;
+  u.paging.z = static_cast<int>(paging.across);
+  u.light = glm::vec4(towardsLight(input, p.camera), u.light.w);
+  const bool by_need = fields_.byNeed();
+  panel.variant = {
+      paging.paged(),
+      fields_.shown().marks == MarksOverlay::kShow,
+      panel.original != nullptr,
+      input.contours == Contours::kShow,
+      std::max(px.x, px.y) > 1.5,
+      holed(p.field) || (panel.original != nullptr && holed(original.version())),
+      true,
+      by_need,
+      !by_need && !paging.paged() && std::min(p.placing.true_size.x, p.placing.true_size.y) > 1 << shift,
+      input.view.projection == Projection::kPerspective};
+  panel.in_scene = linesOf(lines, OverlayLine::Depth::kInScene, p);
+  panel.on_top = linesOf(lines, OverlayLine::Depth::kOnTop, p);
+  return panel;
+}
+
+PageDemand LivePanels::demand(std::uint64_t frame) {
+  PageDemand demand;
+  for (std::size_t i = 0; i < panels_.size(); ++i)
+    demand.want(trees_[i], fields_.texture(i), panels_[i].original != nullptr ? &fields_.original() : nullptr,
+                panels_[i].shade_level, panels_[i].uniforms.paging.w, frame);
+  return demand;
+}
+
+void LivePanels::settle(FrameStatistics& stats) {
+  for (std::size_t i = 0; i < panels_.size(); ++i) {
+    bool pruned = false;
+    if (fields_.byNeed()) {
+      const PageSet& pages = *fields_.texture(i).pages();
+      pruned = trees_[i].prune([&](const PatchLeaf& leaf) { return PageDemand::drawable(leaf, pages); });
+      panels_[i].uniforms.pages = pageHead(pages.grid());
+      panels_[i].pages =
+          pageTable(pages, panels_[i].original != nullptr ? fields_.original().pages() : nullptr);
+    }
+    choices_[i] = trees_[i].list();
+    panels_[i].choice = &choices_[i];
+    stats.patches += static_cast<std::int64_t>(choices_[i].patches.size());
+    stats.vertices += choices_[i].vertices();
+    stats.triangles += choices_[i].triangles();
+    stats.bound_px = std::max(stats.bound_px, choices_[i].bound_px);
+    PanelDetail detail{choices_[i].bound_px, DetailLimit::kNone};
+    if (detail.bound_px > questions_[i].error_px)
+      detail.limit = !pruned                             ? DetailLimit::kVertices
+                     : stats.residency.pages_waiting > 0 ? DetailLimit::kUnderWay
+                                                         : DetailLimit::kMemory;
+    stats.panels.push_back(detail);
+    stats.within_budget = stats.within_budget && choices_[i].within_budget;
+  }
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,400 @@
+#include "render/live/live_picture.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "engine/base/stopwatch.h"
+#include "render/detail/pick.h"
+#include "render/live/live_fields.h"
+#include "render/live/live_frame.h"
+#include "render/live/live_panels.h"
+#include "render/live/live_plan.h"
+#include "render/live/live_redraw.h"
+#include "render/live/stereo_compose.h"
+#include "render/vulkan/capture.h"
+
+namespace fettle::render {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr vk::DeviceSize kStagingBytes = vk::DeviceSize{64} << 20U;
+
+engine::Error errorOf(const std::string& device, const char* what) {
+  return engine::failure(fmt::format("drawing failed ({})", what), device, "start the picture anew").value();
+}
+
+// Off-screen image that a frame is drawn to and copied out of.
+struct Canvas {
+  GpuImage image;
+  [[nodiscard]] LiveTarget target() const {
+    LiveTarget t;
+    t.image = image.image();
+    t.view = image.view();
+    t.extent = image.extent();
+    t.leaves_as = vk::ImageLayout::eTransferSrcOptimal;
+    return t;
+  }
+};
+
+}  // namespace
+
+struct LivePicture::Impl {
+  std::unique_ptr<Context> own;  // empty when somebody else's is used
+  Context& context;
+  Glyphs glyphs;
+  Submissions submissions;
+  StagingRing staging;
+  vk::Format colour_format;
+  LiveFrame frame;
+  // For two eyes: made when first asked for.
+  std::unique_ptr<StereoCompose> compose;
+  std::unique_ptr<LiveFrame> both_eyes;  // in one pass
+  std::unique_ptr<LiveFrame> right_eye;  // in a pass of its own; the left one is `frame`
+
+  LiveFields fields;
+  std::optional<PictureSpans> spans;
+  KeptTrees kept_trees;
+  Canvas canvas;
+  struct Seen {
+    PicturePlan plan;
+    std::vector<Rectangle> visible;
+    std::vector<std::array<Camera, 2>> eyes;  // of each panel; none unless in stereo
+    StereoMode stereo = StereoMode::kOff;
+    int eye_width = 0;  // of one eye's picture [px]
+  };
+  std::optional<Seen> seen;
+  std::optional<DrawnFrame> drawn;  // what the layers of `frame` show
+
+  Impl(std::unique_ptr<Context> owned, Context& used, vk::Format colour, const LiveOptions& options, Glyphs g)
+      : own(std::move(owned)),
+        context(used),
+        glyphs(std::move(g)),
+        submissions(context),
+        staging(context, kStagingBytes),
+        colour_format(colour),
+        frame(context, colour),
+        fields(context, submissions, staging, options) {}
+
+  engine::Status update(const Shown& next);
+  engine::Result<FrameStatistics> draw(const FrameInput& input, const LiveTarget& target);
+  void drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats, PicturePlan plan);
+  void recordStereo(const Stereo& stereo, Sharpness sharpness, std::vector<LivePanel>& panels,
+                    const std::vector<gpu::Quad>& furniture, const glm::vec3& ground,
+                    const LiveTarget& target);
+};
+
+engine::Status LivePicture::Impl::update(const Shown& next) {
+  const engine::Result<LiveFields::Novelty> novelty = fields.update(next);
+  if (!novelty) return tl::unexpected(novelty.error());
+  if (*novelty == LiveFields::Novelty::kAnother) spans.reset();
+  // Not read again: inverted twice, the picture is what it was, whatever was edited meanwhile.
+  if (*novelty == LiveFields::Novelty::kInverted && spans) spans = negated(*spans);
+  return {};
+}
+
+engine::Result<FrameStatistics> LivePicture::Impl::draw(const FrameInput& input, const LiveTarget& target) {
+  if (!fields.ready())
+    return engine::inputError("there is no field to draw", "picture", "give it a version first");
+  if (input.stereo.mode == StereoMode::kSideBySide &&
+      input.view.width == static_cast<int>(target.extent.width)) {
+    // Each eye's picture is laid out for its half.
+    FrameInput eye = input;
+    eye.view.width = static_cast<int>(StereoCompose::eyeExtent(input.stereo.mode, target.extent).width);
+    return draw(eye, target);
+  }
+  if (engine::Status ok = check(input.stereo); !ok) return tl::unexpected(ok.error());
+  const Shown& shown = fields.shown();
+  if (!spans) spans = spansOf(shown.versions, shown.original);
+  engine::Result<PicturePlan> planned = planFrame(input, shown, *spans);
+  if (!planned) return tl::unexpected(planned.error());
+  for (const Rectangle& plot : planned->layout.plots)
+    if (plot.width < 8 || plot.height < 8)
+      return engine::inputError(fmt::format("a picture of {} x {} pixels leaves no room for the surface",
+                                            input.view.width, input.view.height),
+                                "picture size", "make it larger, or leave the furniture out");
+  FrameStatistics stats;
+  drawOn(input, target, stats, *std::move(planned));
+  return stats;
+}
+
+void LivePicture::Impl::recordStereo(const Stereo& stereo, Sharpness sharpness,
+                                     std::vector<LivePanel>& panels, const std::vector<gpu::Quad>& furniture,
+                                     const glm::vec3& ground, const LiveTarget& target) {
+  const bool one_pass = stereo.passes == Stereo::Passes::kBest  ? context.multiviewWorks()
+                        : stereo.passes == Stereo::Passes::kOne ? context.multiview()
+                                                                : false;
+  if (!compose) compose = std::make_unique<StereoCompose>(context, colour_format);
+  compose->begin(submissions, StereoCompose::eyeExtent(stereo.mode, target.extent),
+                 one_pass ? StereoCompose::Layers::kOneImage : StereoCompose::Layers::kTwoImages);
+  if (one_pass) {
+    if (!both_eyes) both_eyes = std::make_unique<LiveFrame>(context, colour_format, Pipelines::Views::kBoth);
+    both_eyes->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft),
+                      LiveFrame::Redraw::kAll, sharpness);
+  } else {
+    frame.record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft),
+                 LiveFrame::Redraw::kAll, sharpness);
+    for (LivePanel& panel : panels) panel.uniforms.views[0] = panel.uniforms.views[1];
+    if (!right_eye) right_eye = std::make_unique<LiveFrame>(context, colour_format);
+    right_eye->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kRight),
+                      LiveFrame::Redraw::kAll, sharpness);
+  }
+  compose->record(submissions.commands(), stereo.mode, target);
+}
+
+void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats,
+                               PicturePlan plan) {
+  stats.wait_ms = submissions.begin();
+  const auto start = Clock::now();
+  staging.release(submissions.done());
+  // What changed: to the device, and into the measures that patches are chosen by.
+  fields.pump(stats.upload);
+  const double pumped_ms = engine::msSince(start);
+
+  const auto select_start = Clock::now();
+  const bool stereo = input.stereo.mode != StereoMode::kOff;
+  const bool half = input.sharpness == Sharpness::kHalf;
+  LivePanels chosen(input, plan, fields, kept_trees);
+  if (fields.byNeed()) {
+    PageDemand demand = chosen.demand(submissions.next());
+    fields.bringPages(demand, stats);
+  }
+  chosen.settle(stats);
+  std::vector<LivePanel>& panels = chosen.panels();
+  Seen now;
+  now.stereo = input.stereo.mode;
+  now.eye_width = input.view.width;
+  now.eyes = chosen.eyes();
+  for (const LivePanel& panel : panels) now.visible.push_back(panel.visible);
+
+  std::vector<std::string> warnings;
+  if (glyphs.used() > Glyphs::kSide / 2) glyphs.clear();
+  std::vector<gpu::Quad> furniture =
+      furnish(plan.layout, input.view, plan.furniture, plan.palette, glyphs, warnings);
+  if (input.arrangement == Arrangement::kSplit && panels.size() == 2) {
+    const Rectangle& right = now.visible[1];
+    gpu::Quad line{};
+    line.pixels = glm::vec4(right.x - 1, right.y, right.x + 1, right.y + right.height);
+    line.colour = glm::vec4(plan.palette.ink, 1.0F);
+    line.fill = glm::ivec4(gpu::kFillSolid, 1, 0, 0);
+    furniture.push_back(line);
+  }
+
+  // Tiles whose detail is not known yet are drawn more finely than need be, but as they are; in the place of
+  // pages under way lie others, which `pages` below says.
+  const bool there =
+      stats.upload.pending_tiles == stats.upload.unmeasured_tiles + stats.residency.pages_waiting;
+  DrawnFrame layers;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const LivePanel& panel = panels[i];
+    layers.panels.push_back({fields.texture(i).version(), panel.uniforms, panel.variant, panel.shade_level,
+                             panel.plot, panel.visible, *panel.choice, panel.pages});
+  }
+  layers.furniture = furniture;
+  layers.ground = plan.palette.ground;
+  layers.original = fields.original().version();
+  layers.accepted = fields.shown().accepted;
+  std::optional<DrawnFrame> before;
+  before.swap(drawn);  // until this frame is handed over, nobody knows what the layers hold
+  std::vector<PatchChoice> parts;
+  const bool some = !stereo && !half && input.redraw == FrameInput::Redraw::kChanged && before && there &&
+                    frame.holds(target.extent) && (furniture.empty() || frame.holds(glyphs)) &&
+                    goesOn(*before, layers);
+  if (some) parts = cutToDamage(*before, layers, chosen.questions(), panels);
+  double plots_px = 0.0, redrawn_px = 0.0;
+  for (const LivePanel& panel : panels) {
+    plots_px += static_cast<double>(panel.visible.width) * panel.visible.height;
+    redrawn_px += static_cast<double>(panel.redraw.width) * panel.redraw.height;
+  }
+  stats.continued = some;
+  if (some) stats.redrawn = redrawn_px / std::max(1.0, plots_px);
+  stats.select_ms = engine::msSince(select_start);
+
+  if (stereo)
+    recordStereo(input.stereo, input.sharpness, panels, furniture, plan.palette.ground, target);
+  else
+    frame.record(submissions, staging, panels, furniture, plan.palette.ground, glyphs, target,
+                 some ? LiveFrame::Redraw::kParts : LiveFrame::Redraw::kAll, input.sharpness);
+  submissions.submit({target.free,
+                      vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
+                      target.done});
+  if (!stereo && !half && there) drawn = std::move(layers);
+  stats.device_ms = submissions.lastMs();
+  stats.range = plan.range;
+  stats.vertical_exaggeration = plan.exaggeration;
+  stats.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
+  stats.record_ms = engine::msSince(start) - stats.select_ms - pumped_ms;
+  now.plan = std::move(plan);
+  seen = std::move(now);
+}
+
+LivePicture::LivePicture(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+LivePicture::~LivePicture() = default;
+
+engine::Result<std::unique_ptr<LivePicture>> LivePicture::create(const LiveOptions& options) {
+  RendererOptions wanted;
+  wanted.validation = options.validation;
+  wanted.device = options.device;
+  auto context = Context::create(wanted);
+  if (!context) return tl::unexpected(context.error());
+  auto glyphs = Glyphs::create();
+  if (!glyphs) return tl::unexpected(glyphs.error());
+  Context& used = **context;
+  const std::string name = used.name();
+  try {
+    return std::unique_ptr<LivePicture>(new LivePicture(
+        std::make_unique<Impl>(*std::move(context), used, kColourFormat, options, *std::move(glyphs))));
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(name, error.what()));
+  }
+}
+
+engine::Result<std::unique_ptr<LivePicture>> LivePicture::create(Context& context,
+                                                                 std::uint32_t colour_format,
+                                                                 const LiveOptions& options) {
+  auto glyphs = Glyphs::create();
+  if (!glyphs) return tl::unexpected(glyphs.error());
+  try {
+    return std::unique_ptr<LivePicture>(new LivePicture(std::make_unique<Impl>(
+        nullptr, context, static_cast<vk::Format>(colour_format), options, *std::move(glyphs))));
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(context.name(), error.what()));
+  }
+}
+
+engine::Status LivePicture::update(const Shown& shown) {
+  try {
+    return impl_->update(shown);
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+  }
+}
+
+engine::Status LivePicture::update(const engine::Version& version) {
+  Shown next = impl_->fields.shown();
+  next.versions = {version};
+  next.original.reset();
+  return update(next);
+}
+
+engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, LiveTarget& target) {
+  try {
+    FrameInput sized = input;
+    sized.view.width = static_cast<int>(target.extent.width);
+    sized.view.height = static_cast<int>(target.extent.height);
+    return impl_->draw(sized, target);
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+  }
+}
+
+engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input) {
+  try {
+    const auto start = Clock::now();
+    if (input.view.width < 16 || input.view.height < 16 || input.view.width > 16384 ||
+        input.view.height > 16384)
+      return engine::inputError(
+          fmt::format("a picture of {} x {} pixels", input.view.width, input.view.height), "picture size",
+          "give 16 to 16384 pixels each way");
+    const vk::Extent2D extent{static_cast<std::uint32_t>(input.view.width),
+                              static_cast<std::uint32_t>(input.view.height)};
+    if (impl_->canvas.image.extent() != extent) {
+      impl_->submissions.finish();
+      impl_->canvas.image =
+          GpuImage(impl_->context, kColourFormat, extent, 1, GpuImage::Kind::kPlane,
+                   vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc |
+                       vk::ImageUsageFlagBits::eTransferDst,
+                   vk::ImageAspectFlagBits::eColor);
+    }
+    engine::Result<FrameStatistics> stats = impl_->draw(input, impl_->canvas.target());
+    if (!stats) return stats;
+    impl_->submissions.finish();
+    stats->device_ms = impl_->submissions.lastMs();
+    stats->wait_ms = engine::msSince(start) - stats->record_ms - stats->select_ms - stats->upload.ms;
+    return stats;
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+  }
+}
+
+engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, Image& out) {
+  engine::Result<FrameStatistics> stats = drawAndWait(input);
+  if (!stats) return stats;
+  try {
+    const GpuImage& from = impl_->canvas.image;
+    Image image;
+    image.width = input.view.width;
+    image.height = input.view.height;
+    image.rgba.resize(std::size_t{4} * from.extent().width * from.extent().height);
+    const Buffer buffer(impl_->context, image.rgba.size(), vk::BufferUsageFlagBits::eTransferDst);
+    Submissions& submissions = impl_->submissions;
+    (void)submissions.begin();
+    copyToHost(submissions.commands(), from, buffer);
+    submissions.submit({});
+    submissions.finish();
+    std::memcpy(image.rgba.data(), buffer.data(), image.rgba.size());
+    out = std::move(image);
+    return stats;
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+  }
+}
+
+std::optional<Picked> LivePicture::pick(double x, double y) const {
+  if (!impl_->seen) return std::nullopt;
+  const Impl::Seen& seen = *impl_->seen;
+  const bool halves = seen.stereo == StereoMode::kSideBySide;
+  const bool right = halves && x >= seen.eye_width;
+  if (right) x -= seen.eye_width;
+  for (std::size_t i = 0; i < seen.visible.size(); ++i) {
+    const Rectangle& r = seen.visible[i];
+    if (x < r.x || y < r.y || x >= r.x + r.width || y >= r.y + r.height) continue;
+    const PanelPlan& p = seen.plan.panels[i];
+    const Camera& camera = halves ? seen.eyes[i][right ? 1 : 0] : p.camera;
+    const Ray ray = inField(p, camera.rayAt({x, y}));
+    const auto hit = meetSurface(p.field.reader(), ray.from, ray.along);
+    if (!hit) return std::nullopt;
+    return Picked{static_cast<int>(i), hit->position_mm, hit->column, hit->row};
+  }
+  return std::nullopt;
+}
+
+std::optional<std::pair<double, double>> LivePicture::pixelOf(int panel, const glm::dvec3& field_mm,
+                                                              Eye eye) const {
+  if (!impl_->seen || panel < 0 || static_cast<std::size_t>(panel) >= impl_->seen->visible.size())
+    return std::nullopt;
+  const Impl::Seen& seen = *impl_->seen;
+  const auto i = static_cast<std::size_t>(panel);
+  const PanelPlan& p = seen.plan.panels[i];
+  const bool stereo = seen.stereo != StereoMode::kOff;
+  const Camera& camera = stereo ? seen.eyes[i][static_cast<std::size_t>(eye)] : p.camera;
+  const glm::dvec2 at = camera.pixelOf(inScene(p, field_mm));
+  const bool right = seen.stereo == StereoMode::kSideBySide && eye == Eye::kRight;
+  return std::pair{at.x + (right ? seen.eye_width : 0), at.y};
+}
+
+void LivePicture::refreshRanges() {
+  impl_->spans.reset();
+}
+
+void LivePicture::finish() {
+  try {
+    impl_->submissions.finish();
+  } catch (const vk::SystemError&) {
+    // Lost: nothing is under way.
+  }
+}
+
+const std::string& LivePicture::device() const noexcept {
+  return impl_->context.name();
+}
+
+std::vector<std::string> LivePicture::validationMessages() const {
+  return impl_->context.messages().all();
+}
+
+}  // namespace fettle::render

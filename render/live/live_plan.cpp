@@ -1,0 +1,125 @@
+#include "render/live/live_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/detail/pick.h"
+
+namespace fettle::render {
+namespace {
+
+// Where the panels lie: as layOut has them in a row, or two rows of two or three.
+render::Layout arranged(const FrameInput& input, int versions) {
+  const bool titled =
+      std::any_of(input.titles.begin(), input.titles.end(), [](const auto& t) { return !t.empty(); });
+  const Titles titles = titled ? Titles::kAbove : Titles::kNone;
+  if (input.arrangement == Arrangement::kSplit && versions >= 2) {
+    render::Layout layout = layOut(input.view, input.decoration, 1, titles, input.furniture_scale);
+    layout.plots.push_back(layout.plots.front());
+    return layout;
+  }
+  if (versions < 4) return layOut(input.view, input.decoration, versions, titles, input.furniture_scale);
+  render::Layout layout =
+      layOut(input.view, input.decoration, (versions + 1) / 2, titles, input.furniture_scale);
+  const std::vector<Rectangle> columns = layout.plots;
+  const int gap = static_cast<int>(std::lround((titled ? 40 : 16) * layout.scale));
+  layout.plots.clear();
+  for (int row = 0; row < 2; ++row)
+    for (Rectangle plot : columns) {
+      const int height = (plot.height - gap) / 2;
+      plot.y += row * (height + gap);
+      plot.height = height;
+      layout.plots.push_back(plot);
+    }
+  return layout;
+}
+
+}  // namespace
+
+Ray inField(const PanelPlan& p, const Ray& ray) {
+  const double unit = p.field.grid().height_unit.mm;
+  const auto field = [&](const glm::dvec3& s) {
+    return glm::dvec3(glm::dvec2(s) - p.placing.first, (s.z / p.mm_per_unit + p.reference) * unit);
+  };
+  const glm::dvec3 from = field(ray.from);
+  return {from, field(ray.from + ray.along) - from};
+}
+glm::dvec3 inScene(const PanelPlan& p, const glm::dvec3& field_mm) {
+  const double unit = p.field.grid().height_unit.mm;
+  return {p.placing.first + glm::dvec2(field_mm), (field_mm.z / unit - p.reference) * p.mm_per_unit};
+}
+
+double windowAtMiddle(const PanelPlan& p) {
+  const glm::dvec2 middle(p.plot.x + 0.5 * p.plot.width, p.plot.y + 0.5 * p.plot.height);
+  const Ray ray = inField(p, p.camera.rayAt(middle));
+  const auto hit = meetSurface(p.field.reader(), ray.from, ray.along);
+  if (!hit) return 1.0;
+  glm::dvec3 at = inScene(p, hit->position_mm);
+  // Heights are drawn cut.
+  at.z = std::clamp(at.z, p.floor_z, p.cut_z);
+  return std::clamp(p.camera.windowOf(at), 0.1, 10.0);
+}
+
+engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& shown,
+                                      const PictureSpans& spans) {
+  const bool finite = std::isfinite(input.light_azimuth_deg) && input.light_elevation_deg >= 5.0 &&
+                      input.light_elevation_deg <= 90.0;
+  if (!(input.error_px > 0.0) || input.vertex_budget < 4096 || input.vertex_budget > (1 << 24) || !finite ||
+      !(input.split >= 0.0 && input.split <= 1.0))
+    return engine::inputError("the error, the budget, the split or the light is out of range", "picture",
+                              "see FrameInput");
+  const std::size_t panels = input.arrangement == Arrangement::kSplit
+                                 ? std::min<std::size_t>(2, shown.versions.size())
+                                 : shown.versions.size();
+  const auto allowed = [](std::int64_t vertices) { return vertices >= 1 && vertices <= (1 << 24); };
+  if (!input.panel_vertices.empty() &&
+      (input.panel_vertices.size() != panels ||
+       !std::all_of(input.panel_vertices.begin(), input.panel_vertices.end(), allowed)))
+    return engine::inputError("the vertices of the panels are out of range, or not one number a panel",
+                              "picture", "see FrameInput");
+  PictureSpec spec;
+  spec.view = input.view;
+  spec.deviation_from = shown.original;
+  spec.range = input.range;
+  spec.marks = shown.marks;
+  spec.marks_opacity = input.marks_opacity;
+  spec.map = input.map;
+  spec.contours = input.contours;
+  spec.decoration = input.decoration;
+  spec.theme = input.theme;
+  spec.samples_per_side = 1;
+  engine::Result<PicturePlan> plan =
+      layPicture(spec, shown.versions, spans, arranged(input, static_cast<int>(shown.versions.size())));
+  if (plan) {
+    plan->furniture.titles = input.titles;
+    const auto anyMark = [](const engine::Version& v) { return v.reader().root().marked_children != 0; };
+    // The plan takes the suggested ones for marks.
+    if (shown.accepted)
+      plan->furniture.marks = shown.marks == MarksOverlay::kShow &&
+                              (anyMark(*shown.accepted) ||
+                               std::any_of(shown.versions.begin() + 1, shown.versions.end(), anyMark));
+    plan->furniture.suggested =
+        shown.marks == MarksOverlay::kShow && shown.accepted && !(*shown.accepted == shown.versions.front());
+  }
+  return plan;
+}
+
+std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLine::Depth depth,
+                               const PanelPlan& panel) {
+  std::vector<gpu::Line> out;
+  const double per_mm = panel.mm_per_unit / panel.field.grid().height_unit.mm;
+  const double zero_mm = panel.reference * panel.field.grid().height_unit.mm;
+  // A hair towards the viewer, so that a line on the surface is not lost in it.
+  const glm::dvec3 lift = (depth == OverlayLine::Depth::kInScene ? 1.5 / panel.camera.pixelsPerMm() : 0.0) *
+                          panel.camera.toViewer();
+  const auto scene = [&](const glm::dvec3& p) {
+    return glm::dvec3(panel.placing.first + glm::dvec2(p), (p.z - zero_mm) * per_mm) + lift;
+  };
+  for (const OverlayLine& l : lines)
+    if (l.depth == depth)
+      out.push_back({glm::vec4(glm::vec3(scene(l.from_mm)), l.width_px),
+                     glm::vec4(glm::vec3(scene(l.to_mm)), 0.0F), glm::vec4(l.colour, l.opacity)});
+  return out;
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,180 @@
+#include "render/plan/camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec4.hpp>
+
+namespace fettle::render {
+namespace {
+
+// Half the perspective camera's angle up and down.
+const double kTanHalfAngle = std::tan(17.5 * std::numbers::pi / 180.0);
+
+// Exact at the quarter turns, where pictures must be square with the field.
+double sine(double degrees) {
+  const double turn = std::remainder(degrees, 360.0);
+  if (turn == 0.0 || std::abs(turn) == 180.0) return 0.0;
+  if (std::abs(turn) == 90.0) return turn > 0.0 ? 1.0 : -1.0;
+  return std::sin(turn * std::numbers::pi / 180.0);
+}
+double cosine(double degrees) {
+  return sine(degrees + 90.0);
+}
+
+}  // namespace
+
+std::array<glm::dvec3, 8> corners(const Box& box) {
+  std::array<glm::dvec3, 8> c;
+  for (std::size_t i = 0; i < 8; ++i)
+    c[i] = {(i & 1) != 0 ? box.high.x : box.low.x, (i & 2) != 0 ? box.high.y : box.low.y,
+            (i & 4) != 0 ? box.high.z : box.low.z};
+  return c;
+}
+
+Camera Camera::fit(const View& view, const Box& shown, const Box& drawn, const Rectangle& plot) {
+  Camera camera;
+  const double sin_a = sine(view.azimuth_deg), cos_a = cosine(view.azimuth_deg);
+  const double sin_e = sine(view.elevation_deg), cos_e = cosine(view.elevation_deg);
+  camera.right_ = {cos_a, sin_a, 0.0};
+  camera.to_viewer_ = {cos_e * sin_a, -cos_e * cos_a, sin_e};
+  camera.up_ = glm::cross(camera.to_viewer_, camera.right_);
+  camera.plot_ = plot;
+
+  const glm::dvec3 middle = 0.5 * (shown.low + shown.high);
+  glm::dvec3 target = middle;
+  target.x = shown.low.x + view.centre_x * (shown.high.x - shown.low.x);
+  target.y = shown.low.y + view.centre_y * (shown.high.y - shown.low.y);
+
+  const glm::dmat3 view_rotation = glm::transpose(glm::dmat3(camera.right_, camera.up_, camera.to_viewer_));
+  const double aspect = static_cast<double>(plot.width) / plot.height;
+
+  double half_width = 0.0, half_height = 0.0;  // orthographic
+  double distance = 0.0;                       // perspective: from eye to middle
+  for (const glm::dvec3& corner : corners(shown)) {
+    const glm::dvec3 v = view_rotation * (corner - middle);
+    half_width = std::max(half_width, std::abs(v.x));
+    half_height = std::max(half_height, std::abs(v.y));
+    distance = std::max(
+        {distance, v.z + std::abs(v.x) / (kTanHalfAngle * aspect), v.z + std::abs(v.y) / kTanHalfAngle});
+  }
+  if (!(std::max(half_width, half_height) > 0.0))
+    half_width = half_height = 0.5, distance = 0.5 / kTanHalfAngle;
+
+  double near = -std::numeric_limits<double>::infinity(), far = -near;
+  for (const Box& box : {shown, drawn})
+    for (const glm::dvec3& corner : corners(box)) {
+      const double depth = glm::dot(camera.to_viewer_, corner - target);
+      near = std::max(near, depth);
+      far = std::min(far, depth);
+    }
+  // A little air, so that nothing lies on the two planes themselves.
+  const double air = 0.01 * (near - far) + 1e-9 * std::max(half_width, half_height);
+  near += air;
+  far -= air;
+
+  glm::dmat4 from_view(0.0);  // columns: clip x, y, z, w as functions of view x, y, z, 1
+  if (view.projection == Projection::kOrthographic) {
+    const double scale = view.zoom * std::min(plot.width / (2.0 * half_width + 1e-300),
+                                              plot.height / (2.0 * half_height + 1e-300));
+    camera.pixels_per_mm_ = scale;
+    from_view[0][0] = 2.0 * scale / plot.width;
+    from_view[1][1] = -2.0 * scale / plot.height;
+    from_view[2][2] = -1.0 / (near - far);
+    from_view[3] = {0.0, 0.0, near / (near - far), 1.0};
+  } else {
+    const double near_distance = std::max(distance - near, 1e-3 * distance);
+    const double far_distance = std::max(distance - far, 1.001 * near_distance);
+    camera.pixels_per_mm_ = view.zoom * 0.5 * plot.height / (kTanHalfAngle * distance);
+    const double range = far_distance / (far_distance - near_distance);
+    camera.near_w_ = near_distance;
+    from_view[0][0] = view.zoom / (kTanHalfAngle * aspect);
+    from_view[1][1] = -view.zoom / kTanHalfAngle;
+    from_view[2][2] = -range;
+    from_view[2][3] = -1.0;
+    from_view[3] = {0.0, 0.0, range * (distance - near_distance), distance};
+  }
+  glm::dmat4 view_from_scene(view_rotation);
+  view_from_scene[3] = glm::dvec4(-(view_rotation * target), 1.0);
+  camera.clip_from_scene_ = from_view * view_from_scene;
+  camera.scene_from_clip_ = glm::inverse(camera.clip_from_scene_);
+  camera.distance_ = distance;
+  camera.across_ = from_view[0][0];
+  camera.target_ = target;
+  camera.perspective_ = view.projection == Projection::kPerspective;
+  return camera;
+}
+
+Camera Camera::aside(double share, double window) const noexcept {
+  Camera eye = *this;
+  const double aside = share * distance_, at_window = window * distance_;
+  // How far a point is behind the window, over the window's distance, as a function of x, y, z, 1.
+  const glm::dvec4 behind =
+      glm::dvec4(-to_viewer_, distance_ - at_window + glm::dot(to_viewer_, target_)) / at_window;
+  // From the eye's place all points move by -aside; the frustum is sheared back so that those of the window
+  // stay: clip x grows by across * aside * (w / at_window - 1), w being the distance from the viewer. The
+  // parallel camera's is that shear alone.
+  for (int i = 0; i < 4; ++i) eye.clip_from_scene_[i][0] += across_ * aside * behind[i];
+  eye.scene_from_clip_ = glm::inverse(eye.clip_from_scene_);
+  return eye;
+}
+
+double Camera::asidePixels(double window) const noexcept {
+  return 0.5 * plot_.width * across_ * (perspective_ ? 1.0 / window : distance_);
+}
+
+double Camera::windowOf(const glm::dvec3& point) const noexcept {
+  return 1.0 - glm::dot(to_viewer_, point - target_) / distance_;
+}
+
+glm::dvec2 Camera::pixelOf(const glm::dvec3& point) const noexcept {
+  const glm::dvec4 clip = clip_from_scene_ * glm::dvec4(point, 1.0);
+  return {plot_.x + (clip.x / clip.w + 1.0) * 0.5 * plot_.width,
+          plot_.y + (clip.y / clip.w + 1.0) * 0.5 * plot_.height};
+}
+
+Ray Camera::rayAt(const glm::dvec2& pixel) const noexcept {
+  const double x = (pixel.x - plot_.x) / plot_.width * 2.0 - 1.0;
+  const double y = (pixel.y - plot_.y) / plot_.height * 2.0 - 1.0;
+  const glm::dvec4 near = scene_from_clip_ * glm::dvec4(x, y, 0.0, 1.0);
+  const glm::dvec4 far = scene_from_clip_ * glm::dvec4(x, y, 1.0, 1.0);
+  const glm::dvec3 from = glm::dvec3(near) / near.w;
+  return {from, glm::normalize(glm::dvec3(far) / far.w - from)};
+}
+
+double Camera::movesAtMost(const glm::dvec3& step, const Box& box) const noexcept {
+  const glm::dvec4 move = clip_from_scene_ * glm::dvec4(step, 0.0);
+  double w = std::numeric_limits<double>::infinity();
+  for (const glm::dvec3& corner : corners(box))
+    w = std::min(w, (clip_from_scene_ * glm::dvec4(corner, 1.0)).w);
+  // (x + dx) / (w + dw) - x / w = (dx - (x / w) dw) / (w + dw), and |x / w| <= 1 for what is seen. The end of
+  // the move is in the box or a step from it, hence the smaller w.
+  w = std::max(w - std::abs(move.w), near_w_);
+  return std::hypot((std::abs(move.x) + std::abs(move.w)) * 0.5 * plot_.width,
+                    (std::abs(move.y) + std::abs(move.w)) * 0.5 * plot_.height) /
+         w;
+}
+
+double Camera::depthOf(const glm::dvec3& point) const noexcept {
+  return -glm::dot(to_viewer_, point);
+}
+
+bool Camera::misses(const Box& box) const noexcept {
+  int outside[6] = {};
+  for (const glm::dvec3& corner : corners(box)) {
+    const glm::dvec4 c = clip_from_scene_ * glm::dvec4(corner, 1.0);
+    outside[0] += c.x < -c.w;
+    outside[1] += c.x > c.w;
+    outside[2] += c.y < -c.w;
+    outside[3] += c.y > c.w;
+    outside[4] += c.z < 0.0;
+    outside[5] += c.z > c.w;
+  }
+  return std::any_of(std::begin(outside), std::end(outside), [](int n) { return n == 8; });
+}
+
+}  // namespace fettle::render

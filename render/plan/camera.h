@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "render/plan/picture.h"
+
+namespace fettle::render {
+
+/// Part of a picture [pixels], (0, 0) = top left corner.
+struct Rectangle {
+  int x = 0, y = 0, width = 0, height = 0;
+  friend bool operator==(const Rectangle&, const Rectangle&) = default;
+};
+
+/// A box in scene coordinates [mm], exaggeration in z.
+struct Box {
+  glm::dvec3 low{0.0};
+  glm::dvec3 high{0.0};
+};
+
+/// A half line in scene coordinates.
+struct Ray {
+  glm::dvec3 from;
+  glm::dvec3 along;  ///< unit, away from the viewer
+};
+
+/// Turns scene coordinates into pixels and back, in double precision. Scene coordinates are right-handed: x
+/// and y as in the field, z up. Clip space is Vulkan's: y down, depth 0 (near) .. 1 (far).
+class Camera {
+ public:
+  Camera() = default;
+
+  /// The camera of `view` that shows all of `shown` in `plot` at zoom 1, and whose depth range takes in all
+  /// of `drawn` as well. A box without extent is shown as if it were one millimetre wide. view.width and
+  /// view.height play no part.
+  [[nodiscard]] static Camera fit(const View& view, const Box& shown, const Box& drawn,
+                                  const Rectangle& plot);
+
+  [[nodiscard]] const glm::dmat4& clipFromScene() const noexcept { return clip_from_scene_; }
+  /// Unit vectors in the scene: to the picture's right, to its top, to the viewer.
+  [[nodiscard]] const glm::dvec3& right() const noexcept { return right_; }
+  [[nodiscard]] const glm::dvec3& up() const noexcept { return up_; }
+  [[nodiscard]] const glm::dvec3& toViewer() const noexcept { return to_viewer_; }
+
+  /// The camera of an eye beside this one that looks through the same window: a plane square to the view at
+  /// `window` times the distance of the middle of what is shown, whose points both see at the same pixels
+  /// (Bourke 1999, "Calculating stereo pairs"). `share`: how far to the right it stands, as a share of that
+  /// distance. A parallel camera has no place; it is sheared as if it stood where the perspective one does.
+  [[nodiscard]] Camera aside(double share, double window) const noexcept;
+  /// Pixels that such an eye's picture of a point far behind the window is moved by, for a share of 1.
+  [[nodiscard]] double asidePixels(double window) const noexcept;
+  /// The `window` that a point lies on; > 0 before the viewer.
+  [[nodiscard]] double windowOf(const glm::dvec3& point) const noexcept;
+
+  /// Pixels that a millimetre parallel to the picture takes, at the middle of what is shown.
+  [[nodiscard]] double pixelsPerMm() const noexcept { return pixels_per_mm_; }
+
+  /// Where a point of the scene lies in the picture; pixel (i, j) covers [i, i + 1) x [j, j + 1).
+  [[nodiscard]] glm::dvec2 pixelOf(const glm::dvec3& point) const noexcept;
+
+  /// What lies under a place in the picture.
+  [[nodiscard]] Ray rayAt(const glm::dvec2& pixel) const noexcept;
+
+  /// How far a point of the box can move in the picture when it moves by at most `step` in the scene, as a
+  /// bound [px]; of points and moves whose visible part counts: what lies before the near plane does not.
+  [[nodiscard]] double movesAtMost(const glm::dvec3& step, const Box& box) const noexcept;
+
+  /// Distance from the viewer, for sorting: grows away from it.
+  [[nodiscard]] double depthOf(const glm::dvec3& point) const noexcept;
+
+  /// Whether no part of the box can be in the plot. Conservative: false when in doubt.
+  [[nodiscard]] bool misses(const Box& box) const noexcept;
+
+  /// Whether both show the same, bit for bit.
+  friend bool operator==(const Camera&, const Camera&) = default;
+
+ private:
+  glm::dmat4 clip_from_scene_{1.0};
+  glm::dmat4 scene_from_clip_{1.0};
+  glm::dvec3 right_{1.0, 0.0, 0.0}, up_{0.0, 1.0, 0.0}, to_viewer_{0.0, 0.0, 1.0};
+  double pixels_per_mm_ = 1.0;
+  double near_w_ = 1.0;    // clip w on the near plane; 1 when orthographic
+  double distance_ = 1.0;  // of the viewer from the target [mm]; imagined when orthographic
+  double across_ = 1.0;    // clip x of a millimetre to the right
+  glm::dvec3 target_{0.0};
+  bool perspective_ = false;
+  Rectangle plot_;
+};
+
+/// The eight corners of a box.
+[[nodiscard]] std::array<glm::dvec3, 8> corners(const Box& box);
+
+}  // namespace fettle::render

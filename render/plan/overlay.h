@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "render/plan/camera.h"
+#include "render/plan/glyphs.h"
+#include "render/plan/picture.h"
+#include "shaders/layout.h"
+
+namespace fettle::render {
+
+/// Colours of everything that is not surface, linear light.
+struct Palette {
+  glm::vec3 ground, ink, faint_ink, no_data, wall, marks, suggested;
+};
+[[nodiscard]] Palette paletteOf(Theme theme, ColourMap map);
+
+/// Where things go in a picture of a given size; pixels.
+struct Layout {
+  double scale = 1.0;  ///< 1: text of 15 pixels
+  int text_px = 15;
+  std::vector<Rectangle> plots;  ///< one a panel
+  bool furniture = false;        ///< whether there is room for colour bar and scale bar
+};
+enum class Titles { kNone, kAbove };
+/// `scale`: of text and bars, as the display asks for it; 0: by the size of the picture, 1 at 1280 x 800.
+/// However large, text and bars leave three fifths of width and height to the surface.
+[[nodiscard]] Layout layOut(const View& view, Decoration decoration, int panels, Titles titles,
+                            double scale = 0.0);
+
+/// What the furniture says.
+struct Furniture {
+  ValueRange range;                   ///< of the colours [height_unit]
+  bool below = false, above = false;  ///< values outside it exist: the bar gets a pointed end
+  std::string quantity;               ///< "height" or "deviation"
+  std::string note;                   ///< small, under the bar; may be empty
+  engine::LengthUnit height_unit;
+  engine::LengthUnit lateral_unit;
+  double pixels_per_mm = 1.0;  ///< of the first panel's camera
+  double exaggeration = 1.0;
+  bool approximate_scale = false;  ///< perspective: the scale bar holds at the middle only
+  bool marks = false, suggested = false, no_data = false;  ///< legend entries
+  float marks_opacity = 1.0F;
+  std::vector<std::string> titles;  ///< one a panel
+};
+
+/// Builds the quads of the finished picture in drawing order. `warnings` gets a line for what had no room.
+[[nodiscard]] std::vector<gpu::Quad> furnish(const Layout& layout, const View& view,
+                                             const Furniture& furniture, const Palette& palette,
+                                             Glyphs& glyphs, std::vector<std::string>& warnings);
+
+}  // namespace fettle::render

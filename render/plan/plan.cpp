@@ -1,0 +1,274 @@
+#include "render/plan/plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "render/plan/colour_map.h"
+#include "render/plan/number_text.h"
+
+namespace fettle::render {
+namespace {
+
+using engine::inputError;
+
+constexpr double kAmbient = 0.30;
+// Colours that mean a deviation are read as numbers: relief may hint at the shape, but not darken them.
+constexpr double kDeviationAmbient = 0.80;
+// The light stands 45 degrees above the field, over the viewer's left shoulder: lit from the upper left,
+// hills look like hills (Imhof 1965, "Kartographische Gelaendedarstellung").
+constexpr double kLightUp = 0.70710678118654752;
+
+engine::Status check(const PictureSpec& spec) {
+  const View& v = spec.view;
+  const auto in = [](double x, double low, double high) { return x >= low && x <= high; };
+  if (!in(v.width, 16, 16384) || !in(v.height, 16, 16384))
+    return inputError(fmt::format("a picture of {} x {} pixels", v.width, v.height), "picture size",
+                      "give 16 to 16384 pixels each way");
+  if (!std::isfinite(v.azimuth_deg)) return inputError("the azimuth is not a number", "view", "give degrees");
+  if (!(v.elevation_deg > 0.0 && v.elevation_deg <= 90.0))
+    return inputError(fmt::format("an elevation of {} degrees", v.elevation_deg), "view",
+                      "give more than 0 and at most 90");
+  if (!in(v.zoom, 1e-3, 1e6))
+    return inputError(fmt::format("a zoom of {}", v.zoom), "view", "give 0.001 to 1000000");
+  if (!in(v.centre_x, -100, 100) || !in(v.centre_y, -100, 100))
+    return inputError("the middle of the picture lies far outside the field", "view",
+                      "give fractions near 0 to 1");
+  if (v.vertical_exaggeration != 0.0 && !in(v.vertical_exaggeration, 1e-9, 1e9))
+    return inputError(fmt::format("a vertical exaggeration of {}", v.vertical_exaggeration), "view",
+                      "give a positive factor, or 0 to choose one");
+  if (!in(spec.samples_per_side, 1, 4))
+    return inputError(fmt::format("{} rays a side", spec.samples_per_side), "picture", "give 1 to 4");
+  if (!in(spec.cell_px, 0.5, 64)) return inputError("the smallest cell drawn", "picture", "give 0.5 to 64");
+  if (!in(spec.marks_opacity, 0, 1)) return inputError("the opacity of marks", "picture", "give 0 to 1");
+  if (spec.range && !(std::isfinite(spec.range->low) && std::isfinite(spec.range->high) &&
+                      spec.range->low < spec.range->high))
+    return inputError("the range of the colours is empty", "picture", "give a low end below the high end");
+  return {};
+}
+
+engine::Status checkFields(const PictureSpec& spec) {
+  if (spec.field.empty() || (spec.compare && spec.compare->empty()) ||
+      (spec.deviation_from && spec.deviation_from->empty()))
+    return inputError("there is no field to draw", "picture");
+  if (spec.deviation_from) {
+    const auto same = [&](const engine::Version& v2) {
+      return v2.grid().width == spec.deviation_from->grid().width &&
+             v2.grid().height == spec.deviation_from->grid().height;
+    };
+    if (!same(spec.field) || (spec.compare && !same(*spec.compare)))
+      return inputError(fmt::format("the fields have different sizes: {} x {} against {} x {}",
+                                    spec.field.grid().width, spec.field.grid().height,
+                                    spec.deviation_from->grid().width, spec.deviation_from->grid().height),
+                        "deviation", "compare a field with its own original");
+  }
+  return {};
+}
+
+// A range with an inside, for colours: what is flat gets the middle colour.
+ValueRange opened(ValueRange r, double half) {
+  if (r.low < r.high) return r;
+  half = std::max({half, std::abs(r.low) * 1e-6, 1e-9});
+  return {r.low - half, r.high + half};
+}
+
+bool anyMark(const engine::Version& v) {
+  return v.reader().root().marked_children != 0;
+}
+bool anyHole(const engine::Version& v) {
+  return v.reader().root().holed_children != 0;
+}
+
+glm::vec4 vec4Of(const glm::vec3& v, double w) {
+  return {v, static_cast<float>(w)};
+}
+
+}  // namespace
+
+double chooseExaggeration(double relief_mm, double extent_mm) {
+  if (!(relief_mm > 0.0) || !(extent_mm > 0.0)) return 1.0;
+  const double ratio = relief_mm / extent_mm;
+  if (ratio >= 0.04 && ratio <= 0.4) return 1.0;
+  return std::clamp(roundDown125(0.18 / ratio), 1e-36, 1e36);
+}
+
+PictureSpans spansOf(std::span<const engine::Version> fields,
+                     const std::optional<engine::Version>& deviation_from) {
+  PictureSpans spans;
+  const engine::LengthUnit& unit = fields.front().grid().height_unit;
+  for (const engine::Version& v : fields) {
+    ValueSpan span = heightSpan(v);
+    const double to_first = v.grid().height_unit.mm / unit.mm;
+    for (ValueRange* r : {&span.robust, &span.extreme}) *r = {r->low * to_first, r->high * to_first};
+    spans.heights = join(spans.heights, span);
+    if (deviation_from) spans.colours = join(spans.colours, deviationSpan(v, *deviation_from));
+  }
+  if (!deviation_from) spans.colours = spans.heights;
+  return spans;
+}
+
+PictureSpans negated(const PictureSpans& spans) noexcept {
+  return {negated(spans.heights), negated(spans.colours)};
+}
+
+engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
+  if (engine::Status ok = check(spec); !ok) return tl::unexpected(ok.error());
+  if (engine::Status ok = checkFields(spec); !ok) return tl::unexpected(ok.error());
+  std::vector<engine::Version> fields{spec.field};
+  if (spec.compare) fields.push_back(*spec.compare);
+  const bool titled = !spec.title_left.empty() || (spec.compare && !spec.title_right.empty());
+  engine::Result<PicturePlan> plan =
+      layPicture(spec, fields, spansOf(fields, spec.deviation_from),
+                 layOut(spec.view, spec.decoration, static_cast<int>(fields.size()),
+                        titled ? Titles::kAbove : Titles::kNone));
+  if (!plan) return plan;
+  for (PanelPlan& panel : plan->panels)
+    panel.detail = chooseDetail(panel.field, panel.placing, panel.camera,
+                                spec.cell_px / spec.samples_per_side, panel.floor_z, panel.cut_z);
+  plan->furniture.titles = {spec.title_left};
+  if (spec.compare) plan->furniture.titles.push_back(spec.title_right);
+  return plan;
+}
+
+engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const engine::Version> fields,
+                                       const PictureSpans& spans, Layout layout) {
+  if (engine::Status ok = check(spec); !ok) return tl::unexpected(ok.error());
+  PicturePlan plan;
+  plan.layout = std::move(layout);
+  // Geometry. All fields share one reference and one unit of height: the first one's.
+  const engine::LengthUnit& unit = fields.front().grid().height_unit;
+  const ValueSpan &heights = spans.heights, &colours = spans.colours;
+  glm::dvec2 extent{0.0};
+  for (const engine::Version& v : fields) extent = glm::max(extent, placingOf(v.grid()).extent());
+  const double relief = heights.robust.high - heights.robust.low;  // [height_unit]
+  const double widest = std::max(extent.x, extent.y);
+  plan.exaggeration = spec.view.vertical_exaggeration > 0.0 ? spec.view.vertical_exaggeration
+                                                            : chooseExaggeration(relief * unit.mm, widest);
+  const double mm_per_unit = unit.mm * plan.exaggeration;
+  const double reference = 0.5 * (heights.robust.low + heights.robust.high);
+  // A flat field still stands on a plinth, so that it reads as a body.
+  const double relief_mm = relief * mm_per_unit;
+  const double plinth = std::max(0.08 * relief_mm, 0.012 * widest);
+  const double floor_z = -0.5 * relief_mm - plinth;
+  const double lowest_drawn = reference + (floor_z + 0.3 * plinth) / mm_per_unit;
+  const double highest_drawn = heights.robust.high + 0.5 * relief + 0.3 * plinth / mm_per_unit;
+  const double top_z = 0.5 * relief_mm;
+  const double cut_z = (highest_drawn - reference) * mm_per_unit;
+
+  // Colours.
+  const Quantity quantity = spec.deviation_from ? Quantity::kDeviation : Quantity::kHeight;
+  plan.map = resolve(spec.map, quantity);
+  plan.palette = paletteOf(spec.theme, plan.map);
+  // Nothing varies: a bar of about the size of the relief, or of a hundredth of the field's width.
+  const double flat_half =
+      relief > 0.0 ? roundDown125(0.01 * relief) : roundDown125(0.01 * std::max(widest, 1e-6) / unit.mm);
+  plan.range = opened(spec.range ? *spec.range : colours.robust, flat_half);
+  if (quantity == Quantity::kDeviation) {
+    const double limit = std::max(std::abs(plan.range.low), std::abs(plan.range.high));
+    plan.range = {-limit, limit};
+  }
+
+  const std::vector<Tick> steps = ticks(plan.range.low, plan.range.high, 13);
+  const double contour_step =
+      steps.size() > 1 ? steps[1].value - steps[0].value : plan.range.high - plan.range.low;
+
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    PanelPlan panel;
+    panel.plot = plan.layout.plots[i];
+    if (panel.plot.width < 8 || panel.plot.height < 8)
+      return inputError(fmt::format("a picture of {} x {} pixels leaves no room for the surface",
+                                    spec.view.width, spec.view.height),
+                        "picture size", "make it larger, or leave the furniture out");
+    panel.field = fields[i];
+    panel.floor_z = floor_z;
+    panel.cut_z = cut_z;
+    panel.placing = placingOf(panel.field.grid());
+    const glm::dvec2 half = 0.5 * extent;
+    const Box shown{{-half.x, -half.y, floor_z}, {half.x, half.y, top_z}};
+    const Box drawn{{-half.x, -half.y, floor_z}, {half.x, half.y, cut_z}};
+    // A margin of air around the block inside its plot.
+    Rectangle inner = panel.plot;
+    const int air = plan.layout.furniture ? static_cast<int>(0.012 * std::min(inner.width, inner.height)) : 0;
+    View view = spec.view;
+    view.zoom *= static_cast<double>(std::min(inner.width, inner.height) - 2 * air) /
+                 std::min(inner.width, inner.height);
+    panel.camera = Camera::fit(view, shown, drawn, inner);
+    const glm::dvec2 cell_rays =
+        cellPixels(panel.placing, panel.camera) * static_cast<double>(spec.samples_per_side);
+    const double larger = std::max(cell_rays.x, cell_rays.y);
+    panel.smooth = larger > 1.5;
+
+    gpu::PanelUniforms& u = panel.uniforms;
+    const double own_unit =
+        panel.field.grid().height_unit.mm / unit.mm;  // first's units a unit of this field
+    const double share = 1.0 / own_unit;
+    panel.reference = reference * share;
+    panel.mm_per_unit = mm_per_unit * own_unit;
+    panel.lowest = lowest_drawn * share;
+    panel.highest = highest_drawn * share;
+    u = {};
+    u.views[0].clip_from_scene = glm::mat4(panel.camera.clipFromScene());
+    u.placing = glm::vec4(glm::dvec4(panel.placing.first, panel.placing.spacing));
+    u.relief = glm::vec4(
+        glm::dvec4(panel.field.reader().sign(), reference * share, mm_per_unit * own_unit, floor_z));
+    u.limits = glm::vec4(glm::dvec4(lowest_drawn * share, highest_drawn * share,
+                                    spec.deviation_from ? spec.deviation_from->reader().sign() : 1.0F, 0.0));
+    u.colouring = glm::vec4(glm::dvec4(plan.range.low * share, own_unit / (plan.range.high - plan.range.low),
+                                       contour_step * share, larger));
+    const glm::dvec3 right = panel.camera.right();
+    const glm::dvec3 away{-right.y, right.x, 0.0};  // level, from the viewer into the picture
+    const double level = std::sqrt(0.5) * std::sqrt(1.0 - kLightUp * kLightUp);
+    u.light = glm::vec4(glm::dvec4(level * (away - right) + glm::dvec3(0.0, 0.0, kLightUp),
+                                   spec.deviation_from ? kDeviationAmbient : kAmbient));
+    u.marks_tint = vec4Of(plan.palette.marks, spec.marks_opacity);
+    u.suggested_tint = vec4Of(plan.palette.suggested, spec.marks_opacity);
+    u.no_data = vec4Of(plan.palette.no_data, 1.0);
+    u.wall = vec4Of(plan.palette.wall, 1.0);
+    u.size = glm::ivec4(panel.placing.size, panel.placing.true_size);
+    u.shade = glm::ivec4(0, 0, panel.placing.size);
+    // A ray up or down the picture; seen from straight above nothing is drawn beside its sample.
+    // In perspective that holds for the middle of the picture alone.
+    const double least = spec.view.projection == Projection::kPerspective ? 0.3 : 0.0;
+    const double upright =
+        std::max(least, std::abs(panel.camera.up().z)) * panel.camera.pixelsPerMm() * spec.samples_per_side;
+    u.seam = glm::vec4(0.0F, static_cast<float>(std::min(1e30, 1.0 / std::max(upright, 1e-30))), 0.0F, 0.0F);
+    // Differences over about the width of a ray: finer ones would be noise that no pixel can show.
+    u.paging.w =
+        std::max(1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::min(cell_rays.x, cell_rays.y)))));
+    const ColourTable& table = colourTable(plan.map);
+    for (std::size_t k = 0; k < table.size(); ++k) u.colours[k] = glm::vec4(table[k], 1.0F);
+    plan.panels.push_back(std::move(panel));
+  }
+
+  Furniture& f = plan.furniture;
+  f.range = plan.range;
+  f.below = !colours.empty && colours.extreme.low < plan.range.low;
+  f.above = !colours.empty && colours.extreme.high > plan.range.high;
+  f.quantity = quantity == Quantity::kDeviation ? "deviation" : "height";
+  f.height_unit = unit;
+  f.lateral_unit = fields.front().grid().lateral_unit;
+  f.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
+  f.exaggeration = plan.exaggeration;
+  f.approximate_scale = spec.view.projection == Projection::kPerspective;
+  for (const engine::Version& v : fields) {
+    f.marks = f.marks || (spec.marks == MarksOverlay::kShow && anyMark(v));
+    f.no_data = f.no_data || anyHole(v);
+  }
+  f.marks_opacity = static_cast<float>(spec.marks_opacity);
+  if (f.below || f.above) {
+    // As the colour bar chooses, whose unit stands over both.
+    const double size = std::max(plan.range.high - plan.range.low,
+                                 std::max(std::abs(plan.range.low), std::abs(plan.range.high)) * 1e-3);
+    const ShownUnit shown = shownUnit(unit, size, 0.05, 5e4);
+    f.note = fmt::format("lowest {}\nhighest {}", shortNumber(colours.extreme.low * shown.per_unit),
+                         shortNumber(colours.extreme.high * shown.per_unit));
+    if (quantity == Quantity::kDeviation && !spec.range) f.note += "\nbar: 99.5 %";
+  }
+  if (quantity == Quantity::kDeviation && !colours.empty && colours.extreme == ValueRange{})
+    f.note = "no deviation";
+  return plan;
+}
+
+}  // namespace fettle::render

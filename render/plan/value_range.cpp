@@ -1,0 +1,151 @@
+#include "render/plan/value_range.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include "engine/filter/block.h"
+
+namespace fettle::render {
+namespace {
+
+constexpr std::int64_t kSampleTarget = std::int64_t{1} << 20;
+
+template <class T>
+T percentile(std::vector<T>& values, double share) {
+  const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + k, values.end());
+  return values[static_cast<std::size_t>(k)];
+}
+
+// Each tile's share of the sample, scattered by a golden-ratio step so that it falls in no row or column
+// pattern.
+template <class Visit>
+void forSomeOf(std::int64_t tiles, std::int64_t tile_number, const Visit& visit) {
+  const std::int64_t n = std::clamp<std::int64_t>(kSampleTarget / tiles, 4, engine::kTileSamples);
+  constexpr std::int64_t kStep = 2531;  // odd: visits every sample of a tile before repeating one
+  for (std::int64_t k = 0; k < n; ++k)
+    visit(static_cast<std::size_t>((tile_number * 977 + k * kStep) & (engine::kTileSamples - 1)));
+}
+
+}  // namespace
+
+ValueSpan heightSpan(const engine::Version& field) {
+  const engine::FieldReader reader = field.reader();
+  const engine::HeightBounds bounds = reader.bounds();
+  if (bounds.empty()) return {};
+  const std::int64_t tiles = std::int64_t{reader.tileColumns()} * reader.tileRows();
+  std::vector<float> values;
+  values.reserve(static_cast<std::size_t>(std::min(tiles * engine::kTileSamples, 2 * kSampleTarget)));
+  std::int64_t number = 0;
+  for (std::int32_t tr = 0; tr < reader.tileRows(); ++tr)
+    for (std::int32_t tc = 0; tc < reader.tileColumns(); ++tc, ++number) {
+      const engine::Tile& tile = reader.tile(tc, tr);
+      forSomeOf(tiles, number, [&](std::size_t i) {
+        if (!std::isnan(tile.samples[i])) values.push_back(reader.sign() * tile.samples[i]);
+      });
+    }
+  ValueSpan span;
+  span.empty = false;
+  span.extreme = {bounds.min, bounds.max};
+  span.robust = span.extreme;
+  if (values.size() < 64) return span;  // too few to speak of percentiles
+  const double low = percentile(values, 0.002), high = percentile(values, 0.998);
+  const double air = 0.1 * (high - low);
+  // All of the middle equal, and something else at the ends: the ends are all there is to see.
+  if (!(high > low)) return span;
+  span.robust = {std::max(span.extreme.low, low - air), std::min(span.extreme.high, high + air)};
+  return span;
+}
+
+namespace {
+
+// Lowest and highest difference of two tiles, in lanes; the other way round when there is none. A comparison
+// with a hole's NaN is false.
+constexpr int kLanes = 16;
+FETTLE_EACH_CPU void extremesOf(const float* a, const float* b, double sign_a, double sign_b, double* low,
+                                double* high) {
+  for (int i = 0; i < engine::kTileSamples; i += kLanes)
+    for (int k = 0; k < kLanes; ++k) {
+      const double d = sign_a * double{a[i + k]} - sign_b * double{b[i + k]};
+      low[k] = d < low[k] ? d : low[k];
+      high[k] = d > high[k] ? d : high[k];
+    }
+}
+
+// What a row of tiles says.
+struct RowSpan {
+  ValueRange extreme{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  std::vector<double> changes;
+};
+
+RowSpan deviationOfRow(const engine::FieldReader& a, const engine::FieldReader& b, std::int32_t tile_row) {
+  const std::int64_t tiles = std::int64_t{a.tileColumns()} * a.tileRows();
+  RowSpan row;
+  for (std::int32_t tc = 0; tc < a.tileColumns(); ++tc) {
+    const engine::Tile& ta = a.tile(tc, tile_row);
+    const engine::Tile& tb = b.tile(tc, tile_row);
+    if (&ta == &tb && a.sign() == b.sign()) {
+      if (!ta.bounds.empty()) row.extreme = {std::min(row.extreme.low, 0.0), std::max(row.extreme.high, 0.0)};
+      continue;
+    }
+    double low[kLanes], high[kLanes];
+    std::fill_n(low, kLanes, row.extreme.low);
+    std::fill_n(high, kLanes, row.extreme.high);
+    extremesOf(ta.samples.data(), tb.samples.data(), a.sign(), b.sign(), low, high);
+    row.extreme = {*std::min_element(low, low + kLanes), *std::max_element(high, high + kLanes)};
+    forSomeOf(tiles, std::int64_t{tile_row} * a.tileColumns() + tc, [&](std::size_t i) {
+      const double d = std::abs(double{a.sign()} * ta.samples[i] - double{b.sign()} * tb.samples[i]);
+      if (d > 0.0) row.changes.push_back(d);
+    });
+  }
+  return row;
+}
+
+}  // namespace
+
+ValueSpan deviationSpan(const engine::Version& field, const engine::Version& original) {
+  const engine::FieldReader a = field.reader(), b = original.reader();
+  assert(a.width() == b.width() && a.height() == b.height());
+  std::vector<RowSpan> rows(static_cast<std::size_t>(a.tileRows()));
+  oneapi::tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
+    rows[r] = deviationOfRow(a, b, static_cast<std::int32_t>(r));
+  });
+  ValueSpan span;
+  std::vector<double> changes;
+  for (RowSpan& row : rows) {
+    changes.insert(changes.end(), row.changes.begin(), row.changes.end());
+    if (!(row.extreme.low <= row.extreme.high)) continue;
+    span.extreme = span.empty ? row.extreme
+                              : ValueRange{std::min(span.extreme.low, row.extreme.low),
+                                           std::max(span.extreme.high, row.extreme.high)};
+    span.empty = false;
+  }
+  const double largest = std::max(-span.extreme.low, span.extreme.high);
+  double limit = largest;
+  if (changes.size() >= 64) {
+    const double usual = percentile(changes, 0.995);
+    if (largest > 1.25 * usual) limit = usual;
+  }
+  span.robust = {-limit, limit};
+  return span;
+}
+
+ValueSpan negated(const ValueSpan& span) noexcept {
+  const auto turned = [](const ValueRange& r) { return ValueRange{0.0 - r.high, 0.0 - r.low}; };
+  return {turned(span.robust), turned(span.extreme), span.empty};
+}
+
+ValueSpan join(const ValueSpan& a, const ValueSpan& b) noexcept {
+  if (a.empty) return b;
+  if (b.empty) return a;
+  return {{std::min(a.robust.low, b.robust.low), std::max(a.robust.high, b.robust.high)},
+          {std::min(a.extreme.low, b.extreme.low), std::max(a.extreme.high, b.extreme.high)},
+          false};
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,126 @@
+#include "render/residency/page_demand.h"
+
+#include <algorithm>
+
+namespace fettle::render {
+namespace {
+
+// A vertex that is a hole looks around itself. Level 0 keeps no record of holes.
+bool looksAround(const PatchLeaf& leaf) {
+  return leaf.holed || leaf.level == 0;
+}
+
+}  // namespace
+
+void PageDemand::ask(LiveTexture& texture, const LevelSpan& span, std::uint64_t frame) {
+  PageSet& pages = *texture.pages();
+  auto asked =
+      std::find_if(asked_.begin(), asked_.end(), [&](const auto& of) { return of.first == &texture; });
+  if (asked == asked_.end()) asked = asked_.insert(asked_.end(), {&texture, 0});
+  // Coarser levels too, for as long as the finer one is under way.
+  for (int level = span.level; level < pages.fixedFrom(); ++level) {
+    const int shift = dataShift(level - span.level);
+    pages.grid().over({level, span.low >> shift, span.high >> shift}, [&](int entry) {
+      if (pages.ask(entry, frame)) wishes_.push_back({&texture, entry, level, asked->second++});
+    });
+  }
+}
+
+void PageDemand::want(const PatchTree& patches, LiveTexture& field, LiveTexture* original, int shade_level,
+                      int step, std::uint64_t frame) {
+  for (const PatchLeaf& leaf : patches.leaves()) {
+    ask(field, geometrySpan(leaf.level, leaf.patch, false), frame);
+    if (looksAround(leaf)) ask(field, geometrySpan(leaf.level, leaf.patch, true), frame);
+  }
+  const int log2_page = field.pages()->grid().log2Side() + dataShift(shade_level);
+  for (const PatchLeaf& part : patches.parts(log2_page)) {
+    const LevelSpan shade = shadeSpan(part.level, part.patch, shade_level, step);
+    ask(field, shade, frame);
+    if (original != nullptr) ask(*original, shade, frame);
+  }
+}
+
+bool PageDemand::drawable(const PatchLeaf& leaf, const PageSet& pages) noexcept {
+  return pages.resident(geometrySpan(leaf.level, leaf.patch, false)) &&
+         (!looksAround(leaf) || pages.resident(geometrySpan(leaf.level, leaf.patch, true)));
+}
+
+PageDemand::Outcome PageDemand::settle(PagePool& pool, StagingRing& ring, std::uint64_t frame,
+                                       const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
+                                       UploadStatistics& count) {
+  std::stable_sort(wishes_.begin(), wishes_.end(), [](const Wish& a, const Wish& b) {
+    return a.level != b.level ? a.level > b.level : a.number < b.number;
+  });
+  Outcome outcome;
+  outcome.asked = static_cast<std::int64_t>(wishes_.size());
+  PageSlots& slots = pool.slots();
+  std::int64_t room = std::int64_t{slots.count()} - slots.fixed();
+  std::vector<const Wish*> missing;
+  for (const Wish& w : wishes_) {
+    PageSet& pages = *w.texture->pages();
+    if (!pages.resident(w.entry)) {
+      missing.push_back(&w);
+      --room;
+      continue;
+    }
+    const std::uint32_t slot = pages.slots()[static_cast<std::size_t>(w.entry)];
+    if (slots.usedIn(slot, frame)) continue;
+    if (room-- > 0) slots.use(slot, frame);
+  }
+  std::int64_t spent = 0;
+  bool full = false;
+  for (const Wish* w : missing) {
+    PageSet& pages = *w->texture->pages();
+    const engine::FieldReader reader = w->texture->version().reader();
+    // A page is brought as the version has it, so its tiles must have come to that.
+    if (!w->texture->settled(w->entry)) {
+      ++outcome.waiting;
+      continue;
+    }
+    if (pages.share(w->entry, reader, frame)) continue;
+    if (full) {
+      ++outcome.beyond;
+      continue;
+    }
+    if (spent > 0 && spent + pages.bytes(w->entry) > byte_budget) {
+      ++outcome.waiting;
+      continue;
+    }
+    std::int64_t bytes = 0;
+    const PageSet::Load load = pages.load(w->entry, reader, ring, frame, bytes);
+    if (load == PageSet::Load::kNoSlot) full = true;
+    outcome.loaded += load == PageSet::Load::kDone;
+    outcome.waiting += load == PageSet::Load::kNoStaging;
+    outcome.beyond += load == PageSet::Load::kNoSlot;
+    spent += bytes;
+  }
+  count.bytes += spent;
+  count.pending_tiles += outcome.waiting;
+  pool.flush(commands, ring.buffer());
+  wishes_.clear();
+  asked_.clear();
+  return outcome;
+}
+
+gpu::PageHead pageHead(const PageGrid& grid) {
+  gpu::PageHead head{};
+  for (int level = 0; level < kDataLevels; ++level)
+    head.level[level] = {grid.first(level), grid.pages(level).x, grid.samples(level)};
+  head.pool = {grid.log2Side(), grid.first(kDataLevels), grid.rimRow(), grid.entries()};
+  return head;
+}
+
+std::vector<std::uint32_t> pageTable(const PageSet& field, const PageSet* original) {
+  const auto entries = static_cast<std::size_t>(field.grid().entries());
+  std::vector<std::uint32_t> table(entries * (original != nullptr ? 2 : 1));
+  for (std::size_t i = 0; i < entries; ++i) {
+    table[i] = field.pool().word(field.slots()[i]);
+    if (original == nullptr) continue;
+    const std::uint32_t other = field.pool().word(original->slots()[i]);
+    table[entries + i] = other;
+    table[i] |= other & 1U << gpu::kEntryAwayShift;
+  }
+  return table;
+}
+
+}  // namespace fettle::render

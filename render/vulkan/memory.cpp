@@ -1,0 +1,44 @@
+#include "render/vulkan/memory.h"
+
+namespace fettle::render {
+
+using Property = vk::MemoryPropertyFlagBits;
+
+Buffer::Buffer(const Context& context, vk::DeviceSize bytes, vk::BufferUsageFlags usage) : bytes_(bytes) {
+  buffer_ = vk::raii::Buffer(context.device(), {{}, bytes, usage});
+  const vk::MemoryRequirements needs = buffer_.getMemoryRequirements();
+  // Coherent: no flush to forget. Every Vulkan device has such a type.
+  const std::uint32_t type =
+      context.memoryType(needs.memoryTypeBits, Property::eHostVisible | Property::eHostCoherent);
+  memory_ = vk::raii::DeviceMemory(context.device(), {needs.size, type});
+  buffer_.bindMemory(*memory_, 0);
+  data_ = static_cast<std::byte*>(memory_.mapMemory(0, VK_WHOLE_SIZE));
+}
+
+GpuImage::GpuImage(const Context& context, vk::Format format, vk::Extent2D extent, std::uint32_t layers,
+                   Kind kind, vk::ImageUsageFlags usage, vk::ImageAspectFlags aspect,
+                   std::optional<vk::Format> viewed_as)
+    : extent_(extent), layers_(layers), aspect_(aspect) {
+  vk::ImageCreateInfo info;
+  info.setImageType(vk::ImageType::e2D)
+      .setFormat(format)
+      .setExtent({extent.width, extent.height, 1})
+      .setMipLevels(1)
+      .setArrayLayers(layers)
+      .setUsage(usage);
+  if (viewed_as) info.setFlags(vk::ImageCreateFlagBits::eMutableFormat);
+  image_ = vk::raii::Image(context.device(), info);
+  const vk::MemoryRequirements needs = image_.getMemoryRequirements();
+  bytes_ = needs.size;
+  memory_ = vk::raii::DeviceMemory(
+      context.device(), {needs.size, context.memoryType(needs.memoryTypeBits, Property::eDeviceLocal)});
+  image_.bindMemory(*memory_, 0);
+  vk::ImageViewCreateInfo view;
+  view.setImage(*image_)
+      .setViewType(kind == Kind::kArray ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D)
+      .setFormat(viewed_as.value_or(format))
+      .setSubresourceRange(range());
+  view_ = vk::raii::ImageView(context.device(), view);
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "render/vulkan/context.h"
+
+namespace fettle::render {
+
+/// A buffer that the CPU writes or reads directly, mapped for its whole life. Move-only.
+class Buffer {
+ public:
+  Buffer() = default;
+  /// Throws vk::SystemError. `bytes` > 0.
+  Buffer(const Context& context, vk::DeviceSize bytes, vk::BufferUsageFlags usage);
+  [[nodiscard]] const vk::raii::Buffer& handle() const noexcept { return buffer_; }
+  [[nodiscard]] vk::DeviceSize bytes() const noexcept { return bytes_; }
+  [[nodiscard]] std::byte* data() const noexcept { return data_; }
+
+ private:
+  vk::raii::DeviceMemory memory_ = nullptr;
+  vk::raii::Buffer buffer_ = nullptr;
+  vk::DeviceSize bytes_ = 0;
+  std::byte* data_ = nullptr;
+};
+
+/// Writes `items` into a buffer of exactly their size, or of one item when there are none (a buffer of no
+/// bytes is not allowed).
+template <class T>
+[[nodiscard]] Buffer bufferOf(const Context& context, std::span<const T> items, vk::BufferUsageFlags usage);
+
+/// An image on the device with a view of all of it. Move-only.
+class GpuImage {
+ public:
+  GpuImage() = default;
+  /// One mip level; a 2D image, or an array of `layers` of them when `array` asks for a view as such.
+  /// `viewed_as`: the view's format when it is another of the same size. Throws.
+  enum class Kind { kPlane, kArray };
+  GpuImage(const Context& context, vk::Format format, vk::Extent2D extent, std::uint32_t layers, Kind kind,
+           vk::ImageUsageFlags usage, vk::ImageAspectFlags aspect, std::optional<vk::Format> viewed_as = {});
+  [[nodiscard]] vk::Image image() const noexcept { return *image_; }
+  [[nodiscard]] vk::ImageView view() const noexcept { return *view_; }
+  [[nodiscard]] vk::Extent2D extent() const noexcept { return extent_; }
+  /// Device memory it takes, alignment and all.
+  [[nodiscard]] vk::DeviceSize bytes() const noexcept { return bytes_; }
+  [[nodiscard]] vk::ImageSubresourceRange range() const noexcept { return {aspect_, 0, 1, 0, layers_}; }
+
+ private:
+  vk::raii::DeviceMemory memory_ = nullptr;
+  vk::raii::Image image_ = nullptr;
+  vk::raii::ImageView view_ = nullptr;
+  vk::Extent2D extent_;
+  vk::DeviceSize bytes_ = 0;
+  std::uint32_t layers_ = 1;
+  vk::ImageAspectFlags aspect_;
+};
+
+template <class T>
+Buffer bufferOf(const Context& context, std::span<const T> items, vk::BufferUsageFlags usage) {
+  Buffer buffer(context, std::max<std::size_t>(items.size_bytes(), sizeof(T)), usage);
+  // An empty span may point nowhere, and memcpy must not be given that even for no bytes.
+  if (!items.empty()) std::memcpy(buffer.data(), items.data(), items.size_bytes());
+  return buffer;
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,239 @@
+#include "render/vulkan/pipelines.h"
+
+#include <array>
+#include <span>
+
+#include "floor.frag.h"
+#include "floor.vert.eyes.h"
+#include "floor.vert.h"
+#include "holes.frag.h"
+#include "line.frag.h"
+#include "line.vert.eyes.h"
+#include "line.vert.h"
+#include "quad.frag.h"
+#include "quad.vert.h"
+#include "seam.vert.eyes.h"
+#include "seam.vert.h"
+#include "shade.frag.eyes.h"
+#include "shade.frag.h"
+#include "shade.vert.eyes.h"
+#include "shade.vert.h"
+#include "shaders/layout.h"
+#include "surface.frag.h"
+#include "surface.vert.eyes.h"
+#include "surface.vert.h"
+#include "wall.frag.h"
+#include "wall.vert.eyes.h"
+#include "wall.vert.h"
+
+namespace fettle::render {
+namespace {
+
+using ShaderStage = vk::ShaderStageFlagBits;
+
+vk::DescriptorSetLayoutBinding binding(int number, vk::DescriptorType type) {
+  return {static_cast<std::uint32_t>(number), type, 1, ShaderStage::eVertex | ShaderStage::eFragment};
+}
+
+}  // namespace
+
+// What differs between the pipelines.
+struct Pipelines::Recipe {
+  Words vertex;
+  Words fragment = {};  // none: depth alone
+  vk::PipelineLayout layout;
+  vk::PrimitiveTopology topology = vk::PrimitiveTopology::eTriangleStrip;
+  enum class Depth { kTestAndWrite, kTest, kBehind, kIgnore, kNone } depth = Depth::kTestAndWrite;
+  enum class Blend { kReplace, kPremultiplied } blend = Blend::kReplace;
+  enum class Colour { kYes, kNone } colour = Colour::kYes;
+  std::array<vk::Bool32, gpu::kSpecCount> constants{};  // by constant_id
+};
+
+Pipelines::Pipelines(const Context& context, vk::Format colour, Views views)
+    : context_(context), colour_(colour), views_(views) {
+  nearest_ = vk::raii::Sampler(context.device(), vk::SamplerCreateInfo{}
+                                                     .setAddressModeU(vk::SamplerAddressMode::eClampToEdge)
+                                                     .setAddressModeV(vk::SamplerAddressMode::eClampToEdge));
+  const std::array scene{
+      binding(gpu::kBindPanel, vk::DescriptorType::eUniformBuffer),
+      binding(gpu::kBindHeights, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindMarks, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindOriginal, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindPatches, vk::DescriptorType::eStorageBuffer),
+      binding(gpu::kBindShade, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindLines, vk::DescriptorType::eStorageBuffer),
+      binding(gpu::kBindPages, vk::DescriptorType::eUniformTexelBuffer),
+      binding(gpu::kBindDepth, vk::DescriptorType::eSampledImage),
+      binding(gpu::kBindNearest, vk::DescriptorType::eSampler).setImmutableSamplers(*nearest_)};
+  const std::array picture{binding(gpu::kBindScene, vk::DescriptorType::eSampledImage),
+                           binding(gpu::kBindGlyphs, vk::DescriptorType::eSampledImage),
+                           binding(gpu::kBindQuads, vk::DescriptorType::eStorageBuffer),
+                           binding(gpu::kBindMap, vk::DescriptorType::eUniformBuffer)};
+  vk::DescriptorSetLayoutCreateInfo set;
+  scene_set_ = vk::raii::DescriptorSetLayout(context.device(), set.setBindings(scene));
+  picture_set_ = vk::raii::DescriptorSetLayout(context.device(), set.setBindings(picture));
+  vk::PipelineLayoutCreateInfo layout;
+  const vk::PushConstantRange push{ShaderStage::eVertex, 0, sizeof(gpu::vec4)};
+  scene_layout_ = vk::raii::PipelineLayout(context.device(),
+                                           layout.setSetLayouts(*scene_set_).setPushConstantRanges(push));
+  picture_layout_ = vk::raii::PipelineLayout(context.device(),
+                                             layout.setSetLayouts(*picture_set_).setPushConstantRanges(push));
+}
+
+Pipelines::Words Pipelines::one(Words for_one, Words for_both) const noexcept {
+  return views_ == Views::kBoth ? for_both : for_one;
+}
+
+vk::raii::Pipeline Pipelines::make(const Recipe& recipe) {
+  const auto module = [&](Words words) {
+    vk::ShaderModuleCreateInfo info;
+    return vk::raii::ShaderModule(context_.device(),
+                                  info.setCodeSize(words.size_bytes()).setPCode(words.data()));
+  };
+  const vk::raii::ShaderModule vertex = module(recipe.vertex);
+  vk::raii::ShaderModule fragment = nullptr;
+  if (!recipe.fragment.empty()) fragment = module(recipe.fragment);
+  std::array<vk::SpecializationMapEntry, gpu::kSpecCount> entries;
+  for (std::uint32_t i = 0; i < entries.size(); ++i)
+    entries[i] =
+        vk::SpecializationMapEntry{i, i * static_cast<std::uint32_t>(sizeof(vk::Bool32)), sizeof(vk::Bool32)};
+  vk::SpecializationInfo constants;
+  constants.setMapEntries(entries).setDataSize(sizeof(recipe.constants)).setPData(recipe.constants.data());
+  std::vector<vk::PipelineShaderStageCreateInfo> stages{
+      {{}, ShaderStage::eVertex, *vertex, "main", &constants}};
+  if (*fragment) stages.push_back({{}, ShaderStage::eFragment, *fragment, "main", &constants});
+
+  const vk::PipelineVertexInputStateCreateInfo no_vertices;
+  const vk::PipelineInputAssemblyStateCreateInfo assembly{{}, recipe.topology};
+  const vk::PipelineViewportStateCreateInfo viewport{{}, 1, nullptr, 1, nullptr};
+  vk::PipelineRasterizationStateCreateInfo raster;
+  raster.setCullMode(vk::CullModeFlagBits::eNone).setLineWidth(1.0F);
+  const vk::PipelineMultisampleStateCreateInfo one_sample{{}, vk::SampleCountFlagBits::e1};
+  vk::PipelineDepthStencilStateCreateInfo depth;
+  const bool writes = recipe.depth == Recipe::Depth::kTestAndWrite;
+  const bool behind = recipe.depth == Recipe::Depth::kBehind;
+  depth.setDepthTestEnable(writes || behind || recipe.depth == Recipe::Depth::kTest)
+      .setDepthWriteEnable(writes)
+      .setDepthCompareOp(behind ? vk::CompareOp::eGreater : vk::CompareOp::eLessOrEqual);
+  vk::PipelineColorBlendAttachmentState blend;
+  using Channel = vk::ColorComponentFlagBits;
+  blend.setColorWriteMask(Channel::eR | Channel::eG | Channel::eB | Channel::eA)
+      .setBlendEnable(recipe.blend == Recipe::Blend::kPremultiplied)
+      .setSrcColorBlendFactor(vk::BlendFactor::eOne)
+      .setDstColorBlendFactor(vk::BlendFactor::eOneMinusSrcAlpha)
+      .setSrcAlphaBlendFactor(vk::BlendFactor::eOne)
+      .setDstAlphaBlendFactor(vk::BlendFactor::eOneMinusSrcAlpha);
+  vk::PipelineColorBlendStateCreateInfo blending;
+  if (recipe.colour == Recipe::Colour::kYes) blending.setAttachments(blend);
+  const std::array dynamic_states{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  vk::PipelineDynamicStateCreateInfo dynamic;
+  dynamic.setDynamicStates(dynamic_states);
+  vk::PipelineRenderingCreateInfo rendering;
+  rendering.setViewMask(views_ == Views::kBoth ? gpu::kBothViews : 0);
+  if (recipe.colour == Recipe::Colour::kYes) rendering.setColorAttachmentFormats(colour_);
+  if (recipe.depth != Recipe::Depth::kNone) rendering.setDepthAttachmentFormat(kDepthFormat);
+  vk::GraphicsPipelineCreateInfo info;
+  info.setStages(stages)
+      .setPVertexInputState(&no_vertices)
+      .setPInputAssemblyState(&assembly)
+      .setPViewportState(&viewport)
+      .setPRasterizationState(&raster)
+      .setPMultisampleState(&one_sample)
+      .setPDepthStencilState(&depth)
+      .setPColorBlendState(&blending)
+      .setPDynamicState(&dynamic)
+      .setLayout(recipe.layout)
+      .setPNext(&rendering);
+  ++made_;
+  return {context_.device(), nullptr, info};
+}
+
+namespace {
+
+std::array<vk::Bool32, gpu::kSpecCount> constantsOf(const SurfaceVariant& v) {
+  static_assert(gpu::kSpecPaged == 0 && gpu::kSpecMarks == 1 && gpu::kSpecDeviation == 2 &&
+                gpu::kSpecContours == 3 && gpu::kSpecSmooth == 4 && gpu::kSpecHoles == 5 &&
+                gpu::kSpecCell == 6 && gpu::kSpecByNeed == 7 && gpu::kSpecGather == 8 &&
+                gpu::kSpecPerspective == 9);
+  return {v.paged, v.marks,       v.deviation, v.contours, v.smooth,
+          v.holes, v.cell_slopes, v.by_need,   v.gather,   v.perspective};
+}
+
+}  // namespace
+
+vk::Pipeline Pipelines::surface(const SurfaceVariant& variant) {
+  const auto found = surfaces_.find(variant);
+  if (found != surfaces_.end()) return *found->second;
+  Recipe recipe{.vertex = surface_vert_spirv, .fragment = surface_frag_spirv, .layout = *scene_layout_};
+  recipe.constants = constantsOf(variant);
+  return *surfaces_.emplace(variant, make(recipe)).first->second;
+}
+
+vk::Pipeline Pipelines::depth(const Geometry& geometry) {
+  const auto found = depths_.find(geometry);
+  if (found != depths_.end()) return *found->second;
+  Recipe recipe{.vertex = geometry.kind == Geometry::Kind::kSeams
+                              ? one(seam_vert_spirv, seam_vert_eyes_spirv)
+                              : one(surface_vert_spirv, surface_vert_eyes_spirv),
+                .layout = *scene_layout_,
+                .colour = Recipe::Colour::kNone};
+  if (geometry.holes == Holes::kYes) recipe.fragment = holes_frag_spirv;
+  recipe.constants[gpu::kSpecPaged] = geometry.paged == Paged::kYes;
+  recipe.constants[gpu::kSpecByNeed] = geometry.paged == Paged::kByNeed;
+  recipe.constants[gpu::kSpecHoles] = geometry.holes == Holes::kYes;
+  return *depths_.emplace(geometry, make(recipe)).first->second;
+}
+
+vk::Pipeline Pipelines::shade(const SurfaceVariant& variant) {
+  const auto found = shades_.find(variant);
+  if (found != shades_.end()) return *found->second;
+  Recipe recipe{.vertex = one(shade_vert_spirv, shade_vert_eyes_spirv),
+                .fragment = one(shade_frag_spirv, shade_frag_eyes_spirv),
+                .layout = *scene_layout_,
+                .depth = Recipe::Depth::kBehind};
+  recipe.constants = constantsOf(variant);
+  return *shades_.emplace(variant, make(recipe)).first->second;
+}
+
+vk::Pipeline Pipelines::lines(Lines depth) {
+  const auto found = lines_.find(depth);
+  if (found != lines_.end()) return *found->second;
+  const Recipe recipe{.vertex = one(line_vert_spirv, line_vert_eyes_spirv),
+                      .fragment = line_frag_spirv,
+                      .layout = *scene_layout_,
+                      .depth = depth == Lines::kInScene ? Recipe::Depth::kTest : Recipe::Depth::kIgnore,
+                      .blend = Recipe::Blend::kPremultiplied};
+  return *lines_.emplace(depth, make(recipe)).first->second;
+}
+
+vk::Pipeline Pipelines::wall(Paged paged, Holes holes) {
+  const auto found = walls_.find({paged, holes});
+  if (found != walls_.end()) return *found->second;
+  Recipe recipe{.vertex = one(wall_vert_spirv, wall_vert_eyes_spirv),
+                .fragment = wall_frag_spirv,
+                .layout = *scene_layout_};
+  recipe.constants[gpu::kSpecPaged] = paged == Paged::kYes;
+  recipe.constants[gpu::kSpecHoles] = holes == Holes::kYes;
+  recipe.constants[gpu::kSpecByNeed] = paged == Paged::kByNeed;
+  return *walls_.emplace(std::pair{paged, holes}, make(recipe)).first->second;
+}
+
+vk::Pipeline Pipelines::floor() {
+  if (!*floor_)
+    floor_ = make({.vertex = one(floor_vert_spirv, floor_vert_eyes_spirv),
+                   .fragment = floor_frag_spirv,
+                   .layout = *scene_layout_});
+  return *floor_;
+}
+
+vk::Pipeline Pipelines::quads() {
+  if (!*quads_)
+    quads_ = make({.vertex = quad_vert_spirv,
+                   .fragment = quad_frag_spirv,
+                   .layout = *picture_layout_,
+                   .depth = Recipe::Depth::kNone,
+                   .blend = Recipe::Blend::kPremultiplied});
+  return *quads_;
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <compare>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "render/vulkan/target.h"
+
+namespace fettle::render {
+
+/// What of the surface a picture uses: each combination is a pipeline of its own, so that what is left out is
+/// not in its code (specialisation constants).
+struct SurfaceVariant {
+  bool paged = false;
+  bool marks = false;
+  bool deviation = false;
+  bool contours = false;
+  bool smooth = false;
+  bool holes = true;
+  bool cell_slopes = false;
+  bool by_need = false;      ///< pages on the device by need (render/residency/page_demand.h)
+  bool gather = false;       ///< see shaders/layout.h
+  bool perspective = false;  ///< looked at by shade() alone
+  friend auto operator<=>(const SurfaceVariant&, const SurfaceVariant&) = default;
+};
+
+/// The pipelines, made when first asked for and kept. Throws vk::SystemError.
+class Pipelines {
+ public:
+  enum class Views {
+    kOne,
+    kBoth,  ///< passes draw for both eyes at once, to two layers; not for surface(), nor without multiview
+  };
+  /// For pictures of this format.
+  explicit Pipelines(const Context& context, vk::Format colour = kColourFormat, Views views = Views::kOne);
+
+  /// Shades every triangle of the surface: colour and depth.
+  [[nodiscard]] vk::Pipeline surface(const SurfaceVariant& variant);
+  enum class Paged { kNo, kYes, kByNeed };
+  enum class Holes { kNo, kYes };  ///< whether some cells are left out
+  [[nodiscard]] vk::Pipeline wall(Paged paged, Holes holes = Holes::kYes);
+  /// Depth of the surface alone: of patches, and of the seams between them.
+  struct Geometry {
+    enum class Kind { kPatches, kSeams } kind = Kind::kPatches;
+    Paged paged = Paged::kNo;
+    Holes holes = Holes::kNo;
+    friend auto operator<=>(const Geometry&, const Geometry&) = default;
+  };
+  [[nodiscard]] vk::Pipeline depth(const Geometry& geometry);
+  /// Shades a plot from that depth, once a pixel: colour alone.
+  [[nodiscard]] vk::Pipeline shade(const SurfaceVariant& variant);
+  [[nodiscard]] vk::Pipeline floor();
+  enum class Lines { kOnTop, kInScene };
+  [[nodiscard]] vk::Pipeline lines(Lines depth);
+  [[nodiscard]] vk::Pipeline quads();
+
+  /// Layouts of the surface's and the picture's set 0 and pipelines (shaders/layout.h names the bindings).
+  [[nodiscard]] vk::PipelineLayout sceneLayout() const noexcept { return *scene_layout_; }
+  [[nodiscard]] vk::DescriptorSetLayout sceneSet() const noexcept { return *scene_set_; }
+  [[nodiscard]] vk::PipelineLayout pictureLayout() const noexcept { return *picture_layout_; }
+  [[nodiscard]] vk::DescriptorSetLayout pictureSet() const noexcept { return *picture_set_; }
+  /// How many pipelines exist: pictures that leave an option out make none for it.
+  [[nodiscard]] std::size_t made() const noexcept { return made_; }
+
+ private:
+  struct Recipe;
+  using Words = std::span<const std::uint32_t>;
+  [[nodiscard]] Words one(Words for_one, Words for_both) const noexcept;
+  [[nodiscard]] vk::raii::Pipeline make(const Recipe& recipe);
+
+  const Context& context_;
+  vk::Format colour_;
+  Views views_;
+  vk::raii::Sampler nearest_ = nullptr;
+  vk::raii::DescriptorSetLayout scene_set_ = nullptr, picture_set_ = nullptr;
+  vk::raii::PipelineLayout scene_layout_ = nullptr, picture_layout_ = nullptr;
+  std::map<SurfaceVariant, vk::raii::Pipeline> surfaces_, shades_;
+  std::map<Geometry, vk::raii::Pipeline> depths_;
+  std::map<std::pair<Paged, Holes>, vk::raii::Pipeline> walls_;
+  std::map<Lines, vk::raii::Pipeline> lines_;
+  vk::raii::Pipeline floor_ = nullptr, quads_ = nullptr;
+  std::size_t made_ = 0;
+};
+
+}  // namespace fettle::render

@@ -1,0 +1,228 @@
+#include "render/window/ui_layer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
+#include <imgui_internal.h>  // windows and their rectangles
+
+#include "render/plan/font_data.h"
+#include "render/vulkan/barrier.h"
+
+namespace fettle::render {
+namespace {
+
+using ImageLayout = vk::ImageLayout;
+using Stage = vk::PipelineStageFlagBits2;
+using Access = vk::AccessFlagBits2;
+
+constexpr float kText_px = 15.0F;
+
+// ImGui's back end reports through a function without a place for context; the room's rule is to throw.
+void check(VkResult result) {
+  if (result < 0) throw vk::SystemError(vk::make_error_code(static_cast<vk::Result>(result)), "ImGui");
+}
+
+// One pass over the image that already holds the picture.
+vk::raii::RenderPass makePass(const vk::raii::Device& device) {
+  vk::AttachmentDescription colour;
+  colour.setFormat(UiLayer::kFormat)
+      .setLoadOp(vk::AttachmentLoadOp::eLoad)
+      .setStoreOp(vk::AttachmentStoreOp::eStore)
+      .setStencilLoadOp(vk::AttachmentLoadOp::eDontCare)
+      .setStencilStoreOp(vk::AttachmentStoreOp::eDontCare)
+      .setInitialLayout(ImageLayout::eColorAttachmentOptimal)
+      .setFinalLayout(ImageLayout::eColorAttachmentOptimal);
+  const vk::AttachmentReference reference{0, ImageLayout::eColorAttachmentOptimal};
+  vk::SubpassDescription subpass;
+  subpass.setPipelineBindPoint(vk::PipelineBindPoint::eGraphics).setColorAttachments(reference);
+  vk::RenderPassCreateInfo info;
+  return {device, info.setAttachments(colour).setSubpasses(subpass)};
+}
+
+}  // namespace
+
+UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_file)
+    : window_(window), layout_file_(layout_file) {
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = layout_file_.empty() ? nullptr : layout_file_.c_str();
+  io.ConfigWindowsMoveFromTitleBarOnly = true;
+  makeStyle(scale);
+  ImFontConfig font;
+  font.FontDataOwnedByAtlas = false;
+  // Latin, Greek, arrows, and the few signs that figures need.
+  static constexpr std::array<ImWchar, 9> kLetters{0x20,   0x17F,  0x370,  0x3FF, 0x2010,
+                                                   0x2122, 0x2190, 0x22FF, 0};
+  const std::span<const std::uint8_t> regular = regularFont();
+  // ImGui wants a pointer it may write to, and writes nothing to data it does not own.
+  io.Fonts->AddFontFromMemoryTTF(const_cast<std::uint8_t*>(regular.data()), static_cast<int>(regular.size()),
+                                 std::round(kText_px * static_cast<float>(scale)), &font, kLetters.data());
+  ImGui_ImplGlfw_InitForVulkan(window, true);
+}
+
+UiLayer::~UiLayer() {
+  leave();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+void UiLayer::enter(Context& context) {
+  const vk::raii::Device& device = context.device();
+  const vk::DescriptorPoolSize size{vk::DescriptorType::eCombinedImageSampler, 4};
+  vk::DescriptorPoolCreateInfo pool{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 4};
+  descriptors_ = vk::raii::DescriptorPool(device, pool.setPoolSizes(size));
+  pass_ = makePass(device);
+  ImGui_ImplVulkan_InitInfo init{};
+  init.Instance = *context.instance();
+  init.PhysicalDevice = *context.physical();
+  init.Device = *device;
+  init.QueueFamily = context.queueFamily();
+  init.Queue = *context.queue();
+  init.DescriptorPool = *descriptors_;
+  init.MinImageCount = 2;
+  init.ImageCount = 2;
+  init.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+  init.CheckVkResultFn = &check;
+  context_ = &context;  // from here on there is something to let go of, whatever of it succeeds
+  ImGui_ImplVulkan_Init(&init, *pass_);
+  context.run(
+      [](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
+  ImGui_ImplVulkan_DestroyFontUploadObjects();
+}
+
+void UiLayer::leave() noexcept {
+  if (context_ == nullptr) return;
+  try {
+    context_->device().waitIdle();
+  } catch (const vk::SystemError&) {
+    // A lost device has nothing under way.
+  }
+  ImGui_ImplVulkan_Shutdown();
+  framebuffer_ = nullptr;
+  image_ = GpuImage();
+  pass_ = nullptr;
+  descriptors_ = nullptr;
+  context_ = nullptr;
+}
+
+void UiLayer::makeStyle(double scale) const {
+  ImGui::StyleColorsDark();
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowRounding = 0.0F;
+  style.FrameRounding = 3.0F;
+  style.GrabRounding = 3.0F;
+  style.WindowBorderSize = 0.0F;
+  // What lies behind a question goes dark; ImGui's own light grey takes the colours from the picture.
+  style.Colors[ImGuiCol_ModalWindowDimBg] = ImVec4(0.0F, 0.0F, 0.0F, 0.45F);
+  style.ScaleAllSizes(static_cast<float>(scale));
+}
+
+void UiLayer::fit(vk::Extent2D extent) {
+  if (image_.extent() == extent) return;
+  using Usage = vk::ImageUsageFlagBits;
+  context_->device().waitIdle();
+  framebuffer_.clear();
+  image_ = GpuImage(*context_, kFormat, extent, 1, GpuImage::Kind::kPlane,
+                    Usage::eColorAttachment | Usage::eTransferDst | Usage::eTransferSrc,
+                    vk::ImageAspectFlagBits::eColor);
+  const vk::ImageView view = image_.view();
+  vk::FramebufferCreateInfo info;
+  info.setRenderPass(*pass_)
+      .setAttachments(view)
+      .setWidth(extent.width)
+      .setHeight(extent.height)
+      .setLayers(1);
+  framebuffer_ = vk::raii::Framebuffer(context_->device(), info);
+}
+
+// As held at this frame's beginning: what was held at any time since the last one. Keys to be let go again.
+std::vector<int> UiLayer::holdShortPresses() {
+  ImGuiIO& io = ImGui::GetIO();
+  std::vector<int> brief;
+  const auto held = [&](int a, int b) {
+    return glfwGetKey(window_, a) == GLFW_PRESS || glfwGetKey(window_, b) == GLFW_PRESS;
+  };
+  io.KeyCtrl = held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+  io.KeyShift = held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+  io.KeyAlt = held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+  for (const auto& [key, modifiers] : std::exchange(pressed_, {})) {
+    io.KeyCtrl = io.KeyCtrl || (modifiers & GLFW_MOD_CONTROL) != 0;
+    io.KeyShift = io.KeyShift || (modifiers & GLFW_MOD_SHIFT) != 0;
+    io.KeyAlt = io.KeyAlt || (modifiers & GLFW_MOD_ALT) != 0;
+    // One that is held yet may have lost its modifiers already.
+    if (key < 0 || key >= IM_ARRAYSIZE(io.KeysDown) || io.KeysDown[key]) continue;
+    io.KeysDown[key] = true;
+    brief.push_back(key);
+  }
+  return brief;
+}
+
+void UiLayer::beginFrame() {
+  // In dialogs and menus the arrows go from field to field; elsewhere they turn the view, and must not fold
+  // and press what they happen to stand on in the panels.
+  ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsMouseClicked(0) && !io.WantCaptureMouse) leavePanels();
+  if (entered_ || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel))
+    io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
+  else
+    io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+  ImGui_ImplVulkan_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  const std::vector<int> brief = holdShortPresses();
+  ImGui::NewFrame();
+  for (const int key : brief) io.KeysDown[key] = false;
+}
+
+void UiLayer::leavePanels() noexcept {
+  if (std::exchange(entered_, false)) ImGui::SetWindowFocus(nullptr);
+}
+
+bool UiLayer::panelsHaveMouse(double x, double y) const noexcept {
+  // What was pressed in a panel stays its own wherever it is dragged.
+  if (ImGui::IsAnyMouseDown() && ImGui::GetIO().WantCaptureMouse) return true;
+  if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel)) return true;
+  const ImVec2 at(static_cast<float>(x), static_cast<float>(y));
+  const ImVector<ImGuiWindow*>& windows = ImGui::GetCurrentContext()->Windows;
+  return std::any_of(windows.begin(), windows.end(), [&](const ImGuiWindow* window) {
+    return window->Active && !window->Hidden && (window->Flags & ImGuiWindowFlags_NoMouseInputs) == 0 &&
+           window->OuterRectClipped.Contains(at);
+  });
+}
+
+void UiLayer::endFrame() {
+  ImGui::Render();
+}
+
+void UiLayer::clear(const vk::raii::CommandBuffer& commands) const {
+  change(commands, image_, ImageLayout::eUndefined, ImageLayout::eTransferDstOptimal, Stage::eAllTransfer,
+         Access::eTransferRead, Stage::eAllTransfer, Access::eTransferWrite);
+  commands.clearColorImage(image_.image(), ImageLayout::eTransferDstOptimal,
+                           vk::ClearColorValue(std::array<float, 4>{0.09F, 0.09F, 0.10F, 1.0F}),
+                           image_.range());
+  // Two writes by transfers in a row want their order said.
+  change(commands, image_, ImageLayout::eTransferDstOptimal, ImageLayout::eTransferDstOptimal,
+         Stage::eAllTransfer, Access::eTransferWrite, Stage::eAllTransfer, Access::eTransferWrite);
+}
+
+void UiLayer::draw(const vk::raii::CommandBuffer& commands) const {
+  change(commands, image_, ImageLayout::eTransferDstOptimal, ImageLayout::eColorAttachmentOptimal,
+         Stage::eAllTransfer, Access::eTransferWrite, Stage::eColorAttachmentOutput,
+         Access::eColorAttachmentRead | Access::eColorAttachmentWrite);
+  vk::RenderPassBeginInfo begin;
+  begin.setRenderPass(*pass_).setFramebuffer(*framebuffer_).setRenderArea({{0, 0}, image_.extent()});
+  commands.beginRenderPass(begin, vk::SubpassContents::eInline);
+  ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *commands);
+  commands.endRenderPass();
+  change(commands, image_, ImageLayout::eColorAttachmentOptimal, ImageLayout::eTransferSrcOptimal,
+         Stage::eColorAttachmentOutput, Access::eColorAttachmentWrite, Stage::eAllTransfer,
+         Access::eTransferRead);
+}
+
+}  // namespace fettle::render

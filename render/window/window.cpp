@@ -1,0 +1,569 @@
+#include "render/window/window.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "render/vulkan/barrier.h"
+#include "render/vulkan/capture.h"
+#include "render/vulkan/live_target.h"
+#include "render/vulkan/target.h"
+#include "render/window/ui_layer.h"
+#include "render/window/ui_text.h"
+#include "render/window/window_swapchain.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+// GLFW's own, by a pointer that names no type of Xlib (GLFW/glfw3native.h would bring all of it in).
+extern "C" void* glfwGetX11Display();
+
+namespace fettle::render {
+namespace {
+
+using ImageLayout = vk::ImageLayout;
+using Stage = vk::PipelineStageFlagBits2;
+using Access = vk::AccessFlagBits2;
+
+// GLFW tells what went wrong only through a function.
+std::string& lastGlfwError() {
+  static std::string text;
+  return text;
+}
+void noteGlfwError(int, const char* text) {
+  lastGlfwError() = text != nullptr ? text : "";
+}
+
+Key specialKey(int key) {
+  switch (key) {
+    case GLFW_KEY_SPACE:
+      return Key::kSpace;
+    case GLFW_KEY_ESCAPE:
+      return Key::kEscape;
+    case GLFW_KEY_ENTER:
+      return Key::kEnter;
+    case GLFW_KEY_TAB:
+      return Key::kTab;
+    case GLFW_KEY_BACKSPACE:
+      return Key::kBackspace;
+    case GLFW_KEY_DELETE:
+      return Key::kDelete;
+    case GLFW_KEY_INSERT:
+      return Key::kInsert;
+    case GLFW_KEY_LEFT:
+      return Key::kLeft;
+    case GLFW_KEY_RIGHT:
+      return Key::kRight;
+    case GLFW_KEY_UP:
+      return Key::kUp;
+    case GLFW_KEY_DOWN:
+      return Key::kDown;
+    case GLFW_KEY_HOME:
+      return Key::kHome;
+    case GLFW_KEY_END:
+      return Key::kEnd;
+    case GLFW_KEY_PAGE_UP:
+      return Key::kPageUp;
+    case GLFW_KEY_PAGE_DOWN:
+      return Key::kPageDown;
+    case GLFW_KEY_KP_DECIMAL:
+      return Key::kKeypadPeriod;
+    case GLFW_KEY_KP_ADD:
+      return Key::kKeypadPlus;
+    case GLFW_KEY_KP_SUBTRACT:
+      return Key::kKeypadMinus;
+    case GLFW_KEY_KP_ENTER:
+      return Key::kKeypadEnter;
+    case GLFW_KEY_PAUSE:
+      return Key::kPause;
+    default:
+      break;
+  }
+  const auto offset = [](Key first, int by) { return static_cast<Key>(static_cast<int>(first) + by); };
+  if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12) return offset(Key::kF1, key - GLFW_KEY_F1);
+  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return offset(Key::kKeypad0, key - GLFW_KEY_KP_0);
+  return Key::kNone;
+}
+
+// What is written on the key in the user's layout.
+Key keyOf(int key, int scancode) {
+  if (const Key special = specialKey(key); special != Key::kNone) return special;
+  const char* name = glfwGetKeyName(key, scancode);
+  char c = name != nullptr && name[0] != '\0' && name[1] == '\0' ? name[0] : '\0';
+  // A layout without Latin letters: what GLFW calls the key, which is its place on a US keyboard.
+  if (c == '\0' && key >= 32 && key < 127) c = static_cast<char>(key);
+  if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return static_cast<Key>(static_cast<unsigned char>(c));
+}
+
+Modifiers modifiersOf(int bits) {
+  return {(bits & GLFW_MOD_CONTROL) != 0, (bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_ALT) != 0};
+}
+
+// Set by Xlib's handler, read by the window: both on the main thread, but a signal's care costs nothing.
+std::atomic<bool> display_lost{false};
+
+// Xlib ends the program when its server goes away, unless it is told not to; from then on its calls do
+// nothing. GLFW loads the library by itself, so it is asked for here the same way. (XSetIOErrorExitHandler:
+// libX11 1.7, 2020. With an older one the program ends here, by quick_exit: the device's and the loop's
+// threads still work on what exit() would destroy.)
+int onDisplayLost(void* display) {
+  display_lost.store(true);
+  if (display != nullptr) return 0;
+  std::fputs("fettle: error: the connection to the display was lost, window, open the window again\n",
+             stderr);
+  std::quick_exit(1);
+}
+int onDisplayLostForGood(void* /*display*/) {
+  return onDisplayLost(nullptr);
+}
+void goOnAfterDisplay(void* /*display*/, void* /*data*/) {}
+void sayWhenDisplayIsLost(void* display) {
+  using Handler = int (*)(void*);
+  using ExitHandler = void (*)(void*, void*);
+  void* x11 = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+  if (x11 == nullptr || display == nullptr) return;  // another window system
+  auto* set = reinterpret_cast<Handler (*)(Handler)>(dlsym(x11, "XSetIOErrorHandler"));
+  auto* set_exit =
+      reinterpret_cast<void (*)(void*, ExitHandler, void*)>(dlsym(x11, "XSetIOErrorExitHandler"));
+  if (set != nullptr) set(set_exit != nullptr ? &onDisplayLost : &onDisplayLostForGood);
+  if (set_exit != nullptr) set_exit(display, &goOnAfterDisplay, nullptr);
+  dlclose(x11);
+}
+
+constexpr const char* kDisplayRemedy =
+    "run it in a graphical session, or with a virtual display: xvfb-run fettle view ...";
+
+engine::Error lost(const std::string& device, const char* what) {
+  if (display_lost.load())
+    return engine::failure("the connection to the display was lost", "window", "open the window again")
+        .value();
+  return engine::failure(fmt::format("showing the picture failed ({})", what), device,
+                         "open the window again")
+      .value();
+}
+
+}  // namespace
+
+struct Window::Impl {
+  // In the order in which they must be made; destroyed in reverse.
+  struct Glfw {
+    bool started = false;
+    GLFWwindow* window = nullptr;
+    ~Glfw() {
+      if (window != nullptr) glfwDestroyWindow(window);
+      if (started) glfwTerminate();
+    }
+  } glfw;
+  double scale_asked = 0.0;  // 0: the display's
+  [[nodiscard]] double scale() const {
+    if (scale_asked > 0.0) return scale_asked;
+    float x = 1.0F, y = 1.0F;
+    glfwGetWindowContentScale(glfw.window, &x, &y);
+    return std::clamp(static_cast<double>(x), 0.5, 4.0);
+  }
+  SurfaceWish wish;
+  RendererOptions device;
+  std::string device_name;            // outlives the context
+  std::vector<std::string> messages;  // of the contexts before this one
+  std::unique_ptr<UiLayer> ui;        // outlives contexts: it holds the panels
+  std::unique_ptr<Context> context;
+  std::unique_ptr<Swapchain> swapchain;
+  PictureTarget picture;
+  LiveTarget target;
+  bool drawn = false;   // something was drawn to `picture`
+  bool usable = false;  // as far as the last present() can tell
+  bool seen = false;    // the window is on the screen
+  Rectangle area{0, 0, 16, 16};
+  std::vector<InputEvent> input;
+  std::vector<std::string> drops;
+  std::function<void()> while_waiting;
+
+  void note(InputEvent event) {
+    double x = 0.0, y = 0.0;
+    glfwGetCursorPos(glfw.window, &x, &y);
+    int window_width = 1, window_height = 1, width = 1, height = 1;
+    glfwGetWindowSize(glfw.window, &window_width, &window_height);
+    glfwGetFramebufferSize(glfw.window, &width, &height);
+    event.x = x * width / std::max(window_width, 1);
+    event.y = y * height / std::max(window_height, 1);
+    const ImGuiIO& io = ImGui::GetIO();
+    event.panels_key = io.WantTextInput || ui->entered();
+    event.panels_mouse = ui->panelsHaveMouse(x, y);
+    input.push_back(event);
+  }
+  static Impl& of(GLFWwindow* window) { return *static_cast<Impl*>(glfwGetWindowUserPointer(window)); }
+  void listen();
+  [[nodiscard]] vk::Extent2D frameSize() const {
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(glfw.window, &width, &height);
+    return {static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0))};
+  }
+  [[nodiscard]] Modifiers modifiersNow() const {
+    const auto held = [&](int a, int b) {
+      return glfwGetKey(glfw.window, a) == GLFW_PRESS || glfwGetKey(glfw.window, b) == GLFW_PRESS;
+    };
+    return {held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL),
+            held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT), held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT)};
+  }
+  void bringPicture(const vk::raii::CommandBuffer& commands) const;
+  engine::Status enterDevice();
+  void leaveDevice() noexcept;
+};
+
+engine::Status Window::Impl::enterDevice() {
+  auto made = Context::create(device, &wish);
+  if (!made) return tl::unexpected(made.error());
+  context = *std::move(made);
+  device_name = context->name();
+  try {
+    swapchain = std::make_unique<Swapchain>(*context);
+    ui->enter(*context);
+  } catch (const std::exception& error) {
+    const engine::Error why = lost(device_name, error.what());
+    leaveDevice();
+    return tl::unexpected(why);
+  }
+  usable = true;
+  return {};
+}
+
+void Window::Impl::leaveDevice() noexcept {
+  if (!context) return;
+  try {
+    context->device().waitIdle();
+  } catch (const vk::SystemError&) {
+    // A lost device has nothing under way.
+  }
+  usable = drawn = false;
+  ui->leave();
+  picture = {};
+  target = {};
+  swapchain.reset();
+  const std::vector<std::string> said = context->messages().all();
+  messages.insert(messages.end(), said.begin(), said.end());
+  context.reset();
+}
+
+// Set before ImGui's own callbacks, which call these in turn.
+void Window::Impl::listen() {
+  glfwSetWindowUserPointer(glfw.window, this);
+  glfwSetKeyCallback(glfw.window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+    if (action == GLFW_RELEASE) return;
+    of(w).ui->notePress(key, mods);
+    InputEvent event;
+    event.kind = InputKind::kKeyDown;
+    event.key = keyOf(key, scancode);
+    event.modifiers = modifiersOf(mods);
+    event.repeat = action == GLFW_REPEAT;
+    if (event.key == Key::kNone) return;
+    of(w).note(event);
+    // Before the frame that ImGui sees it in.
+    if (event.key == Key::kEscape) of(w).ui->leavePanels();
+  });
+  glfwSetMouseButtonCallback(glfw.window, [](GLFWwindow* w, int button, int action, int mods) {
+    InputEvent event;
+    event.kind = action == GLFW_PRESS ? InputKind::kButtonDown : InputKind::kButtonUp;
+    event.button = button == GLFW_MOUSE_BUTTON_LEFT     ? MouseButton::kLeft
+                   : button == GLFW_MOUSE_BUTTON_RIGHT  ? MouseButton::kRight
+                   : button == GLFW_MOUSE_BUTTON_MIDDLE ? MouseButton::kMiddle
+                                                        : MouseButton::kOther;
+    event.modifiers = modifiersOf(mods);
+    of(w).note(event);
+  });
+  glfwSetCursorPosCallback(glfw.window, [](GLFWwindow* w, double, double) {
+    InputEvent event;
+    event.kind = InputKind::kMove;
+    event.modifiers = of(w).modifiersNow();
+    // Ten thousand places between two frames say no more than the last of each run.
+    of(w).note(event);
+  });
+  glfwSetScrollCallback(glfw.window, [](GLFWwindow* w, double, double steps) {
+    InputEvent event;
+    event.kind = InputKind::kWheel;
+    event.wheel = steps;
+    event.modifiers = of(w).modifiersNow();
+    of(w).note(event);
+  });
+  glfwSetCursorEnterCallback(glfw.window, [](GLFWwindow* w, int entered) {
+    InputEvent event;
+    event.kind = entered != 0 ? InputKind::kMove : InputKind::kLeave;
+    of(w).note(event);
+  });
+  glfwSetDropCallback(glfw.window, [](GLFWwindow* w, int count, const char** paths) {
+    for (int i = 0; i < count; ++i) of(w).drops.emplace_back(paths[i]);
+  });
+}
+
+Window::Window(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+
+Window::~Window() {
+  if (impl_) impl_->leaveDevice();
+}
+
+engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& options) {
+  auto impl = std::make_unique<Impl>();
+  glfwSetErrorCallback(&noteGlfwError);
+  if (glfwInit() == GLFW_FALSE)
+    return engine::failure(fmt::format("there is no display to open a window on ({})", lastGlfwError()),
+                           "window", kDisplayRemedy);
+  impl->glfw.started = true;
+  display_lost.store(false);
+  sayWhenDisplayIsLost(glfwGetX11Display());
+  if (glfwVulkanSupported() == GLFW_FALSE)
+    return engine::failure("no Vulkan driver can show pictures in a window", "window",
+                           "on Debian: apt install libvulkan1 mesa-vulkan-drivers");
+  glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  // It appears with its first frame: until then it would show whatever lay there before.
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  glfwWindowHintString(GLFW_X11_CLASS_NAME, "fettle");
+  glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "fettle");
+  impl->glfw.window =
+      glfwCreateWindow(options.width, options.height, options.title.c_str(), nullptr, nullptr);
+  if (impl->glfw.window == nullptr)
+    return engine::failure(fmt::format("the window does not open ({})", lastGlfwError()), "window",
+                           kDisplayRemedy);
+  glfwSetWindowSizeLimits(impl->glfw.window, 480, 320, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  impl->listen();
+
+  std::uint32_t count = 0;
+  const char** extensions = glfwGetRequiredInstanceExtensions(&count);
+  impl->wish.instance_extensions.assign(extensions, extensions + count);
+  impl->wish.make = [window = impl->glfw.window](VkInstance instance) {
+    VkSurfaceKHR surface = VK_NULL_HANDLE;
+    const VkResult result = glfwCreateWindowSurface(instance, window, nullptr, &surface);
+    if (result != VK_SUCCESS)
+      throw vk::SystemError(vk::make_error_code(static_cast<vk::Result>(result)), "window surface");
+    return surface;
+  };
+  impl->device.validation = options.validation;
+  impl->device.device = options.device;
+  impl->scale_asked = options.scale;
+  impl->ui = std::make_unique<UiLayer>(impl->glfw.window, impl->scale(), options.layout_file);
+  if (const auto entered = impl->enterDevice(); !entered) return tl::unexpected(entered.error());
+  return std::unique_ptr<Window>(new Window(std::move(impl)));
+}
+
+bool Window::displayLost() const {
+  return display_lost.load();
+}
+
+bool Window::usable() {
+  if (!impl_->context || !impl_->usable) return false;
+  try {
+    impl_->context->device().waitIdle();
+  } catch (const vk::SystemError&) {
+    impl_->usable = false;
+  }
+  return impl_->usable;
+}
+
+engine::Status Window::renew() {
+  impl_->leaveDevice();
+  if (display_lost.load()) return tl::unexpected(lost(impl_->device_name, ""));
+  return impl_->enterDevice();
+}
+
+void Window::poll(double wait_s) {
+  if (display_lost.load()) return;
+  if (wait_s > 0.0)
+    glfwWaitEventsTimeout(wait_s);
+  else
+    glfwPollEvents();
+}
+
+void Window::setWhileWaiting(std::function<void()> work) {
+  impl_->while_waiting = std::move(work);
+}
+std::vector<InputEvent> Window::takeInput() {
+  return std::exchange(impl_->input, {});
+}
+std::vector<std::string> Window::takeDrops() {
+  return std::exchange(impl_->drops, {});
+}
+bool Window::closeAsked() const {
+  return glfwWindowShouldClose(impl_->glfw.window) != 0;
+}
+void Window::refuseClose() {
+  glfwSetWindowShouldClose(impl_->glfw.window, GLFW_FALSE);
+}
+bool Window::minimised() const {
+  const vk::Extent2D size = impl_->frameSize();
+  return glfwGetWindowAttrib(impl_->glfw.window, GLFW_ICONIFIED) != 0 || size.width == 0 || size.height == 0;
+}
+int Window::width() const {
+  return static_cast<int>(impl_->frameSize().width);
+}
+int Window::height() const {
+  return static_cast<int>(impl_->frameSize().height);
+}
+double Window::scale() const {
+  return impl_->scale();
+}
+void Window::setTitle(const std::string& title) {
+  glfwSetWindowTitle(impl_->glfw.window, title.c_str());
+}
+Context& Window::context() {
+  return *impl_->context;
+}
+const std::string& Window::device() const {
+  return impl_->device_name;
+}
+std::vector<std::string> Window::validationMessages() const {
+  std::vector<std::string> all = impl_->messages;
+  if (impl_->context) {
+    const std::vector<std::string> said = impl_->context->messages().all();
+    all.insert(all.end(), said.begin(), said.end());
+  }
+  return all;
+}
+std::vector<PanelText> Window::texts() const {
+  const ImDrawData* drawn = ImGui::GetDrawData();
+  return drawn != nullptr ? textsOf(*drawn) : std::vector<PanelText>{};
+}
+
+void Window::enterPanels() {
+  impl_->ui->enterPanels();
+}
+void Window::leavePanels() {
+  impl_->ui->leavePanels();
+}
+void Window::beginFrame() {
+  impl_->ui->beginFrame();
+}
+
+void Window::setPictureArea(const Rectangle& area) {
+  impl_->area = area;
+  impl_->area.width = std::max(area.width, 16);
+  impl_->area.height = std::max(area.height, 16);
+}
+const Rectangle& Window::pictureArea() const {
+  return impl_->area;
+}
+std::uint32_t Window::pictureFormat() {
+  return static_cast<std::uint32_t>(kColourFormat);
+}
+
+engine::Result<LiveTarget*> Window::pictureTarget() try {
+  Impl& w = *impl_;
+  const vk::Extent2D extent{static_cast<std::uint32_t>(w.area.width),
+                            static_cast<std::uint32_t>(w.area.height)};
+  if (w.picture.colour.extent() != extent) {
+    w.context->device().waitIdle();
+    w.picture = PictureTarget(*w.context, extent);
+  }
+  w.target.image = w.picture.colour.image();
+  w.target.view = w.picture.colour.view();
+  w.target.extent = extent;
+  w.target.leaves_as = ImageLayout::eTransferSrcOptimal;
+  w.drawn = true;
+  return &w.target;
+} catch (const std::exception& error) {
+  // The old image may be gone and no new one there.
+  impl_->picture = {};
+  impl_->drawn = false;
+  return tl::unexpected(lost(impl_->device_name, error.what()));
+}
+
+void Window::forgetPicture() noexcept {
+  impl_->drawn = false;
+}
+
+void Window::Impl::bringPicture(const vk::raii::CommandBuffer& commands) const {
+  // Drawn by an earlier submission of this queue; its last barrier knows nothing of this copy.
+  change(commands, picture.colour, ImageLayout::eTransferSrcOptimal, ImageLayout::eTransferSrcOptimal,
+         Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllTransfer, Access::eTransferRead);
+  const vk::Extent2D frame = ui->image().extent(), size = picture.colour.extent();
+  const int left = std::max(area.x, 0), top = std::max(area.y, 0);
+  if (left >= static_cast<int>(frame.width) || top >= static_cast<int>(frame.height)) return;
+  // A copy of code values: sRGB without a word about it becomes UNORM without a change.
+  vk::ImageCopy copy;
+  copy.setSrcSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
+      .setDstSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
+      .setDstOffset({left, top, 0})
+      .setExtent({std::min(size.width, frame.width - static_cast<std::uint32_t>(left)),
+                  std::min(size.height, frame.height - static_cast<std::uint32_t>(top)), 1});
+  commands.copyImage(picture.colour.image(), ImageLayout::eTransferSrcOptimal, ui->image().image(),
+                     ImageLayout::eTransferDstOptimal, copy);
+}
+
+engine::Result<PresentReport> Window::present() {
+  Impl& w = *impl_;
+  PresentReport report;
+  w.ui->endFrame();
+  try {
+    if (display_lost.load()) return tl::unexpected(lost(w.device_name, ""));
+    if (minimised()) return report;
+    const auto meanwhile = [&w] {
+      if (w.while_waiting) w.while_waiting();
+      // A dead display gives no image back, and not every driver says so.
+      if (display_lost.load()) throw vk::SurfaceLostKHRError("display");
+    };
+    // A window that changes its size while it is shown needs another try.
+    for (int tries = 0; tries < 3; ++tries) {
+      if (!w.swapchain->fit(w.frameSize())) return report;
+      w.ui->fit(w.swapchain->extent());
+      const auto start = std::chrono::steady_clock::now();
+      const bool shown = w.swapchain->show(
+          w.ui->image().image(),
+          [&](const vk::raii::CommandBuffer& commands) {
+            w.ui->clear(commands);
+            if (w.drawn) w.bringPicture(commands);
+            w.ui->draw(commands);
+          },
+          meanwhile,
+          [&w] {
+            if (!std::exchange(w.seen, true)) glfwShowWindow(w.glfw.window);
+          });
+      const auto end = std::chrono::steady_clock::now();
+      report.draw_ms = std::chrono::duration<double, std::milli>(end - start).count();
+      report.shown_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(end.time_since_epoch()).count();
+      if (shown) break;
+    }
+    return report;
+  } catch (const std::exception& error) {
+    w.usable = false;
+    return tl::unexpected(lost(w.device_name, error.what()));
+  }
+}
+
+engine::Result<Image> Window::capture() {
+  Impl& w = *impl_;
+  try {
+    const vk::Extent2D extent = w.ui->image().extent();
+    const std::size_t bytes = std::size_t{4} * extent.width * extent.height;
+    const Buffer buffer(*w.context, bytes, vk::BufferUsageFlagBits::eTransferDst);
+    w.context->run([&](const vk::raii::CommandBuffer& commands) {
+      vk::BufferImageCopy copy;
+      copy.setImageSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
+          .setImageExtent({extent.width, extent.height, 1});
+      commands.copyImageToBuffer(w.ui->image().image(), ImageLayout::eTransferSrcOptimal, *buffer.handle(),
+                                 copy);
+      vk::MemoryBarrier2 barrier;
+      barrier.setSrcStageMask(Stage::eCopy)
+          .setSrcAccessMask(Access::eTransferWrite)
+          .setDstStageMask(Stage::eHost)
+          .setDstAccessMask(Access::eHostRead);
+      vk::DependencyInfo info;
+      commands.pipelineBarrier2(info.setMemoryBarriers(barrier));
+    });
+    Image image{static_cast<int>(extent.width), static_cast<int>(extent.height), {}};
+    image.rgba.resize(bytes);
+    std::memcpy(image.rgba.data(), buffer.data(), bytes);
+    for (std::size_t i = 3; i < bytes; i += 4) image.rgba[i] = 255;
+    return image;
+  } catch (const std::exception& error) {
+    return tl::unexpected(lost(w.device_name, error.what()));
+  }
+}
+
+}  // namespace fettle::render

@@ -1,0 +1,55 @@
+#include "app/window/settings.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temp_folder.h"
+
+namespace fettle::app {
+namespace {
+
+TEST(Settings, come_back_as_they_were_saved) {
+  const tests::TempFolder folder;
+  const std::string path = (folder.path() / "window.json").string();
+  Settings settings;
+  settings.display.marks = false;
+  settings.display.split_at = 0.25;
+  settings.display.map = render::ColourMap::kCividis;
+  settings.display.theme = render::Theme::kLight;
+  settings.display.light_azimuth_deg = 20.0F;
+  settings.display.half_in_motion = false;
+  settings.display.vertices = 131072;
+  settings.habits = Habits::kMeshLab;
+  settings.side_panel = false;
+  settings.side_width = 401.0F;
+  settings.panels = {{"Tool", false}, {"Haptics", true}};
+  settings.ask_before_quitting = false;
+  settings.save(path);
+  EXPECT_EQ(Settings::load(path), settings);
+  EXPECT_FALSE(Settings() == settings);
+}
+
+TEST(Settings, what_is_missing_wrong_or_out_of_range_stays_as_it_is_by_itself) {
+  const tests::TempFolder folder;
+  const std::string path = (folder.path() / "window.json").string();
+  EXPECT_EQ(Settings::load(path), Settings());
+  for (const char* text :
+       {"", "no json", "[1, 2]",
+        "{\"split_at\": 7, \"light_elevation\": -3, \"marks\": 3, \"vertices\": 12, \"mouse\": \"cat\"}",
+        "{\"panels\": {\"Tool\": 5}, \"side_width\": \"wide\", \"colours\": 4}"}) {
+    std::ofstream(path) << text;
+    EXPECT_EQ(Settings::load(path), Settings()) << text;
+  }
+  std::ofstream(path) << "{\"mouse\": \"meshlab\", \"split_at\": 7e9}";
+  EXPECT_EQ(Settings::load(path).habits, Habits::kMeshLab);
+}
+
+TEST(Settings, a_folder_that_is_not_there_is_no_error) {
+  Settings().save("");
+  Settings().save("/nowhere/at/all/window.json");
+  EXPECT_EQ(Settings::load("/nowhere/at/all/window.json"), Settings());
+}
+
+}  // namespace
+}  // namespace fettle::app

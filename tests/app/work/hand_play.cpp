@@ -1,0 +1,163 @@
+#include "tests/app/work/hand_play.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "engine/field/live_field.h"
+
+namespace fettle::tests {
+
+using haptic::Tool;
+
+void HandPlay::wait(std::uint64_t ticks) {
+  const std::uint64_t until = touch_.state().tick + ticks;
+  while (touch_.state().tick < until) {
+    touch_.poll();
+    keeper_.poll();
+    static_cast<void>(filters_.poll(touch_, notices_));
+    // A window's frames look at the loop about as often while it draws.
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+void HandPlay::press(double u, double v, bool held) {
+  u_ = std::clamp(u, 0.02, 0.98);
+  v_ = std::clamp(v, 0.02, 0.98);
+  const engine::Version& field = touch_.field();
+  const engine::Grid& grid = field.grid();
+  const auto column = static_cast<std::int32_t>(u_ * (grid.width - 1));
+  const auto row = static_cast<std::int32_t>(v_ * (grid.height - 1));
+  float height = 0.0F;
+  field.reader().readHeights(column, row, 1, 1, &height, 1);
+  touch_.mouse()->setCursor({column * grid.spacingXMm(), row * grid.spacingYMm(),
+                             std::isfinite(height) ? height * grid.height_unit.mm : 0.0});
+  if (held)
+    touch_.mouse()->press(touch_.tool());
+  else
+    touch_.mouse()->release();
+}
+
+std::string HandPlay::stroke(bool ends) {
+  const Tool tools[] = {Tool::kSmooth, Tool::kSmooth, Tool::kMark, Tool::kUnmark, Tool::kFeel};
+  touch_.setTool(tools[random_() % 5]);
+  press(uniform(0, 1), uniform(0, 1), false);
+  wait(30);
+  const double du = uniform(-0.02, 0.02), dv = uniform(-0.02, 0.02);
+  const int moves = static_cast<int>(uniform(4, 25));
+  for (int i = 0; i < moves; ++i) {
+    press(u_ + du, v_ + dv, true);
+    wait(static_cast<std::uint64_t>(uniform(1, 6)));
+  }
+  if (ends) {
+    press(u_, v_, false);
+    wait(static_cast<std::uint64_t>(uniform(0, 60)));
+  }
+  return ends ? "stroke" : "stroke goes on";
+}
+
+std::string HandPlay::filter(bool under_a_stroke) {
+  engine::FilterSpec& spec = filters_.spec;
+  spec.kind = static_cast<engine::FilterKind>(random_() % engine::kFilterKinds);
+  // Given here, or left to the noise of the field then.
+  spec.range_sigma = engine::hasRange(spec.kind) && random_() % 2 == 0 ? 0.02 : 0.0;
+  spec.window = 3 + 2 * static_cast<int>(random_() % 3);
+  spec.passes = 1 + static_cast<int>(random_() % 2);
+  spec.scope = random_() % 4 == 0 ? engine::FilterScope::kOnlyMarks : engine::FilterScope::kKeepMarks;
+  spec.max_change = random_() % 3 == 0 ? std::optional<double>(0.05) : std::nullopt;
+  filters_.apply(touch_);
+  const bool leaves = random_() % 6 == 0;
+  if (under_a_stroke) static_cast<void>(stroke(random_() % 2 == 0));
+  if (leaves) {
+    wait(random_() % 10);
+    filters_.cancel(touch_);
+  }
+  while (filters_.computing() || filters_.applying()) wait(1);
+  press(u_, v_, false);
+  return leaves ? "filter, cancelled" : "filter";
+}
+
+void HandPlay::apply(const engine::FilterSpec& spec) {
+  filters_.spec = spec;
+  filters_.apply(touch_);
+  static_cast<void>(stroke(true));
+  while (filters_.computing() || filters_.applying()) wait(1);
+}
+
+std::string HandPlay::marks() {
+  touch_.poll();
+  const engine::Version base = touch_.upright();
+  const engine::Grid& grid = base.grid();
+  engine::LiveField field(base, engine::Growth::kAllowed);
+  const bool marked = random_() % 3 != 0;
+  const auto c0 = static_cast<std::int32_t>(uniform(0, grid.width - 1));
+  const auto r0 = static_cast<std::int32_t>(uniform(0, grid.height - 1));
+  for (std::int32_t r = r0; r < std::min(r0 + 40, grid.height); ++r)
+    for (std::int32_t c = c0; c < std::min(c0 + 30, grid.width); ++c)
+      static_cast<void>(field.setMark(c, r, marked));
+  // A hand may have worked on meanwhile.
+  if (random_() % 2 == 0) wait(5);
+  touch_.replaceMarks(base, field.snapshot(), marked ? "Lasso" : "Clear");
+  return "marks";
+}
+
+std::string HandPlay::scene() {
+  haptic::Scene scene = touch_.scene();
+  switch (random_() % 5) {
+    case 0:
+      scene.brush_radius_samples = static_cast<double>(random_() % 9);
+      break;
+    case 1:
+      scene.invert = !scene.invert;
+      filters_.cancel(touch_);
+      break;
+    case 2:
+      scene.max_change = random_() % 2 == 0 ? std::optional<double>(uniform(0.0, 0.2)) : std::nullopt;
+      break;
+    case 3:
+      scene.effects = {haptic::EffectKind::kSpring, haptic::EffectKind::kSmoothing,
+                       haptic::EffectKind::kFriction, haptic::EffectKind::kViscosity};
+      break;
+    default:
+      scene.effects = {haptic::EffectKind::kSpring, haptic::EffectKind::kSmoothing};
+      scene.mark_radius_samples = static_cast<double>(random_() % 5);
+  }
+  static_cast<void>(touch_.setScene(scene));  // in range, and a mouse holds anything
+  return "scene";
+}
+
+std::string HandPlay::act() {
+  const auto what = random_() % 16;
+  if (what < 6) return stroke(true);
+  if (what < 7) return stroke(false);
+  if (what < 9) return filter(false);
+  if (what < 10) return filter(true);
+  if (what < 11) return marks();
+  if (what < 12) return scene();
+  if (what < 14) {
+    touch_.undo();
+    if (random_() % 2 == 0) wait(random_() % 4);
+    return "undo";
+  }
+  if (what < 15) {
+    touch_.redo();
+    return "redo";
+  }
+  const engine::History& history = touch_.history();
+  touch_.goTo(std::uniform_int_distribution<std::int64_t>(history.first(), history.last())(random_));
+  return "go to a state";
+}
+
+void HandPlay::untilKept() {
+  while (keeper_.waiting() != 0) wait(1);
+}
+
+void HandPlay::settle() {
+  press(u_, v_, false);
+  while (filters_.computing() || filters_.applying()) wait(1);
+  touch_.setTool(Tool::kFeel);
+  wait(20);
+}
+
+}  // namespace fettle::tests

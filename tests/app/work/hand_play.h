@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "app/work/filter_preview.h"
+#include "app/work/session_keeper.h"
+#include "app/work/touch.h"
+
+namespace fettle::tests {
+
+/// A person at the window, without the window: random strokes with the mouse as stylus, undo and redo,
+/// filters brought in while a stroke goes on, marks, scenes. On the real loop, in real time.
+class HandPlay {
+ public:
+  HandPlay(app::Touch& touch, app::SessionKeeper& keeper, std::uint64_t seed)
+      : touch_(touch), keeper_(keeper), random_(seed) {}
+
+  /// One thing a person does; says what.
+  std::string act();
+  /// This filter, brought in while a stroke goes on.
+  void apply(const engine::FilterSpec& spec);
+  /// Until nothing is under way: no stroke, no filter, every step handed over.
+  void settle();
+  /// Until all that was done lies on the disk.
+  void untilKept();
+  /// Things that went wrong and a person would read.
+  [[nodiscard]] const std::vector<app::Notice>& notices() const { return notices_; }
+
+ private:
+  void wait(std::uint64_t ticks);
+  void press(double u, double v, bool held);
+  std::string stroke(bool ends);
+  std::string filter(bool under_a_stroke);
+  std::string marks();
+  std::string scene();
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+
+  app::Touch& touch_;
+  app::SessionKeeper& keeper_;
+  std::mt19937_64 random_;
+  app::FilterPreview filters_;
+  std::vector<app::Notice> notices_;
+  double u_ = 0.5, v_ = 0.5;  // where the cursor is, in fractions of the field
+};
+
+}  // namespace fettle::tests

@@ -1,0 +1,191 @@
+// The live loop as the window sees it, with a simulated hand that gives force: armed and disarmed.
+#include "app/work/touch.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "tests/haptic/support/fields.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::app {
+namespace {
+
+using haptic::SafetyState;
+using namespace std::chrono_literals;
+
+constexpr auto kPatience = 30s;
+
+bool givesForce(const haptic::LoopState& state) {
+  return state.safety == SafetyState::kRamping || state.safety == SafetyState::kActive;
+}
+
+class TouchTest : public ::testing::Test {
+ protected:
+  // A hand that lands on a plate and lifts again, every second: one that is armed while it is deep inside
+  // would feel nothing until it has come out.
+  std::unique_ptr<Touch> start(const std::string& tool = "feel") {
+    auto touch = tryStart(tool, haptic::defaultScene(), false);
+    if (!touch) {
+      ADD_FAILURE() << touch.error().line();
+      return nullptr;
+    }
+    return std::move(*touch);
+  }
+  engine::Result<std::unique_ptr<Touch>> tryStart(const std::string& tool, const haptic::Scene& scene,
+                                                  bool lower_scene) {
+    const std::string strokes = folder_.file("strokes.csv");
+    {
+      std::ofstream out(strokes);
+      out << "t,x,y,z,tool\n";
+      for (int i = 0; i < 6000; ++i)
+        out << 0.01 * i << ",5,5," << 0.2 + 0.4 * std::cos(0.0628 * i) << ',' << tool << '\n';
+    }
+    const engine::Version plate = tests::fieldOf(
+        64, 64, [](int, int) { return 0.0; }, 0.2, 0.2);
+    TouchOptions options;
+    options.device = "hand:" + strokes;
+    options.lower_scene = lower_scene;
+    return Touch::start(engine::History(plate, std::size_t{1} << 20), plate, scene, options, nullptr);
+  }
+  // Goes round as the window does.
+  static bool until(Touch& touch, const std::function<bool(const haptic::LoopState&)>& is) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (std::chrono::steady_clock::now() < end) {
+      touch.poll();
+      if (is(touch.state())) return true;
+      std::this_thread::sleep_for(1ms);
+    }
+    return false;
+  }
+  static void rounds(Touch& touch, std::uint64_t ticks) {
+    const std::uint64_t end = touch.state().tick + ticks;
+    EXPECT_TRUE(until(touch, [&](const haptic::LoopState& s) { return s.tick >= end; }));
+  }
+
+  tests::TempFolder folder_;
+};
+
+TEST_F(TouchTest, who_disarmed_is_not_armed_again_by_the_program) {
+  const auto touch = start();
+  ASSERT_TRUE(touch);
+  ASSERT_TRUE(until(*touch, [](const auto& s) { return s.safety == SafetyState::kActive && s.contact; }))
+      << "a simulated hand arms itself";
+  touch->disarm();
+  rounds(*touch, 2);  // the tick under way may not have seen it
+  // Longer than the program waits between two tries to arm by itself.
+  for (int i = 0; i < 30; ++i) {
+    rounds(*touch, 10);
+    ASSERT_EQ(touch->state().safety, SafetyState::kUncalibrated) << i;
+  }
+  EXPECT_EQ(touch->state().given_n, glm::dvec3(0.0));
+  touch->arm();
+  EXPECT_TRUE(until(*touch, givesForce));
+}
+
+TEST_F(TouchTest, arming_and_disarming_at_once_leaves_it_disarmed) {
+  const auto touch = start();
+  ASSERT_TRUE(touch);
+  ASSERT_TRUE(until(*touch, givesForce));
+  for (int i = 0; i < 50; ++i) {
+    touch->arm();
+    touch->disarm();
+    rounds(*touch, 3);
+    ASSERT_EQ(touch->state().safety, SafetyState::kUncalibrated) << i;
+    touch->disarm();
+    touch->arm();
+    ASSERT_TRUE(until(*touch, [](const auto& s) { return s.safety != SafetyState::kUncalibrated; })) << i;
+  }
+}
+
+// The field, the step under way and who is armed outlive the loop.
+TEST_F(TouchTest, another_rate_begins_without_force_and_loses_nothing) {
+  const auto touch = start("mark");
+  ASSERT_TRUE(touch);
+  ASSERT_TRUE(until(*touch, [](const auto& s) { return givesForce(s) && s.stroke > 0; }));
+  const haptic::LoopState before = touch->state();
+  const engine::Status set = touch->setRate(4000.0);
+  ASSERT_TRUE(set) << set.error().line();
+  EXPECT_EQ(touch->rate(), 4000.0);
+  EXPECT_FALSE(touch->finished());
+  EXPECT_FALSE(givesForce(touch->state())) << "of the new loop's first ticks";
+  EXPECT_LT(touch->state().tick, before.tick);
+  const std::int64_t steps = touch->history().number();
+  EXPECT_GE(steps, 1) << "the stroke under way became a step";
+  EXPECT_TRUE(touch->upright() == touch->history().current());
+  // The simulated hand is armed by itself again, as at its start, and works on where it was.
+  ASSERT_TRUE(until(*touch, givesForce));
+  ASSERT_TRUE(until(*touch, [&](const auto&) { return touch->measuredRate() > 2000.0; }));
+  EXPECT_EQ(touch->timing().lateness.figures().count > 0, true);
+  touch->undo();
+  ASSERT_TRUE(until(*touch, [&](const auto&) { return touch->upright() == touch->history().current(); }));
+  // Who disarmed stays disarmed.
+  touch->disarm();
+  ASSERT_TRUE(touch->setRate(1000.0));
+  rounds(*touch, 500);
+  EXPECT_EQ(touch->state().safety, SafetyState::kUncalibrated);
+  // Out of range nothing happens.
+  EXPECT_FALSE(touch->setRate(999.0));
+  EXPECT_FALSE(touch->setRate(10001.0));
+  EXPECT_EQ(touch->rate(), 1000.0);
+  EXPECT_EQ(touch->state().link, haptic::LinkState::kConnected);
+}
+
+TEST_F(TouchTest, a_stiffness_that_the_hand_does_not_hold_is_refused_with_the_largest_that_it_does) {
+  const auto touch = start();
+  ASSERT_TRUE(touch);
+  ASSERT_TRUE(until(*touch, givesForce));
+  EXPECT_EQ(touch->largestStiffness(), 6.0);
+  for (const double typed : {99999.0, 1000.0, 6.01}) {
+    haptic::Scene scene = touch->scene();
+    scene.stiffness_n_per_mm = typed;
+    const engine::Status refused = touch->setScene(scene);
+    ASSERT_FALSE(refused) << typed;
+    EXPECT_EQ(refused.error().kind, engine::ErrorKind::kInput);
+    EXPECT_NE(refused.error().line().find("at most 6 N/mm"), std::string::npos) << refused.error().line();
+    EXPECT_EQ(touch->scene(), haptic::defaultScene()) << "as before";
+  }
+  haptic::Scene scene = touch->scene();
+  scene.stiffness_n_per_mm = -1.0;
+  EXPECT_FALSE(touch->setScene(scene)) << "out of range";
+  // Twice as many ticks hold twice as much, and with that there is no way back.
+  ASSERT_TRUE(touch->setRate(2000.0));
+  EXPECT_EQ(touch->largestStiffness(), 12.0);
+  scene.stiffness_n_per_mm = 10.0;
+  ASSERT_TRUE(touch->setScene(scene));
+  const engine::Status back = touch->setRate(1000.0);
+  ASSERT_FALSE(back);
+  EXPECT_NE(back.error().line().find("at most 6 N/mm"), std::string::npos) << back.error().line();
+  EXPECT_EQ(touch->rate(), 2000.0);
+  EXPECT_FALSE(touch->finished());
+  EXPECT_TRUE(until(*touch, givesForce)) << "the loop runs on";
+  scene.stiffness_n_per_mm = 6.0;
+  ASSERT_TRUE(touch->setScene(scene));
+  EXPECT_TRUE(touch->setRate(1000.0));
+}
+
+// Another device than the scene was made with.
+TEST_F(TouchTest, a_scene_too_stiff_to_begin_with_is_refused_or_lowered_with_a_notice) {
+  haptic::Scene scene;
+  scene.stiffness_n_per_mm = 40.0;
+  const auto refused = tryStart("feel", scene, false);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, engine::ErrorKind::kInput);
+  EXPECT_NE(refused.error().line().find("at most 6 N/mm"), std::string::npos) << refused.error().line();
+  const auto lowered = tryStart("feel", scene, true);
+  ASSERT_TRUE(lowered) << lowered.error().line();
+  EXPECT_EQ((*lowered)->scene().stiffness_n_per_mm, 6.0);
+  const std::vector<Notice> notices = (*lowered)->takeNotices();
+  EXPECT_TRUE(std::any_of(notices.begin(), notices.end(), [](const Notice& n) {
+    return n.what.find("40 N/mm") != std::string::npos &&
+           n.remedy.find("at most 6 N/mm") != std::string::npos;
+  }));
+}
+
+}  // namespace
+}  // namespace fettle::app

@@ -1,0 +1,78 @@
+// Cells abreast against one after the other: the same touches, bit for bit.
+#include "haptic/contact/touch_lanes.h"
+
+#include <gtest/gtest.h>
+
+#include "haptic/contact/sphere_window.h"
+#include "tests/haptic/support/fields.h"
+
+namespace fettle::haptic {
+namespace {
+
+using tests::fieldOf;
+using tests::randomField;
+using tests::uniform;
+
+bool sameTouch(const Touch& a, const Touch& b) {
+  return a.point_mm == b.point_mm && a.normal == b.normal && a.distance_mm == b.distance_mm &&
+         a.cell == b.cell && a.u == b.u && a.v == b.v;
+}
+
+TEST(TouchLanes, FindWhatOneCellAfterTheOtherFinds) {
+  std::mt19937_64 random(19);
+  SphereWindow window;
+  TouchList abreast;
+  TouchList plain;
+  int found = 0;
+  int insides = 0;
+  for (int i = 0; i < 240; ++i) {
+    const double sy = i % 2 == 0 ? 1.0 : 0.6;
+    // Every kind of field, a few of them with holes; radii from a part of a cell to rows of three chunks.
+    const engine::Version field = randomField(random, 60, 80, i, 1.0, sy, i % 7 == 0 ? 0.02 : 0.0);
+    const Surface surface(field.reader());
+    const double reach = i % 5 == 0 ? 9.0 : (i % 5 == 1 ? 0.6 : 2.1);
+    for (int k = 0; k < 40; ++k) {
+      glm::dvec3 centre{uniform(random, 12, 46), uniform(random, 12, 36), 0.0};
+      window.load(surface, centre, reach, 0.5);
+      const double ground = window.heightUnder(centre);
+      centre.z = (std::isfinite(ground) ? ground : 0.0) + uniform(random, -0.2, 1.1) * reach;
+      window.touches(centre, reach, abreast);
+      window.touchesCellByCell(centre, reach, plain);
+      ASSERT_EQ(abreast.count, plain.count) << "field " << i << " centre " << k;
+      ASSERT_EQ(abreast.nearest_mm, plain.nearest_mm);
+      for (int t = 0; t < plain.count; ++t) {
+        const Touch& touch = plain.touches[static_cast<std::size_t>(t)];
+        ASSERT_TRUE(sameTouch(abreast.touches[static_cast<std::size_t>(t)], touch))
+            << "field " << i << " centre " << k << " touch " << t;
+        insides += touch.u > 0.0 && touch.u < 1.0 && touch.v > 0.0 && touch.v < 1.0 ? 1 : 0;
+      }
+      found += plain.count;
+    }
+  }
+  EXPECT_GT(found, 5000);
+  EXPECT_GT(insides, 500);
+}
+
+TEST(TouchLanes, ABallOnSamplesAndEdgesOfAFlatTouchesOnce) {
+  // Level with everything around: seams decide, in lanes as one by one.
+  const engine::Version field = fieldOf(30, 30, [](int, int) { return 1.0; });
+  const Surface surface(field.reader());
+  SphereWindow window;
+  TouchList abreast;
+  TouchList plain;
+  for (const double x : {12.0, 12.25, 12.5, 13.0})
+    for (const double y : {12.0, 12.5, 13.75}) {
+      const glm::dvec3 centre{x, y, 3.0};
+      window.load(surface, centre, 2.5, 0.5);
+      window.touches(centre, 2.5, abreast);
+      window.touchesCellByCell(centre, 2.5, plain);
+      ASSERT_GE(plain.count, 1);
+      ASSERT_EQ(abreast.count, plain.count);
+      for (int t = 0; t < plain.count; ++t)
+        EXPECT_TRUE(sameTouch(abreast.touches[static_cast<std::size_t>(t)],
+                              plain.touches[static_cast<std::size_t>(t)]));
+    }
+}
+
+}  // namespace
+}  // namespace fettle::haptic

@@ -1,0 +1,197 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
+
+#include "engine/field/live_field.h"
+#include "haptic/journal/journal.h"
+#include "haptic/journal/mark_codec.h"
+#include "haptic/journal/tick_codec.h"
+#include "tests/haptic/support/fields.h"
+
+namespace fettle::app {
+namespace {
+
+using haptic::StrokeSample;
+
+// Ticks as a loop makes them: times in whole nanoseconds, mostly a period apart, positions that rest now and
+// then.
+std::vector<StrokeSample> ticks(std::mt19937_64& random, std::size_t count) {
+  std::vector<StrokeSample> all;
+  std::int64_t ns = 0;
+  StrokeSample tick;
+  for (std::size_t i = 0; i < count; ++i) {
+    tick.t = 1e-9 * static_cast<double>(ns);
+    const auto what = random() % 8;
+    if (what < 3) tick.tip_mm.x += tests::uniform(random, -1, 1);
+    if (what < 2) tick.tip_mm.y = tests::uniform(random, -1e6, 1e6);
+    if (what < 4) tick.tip_mm.z *= 0.99;
+    if (what == 5) tick.tool = static_cast<haptic::Tool>(random() % 4);
+    all.push_back(tick);
+    if (what == 7) all.back().tip_mm.x = std::numeric_limits<double>::quiet_NaN();
+    ns += what == 6 ? static_cast<std::int64_t>(random() % 4'000'000'000)
+                    : 900'000 + static_cast<std::int64_t>(random() % 200'000);
+  }
+  return all;
+}
+
+RC_GTEST_PROP(TickCodec, EveryBitThatATickUsesComesBack, ()) {
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  const std::vector<StrokeSample> all = ticks(random, *rc::gen::inRange<std::size_t>(0, 400));
+  haptic::TickPacker packer;
+  for (const StrokeSample& tick : all) packer.add(tick);
+  RC_ASSERT(packer.count() == static_cast<std::int64_t>(all.size()));
+  const auto back = haptic::unpackTicks(packer.take());
+  RC_ASSERT(back.has_value());
+  RC_ASSERT(back->size() == all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    RC_ASSERT((*back)[i].tool == all[i].tool);
+    if (std::isnan(all[i].tip_mm.x))
+      RC_ASSERT(std::isnan((*back)[i].tip_mm.x));
+    else
+      RC_ASSERT((*back)[i] == all[i]);
+  }
+}
+
+TEST(TickCodec, ARestingHandTakesFewBytes) {
+  haptic::TickPacker packer;
+  for (int i = 0; i < 10000; ++i)
+    packer.add({1e-9 * (i * 1e6 + (i % 7) * 9000.0), {1.0, 2.0, 3.0}, haptic::Tool::kFeel});
+  EXPECT_LT(packer.bytes(), 10000U * 5U);
+  haptic::TickPacker nothing;
+  for (int i = 0; i < 10000; ++i)
+    nothing.add({1e-3 * i, {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}, haptic::Tool::kFeel});
+  EXPECT_LT(nothing.take().size(), 16U);
+}
+
+RC_GTEST_PROP(TickCodec, DamagedBytesAreRefusedOrReadNeverWorse, ()) {
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  haptic::TickPacker packer;
+  for (const StrokeSample& tick : ticks(random, 50)) packer.add(tick);
+  std::string block = packer.take();
+  for (int i = 0; i < 3; ++i) block[random() % block.size()] = static_cast<char>(random());
+  block.resize(block.size() - random() % 3);
+  const auto back = haptic::unpackTicks(block);
+  if (back)
+    for (const StrokeSample& tick : *back) RC_ASSERT(std::isfinite(tick.t));
+}
+
+haptic::Scene anyScene(std::mt19937_64& random) {
+  haptic::Scene scene;
+  scene.tip = random() % 2 == 0 ? haptic::TipShape::kPoint : haptic::TipShape::kSphere;
+  scene.tip_radius_mm = tests::uniform(random, 1e-9, 100);
+  scene.level = random() % 2 == 0 ? haptic::ContactLevel::kPaper : haptic::ContactLevel::kCertified;
+  scene.certified_radius_cells = 1 + static_cast<int>(random() % 64);
+  scene.search_rounds = 2 + static_cast<int>(random() % 2047);
+  scene.stiffness_n_per_mm = tests::uniform(random, 1e-12, 1000);
+  scene.force_limit_n = tests::uniform(random, 1e-12, 1000);
+  scene.brush_radius_samples = tests::uniform(random, 0, 64);
+  scene.mark_radius_samples = static_cast<double>(random() % 64);
+  if (random() % 2 == 0) scene.max_change = tests::uniform(random, 0, 1e9);
+  scene.invert = random() % 2 == 0;
+  scene.params.friction = {0.9, tests::uniform(random, 0, 0.9), tests::uniform(random, 1e-9, 1000)};
+  scene.params.viscosity.medium =
+      random() % 2 == 0 ? haptic::ViscousMedium::kContact : haptic::ViscousMedium::kEverywhere;
+  scene.params.texture.wavelength_mm = tests::uniform(random, 1e-9, 100);
+  scene.params.texture.pattern =
+      random() % 2 == 0 ? haptic::TexturePattern::kNoise : haptic::TexturePattern::kGrating;
+  scene.effects = {haptic::EffectKind::kSpring};
+  for (int e = 1; e < haptic::kEffectKinds; ++e)
+    if (random() % 2 == 0) scene.effects.push_back(static_cast<haptic::EffectKind>(e));
+  return scene;
+}
+
+RC_GTEST_PROP(SceneText, ReadsBackToTheVerySameScene, ()) {
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  const haptic::Scene scene = anyScene(random);
+  RC_PRE(!haptic::sceneProblem(scene).has_value());
+  const auto back = haptic::parseScene(haptic::sceneText(scene), "text");
+  RC_ASSERT(back.has_value());
+  RC_ASSERT(*back == scene);
+}
+
+TEST(Journal, EveryEntryReadsBackToTheSameText) {
+  std::mt19937_64 random(1);
+  engine::FilterSpec spec;
+  spec.kind = engine::FilterKind::kGaussian;
+  spec.window = 31;
+  spec.sigma = 0.1 + 0.2;
+  spec.passes = 7;
+  spec.scope = engine::FilterScope::kOnlyMarks;
+  spec.max_change = 1.0 / 3.0;
+  engine::FilterSpec edge_preserving;
+  edge_preserving.kind = engine::FilterKind::kTotalVariation;
+  edge_preserving.window = 21;
+  edge_preserving.range_sigma = 0.1 + 0.7;
+  const haptic::LoopPlace there{1234567890123, true}, before{7, false};
+  const std::vector<haptic::journal::Entry> all = {
+      haptic::journal::Begin{3, anyScene(random)},
+      haptic::journal::Ticks{17},
+      haptic::journal::Lost{4},
+      haptic::journal::SceneSet{there, anyScene(random)},
+      haptic::journal::StepMade{5, "Median \"5 x 5\"", engine::StepKind::kFilter, before, false},
+      haptic::journal::StepMade{6, "Lasso", engine::StepKind::kMark, there, true},
+      haptic::journal::RestoreAsked{8, 2},
+      haptic::journal::Restored{8, there},
+      haptic::journal::FilterBase{1, before},
+      haptic::journal::FilterBegun{1, spec},
+      haptic::journal::Snapshot{there},
+      haptic::journal::Offered{there, true},
+      haptic::journal::FilterBegun{2, edge_preserving},
+  };
+  for (const haptic::journal::Entry& entry : all) {
+    const std::string text = haptic::journalText(entry);
+    EXPECT_EQ(text.find('\n'), std::string::npos);
+    const auto back = haptic::journalEntry(text);
+    ASSERT_TRUE(back) << back.error().line();
+    EXPECT_EQ(back->index(), entry.index());
+    EXPECT_EQ(haptic::journalText(*back), text);
+  }
+  const auto back = haptic::journalEntry(haptic::journalText(all[9]));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*back).spec.sigma, spec.sigma);
+  EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*back).spec.max_change, spec.max_change);
+  const auto other = haptic::journalEntry(haptic::journalText(all.back()));
+  ASSERT_TRUE(other);
+  EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.kind, edge_preserving.kind);
+  EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.range_sigma, edge_preserving.range_sigma);
+}
+
+TEST(Journal, WhatIsNoEntryIsRefusedByName) {
+  for (const char* text :
+       {"", "{", "[]", "{}", R"({"do":"dance"})", R"({"do":"ticks"})", R"({"do":"ticks","count":"x"})",
+        R"({"do":"filter","id":1,"filter":"blur","window":3,"passes":1,"marks":"keep"})",
+        R"({"do":"begin","state":0,"scene":"tip = 3"})", R"({"do":7})", "3"}) {
+    const auto entry = haptic::journalEntry(text);
+    ASSERT_FALSE(entry) << text;
+    EXPECT_EQ(entry.error().kind, engine::ErrorKind::kInput) << text;
+  }
+}
+
+RC_GTEST_PROP(MarkCodec, ChangesPutOnTheFieldBeforeGiveTheOneAfter, ()) {
+  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
+  const int width = *rc::gen::inRange(1, 200), height = *rc::gen::inRange(1, 200);
+  const auto scattered = [&](const engine::Version& start, int count) {
+    engine::LiveField field(start, engine::Growth::kAllowed);
+    for (int i = 0; i < count; ++i)
+      RC_ASSERT(field.setMark(static_cast<int>(random() % width), static_cast<int>(random() % height),
+                              random() % 3 != 0));
+    return field.snapshot();
+  };
+  const engine::Version plain = tests::randomField(random, width, height, 1, 1, 1, 0.1);
+  const engine::Version before = scattered(plain, 300);
+  const engine::Version after = scattered(before, 200);
+  const std::string changes = haptic::packMarkChanges(before, after);
+  const auto back = haptic::applyMarkChanges(before, changes);
+  RC_ASSERT(back.has_value());
+  RC_ASSERT(engine::contentHash(*back) == engine::contentHash(after));
+  // Put twice they change nothing more.
+  const auto twice = haptic::applyMarkChanges(*back, changes);
+  RC_ASSERT(twice.has_value() && engine::contentHash(*twice) == engine::contentHash(after));
+  RC_ASSERT(!haptic::applyMarkChanges(before, changes + "x").has_value());
+}
+
+}  // namespace
+}  // namespace fettle::app

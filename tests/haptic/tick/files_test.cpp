@@ -1,0 +1,164 @@
+// Strokes, forces and scene files: round trips and refusals.
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "haptic/base/strokes.h"
+#include "haptic/effects/stability.h"
+#include "haptic/scene/scene.h"
+#include "tests/support/source_tree.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::haptic {
+namespace {
+
+void put(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+TEST(Strokes, EveryDoubleComesBack) {
+  const tests::TempFolder folder;
+  std::vector<StrokeSample> strokes;
+  for (int i = 0; i < 50000; ++i)
+    strokes.push_back({i * 1e-3, {i / 3.0, -1e-310 * i, 1e300 / (i + 1)}, static_cast<Tool>(i % kTools)});
+  ASSERT_TRUE(writeStrokes(folder.file("s.csv"), strokes));
+  const auto back = readStrokes(folder.file("s.csv"));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(*back, strokes);
+}
+
+TEST(Strokes, TakesWindowsLinesNoLastLineEndAndDropouts) {
+  const tests::TempFolder folder;
+  put(folder.file("s.csv"), "t,x,y,z,tool\r\n0,1,2,3,mark\r\n1e-3,nan,2,3,unmark");
+  const auto strokes = readStrokes(folder.file("s.csv"));
+  ASSERT_TRUE(strokes);
+  ASSERT_EQ(strokes->size(), 2U);
+  EXPECT_EQ((*strokes)[0].tool, Tool::kMark);
+  EXPECT_TRUE(std::isnan((*strokes)[1].tip_mm.x));
+  put(folder.file("empty.csv"), "t,x,y,z,tool\n\n\n");
+  EXPECT_TRUE(readStrokes(folder.file("empty.csv"))->empty());
+}
+
+TEST(Strokes, RefusesBadFilesNamingTheLine) {
+  const tests::TempFolder folder;
+  const std::string path = folder.file("s.csv");
+  for (const char* row : {"0,1,2,3", "0,1,2,3,", "0,1,2,3,feel,", "0,1,x,3,feel", "0,,2,3,feel",
+                          "0,1,2,3,paint", "0,1,2,1e999,feel", "", "0 ,1,2,3,feel"}) {
+    put(path, std::string("t,x,y,z,tool\n0,0,0,0,feel\n") + row + "\n0,0,0,0,feel\n");
+    const auto strokes = readStrokes(path);
+    ASSERT_FALSE(strokes) << row;
+    EXPECT_EQ(strokes.error().kind, engine::ErrorKind::kInput);
+    EXPECT_NE(strokes.error().what.find("line 3"), std::string::npos) << strokes.error().line();
+  }
+  put(path, "x,y\n");
+  EXPECT_NE(readStrokes(path).error().what.find("line 1"), std::string::npos);
+  EXPECT_FALSE(readStrokes(folder.file("none.csv")));
+  EXPECT_FALSE(readStrokes(folder.path().string()));
+}
+
+TEST(Forces, AreWrittenAsDocumented) {
+  const tests::TempFolder folder;
+  const ForceSample samples[] = {{0.001, {1, 2, 3}, {0, 0, 0.5}, true}, {0.002, {1, 2, 4}, {0, 0, 0}, false}};
+  ASSERT_TRUE(writeForces(folder.file("f.csv"), samples));
+  std::stringstream text;
+  text << std::ifstream(folder.file("f.csv")).rdbuf();
+  EXPECT_EQ(text.str(),
+            "t,proxy_x,proxy_y,proxy_z,fx,fy,fz,contact\n0.001,1,2,3,0,0,0.5,1\n0.002,1,2,4,0,0,0,0\n");
+  EXPECT_FALSE(writeForces(folder.file("no/such/folder.csv"), samples));
+}
+
+TEST(SceneFile, TheDocumentedDefaultIsTheDefaultAndAllExamplesLoad) {
+  const std::string folder = tests::inSourceTree("assets/scenes/");
+  const auto scene = loadScene(folder + "default.toml");
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_EQ(*scene, defaultScene());
+  ASSERT_TRUE(loadScene(folder + "trace_edges.toml"));
+  EXPECT_TRUE(loadScene(folder + "trace_edges.toml")->invert);
+  const auto gentle = loadScene(folder + "gentle_clean.toml");
+  ASSERT_TRUE(gentle);
+  EXPECT_EQ(gentle->level, ContactLevel::kCertified);
+  EXPECT_EQ(gentle->max_change, 0.05);
+}
+
+TEST(SceneFile, EverythingListsEveryEffectWithinWhatADeviceHolds) {
+  const auto scene = loadScene(tests::inSourceTree("assets/scenes/everything.toml"));
+  ASSERT_TRUE(scene) << scene.error().line();
+  EXPECT_EQ(scene->effects.size(), static_cast<std::size_t>(kEffectKinds));
+  EXPECT_EQ(scene->params.friction.dynamic_coefficient, 0.2);
+  EXPECT_EQ(scene->params.texture.wavelength_mm, 2.0);
+  EXPECT_EQ(sceneProblem(*scene), std::nullopt);
+  DeviceProfile profile;
+  profile.max_stiffness_n_per_mm = 1.0;
+  profile.max_damping_n_s_per_mm = 0.005;
+  EXPECT_EQ(stabilityProblem(*scene, profile, 1000.0), std::nullopt);
+  // The weakest of devices does not hold it, at a fifth of the rate nothing does.
+  EXPECT_NE(stabilityProblem(*scene, DeviceProfile{}, 1000.0), std::nullopt);
+  EXPECT_NE(stabilityProblem(*scene, profile, 200.0), std::nullopt);
+  profile.max_damping_n_s_per_mm = 0.003;
+  EXPECT_NE(stabilityProblem(*scene, profile, 1000.0), std::nullopt);
+}
+
+TEST(SceneFile, EffectsThatStandOnTheSpringComeAfterIt) {
+  Scene scene;
+  for (const EffectKind kind : {EffectKind::kFriction, EffectKind::kTexture, EffectKind::kCoupling}) {
+    scene.effects = {kind};
+    EXPECT_NE(sceneProblem(scene), std::nullopt);
+    scene.effects = {kind, EffectKind::kSpring};
+    EXPECT_NE(sceneProblem(scene), std::nullopt);
+    scene.effects = {EffectKind::kSpring, kind};
+    EXPECT_EQ(sceneProblem(scene), std::nullopt);
+  }
+  scene.params.friction = {0.2, 0.3, 1.0};
+  EXPECT_NE(sceneProblem(scene), std::nullopt);
+  scene = {};
+  scene.params.velocity.filter_ms = NAN;
+  EXPECT_NE(sceneProblem(scene), std::nullopt);
+}
+
+TEST(SceneFile, RefusesUnknownKeysTypesAndRangesWithTheLine) {
+  const tests::TempFolder folder;
+  const std::string path = folder.file("s.toml");
+  for (const char* line : {"colour = 1",
+                           "invert = 1",
+                           "effects = [\"glow\"]",
+                           "effects = [\"spring\", \"spring\"]",
+                           "effects = 3",
+                           "tip = \"ball\"",
+                           "force = { limit_n = 0 }",
+                           "force = { limit_n = nan }",
+                           "force = { stiffness = 1 }",
+                           "force = { stiffness_n_per_mm = \"1\" }",
+                           "contact = { certified_radius_cells = 1.5 }",
+                           "contact = { search_rounds = 1 }",
+                           "contact = { search_rounds = 2049 }",
+                           "contact = { level = \"best\" }",
+                           "brush = { max_change = -1 }",
+                           "friction = { static = 3 }",
+                           "friction = { static = nan }",
+                           "friction = { dynamic = 0.5 }",
+                           "friction = { grip = 1 }",
+                           "viscosity = { in = \"air\" }",
+                           "viscosity = { damping_n_s_per_mm = -1 }",
+                           "edge_snap = { reach_mm = 0 }",
+                           "texture = { wavelength_mm = \"1\" }",
+                           "texture = 3",
+                           "texture = { pattern = \"wood\" }",
+                           "gravity = { stylus_kg = inf }",
+                           "coupling = { in = \"contact\" }",
+                           "effects = [\"friction\", \"spring\"]",
+                           "velocity = { filter_ms = 51 }",
+                           "brush = { radius_samples = 65 }",
+                           "= 3"}) {
+    put(path, std::string("# a scene\n") + line + "\n");
+    const auto scene = loadScene(path);
+    ASSERT_FALSE(scene) << line;
+    EXPECT_EQ(scene.error().kind, engine::ErrorKind::kInput);
+    EXPECT_NE(scene.error().what.find("line 2"), std::string::npos) << scene.error().line();
+  }
+  EXPECT_FALSE(loadScene(folder.file("none.toml")));
+}
+
+}  // namespace
+}  // namespace fettle::haptic

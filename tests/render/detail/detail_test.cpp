@@ -1,0 +1,248 @@
+// What DetailMeasure promises, against the two surfaces themselves in double precision.
+#include "render/detail/detail.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "engine/field/live_field.h"
+#include "render/detail/kept_trees.h"
+#include "tests/render/support/drawn_surface.h"
+#include "tests/render/support/fields.h"
+
+namespace fettle::render {
+namespace {
+
+double rough(int c, int r) {
+  std::uint32_t h = static_cast<std::uint32_t>(c) * 2654435761U ^ static_cast<std::uint32_t>(r) * 2246822519U;
+  h ^= h >> 15U;
+  h *= 2246822519U;
+  return 0.3 * std::sin(c * 0.11) * std::cos(r * 0.07) + 0.05 * ((h >> 8U) / 8388608.0 - 1.0);
+}
+
+TEST(Detail, NoPointLiesFartherFromACoarseSurfaceThanItsPatchSays) {
+  // 257 = whole cells at every level; the others are cut short at some or all. The kink of a cut cell is a
+  // bound, not a measurement, hence the slack.
+  for (const auto& [w, h] : {std::pair{257, 130}, {150, 203}, {65, 64}, {66, 131}}) {
+    SCOPED_TRACE(w);
+    expectBound(fieldOf(gridOf(w, h), rough), 2.5);
+  }
+}
+
+TEST(Detail, FieldsWithoutCellsStepsSpikesAndGiantHeightsAreBounded) {
+  expectBound(fieldOf(gridOf(1, 1), rough), 1e9);
+  expectBound(fieldOf(gridOf(1, 90), rough), 1e9);
+  expectBound(fieldOf(gridOf(140, 1), rough), 1e9);
+  expectBound(fieldOf(gridOf(129, 129), [](int c, int r) { return c > 70   ? 12.0
+                                                                  : r > 33 ? -4.0
+                                                                           : 0.0; }),
+              1e9);
+  expectBound(fieldOf(gridOf(129, 129), [](int c, int r) { return c == 77 && r == 41 ? 1e6 : rough(c, r); }),
+              1e9);
+  expectBound(fieldOf(gridOf(100, 100), [](int c, int r) { return 1e7 + rough(c, r); }), 1e9);
+  expectBound(fieldOf(gridOf(100, 100), [](int c, int r) { return (c + r) % 2 == 0 ? 3e38 : -3e38; }), 1e9);
+}
+
+TEST(Detail, HolesSmallWideAndScatteredAreBounded) {
+  expectBound(
+      fieldOf(gridOf(130, 140), [](int c, int r) { return (c * 13 + r * 7) % 41 == 0 ? kNan : rough(c, r); }),
+      1e9);
+  expectBound(fieldOf(gridOf(130, 140),
+                      [](int c, int r) { return std::hypot(c - 70, r - 60) < 33 ? kNan : rough(c, r); }),
+              1e9);
+  // Only a corner and a thin line are there.
+  expectBound(
+      fieldOf(gridOf(200, 200),
+              [](int c, int r) { return c + r < 9 || std::abs(c - r - 31) < 2 ? rough(c, r) : kNan; }),
+      1e9);
+  expectBound(fieldOf(gridOf(90, 90), [](int, int) { return kNan; }), 1e9);
+}
+
+TEST(Detail, LevelsAboveTheTileAreBoundedByWhatLiesBelow) {
+  // One patch of level 8 takes 4096 samples at 16 cells: a long thin field reaches the nested levels.
+  const engine::Version field = fieldOf(gridOf(3000, 20), [](int c, int r) {
+    return c % 701 == 33 ? kNan : 5 * std::sin(c * 0.004) + rough(c, r);
+  });
+  DetailMeasure measure;
+  measure.measure(field.reader());
+  ASSERT_GT(measure.topLevel(), DetailMeasure::kTileLevels);
+  expectBound(field, 1e9);
+}
+
+TEST(Detail, ExcessIsHowFarSamplesReachBeyondTheVerticesOfTheirCell) {
+  // A step has none; a spike between vertices has all of its height; a hole makes it unbounded.
+  DetailMeasure measure;
+  measure.measure(fieldOf(gridOf(129, 129), [](int c, int) { return c > 70 ? 12.0 : 0.0; }).reader());
+  for (int level = 1; level <= measure.topLevel(); ++level)
+    for (int y = 0; y < measure.patches(level).y; ++y)
+      for (int x = 0; x < measure.patches(level).x; ++x) EXPECT_LT(measure.error(level, x, y).excess, 1e-4);
+  measure.measure(
+      fieldOf(gridOf(129, 129), [](int c, int r) { return c == 35 && r == 35 ? 7.0 : 0.0; }).reader());
+  EXPECT_NEAR(measure.error(1, 35 / DetailMeasure::side(1), 35 / DetailMeasure::side(1)).excess, 7.0, 1e-4);
+  measure.measure(
+      fieldOf(gridOf(129, 129), [](int c, int r) { return c == 35 && r == 35 ? kNan : 0.0; }).reader());
+  EXPECT_TRUE(std::isinf(measure.error(2, 35 / DetailMeasure::side(2), 35 / DetailMeasure::side(2)).excess));
+}
+
+TEST(Detail, AfterAnEditTheMeasureEqualsAFreshOneBitForBit) {
+  std::mt19937 random(7);
+  const engine::Version start = fieldOf(gridOf(700, 300), [](int c, int r) {
+    return std::hypot(c - 320, r - 128) < 20 || (c * 31 + r * 17) % 997 == 0 ? kNan : rough(c, r);
+  });
+  engine::LiveField live(start, engine::Growth::kAllowed);
+  DetailMeasure kept;
+  kept.measure(start.reader());
+  for (int edit = 0; edit < 25; ++edit) {
+    const int c = static_cast<int>(random() % 690), r = static_cast<int>(random() % 290);
+    const std::vector<float> bump(100, edit % 5 == 0 ? kNan : static_cast<float>(edit));
+    ASSERT_TRUE(live.writeHeights(c, r, 10, 10, bump.data(), 10));
+    std::vector<glm::ivec2> tiles;
+    for (int tr = r / 64; tr <= (r + 9) / 64; ++tr)
+      for (int tc = c / 64; tc <= (c + 9) / 64; ++tc) tiles.emplace_back(tc, tr);
+    kept.refresh(live.reader(), tiles);
+    DetailMeasure fresh;
+    fresh.measure(live.reader());
+    for (int level = 1; level <= fresh.topLevel(); ++level)
+      for (int y = 0; y < fresh.patches(level).y; ++y)
+        for (int x = 0; x < fresh.patches(level).x; ++x) {
+          ASSERT_EQ(kept.error(level, x, y).deviation, fresh.error(level, x, y).deviation)
+              << "edit " << edit << " level " << level << ' ' << x << ' ' << y;
+          ASSERT_EQ(kept.error(level, x, y).excess, fresh.error(level, x, y).excess);
+        }
+  }
+}
+
+// Every number of `some` is that of `all`, or infinite.
+void expectSafe(const DetailMeasure& some, const DetailMeasure& all, int& known) {
+  known = 0;
+  for (int level = 1; level <= all.topLevel(); ++level)
+    for (int y = 0; y < all.patches(level).y; ++y)
+      for (int x = 0; x < all.patches(level).x; ++x) {
+        const DetailMeasure::Error a = some.error(level, x, y), b = all.error(level, x, y);
+        if (std::isinf(a.deviation) && std::isinf(a.excess)) continue;
+        ++known;
+        ASSERT_EQ(a.deviation, b.deviation) << "level " << level << ' ' << x << ' ' << y;
+        ASSERT_EQ(a.excess, b.excess) << "level " << level << ' ' << x << ' ' << y;
+      }
+}
+
+TEST(Detail, MeasuredInPartsItIsInfiniteUntilItIsTheSameBitForBit) {
+  // 12 x 47 tiles; a level above the tile's; holes of all kinds.
+  const engine::Version field = fieldOf(gridOf(3000, 700), [](int c, int r) {
+    return std::hypot(c - 320, r - 128) < 90 || (c * 31 + r * 17) % 9973 == 0 ? kNan : rough(c, r);
+  });
+  DetailMeasure all;
+  all.measure(field.reader());
+  EXPECT_EQ(all.unknown(), 0U);
+  DetailMeasure parts;
+  parts.begin(field.reader());
+  ASSERT_EQ(parts.unknown(), std::size_t{47 * 11});
+  int known = -1, before = -1;
+  expectSafe(parts, all, known);
+  EXPECT_EQ(known, 0);
+  while (parts.unknown() > 0) {
+    const std::size_t left = parts.unknown();
+    ASSERT_EQ(parts.measureSome(field.reader(), 37), std::min<std::size_t>(37, left));
+    before = known;
+    expectSafe(parts, all, known);
+    EXPECT_GE(known, before);
+  }
+  EXPECT_GT(known, before);
+
+  // An edit meanwhile, of tiles that are known and of such that are not.
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  parts.begin(field.reader());
+  (void)parts.measureSome(field.reader(), 300);
+  std::vector<glm::ivec2> tiles;
+  for (int i = 0; i < 40; ++i) {
+    const int c = i * 71, r = i * 17;
+    ASSERT_TRUE(live.setHeight(c, r, i % 4 == 0 ? kNan : static_cast<float>(i)));
+    tiles.emplace_back(c / 64, r / 64);
+  }
+  all.measure(live.reader());
+  parts.forget(live.reader(), tiles);
+  expectSafe(parts, all, known);
+  while (parts.unknown() > 0) (void)parts.measureSome(live.reader(), 64);
+  int whole = 0;
+  expectSafe(parts, all, whole);
+  EXPECT_GT(whole, known);
+  for (int level = 1; level <= all.topLevel(); ++level)
+    for (int y = 0; y < all.patches(level).y; ++y)
+      for (int x = 0; x < all.patches(level).x; ++x) {
+        ASSERT_EQ(parts.error(level, x, y).deviation, all.error(level, x, y).deviation);
+        ASSERT_EQ(parts.error(level, x, y).excess, all.error(level, x, y).excess);
+      }
+}
+
+// The patches, edges and walls of a tree as plain numbers.
+std::vector<int> numbersOf(const PatchTree& tree) {
+  const PatchChoice choice = tree.list();
+  std::vector<int> numbers{static_cast<int>(choice.whole), choice.within_budget ? 1 : 0};
+  for (const auto* list : {&choice.patches, &choice.seams, &choice.walls})
+    for (const gpu::Patch& p : *list)
+      numbers.insert(numbers.end(), {p.place.x, p.place.y, p.place.z, p.place.w});
+  return numbers;
+}
+
+TEST(KeptTrees, AreWhatChoosingAgainGivesAfterEveryChange) {
+  const engine::Version field = fieldOf(gridOf(400, 300, 0.1, 0.1), rough);
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  DetailMeasure measure;
+  measure.begin(field.reader());
+  PatchQuestion q;
+  q.measure = &measure;
+  q.placing = placingOf(field.grid());
+  q.lowest = -1.0, q.highest = 1.0, q.floor_z = -1.2, q.error_px = 0.5;
+  const glm::dvec2 half = 0.5 * q.placing.extent();
+  const Box box{{-half.x, -half.y, -1.2}, {half.x, half.y, 1.0}};
+  View view;
+  q.camera = Camera::fit(view, box, box, {0, 0, 900, 600});
+  KeptTrees kept;
+  engine::Version shown = field;
+  std::vector<int> last;
+  int changes = 0;
+  const auto expectChosen = [&](const char* what) {
+    SCOPED_TRACE(what);
+    q.reader = shown.reader();
+    const std::vector<int> wanted = numbersOf(PatchTree(q));
+    for (int i = 0; i < 2; ++i) {
+      PatchTree tree = kept.tree(1, q, shown);
+      EXPECT_EQ(numbersOf(tree), wanted);
+      // What a frame makes of its own is not kept.
+      (void)tree.prune([](const PatchLeaf& leaf) { return leaf.level > 3; });
+    }
+    changes += wanted != last;
+    last = wanted;
+  };
+  expectChosen("nothing is known");
+  while (measure.unknown() > 0) {
+    (void)measure.measureSome(shown.reader(), 9);
+    expectChosen("more is known");
+  }
+  const std::vector<float> bump(20 * 20, 0.9F);
+  ASSERT_TRUE(live.writeHeights(100, 100, 20, 20, bump.data(), 20));
+  shown = live.snapshot();
+  const glm::ivec2 tile(1, 1);
+  measure.refresh(shown.reader(), std::span(&tile, 1));
+  expectChosen("an edit");
+  q.vertex_budget = 40000;
+  expectChosen("fewer vertices");
+  q.error_px = 4.0;
+  expectChosen("a larger error");
+  view.zoom = 3.0;
+  q.camera = Camera::fit(view, box, box, {0, 0, 900, 600});
+  expectChosen("another view");
+  q.mm_per_unit = 5.0;
+  expectChosen("exaggerated");
+  q.settled = [](glm::ivec2, glm::ivec2) { return false; };
+  expectChosen("samples on their way");
+  q.settled = {};
+  shown = field;
+  measure.refresh(shown.reader(), std::span(&tile, 1));
+  expectChosen("undone");
+  EXPECT_GE(changes, 6);
+}
+
+}  // namespace
+}  // namespace fettle::render

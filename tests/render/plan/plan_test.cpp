@@ -1,0 +1,234 @@
+#include "render/plan/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "render/plan/colour_map.h"
+#include "render/plan/number_text.h"
+#include "tests/render/support/fields.h"
+
+namespace fettle::render {
+namespace {
+
+TEST(ValueRange, OneSpikeDoesNotEatTheColours) {
+  const ValueSpan span =
+      heightSpan(fieldOf(gridOf(200, 200), [](int c, int r) { return c == 7 && r == 9 ? 1e6 : c * 0.01; }));
+  EXPECT_EQ(span.extreme.high, 1e6F);
+  EXPECT_LT(span.robust.high, 2.3);
+  EXPECT_GE(span.robust.high, 1.98);
+}
+
+TEST(ValueRange, TheTrueExtremesAreKeptWhenNothingIsWild) {
+  const ValueSpan span = heightSpan(fieldOf(gridOf(100, 30), [](int c, int r) { return c - r; }));
+  EXPECT_EQ(span.robust, (ValueRange{-29, 99}));
+}
+
+TEST(ValueRange, AllHolesIsEmptyAndAConstantIsAPoint) {
+  EXPECT_TRUE(heightSpan(fieldOf(gridOf(5, 5), [](int, int) { return kNan; })).empty);
+  EXPECT_EQ(heightSpan(fieldOf(gridOf(90, 90), [](int, int) { return 4; })).robust, (ValueRange{4, 4}));
+}
+
+TEST(ValueRange, DeviationIsSymmetricAboutZeroAndIgnoresUntouchedSamples) {
+  const auto base = [](int c, int r) { return c * 0.5 + r; };
+  const engine::Version a = fieldOf(gridOf(300, 300), base);
+  const engine::Version b = fieldOf(gridOf(300, 300), [&](int c, int r) {
+    return base(c, r) + (c < 40 && r < 40 ? -0.25 : 0.0) + (c == 200 && r == 200 ? 50.0 : 0.0);
+  });
+  const ValueSpan span = deviationSpan(b, a);
+  EXPECT_EQ(span.extreme, (ValueRange{-0.25, 50}));
+  EXPECT_EQ(span.robust, (ValueRange{-0.25, 0.25}));
+  EXPECT_EQ(deviationSpan(a, a).robust, (ValueRange{0, 0}));
+}
+
+TEST(ValueRange, OfInvertedFieldsTheEndsChangePlacesAndSigns) {
+  const engine::Version a = fieldOf(gridOf(130, 70), [](int c, int r) { return 0.1 * c + 0.03 * r; });
+  const engine::Version b =
+      fieldOf(gridOf(130, 70), [](int c, int r) { return 0.1 * c + 0.03 * r + (c < 9 ? 0.5 : 0.0); });
+  const auto expectEqual = [](const ValueSpan& x, const ValueSpan& y) {
+    EXPECT_EQ(x.robust, y.robust);
+    EXPECT_EQ(x.extreme, y.extreme);
+    EXPECT_EQ(x.empty, y.empty);
+  };
+  expectEqual(negated(heightSpan(a)), heightSpan(a.inverted()));
+  expectEqual(negated(negated(heightSpan(a))), heightSpan(a));
+  expectEqual(negated(deviationSpan(b, a)), deviationSpan(b.inverted(), a.inverted()));
+  expectEqual(negated(heightSpan(fieldOf(gridOf(5, 5), [](int, int) { return kNan; }))), {});
+}
+
+TEST(Plan, ExaggerationIsOneForReadableReliefAndRoundOtherwise) {
+  EXPECT_EQ(chooseExaggeration(10, 100), 1.0);
+  EXPECT_EQ(chooseExaggeration(0, 100), 1.0);
+  EXPECT_EQ(chooseExaggeration(0.01, 100), 1000.0);  // 0.18 / 1e-4 = 1800
+  EXPECT_EQ(chooseExaggeration(1000, 640), 0.1);     // 0.18 / 1.56 = 0.115
+}
+
+TEST(Plan, RefusesWhatIsOutsideTheStatedRanges) {
+  const PictureSpec good = mapOf(fieldOf(gridOf(8, 8), [](int c, int) { return c; }), 100, 100);
+  ASSERT_TRUE(planPicture(good));
+  const auto refused = [&](auto change) {
+    PictureSpec spec = good;
+    change(spec);
+    const engine::Result<PicturePlan> plan = planPicture(spec);
+    return !plan && plan.error().kind == engine::ErrorKind::kInput;
+  };
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.width = 0; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.height = 20000; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.elevation_deg = 0; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.azimuth_deg = std::nan(""); }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.zoom = 0; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.samples_per_side = 9; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.range = ValueRange{1, 1}; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.field = {}; }));
+  EXPECT_TRUE(refused(
+      [](PictureSpec& s) { s.deviation_from = fieldOf(gridOf(8, 9), [](int c, int) { return c; }); }));
+}
+
+TEST(Plan, APatchOfHolesIsNotDrawnAndZoomingInDrawsFewer) {
+  const engine::Version field =
+      fieldOf(gridOf(256, 256), [](int c, int r) { return c >= 128 && r < 128 ? kNan : c * 0.1; });
+  PictureSpec spec = mapOf(field, 600, 600);
+  const std::size_t all = planPicture(spec)->panels[0].detail.patches.size();
+  // Of the 64 patches without a height of their own, 8 reach up to row 128, where the heights begin.
+  EXPECT_EQ(all, 256U - 56U);
+  spec.view.zoom = 4;
+  EXPECT_LT(planPicture(spec)->panels[0].detail.patches.size(), all / 2);
+}
+
+TEST(NumberText, TicksAreRoundAndInside) {
+  const std::vector<Tick> t = ticks(-2.96, 2.96, 6);
+  ASSERT_EQ(t.size(), 5U);
+  EXPECT_EQ(t.front().text, "\u22122");
+  EXPECT_EQ(t[2].text, "0");
+  EXPECT_EQ(ticks(0, 0.5, 6).back().text, "0.5");
+  EXPECT_TRUE(ticks(1, 1, 5).empty());
+  for (const double size : {1e-9, 0.003, 7.0, 1e6})
+    EXPECT_TRUE(ticks(-size, size, 7).size() >= 3 && ticks(-size, size, 7).size() <= 9) << size;
+}
+
+TEST(NumberText, UnitsChangeOnlyWhenNumbersReadBadly) {
+  EXPECT_EQ(shownUnit({"m", 1000}, 43.0, 0.05, 5e4).name, "m");
+  const ShownUnit u = shownUnit({"m", 1000}, 1.3e-4, 0.05, 5e4);
+  EXPECT_EQ(u.name, "\u00b5m");
+  EXPECT_DOUBLE_EQ(u.per_unit, 1e6);
+  EXPECT_EQ(shownUnit({"ft", 304.8}, 1e-6, 0.05, 5e4).name, "ft");
+  EXPECT_EQ(roundDown125(7.3), 5.0);
+  EXPECT_EQ(roundDown125(1.0), 1.0);
+  EXPECT_DOUBLE_EQ(roundDown125(0.0021), 0.002);
+}
+
+// What the furniture of a picture says, letter by letter in drawing order; spaces draw nothing.
+std::u32string saying(const std::vector<gpu::Quad>& quads, Glyphs& glyphs) {
+  std::map<std::pair<int, int>, char32_t> letters;
+  for (const char32_t c :
+       std::u32string(U"0123456789.,+e\u2212\u2026\u00d7\u2248[]%:\u00b5abcdfghijklmnopqrstuvwxyz"))
+    for (int px = 6; px <= 40; ++px)
+      for (const auto weight : {Glyphs::Weight::kRegular, Glyphs::Weight::kBold}) {
+        const Glyphs::Glyph& g = glyphs.glyph(c, px, weight);
+        letters[{g.x, g.y}] = c;
+      }
+  std::u32string out;
+  for (const gpu::Quad& quad : quads)
+    if (quad.fill.x == gpu::kFillGlyph) {
+      const auto found = letters.find({static_cast<int>(quad.uv.x), static_cast<int>(quad.uv.y)});
+      out += found == letters.end() ? U'?' : found->second;
+    }
+  return out;
+}
+
+TEST(Furniture, AFigureIsShownWholeOrLeftOutWithAWarningButNeverCut) {
+  struct Case {
+    ValueRange range;
+    std::string note;
+    std::u32string lowest, highest;
+  };
+  const std::vector<Case> cases{
+      {{-20, 40}, "lowest \u221230.0\nhighest 1713\nbar: 99.5 %", U"lowest\u221230.0", U"highest1713"},
+      {{-0.1, 0.1}, "lowest \u22120.118\nhighest 0.123", U"lowest\u22120.118", U"highest0.123"},
+      {{123456.25, 123456.75},
+       "lowest \u22121.23e+08\nhighest 1.23e+08",
+       U"lowest\u22121.23e+08",
+       U"highest1.23e+08"},
+      // Inches have no other unit to go to.
+      {{4123456.25, 4123456.75}, "lowest 0\nhighest \u22121.23e+08", U"lowest0", U"highest\u22121.23e+08"}};
+  int whole = 0, left_out = 0;
+  for (const auto& [w, h] :
+       {std::pair{800, 500}, {3000, 200}, {200, 140}, {200, 3000}, {480, 300}, {1280, 800}})
+    for (const int panels : {1, 2})
+      for (const Case& c : cases) {
+        View view;
+        view.width = w;
+        view.height = h;
+        const Layout layout = layOut(view, Decoration::kFull, panels, Titles::kNone);
+        Furniture f;
+        f.range = c.range;
+        f.above = f.below = true;
+        f.quantity = "deviation";
+        f.note = c.note;
+        f.height_unit = {"in", 25.4};
+        f.lateral_unit = {"mm", 1.0};
+        f.exaggeration = 1000;
+        engine::Result<Glyphs> glyphs = Glyphs::create();
+        ASSERT_TRUE(glyphs);
+        std::vector<std::string> warnings;
+        const std::vector<gpu::Quad> quads =
+            furnish(layout, view, f, paletteOf(Theme::kLight, ColourMap::kViridis), *glyphs, warnings);
+        const std::u32string said = saying(quads, *glyphs);
+        ASSERT_FALSE(said.empty());
+        EXPECT_EQ(said.find(U'\u2026'), said.npos) << w << " x " << h << ' ' << c.note;
+        EXPECT_EQ(said.find(U'?'), said.npos) << w << " x " << h << ' ' << c.note;
+        for (const gpu::Quad& quad : quads)
+          EXPECT_LE(quad.pixels.z, static_cast<float>(w + 1)) << w << " x " << h;
+        const bool noted = said.find(c.lowest) != said.npos && said.find(c.highest) != said.npos;
+        const bool warned = std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+          return warning.find("note") != std::string::npos;
+        });
+        EXPECT_NE(noted, warned) << w << " x " << h << ' ' << c.note;
+        whole += noted;
+        left_out += warned;
+        // The two pictures the rule comes from have room for the figures.
+        if (w == 800 || w == 1280) {
+          EXPECT_TRUE(noted) << w << " x " << h << ' ' << c.note;
+        }
+      }
+  EXPECT_GT(whole, 0);
+  EXPECT_GT(left_out, 0);
+}
+
+TEST(ColourMaps, EndsAndMiddleAreTheSourcesOwn) {
+  // First and last line of the published tables, 8-bit.
+  const auto code = [](const glm::vec3& c) {
+    return glm::ivec3(
+        glm::round(glm::dvec3(srgbFromLinear(c.x), srgbFromLinear(c.y), srgbFromLinear(c.z)) * 255.0));
+  };
+  EXPECT_EQ(code(colourTable(ColourMap::kViridis).front()), glm::ivec3(68, 1, 84));
+  EXPECT_EQ(code(colourTable(ColourMap::kViridis).back()), glm::ivec3(253, 231, 37));
+  EXPECT_EQ(code(colourTable(ColourMap::kCividis).front()), glm::ivec3(0, 34, 78));
+  const glm::vec3 zero = mapped(colourTable(ColourMap::kDiverging), 0.0, {-3, 3});
+  EXPECT_GT(std::min({zero.x, zero.y, zero.z}), 0.97F);
+}
+
+TEST(Plan, TextIsAsLargeAsTheDisplayAsksAndLeavesRoomForTheSurface) {
+  View view;
+  view.width = 1280;
+  view.height = 800;
+  EXPECT_EQ(layOut(view, Decoration::kFull, 1, Titles::kAbove).text_px, 15);
+  for (const double scale : {0.87, 1.0, 1.74, 2.5})
+    EXPECT_EQ(layOut(view, Decoration::kFull, 1, Titles::kAbove, scale).text_px, std::lround(15.0 * scale));
+  // The display says how large, not the picture: a larger one has the same text.
+  view.width = 2560;
+  view.height = 1600;
+  EXPECT_EQ(layOut(view, Decoration::kFull, 1, Titles::kAbove, 1.0).text_px, 15);
+  for (const auto& [w, h] : {std::pair{400, 1000}, {2000, 260}, {300, 200}}) {
+    view.width = w;
+    view.height = h;
+    const Layout layout = layOut(view, Decoration::kFull, 1, Titles::kAbove, 4.0);
+    EXPECT_GE(layout.plots[0].width, 0.5 * w) << w << " x " << h;
+    EXPECT_GE(layout.plots[0].height, 0.5 * h) << w << " x " << h;
+  }
+}
+
+}  // namespace
+}  // namespace fettle::render
