@@ -25,12 +25,17 @@ namespace fettle::engine {
 /// One rectangle of outputs and all samples of the field that their windows can reach.
 ///
 ///        first_column
-///       |<--------->|                   heights: rows x columns, row-major, NaN = hole. It is cut at the
-///   +---------------------------+       border of the field and nowhere else: where a window leaves it, the
-///   |   heights                 |       window leaves the field. So a kernel needs no knowledge of the
-///   field, |            +----------+   |       and a window is the same samples whatever block it is
-///   computed in. |            |   out    |   | |            +----------+   |
+///       |<--------->|
 ///   +---------------------------+
+///   |   heights                 |
+///   |            +----------+   |
+///   |            |   out    |   |
+///   |            +----------+   |
+///   +---------------------------+
+///
+/// heights: rows x columns, row-major, NaN = hole. It is cut at the border of the field and nowhere else:
+/// where a window leaves it, the window leaves the field. So a kernel needs no knowledge of the field, and a
+/// window is the same samples whatever block it is computed in.
 struct Block {
   const float* heights = nullptr;
   std::ptrdiff_t stride =

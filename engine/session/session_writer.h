@@ -47,8 +47,9 @@ struct ResumedSession;
 ///
 ///   main side                                  writer's thread
 ///   history.push(...)
-///   writer.commit(number, step, journal) ----> pack changed tiles, insert rows, commit     (error: roll
-///   back, keep, history.undo(); writer.moveTo(number) ---> one row report, try again)
+///   writer.commit(number, step, journal) ----> pack changed tiles, insert rows, commit
+///                                              (error: roll back, keep, report, try again)
+///   history.undo(); writer.moveTo(number) ---> one row
 ///   writer.setNote("camera", ...) -----------> one row (a newer text replaces one that still waits)
 ///   writer.status() <------------------------- waiting, committed, error
 ///                                              idle and log long: work it into the file

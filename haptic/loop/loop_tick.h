@@ -83,9 +83,8 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 /// All that happens in one tick of the live loop, without the thread and the clock, so that tests and benches
 /// run the very code:
 ///
-///   commands --> device.read --> workspace --> Tick::run (the tick of replay) --> ForceGuard -->
-///   device.write
-///            --> dirty rectangle --> publish (every n ticks) --> state slot
+///   commands --> device.read --> workspace --> Tick::run (the tick of replay) --> ForceGuard
+///            --> device.write --> dirty rectangle --> publish (every n ticks) --> state slot
 ///
 /// Edits. The loop keeps one dirty rectangle. Every publish_ticks ticks it sends {rectangle, snapshot} if the
 /// field's root really changed since. A snapshot is O(1); what it costs is one tile copy (17 KB, about 1 us)

@@ -17,10 +17,10 @@ namespace fettle::haptic {
 ///       ^               ^   disarm()   |                         ^  |   gap, disturbance   |
 ///       |               +--------------+-------------------------+--+----------------------+
 ///       |                                                           |
-///       +-- link lost (was not armed)              Fault <----------+-- 50 ms without good input, loop
-///       stopped,
-///                                                    |                  unplugged while armed, last resort
-///                                                    +-- arm() --> Armed
+///       |                                                           | 50 ms without good input, loop stopped,
+///       |                                                           | unplugged while armed, last resort
+///       |                                                           v
+///       +-- link lost (was not armed)                             Fault -- arm() --> Armed
 enum class SafetyState : std::uint8_t {
   kDisconnected,  ///< no device: 0 N
   kUncalibrated,  ///< not calibrated, or not armed yet: 0 N
