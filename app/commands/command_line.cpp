@@ -39,10 +39,6 @@ Check inRange(int lowest, int highest) {
   return checkOf(CLI::Range(lowest, highest));
 }
 
-Check inRange(double lowest, double highest) {
-  return checkOf(CLI::Range(lowest, highest));
-}
-
 Check memberOf(const std::vector<std::string>& words) {
   return checkOf(CLI::IsMember(words));
 }
@@ -123,13 +119,13 @@ template Option Command::option(const std::string&, double&, const std::string&)
 template Option Command::option(const std::string&, std::optional<double>&, const std::string&);
 template Option Command::option(const std::string&, std::vector<double>&, const std::string&);
 
-Option Command::onOption(const std::string& name, std::function<void(const std::string&)> take,
+Option Command::onOption(const std::string& name, const std::function<void(const std::string&)>& take,
                          const std::string& help) {
   return Option(app_->add_option_function<std::string>(name, take, help));
 }
 
 Option Command::onNumbers(const std::string& name, const std::map<std::string, int>& words,
-                          std::function<void(const std::vector<int>&)> take, const std::string& help) {
+                          const std::function<void(const std::vector<int>&)>& take, const std::string& help) {
   CLI::Option* option = app_->add_option_function<std::vector<int>>(name, take, help);
   option->type_name("ENUM")->transform(CLI::CheckedTransformer(words));
   return Option(option);
@@ -141,11 +137,6 @@ Option Command::flag(const std::string& name, bool& variable, const std::string&
 
 Option Command::onFlag(const std::string& name, std::function<void()> f, const std::string& help) {
   return Option(app_->add_flag_callback(name, std::move(f), help));
-}
-
-Option Command::onFlagAnyhow(const std::string& name, std::function<void()> f, const std::string& help) {
-  return Option(app_->add_flag_function(
-      name, [f = std::move(f)](std::int64_t) { f(); }, help));
 }
 
 CommandLine::CommandLine(const std::string& name, const std::string& description, const std::string& version)

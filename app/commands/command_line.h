@@ -29,9 +29,6 @@ struct Check {
 /// A whole number from `lowest` to `highest`.
 [[nodiscard]] Check inRange(int lowest, int highest);
 
-/// The same of numbers. Lets NaN through, which within() does not.
-[[nodiscard]] Check inRange(double lowest, double highest);
-
 /// One of `words`, without a guess at what another may stand for: see oneOf().
 [[nodiscard]] Check memberOf(const std::vector<std::string>& words);
 
@@ -78,7 +75,7 @@ class Command {
   Option option(const std::string& name, T& variable, const std::string& help);
 
   /// An option whose value goes to `take`.
-  Option onOption(const std::string& name, std::function<void(const std::string&)> take,
+  Option onOption(const std::string& name, const std::function<void(const std::string&)>& take,
                   const std::string& help);
 
   /// An option that takes any of some words, each of which stands for a value.
@@ -102,13 +99,9 @@ class Command {
   /// A flag that calls `f` when it is given.
   Option onFlag(const std::string& name, std::function<void()> f, const std::string& help);
 
-  /// A flag that calls `f` when it is given, as --name=false too. Throws std::invalid_argument while parsing
-  /// for --name=word.
-  Option onFlagAnyhow(const std::string& name, std::function<void()> f, const std::string& help);
-
  private:
   Option onNumbers(const std::string& name, const std::map<std::string, int>& words,
-                   std::function<void(const std::vector<int>&)> take, const std::string& help);
+                   const std::function<void(const std::vector<int>&)>& take, const std::string& help);
 
   CLI::App* app_;
 };

@@ -227,7 +227,7 @@ engine::Result<std::pair<int, int>> parseSize(const std::string& text, const std
 }
 
 void addForceOption(Command command, Replacing& replacing) {
-  command.onFlagAnyhow(
+  command.onFlag(
       "--force", [&replacing] { replacing = Replacing::kAnything; }, "Replace a session that has a journal");
 }
 

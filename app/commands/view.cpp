@@ -57,7 +57,7 @@ void addView(Command root, Chosen& chosen) {
               "mouse, an id of fettle devices, woodenhaptics, serial, spacemouse, hand:STROKES")
       .showDefault();
   command.option("--rate", options->view.touch.rate_hz, "Ticks of the loop a second, 1000 to 10000")
-      .check(inRange(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
+      .check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
       .showDefault();
   command.option("--size", options->size, "Pixels of the window, WIDTHxHEIGHT").showDefault();
   command
@@ -66,7 +66,7 @@ void addView(Command root, Chosen& chosen) {
       .check(within(0.5, 4.0));
   command.flag("--sharp-motion", options->view.sharp_motion,
                "Draw every pixel while the view moves, too; without it, every second one each way");
-  command.option("--seconds", options->view.seconds, "End after so long").check(inRange(1e-3, 86400.0));
+  command.option("--seconds", options->view.seconds, "End after so long").check(within(1e-3, 86400.0));
   command
       .option("--events", options->view.events,
               "Tell there what the window shows and was told to do: a JSON object a line, for scripts")

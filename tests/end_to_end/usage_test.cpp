@@ -190,5 +190,13 @@ TEST(Usage, AVersionThatCannotBePrintedSaysWhy) {
     expectFailed(runProcess({"sh", "-c", program + " " + asked + " >/dev/full"}), "the disk is full");
 }
 
+TEST(Usage, AWordBehindAFlagOrNoNumberForANumberIsRefused) {
+  const TempFolder folder;
+  const std::string scan = scanWithoutUnit(folder);
+  expectRefused(fettle({"convert", scan, folder.file("o.tif"), "--force=word"}), "word");
+  expectRefused(fettle({"view", scan, "--rate", "nan"}), "nan is not a number from");
+  expectRefused(fettle({"view", scan, "--seconds", "nan"}), "nan is not a number from");
+}
+
 }  // namespace
 }  // namespace fettle::tests
