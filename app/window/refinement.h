@@ -60,7 +60,8 @@ class Refinement {
     bool pages_coming = false;  ///< finer samples, which this frame asked for, are
   };
   void drawn(const Drawn& frame, Clock::time_point now) noexcept {
-    if (frame.tiles_coming || (frame.pages_coming && state_ == State::kChosen)) {
+    const bool coming = frame.tiles_coming || (frame.pages_coming && state_ == State::kChosen);
+    if (coming || (frame.whole && state_ != State::kBegins)) {
       restart(now);
     } else if (state_ == State::kBegins) {
       if (panels_ > 1 && !at_once_ && !frame.continued) {
@@ -71,8 +72,6 @@ class Refinement {
         state_ = State::kFine;
         at_once_ = false;
       }
-    } else if (frame.whole) {
-      restart(now);
     }
   }
 
