@@ -193,7 +193,7 @@ void Workstation::takeResults() {
 void Workstation::frame() {
   ImGui::GetIO().DisplaySize =
       ImVec2(static_cast<float>(window_->width()), static_cast<float>(window_->height()));
-  const std::optional<std::int64_t> edit = touch_ ? touch_->takeUnshownEdit() : std::nullopt;
+  const std::optional<std::int64_t> edit = touch_ ? touch_->latency().takeUnshownEdit() : std::nullopt;
   window_->beginFrame();
   panels();
   const bool announces = announcesPicture();
@@ -205,7 +205,7 @@ void Workstation::frame() {
     losePicture(shown.error());
     return;
   }
-  if (touch_ && edit && shown->shown_ns > 0) touch_->noteShown(*edit, shown->shown_ns);
+  if (touch_ && edit && shown->shown_ns > 0) touch_->latency().noteShown(*edit, shown->shown_ns);
   ++frames_;
   opening_.announced = opening_.announced || announces;
   noteOpening();
@@ -393,7 +393,7 @@ Report Workstation::report() const {
     r["open_first_picture_ms"] = opening_.seen_ms;
     r["open_whole_picture_ms"] = opening_.whole_ms;
     const haptic::TimingFigures late = touch_->timing().lateness.figures();
-    const haptic::TimingFigures edit = touch_->latency().figures();
+    const haptic::TimingFigures edit = touch_->latency().histogram().figures();
     r["ticks"] = late.count;
     r["rate_hz"] = touch_->measuredRate();
     r["lateness_p50_us"] = 1e3 * ms(late.p50_ns);

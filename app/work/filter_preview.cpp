@@ -90,7 +90,7 @@ void FilterPreview::apply(Touch& touch) {
 void FilterPreview::adopt(Touch& touch, Variant variant) {
   touch.noteFilterBegun(variant.base_id, variant.spec, filterName(variant.spec));
   touch.allowPort();
-  applying_.start([port = &touch, original = touch.original(), inverted = touch.scene().invert,
+  applying_.start([port = &touch.port(), original = touch.original(), inverted = touch.scene().invert,
                    v = std::move(variant)](engine::JobControl& job) {
     return haptic::adoptFiltered(*port, v.base, v.result.field, inverted ? original.inverted() : original,
                                  v.spec, kMostRounds, job);

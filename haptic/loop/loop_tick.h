@@ -37,8 +37,9 @@ struct LoopOptions {
   std::uint32_t clutch_buttons = kSecondaryButton;
   Workspace workspace;  ///< ignored by devices whose positions are in the field already
   SafetyLimits limits;
-  /// Ticks between two publications of edits. At 1 kHz 8 is a little faster than a display's frame.
-  std::uint32_t publish_ticks = 8;
+  /// Ticks between two publications of edits: at 1 kHz a little faster than a display's frame.
+  static constexpr std::uint32_t kPublishTicks = 8;
+  std::uint32_t publish_ticks = kPublishTicks;
   /// Ticks without contact that end a stroke although the tool is still switched on.
   std::uint32_t stroke_gap_ticks = 100;
   std::size_t command_capacity = 256;  ///< power of two

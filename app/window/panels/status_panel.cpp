@@ -26,7 +26,7 @@ std::string limitOf(const std::vector<render::PanelDetail>& panels, bool more_co
 void Workstation::statusPanel() {
   const haptic::TimingFigures late = touch_->timing().lateness.figures();
   const haptic::LoopState state = touch_->state();
-  const haptic::TimingFigures edit = touch_->latency().figures();
+  const haptic::TimingFigures edit = touch_->latency().histogram().figures();
   figure("loop", fmt::format("{:.0f} of {:.0f} Hz", touch_->measuredRate(), touch_->rate()));
   figure("late p50, p99",
          fmt::format("{:.0f}, {:.0f} us", microseconds(late.p50_ns), microseconds(late.p99_ns)));
@@ -44,7 +44,7 @@ void Workstation::statusPanel() {
          fmt::format("{:.1f} s, read in {:.1f}", 1e-3 * opening_.seen_ms, 1e-3 * opening_.read_ms));
   figure("edit to pixel",
          edit.count == 0 ? std::string("-")
-                         : fmt::format("{:.0f} ms; p50 {:.0f}, p99 {:.0f}", touch_->lastLatencyMs(),
+                         : fmt::format("{:.0f} ms; p50 {:.0f}, p99 {:.0f}", touch_->latency().lastMs(),
                                        1e-3 * microseconds(edit.p50_ns), 1e-3 * microseconds(edit.p99_ns)));
 }
 

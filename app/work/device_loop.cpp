@@ -1,0 +1,248 @@
+#include "app/work/device_loop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/live/placement.h"
+#include "haptic/devices/enumerate.h"
+
+namespace fettle::app {
+namespace {
+
+using haptic::CommandKind;
+using haptic::LoopCommand;
+using haptic::LoopState;
+
+constexpr std::size_t kRecordedTicks = 1
+                                       << 16;  // over a minute at 1 kHz, in which the window may stand still
+constexpr std::int64_t kArmAgain_ns = 100'000'000;
+constexpr std::int64_t kRateWindow_ns = 500'000'000;
+
+std::int64_t nowNs() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+double spacingMm(const engine::Grid& grid) {
+  return std::max(grid.spacingXMm(), grid.spacingYMm());
+}
+
+// A mouse knows no force: its depth stands for it. Two cells deep is pressing hard, on a coin as on a valley.
+haptic::Scene fitted(haptic::Scene scene, const engine::Grid& grid) {
+  // A cursor jumps up and down walls that a hand would go round, and would leave a local search behind them.
+  scene.level = haptic::ContactLevel::kCertified;
+  scene.certified_radius_cells = 6;  // more than the four cells that it presses at most
+  scene.stiffness_n_per_mm = std::clamp(scene.force_limit_n / (2.0 * spacingMm(grid)), 1e-6, 1000.0);
+  return scene;
+}
+
+haptic::MouseFeel feelFor(const engine::Grid& grid) {
+  const double cell = spacingMm(grid);
+  haptic::MouseFeel feel;
+  feel.hover_mm = cell;
+  feel.press_mm = cell;
+  feel.wheel_step_mm = 0.1 * cell;
+  feel.deepest_mm = 4.0 * cell;
+  return feel;
+}
+
+}  // namespace
+
+DeviceLoop::DeviceLoop(TouchOptions options, const engine::Version& original)
+    : options_(std::move(options)), original_(original) {}
+
+engine::Status DeviceLoop::openDevice(haptic::Scene& scene) {
+  const engine::Grid& grid = original_.grid();
+  if (options_.device == "mouse") {
+    auto mouse = std::make_unique<haptic::MouseStylus>(feelFor(grid));
+    mouse_ = mouse.get();
+    device_ = std::move(mouse);
+    if (options_.fit_spring) scene = fitted(scene, grid);
+    return {};
+  }
+  auto device = haptic::openDevice(options_.device, options_.rate_hz);
+  if (!device) return tl::unexpected(device.error());
+  device_ = std::move(*device);
+  return {};
+}
+
+engine::Status DeviceLoop::start(const Start& start, std::vector<Notice>& notices) {
+  const double before_hz = std::exchange(options_.rate_hz, start.rate_hz);
+  unsent_.clear();
+  seen_ = {};
+  view_azimuth_deg_ = 0.0;
+  view_zoom_ = 1.0;
+  rate_meter_ = {};
+  armed_try_ns_ = 0;
+  std::unique_ptr<haptic::Device> before;  // outlives the old loop, which startLoop() replaces
+  engine::Status status;
+  // Its virtual time goes by the loop's ticks: another hand, at the beginning of its way.
+  if (loop_ && options_.device.rfind("hand:", 0) == 0) {
+    auto device = haptic::openDevice(options_.device, options_.rate_hz);
+    if (device)
+      before = std::exchange(device_, std::move(*device));
+    else
+      status = tl::unexpected(device.error());
+  }
+  if (status) status = startLoop(start, notices);
+  if (status) return {};
+  // The old loop and its device stay what one can look at.
+  if (before) device_ = std::move(before);
+  options_.rate_hz = before_hz;
+  return status;
+}
+
+engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& notices) {
+  const engine::Grid& grid = original_.grid();
+  const haptic::DeviceProfile& profile = device_->profile();
+  haptic::Scene& scene = *start.scene;
+  haptic::HapticLoop::Settings settings;
+  settings.rate_hz = options_.rate_hz;
+  settings.options.tool = start.tool;
+  settings.options.limits = sessionLimits(profile);
+  settings.options.edit_rule =
+      profile.gives_force ? haptic::EditRule::kWhileForceIsGiven : haptic::EditRule::kAnytime;
+  // One drag, one step: off the surface the mouse's tip lifts, and its button stays held.
+  if (mouse_ != nullptr) settings.options.stroke_gap_ticks = std::numeric_limits<std::uint32_t>::max();
+  // A view of a large field keeps the main thread away for longer than a frame at times.
+  settings.options.event_capacity = 1024;
+  settings.options.command_capacity = 1024;
+  settings.options.record_capacity = start.records ? kRecordedTicks : 0;
+  if (profile.space == haptic::DeviceSpace::kDesk) {
+    const engine::Version felt = scene.invert ? start.field.inverted() : start.field;
+    const glm::dvec3 middle{
+        0.5 * (grid.width - 1) * grid.spacingXMm(), 0.5 * (grid.height - 1) * grid.spacingYMm(),
+        felt.reader().bounds().empty() ? 0.0 : felt.reader().bounds().max * grid.height_unit.mm};
+    scale_at_start_ = fittedScale(profile, grid, scene, options_.rate_hz);
+    settings.options.workspace = haptic::Workspace(scale_at_start_, middle);
+  }
+  if (const auto problem = stabilityProblem(scene, options_.rate_hz)) {
+    haptic::Scene lowered = haptic::stableScene(scene, profile, options_.rate_hz, scale_at_start_);
+    // A device that holds nothing at all has no such scene.
+    if (!options_.lower_scene || stabilityProblem(lowered, options_.rate_hz))
+      return engine::inputError(problem->what, "scene", problem->remedy);
+    scene = std::move(lowered);
+    notices.push_back({problem->what, "lowered to " + problem->remedy});
+  }
+  auto loop = haptic::HapticLoop::create(start.field, original_, scene, *device_, settings);
+  if (!loop) return tl::unexpected(loop.error());
+  if (auto status = device_->start(); !status) return status;
+  if (auto status = (*loop)->start(); !status) {
+    device_->stop();
+    return status;
+  }
+  loop_ = std::move(*loop);
+  running_ = true;
+  return {};
+}
+
+void DeviceLoop::stop() {
+  running_ = false;
+  static_cast<void>(loop_->stop());
+  device_->stop();
+}
+
+void DeviceLoop::send(LoopCommand&& command) {
+  // The ring is only full while the loop stands still.
+  if (!unsent_.empty() || !loop_->send(std::move(command))) unsent_.push_back(std::move(command));
+}
+
+void DeviceLoop::poll(std::vector<Notice>& notices) {
+  while (!unsent_.empty() && loop_->send(std::move(unsent_.front()))) unsent_.erase(unsent_.begin());
+  const LoopState state = loop_->state();
+  armByItself(state);
+  rate_meter_.measure(state);
+  watch(state, notices);
+}
+
+void DeviceLoop::arm() {
+  disarmed_ = false;
+  send(loop_->armCommand());
+}
+
+void DeviceLoop::disarm() {
+  disarmed_ = true;
+  loop_->disarm();
+}
+
+bool DeviceLoop::armsItself() const {
+  return !device_->profile().gives_force || options_.device.rfind("hand", 0) == 0;
+}
+
+bool DeviceLoop::atRest() {
+  const LoopState& state = loop_->state();
+  return unsent_.empty() && state.given_n == glm::dvec3(0.0) &&
+         state.safety != haptic::SafetyState::kActive && state.safety != haptic::SafetyState::kRamping;
+}
+
+void DeviceLoop::setView(double azimuth_deg, double zoom) {
+  if (device_->profile().space != haptic::DeviceSpace::kDesk) return;
+  if (std::abs(std::remainder(azimuth_deg - view_azimuth_deg_, 360.0)) < 0.5 &&
+      std::abs(zoom / view_zoom_ - 1.0) < 0.01)
+    return;
+  view_azimuth_deg_ = azimuth_deg;
+  view_zoom_ = zoom;
+  LoopCommand command;
+  command.kind = CommandKind::kView;
+  // Never stiffer than at the start, where the whole field was within reach or the device at its limit.
+  command.scale = scale_at_start_ / std::max(zoom, 1.0);
+  command.turn_rad = azimuth_deg * std::numbers::pi / 180.0;
+  send(std::move(command));
+}
+
+std::optional<haptic::StabilityProblem> DeviceLoop::stabilityProblem(const haptic::Scene& scene,
+                                                                     double rate_hz) const {
+  const haptic::DeviceProfile& profile = device_->profile();
+  if (!profile.gives_force) return std::nullopt;
+  return haptic::stabilityProblem(scene, profile, rate_hz, scale_at_start_);
+}
+
+std::optional<double> DeviceLoop::largestStiffness(const haptic::Scene& scene) const {
+  const haptic::DeviceProfile& profile = device_->profile();
+  if (!profile.gives_force) return std::nullopt;
+  return haptic::largestStiffness(scene, profile, options_.rate_hz, scale_at_start_);
+}
+
+void DeviceLoop::armByItself(const LoopState& state) {
+  // Who disarmed wants no force until they say otherwise, whatever the device does meanwhile.
+  if (disarmed_ || !armsItself()) return;
+  const bool waits =
+      state.safety == haptic::SafetyState::kUncalibrated || state.safety == haptic::SafetyState::kFault;
+  const std::int64_t now = nowNs();
+  if (!waits || state.link != haptic::LinkState::kConnected || now - armed_try_ns_ < kArmAgain_ns) return;
+  armed_try_ns_ = now;
+  arm();
+}
+
+void DeviceLoop::RateMeter::measure(const LoopState& state) {
+  if (time_ns != 0) {
+    if (state.time_ns - time_ns < kRateWindow_ns) return;
+    hz = static_cast<double>(state.tick - tick) * 1e9 / static_cast<double>(state.time_ns - time_ns);
+  }
+  time_ns = state.time_ns;
+  tick = state.tick;
+}
+
+void DeviceLoop::watch(const LoopState& state, std::vector<Notice>& notices) {
+  if (state.tick == 0) return;
+  if (device_->profile().gives_force) {
+    if (state.safety_counters.faults > seen_.safety_counters.faults)
+      notices.push_back({fmt::format("fault, {}", haptic::name(state.cause)), "press A to arm again"});
+    if (state.safety_counters.arms_refused > seen_.safety_counters.arms_refused)
+      notices.push_back({"not armed", "the device must be connected, calibrated and heard of"});
+    if (seen_.tick > 0 && state.link != seen_.link && state.link == haptic::LinkState::kUncalibrated)
+      notices.push_back({"the device is not calibrated", "hold the stylus in its home pose and calibrate"});
+  }
+  if (state.refused_edits > seen_.refused_edits)
+    notices.push_back({"memory for edits came too late", "part of a stroke was not done"});
+  seen_ = state;
+}
+
+}  // namespace fettle::app

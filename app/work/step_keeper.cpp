@@ -1,0 +1,81 @@
+#include "app/work/step_keeper.h"
+
+#include <utility>
+
+namespace fettle::app {
+namespace {
+
+using haptic::Tool;
+
+std::string stepName(Tool tool) {
+  switch (tool) {
+    case Tool::kSmooth:
+      return "Smooth";
+    case Tool::kMark:
+      return "Mark";
+    case Tool::kUnmark:
+      return "Unmark";
+    case Tool::kFeel:
+      break;
+  }
+  return "Stroke";
+}
+
+engine::StepKind stepKind(Tool tool) {
+  return tool == Tool::kMark || tool == Tool::kUnmark ? engine::StepKind::kMark : engine::StepKind::kStroke;
+}
+
+}  // namespace
+
+void StepKeeper::begin(const haptic::Scene& scene) {
+  committed_ = history_.current();
+  adopting_ = false;
+  journal_.begin(history_.number(), scene);
+}
+
+void StepKeeper::keepStroke(const engine::Version& field, const haptic::LoopPlace& at) {
+  if (differs(field)) push(stepName(stroke_tool_), stepKind(stroke_tool_), field, at);
+}
+
+void StepKeeper::endStroke(const engine::Version& field, const engine::FieldRect& rect,
+                           const haptic::LoopPlace& at) {
+  last_rect_ = rect;
+  keepStroke(field, at);
+}
+
+void StepKeeper::adopted(const engine::Version& field, const haptic::LoopPlace& at) {
+  if (adopting_ && history_.canUndo()) {
+    static_cast<void>(history_.undo());
+    journal_.moveTo(history_.number());
+  }
+  push(adoption_name_, engine::StepKind::kFilter, field, at);
+  adopting_ = true;
+}
+
+void StepKeeper::changeMarks(std::string name, const engine::Version& field, const haptic::LoopPlace& at,
+                             std::string changes) {
+  push(std::move(name), engine::StepKind::kMark, field, at, Source::kMarks, std::move(changes));
+}
+
+void StepKeeper::restoreAsked(std::uint64_t id) {
+  adopting_ = false;
+  journal_.restoreAsked(id, history_.number());
+}
+
+void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Version& after,
+                      const haptic::LoopPlace& at, Source source, std::string data) {
+  engine::StepInfo info;
+  info.name = name;
+  info.kind = kind;
+  info.time = engine::stepTimeNow();
+  const bool made = history_.push(std::move(info), after);
+  committed_ = after;
+  if (!made) return;
+  const std::int64_t state = history_.number();
+  if (kind == engine::StepKind::kFilter || source == Source::kMarks) last_rect_ = history_.info(state).rect;
+  if (!journal_.records()) return;
+  journal_.commit({state, std::move(name), kind, at, source == Source::kMarks}, history_.step(state),
+                  std::move(data));
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <string>
+
+#include "app/work/loop_journal.h"
+#include "engine/history/history.h"
+#include "haptic/base/strokes.h"
+
+namespace fettle::app {
+
+/// The steps that a live field's versions become: a stroke, the adoption of a filter and a change of all
+/// marks are a step each. Every step goes to the session with the journal that makes it again. All versions
+/// here are upright. Threading: main.
+class StepKeeper {
+ public:
+  StepKeeper(engine::History history, haptic::SessionSink* sink)
+      : history_(std::move(history)), committed_(history_.current()), journal_(sink) {}
+
+  [[nodiscard]] const engine::History& history() const noexcept { return history_; }
+  [[nodiscard]] LoopJournal& journal() noexcept { return journal_; }
+  /// Where the last step changed something.
+  [[nodiscard]] engine::FieldRect lastRect() const noexcept { return last_rect_; }
+  /// Whether the loop's field is not the last step's: a stroke runs.
+  [[nodiscard]] bool differs(const engine::Version& field) const { return !(field == committed_); }
+  /// Puts a step read back from a session in front of those held.
+  void prepend(engine::Step step) { history_.prepend(std::move(step)); }
+
+  /// A loop starts from the history's state.
+  void begin(const haptic::Scene& scene);
+
+  /// The running stroke is this tool's.
+  void strokeIsOf(haptic::Tool tool) noexcept { stroke_tool_ = tool; }
+  /// Makes a step of a stroke as far as it has got; none when the field has not changed.
+  void keepStroke(const engine::Version& field, const haptic::LoopPlace& at);
+  /// A stroke ended that changed samples within `rect` only.
+  void endStroke(const engine::Version& field, const engine::FieldRect& rect, const haptic::LoopPlace& at);
+
+  /// A filter's adoption begins under a name for the list of steps: its rounds are one step.
+  void nameAdoption(std::string name) { adoption_name_ = std::move(name); }
+  void adopted(const engine::Version& field, const haptic::LoopPlace& at);
+  /// What is adopted from now on is another step.
+  void endAdoption() noexcept { adopting_ = false; }
+  [[nodiscard]] bool adopting() const noexcept { return adopting_; }
+
+  /// Other marks are put on the newest step's field; `changes` as haptic::packMarkChanges has them.
+  void changeMarks(std::string name, const engine::Version& field, const haptic::LoopPlace& at,
+                   std::string changes);
+
+  /// Go through the history; the version to be restored, if there is such a state.
+  std::optional<engine::Version> undo() { return history_.undo(); }
+  std::optional<engine::Version> redo() { return history_.redo(); }
+  std::optional<engine::Version> goTo(std::int64_t state) { return history_.goTo(state); }
+  /// The loop was asked under `id` to go to the history's state, and is there.
+  void restoreAsked(std::uint64_t id);
+  void restored(const engine::Version& field) { committed_ = field; }
+
+ private:
+  // Whether a step is what ticks and filters made of the field, or marks set on top of that.
+  enum class Source : std::uint8_t { kLoop, kMarks };
+  void push(std::string name, engine::StepKind kind, const engine::Version& after,
+            const haptic::LoopPlace& at, Source source = Source::kLoop, std::string data = {});
+
+  engine::History history_;
+  engine::Version committed_;  // the last step's, what a running stroke is measured against
+  LoopJournal journal_;
+  engine::FieldRect last_rect_;
+  haptic::Tool stroke_tool_ = haptic::Tool::kFeel;
+  std::string adoption_name_ = "Filter";
+  bool adopting_ = false;  // the running adoption has its step
+};
+
+}  // namespace fettle::app
