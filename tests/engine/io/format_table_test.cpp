@@ -4,16 +4,14 @@
 
 #include <bit>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <random>
-#include <sstream>
 
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
 #include "tests/engine/io/io_support.h"
-#include "tests/support/source_tree.h"
+#include "tests/support/markdown_table.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::engine {
@@ -26,29 +24,9 @@ struct Row {
 };
 
 std::vector<Row> table() {
-  std::ifstream document(tests::inSourceTree("docs/formats.md"));
   std::vector<Row> rows;
-  bool inside = false;
-  for (std::string line; std::getline(document, line);) {
-    if (line.starts_with("| format | in | out |")) {
-      inside = true;
-      std::getline(document, line);  // the rule
-      continue;
-    }
-    if (!inside) continue;
-    if (!line.starts_with("|")) break;
-    std::vector<std::string> cells;
-    std::istringstream stream(line.substr(1));
-    for (std::string cell; std::getline(stream, cell, '|');) {
-      const std::size_t first = cell.find_first_not_of(' ');
-      cells.push_back(
-          first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(' ') - first + 1));
-    }
-    EXPECT_EQ(cells.size(), 9U) << line;
-    cells.resize(9);
-    rows.push_back(
-        {cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], cells[6], cells[7], cells[8]});
-  }
+  for (const auto& c : tests::markdownTable("docs/formats.md", "| format | in | out |"))
+    rows.push_back({c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8]});
   return rows;
 }
 

@@ -18,7 +18,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/engine/io/io_support.h"
-#include "tests/support/source_tree.h"
+#include "tests/support/markdown_table.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::engine {
@@ -140,28 +140,10 @@ struct Row {
 };
 
 std::vector<Row> tableOfReaders() {
-  std::ifstream document(tests::inSourceTree("docs/formats.md"));
   std::vector<Row> rows;
-  bool inside = false;
-  for (std::string line; std::getline(document, line);) {
-    if (line.starts_with("| read by | `none` | `lzw` | `deflate` | `zstd` |")) {
-      inside = true;
-      std::getline(document, line);  // the rule
-      continue;
-    }
-    if (!inside) continue;
-    if (!line.starts_with("|")) break;
-    std::vector<std::string> cells;
-    std::istringstream stream(line.substr(1));
-    for (std::string cell; std::getline(stream, cell, '|');) {
-      const std::size_t first = cell.find_first_not_of(' ');
-      cells.push_back(
-          first == std::string::npos ? "" : cell.substr(first, cell.find_last_not_of(' ') - first + 1));
-    }
-    EXPECT_EQ(cells.size(), 5U) << line;
-    cells.resize(5);
+  for (const auto& cells :
+       tests::markdownTable("docs/formats.md", "| read by | `none` | `lzw` | `deflate` | `zstd` |"))
     rows.push_back({cells[0], {cells[1], cells[2], cells[3], cells[4]}});
-  }
   return rows;
 }
 
