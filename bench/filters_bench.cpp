@@ -20,6 +20,7 @@ namespace fettle::bench {
 namespace {
 
 constexpr std::int32_t kProbeSide = 512;
+constexpr double kNoiseWidth = 0.3;  // of the rectangle that the noise is spread over
 
 /// Seconds by the clock on the wall and by that of the processors that worked for this process.
 struct Seconds {
@@ -79,7 +80,7 @@ engine::Result<engine::Version> ground(std::int32_t side, FilterGround kind,
       const auto at = static_cast<std::size_t>(c);
       const std::uint64_t bits = mixed((static_cast<std::uint64_t>(r) << 32) | static_cast<std::uint32_t>(c));
       const double noise = static_cast<double>(bits >> 11) * 0x1p-53 - 0.5;
-      heights[at] = static_cast<float>(2.0 * across * along[at] + 0.3 * noise);
+      heights[at] = static_cast<float>(2.0 * across * along[at] + kNoiseWidth * noise);
       if (kind == FilterGround::kHoles && dropped(c, r))
         heights[at] = std::numeric_limits<float>::quiet_NaN();
     }
@@ -138,6 +139,7 @@ engine::FilterSpec specOf(const FiltersBenchRow& row) {
   spec.kind = row.kind;
   spec.window = row.window;
   spec.threads = row.threads;
+  spec.range_sigma = kNoiseWidth / std::sqrt(12.0) * engine::filterOf(row.kind).noises;
   return spec;
 }
 

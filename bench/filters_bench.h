@@ -6,7 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
-#include "engine/filter/filter.h"
+#include "engine/filter/catalogue.h"
 
 namespace fettle::bench {
 
@@ -19,8 +19,7 @@ enum class FilterGround {
 
 struct FiltersBenchOptions {
   std::int32_t side = 8192;  ///< samples along each side of the field, 64 .. 32768
-  std::vector<engine::FilterKind> kinds = {engine::FilterKind::kBox, engine::FilterKind::kGaussian,
-                                           engine::FilterKind::kMedian};
+  std::vector<engine::FilterKind> kinds = engine::plainFilters();
   std::vector<int> windows = {3, 5, 11, 31, 101};  ///< [samples], odd, 3 .. FilterSpec::kMaxWindow
   std::vector<int> threads = {1, 2};               ///< each 1 .. FilterSpec::kMaxThreads
   std::vector<FilterGround> grounds = {FilterGround::kPlain, FilterGround::kHoles, FilterGround::kMarks};

@@ -13,7 +13,7 @@
 #include "bench/repeats.h"
 #include "engine/field/live_field.h"
 #include "engine/field/tile.h"
-#include "engine/filter/filter.h"
+#include "engine/filter/catalogue.h"
 #include "engine/history/history.h"
 #include "haptic/base/rt_thread.h"
 #include "haptic/scene/scene.h"
@@ -190,7 +190,7 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
   if (!(options.effort >= 0.01 && options.effort <= 1.0))
     return engine::inputError("the effort is out of range", "bench growth", "0.01 to 1");
   using engine::FilterKind;
-  constexpr FilterKind kKinds[] = {FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian};
+  const std::vector<FilterKind> kinds = engine::plainFilters();
   GrowthReport report;
   report.machine = machine();
   report.copy_bytes_per_s = copyBytesPerSecond();
@@ -236,7 +236,7 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
     versions(field, samples, options.effort, version);
     if (engine::Status kept = commits(field, samples, options.effort, commit, job); !kept)
       return tl::unexpected(kept.error());
-    for (const FilterKind kind : kKinds) {
+    for (const FilterKind kind : kinds) {
       const auto point = filtering(field, kind, 11, 0, samples, 1e3, job);
       if (!point) return tl::unexpected(point.error());
       add(filter, fmt::format("{} 11 x 11", engine::name(kind)), *point);
@@ -248,7 +248,7 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
     const double samples = static_cast<double>(window_side) * window_side;
     const engine::Version field = trials::workpiece(window_side, kSpacingMm);
     for (const int side : kWindows) {
-      for (const FilterKind kind : kKinds) {
+      for (const FilterKind kind : kinds) {
         const auto point = filtering(field, kind, side, 1, side, 1e9 / samples, job);
         if (!point) return tl::unexpected(point.error());
         add(window, std::string(engine::name(kind)), *point);

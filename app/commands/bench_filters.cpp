@@ -83,11 +83,12 @@ void addBenchFilters(Command bench, Chosen& chosen) {
       "Samples a second of the global filters, beside plain copying in the same run",
       [options](engine::JobControl& job) { return measure(*options, job); }, printBenchFilters);
   std::map<std::string, engine::FilterKind> kinds;
-  for (const engine::FilterKind kind : options->kinds) kinds[std::string(engine::name(kind))] = kind;
+  for (const engine::Filter& filter : engine::filters()) kinds[std::string(filter.word)] = filter.kind;
   std::map<std::string, bench::FilterGround> grounds;
   for (const bench::FilterGround ground : options->grounds) grounds[bench::groundName(ground)] = ground;
   command.option("--side", options->side, "Samples along each side of the field").showDefault();
-  command.choices("--kind", kinds, options->kinds, "Filters; none: all").delimiter(',');
+  command.choices("--kind", kinds, options->kinds, "Filters; none: those that do not keep edges")
+      .delimiter(',');
   command.option("--window", options->windows, "Sides of the window, samples").delimiter(',').showDefault();
   command.choices("--ground", grounds, options->grounds, "plain, holes, marks; none: all").delimiter(',');
   command.option("--threads", options->threads, "Threads").delimiter(',').showDefault();

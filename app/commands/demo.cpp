@@ -78,8 +78,10 @@ engine::Result<Report> demo(const DemoOptions& options, engine::JobControl& job)
                                {"rmse_flat", r.figures.rmse_flat},
                                {"rmse_edge", r.figures.rmse_edge},
                                {"edge_width", r.figures.edge_width}});
-  for (const std::string filter : {"box", "gaussian", "median"})
+  for (const engine::FilterKind kind : engine::plainFilters()) {
+    const std::string filter(engine::name(kind));
     report["edge_gain"][filter] = figures(*run, filter).rmse_edge / figures(*run, "heg-" + filter).rmse_edge;
+  }
   return report;
 }
 

@@ -13,7 +13,7 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/write_options.h"
 #include "app/terminal.h"
-#include "engine/filter/filter.h"
+#include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
 #include "engine/io/raster/marks.h"
 #include "engine/suggest/filter_suggestion.h"
@@ -43,18 +43,16 @@ struct FilterArguments {
 
 engine::Result<engine::FilterSpec> specOf(const FilterArguments& options) {
   engine::FilterSpec spec;
-  spec.kind = *engine::filterKindFromName(options.filter);
+  const engine::Filter& filter = *engine::filterNamed(options.filter);
+  spec.kind = filter.kind;
   spec.window = options.window;
   spec.sigma = options.sigma;
   spec.passes = options.passes;
   spec.threads = options.threads;
   spec.scope = options.only.empty() ? engine::FilterScope::kKeepMarks : engine::FilterScope::kOnlyMarks;
-  if (!options.range_sigma.empty() && !engine::hasRange(spec.kind))
-    return engine::inputError(fmt::format("a {} filter has no range sigma", options.filter), "--range-sigma",
-                              "leave it out, or use the bilateral or the tv filter");
   // The scan's unit and noise are not known yet.
   engine::FilterSpec ranged = spec;
-  if (engine::hasRange(spec.kind)) ranged.range_sigma = 1.0;
+  if (filter.range_sigma.exists() || !options.range_sigma.empty()) ranged.range_sigma = 1.0;
   if (auto status = engine::validate(ranged); !status) return tl::unexpected(status.error());
   return spec;
 }
@@ -203,9 +201,8 @@ std::string whyOf(const engine::FilterSuggestion& found, const engine::Suggestio
     why += fmt::format(" Marking edges first leaves {} ({}): marked samples keep their noise.",
                        leftBy(*marked, unit), methodOf(*marked));
   if (found.outlier_share > 1e-4)
-    why += fmt::format(
-        " {:.2g} % of the samples stand out alone: of these a median takes most, bilateral and tv none.",
-        100.0 * found.outlier_share);
+    why += fmt::format(" {:.2g} % of the samples stand out alone: of these a median takes most, {} none.",
+                       100.0 * found.outlier_share, engine::filterWords(engine::keepsEdges));
   return why;
 }
 
@@ -322,17 +319,28 @@ void addFilter(Command root, Chosen& chosen) {
       [options](engine::JobControl& job) { return filter(*options, job); }, printFilter, Progress::kOwn,
       batchStatus);
   addBatchOptions(command, options->files);
+  std::vector<std::string> words, titles, sigmas, ranges;
+  for (const engine::Filter& filter : engine::filters()) {
+    words.emplace_back(filter.word);
+    const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+    if (!std::ranges::equal(filter.word, std::string_view(filter.title), {}, {}, lower))
+      titles.push_back(fmt::format("; {}: {}", filter.word, filter.title));
+    if (filter.sigma.exists()) sigmas.push_back(fmt::format("{}: {}", filter.word, filter.sigma.when_zero));
+    if (filter.range_sigma.exists()) ranges.push_back(fmt::format("{}: {:g}", filter.word, filter.noises));
+  }
   command
       .option("--filter", options->filter,
-              "box, gaussian, median, bilateral or tv (total variation); the last two keep edges")
-      .check(oneOf({"box", "gaussian", "median", "bilateral", "tv"}));
+              fmt::format("{} keep edges{}", engine::filterWords(engine::keepsEdges), fmt::join(titles, "")))
+      .check(oneOf(words));
   command.option("--window", options->window, "Side of the window in samples, odd, 1 to 1001").showDefault();
-  command.option("--sigma", options->sigma,
-                 "Gaussian: standard deviation in samples; without it the weights are binomial. "
-                 "Bilateral: likewise; without it a quarter of the window");
-  command.option("--range-sigma", options->range_sigma,
-                 "Bilateral, tv: how large a difference is noise, as 20um; without it 4 (bilateral) or "
-                 "1 (tv) standard deviations of the scan's noise");
+  command.option(
+      "--sigma", options->sigma,
+      fmt::format("Standard deviation of the weights in samples; without it, {}", fmt::join(sigmas, ", ")));
+  command.option(
+      "--range-sigma", options->range_sigma,
+      fmt::format("How large a difference is noise, as 20um; without it, in standard deviations of "
+                  "the scan's noise, {}",
+                  fmt::join(ranges, ", ")));
   command.option("--passes", options->passes, "How often the filter is applied").showDefault();
   const Option keep =
       command.option("--keep", options->keep, "Picture of marks: these samples keep their bits")

@@ -296,7 +296,8 @@ void Workstation::act(Action action) {
     }
     case Action::kFilterNext:
       filters_.spec.kind =
-          static_cast<engine::FilterKind>((static_cast<int>(filters_.spec.kind) + 1) % engine::kFilterKinds);
+          engine::filters()[(static_cast<std::size_t>(filters_.spec.kind) + 1) % engine::filters().size()]
+              .kind;
       filters_.spec.sigma = filters_.spec.range_sigma = 0.0;  // in other units for another kind
       break;
     case Action::kFilterPreview:

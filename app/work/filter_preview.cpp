@@ -45,9 +45,7 @@ void filterSeen(const engine::Version& base, const engine::Version& original, co
 }  // namespace
 
 std::string filterName(const engine::FilterSpec& spec) {
-  constexpr const char* kTitles[] = {"Box", "Gaussian", "Median", "Bilateral", "Total variation"};
-  std::string text = kTitles[static_cast<int>(spec.kind)];
-  text += fmt::format(" {} x {}", spec.window, spec.window);
+  std::string text = fmt::format("{} {} x {}", engine::filterOf(spec.kind).title, spec.window, spec.window);
   if (spec.passes > 1) text += fmt::format(", {} passes", spec.passes);
   if (spec.scope == engine::FilterScope::kOnlyMarks) text += ", only marks";
   return text;

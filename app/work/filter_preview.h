@@ -8,7 +8,7 @@
 #include "app/work/background.h"
 #include "app/work/touch.h"
 #include "engine/field/tile_range.h"
-#include "engine/filter/filter.h"
+#include "engine/filter/catalogue.h"
 #include "haptic/loop/adopt_filtered.h"
 
 namespace fettle::app {

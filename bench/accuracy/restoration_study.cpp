@@ -11,9 +11,8 @@
 #include "bench/accuracy/studies.h"
 #include "engine/base/stopwatch.h"
 #include "engine/compare/compare.h"
-#include "engine/filter/filter.h"
+#include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
-#include "engine/filter/region.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/scanner/scanner.h"
 #include "haptic/operator/operator_strokes.h"
@@ -105,7 +104,9 @@ engine::Result<std::vector<Start>> startsOf(const engine::SimulatedScan& scan, e
 }
 
 bool keepsEdges(const std::string& method) {
-  return method.starts_with("bilateral") || method.starts_with("tv");
+  return std::ranges::any_of(engine::filters(), [&](const engine::Filter& filter) {
+    return filter.keeps_edges && method.starts_with(filter.word);
+  });
 }
 
 const AccuracyRow* bestOf(const Study& study, const std::string& subject, bool edge_preserving) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 
 #include "engine/base/job.h"
 #include "engine/filter/filter.h"
@@ -38,18 +37,18 @@ namespace fettle::engine {
 /// window is the same samples whatever block it is computed in.
 struct Block {
   const float* heights = nullptr;
-  std::ptrdiff_t stride =
-      0;            ///< of heights [elements]; at least 16 more than columns: may be read, mean nothing
+  /// Of heights [elements]; at least 16 more than columns: these may be read and mean nothing.
+  std::ptrdiff_t stride = 0;
   int columns = 0;  ///< of heights
   int rows = 0;
   int first_column = 0;  ///< of the outputs, counted in heights
   int first_row = 0;
   int out_columns = 0;
   int out_rows = 0;
-  float* out = nullptr;  ///< out_rows x out_columns, row-major; unspecified where heights has a hole
-  std::ptrdiff_t out_stride = 0;
-  bool holes = false;      ///< whether heights holds a NaN; true is legal without
-  float magnitude = 0.0F;  ///< no |height| is larger; may be more than the largest
+  float* out = nullptr;           ///< out_rows x out_columns, row-major; unspecified where heights has a hole
+  std::ptrdiff_t out_stride = 0;  ///< out_columns rounded up to 16 or more: these may be written
+  bool holes = false;             ///< whether heights holds a NaN; true is legal without
+  float magnitude = 0.0F;         ///< no |height| is larger; may be more than the largest
 
   [[nodiscard]] const float* row(int r) const noexcept { return heights + r * stride; }
 };
@@ -67,13 +66,5 @@ class BlockFilter {
   /// each output comes to depends on the samples of its window alone. Throws std::bad_alloc.
   [[nodiscard]] virtual bool run(const Block& block, const JobControl& job) = 0;
 };
-
-[[nodiscard]] std::unique_ptr<BlockFilter> makeBoxFilter(const FilterSpec& spec);
-/// Takes whole vectors: reads, to no effect, 16 elements beyond the columns of a row of heights and writes
-/// out_columns rounded up to 16; strides must leave room.
-[[nodiscard]] std::unique_ptr<BlockFilter> makeGaussianFilter(const FilterSpec& spec, CpuLevel level);
-[[nodiscard]] std::unique_ptr<BlockFilter> makeMedianFilter(const FilterSpec& spec, CpuLevel level);
-[[nodiscard]] std::unique_ptr<BlockFilter> makeBilateralFilter(const FilterSpec& spec, CpuLevel level);
-[[nodiscard]] std::unique_ptr<BlockFilter> makeTotalVariationFilter(const FilterSpec& spec);
 
 }  // namespace fettle::engine

@@ -213,7 +213,7 @@ class BoxFilter final : public BlockFilter {
 
 }  // namespace
 
-std::unique_ptr<BlockFilter> makeBoxFilter(const FilterSpec& spec) {
+std::unique_ptr<BlockFilter> makeBoxFilter(const FilterSpec& spec, CpuLevel) {
   return std::make_unique<BoxFilter>(spec.window / 2);
 }
 

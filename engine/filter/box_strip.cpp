@@ -212,8 +212,8 @@ constexpr std::int32_t floorTo(std::int32_t value, std::int32_t step) noexcept {
 
 }  // namespace
 
-std::unique_ptr<BoxStrip> BoxStrip::make(int radius) {
-  if (bestCpuLevel() != CpuLevel::kAvx512) return nullptr;
+std::unique_ptr<BoxStrip> BoxStrip::make(int radius, CpuLevel level) {
+  if (level != CpuLevel::kAvx512) return nullptr;
   return std::unique_ptr<BoxStrip>(new BoxStrip(radius));
 }
 
@@ -337,7 +337,7 @@ bool BoxStrip::rows(std::int32_t rows, float* out, std::ptrdiff_t stride) {
 
 #else
 
-std::unique_ptr<BoxStrip> BoxStrip::make(int) {
+std::unique_ptr<BoxStrip> BoxStrip::make(int, CpuLevel) {
   return nullptr;
 }
 void BoxStrip::begin(const FieldReader&, std::int32_t, std::int32_t, std::int32_t, std::int32_t) {}

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/field/reader.h"
+#include "engine/simd/cpu.h"
 
 namespace fettle::engine {
 
@@ -23,8 +24,8 @@ namespace fettle::engine {
 /// Threading: one thread at a time; every thread makes its own.
 class BoxStrip {
  public:
-  /// Null where the processor lacks AVX-512.
-  [[nodiscard]] static std::unique_ptr<BoxStrip> make(int radius);
+  /// Null below AVX-512.
+  [[nodiscard]] static std::unique_ptr<BoxStrip> make(int radius, CpuLevel level);
 
   /// Stands before the outputs [column0, column1) of row `row`, in the field. column0 is a multiple of
   /// kTileSide, column1 too or the field's width. `rows` outputs will be asked for at most. Reads the

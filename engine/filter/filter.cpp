@@ -14,20 +14,12 @@
 
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
-#include "engine/filter/block.h"
+#include "engine/filter/catalogue.h"
 #include "engine/filter/pass.h"
 
 namespace fettle::engine {
 
 namespace {
-
-constexpr std::array<std::pair<FilterKind, std::string_view>, 5> kNames{{
-    {FilterKind::kBox, "box"},
-    {FilterKind::kGaussian, "gaussian"},
-    {FilterKind::kMedian, "median"},
-    {FilterKind::kBilateral, "bilateral"},
-    {FilterKind::kTotalVariation, "tv"},
-}};
 
 // Of the samples below a node whose first tile is (tc, tr). Tiles without a hole are not looked at: on the
 // disk, each would be a page to wait for.
@@ -94,36 +86,29 @@ Result<Filtered> compared(const Version& input, Version result) {
 
 }  // namespace
 
-std::optional<FilterKind> filterKindFromName(std::string_view name) {
-  for (const auto& [kind, text] : kNames)
-    if (text == name) return kind;
-  return std::nullopt;
-}
-
-std::string_view name(FilterKind kind) {
-  for (const auto& [known, text] : kNames)
-    if (known == kind) return text;
-  return {};
-}
-
 Status validate(const FilterSpec& spec) {
-  if (spec.window < 1 || spec.window > FilterSpec::kMaxWindow || spec.window % 2 == 0)
+  const Filter& filter = filterOf(spec.kind);
+  const FilterParameter& window = filter.window;
+  if (spec.window < window.least || spec.window > window.most || spec.window % 2 == 0)
     return inputError(fmt::format("a filter window of {} samples cannot be used", spec.window), "window",
-                      fmt::format("give an odd number from 1 to {}", FilterSpec::kMaxWindow));
+                      fmt::format("give an odd number from {:g} to {:g}", window.least, window.most));
   if (!std::isfinite(spec.sigma) || spec.sigma < 0.0)
     return inputError(fmt::format("a sigma of {} samples cannot be used", spec.sigma), "sigma",
-                      "give a positive number of samples, or 0 for binomial weights");
-  if (spec.sigma != 0.0 && spec.kind != FilterKind::kGaussian && spec.kind != FilterKind::kBilateral)
-    return inputError(fmt::format("a {} filter has no sigma", name(spec.kind)), "sigma",
-                      "leave it out, or use the gaussian or the bilateral filter");
-  if (hasRange(spec.kind) &&
-      !(spec.range_sigma >= FilterSpec::kLeastRange && spec.range_sigma <= FilterSpec::kMostRange))
+                      "give a positive number of samples, or 0: " + std::string(filter.sigma.when_zero));
+  if (spec.sigma != 0.0 && !filter.sigma.exists())
     return inputError(
-        fmt::format("a range sigma of {} cannot be used", spec.range_sigma), "range-sigma",
-        fmt::format("give a height from {} to {}", FilterSpec::kLeastRange, FilterSpec::kMostRange));
-  if (!hasRange(spec.kind) && spec.range_sigma != 0.0)
-    return inputError(fmt::format("a {} filter has no range sigma", name(spec.kind)), "range-sigma",
-                      "leave it out, or use the bilateral or the tv filter");
+        fmt::format("a {} filter has no sigma", filter.word), "sigma",
+        fmt::format("leave it out, or use {}",
+                    filterWords([](const Filter& each) { return each.sigma.exists(); }, " or ")));
+  const FilterParameter& range = filter.range_sigma;
+  if (range.exists() && !(spec.range_sigma >= range.least && spec.range_sigma <= range.most))
+    return inputError(fmt::format("a range sigma of {} cannot be used", spec.range_sigma), "range-sigma",
+                      fmt::format("give a height from {} to {}", range.least, range.most));
+  if (!range.exists() && spec.range_sigma != 0.0)
+    return inputError(
+        fmt::format("a {} filter has no range sigma", filter.word), "range-sigma",
+        fmt::format("leave it out, or use {}",
+                    filterWords([](const Filter& each) { return each.range_sigma.exists(); }, " or ")));
   if (spec.passes < 1 || spec.passes > FilterSpec::kMaxPasses)
     return inputError(fmt::format("a filter cannot be applied {} times", spec.passes), "passes",
                       fmt::format("give a number from 1 to {}", FilterSpec::kMaxPasses));
@@ -141,6 +126,7 @@ Result<Filtered> applyFilter(const Version& input, const Version& original, cons
   if (Status valid = validate(spec); !valid) return tl::unexpected(valid.error());
   assert(input.grid().width == original.grid().width && input.grid().height == original.grid().height);
   assert(tuning.block_side % kTileSide == 0);
+  const FilterPass pass_once = filterOf(spec.kind).pass;
   try {
     job.begin("filtering",
               static_cast<std::uint64_t>(input.grid().samples()) * static_cast<std::uint64_t>(spec.passes));
@@ -149,7 +135,7 @@ Result<Filtered> applyFilter(const Version& input, const Version& original, cons
       Version state = input;
       PassResult last;
       for (int pass = 0; pass < spec.passes; ++pass) {
-        Result<PassResult> next = filterOnce(state, original, spec, tuning, job);
+        Result<PassResult> next = pass_once(state, original, spec, tuning, job);
         if (!next) return tl::unexpected(std::move(next.error()));
         last = std::move(*next);
         state = last.field;

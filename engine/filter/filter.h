@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
@@ -10,7 +9,7 @@
 
 namespace fettle::engine {
 
-/// The global filters. All use a window of n x n samples around each sample, n odd.
+/// The global filters; what the program knows of each is a row of catalogue.h. All use a window of n x n samples around each sample, n odd.
 ///
 /// Of a window only the samples that exist count: none beyond the border, no hole. A hole stays a hole; every
 /// other sample becomes
@@ -31,25 +30,19 @@ namespace fettle::engine {
 ///
 /// Accuracy, against the same formula without rounding:
 ///   kBox       the sum is exact, whatever the heights; then two roundings in double and one to float. Error
-///              <= 0.5 ulp of the result + 2^-52 of it: a constant and a plane come back to the bit.
+///              <= 0.5 ulp of the result + 2^-52 of it: a constant and a plane come back bit-identical.
 ///   kGaussian  double throughout, one rounding to float at the end. Error <= 0.5 ulp of the result
 ///              + (n + 4) * 2^-51 of the largest magnitude in the window.
 ///   kMedian    exact, for an even count rounded once.
 ///   kBilateral differences and weights in float. Error <= 0.5 ulp of the result + (n + 64) * 2^-22 R,
-///              wherever the heights lie; a constant and a plane of exact heights come back to the bit.
+///              wherever the heights lie; a constant and a plane of exact heights come back bit-identical.
 ///   kTotalVariation  slopes in float, in units of R. Error <= 0.5 ulp of the result + n * 2^-19 R (bounded
 ///              by the tests; in the mean over the field by the steps, none of which magnifies an error); a
-///              constant comes back to the bit.
+///              constant comes back bit-identical.
 /// Every result of kBox and kMedian lies between the smallest and the largest sample of its window, every one
 /// of kGaussian and kBilateral does but for that error; one of kTotalVariation need not before it has run its
 /// course. A result equal to the sample keeps its very bits (-0 stays -0).
 enum class FilterKind { kBox, kGaussian, kMedian, kBilateral, kTotalVariation };
-inline constexpr int kFilterKinds = 5;
-
-/// Whether a filter tells noise from surface by height differences: FilterSpec::range_sigma.
-[[nodiscard]] constexpr bool hasRange(FilterKind kind) noexcept {
-  return kind == FilterKind::kBilateral || kind == FilterKind::kTotalVariation;
-}
 
 /// What the marks mean to a filter.
 enum class FilterScope {
@@ -65,19 +58,20 @@ struct FilterSpec {
 
   FilterKind kind = FilterKind::kBox;
   int window = 3;  ///< side of the window [samples], odd, 1 .. kMaxWindow; with 1 only max_change acts
-  /// [samples], kGaussian: 0 = binomial weights, > 0 = true Gaussian; kBilateral: 0 = window / 4.
+  /// [samples], for the filters that have one (Filter::sigma), 0 for the others. kGaussian: 0 = binomial
+  /// weights, > 0 = true Gaussian; kBilateral: 0 = window / 4.
   double sigma = 0.0;
-  /// How large a difference is noise [height_unit], kLeastRange .. kMostRange for kBilateral and
-  /// kTotalVariation, 0 for the others. More smooths more and rounds lower steps. What a scan's own noise
+  /// How large a difference is noise [height_unit], kLeastRange .. kMostRange for the filters that have one
+  /// (Filter::range_sigma), 0 for the others. More smooths more and rounds lower steps. What a scan's own noise
   /// asks for: withMeasuredRange (noise_range.h).
   double range_sigma = 0.0;
   int passes = 1;  ///< times the filter is applied to its own result, 1 .. kMaxPasses
   FilterScope scope = FilterScope::kKeepMarks;
-  /// After every pass each filtered sample is drawn back to within this distance of the original sample
-  /// [height_unit, finite, >= 0]; never exceeded, not even by a rounding. Nothing is drawn where the original
+  /// After every pass each filtered sample is clamped to within this distance of the original sample
+  /// [height_unit, finite, >= 0]; never exceeded, not even by a rounding. Nothing is clamped where the original
   /// has a hole.
   std::optional<double> max_change;
-  int threads = 0;  ///< 0 = all cores; the result is the same to the bit for any number
+  int threads = 0;  ///< 0 = all cores; bit-identical results for any number
 };
 
 /// What a filter did, against its input, over the samples that are not holes [height_unit].
@@ -103,12 +97,8 @@ struct Filtered {
 /// Errors: an invalid spec (kInput); memory exhausted (kFailed); cancelled (kCancelled): no result then.
 /// Memory: the tiles that change, twice over when several passes run, and a scratch for each thread that
 /// follows the window, never the field.
-/// Threading: any thread; uses spec.threads workers of its own arena. Deterministic to the bit.
+/// Threading: any thread; uses spec.threads workers of its own arena. Bit-identical from run to run.
 [[nodiscard]] Result<Filtered> applyFilter(const Version& input, const Version& original,
                                            const FilterSpec& spec, JobControl& job);
-
-/// "box", "gaussian", "median", "bilateral", "tv" and back.
-[[nodiscard]] std::optional<FilterKind> filterKindFromName(std::string_view name);
-[[nodiscard]] std::string_view name(FilterKind kind);
 
 }  // namespace fettle::engine

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/filter/catalogue.h"
 #include "engine/inspect/noise.h"
 
 namespace fettle::engine {
@@ -14,9 +15,9 @@ Result<FilterSpec> withMeasuredRange(const FilterSpec& spec, const Version& fiel
   if (!(noise->sigma > 0.0))
     return inputError("no noise can be seen in the scan that a range sigma could follow", "range-sigma",
                       "give one, in the scan's height unit");
-  ready.range_sigma = std::clamp(
-      noise->sigma * (spec.kind == FilterKind::kBilateral ? kBilateralNoises : kTotalVariationNoises),
-      FilterSpec::kLeastRange, FilterSpec::kMostRange);
+  const Filter& filter = filterOf(spec.kind);
+  ready.range_sigma =
+      std::clamp(noise->sigma * filter.noises, filter.range_sigma.least, filter.range_sigma.most);
   return ready;
 }
 

@@ -19,7 +19,7 @@ struct FilterTuning {
   CpuLevel level = CpuLevel::kAvx512;
 };
 
-/// applyFilter with the work cut as told: for tests that the cut does not show, and for benchmarks.
+/// applyFilter with the work cut up so: for tests that the cut does not show, and for benchmarks.
 [[nodiscard]] Result<Filtered> applyFilter(const Version& input, const Version& original,
                                            const FilterSpec& spec, const FilterTuning& tuning,
                                            JobControl& job);
@@ -29,11 +29,5 @@ struct PassResult {
   Version field;
   std::vector<TileReport> reports;
 };
-
-/// The spec applied once. As applyFilter, on the calling thread's task arena; the spec is valid. Progress is
-/// advanced by the field's samples. Throws std::bad_alloc.
-[[nodiscard]] Result<PassResult> filterOnce(const Version& input, const Version& original,
-                                            const FilterSpec& spec, const FilterTuning& tuning,
-                                            JobControl& job);
 
 }  // namespace fettle::engine

@@ -6,6 +6,7 @@
 
 #include "engine/field/live_field.h"
 #include "engine/field/piece.h"
+#include "engine/filter/catalogue.h"
 
 namespace fettle::engine {
 

@@ -8,13 +8,8 @@
 
 namespace fettle::engine {
 
-/// How far a filter's result depends on samples around it [samples].
-[[nodiscard]] constexpr std::int32_t reachOf(const FilterSpec& spec) noexcept {
-  return spec.passes * (spec.window / 2);
-}
-
-/// `onto` with the tiles of `range` (cut to the field) as applyFilter of the whole `input` has them, to the
-/// bit; all others as `onto` has them. The three versions are of one grid and memory. Time in proportion to
+/// `onto` with the tiles of `range` (cut to the field) as applyFilter of the whole `input` has them,
+/// bit-identical; all others as `onto` has them. The three versions are of one grid and memory. Time in proportion to
 /// the range and as much around it as the filter reaches. Errors, progress, threads as applyFilter.
 [[nodiscard]] Result<Version> filterRange(const Version& input, const Version& original, const Version& onto,
                                           const FilterSpec& spec, TileRange range, JobControl& job);

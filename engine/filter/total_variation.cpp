@@ -148,7 +148,7 @@ class TotalVariationFilter final : public BlockFilter {
 
 }  // namespace
 
-std::unique_ptr<BlockFilter> makeTotalVariationFilter(const FilterSpec& spec) {
+std::unique_ptr<BlockFilter> makeTotalVariationFilter(const FilterSpec& spec, CpuLevel) {
   return std::make_unique<TotalVariationFilter>(spec);
 }
 

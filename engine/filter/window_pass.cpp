@@ -1,4 +1,4 @@
-#include "engine/filter/pass.h"
+#include "engine/filter/window_pass.h"
 
 #include <algorithm>
 #include <array>
@@ -17,8 +17,7 @@
 #include <tbb/task_arena.h>
 
 #include "engine/field/live_field.h"
-#include "engine/filter/block.h"
-#include "engine/filter/box_strip.h"
+#include "engine/filter/catalogue.h"
 #include "engine/filter/limit_change.h"
 #include "engine/filter/merge.h"
 
@@ -45,30 +44,16 @@ struct NewTile {
   TileReport report;
 };
 
-std::unique_ptr<BlockFilter> makeFilter(const FilterSpec& spec, CpuLevel level) {
-  switch (spec.kind) {
-    case FilterKind::kBox:
-      return makeBoxFilter(spec);
-    case FilterKind::kGaussian:
-      return makeGaussianFilter(spec, level);
-    case FilterKind::kMedian:
-      return makeMedianFilter(spec, level);
-    case FilterKind::kBilateral:
-      return makeBilateralFilter(spec, level);
-    case FilterKind::kTotalVariation:
-      return makeTotalVariationFilter(spec);
-  }
-  return nullptr;
-}
-
 class Pass {
  public:
-  Pass(const Version& input, const Version& original, const FilterSpec& spec, CpuLevel level)
-      : memory_(*input.memory()),
+  Pass(const WindowFilter& filter, const Version& input, const Version& original, const FilterSpec& spec,
+       CpuLevel level)
+      : filter_(filter),
+        memory_(*input.memory()),
         reader_(input.reader()),
         original_(original.reader()),
         spec_(spec),
-        radius_(spec.window / 2),
+        radius_(filterOf(spec.kind).reach(spec)),
         same_field_(&reader_.root() == &original_.root()),
         level_(level) {}
 
@@ -78,8 +63,8 @@ class Pass {
     const std::int32_t to_next = rect.column1 - rect.column0;
     shrink(rect);
     if (rect.column0 == rect.column1) return true;
-    if (spec_.kind == FilterKind::kBox && radius_ > 0 && level_ == CpuLevel::kAvx512) {
-      if (!scratch.strip) scratch.strip = BoxStrip::make(radius_);
+    if (filter_.strip != nullptr && radius_ > 0) {
+      if (!scratch.strip) scratch.strip = filter_.strip(radius_, level_);
       if (scratch.strip) return runStrip(rect, scratch, job, made);
     }
     if (!gatherAndFilter(rect, scratch, job)) return false;
@@ -89,7 +74,7 @@ class Pass {
   [[nodiscard]] bool outOfMemory() const noexcept { return out_of_memory_.load(std::memory_order_relaxed); }
 
  private:
-  // As run, for the box: one row of tiles after the other, with sums that run on from one to the next.
+  // As run, with a strip: one row of tiles after the other, with sums that run on from one to the next.
   bool runStrip(const TileRect& rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
     const std::int32_t c0 = rect.column0 * kTileSide;
     const std::int32_t c1 = std::min(rect.column1 * kTileSide, reader_.width());
@@ -198,7 +183,7 @@ class Pass {
         std::copy_n(block.row(r), block.out_columns, block.out + r * block.out_stride);
       return true;
     }
-    if (!scratch.filter) scratch.filter = makeFilter(spec_, level_);
+    if (!scratch.filter) scratch.filter = filter_.make(spec_, level_);
     return scratch.filter->run(block, job);
   }
 
@@ -222,7 +207,7 @@ class Pass {
     const auto [columns, rows] = extent(tc, tr);
     std::ptrdiff_t stride = scratch.out_stride;
     if (spec_.max_change.has_value() || columns < kTileSide || rows < kTileSide) {
-      drawBack(tc, tr, results, stride, sign, scratch.one_tile.data());
+      clampToOriginal(tc, tr, results, stride, sign, scratch.one_tile.data());
       results = scratch.one_tile.data();
       stride = kTileSide;
       sign = 1.0F;
@@ -240,8 +225,8 @@ class Pass {
 
   // Results as a tile holds them, without the version's sign, and within the largest change allowed; 0 where
   // there is no sample.
-  void drawBack(std::int32_t tc, std::int32_t tr, const float* results, std::ptrdiff_t stride, float sign,
-                float* stored) const noexcept {
+  void clampToOriginal(std::int32_t tc, std::int32_t tr, const float* results, std::ptrdiff_t stride,
+                       float sign, float* stored) const noexcept {
     const auto [columns, rows] = extent(tc, tr);
     const float* old = reader_.tile(tc, tr).samples.data();
     const float* origin = original_.tile(tc, tr).samples.data();
@@ -256,6 +241,7 @@ class Pass {
       }
   }
 
+  const WindowFilter& filter_;
   FieldMemory& memory_;
   FieldReader reader_;
   FieldReader original_;
@@ -280,16 +266,13 @@ struct Cut {
   int columns, rows;
 };
 
-// Large enough that the halo does not dominate, small enough that the scratch stays near the core and every
-// core has several blocks to do. A strip's scratch follows its width alone, so that it can be long.
-Cut suitableCut(const FilterSpec& spec, const Grid& grid) noexcept {
+// As the filter has it, in blocks small enough that every core has several to do.
+Cut suitableCut(const WindowFilter& filter, const FilterSpec& spec, const Grid& grid) noexcept {
   const int wanted = (2 * spec.window + kTileSide - 1) / kTileSide * kTileSide;
-  Cut cut{std::clamp(wanted, 256, 1024), std::clamp(wanted, 256, 1024)};
-  if (spec.kind == FilterKind::kMedian) cut = {std::clamp(wanted, 128, 512), std::clamp(wanted, 128, 512)};
-  if (spec.kind == FilterKind::kGaussian)
-    cut = {std::clamp(4 * wanted, 512, 1024), std::clamp(wanted, 128, 512)};
-  if (spec.kind == FilterKind::kBox)
-    cut = {std::clamp(4 * wanted, 512, 2048), std::clamp(8 * wanted, 2048, 8192)};
+  const auto sideOf = [wanted](const BlockSide& side) {
+    return std::clamp(side.double_windows * wanted, side.least, side.most);
+  };
+  Cut cut{sideOf(filter.columns), sideOf(filter.rows)};
   const std::int64_t cores = tbb::this_task_arena::max_concurrency();
   const auto blocks = [&] {
     return std::int64_t{(grid.width + cut.columns - 1) / cut.columns} *
@@ -304,18 +287,19 @@ Cut suitableCut(const FilterSpec& spec, const Grid& grid) noexcept {
 
 }  // namespace
 
-Result<PassResult> filterOnce(const Version& input, const Version& original, const FilterSpec& spec,
-                              const FilterTuning& tuning, JobControl& job) {
+Result<PassResult> passInBlocks(const WindowFilter& filter, const Version& input, const Version& original,
+                                const FilterSpec& spec, const FilterTuning& tuning, JobControl& job) {
   const Grid& grid = input.grid();
   const FieldReader reader = input.reader();
-  const Cut cut = tuning.block_side > 0 ? Cut{tuning.block_side, tuning.block_side} : suitableCut(spec, grid);
+  const Cut cut =
+      tuning.block_side > 0 ? Cut{tuning.block_side, tuning.block_side} : suitableCut(filter, spec, grid);
   const std::int32_t wide = cut.columns / kTileSide;
   const std::int32_t high = cut.rows / kTileSide;
   assert(wide > 0 && high > 0);
   const std::int32_t across = (reader.tileColumns() + wide - 1) / wide;
   const std::int32_t up = (reader.tileRows() + high - 1) / high;
 
-  Pass pass(input, original, spec, std::min(tuning.level, bestCpuLevel()));
+  Pass pass(filter, input, original, spec, std::min(tuning.level, bestCpuLevel()));
   tbb::enumerable_thread_specific<Scratch> scratches;
   tbb::enumerable_thread_specific<std::vector<NewTile>> made;
   tbb::parallel_for(

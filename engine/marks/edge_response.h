@@ -6,7 +6,7 @@
 
 #include "engine/base/job.h"
 #include "engine/field/reader.h"
-#include "engine/filter/block.h"
+#include "engine/filter/median.h"
 #include "engine/marks/edge_kernels.h"
 
 namespace fettle::engine {

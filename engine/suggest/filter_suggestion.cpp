@@ -11,8 +11,7 @@
 #include "engine/base/stopwatch.h"
 #include "engine/compare/compare.h"
 #include "engine/field/piece.h"
-#include "engine/filter/noise_range.h"
-#include "engine/filter/region.h"
+#include "engine/filter/catalogue.h"
 #include "engine/inspect/noise.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/suggest/stand_in.h"
@@ -70,34 +69,19 @@ std::vector<Spot> spotsOf(const FieldReader& field) {
 std::vector<FilterCandidate> candidatesFor(double sigma, int threads) {
   std::vector<FilterCandidate> all(1);
   all[0].spec.window = 1;
-  const auto add = [&](FilterKind kind, int window, int passes, double noises, bool around_edges) {
-    FilterCandidate c;
-    c.spec.kind = kind;
-    c.spec.window = window;
-    c.spec.passes = passes;
-    c.spec.threads = threads;
-    // Three figures: it is to be typed.
-    if (hasRange(kind)) c.spec.range_sigma = std::stod(fmt::format("{:.3g}", noises * sigma));
-    c.around_edges = around_edges;
-    if (around_edges) c.thickness = reachOf(c.spec) + 1.0;
-    all.push_back(c);
-  };
-  for (const int window : {3, 5, 9}) {
-    add(FilterKind::kBox, window, 1, 0.0, false);
-    add(FilterKind::kGaussian, window, 1, 0.0, false);
-    add(FilterKind::kBox, window, 2, 0.0, true);
-  }
-  for (const int window : {3, 5, 7}) add(FilterKind::kMedian, window, 1, 0.0, false);
-  add(FilterKind::kMedian, 5, 1, 0.0, true);
-  for (const int window : {3, 5, 7, 9}) add(FilterKind::kBilateral, window, 1, kBilateralNoises, false);
-  add(FilterKind::kBilateral, 5, 2, 0.75 * kBilateralNoises, false);
-  add(FilterKind::kBilateral, 9, 1, 1.5 * kBilateralNoises, false);
-  for (const int window : {7, 17, 31}) {
-    add(FilterKind::kTotalVariation, window, 1, kTotalVariationNoises, false);
-    add(FilterKind::kTotalVariation, window, 1, 1.5 * kTotalVariationNoises, false);
-  }
-  add(FilterKind::kTotalVariation, 51, 1, 2.0 * kTotalVariationNoises, false);
-  add(FilterKind::kTotalVariation, 17, 1, 1.5 * kTotalVariationNoises, true);
+  for (const Filter& filter : filters())
+    for (const FilterTrial& trial : filter.trials) {
+      FilterCandidate c;
+      c.spec.kind = filter.kind;
+      c.spec.window = trial.window;
+      c.spec.passes = trial.passes;
+      c.spec.threads = threads;
+      // Three figures: it is to be typed.
+      if (hasRange(filter.kind)) c.spec.range_sigma = std::stod(fmt::format("{:.3g}", trial.noises * sigma));
+      c.around_edges = trial.around_edges;
+      if (trial.around_edges) c.thickness = reachOf(c.spec) + 1.0;
+      all.push_back(c);
+    }
   return all;
 }
 

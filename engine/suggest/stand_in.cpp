@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "engine/field/builder.h"
-#include "engine/filter/filter.h"
-#include "engine/filter/noise_range.h"
+#include "engine/filter/catalogue.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/scanner/counter_random.h"
 
@@ -63,13 +62,13 @@ Result<Version> smoothed(const Version& field, double sigma, JobControl& job) {
   FilterSpec first;
   first.kind = FilterKind::kBilateral;
   first.window = 7;
-  first.range_sigma = kBilateralNoises * sigma;
+  first.range_sigma = filterOf(first.kind).noises * sigma;
   auto once = applyFilter(field, field, first, job);
   if (!once) return tl::unexpected(once.error());
   FilterSpec second;
   second.kind = FilterKind::kTotalVariation;
   second.window = 41;
-  second.range_sigma = kTotalVariationNoises * sigma;
+  second.range_sigma = filterOf(second.kind).noises * sigma;
   auto twice = applyFilter(once->field, field, second, job);
   if (!twice) return tl::unexpected(twice.error());
   return std::move(twice->field);

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "engine/filter/catalogue.h"
+
 namespace fettle::haptic {
 namespace {
 
@@ -18,7 +20,6 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-constexpr std::array<std::string_view, 5> kFilters = {"box", "gaussian", "median", "bilateral", "tv"};
 constexpr std::array<std::string_view, 2> kScopes = {"keep", "only"};
 
 template <std::size_t N>
@@ -39,7 +40,7 @@ LoopPlace placeOf(const json& in) {
 }
 
 void put(json& out, const engine::FilterSpec& spec) {
-  out["filter"] = kFilters[static_cast<std::size_t>(spec.kind)];
+  out["filter"] = engine::name(spec.kind);
   out["window"] = spec.window;
   if (spec.sigma > 0.0) out["sigma"] = spec.sigma;
   if (spec.range_sigma > 0.0) out["range_sigma"] = spec.range_sigma;
@@ -50,7 +51,10 @@ void put(json& out, const engine::FilterSpec& spec) {
 
 engine::FilterSpec specOf(const json& in) {
   engine::FilterSpec spec;
-  spec.kind = static_cast<engine::FilterKind>(wordOf(in.at("filter"), kFilters));
+  const auto& word = in.at("filter").get_ref<const std::string&>();
+  const engine::Filter* filter = engine::filterNamed(word);
+  if (filter == nullptr) throw std::out_of_range(fmt::format("\"{}\" is no filter", word));
+  spec.kind = filter->kind;
   spec.window = in.at("window").get<int>();
   spec.sigma = in.value("sigma", 0.0);
   spec.range_sigma = in.value("range_sigma", 0.0);

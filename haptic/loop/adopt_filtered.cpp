@@ -8,6 +8,7 @@
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
 #include "engine/field/piece.h"
+#include "engine/filter/catalogue.h"
 
 namespace fettle::haptic {
 
@@ -101,7 +102,7 @@ class Adoption {
          first_ ? changedSpots(raw_, now) : std::vector<TileSpot>(unfiltered_.begin(), unfiltered_.end()))
       if (!follow(spot)) return noMemory();
     raw_ = raw.snapshot();
-    const std::vector<TileSpot> stale = withHalo(edited, filterReach(spec_), now.grid());
+    const std::vector<TileSpot> stale = withHalo(edited, engine::reachOf(spec_), now.grid());
     if (!stale.empty()) {
       engine::Result<engine::Version> again = filterTiles(raw_, original_, spec_, stale, job_);
       if (!again) return tl::unexpected(again.error());
@@ -144,7 +145,7 @@ class Adoption {
 engine::Result<engine::Version> filterTiles(const engine::Version& input, const engine::Version& original,
                                             const engine::FilterSpec& spec,
                                             const std::vector<TileSpot>& spots, engine::JobControl& job) {
-  const std::int32_t reach = filterReach(spec);
+  const std::int32_t reach = engine::reachOf(spec);
   const engine::Grid& grid = input.grid();
   engine::LiveField out(input, engine::Growth::kAllowed);
   std::vector<float> heights(engine::kTileSamples);

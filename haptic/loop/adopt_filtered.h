@@ -20,11 +20,6 @@ namespace fettle::haptic {
                                                           const std::vector<TileSpot>& spots,
                                                           engine::JobControl& job);
 
-/// How far a filter's result depends on samples around it [samples].
-[[nodiscard]] inline std::int32_t filterReach(const engine::FilterSpec& spec) noexcept {
-  return spec.passes * (spec.window / 2);
-}
-
 /// The live loop as a worker sees it: two questions, each answered within some ticks. The app carries them to
 /// the main thread, which owns the rings (CommandKind::kSnapshot and kAdopt with one id).
 class AdoptionPort {

@@ -6,7 +6,7 @@
 #include "app/commands/command.h"
 #include "engine/compare/compare.h"
 #include "engine/field/version.h"
-#include "engine/filter/filter.h"
+#include "engine/filter/catalogue.h"
 #include "engine/scanner/scanner.h"
 #include "haptic/tick/replay.h"
 
@@ -43,7 +43,7 @@ struct DemoRun {
   std::vector<DemoResult> results;  ///< noisy, touched, then filter alone and HEG for each filter
 };
 
-/// The demonstration's filter of one kind.
+/// The demonstration's filter of one kind, of engine::plainFilters().
 [[nodiscard]] engine::FilterSpec demoFilter(engine::FilterKind kind, const DemoOptions& options);
 
 /// The whole process of Potter, Johnson and Cohen (2004) on a simulated scan: operator strokes, local

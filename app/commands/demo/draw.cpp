@@ -57,7 +57,8 @@ std::vector<Page> pages(const DemoRun& run, const DemoOptions& options) {
     p.view.zoom = 3.5;
     return p;
   };
-  for (const std::string filter : {"box", "gaussian", "median"}) {
+  for (const engine::FilterKind kind : engine::plainFilters()) {
+    const std::string filter(engine::name(kind));
     const DemoResult& alone = result(run, filter);
     const DemoResult& heg = result(run, "heg-" + filter);
     render::PictureSpec& near = closeUp("4_" + filter + "_alone_and_heg.png");

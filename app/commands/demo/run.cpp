@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -16,15 +15,15 @@ namespace fettle::app {
 
 namespace {
 
-constexpr std::array kFilters{engine::FilterKind::kBox, engine::FilterKind::kGaussian,
-                              engine::FilterKind::kMedian};
-
 // The scene is written first and read back, so that what the folder holds is what was done.
 //
 // The contact is certified: in noise the paper's local search rests in minima far from the tip, and marks
 // would have gaps. The marks must cover every sample that some pass can reach over an edge, and the hand's
 // tremor beside it; smoothing stays the paper's one sample.
 std::string sceneText(const DemoOptions& options) {
+  std::int32_t reach = 0;
+  for (const engine::FilterKind kind : engine::plainFilters())
+    reach = std::max(reach, engine::reachOf(demoFilter(kind, options)));
   return fmt::format(
       "# The scene of the demonstration: see assets/scenes/default.toml for every key.\n"
       "effects = [\"spring\", \"smoothing\"]\n\n"
@@ -35,8 +34,7 @@ std::string sceneText(const DemoOptions& options) {
       "radius_samples = 0\n"
       "# {0} passes of a {1} x {1} window reach {2} samples; 3 more for the hand's tremor.\n"
       "mark_radius_samples = {3}\n",
-      options.passes, options.window, options.passes * (options.window / 2),
-      std::min(options.passes * (options.window / 2) + 3, 64));
+      options.passes, options.window, reach, std::min(reach + 3, 64));
 }
 
 haptic::OperatorSpec operatorSpec(const DemoOptions& options, const engine::Grid& grid) {
@@ -95,7 +93,7 @@ engine::Result<DemoRun> runDemo(const DemoOptions& options, engine::JobControl& 
   };
   if (auto s = judge("noisy", "scan as it came", run.scan.scan); !s) return tl::unexpected(s.error());
   if (auto s = judge("touched", "after the strokes alone", run.touched); !s) return tl::unexpected(s.error());
-  for (const engine::FilterKind kind : kFilters) {
+  for (const engine::FilterKind kind : engine::plainFilters()) {
     const std::string filter(engine::name(kind));
     const struct {
       std::string name, title;

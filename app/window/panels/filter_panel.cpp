@@ -13,13 +13,17 @@ void Workstation::filterPanel() {
   engine::FilterSpec& spec = filters_.spec;
   const engine::Grid& grid = touch_->field().grid();
   beginFields();
-  const char* names[] = {"Box", "Gaussian", "Median", "Bilateral", "Total variation"};
-  int kind = static_cast<int>(spec.kind);
-  if (field("filter",
-            [&] { return ImGui::Combo("##filter", &kind, names, static_cast<int>(std::size(names))); }))
-    spec.kind = static_cast<engine::FilterKind>(kind);
-  if (spec.kind != engine::FilterKind::kGaussian) spec.sigma = 0.0;
-  if (!engine::hasRange(spec.kind)) spec.range_sigma = 0.0;
+  (void)field("filter", [&] {
+    if (!ImGui::BeginCombo("##filter", engine::filterOf(spec.kind).title)) return false;
+    for (const engine::Filter& each : engine::filters())
+      if (ImGui::Selectable(each.title, each.kind == spec.kind) && each.kind != spec.kind) {
+        spec.kind = each.kind;
+        spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
+      }
+    ImGui::EndCombo();
+    return true;
+  });
+  const engine::Filter& filter = engine::filterOf(spec.kind);
   if (field("window", [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
     spec.window = std::clamp(spec.window | 1, 1, engine::FilterSpec::kMaxWindow);
   // In millimetres across the columns; the nearest odd number of samples is taken.
@@ -33,15 +37,18 @@ void Workstation::filterPanel() {
                    engine::FilterSpec::kMaxWindow);
   if (field("passes", [&] { return ImGui::InputInt("##passes", &spec.passes, 1, 5); }))
     spec.passes = std::clamp(spec.passes, 1, engine::FilterSpec::kMaxPasses);
-  if (spec.kind == engine::FilterKind::kGaussian)
+  const auto orElse = [](double value, const char* format, const engine::FilterParameter& parameter) {
+    return value > 0.0 ? format : "0: " + std::string(parameter.when_zero);
+  };
+  if (filter.sigma.exists())
     (void)field("sigma", [&] {
-      return typeNumber("##sigma", spec.sigma, 0.0, 1000.0,
-                        spec.sigma > 0.0 ? "%.2f samples" : "0: binomial");
+      return typeNumber("##sigma", spec.sigma, 0.0, 1000.0, orElse(spec.sigma, "%.2f samples", filter.sigma));
     });
-  if (engine::hasRange(spec.kind))
+  if (filter.range_sigma.exists())
     (void)field("range sigma", [&] {
-      return typeNumber("##range", spec.range_sigma, 0.0, engine::FilterSpec::kMostRange,
-                        spec.range_sigma > 0.0 ? "%.4g " + grid.height_unit.name : "0: from the noise");
+      return typeNumber(
+          "##range", spec.range_sigma, 0.0, filter.range_sigma.most,
+          orElse(spec.range_sigma, ("%.4g " + grid.height_unit.name).c_str(), filter.range_sigma));
     });
   bool limited = spec.max_change.has_value();
   (void)field("max change", [&] {

@@ -59,7 +59,7 @@ std::string HandPlay::stroke(bool ends) {
 
 std::string HandPlay::filter(bool under_a_stroke) {
   engine::FilterSpec& spec = filters_.spec;
-  spec.kind = static_cast<engine::FilterKind>(random_() % engine::kFilterKinds);
+  spec.kind = engine::filters()[random_() % engine::filters().size()].kind;
   // Given here, or left to the noise of the field then.
   spec.range_sigma = engine::hasRange(spec.kind) && random_() % 2 == 0 ? 0.02 : 0.0;
   spec.window = 3 + 2 * static_cast<int>(random_() % 3);

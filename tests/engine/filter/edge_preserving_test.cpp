@@ -126,7 +126,7 @@ TEST(MeasuredRange, FollowsTheNoiseAndLeavesWhatIsGivenOrNotNeeded) {
   FilterSpec spec;
   EXPECT_EQ(withMeasuredRange(spec, version, job)->range_sigma, 0.0);
   spec.kind = FilterKind::kBilateral;
-  EXPECT_EQ(withMeasuredRange(spec, version, job)->range_sigma, kBilateralNoises * sigma);
+  EXPECT_EQ(withMeasuredRange(spec, version, job)->range_sigma, filterOf(spec.kind).noises * sigma);
   spec.range_sigma = 7.0;
   EXPECT_EQ(withMeasuredRange(spec, version, job)->range_sigma, 7.0);
   spec.range_sigma = 0.0;

@@ -220,10 +220,5 @@ TEST(Spec, IsRefusedWithTheValueThatIsWrong) {
   EXPECT_FALSE(applyFilter(version, version, makeSpec(FilterKind::kBox, 2), job).has_value());
 }
 
-TEST(Spec, NamesItsFilters) {
-  for (const FilterKind kind : kEveryKind) EXPECT_EQ(filterKindFromName(name(kind)), kind);
-  EXPECT_EQ(filterKindFromName("mean"), std::nullopt);
-}
-
 }  // namespace
 }  // namespace fettle::engine::tests

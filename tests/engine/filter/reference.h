@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/field/version.h"
-#include "engine/filter/filter.h"
+#include "engine/filter/catalogue.h"
 
 namespace fettle::engine::tests {
 
@@ -29,8 +29,11 @@ struct PlainField {
 [[nodiscard]] PlainField toPlain(const Version& version);
 
 /// All of them, for tests of what they share.
-inline constexpr FilterKind kEveryKind[] = {FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian,
-                                            FilterKind::kBilateral, FilterKind::kTotalVariation};
+inline const std::vector<FilterKind> kEveryKind = [] {
+  std::vector<FilterKind> kinds;
+  for (const Filter& filter : filters()) kinds.push_back(filter.kind);
+  return kinds;
+}();
 
 /// The same bits, all NaN being one.
 [[nodiscard]] bool sameBits(float a, float b);

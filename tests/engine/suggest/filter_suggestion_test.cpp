@@ -10,6 +10,7 @@
 
 #include "engine/compare/compare.h"
 #include "engine/field/builder.h"
+#include "engine/filter/catalogue.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/scanner/scanner.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/field/version.h"
-#include "engine/filter/filter.h"
+#include "engine/filter/catalogue.h"
 #include "haptic/base/strokes.h"
 #include "haptic/scene/scene.h"
 

@@ -1,0 +1,160 @@
+#include "engine/filter/catalogue.h"
+
+#include <array>
+#include <limits>
+#include <memory>
+
+#include "engine/filter/median.h"
+#include "engine/filter/window_pass.h"
+
+namespace fettle::engine {
+
+// Each in the source that is named after it.
+WindowFilter::Maker makeBoxFilter, makeGaussianFilter, makeBilateralFilter, makeTotalVariationFilter;
+
+namespace {
+
+constexpr FilterParameter kNone{};
+constexpr FilterParameter kWindow{"samples", 1, FilterSpec::kMaxWindow, 3};
+constexpr FilterParameter kRange{"height_unit", FilterSpec::kLeastRange, FilterSpec::kMostRange, 0.0,
+                                 "from the noise"};
+
+constexpr FilterParameter sigmaElse(std::string_view otherwise) {
+  return {"samples", 0.0, std::numeric_limits<double>::max(), 0.0, otherwise};
+}
+
+std::int32_t halfAWindow(const FilterSpec& spec) {
+  return spec.window / 2;
+}
+
+// A strip's scratch follows its width alone, so that it can be long.
+constexpr WindowFilter kBoxWindows{makeBoxFilter, {4, 512, 2048}, {8, 2048, 8192}, BoxStrip::make};
+constexpr WindowFilter kGaussianWindows{makeGaussianFilter, {4, 512, 1024}, {1, 128, 512}};
+constexpr WindowFilter kMedianWindows{makeMedianFilter, {1, 128, 512}, {1, 128, 512}};
+constexpr WindowFilter kBilateralWindows{makeBilateralFilter};
+constexpr WindowFilter kTotalVariationWindows{makeTotalVariationFilter};
+
+// Means and medians of noise: without a hand they take the edges with it.
+constexpr FilterTrial kBoxTrials[] = {{3}, {5}, {9}, {3, 2, 0, true}, {5, 2, 0, true}, {9, 2, 0, true}};
+constexpr FilterTrial kGaussianTrials[] = {{3}, {5}, {9}};
+constexpr FilterTrial kMedianTrials[] = {{3}, {5}, {7}, {5, 1, 0, true}};
+constexpr FilterTrial kBilateralTrials[] = {{3, 1, 4}, {5, 1, 4}, {7, 1, 4}, {9, 1, 4}, {5, 2, 3}, {9, 1, 6}};
+constexpr FilterTrial kTotalVariationTrials[] = {{7, 1, 1},  {7, 1, 1.5},  {17, 1, 1}, {17, 1, 1.5},
+                                                 {31, 1, 1}, {31, 1, 1.5}, {51, 1, 2}, {17, 1, 1.5, true}};
+
+constexpr std::array kFilters{
+    Filter{.kind = FilterKind::kBox,
+           .word = "box",
+           .title = "Box",
+           .keeps_edges = false,
+           .window = kWindow,
+           .sigma = kNone,
+           .range_sigma = kNone,
+           .noises = 0.0,
+           .pass = windowPass<kBoxWindows>,
+           .reach = halfAWindow,
+           .trials = kBoxTrials},
+    Filter{.kind = FilterKind::kGaussian,
+           .word = "gaussian",
+           .title = "Gaussian",
+           .keeps_edges = false,
+           .window = kWindow,
+           .sigma = sigmaElse("binomial weights"),
+           .range_sigma = kNone,
+           .noises = 0.0,
+           .pass = windowPass<kGaussianWindows>,
+           .reach = halfAWindow,
+           .trials = kGaussianTrials},
+    Filter{.kind = FilterKind::kMedian,
+           .word = "median",
+           .title = "Median",
+           .keeps_edges = false,
+           .window = kWindow,
+           .sigma = kNone,
+           .range_sigma = kNone,
+           .noises = 0.0,
+           .pass = windowPass<kMedianWindows>,
+           .reach = halfAWindow,
+           .trials = kMedianTrials},
+    Filter{.kind = FilterKind::kBilateral,
+           .word = "bilateral",
+           .title = "Bilateral",
+           .keeps_edges = true,
+           .window = kWindow,
+           .sigma = sigmaElse("a quarter of the window"),
+           .range_sigma = kRange,
+           .noises = 4.0,
+           .pass = windowPass<kBilateralWindows>,
+           .reach = halfAWindow,
+           .trials = kBilateralTrials},
+    Filter{.kind = FilterKind::kTotalVariation,
+           .word = "tv",
+           .title = "Total variation",
+           .keeps_edges = true,
+           .window = kWindow,
+           .sigma = kNone,
+           .range_sigma = kRange,
+           .noises = 1.0,
+           .pass = windowPass<kTotalVariationWindows>,
+           .reach = halfAWindow,
+           .trials = kTotalVariationTrials},
+};
+
+constexpr bool inTheOrderOfTheEnum() {
+  for (std::size_t i = 0; i < kFilters.size(); ++i)
+    if (static_cast<std::size_t>(kFilters[i].kind) != i) return false;
+  return true;
+}
+static_assert(inTheOrderOfTheEnum());
+
+}  // namespace
+
+std::span<const Filter> filters() noexcept {
+  return kFilters;
+}
+
+const Filter& filterOf(FilterKind kind) noexcept {
+  return kFilters[static_cast<std::size_t>(kind)];
+}
+
+const Filter* filterNamed(std::string_view word) noexcept {
+  for (const Filter& filter : kFilters)
+    if (filter.word == word) return &filter;
+  return nullptr;
+}
+
+std::string_view name(FilterKind kind) noexcept {
+  return filterOf(kind).word;
+}
+
+bool hasRange(FilterKind kind) noexcept {
+  return filterOf(kind).range_sigma.exists();
+}
+
+std::int32_t reachOf(const FilterSpec& spec) noexcept {
+  return spec.passes * filterOf(spec.kind).reach(spec);
+}
+
+bool keepsEdges(const Filter& filter) noexcept {
+  return filter.keeps_edges;
+}
+
+std::vector<FilterKind> plainFilters() {
+  std::vector<FilterKind> kinds;
+  for (const Filter& filter : kFilters)
+    if (!filter.keeps_edges) kinds.push_back(filter.kind);
+  return kinds;
+}
+
+std::string filterWords(bool (*which)(const Filter&), std::string_view last_between) {
+  std::string text;
+  std::string_view last;
+  for (const Filter& filter : kFilters) {
+    if (!which(filter)) continue;
+    if (!last.empty()) (text += text.empty() ? "" : ", ") += last;
+    last = filter.word;
+  }
+  return text.empty() ? std::string(last) : (text += last_between) += last;
+}
+
+}  // namespace fettle::engine

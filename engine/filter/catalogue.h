@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/filter/filter.h"
+
+namespace fettle::engine {
+
+struct FilterTuning;
+struct PassResult;
+
+/// A number of a FilterSpec as one filter takes it.
+struct FilterParameter {
+  std::string_view unit{};  ///< "samples" or "height_unit"; empty: the filter has no such number
+  double least = 0.0, most = 0.0;
+  double usual = 0.0;            ///< of a spec that says nothing; 0 may stand outside least .. most
+  std::string_view when_zero{};  ///< what takes the place of 0, in words; empty where 0 is a value as any
+
+  [[nodiscard]] constexpr bool exists() const noexcept { return !unit.empty(); }
+};
+
+/// A setting of a filter that suggestFilter tries.
+struct FilterTrial {
+  int window;
+  int passes = 1;
+  double noises = 0.0;  ///< range sigma in standard deviations of the noise, for a filter that has one
+  bool around_edges = false;
+};
+
+/// One pass over a whole field: `input` with its holes and marks, changed where `spec` says by no more than it
+/// allows against `original`. On the calling thread's task arena; the spec is valid. Advances the progress by
+/// the field's samples. Errors as applyFilter; throws std::bad_alloc.
+using FilterPass = Result<PassResult> (*)(const Version& input, const Version& original,
+                                          const FilterSpec& spec, const FilterTuning& tuning,
+                                          JobControl& job);
+
+/// All that the program knows of a filter: command line, journal, panel, suggestion, benchmarks,
+/// demonstration and the table of docs/commands.md follow it.
+struct Filter {
+  FilterKind kind;
+  std::string_view word;  ///< of the command line, of journals and of sessions: never changed
+  const char* title;      ///< of panels
+  /// Steps stay as steep as they are. Those that do not are the paper's: the demonstration and, unless
+  /// others are named, the benchmarks run these. What keeps edges costs ten to a hundred times as much.
+  bool keeps_edges;
+  FilterParameter window, sigma, range_sigma;
+  /// Range sigma in standard deviations of the noise when none is given: with it the least error was left
+  /// over the whole of simulated bracket, wedges, steps and die (384 x 384, noise 1 and 3), 0.41 of the scan's
+  /// own for both that have one. Half as much leaves a tenth more, twice as much takes a tenth more off the
+  /// edges.
+  double noises;
+  FilterPass pass;
+  /// How far a result of one pass depends on samples around it [samples].
+  std::int32_t (*reach)(const FilterSpec& spec);
+  std::span<const FilterTrial> trials;
+};
+
+/// Every filter, in the order of FilterKind.
+[[nodiscard]] std::span<const Filter> filters() noexcept;
+
+[[nodiscard]] const Filter& filterOf(FilterKind kind) noexcept;
+/// Null where no filter has the word.
+[[nodiscard]] const Filter* filterNamed(std::string_view word) noexcept;
+
+/// Filter::word.
+[[nodiscard]] std::string_view name(FilterKind kind) noexcept;
+
+/// Whether a filter separates noise from surface by height differences: FilterSpec::range_sigma.
+[[nodiscard]] bool hasRange(FilterKind kind) noexcept;
+
+/// How far the result of all passes depends on samples around it [samples].
+[[nodiscard]] std::int32_t reachOf(const FilterSpec& spec) noexcept;
+
+/// Filter::keeps_edges, for filterWords.
+[[nodiscard]] bool keepsEdges(const Filter& filter) noexcept;
+
+/// Those that do not keep edges.
+[[nodiscard]] std::vector<FilterKind> plainFilters();
+
+/// The words of the filters for which `which` is true, as "box, gaussian and median".
+[[nodiscard]] std::string filterWords(bool (*which)(const Filter&), std::string_view last_between = " and ");
+
+}  // namespace fettle::engine

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+
+#include "engine/filter/block.h"
+#include "engine/filter/box_strip.h"
+#include "engine/filter/pass.h"
+
+namespace fettle::engine {
+
+/// Side of the blocks that a field is cut into [samples]: so many times two windows, a multiple of kTileSide.
+/// Large enough that the halo does not dominate, small enough that the scratch stays near the core.
+struct BlockSide {
+  int double_windows = 1;
+  int least = 256, most = 1024;
+};
+
+/// A filter each of whose results depends on the samples within Filter::reach alone.
+struct WindowFilter {
+  using Maker = std::unique_ptr<BlockFilter>(const FilterSpec& spec, CpuLevel level);
+
+  Maker* make;
+  BlockSide columns{}, rows{};
+  /// A fast path with the same bits: of a radius, null where the processor has none.
+  std::unique_ptr<BoxStrip> (*strip)(int radius, CpuLevel level) = nullptr;
+};
+
+/// A FilterPass that cuts the field into blocks.
+[[nodiscard]] Result<PassResult> passInBlocks(const WindowFilter& filter, const Version& input,
+                                              const Version& original, const FilterSpec& spec,
+                                              const FilterTuning& tuning, JobControl& job);
+
+template <const WindowFilter& kFilter>
+Result<PassResult> windowPass(const Version& input, const Version& original, const FilterSpec& spec,
+                              const FilterTuning& tuning, JobControl& job) {
+  return passInBlocks(kFilter, input, original, spec, tuning, job);
+}
+
+}  // namespace fettle::engine

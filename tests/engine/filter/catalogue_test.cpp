@@ -1,0 +1,65 @@
+#include "engine/filter/catalogue.h"
+
+#include <set>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/markdown_table.h"
+
+namespace fettle::engine::tests {
+namespace {
+
+using fettle::tests::markdownTable;
+
+TEST(Catalogue, FindsEachFilterByItsWord) {
+  std::set<std::string_view> words;
+  for (const Filter& filter : filters()) {
+    EXPECT_EQ(filterNamed(filter.word), &filter);
+    EXPECT_EQ(&filterOf(filter.kind), &filter);
+    EXPECT_TRUE(words.insert(filter.word).second) << filter.word;
+  }
+  EXPECT_EQ(filterNamed("mean"), nullptr);
+}
+
+TEST(Catalogue, TriesOnlySpecsThatAreValid) {
+  for (const Filter& filter : filters()) {
+    EXPECT_FALSE(filter.trials.empty()) << filter.word;
+    for (const FilterTrial& trial : filter.trials) {
+      FilterSpec spec;
+      spec.kind = filter.kind;
+      spec.window = trial.window;
+      spec.passes = trial.passes;
+      spec.range_sigma = trial.noises;
+      EXPECT_TRUE(validate(spec)) << filter.word << " " << validate(spec).error().line();
+    }
+  }
+}
+
+TEST(Catalogue, SaysWhatAFilterOfDefaultsIs) {
+  for (const Filter& filter : filters()) {
+    EXPECT_EQ(filter.window.usual, FilterSpec{}.window) << filter.word;
+    EXPECT_EQ(filter.sigma.usual, FilterSpec{}.sigma) << filter.word;
+    EXPECT_EQ(filter.noises > 0.0, filter.range_sigma.exists()) << filter.word;
+  }
+}
+
+TEST(Catalogue, ListsWords) {
+  EXPECT_EQ(filterWords([](const Filter& filter) { return filter.kind == FilterKind::kMedian; }), "median");
+  EXPECT_EQ(filterWords([](const Filter& filter) { return filter.kind <= FilterKind::kMedian; }, " or "),
+            "box, gaussian or median");
+  EXPECT_EQ(filterWords([](const Filter&) { return false; }), "");
+}
+
+TEST(Catalogue, IsTheTableOfTheDocuments) {
+  std::vector<std::vector<std::string>> rows;
+  for (const Filter& filter : filters())
+    rows.push_back({fmt::format("`{}`", filter.word), filter.title, filter.keeps_edges ? "yes" : "no",
+                    fmt::format("{:g} to {:g}", filter.window.least, filter.window.most),
+                    filter.sigma.exists() ? std::string(filter.sigma.when_zero) : "",
+                    filter.range_sigma.exists() ? fmt::format("{:g} of the noise", filter.noises) : ""});
+  EXPECT_EQ(markdownTable("docs/commands.md", "| filter | title |"), rows);
+}
+
+}  // namespace
+}  // namespace fettle::engine::tests
