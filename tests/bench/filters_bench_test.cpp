@@ -19,7 +19,7 @@ TEST(FiltersBench, HasARowForEachKindWindowGroundAndNumberOfThreadsAndAHashThatT
   engine::JobControl job;
   const auto report = benchFilters(options, job);
   ASSERT_TRUE(report) << report.error().line();
-  ASSERT_EQ(report->rows.size(), 3U * 2U * 3U * 2U);
+  ASSERT_EQ(report->rows.size(), options.kinds.size() * 2U * 3U * 2U);
   std::set<std::uint64_t> hashes;
   std::set<std::tuple<FilterKind, int, FilterGround, int>> rows;
   for (const FiltersBenchRow& row : report->rows) {
@@ -41,9 +41,9 @@ TEST(FiltersBench, HasARowForEachKindWindowGroundAndNumberOfThreadsAndAHashThatT
   EXPECT_EQ(hashes.size(), report->rows.size() / 2);
 }
 
-TEST(FiltersBench, NamesATargetForEveryRowOfPlainGround) {
+TEST(FiltersBench, NamesTheTargetsOfThePapersFiltersOnPlainGround) {
   FiltersBenchRow row;
-  for (const FilterKind kind : FiltersBenchOptions{}.kinds)
+  for (const FilterKind kind : {FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian})
     for (const int window : FiltersBenchOptions{}.windows) {
       row.kind = kind;
       row.window = window;
