@@ -5,9 +5,9 @@
 #include "field.glsl"
 
 layout(location = 0) flat in ivec2 base;
-layout(location = 1) in vec3 place;
+layout(location = 1) in vec2 place;
 
 void main() {
   vec2 f;
-  if (cellIsHole(shadeCell(base, place.xy, f))) discard;
+  if (cellIsHole(shadeCell(base, place, f))) discard;
 }

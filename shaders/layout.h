@@ -51,7 +51,6 @@ FETTLE_CONST kBindDepth = 8;    // texture2D, depth of the surface, in the pixel
 FETTLE_CONST kBindNearest = 9;  // sampler that takes the nearest texel
 
 // Bindings of descriptor set 0 of the picture.
-FETTLE_CONST kBindScene = 0;   // texture2D, one panel at several rays a pixel, premultiplied
 FETTLE_CONST kBindGlyphs = 1;  // texture2D, coverage
 FETTLE_CONST kBindQuads = 2;   // buffer of Quad
 FETTLE_CONST kBindMap = 3;     // uniform PanelUniforms, for its colours
@@ -84,9 +83,8 @@ FETTLE_CONST kSpecCount = 10;
 FETTLE_CONST kFillSolid = 0;
 FETTLE_CONST kFillGlyph = 1;    // uv: texel of the glyph image
 FETTLE_CONST kFillColours = 2;  // uv.y: place in the colour map, 0 .. 1
-FETTLE_CONST kFillScene = 3;    // uv: ray of the scene image
-FETTLE_CONST kFillUp = 4;       // triangle standing on the quad's lower edge, colour as kFillColours
-FETTLE_CONST kFillDown = 5;     // triangle hanging from the quad's upper edge
+FETTLE_CONST kFillUp = 3;       // triangle standing on the quad's lower edge, colour as kFillColours
+FETTLE_CONST kFillDown = 4;     // triangle hanging from the quad's upper edge
 
 // How a page table is read (render/residency/page_table.h): one entry a page, the field's, then the
 // original's.
@@ -118,7 +116,7 @@ struct PanelUniforms {
   vec4 placing;                    // 288: x, y of virtual sample (0, 0) [scene mm]; spacing x, y [mm]
   vec4 relief;      // 304: sign of heights; height at scene z 0; scene mm a height unit; floor's scene z
   vec4 limits;      // 320: lowest and highest height drawn; steeper ones are cut; sign of the original; -
-  vec4 colouring;   // 336: value of the first colour; 1 / range; contour step (value); rays a cell
+  vec4 colouring;   // 336: value of the first colour; 1 / range; contour step (value); -
   vec4 light;       // 352: unit vector to the light; share of light without direction
   vec4 marks_tint;  // 368: linear red, green, blue; opacity
   vec4 no_data;     // 384: linear red, green, blue
@@ -161,8 +159,8 @@ struct Line {
 struct Quad {
   vec4 pixels;  // left, top, right, bottom
   vec4 uv;      // the same corners in what fills it
-  vec4 colour;  // linear red, green, blue; opacity (kFillScene, kFillColours: opacity only)
-  ivec4 fill;   // one of kFill..; rays a pixel along one side
+  vec4 colour;  // linear red, green, blue; opacity (kFillColours: opacity only)
+  ivec4 fill;   // one of kFill..; -; -; -
 };
 
 #ifdef __cplusplus

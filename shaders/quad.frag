@@ -3,7 +3,6 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "layout.h"
 
-layout(set = 0, binding = kBindScene) uniform texture2D scene_image;
 layout(set = 0, binding = kBindGlyphs) uniform texture2D glyphs_image;
 layout(set = 0, binding = kBindQuads, std430) readonly buffer Quads { Quad quads[]; };
 layout(set = 0, binding = kBindMap, std140) uniform PanelBlock { PanelUniforms panel; };
@@ -20,15 +19,6 @@ vec3 mapped(float t) {
 
 void main() {
   const Quad q = quads[index];
-  if (q.fill.x == kFillScene) {
-    // The mean of a pixel's rays, in linear light: the image decodes sRGB when it is read.
-    const ivec2 first = ivec2(floor(uv / float(q.fill.y))) * q.fill.y;
-    vec4 sum = vec4(0.0);
-    for (int y = 0; y < q.fill.y; ++y)
-      for (int x = 0; x < q.fill.y; ++x) sum += texelFetch(scene_image, first + ivec2(x, y), 0);
-    colour = sum / float(q.fill.y * q.fill.y);
-    return;
-  }
   vec3 rgb = q.colour.rgb;
   float opacity = q.colour.a;
   if (q.fill.x == kFillGlyph) opacity *= texelFetch(glyphs_image, ivec2(uv), 0).x;

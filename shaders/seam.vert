@@ -12,7 +12,7 @@ layout(set = 0, binding = kBindPatches, std430) readonly buffer Patches { Patch 
 layout(push_constant) uniform Push { vec4 plot_px; } push;
 
 layout(location = 0) flat out ivec2 base;
-layout(location = 1) out vec3 place;  // as in surface.vert
+layout(location = 1) out vec2 place;  // as in surface.vert
 
 vec4 clipOf(ivec2 s, float z) { return viewUniforms().clip_from_scene * vec4(scenePoint(s, z), 1.0); }
 
@@ -24,7 +24,7 @@ void main() {
   const ivec2 last = panel.size.xy - 1;
   const ivec2 s = min(p.place.xy + along * stride * (gl_VertexIndex >> 1), last);
   base = p.place.xy;
-  place.xy = vec2(s - p.place.xy);
+  place = vec2(s - p.place.xy);
   // The coarser edge's own vertices before and after this place.
   const ivec2 a = (ivec2(1) - along) * s + along * (s & ~(wide - 1));
   const ivec2 b = min(a + along * wide, last);
@@ -32,7 +32,6 @@ void main() {
   const float t = run == 0 ? 0.0 : float((s.x - a.x) + (s.y - a.y)) / float(run);
   const float fine = drawnZ(s, stride), coarse = mix(drawnZ(a, wide), drawnZ(b, wide), t);
   const vec4 at_fine = clipOf(s, fine), at_coarse = clipOf(s, coarse);
-  place.z = fine;
   gl_Position = at_fine;
   // Behind the viewer nothing has a place in the picture.
   if (min(at_fine.w, at_coarse.w) <= 0.0) return;
@@ -41,7 +40,6 @@ void main() {
   const bool upper = (gl_VertexIndex & 1) != 0;
   const bool fine_is_upper = dot((at_fine.xy / at_fine.w - at_coarse.xy / at_coarse.w) * half_px, across) > 0.0;
   const bool takes_fine = upper == fine_is_upper;
-  place.z = takes_fine ? fine : coarse;
   gl_Position = takes_fine ? at_fine : at_coarse;
   gl_Position.xy += (upper ? 1.0 : -1.0) * panel.seam.x * across / half_px * gl_Position.w;
 }

@@ -7,8 +7,7 @@
 layout(set = 0, binding = kBindPatches, std430) readonly buffer Patches { Patch patches[]; };
 
 layout(location = 0) flat out ivec2 base;  // first sample of the patch
-// x, y: samples from it, kept small so that no fraction is lost far out; z: scene mm.
-layout(location = 1) out vec3 place;
+layout(location = 1) out vec2 place;  // samples from it, kept small so that no fraction is lost far out
 
 void main() {
   const Patch p = patches[gl_InstanceIndex];
@@ -18,7 +17,6 @@ void main() {
   const ivec2 stride = ivec2(1) << p.place.zw;
   const ivec2 s = min(p.place.xy + ivec2(k >> 1, strip + (k & 1)) * stride, panel.size.xy - 1);
   base = p.place.xy;
-  place.xy = vec2(s - p.place.xy);
-  place.z = drawnZ(s, stride);
-  gl_Position = viewUniforms().clip_from_scene * vec4(scenePoint(s, place.z), 1.0);
+  place = vec2(s - p.place.xy);
+  gl_Position = viewUniforms().clip_from_scene * vec4(scenePoint(s, drawnZ(s, stride)), 1.0);
 }

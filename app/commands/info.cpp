@@ -11,11 +11,12 @@
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/still_picture.h"
 #include "app/terminal.h"
 #include "engine/inspect/histogram.h"
 #include "engine/inspect/noise.h"
 #include "engine/inspect/steepest.h"
-#include "render/plan/picture.h"
+#include "render/live/picture_rows.h"
 
 namespace fettle::app {
 
@@ -93,20 +94,18 @@ engine::Result<Report> steepest(const engine::Version& field, engine::JobControl
 
 // A thumbnail: the surface and its colours alone.
 engine::Status draw(const engine::Version& field, const std::string& path, engine::JobControl& job) {
-  render::PictureSpec spec;
-  spec.view.width = 320;
-  spec.view.height = 240;
-  spec.cell_px = kStillCellPx;
-  spec.decoration = render::Decoration::kNone;
-  spec.field = field;
-  const auto renderer = render::Renderer::create();
-  if (!renderer) return tl::unexpected(renderer.error());
-  render::Image image;
-  const auto report = (*renderer)->render(spec, image, job);
-  if (!report) return tl::unexpected(report.error());
-  if (job.cancelled()) return engine::cancelled();
-  for (const std::string& warning : report->warnings) warn(warning);
-  return render::writePng(image, path);
+  render::View view;
+  view.width = 320;
+  view.height = 240;
+  render::FrameInput input = render::stillInput(view);
+  input.decoration = render::Decoration::kNone;
+  const auto picture = render::LivePicture::create();
+  if (!picture) return tl::unexpected(picture.error());
+  render::Shown shown;
+  shown.versions = {field};
+  const auto drawn = drawPicture(**picture, shown, input, path, job);
+  if (!drawn) return tl::unexpected(drawn.error());
+  return {};
 }
 
 engine::Result<Report> samplesAt(const engine::FieldReader& field, const std::vector<std::string>& places) {

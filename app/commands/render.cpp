@@ -6,11 +6,11 @@
 
 #include "app/commands/command.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/still_picture.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
 #include "engine/io/raster/marks.h"
-#include "render/live/live_picture.h"
-#include "render/plan/picture.h"
+#include "render/live/picture_rows.h"
 
 namespace fettle::app {
 
@@ -40,125 +40,73 @@ struct RenderArguments {
   ScanOptions reading;
 };
 
-engine::Result<render::PictureSpec> picture(const RenderArguments& options, engine::JobControl& job) {
-  render::PictureSpec spec;
-  spec.view = options.view;
-  spec.cell_px = kStillCellPx;
+struct Wanted {
+  render::Shown shown;
+  render::FrameInput input;
+};
+
+engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl& job) {
+  Wanted w{{}, render::stillInput(options.view)};
+  render::View& view = w.input.view;
   const auto size = parseSize(options.size, "--size", kPictureSides);
   if (!size) return tl::unexpected(size.error());
-  std::tie(spec.view.width, spec.view.height) = *size;
+  std::tie(view.width, view.height) = *size;
   if (!options.centre.empty()) {
     if (!std::all_of(options.centre.begin(), options.centre.end(),
                      [](double c) { return c >= 0.0 && c <= 1.0; }))
       return engine::inputError("the middle of the picture lies beside the field", "--centre",
                                 "give fractions from 0 to 1 of the field's width and height, e.g. 0.5,0.5");
-    spec.view.centre_x = options.centre[0];
-    spec.view.centre_y = options.centre[1];
+    view.centre_x = options.centre[0];
+    view.centre_y = options.centre[1];
   }
-  if (options.perspective) spec.view.projection = render::Projection::kPerspective;
-  if (options.contours) spec.contours = render::Contours::kShow;
-  if (options.dark) spec.theme = render::Theme::kDark;
-  if (options.bare) spec.decoration = render::Decoration::kNone;
-  if (!options.range.empty()) spec.range = render::ValueRange{options.range[0], options.range[1]};
+  if (options.perspective) view.projection = render::Projection::kPerspective;
+  if (options.contours) w.input.contours = render::Contours::kShow;
+  if (options.dark) w.input.theme = render::Theme::kDark;
+  if (options.bare) w.input.decoration = render::Decoration::kNone;
+  if (!options.range.empty()) w.input.range = render::ValueRange{options.range[0], options.range[1]};
   static const std::map<std::string, render::ColourMap> kMaps{{"auto", render::ColourMap::kAuto},
                                                               {"viridis", render::ColourMap::kViridis},
                                                               {"cividis", render::ColourMap::kCividis},
                                                               {"grey", render::ColourMap::kGrey},
                                                               {"diverging", render::ColourMap::kDiverging}};
-  spec.map = kMaps.at(options.map);
+  w.input.map = kMaps.at(options.map);
+  static const std::map<std::string, render::StereoMode> kStereo{
+      {"off", render::StereoMode::kOff},
+      {"side-by-side", render::StereoMode::kSideBySide},
+      {"anaglyph", render::StereoMode::kAnaglyph}};
+  w.input.stereo = options.eyes;
+  w.input.stereo.mode = kStereo.at(options.stereo);
 
   const auto scan = loadScan(options.scan, options.reading, job);
   if (!scan) return tl::unexpected(scan.error());
-  spec.field = scan->field;
+  w.shown.versions = {scan->field};
   const auto fileName = [](const std::string& path) {
     return std::filesystem::path(shownInput(path)).filename().string();
   };
-  spec.title_left = options.title.empty() ? fileName(options.scan) : options.title;
+  w.input.titles = {options.title.empty() ? fileName(options.scan) : options.title};
   if (!options.marks.empty()) {
-    auto marked = engine::importMarks(spec.field, options.marks);
+    auto marked = engine::importMarks(scan->field, options.marks);
     if (!marked) return tl::unexpected(marked.error());
-    spec.field = *std::move(marked);
-    spec.marks = render::MarksOverlay::kShow;
+    w.shown.versions = {*std::move(marked)};
+    w.shown.marks = render::MarksOverlay::kShow;
   }
   if (!options.compare.empty()) {
     const auto other = loadScan(options.compare, options.reading, job);
     if (!other) return tl::unexpected(other.error());
-    spec.compare = other->field;
-    spec.title_right = options.compare_title.empty() ? fileName(options.compare) : options.compare_title;
+    w.shown.versions.push_back(other->field);
+    w.input.titles.push_back(options.compare_title.empty() ? fileName(options.compare)
+                                                           : options.compare_title);
   }
   if (!options.deviation.empty()) {
     const auto original = loadScan(options.deviation, options.reading, job);
     if (!original) return tl::unexpected(original.error());
-    spec.deviation_from = original->field;
+    w.shown.original = original->field;
   }
   if (options.invert) {
-    spec.field = spec.field.inverted();
-    if (spec.compare) spec.compare = spec.compare->inverted();
-    if (spec.deviation_from) spec.deviation_from = spec.deviation_from->inverted();
+    for (engine::Version& version : w.shown.versions) version = version.inverted();
+    if (w.shown.original) w.shown.original = w.shown.original->inverted();
   }
-  return spec;
-}
-
-engine::Status writePicture(const render::Image& image, const std::string& path, engine::JobControl& job) {
-  return writeTo(path, ".png", job, [&](const std::string& file) { return render::writePng(image, file); });
-}
-
-// A picture for each eye. Drawn as the window draws it: one ray a pixel, every point within a quarter of a
-// pixel.
-engine::Result<Report> renderEyes(const RenderArguments& options, const render::PictureSpec& spec,
-                                  engine::JobControl& job) {
-  render::LiveOptions live;
-  if (options.validate) live.validation = render::Validation::kOn;
-  const auto picture = render::LivePicture::create(live);
-  if (!picture) return tl::unexpected(picture.error());
-  render::Shown shown;
-  shown.versions = {spec.field};
-  if (spec.compare) shown.versions.push_back(*spec.compare);
-  shown.original = spec.deviation_from;
-  shown.marks = spec.marks;
-  if (auto status = (*picture)->update(shown); !status) return tl::unexpected(status.error());
-  render::FrameInput input;
-  input.view = spec.view;
-  input.contours = spec.contours;
-  input.marks_opacity = spec.marks_opacity;
-  input.map = spec.map;
-  input.theme = spec.theme;
-  input.decoration = spec.decoration;
-  input.titles = {spec.title_left, spec.title_right};
-  input.titles.resize(shown.versions.size());
-  input.range = spec.range;
-  input.stereo = options.eyes;
-  input.stereo.mode =
-      options.stereo == "anaglyph" ? render::StereoMode::kAnaglyph : render::StereoMode::kSideBySide;
-  input.error_px = 0.25;
-  input.vertex_budget = std::int64_t{1} << 22;
-  render::Image image;
-  render::FrameStatistics frame;
-  std::int64_t tiles = 0, bytes = 0;
-  double upload_ms = 0.0;
-  // A field that the device does not hold at once is there after some frames.
-  do {
-    const auto drawn = (*picture)->draw(input, image);
-    if (!drawn) return tl::unexpected(drawn.error());
-    frame = *drawn;
-    tiles += frame.upload.tiles;
-    bytes += frame.upload.bytes;
-    upload_ms += frame.upload.ms;
-  } while (frame.upload.pending_tiles > 0 || frame.residency.pages_loaded > 0);
-  for (const std::string& message : (*picture)->validationMessages()) warn("validation: " + message);
-  if (auto status = writePicture(image, options.png, job); !status) return tl::unexpected(status.error());
-  return Report{{"width", image.width},
-                {"height", image.height},
-                {"frame_ms", frame.device_ms},
-                {"upload_ms", upload_ms},
-                {"device", (*picture)->device()},
-                {"tiles_uploaded", tiles},
-                {"bytes_uploaded", bytes},
-                {"vertices", frame.vertices},
-                {"range_low", frame.range.low},
-                {"range_high", frame.range.high},
-                {"vertical_exaggeration", frame.vertical_exaggeration},
-                {"stereo", options.stereo}};
+  return w;
 }
 
 engine::Result<Report> render(const RenderArguments& options, engine::JobControl& job) {
@@ -167,31 +115,34 @@ engine::Result<Report> render(const RenderArguments& options, engine::JobControl
                                  Replacing::kNoWork, job);
       !status)
     return tl::unexpected(status.error());
-  const auto spec = picture(options, job);
-  if (!spec) return tl::unexpected(spec.error());
-  if (options.stereo != "off") return renderEyes(options, *spec, job);
-  render::RendererOptions renderer_options;
-  if (options.validate) renderer_options.validation = render::Validation::kOn;
-  const auto renderer = render::Renderer::create(renderer_options);
-  if (!renderer) return tl::unexpected(renderer.error());
-  render::Image image;
-  const auto report = (*renderer)->render(*spec, image, job);
-  if (!report) return tl::unexpected(report.error());
-  if (job.cancelled()) return engine::cancelled();
-  for (const std::string& warning : report->warnings) warn(warning);
-  for (const std::string& message : report->validation_messages) warn("validation: " + message);
-  if (auto status = writePicture(image, options.png, job); !status) return tl::unexpected(status.error());
-  return Report{{"width", report->width},
-                {"height", report->height},
-                {"frame_ms", report->frame_ms},
-                {"upload_ms", report->upload_ms},
-                {"device", report->device},
-                {"tiles_uploaded", report->tiles_uploaded},
-                {"bytes_uploaded", report->bytes_uploaded},
-                {"vertices", report->vertices},
-                {"range_low", report->range.low},
-                {"range_high", report->range.high},
-                {"vertical_exaggeration", report->vertical_exaggeration}};
+  const auto what = wanted(options, job);
+  if (!what) return tl::unexpected(what.error());
+  render::LiveOptions live;
+  if (options.validate) live.validation = render::Validation::kOn;
+  const auto picture = render::LivePicture::create(live);
+  if (!picture) return tl::unexpected(picture.error());
+  render::FrameStatistics frame;
+  const auto status = writeTo(options.png, ".png", job, [&](const std::string& file) -> engine::Status {
+    const auto drawn = drawPicture(**picture, what->shown, what->input, file, job);
+    if (!drawn) return tl::unexpected(drawn.error());
+    frame = *drawn;
+    return {};
+  });
+  if (!status) return tl::unexpected(status.error());
+  for (const std::string& message : (*picture)->validationMessages()) warn("validation: " + message);
+  Report report{{"width", what->input.view.width},
+                {"height", what->input.view.height},
+                {"frame_ms", frame.device_ms},
+                {"upload_ms", frame.upload.ms},
+                {"device", (*picture)->device()},
+                {"tiles_uploaded", frame.upload.tiles},
+                {"bytes_uploaded", frame.upload.bytes},
+                {"vertices", frame.vertices},
+                {"range_low", frame.range.low},
+                {"range_high", frame.range.high},
+                {"vertical_exaggeration", frame.vertical_exaggeration}};
+  if (options.stereo != "off") report["stereo"] = options.stereo;
+  return report;
 }
 
 }  // namespace

@@ -14,10 +14,6 @@
 
 namespace fettle::app {
 
-/// Smallest cell drawn in a still picture [ray spacings]: finer than a window's, because nobody waits for the
-/// next frame, and steps that are skipped over show as teeth on steep walls.
-inline constexpr double kStillCellPx = 0.5;
-
 /// The options of ScanOptions.
 void addScanOptions(Command command, ScanOptions& options);
 
@@ -72,7 +68,8 @@ struct SideRange {
   int largest;
 };
 inline constexpr SideRange kFieldSides{1, engine::Grid::kMaxSide};
-inline constexpr SideRange kPictureSides{16, 16384};
+inline constexpr SideRange kWindowSides{16, 16384};
+inline constexpr SideRange kPictureSides{16, 65536};
 
 /// "WIDTHxHEIGHT", both within `sides`. Errors name the option.
 [[nodiscard]] engine::Result<std::pair<int, int>> parseSize(const std::string& text,

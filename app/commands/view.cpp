@@ -20,7 +20,7 @@ struct ViewArguments {
 
 engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job) {
   ViewOptions options = given.view;
-  const auto size = parseSize(given.size, "--size", kPictureSides);
+  const auto size = parseSize(given.size, "--size", kWindowSides);
   if (!size) return tl::unexpected(size.error());
   std::tie(options.window.width, options.window.height) = *size;
   if (!given.scene.empty()) {

@@ -25,16 +25,6 @@ struct Samples {
   }
 };
 
-Rectangle cut(const Rectangle& a, const Rectangle& b) {
-  const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
-  const int right = std::min(a.x + a.width, b.x + b.width), top = std::min(a.y + a.height, b.y + b.height);
-  return {x, y, std::max(0, right - x), std::max(0, top - y)};
-}
-
-bool empty(const Rectangle& r) {
-  return r.width <= 0 || r.height <= 0;
-}
-
 void join(Rectangle& a, const Rectangle& b) {
   if (empty(b)) return;
   if (empty(a)) {

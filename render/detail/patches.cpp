@@ -84,8 +84,8 @@ PatchTree::PatchTree(const PatchQuestion& question, const PatchTree& chosen)
 // `shade_step` has no part in choosing.
 bool PatchTree::answers(const PatchQuestion& question) const {
   const auto facts = [](const PatchQuestion& q) {
-    return std::tie(q.placing, q.camera, q.other_eye, q.mm_per_unit, q.reference, q.lowest, q.highest,
-                    q.floor_z, q.error_px, q.vertex_budget);
+    return std::tie(q.placing, q.camera, q.other_eye, q.parts, q.mm_per_unit, q.reference, q.lowest,
+                    q.highest, q.floor_z, q.error_px, q.vertex_budget);
   };
   return facts(q_) == facts(question);
 }
@@ -123,6 +123,8 @@ void PatchTree::refine() {
 }
 
 bool PatchTree::misses(const Box& box) const noexcept {
+  if (!q_.parts.empty())
+    return std::all_of(q_.parts.begin(), q_.parts.end(), [&](const Camera& c) { return c.misses(box); });
   return q_.camera.misses(box) && (!q_.other_eye || q_.other_eye->misses(box));
 }
 
@@ -317,6 +319,7 @@ std::array<bool, 4> PatchTree::wallsSeen(const Camera& camera) const {
 PatchChoice PatchTree::list() const {
   PatchChoice choice;
   choice.within_budget = within_budget_;
+  if (nodes_.empty()) return choice;
   const glm::ivec2 end = q_.placing.size - 1;
   std::array<bool, 4> walls_seen = wallsSeen(q_.camera);
   if (q_.other_eye) {

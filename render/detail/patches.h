@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "render/detail/detail.h"
-#include "render/plan/level_of_detail.h"
+#include "render/plan/placing.h"
+#include "shaders/layout.h"
 
 namespace fettle::render {
 
@@ -19,7 +20,10 @@ struct PatchQuestion {
   std::function<bool(glm::ivec2 first, glm::ivec2 last)> settled;
   Placing placing;
   Camera camera;
-  std::optional<Camera> other_eye;     ///< of a picture for two eyes: what holds, holds for both
+  std::optional<Camera> other_eye;  ///< of a picture for two eyes: what holds, holds for both
+  /// Where a part of the picture alone is drawn: what that part of each eye's picture sees. How finely a
+  /// patch is drawn does not depend on it while the budget lasts.
+  std::vector<Camera> parts;
   double mm_per_unit = 1.0;            ///< scene mm, exaggeration included, a height unit; > 0
   double reference = 0.0;              ///< height at scene z 0 [height_unit]
   double lowest = 0.0, highest = 0.0;  ///< heights that are drawn; others are cut to these [height_unit]
@@ -55,7 +59,7 @@ struct PatchLeaf {
 };
 
 /// Refines the patch of the largest screen error, until all are within error_px or the budget is spent.
-/// Leaves out what is outside the plot or has no height, by the min/max pyramid.
+/// Leaves out what is outside the plot (or the part of it that is drawn) or has no height, by the min/max pyramid.
 ///
 /// Screen error of a patch: the smaller of two bounds, each valid for every point of the fine surface over it
 /// and for every point drawn:

@@ -73,9 +73,16 @@ struct Signs {
 
 }  // namespace
 
+namespace {
+
+bool sameSize(const engine::Version& a, const engine::Version& b) {
+  return a.grid().width == b.grid().width && a.grid().height == b.grid().height;
+}
+
+}  // namespace
+
 bool related(const engine::Version& a, const engine::Version& b) {
-  return !a.empty() && !b.empty() && a.memory() == b.memory() && a.grid().width == b.grid().width &&
-         a.grid().height == b.grid().height;
+  return !a.empty() && !b.empty() && a.memory() == b.memory() && sameSize(a, b);
 }
 
 LiveFields::LiveFields(Context& context, Submissions& submissions, StagingRing& staging,
@@ -124,12 +131,13 @@ bool LiveFields::wantsPool(const Shown& next) const {
 // What a pool for `next` may take [bytes]: room for all that is shown, so that a picture of several states of
 // which every page differs comes to the same rest as a picture of one.
 std::uint64_t LiveFields::poolBudget(const Shown& next) const {
-  const engine::Grid& grid = next.versions.front().grid();
-  const PageGrid pages(grid.width, grid.height, 8);
-  const std::uint64_t textures =
-      std::max<std::uint64_t>(2, next.versions.size() + (next.original.has_value() ? 1 : 0));
-  const std::uint64_t bytes = textures * static_cast<std::uint64_t>(pages.entries() + 2)
-                              << (2 * pages.log2Side());
+  std::uint64_t bytes = 0;
+  const auto add = [&](const engine::Version& v) {
+    const PageGrid pages(v.grid().width, v.grid().height, 8);
+    bytes += static_cast<std::uint64_t>(pages.entries() + 2) << (2 * pages.log2Side());
+  };
+  for (const engine::Version& v : next.versions) add(v);
+  if (next.original || next.versions.size() == 1) add(next.original.value_or(next.versions.front()));
   const bool marks = next.marks == MarksOverlay::kShow || (pool_ && pool_->hasMarks());
   // Of whole layers a pool may lose an eighth of its pages (choosePool).
   return std::min({memory_budget_, kPoolBytes, bytes * (marks ? 5 : 4) / 8 * 9});
@@ -139,10 +147,8 @@ std::uint64_t LiveFields::poolBudget(const Shown& next) const {
 void LiveFields::arrangePool(const Shown& next) {
   const bool wants = wantsPool(next);
   const bool marks = next.marks == MarksOverlay::kShow;
-  const engine::Grid& grid = next.versions.front().grid();
-  const bool fits = !pool_ || shown_.versions.empty() ||
-                    (grid.width == shown_.versions.front().grid().width &&
-                     grid.height == shown_.versions.front().grid().height);
+  const bool fits =
+      !pool_ || shown_.versions.empty() || sameSize(next.versions.front(), shown_.versions.front());
   if (wants == (pool_ != nullptr) && (!wants || (fits && (pool_->hasMarks() || !marks)))) {
     // More states than it was made for. What is there stays, and so does the larger pool when fewer are
     // shown.
@@ -215,14 +221,17 @@ engine::Result<LiveFields::Novelty> LiveFields::update(const Shown& next) {
   if (next.versions.empty() || next.versions.size() > LiveFrame::kMostPanels)
     return engine::inputError(fmt::format("{} versions in one picture", next.versions.size()), "picture",
                               "show one to four");
-  const auto fits = [&](const engine::Version& v) {
-    return !v.empty() && v.grid().width == next.versions.front().grid().width &&
-           v.grid().height == next.versions.front().grid().height;
-  };
-  if (!std::all_of(next.versions.begin(), next.versions.end(), fits) ||
-      (next.original && !fits(*next.original)) ||
-      (next.accepted && !related(*next.accepted, next.versions.front())))
-    return engine::inputError("the versions have different sizes, or one is empty", "picture",
+  for (const engine::Version& v : next.versions) {
+    if (v.empty() || (next.original && next.original->empty()))
+      return engine::inputError("there is no field to draw", "picture");
+    if (next.original && !sameSize(v, *next.original))
+      return engine::inputError(
+          fmt::format("the fields have different sizes: {} x {} against {} x {}", v.grid().width,
+                      v.grid().height, next.original->grid().width, next.original->grid().height),
+          "deviation", "compare a field with its own original");
+  }
+  if (next.accepted && !related(*next.accepted, next.versions.front()))
+    return engine::inputError("the accepted marks are those of another field", "picture",
                               "show states of one field");
   // A field that fails halfway is forgotten.
   const bool was_broken = broken_;

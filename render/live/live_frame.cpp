@@ -45,8 +45,12 @@ vk::Format codesOf(vk::Format colour) {
   }
 }
 
-// The pixels of half the size that a part of the picture has a share in.
-Rectangle halved(const Rectangle& r) {
+// The pixels of a layer that a part of the picture has a share in.
+Rectangle scaled(const Rectangle& r, float scale) {
+  if (scale >= 1.0F) {
+    const int rays = static_cast<int>(scale);
+    return {rays * r.x, rays * r.y, rays * r.width, rays * r.height};
+  }
   const int x = r.x / 2, y = r.y / 2;
   return {x, y, (r.x + r.width + 1) / 2 - x, (r.y + r.height + 1) / 2 - y};
 }
@@ -69,10 +73,6 @@ Pipelines::Paged pagedOf(const LivePanel& p) {
 }
 Pipelines::Holes holesOf(const LivePanel& p) {
   return p.variant.holes ? Pipelines::Holes::kYes : Pipelines::Holes::kNo;
-}
-
-bool empty(const Rectangle& r) {
-  return r.width <= 0 || r.height <= 0;
 }
 
 const Rectangle& partOf(const LivePanel& p, LiveFrame::Redraw redraw) {
@@ -147,8 +147,9 @@ void LiveFrame::bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing
 }
 
 void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness) {
-  const bool half = sharpness == Sharpness::kHalf;
-  if (whole_.extent == extent && (!half || half_.extent == extent)) return;
+  const bool half = sharpness == Sharpness::kHalf, fine = sharpness == Sharpness::kFine;
+  if (whole_.extent == extent && (!half || half_.extent == extent) && (!fine || fine_.extent == extent))
+    return;
   // The frame in flight draws with the old ones.
   submissions.finish();
   using Usage = vk::ImageUsageFlagBits;
@@ -157,17 +158,25 @@ void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpn
   const vk::Extent2D small{(extent.width + 1) / 2, (extent.height + 1) / 2};
   const auto make = [&](Layers& layers, vk::Extent2D base) {
     layers.extent = extent;
-    layers.depth = GpuImage(context_, kDepthFormat, &layers == &half_ ? base : extent, layers_, kind,
+    layers.depth = GpuImage(context_, kDepthFormat, &layers == &whole_ ? extent : base, layers_, kind,
                             Usage::eDepthStencilAttachment | Usage::eSampled, kDepth);
     layers.base = GpuImage(context_, codesOf(colour_), base, layers_, kind,
                            Usage::eColorAttachment | Usage::eTransferSrc | Usage::eSampled, kColour, colour_);
   };
   if (whole_.extent != extent) make(whole_, {2 * small.width, 2 * small.height});
   half_.scale = 0.5F;
-  if (!half) return;
-  make(half_, small);
-  if (!enlarge_) enlarge_ = std::make_unique<Enlarge>(context_, vk::Format::eB8G8R8A8Unorm);
-  enlarge_->set(half_.base, whole_.base, layers_);
+  fine_.scale = 2.0F;
+  if (half) {
+    make(half_, small);
+    if (!enlarge_)
+      enlarge_ = std::make_unique<Resize>(context_, Resize::Way::kEnlarge, vk::Format::eB8G8R8A8Unorm);
+    enlarge_->set(half_.base, whole_.base, layers_);
+  }
+  if (fine) {
+    make(fine_, {4 * small.width, 4 * small.height});
+    if (!reduce_) reduce_ = std::make_unique<Resize>(context_, Resize::Way::kReduce, colour_);
+    reduce_->set(fine_.base, whole_.base, layers_);
+  }
 }
 
 void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
@@ -218,7 +227,6 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
     }
   }
   if (!furniture.empty()) {
-    writes.image(*slot.picture, gpu::kBindScene, glyphs_.view());  // live frames draw straight to the picture
     writes.image(*slot.picture, gpu::kBindGlyphs, glyphs_.view());
     writes.buffer(*slot.picture, gpu::kBindQuads, kStorage, slot.arena, quads);
     writes.buffer(*slot.picture, gpu::kBindMap, kUniform, slot.arena, blocks.front().uniforms);
@@ -234,7 +242,7 @@ void LiveFrame::beginPanel(const vk::raii::CommandBuffer& commands, const LivePa
       0, vk::Viewport{scale * static_cast<float>(plot.offset.x), scale * static_cast<float>(plot.offset.y),
                       scale * static_cast<float>(plot.extent.width),
                       scale * static_cast<float>(plot.extent.height), 0.0F, 1.0F});
-  commands.setScissor(0, rectOf(scale == 1.0F ? part : halved(part)));
+  commands.setScissor(0, rectOf(scaled(part, scale)));
   const gpu::vec4 size{plot.extent.width, plot.extent.height, plot.offset.x, plot.offset.y};
   commands.pushConstants<gpu::vec4>(pipelines_.sceneLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
 }
@@ -346,14 +354,14 @@ void LiveFrame::recordLines(const vk::raii::CommandBuffer& commands, const Slot&
   }
 }
 
-void LiveFrame::recordEnlarged(const vk::raii::CommandBuffer& commands) {
+void LiveFrame::recordResized(const vk::raii::CommandBuffer& commands, const Layers& layers) {
   Barriers before;
-  before.add(half_.base.image(), kColour, kColourWritten,
+  before.add(layers.base.image(), kColour, kColourWritten,
              {ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader, Access::eShaderRead});
   before.add(whole_.base.image(), kColour, {ImageLayout::eUndefined, Stage::eCopy, Access::eTransferRead},
              kColourUsed);
   before.record(commands);
-  enlarge_->record(commands);
+  (&layers == &half_ ? enlarge_ : reduce_)->record(commands);
 }
 
 void LiveFrame::recordFurniture(const vk::raii::CommandBuffer& commands, const Slot& slot,
@@ -415,7 +423,7 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
          Stage::eCopy, Access::eTransferWrite, Stage::eColorAttachmentOutput, kColourAccess);
   const vk::RenderingAttachmentInfo colour =
       attachment(target.view, ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
-  // At half sharpness nothing is in it, and lines on top do not look.
+  // Unless at full sharpness nothing is in it, and lines on top do not look.
   const vk::RenderingAttachmentInfo depth =
       attachment(whole_.depth.view(), ImageLayout::eDepthAttachmentOptimal,
                  in_scene ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eDontCare);
@@ -455,16 +463,18 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
   if (!furniture.empty()) bringGlyphs(commands, staging, submissions.next(), glyphs);
   makeLayers(submissions, target.extent, sharpness);
-  const bool half = sharpness == Sharpness::kHalf;
-  const Layers& layers = half ? half_ : whole_;
+  const Layers& layers = sharpness == Sharpness::kHalf   ? half_
+                         : sharpness == Sharpness::kFine ? fine_
+                                                         : whole_;
+  const bool resized = &layers != &whole_;
   fill(slot, panels, furniture, layers);
 
   const bool all = redraw == Redraw::kAll;
   const bool anew =
       all || std::any_of(panels.begin(), panels.end(), [](const LivePanel& p) { return !empty(p.redraw); });
   const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};
-  const Barriers::Access enlarged{ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader,
-                                  Access::eShaderRead};
+  const Barriers::Access read{ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader,
+                              Access::eShaderRead};
   Barriers compose;
   if (anew) {
     // The frame before may still draw lines against this depth, and copy out of that base.
@@ -480,12 +490,12 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
               {ImageLayout::eDepthAttachmentOptimal, kDepthStages, Access::eDepthStencilAttachmentWrite},
               {ImageLayout::eDepthReadOnlyOptimal, kDepthStages | Stage::eFragmentShader,
                Access::eDepthStencilAttachmentRead | Access::eShaderRead});
-    Barriers::Access before = half ? enlarged : copied;
+    Barriers::Access before = resized ? read : copied;
     if (all) before.layout = ImageLayout::eUndefined;
     shade.add(layers.base.image(), kColour, before, kColourUsed);
     shade.record(commands);
     recordBase(commands, slot, panels, ground, layers, redraw);
-    if (half) recordEnlarged(commands);
+    if (resized) recordResized(commands, layers);
     recordFurniture(commands, slot, panels, furniture, redraw);
     compose.add(whole_.base.image(), kColour, kColourWritten, copied);
   }

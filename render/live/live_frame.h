@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/detail/patches.h"
-#include "render/live/enlarge.h"
+#include "render/live/resize.h"
 #include "render/plan/glyphs.h"
 #include "render/plan/plan.h"
 #include "render/residency/live_texture.h"
@@ -38,8 +38,8 @@ struct LivePanel {
 ///            triangle by triangle, plate and walls; then the furniture
 ///   target   a copy of base; then overlay lines; then whatever the target wants over it
 ///
-/// At Sharpness::kHalf depth, shading and the lines hidden by the surface go to layers of half the size each
-/// way; base is those enlarged, then the furniture as ever.
+/// At Sharpness::kHalf and kFine depth, shading and the lines hidden by the surface go to layers of half or
+/// twice the size each way; base is those enlarged or reduced, then the decorations as ever.
 ///
 /// A second eye (stereo) is a second layer of depth and base and a second element of
 /// PanelUniforms::views; the passes are the same, drawn with a view mask.
@@ -108,7 +108,7 @@ class LiveFrame {
   void recordFurniture(const vk::raii::CommandBuffer& commands, const Slot& slot,
                        std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
                        Redraw redraw);
-  void recordEnlarged(const vk::raii::CommandBuffer& commands);
+  void recordResized(const vk::raii::CommandBuffer& commands, const Layers& layers);
   void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
                     std::span<const LivePanel> panels, const LiveTarget& target, Sharpness sharpness);
 
@@ -121,8 +121,8 @@ class LiveFrame {
   std::array<Slot, Submissions::kInFlight> slots_;
   Buffer no_pages_;  // what is bound where the shader does not look
   vk::raii::BufferView no_pages_view_ = nullptr;
-  Layers whole_, half_;  // half_: made when first asked for
-  std::unique_ptr<Enlarge> enlarge_;
+  Layers whole_, half_, fine_;  // the others than whole_ are made when first asked for
+  std::unique_ptr<Resize> enlarge_, reduce_;
   GpuImage glyphs_;
   std::uint64_t glyph_generation_ = 0;
 };

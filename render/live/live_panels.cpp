@@ -12,20 +12,17 @@ namespace fettle::render {
 namespace {
 
 constexpr float kSeamPx = 0.25F;
+// What lies so far beyond a part of the picture is chosen with it: as far as seams and comparing fragments
+// reach, and more.
+constexpr int kAroundPartPx = 8;
+
+// Rays across a pixel.
+double raysOf(Sharpness sharpness) {
+  return sharpness == Sharpness::kHalf ? 0.5 : sharpness == Sharpness::kFine ? 2.0 : 1.0;
+}
 
 bool holed(const engine::Version& v) {
   return v.reader().root().holed_children != 0;
-}
-
-// Left and right of the split; on an even column of the picture: no square of two by two fragments belongs
-// to both sides.
-Rectangle sideOf(const Rectangle& plot, double split, bool right) {
-  const int wanted = static_cast<int>(std::lround(split * plot.width));
-  const int at = std::min(wanted + ((plot.x + wanted) & 1), plot.width);
-  Rectangle side = plot;
-  side.width = at;
-  if (right) side = {plot.x + at, plot.y, plot.width - at, plot.height};
-  return side;
 }
 
 glm::vec3 towardsLight(const FrameInput& input, const Camera& camera) {
@@ -39,8 +36,19 @@ glm::vec3 towardsLight(const FrameInput& input, const Camera& camera) {
 
 }  // namespace
 
+// On an even column of the picture: no square of two by two fragments belongs
+// to both sides.
+Rectangle sideOf(const Rectangle& plot, double split, bool right) {
+  const int wanted = static_cast<int>(std::lround(split * plot.width));
+  const int at = std::min(wanted + ((plot.x + wanted) & 1), plot.width);
+  Rectangle side = plot;
+  side.width = at;
+  if (right) side = {plot.x + at, plot.y, plot.width - at, plot.height};
+  return side;
+}
+
 LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields, KeptTrees& kept)
-    : fields_(fields) {
+    : fields_(fields), part_(input.part) {
   const bool split = input.arrangement == Arrangement::kSplit && fields.count() >= 2;
   const std::size_t count = split ? 2 : plan.panels.size();
   const bool stereo = input.stereo.mode != StereoMode::kOff;
@@ -61,9 +69,9 @@ LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFie
                                         ? input.vertex_budget / static_cast<std::int64_t>(count)
                                         : input.panel_vertices[i]));
     panels_.push_back(panelOf(i, input, plan, lines));
-    panels_.back().visible = split ? sideOf(p.plot, input.split, i > 0) : p.plot;
+    panels_.back().visible = drawnOf(split ? sideOf(p.plot, input.split, i > 0) : p.plot);
     questions_.back().shade_step = 1 << LiveTexture::shift(panels_.back().shade_level);
-    trees_.push_back(kept.tree(i, questions_.back(), p.field));
+    trees_.push_back(empty(panels_.back().visible) ? PatchTree() : kept.tree(i, questions_.back(), p.field));
   }
 }
 
@@ -82,6 +90,13 @@ PatchQuestion LivePanels::questionOf(std::size_t i, const FrameInput& input, con
     q.camera = eyes_[i][0];
     q.other_eye = eyes_[i][1];
   }
+  if (part_) {
+    const Rectangle around{part_->x - kAroundPartPx, part_->y - kAroundPartPx,
+                           part_->width + 2 * kAroundPartPx, part_->height + 2 * kAroundPartPx};
+    const Rectangle seen = cut(around, p.plot);
+    if (!empty(seen)) q.parts.push_back(q.camera.part(seen));
+    if (!empty(seen) && q.other_eye) q.parts.push_back(q.other_eye->part(seen));
+  }
   q.mm_per_unit = p.mm_per_unit;
   q.reference = p.reference;
   q.lowest = p.lowest;
@@ -92,32 +107,49 @@ PatchQuestion LivePanels::questionOf(std::size_t i, const FrameInput& input, con
   return q;
 }
 
+// What of a rectangle of the picture is drawn, in pixels of the target.
+Rectangle LivePanels::drawnOf(const Rectangle& plot) const {
+  if (!part_) return plot;
+  Rectangle drawn = cut(plot, *part_);
+  drawn.x -= part_->x;
+  drawn.y -= part_->y;
+  return drawn;
+}
+
 LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const PicturePlan& plan,
                               const std::vector<OverlayLine>& lines) const {
   const PanelPlan& p = plan.panels[i];
   const PatchQuestion& q = questions_[i];
   const LiveTexture& original = fields_.original();
   LivePanel panel;
-  // Colours from samples about a pixel apart: in perspective the near part is larger than the middle.
-  const glm::dvec2 px = cellPixels(p.placing, p.camera);
+  const bool fine = input.sharpness == Sharpness::kFine;
+  const double rays = raysOf(input.sharpness);
+  // Colours from samples about a ray apart, or a pixel: in perspective the near part is larger than the
+  // middle.
+  const glm::dvec2 px = cellPixels(p.placing, p.camera) * (fine ? rays : 1.0);
   const double nearer = input.view.projection == Projection::kPerspective ? 2.0 : 1.0;
   while (panel.shade_level + 1 < LiveTexture::kLevels &&
          std::ldexp(std::max(px.x, px.y) * nearer, LiveTexture::shift(panel.shade_level + 1)) <= 1.0)
     ++panel.shade_level;
   const int shift = LiveTexture::shift(panel.shade_level);
-  panel.plot = p.plot;
+  panel.plot = drawnOf(p.plot);
   panel.field = &fields_.texture(i);
   panel.original = original.version().empty() ? nullptr : &original;
   panel.uniforms = p.uniforms;
   gpu::PanelUniforms& u = panel.uniforms;
-  if (shift > 0) {
+  if (shift > 0)
     u.shade = glm::ivec4(shift, 0, glm::max((p.placing.true_size - 1) / (1 << shift) + 1, glm::ivec2(2)));
-    u.paging.w = std::max(
-        1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::ldexp(std::min(px.x, px.y), shift)))));
-  }
-  u.seam.x = input.sharpness == Sharpness::kHalf ? 2.0F * kSeamPx : kSeamPx;
-  u.views[0] = viewOf(q.camera, p.placing, p.plot);
-  if (q.other_eye) u.views[1] = viewOf(*q.other_eye, p.placing, p.plot);
+  // Differences over about the width of a ray: finer ones would be noise that no pixel can show.
+  u.paging.w = std::max(
+      1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::ldexp(std::min(px.x, px.y), shift)))));
+  u.seam.x = static_cast<float>(kSeamPx / rays);
+  if (fine) u.seam.y = static_cast<float>(u.seam.y / rays);
+  const auto view = [&](const Camera& camera) {
+    return part_ && !empty(panel.plot) ? viewOf(camera.part(cut(p.plot, *part_)), p.placing, panel.plot)
+                                       : viewOf(camera, p.placing, p.plot);
+  };
+  u.views[0] = view(q.camera);
+  if (q.other_eye) u.views[1] = view(*q.other_eye);
   u.ground = glm::vec4(plan.palette.ground, 1.0F);
   const Paging& paging = panel.field->paging();
   u.paging.x = paging.log2_columns;
@@ -132,7 +164,7 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
       input.contours == Contours::kShow,
       std::max(px.x, px.y) > 1.5,
       holed(p.field) || (panel.original != nullptr && holed(original.version())),
-      true,
+      !fine,
       by_need,
       !by_need && !paging.paged() && std::min(p.placing.true_size.x, p.placing.true_size.y) > 1 << shift,
       input.view.projection == Projection::kPerspective};

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "render/detail/kept_trees.h"
@@ -10,6 +11,9 @@
 #include "render/live/live_frame.h"
 
 namespace fettle::render {
+
+/// What shows on the left or on the right of the split of a plot (FrameInput::split).
+[[nodiscard]] Rectangle sideOf(const Rectangle& plot, double split, bool right);
 
 /// The panels of one frame while it is made up: which patches are drawn of each field, how they are coloured,
 /// and whose eyes see them.
@@ -38,6 +42,7 @@ class LivePanels {
                                          std::int64_t vertices) const;
   [[nodiscard]] LivePanel panelOf(std::size_t i, const FrameInput& input, const PicturePlan& plan,
                                   const std::vector<OverlayLine>& lines) const;
+  [[nodiscard]] Rectangle drawnOf(const Rectangle& plot) const;
 
   LiveFields& fields_;
   std::vector<PatchTree> trees_;
@@ -45,6 +50,7 @@ class LivePanels {
   std::vector<PatchChoice> choices_;
   std::vector<LivePanel> panels_;
   std::vector<std::array<Camera, 2>> eyes_;
+  std::optional<Rectangle> part_;  // FrameInput::part
 };
 
 }  // namespace fettle::render

@@ -41,6 +41,36 @@ struct Canvas {
   }
 };
 
+// Those quads that a part of the picture shows, in its own pixels.
+void cutTo(const Rectangle& part, std::vector<gpu::Quad>& quads) {
+  const glm::vec4 first(part.x, part.y, part.x, part.y);
+  std::erase_if(quads, [&](const gpu::Quad& q) {
+    return q.pixels.z <= first.x || q.pixels.w <= first.y ||
+           q.pixels.x >= first.x + static_cast<float>(part.width) ||
+           q.pixels.y >= first.y + static_cast<float>(part.height);
+  });
+  for (gpu::Quad& q : quads) q.pixels -= first;
+}
+
+engine::Status checkPart(const FrameInput& input) {
+  if (!input.part) return {};
+  const Rectangle& part = *input.part;
+  if (empty(part) || !(cut(part, {0, 0, input.view.width, input.view.height}) == part) || part.x % 2 != 0 ||
+      part.y % 2 != 0)
+    return engine::inputError("the part lies beside the picture, or begins within a square of 2 x 2 pixels",
+                              "picture", "see FrameInput");
+  return {};
+}
+
+// Pixels of what is drawn for an input.
+vk::Extent2D extentOf(const FrameInput& input) {
+  if (!input.part)
+    return {static_cast<std::uint32_t>(input.view.width), static_cast<std::uint32_t>(input.view.height)};
+  const int eyes = input.stereo.mode == StereoMode::kSideBySide ? 2 : 1;
+  return {static_cast<std::uint32_t>(eyes * input.part->width),
+          static_cast<std::uint32_t>(input.part->height)};
+}
+
 }  // namespace
 
 struct LivePicture::Impl {
@@ -100,7 +130,7 @@ engine::Status LivePicture::Impl::update(const Shown& next) {
 engine::Result<FrameStatistics> LivePicture::Impl::draw(const FrameInput& input, const LiveTarget& target) {
   if (!fields.ready())
     return engine::inputError("there is no field to draw", "picture", "give it a version first");
-  if (input.stereo.mode == StereoMode::kSideBySide &&
+  if (!input.part && input.stereo.mode == StereoMode::kSideBySide &&
       input.view.width == static_cast<int>(target.extent.width)) {
     // Each eye's picture is laid out for its half.
     FrameInput eye = input;
@@ -157,11 +187,20 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
 
   const auto select_start = Clock::now();
   const bool stereo = input.stereo.mode != StereoMode::kOff;
-  const bool half = input.sharpness == Sharpness::kHalf;
+  const bool kept = !stereo && !input.part && input.sharpness == Sharpness::kFull;
   LivePanels chosen(input, plan, fields, kept_trees);
   if (fields.byNeed()) {
     PageDemand demand = chosen.demand(submissions.next());
     fields.bringPages(demand, stats);
+    while (input.pages == FrameInput::Pages::kAll && stats.residency.pages_waiting > 0) {
+      submissions.submit({});
+      (void)submissions.begin();
+      staging.release(submissions.done());
+      UploadStatistics more;
+      fields.pump(more);
+      demand = chosen.demand(submissions.next());
+      fields.bringPages(demand, stats);
+    }
   }
   chosen.settle(stats);
   std::vector<LivePanel>& panels = chosen.panels();
@@ -171,18 +210,18 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   now.eyes = chosen.eyes();
   for (const LivePanel& panel : panels) now.visible.push_back(panel.visible);
 
-  std::vector<std::string> warnings;
   if (glyphs.used() > Glyphs::kSide / 2) glyphs.clear();
   std::vector<gpu::Quad> furniture =
-      furnish(plan.layout, input.view, plan.furniture, plan.palette, glyphs, warnings);
+      furnish(plan.layout, input.view, plan.furniture, plan.palette, glyphs, stats.warnings);
   if (input.arrangement == Arrangement::kSplit && panels.size() == 2) {
-    const Rectangle& right = now.visible[1];
+    const Rectangle right = sideOf(plan.panels[1].plot, input.split, true);
     gpu::Quad line{};
     line.pixels = glm::vec4(right.x - 1, right.y, right.x + 1, right.y + right.height);
     line.colour = glm::vec4(plan.palette.ink, 1.0F);
-    line.fill = glm::ivec4(gpu::kFillSolid, 1, 0, 0);
+    line.fill = glm::ivec4(gpu::kFillSolid, 0, 0, 0);
     furniture.push_back(line);
   }
+  if (input.part) cutTo(*input.part, furniture);
 
   // Tiles whose detail is not known yet are drawn more finely than need be, but as they are; in the place of
   // pages under way lie others, which `pages` below says.
@@ -201,7 +240,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   std::optional<DrawnFrame> before;
   before.swap(drawn);  // until this frame is handed over, nobody knows what the layers hold
   std::vector<PatchChoice> parts;
-  const bool some = !stereo && !half && input.redraw == FrameInput::Redraw::kChanged && before && there &&
+  const bool some = kept && input.redraw == FrameInput::Redraw::kChanged && before && there &&
                     frame.holds(target.extent) && (furniture.empty() || frame.holds(glyphs)) &&
                     goesOn(*before, layers);
   if (some) parts = cutToDamage(*before, layers, chosen.questions(), panels);
@@ -222,24 +261,21 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   submissions.submit({target.free,
                       vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
                       target.done});
-  if (!stereo && !half && there) drawn = std::move(layers);
+  if (kept && there) drawn = std::move(layers);
   stats.device_ms = submissions.lastMs();
   stats.range = plan.range;
   stats.vertical_exaggeration = plan.exaggeration;
   stats.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
   stats.record_ms = engine::msSince(start) - stats.select_ms - pumped_ms;
   now.plan = std::move(plan);
-  seen = std::move(now);
+  if (!input.part) seen = std::move(now);
 }
 
 LivePicture::LivePicture(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 LivePicture::~LivePicture() = default;
 
 engine::Result<std::unique_ptr<LivePicture>> LivePicture::create(const LiveOptions& options) {
-  RendererOptions wanted;
-  wanted.validation = options.validation;
-  wanted.device = options.device;
-  auto context = Context::create(wanted);
+  auto context = Context::create({options.validation, options.device});
   if (!context) return tl::unexpected(context.error());
   auto glyphs = Glyphs::create();
   if (!glyphs) return tl::unexpected(glyphs.error());
@@ -281,9 +317,37 @@ engine::Status LivePicture::update(const engine::Version& version) {
   return update(next);
 }
 
+engine::Result<UploadStatistics> LivePicture::settle(engine::JobControl& job) {
+  try {
+    UploadStatistics all;
+    all.pending_tiles = -1;
+    while (all.pending_tiles != 0) {
+      if (job.cancelled()) return engine::cancelled();
+      (void)impl_->submissions.begin();
+      impl_->staging.release(impl_->submissions.done());
+      UploadStatistics count;
+      impl_->fields.pump(count);
+      impl_->submissions.submit({});
+      if (all.pending_tiles < 0)
+        job.begin("uploading", static_cast<std::uint64_t>(count.pending_tiles));
+      else
+        job.advance(static_cast<std::uint64_t>(all.pending_tiles - count.pending_tiles));
+      all.tiles += count.tiles;
+      all.bytes += count.bytes;
+      all.changed_samples += count.changed_samples;
+      all.ms += count.ms;
+      all.pending_tiles = count.pending_tiles;
+    }
+    return all;
+  } catch (const std::exception& error) {
+    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+  }
+}
+
 engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, LiveTarget& target) {
   try {
     FrameInput sized = input;
+    sized.part.reset();
     sized.view.width = static_cast<int>(target.extent.width);
     sized.view.height = static_cast<int>(target.extent.height);
     return impl_->draw(sized, target);
@@ -295,20 +359,17 @@ engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, LiveT
 engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input) {
   try {
     const auto start = Clock::now();
-    if (input.view.width < 16 || input.view.height < 16 || input.view.width > 16384 ||
-        input.view.height > 16384)
+    if (engine::Status ok = checkPart(input); !ok) return tl::unexpected(ok.error());
+    const vk::Extent2D extent = extentOf(input);
+    const std::uint32_t rays = input.sharpness == Sharpness::kFine ? 2 : 1;
+    const std::uint32_t most = std::min(16384U, impl_->context.limits().maxImageDimension2D) / rays;
+    if (input.view.width < 16 || input.view.height < 16 || std::max(extent.width, extent.height) > most)
       return engine::inputError(
-          fmt::format("a picture of {} x {} pixels", input.view.width, input.view.height), "picture size",
-          "give 16 to 16384 pixels each way");
-    const vk::Extent2D extent{static_cast<std::uint32_t>(input.view.width),
-                              static_cast<std::uint32_t>(input.view.height)};
+          fmt::format("a picture of {} x {} pixels in one piece", extent.width, extent.height),
+          "picture size", fmt::format("give 16 to {} pixels each way", most));
     if (impl_->canvas.image.extent() != extent) {
       impl_->submissions.finish();
-      impl_->canvas.image =
-          GpuImage(impl_->context, kColourFormat, extent, 1, GpuImage::Kind::kPlane,
-                   vk::ImageUsageFlagBits::eColorAttachment | vk::ImageUsageFlagBits::eTransferSrc |
-                       vk::ImageUsageFlagBits::eTransferDst,
-                   vk::ImageAspectFlagBits::eColor);
+      impl_->canvas.image = pictureImage(impl_->context, extent);
     }
     engine::Result<FrameStatistics> stats = impl_->draw(input, impl_->canvas.target());
     if (!stats) return stats;
@@ -327,8 +388,8 @@ engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, Image
   try {
     const GpuImage& from = impl_->canvas.image;
     Image image;
-    image.width = input.view.width;
-    image.height = input.view.height;
+    image.width = static_cast<int>(from.extent().width);
+    image.height = static_cast<int>(from.extent().height);
     image.rgba.resize(std::size_t{4} * from.extent().width * from.extent().height);
     const Buffer buffer(impl_->context, image.rgba.size(), vk::BufferUsageFlagBits::eTransferDst);
     Submissions& submissions = impl_->submissions;

@@ -10,7 +10,9 @@
 #include <glm/vec3.hpp>
 
 #include "engine/base/error.h"
+#include "engine/base/job.h"
 #include "engine/field/version.h"
+#include "render/plan/camera.h"
 #include "render/plan/picture.h"
 #include "render/plan/stereo.h"
 #include "render/residency/upload_statistics.h"
@@ -67,8 +69,8 @@ void appendStylus(const StylusState& state, double mm_per_newton, std::vector<Ov
 
 /// What the panels show. A version that grew out of the one shown before costs only what differs.
 struct Shown {
-  std::vector<engine::Version> versions;    ///< 1 .. 5, not empty, of one width and height
-  std::optional<engine::Version> original;  ///< colours show version - original; same width and height
+  std::vector<engine::Version> versions;    ///< 1 .. 5, not empty; their grids may differ
+  std::optional<engine::Version> original;  ///< colours show version - original; width and height of all
   MarksOverlay marks = MarksOverlay::kHide;
   /// Of the first version's marks those that this state of the same field lacks are only suggested, and drawn
   /// in a colour of their own.
@@ -78,14 +80,22 @@ struct Shown {
 /// How finely the surface is drawn.
 enum class Sharpness {
   kFull,  ///< every pixel
-  kHalf,  ///< every second pixel each way, in between interpolated: while the camera moves. Furniture and
-          ///< overlay lines on top are as sharp as ever, and the next frame of kFull is the same to the bit
-          ///< as if this one had not been
+  kHalf,  ///< every second pixel each way, in between interpolated: while the camera moves. Decorations and
+          ///< overlay lines on top are as sharp as ever, and the next frame of kFull is bit-identical to what
+          ///< it would be without this one
+  kFine,  ///< four rays a pixel, of which it takes the mean light: for pictures that are drawn once.
+          ///< Decorations and overlay lines on top as ever
 };
 
 /// What may change every frame without anything being uploaded.
 struct FrameInput {
-  View view;  ///< width and height are the target's
+  View view;  ///< width and height are the target's, unless `part` says which part of the picture that is
+  /// Draws this part of the picture alone, of which `view` has the size [px]: the target is as large as the
+  /// part. Of whole squares of 2 x 2 pixels, except where the picture ends: fragments compare themselves with
+  /// their neighbours in those. Such a part equals that of the picture drawn as one but for the rounding of
+  /// single precision about another middle. Side by side in stereo: of either eye's picture, of which `view`
+  /// has the size; the target is twice as wide as the part.
+  std::optional<Rectangle> part;
   Arrangement arrangement = Arrangement::kSideBySide;
   double split = 0.5;  ///< of kSplit: where the line stands, as a fraction of the plot's width, 0 .. 1
   Contours contours = Contours::kHide;
@@ -111,9 +121,12 @@ struct FrameInput {
   /// Whether what cannot have changed since the last frame is left as it is: the picture is the same either
   /// way, to the bit.
   enum class Redraw { kChanged, kAll } redraw = Redraw::kChanged;
-  /// Vertices a frame may cost, all panels together, 4096 .. 2^24.
+  /// Of a field by need: whether the frame is drawn with the pages that are there, or waits for all that it
+  /// asks for and that the memory holds.
+  enum class Pages { kAsTheyCome, kAll } pages = Pages::kAsTheyCome;
+  /// Vertices a frame may cost, all panels together, 4096 .. 2^28.
   std::int64_t vertex_budget = 65536;
-  /// Vertices that each panel may take, 1 .. 2^24, one number a panel; empty: equal shares of vertex_budget.
+  /// Vertices that each panel may take, 1 .. 2^28, one number a panel; empty: equal shares of vertex_budget.
   std::vector<std::int64_t> panel_vertices;
 };
 
@@ -168,7 +181,8 @@ struct FrameStatistics {
   double device_ms = -1.0;  ///< from submission to done, of the last frame known to be done; -1: none yet
   ValueRange range;
   double vertical_exaggeration = 1.0;
-  double pixels_per_mm = 1.0;  ///< at the middle of the picture
+  double pixels_per_mm = 1.0;         ///< at the middle of the picture
+  std::vector<std::string> warnings;  ///< e.g. text that had no room
 };
 
 /// A point of the surface under a place of the picture.
@@ -181,8 +195,10 @@ struct Picked {
 
 struct LiveOptions {
   Validation validation = Validation::kOff;
-  std::string device;      ///< as RendererOptions
-  int max_image_side = 0;  ///< as RendererOptions
+  std::string device;  ///< as DeviceOptions
+  /// Longest side of one image in samples, rounded up to a tile; 0: what the device offers. Fields past it
+  /// are spread over the layers of an image array. For tests of exactly that.
+  int max_image_side = 0;
   /// Bytes moved a frame at most while an edit or a filter result comes over; the rest waits for the next
   /// one.
   std::int64_t upload_bytes_a_frame = std::int64_t{6} << 20;
@@ -213,10 +229,12 @@ struct LiveOptions {
 /// changed in the field can be seen in (render/detail/damage.h), and overlays alone move over the shaded
 /// surface for nothing.
 ///
-/// Threading: one thread at a time, the same as whoever presents. Determinism: as Renderer.
+/// Threading: one thread at a time, the same as whoever presents. Determinism: on one machine with one
+/// driver, the same input gives the same bits whatever was drawn before (measured on Mesa lavapipe 22.3.6);
+/// between drivers, pictures differ.
 class LivePicture {
  public:
-  /// Off-screen, with a context of its own. Errors as Renderer::create.
+  /// Off-screen, with a context of its own. Errors (kFailed) as Context::create.
   [[nodiscard]] static engine::Result<std::unique_ptr<LivePicture>> create(const LiveOptions& options = {});
   /// Draws to images of somebody's own (a window): `colour_format` is a VkFormat, and `context` outlives
   /// this.
@@ -234,6 +252,10 @@ class LivePicture {
   [[nodiscard]] engine::Status update(const Shown& shown);
   /// One version, no original, marks as before.
   [[nodiscard]] engine::Status update(const engine::Version& version);
+
+  /// Uploads what is pending and measures all tiles, however long it takes; pages come with the frames. `job`
+  /// advances by uploads. Errors: kCancelled; kFailed as draw().
+  [[nodiscard]] engine::Result<UploadStatistics> settle(engine::JobControl& job);
 
   /// Draws the next frame and returns without waiting for it (two may be in flight). Errors: kInput for an
   /// input out of range; kFailed for a lost device: make a new LivePicture, the field is not touched.

@@ -28,6 +28,16 @@ double cosine(double degrees) {
 
 }  // namespace
 
+bool empty(const Rectangle& r) noexcept {
+  return r.width <= 0 || r.height <= 0;
+}
+
+Rectangle cut(const Rectangle& a, const Rectangle& b) noexcept {
+  const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+  const int right = std::min(a.x + a.width, b.x + b.width), low = std::min(a.y + a.height, b.y + b.height);
+  return {x, y, std::max(0, right - x), std::max(0, low - y)};
+}
+
 std::array<glm::dvec3, 8> corners(const Box& box) {
   std::array<glm::dvec3, 8> c;
   for (std::size_t i = 0; i < 8; ++i)
@@ -121,6 +131,24 @@ Camera Camera::aside(double share, double window) const noexcept {
   for (int i = 0; i < 4; ++i) eye.clip_from_scene_[i][0] += across_ * aside * behind[i];
   eye.scene_from_clip_ = glm::inverse(eye.clip_from_scene_);
   return eye;
+}
+
+Camera Camera::part(const Rectangle& part) const noexcept {
+  Camera c = *this;
+  const glm::dvec2 plot(plot_.width, plot_.height), size(part.width, part.height);
+  const glm::dvec2 scale = plot / size;
+  // Twice the way from the part's middle to the plot's, in halves of the part.
+  const glm::dvec2 shift = (2.0 * glm::dvec2(plot_.x - part.x, plot_.y - part.y) + plot - size) / size;
+  for (int i = 0; i < 4; ++i) {
+    glm::dvec4& clip = c.clip_from_scene_[i];
+    clip.x = scale.x * clip.x + shift.x * clip.w;
+    // Clip y runs down, as rows do.
+    clip.y = scale.y * clip.y + shift.y * clip.w;
+  }
+  c.scene_from_clip_ = glm::inverse(c.clip_from_scene_);
+  c.across_ *= scale.x;
+  c.plot_ = part;
+  return c;
 }
 
 double Camera::asidePixels(double window) const noexcept {

@@ -15,6 +15,9 @@ struct Rectangle {
   int x = 0, y = 0, width = 0, height = 0;
   friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
+[[nodiscard]] bool empty(const Rectangle& r) noexcept;
+/// What two of them share; of no size where they share nothing.
+[[nodiscard]] Rectangle cut(const Rectangle& a, const Rectangle& b) noexcept;
 
 /// A box in scene coordinates [mm], exaggeration in z.
 struct Box {
@@ -46,7 +49,7 @@ class Camera {
   [[nodiscard]] const glm::dvec3& up() const noexcept { return up_; }
   [[nodiscard]] const glm::dvec3& toViewer() const noexcept { return to_viewer_; }
 
-  /// The camera of an eye beside this one that looks through the same window: a plane square to the view at
+  /// The camera of an eye next to this one that looks through the same window: a plane square to the view at
   /// `window` times the distance of the middle of what is shown, whose points both see at the same pixels
   /// (Bourke 1999, "Calculating stereo pairs"). `share`: how far to the right it stands, as a share of that
   /// distance. A parallel camera has no place; it is sheared as if it stood where the perspective one does.
@@ -55,6 +58,10 @@ class Camera {
   [[nodiscard]] double asidePixels(double window) const noexcept;
   /// The `window` that a point lies on; > 0 before the viewer.
   [[nodiscard]] double windowOf(const glm::dvec3& point) const noexcept;
+
+  /// The camera of a part of the picture alone, which may reach beyond the plot: a point lies at the same
+  /// pixel, rounding apart, and clip space ends where `part` does.
+  [[nodiscard]] Camera part(const Rectangle& part) const noexcept;
 
   /// Pixels that a millimetre parallel to the picture takes, at the middle of what is shown.
   [[nodiscard]] double pixelsPerMm() const noexcept { return pixels_per_mm_; }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "render/plan/level_of_detail.h"
+#include "render/plan/placing.h"
+#include "shaders/layout.h"
 
 namespace fettle::render {
 

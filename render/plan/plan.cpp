@@ -24,9 +24,9 @@ constexpr double kLightUp = 0.70710678118654752;
 engine::Status check(const PictureSpec& spec) {
   const View& v = spec.view;
   const auto in = [](double x, double low, double high) { return x >= low && x <= high; };
-  if (!in(v.width, 16, 16384) || !in(v.height, 16, 16384))
+  if (!in(v.width, 16, kLargestPicture) || !in(v.height, 16, kLargestPicture))
     return inputError(fmt::format("a picture of {} x {} pixels", v.width, v.height), "picture size",
-                      "give 16 to 16384 pixels each way");
+                      fmt::format("give 16 to {} pixels each way", kLargestPicture));
   if (!std::isfinite(v.azimuth_deg)) return inputError("the azimuth is not a number", "view", "give degrees");
   if (!(v.elevation_deg > 0.0 && v.elevation_deg <= 90.0))
     return inputError(fmt::format("an elevation of {} degrees", v.elevation_deg), "view",
@@ -39,31 +39,10 @@ engine::Status check(const PictureSpec& spec) {
   if (v.vertical_exaggeration != 0.0 && !in(v.vertical_exaggeration, 1e-9, 1e9))
     return inputError(fmt::format("a vertical exaggeration of {}", v.vertical_exaggeration), "view",
                       "give a positive factor, or 0 to choose one");
-  if (!in(spec.samples_per_side, 1, 4))
-    return inputError(fmt::format("{} rays a side", spec.samples_per_side), "picture", "give 1 to 4");
-  if (!in(spec.cell_px, 0.5, 64)) return inputError("the smallest cell drawn", "picture", "give 0.5 to 64");
   if (!in(spec.marks_opacity, 0, 1)) return inputError("the opacity of marks", "picture", "give 0 to 1");
   if (spec.range && !(std::isfinite(spec.range->low) && std::isfinite(spec.range->high) &&
                       spec.range->low < spec.range->high))
     return inputError("the range of the colours is empty", "picture", "give a low end below the high end");
-  return {};
-}
-
-engine::Status checkFields(const PictureSpec& spec) {
-  if (spec.field.empty() || (spec.compare && spec.compare->empty()) ||
-      (spec.deviation_from && spec.deviation_from->empty()))
-    return inputError("there is no field to draw", "picture");
-  if (spec.deviation_from) {
-    const auto same = [&](const engine::Version& v2) {
-      return v2.grid().width == spec.deviation_from->grid().width &&
-             v2.grid().height == spec.deviation_from->grid().height;
-    };
-    if (!same(spec.field) || (spec.compare && !same(*spec.compare)))
-      return inputError(fmt::format("the fields have different sizes: {} x {} against {} x {}",
-                                    spec.field.grid().width, spec.field.grid().height,
-                                    spec.deviation_from->grid().width, spec.deviation_from->grid().height),
-                        "deviation", "compare a field with its own original");
-  }
   return {};
 }
 
@@ -111,25 +90,6 @@ PictureSpans spansOf(std::span<const engine::Version> fields,
 
 PictureSpans negated(const PictureSpans& spans) noexcept {
   return {negated(spans.heights), negated(spans.colours)};
-}
-
-engine::Result<PicturePlan> planPicture(const PictureSpec& spec) {
-  if (engine::Status ok = check(spec); !ok) return tl::unexpected(ok.error());
-  if (engine::Status ok = checkFields(spec); !ok) return tl::unexpected(ok.error());
-  std::vector<engine::Version> fields{spec.field};
-  if (spec.compare) fields.push_back(*spec.compare);
-  const bool titled = !spec.title_left.empty() || (spec.compare && !spec.title_right.empty());
-  engine::Result<PicturePlan> plan =
-      layPicture(spec, fields, spansOf(fields, spec.deviation_from),
-                 layOut(spec.view, spec.decoration, static_cast<int>(fields.size()),
-                        titled ? Titles::kAbove : Titles::kNone));
-  if (!plan) return plan;
-  for (PanelPlan& panel : plan->panels)
-    panel.detail = chooseDetail(panel.field, panel.placing, panel.camera,
-                                spec.cell_px / spec.samples_per_side, panel.floor_z, panel.cut_z);
-  plan->furniture.titles = {spec.title_left};
-  if (spec.compare) plan->furniture.titles.push_back(spec.title_right);
-  return plan;
 }
 
 engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const engine::Version> fields,
@@ -195,10 +155,6 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
     view.zoom *= static_cast<double>(std::min(inner.width, inner.height) - 2 * air) /
                  std::min(inner.width, inner.height);
     panel.camera = Camera::fit(view, shown, drawn, inner);
-    const glm::dvec2 cell_rays =
-        cellPixels(panel.placing, panel.camera) * static_cast<double>(spec.samples_per_side);
-    const double larger = std::max(cell_rays.x, cell_rays.y);
-    panel.smooth = larger > 1.5;
 
     gpu::PanelUniforms& u = panel.uniforms;
     const double own_unit =
@@ -216,7 +172,7 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
     u.limits = glm::vec4(glm::dvec4(lowest_drawn * share, highest_drawn * share,
                                     spec.deviation_from ? spec.deviation_from->reader().sign() : 1.0F, 0.0));
     u.colouring = glm::vec4(glm::dvec4(plan.range.low * share, own_unit / (plan.range.high - plan.range.low),
-                                       contour_step * share, larger));
+                                       contour_step * share, 0.0));
     const glm::dvec3 right = panel.camera.right();
     const glm::dvec3 away{-right.y, right.x, 0.0};  // level, from the viewer into the picture
     const double level = std::sqrt(0.5) * std::sqrt(1.0 - kLightUp * kLightUp);
@@ -231,12 +187,8 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
     // A ray up or down the picture; seen from straight above nothing is drawn beside its sample.
     // In perspective that holds for the middle of the picture alone.
     const double least = spec.view.projection == Projection::kPerspective ? 0.3 : 0.0;
-    const double upright =
-        std::max(least, std::abs(panel.camera.up().z)) * panel.camera.pixelsPerMm() * spec.samples_per_side;
+    const double upright = std::max(least, std::abs(panel.camera.up().z)) * panel.camera.pixelsPerMm();
     u.seam = glm::vec4(0.0F, static_cast<float>(std::min(1e30, 1.0 / std::max(upright, 1e-30))), 0.0F, 0.0F);
-    // Differences over about the width of a ray: finer ones would be noise that no pixel can show.
-    u.paging.w =
-        std::max(1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::min(cell_rays.x, cell_rays.y)))));
     const ColourTable& table = colourTable(plan.map);
     for (std::size_t k = 0; k < table.size(); ++k) u.colours[k] = glm::vec4(table[k], 1.0F);
     plan.panels.push_back(std::move(panel));

@@ -6,9 +6,9 @@
 
 #include "engine/base/error.h"
 #include "render/plan/camera.h"
-#include "render/plan/level_of_detail.h"
 #include "render/plan/overlay.h"
 #include "render/plan/picture.h"
+#include "render/plan/placing.h"
 #include "render/plan/value_range.h"
 #include "shaders/layout.h"
 
@@ -20,15 +20,13 @@ struct PanelPlan {
   engine::Version field;
   Camera camera;  ///< pixels of the finished picture
   Placing placing;
-  Detail detail;
-  bool smooth = false;          ///< specialisation: cells larger than rays
   double reference = 0.0;       ///< height at scene z 0 [height_unit of the field]
   double mm_per_unit = 1.0;     ///< scene mm, exaggeration included, a height unit
   double lowest = 0.0;          ///< heights below are drawn at this one [height_unit]
   double highest = 0.0;         ///< and those above at this
   double floor_z = 0.0;         ///< of the plate under the surface [scene mm]
   double cut_z = 0.0;           ///< nothing is drawn above [scene mm]
-  gpu::PanelUniforms uniforms;  ///< all but `paging.xyz`, which the field's texture knows
+  gpu::PanelUniforms uniforms;  ///< all but `paging`, which follows the field's texture
 };
 
 /// A picture worked out on the CPU: where everything goes and what colour it has, before any device is asked.
@@ -54,17 +52,13 @@ struct PictureSpans {
 [[nodiscard]] PictureSpans spansOf(std::span<const engine::Version> fields,
                                    const std::optional<engine::Version>& deviation_from);
 
-/// A picture with known spans in a known layout, one field a plot; time does not follow the fields' size. All
-/// but the patches. spec.field, spec.compare and spec.title_.. are not looked at. Errors (kInput): as
-/// planPicture.
+/// A picture with known spans in a known layout, one field a plot; time does not follow the fields' size.
+/// Heights are drawn as scene z = (height - reference) * height_unit.mm * exaggeration with the reference at
+/// the middle of the robust span of all fields; spikes beyond it are cut half a span above and just over the
+/// floor. Errors (kInput): a spec outside the ranges that PictureSpec and View state.
 [[nodiscard]] engine::Result<PicturePlan> layPicture(const PictureSpec& spec,
                                                      std::span<const engine::Version> fields,
                                                      const PictureSpans& spans, Layout layout);
-
-/// Heights are drawn as scene z = (height - reference) * height_unit.mm * exaggeration with the reference at
-/// the middle of the robust span of both fields; spikes beyond it are cut half a span above and just over the
-/// floor. Errors (kInput): a spec outside the ranges that PictureSpec and View state.
-[[nodiscard]] engine::Result<PicturePlan> planPicture(const PictureSpec& spec);
 
 /// The round factor that makes relief readable: 1 when height to width lies between 0.04 and 0.4, else what
 /// brings it near 0.15 as 1, 2 or 5 times a power of ten. Both in millimetres.

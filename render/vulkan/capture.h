@@ -1,14 +1,11 @@
 #pragma once
 
-#include "render/vulkan/target.h"
+#include "render/vulkan/memory.h"
 
 namespace fettle::render {
 
 /// Records the copy of a finished colour image (in layout eTransferSrcOptimal) to a buffer of 4 bytes a pixel
 /// that the host reads once the commands are done.
 void copyToHost(const vk::raii::CommandBuffer& commands, const GpuImage& from, const Buffer& to);
-
-/// Reads a finished picture (after PictureTarget::end) back. Throws vk::SystemError.
-[[nodiscard]] Image capture(Context& context, const PictureTarget& target);
 
 }  // namespace fettle::render

@@ -99,7 +99,7 @@ Context::~Context() {
     }
 }
 
-engine::Result<std::unique_ptr<Context>> Context::create(const RendererOptions& options,
+engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& options,
                                                          const SurfaceWish* wish) try {
   std::unique_ptr<Context> context(new Context());
   const bool validate = options.validation == Validation::kOn;

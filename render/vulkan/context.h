@@ -42,13 +42,14 @@ struct SurfaceWish {
 /// synchronization2, and sampling of 32-bit and 8-bit unsigned images. Leaves out: windows, several queues,
 /// memory management beyond one allocation a resource.
 ///
-/// Threading: one thread at a time. Functions other than create() throw vk::SystemError; the room's door
-/// (renderer.cpp) turns that into an Error.
+/// Threading: one thread at a time. Functions other than create() throw vk::SystemError; live_picture.cpp and
+/// window.cpp turn that into an Error.
 class Context {
  public:
-  /// Errors as Renderer::create states. The best device that starts; with `wish` only of those that can show
-  /// pictures on its surface.
-  [[nodiscard]] static engine::Result<std::unique_ptr<Context>> create(const RendererOptions& options,
+  /// The best device that starts; with `wish` only of those that can show pictures on its surface. Errors
+  /// (kFailed): no Vulkan loader, driver or suitable device - the line says why each device found was rejected
+  /// and what to install; validation layers asked for but not installed.
+  [[nodiscard]] static engine::Result<std::unique_ptr<Context>> create(const DeviceOptions& options,
                                                                        const SurfaceWish* wish = nullptr);
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;

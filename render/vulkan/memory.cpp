@@ -1,4 +1,5 @@
 #include "render/vulkan/memory.h"
+#include "render/vulkan/formats.h"
 
 namespace fettle::render {
 
@@ -39,6 +40,17 @@ GpuImage::GpuImage(const Context& context, vk::Format format, vk::Extent2D exten
       .setFormat(viewed_as.value_or(format))
       .setSubresourceRange(range());
   view_ = vk::raii::ImageView(context.device(), view);
+}
+
+GpuImage pictureImage(const Context& context, vk::Extent2D extent) {
+  using Usage = vk::ImageUsageFlagBits;
+  return {context,
+          kColourFormat,
+          extent,
+          1,
+          GpuImage::Kind::kPlane,
+          Usage::eColorAttachment | Usage::eTransferSrc | Usage::eTransferDst,
+          vk::ImageAspectFlagBits::eColor};
 }
 
 }  // namespace fettle::render

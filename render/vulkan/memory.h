@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 
 #include "render/vulkan/context.h"
 
@@ -24,11 +23,6 @@ class Buffer {
   vk::DeviceSize bytes_ = 0;
   std::byte* data_ = nullptr;
 };
-
-/// Writes `items` into a buffer of exactly their size, or of one item when there are none (a buffer of no
-/// bytes is not allowed).
-template <class T>
-[[nodiscard]] Buffer bufferOf(const Context& context, std::span<const T> items, vk::BufferUsageFlags usage);
 
 /// An image on the device with a view of all of it. Move-only.
 class GpuImage {
@@ -56,12 +50,7 @@ class GpuImage {
   vk::ImageAspectFlags aspect_;
 };
 
-template <class T>
-Buffer bufferOf(const Context& context, std::span<const T> items, vk::BufferUsageFlags usage) {
-  Buffer buffer(context, std::max<std::size_t>(items.size_bytes(), sizeof(T)), usage);
-  // An empty span may point nowhere, and memcpy must not be given that even for no bytes.
-  if (!items.empty()) std::memcpy(buffer.data(), items.data(), items.size_bytes());
-  return buffer;
-}
+/// An image that a picture is drawn to and copied out of. Throws.
+[[nodiscard]] GpuImage pictureImage(const Context& context, vk::Extent2D extent);
 
 }  // namespace fettle::render

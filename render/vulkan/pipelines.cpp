@@ -19,7 +19,6 @@
 #include "shade.vert.eyes.h"
 #include "shade.vert.h"
 #include "shaders/layout.h"
-#include "surface.frag.h"
 #include "surface.vert.eyes.h"
 #include "surface.vert.h"
 #include "wall.frag.h"
@@ -65,8 +64,7 @@ Pipelines::Pipelines(const Context& context, vk::Format colour, Views views)
       binding(gpu::kBindPages, vk::DescriptorType::eUniformTexelBuffer),
       binding(gpu::kBindDepth, vk::DescriptorType::eSampledImage),
       binding(gpu::kBindNearest, vk::DescriptorType::eSampler).setImmutableSamplers(*nearest_)};
-  const std::array picture{binding(gpu::kBindScene, vk::DescriptorType::eSampledImage),
-                           binding(gpu::kBindGlyphs, vk::DescriptorType::eSampledImage),
+  const std::array picture{binding(gpu::kBindGlyphs, vk::DescriptorType::eSampledImage),
                            binding(gpu::kBindQuads, vk::DescriptorType::eStorageBuffer),
                            binding(gpu::kBindMap, vk::DescriptorType::eUniformBuffer)};
   vk::DescriptorSetLayoutCreateInfo set;
@@ -160,14 +158,6 @@ std::array<vk::Bool32, gpu::kSpecCount> constantsOf(const SurfaceVariant& v) {
 }
 
 }  // namespace
-
-vk::Pipeline Pipelines::surface(const SurfaceVariant& variant) {
-  const auto found = surfaces_.find(variant);
-  if (found != surfaces_.end()) return *found->second;
-  Recipe recipe{.vertex = surface_vert_spirv, .fragment = surface_frag_spirv, .layout = *scene_layout_};
-  recipe.constants = constantsOf(variant);
-  return *surfaces_.emplace(variant, make(recipe)).first->second;
-}
 
 vk::Pipeline Pipelines::depth(const Geometry& geometry) {
   const auto found = depths_.find(geometry);

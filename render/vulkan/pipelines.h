@@ -5,7 +5,8 @@
 #include <span>
 #include <utility>
 
-#include "render/vulkan/target.h"
+#include "render/vulkan/context.h"
+#include "render/vulkan/formats.h"
 
 namespace fettle::render {
 
@@ -30,13 +31,11 @@ class Pipelines {
  public:
   enum class Views {
     kOne,
-    kBoth,  ///< passes draw for both eyes at once, to two layers; not for surface(), nor without multiview
+    kBoth,  ///< passes draw for both eyes at once, to two layers; not without multiview
   };
   /// For pictures of this format.
   explicit Pipelines(const Context& context, vk::Format colour = kColourFormat, Views views = Views::kOne);
 
-  /// Shades every triangle of the surface: colour and depth.
-  [[nodiscard]] vk::Pipeline surface(const SurfaceVariant& variant);
   enum class Paged { kNo, kYes, kByNeed };
   enum class Holes { kNo, kYes };  ///< whether some cells are left out
   [[nodiscard]] vk::Pipeline wall(Paged paged, Holes holes = Holes::kYes);
@@ -75,7 +74,7 @@ class Pipelines {
   vk::raii::Sampler nearest_ = nullptr;
   vk::raii::DescriptorSetLayout scene_set_ = nullptr, picture_set_ = nullptr;
   vk::raii::PipelineLayout scene_layout_ = nullptr, picture_layout_ = nullptr;
-  std::map<SurfaceVariant, vk::raii::Pipeline> surfaces_, shades_;
+  std::map<SurfaceVariant, vk::raii::Pipeline> shades_;
   std::map<Geometry, vk::raii::Pipeline> depths_;
   std::map<std::pair<Paged, Holes>, vk::raii::Pipeline> walls_;
   std::map<Lines, vk::raii::Pipeline> lines_;

@@ -14,8 +14,8 @@
 
 #include "render/vulkan/barrier.h"
 #include "render/vulkan/capture.h"
+#include "render/vulkan/formats.h"
 #include "render/vulkan/live_target.h"
-#include "render/vulkan/target.h"
 #include "render/window/ui_layer.h"
 #include "render/window/ui_text.h"
 #include "render/window/window_swapchain.h"
@@ -171,13 +171,13 @@ struct Window::Impl {
     return std::clamp(static_cast<double>(x), 0.5, 4.0);
   }
   SurfaceWish wish;
-  RendererOptions device;
+  DeviceOptions device;
   std::string device_name;            // outlives the context
   std::vector<std::string> messages;  // of the contexts before this one
   std::unique_ptr<UiLayer> ui;        // outlives contexts: it holds the panels
   std::unique_ptr<Context> context;
   std::unique_ptr<Swapchain> swapchain;
-  PictureTarget picture;
+  GpuImage picture;
   LiveTarget target;
   bool drawn = false;   // something was drawn to `picture`
   bool usable = false;  // as far as the last present() can tell
@@ -457,12 +457,12 @@ engine::Result<LiveTarget*> Window::pictureTarget() try {
   Impl& w = *impl_;
   const vk::Extent2D extent{static_cast<std::uint32_t>(w.area.width),
                             static_cast<std::uint32_t>(w.area.height)};
-  if (w.picture.colour.extent() != extent) {
+  if (w.picture.extent() != extent) {
     w.context->device().waitIdle();
-    w.picture = PictureTarget(*w.context, extent);
+    w.picture = pictureImage(*w.context, extent);
   }
-  w.target.image = w.picture.colour.image();
-  w.target.view = w.picture.colour.view();
+  w.target.image = w.picture.image();
+  w.target.view = w.picture.view();
   w.target.extent = extent;
   w.target.leaves_as = ImageLayout::eTransferSrcOptimal;
   w.drawn = true;
@@ -480,9 +480,9 @@ void Window::forgetPicture() noexcept {
 
 void Window::Impl::bringPicture(const vk::raii::CommandBuffer& commands) const {
   // Drawn by an earlier submission of this queue; its last barrier knows nothing of this copy.
-  change(commands, picture.colour, ImageLayout::eTransferSrcOptimal, ImageLayout::eTransferSrcOptimal,
+  change(commands, picture, ImageLayout::eTransferSrcOptimal, ImageLayout::eTransferSrcOptimal,
          Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllTransfer, Access::eTransferRead);
-  const vk::Extent2D frame = ui->image().extent(), size = picture.colour.extent();
+  const vk::Extent2D frame = ui->image().extent(), size = picture.extent();
   const int left = std::max(area.x, 0), top = std::max(area.y, 0);
   if (left >= static_cast<int>(frame.width) || top >= static_cast<int>(frame.height)) return;
   // A copy of code values: sRGB without a word about it becomes UNORM without a change.
@@ -492,7 +492,7 @@ void Window::Impl::bringPicture(const vk::raii::CommandBuffer& commands) const {
       .setDstOffset({left, top, 0})
       .setExtent({std::min(size.width, frame.width - static_cast<std::uint32_t>(left)),
                   std::min(size.height, frame.height - static_cast<std::uint32_t>(top)), 1});
-  commands.copyImage(picture.colour.image(), ImageLayout::eTransferSrcOptimal, ui->image().image(),
+  commands.copyImage(picture.image(), ImageLayout::eTransferSrcOptimal, ui->image().image(),
                      ImageLayout::eTransferDstOptimal, copy);
 }
 

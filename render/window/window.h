@@ -82,7 +82,7 @@ struct WindowOptions {
   int width = 1280;  ///< of the frame [pixels], if the screen is that large
   int height = 800;
   Validation validation = Validation::kOff;
-  std::string device;  ///< as RendererOptions::device
+  std::string device;  ///< as DeviceOptions::device
   double scale = 0.0;  ///< factor on sizes of text and panels, 0.5 .. 4; 0: the display's
   /// Where the layout of the panels is remembered; empty: nowhere.
   std::string layout_file;
@@ -109,7 +109,7 @@ struct PanelText {
 class Window {
  public:
   /// Errors (kFailed): no display (the line says so), no Vulkan device that can show pictures on it, as
-  /// Renderer::create otherwise.
+  /// Context::create otherwise.
   [[nodiscard]] static engine::Result<std::unique_ptr<Window>> create(const WindowOptions& options);
   ~Window();
   Window(const Window&) = delete;

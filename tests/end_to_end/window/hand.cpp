@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "render/plan/picture.h"
+#include "render/png/png.h"
 
 namespace fettle::tests {
 namespace {

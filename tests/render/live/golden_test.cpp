@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "render/live/live_picture.h"
+#include "render/png/png.h"
 #include "tests/render/support/fields.h"
 #include "tests/support/source_tree.h"
 
@@ -67,13 +67,14 @@ void compareWithGolden(const std::string& name, const Image& actual) {
   FAIL() << off << " pixels differ from " << path << "; see " << folder;
 }
 
-void compareWithGolden(const std::string& name, const PictureSpec& spec) {
-  Renderer* renderer = sharedRenderer();
-  ASSERT_NE(renderer, nullptr);
-  compareWithGolden(name, shoot(*renderer, spec).image);
+// A picture drawn once.
+void compareWithGolden(const std::string& name, const Still& still) {
+  LivePicture* picture = sharedPicture();
+  ASSERT_NE(picture, nullptr);
+  compareWithGolden(name, shoot(*picture, still).image);
 }
 
-// The live picture, that has its own way of drawing the same thing.
+// A frame of the window.
 void compareWithGolden(const std::string& name, const Shown& shown, const FrameInput& input) {
   LiveOptions options;
   options.validation = Validation::kOn;
@@ -101,46 +102,47 @@ FrameInput frame(double azimuth_deg, double elevation_deg) {
   return input;
 }
 
-PictureSpec small(const engine::Version& field) {
-  PictureSpec spec;
-  spec.field = field;
-  spec.view.width = 480;
-  spec.view.height = 300;
-  return spec;
+Still small(const engine::Version& field) {
+  View view;
+  view.width = 480;
+  view.height = 300;
+  Still still;
+  still.shown.versions = {field};
+  still.input = stillInput(view);
+  return still;
 }
 
 TEST(Golden, ObliqueWithMarksAndNoData) {
-  PictureSpec spec = small(part(0.1));
-  spec.marks = MarksOverlay::kShow;
-  spec.title_left = "part";
-  compareWithGolden("oblique_marks", spec);
+  Still still = small(part(0.1));
+  still.shown.marks = MarksOverlay::kShow;
+  still.input.titles = {"part"};
+  compareWithGolden("oblique_marks", still);
 }
 
 TEST(Golden, SideBySideFromAbove) {
-  PictureSpec spec = small(part(0.3));
-  spec.compare = part(0.02);
-  spec.view.azimuth_deg = 0;
-  spec.view.elevation_deg = 90;
-  spec.title_left = "scan";
-  spec.title_right = "smoothed";
-  spec.map = ColourMap::kCividis;
-  compareWithGolden("side_by_side", spec);
+  Still still = small(part(0.3));
+  still.shown.versions.push_back(part(0.02));
+  still.input.view.azimuth_deg = 0;
+  still.input.view.elevation_deg = 90;
+  still.input.titles = {"scan", "smoothed"};
+  still.input.map = ColourMap::kCividis;
+  compareWithGolden("side_by_side", still);
 }
 
 TEST(Golden, DeviationOnDarkInPerspective) {
-  PictureSpec spec = small(part(0.02));
-  spec.deviation_from = part(0.3);
-  spec.view.azimuth_deg = 340;
-  spec.view.projection = Projection::kPerspective;
-  spec.theme = Theme::kDark;
-  compareWithGolden("deviation_dark", spec);
+  Still still = small(part(0.02));
+  still.shown.original = part(0.3);
+  still.input.view.azimuth_deg = 340;
+  still.input.view.projection = Projection::kPerspective;
+  still.input.theme = Theme::kDark;
+  compareWithGolden("deviation_dark", still);
 }
 
 TEST(Golden, GreyWithContourLines) {
-  PictureSpec spec = small(part(0.0));
-  spec.map = ColourMap::kGrey;
-  spec.contours = Contours::kShow;
-  compareWithGolden("grey_contours", spec);
+  Still still = small(part(0.0));
+  still.input.map = ColourMap::kGrey;
+  still.input.contours = Contours::kShow;
+  compareWithGolden("grey_contours", still);
 }
 
 TEST(Golden, LiveWithMarksHolesAndAStylus) {

@@ -618,7 +618,8 @@ TEST(Live, FurnitureThemesLightAndMapsAreDrawnAndRefusedWhenOutOfRange) {
     EXPECT_EQ(refused.error().kind, engine::ErrorKind::kInput);
   }
   Shown odd;
-  odd.versions = {partField(), fieldOf(gridOf(8, 8), [](int, int) { return 1; })};
+  odd.versions = {partField()};
+  odd.original = fieldOf(gridOf(8, 8), [](int, int) { return 1; });
   EXPECT_FALSE(picture->update(odd));
   EXPECT_TRUE(picture->draw(input, image));  // what was there still is
 }

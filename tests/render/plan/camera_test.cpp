@@ -104,6 +104,25 @@ TEST(Camera, MissesOnlyWhatIsOutsideThePlot) {
   EXPECT_TRUE(camera.misses({{20, 10, 0}, {30, 20, 1}}));
 }
 
+TEST(Camera, APartOfThePictureSeesItsPointsAtTheirPixelsAndEndsWhereItDoes) {
+  for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective}) {
+    const Camera whole = Camera::fit(viewOf(320, 35, projection), kBox, kBox, kPlot);
+    const Rectangle rectangle{300, 90, 64, 50};
+    const Camera part = whole.part(rectangle);
+    for (const glm::dvec3& p : corners(kBox)) {
+      EXPECT_NEAR(glm::length(part.pixelOf(p) - whole.pixelOf(p)), 0.0, 1e-9);
+      const Ray ray = part.rayAt(whole.pixelOf(p));
+      EXPECT_NEAR(glm::length(glm::cross(p - ray.from, ray.along)), 0.0, 1e-8);
+    }
+    const Ray inside = whole.rayAt({332, 115}), beside = whole.rayAt({290, 115});
+    const auto point = [](const Ray& ray) { return Box{ray.from + ray.along, ray.from + ray.along}; };
+    EXPECT_FALSE(part.misses(point(inside)));
+    EXPECT_TRUE(part.misses(point(beside)));
+    EXPECT_FALSE(whole.misses(point(beside)));
+    EXPECT_NEAR(part.asidePixels(1.0), whole.asidePixels(1.0), 1e-9);
+  }
+}
+
 TEST(Camera, ABoxWithoutExtentStillHasAFinitePicture) {
   const Box point{{0, 0, 0}, {0, 0, 0}};
   for (const Projection projection : {Projection::kOrthographic, Projection::kPerspective}) {

@@ -66,35 +66,27 @@ TEST(Plan, ExaggerationIsOneForReadableReliefAndRoundOtherwise) {
 }
 
 TEST(Plan, RefusesWhatIsOutsideTheStatedRanges) {
-  const PictureSpec good = mapOf(fieldOf(gridOf(8, 8), [](int c, int) { return c; }), 100, 100);
-  ASSERT_TRUE(planPicture(good));
+  const std::vector<engine::Version> fields{fieldOf(gridOf(8, 8), [](int c, int) { return c; })};
+  PictureSpec good;
+  good.view.width = good.view.height = 100;
+  const auto plan = [&](const PictureSpec& spec) {
+    return layPicture(spec, fields, spansOf(fields, spec.deviation_from),
+                      layOut(spec.view, spec.decoration, 1, Titles::kNone));
+  };
+  ASSERT_TRUE(plan(good));
   const auto refused = [&](auto change) {
     PictureSpec spec = good;
     change(spec);
-    const engine::Result<PicturePlan> plan = planPicture(spec);
-    return !plan && plan.error().kind == engine::ErrorKind::kInput;
+    const engine::Result<PicturePlan> result = plan(spec);
+    return !result && result.error().kind == engine::ErrorKind::kInput;
   };
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.width = 0; }));
-  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.height = 20000; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.view.height = kLargestPicture + 1; }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.elevation_deg = 0; }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.azimuth_deg = std::nan(""); }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.view.zoom = 0; }));
-  EXPECT_TRUE(refused([](PictureSpec& s) { s.samples_per_side = 9; }));
+  EXPECT_TRUE(refused([](PictureSpec& s) { s.marks_opacity = 1.5; }));
   EXPECT_TRUE(refused([](PictureSpec& s) { s.range = ValueRange{1, 1}; }));
-  EXPECT_TRUE(refused([](PictureSpec& s) { s.field = {}; }));
-  EXPECT_TRUE(refused(
-      [](PictureSpec& s) { s.deviation_from = fieldOf(gridOf(8, 9), [](int c, int) { return c; }); }));
-}
-
-TEST(Plan, APatchOfHolesIsNotDrawnAndZoomingInDrawsFewer) {
-  const engine::Version field =
-      fieldOf(gridOf(256, 256), [](int c, int r) { return c >= 128 && r < 128 ? kNan : c * 0.1; });
-  PictureSpec spec = mapOf(field, 600, 600);
-  const std::size_t all = planPicture(spec)->panels[0].detail.patches.size();
-  // Of the 64 patches without a height of their own, 8 reach up to row 128, where the heights begin.
-  EXPECT_EQ(all, 256U - 56U);
-  spec.view.zoom = 4;
-  EXPECT_LT(planPicture(spec)->panels[0].detail.patches.size(), all / 2);
 }
 
 TEST(NumberText, TicksAreRoundAndInside) {

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
-#include "render/plan/picture.h"
+#include "render/live/picture_rows.h"
 
 namespace fettle::render {
 
@@ -37,45 +37,68 @@ inline engine::Version fieldOf(const engine::Grid& grid, const std::function<dou
   return engine::makeField(grid, z, marks);
 }
 
-/// A renderer with validation on, shared by the cases of a program: making one takes longer than a picture.
-inline Renderer* sharedRenderer() {
-  static const engine::Result<std::unique_ptr<Renderer>> renderer =
-      Renderer::create({Validation::kOn, "", 0});
-  if (!renderer) ADD_FAILURE() << renderer.error().line();
-  return renderer ? renderer->get() : nullptr;
+/// A picture with validation on, shared by the cases of a program: making one takes longer than drawing.
+inline LivePicture* sharedPicture() {
+  static const engine::Result<std::unique_ptr<LivePicture>> picture = [] {
+    LiveOptions options;
+    options.validation = Validation::kOn;
+    return LivePicture::create(options);
+  }();
+  if (!picture) ADD_FAILURE() << picture.error().line();
+  return picture ? picture->get() : nullptr;
 }
+
+/// What a picture drawn once shows, and how.
+struct Still {
+  Shown shown;
+  FrameInput input;
+};
 
 struct Shot {
   Image image;
-  PictureReport report;
+  FrameStatistics stats;
 };
 
-/// Draws, and demands that the validation layers are silent.
-inline Shot shoot(Renderer& renderer, const PictureSpec& spec) {
+/// Draws in parts of `part_side` pixels, and demands that the validation layers are silent.
+inline Shot shoot(LivePicture& picture, const Still& still, int part_side = kPartSide) {
   Shot shot;
+  shot.image.width = still.input.view.width;
+  shot.image.height = still.input.view.height;
+  const engine::Status updated = picture.update(still.shown);
+  if (!updated) ADD_FAILURE() << updated.error().line();
+  picture.refreshRanges();
   engine::JobControl job;
-  engine::Result<PictureReport> report = renderer.render(spec, shot.image, job);
-  if (!report) {
-    ADD_FAILURE() << report.error().line();
+  const engine::Result<FrameStatistics> drawn = drawRows(
+      picture, still.input,
+      [&](const Image& rows) -> engine::Status {
+        EXPECT_EQ(rows.width, still.input.view.width);
+        shot.image.rgba.insert(shot.image.rgba.end(), rows.rgba.begin(), rows.rgba.end());
+        return {};
+      },
+      job, part_side);
+  if (!drawn) {
+    ADD_FAILURE() << drawn.error().line();
     return shot;
   }
-  for (const std::string& message : report->validation_messages) ADD_FAILURE() << message;
-  shot.report = *report;
+  for (const std::string& message : picture.validationMessages()) ADD_FAILURE() << message;
+  EXPECT_EQ(job.done(), job.total());
+  shot.stats = *drawn;
   return shot;
 }
 
-/// A small bare picture straight from above: north up, one ray a pixel, true heights, no furniture.
-inline PictureSpec mapOf(const engine::Version& field, int width, int height) {
-  PictureSpec spec;
-  spec.field = field;
-  spec.view.width = width;
-  spec.view.height = height;
-  spec.view.azimuth_deg = 0.0;
-  spec.view.elevation_deg = 90.0;
-  spec.view.vertical_exaggeration = 1.0;
-  spec.samples_per_side = 1;
-  spec.decoration = Decoration::kNone;
-  return spec;
+/// A small bare picture straight from above: north up, true heights, nothing around the surface.
+inline Still mapOf(const engine::Version& field, int width, int height) {
+  View view;
+  view.width = width;
+  view.height = height;
+  view.azimuth_deg = 0.0;
+  view.elevation_deg = 90.0;
+  view.vertical_exaggeration = 1.0;
+  Still still;
+  still.shown.versions = {field};
+  still.input = stillInput(view);
+  still.input.decoration = Decoration::kNone;
+  return still;
 }
 
 inline const std::uint8_t* pixel(const Image& image, int x, int y) {

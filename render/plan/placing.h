@@ -1,10 +1,7 @@
 #pragma once
 
-#include <vector>
-
 #include "engine/field/version.h"
 #include "render/plan/camera.h"
-#include "shaders/layout.h"
 
 namespace fettle::render {
 
@@ -20,20 +17,6 @@ struct Placing {
 };
 /// The field's middle at scene (0, 0).
 [[nodiscard]] Placing placingOf(const engine::Grid& grid);
-
-/// What to draw of a surface.
-struct Detail {
-  glm::ivec2 log2_stride{0, 0};     ///< columns, rows between drawn vertices
-  std::vector<gpu::Patch> patches;  ///< row-major; those without any height or outside the plot left out
-  std::vector<gpu::Patch> walls;    ///< rim pieces, side in place.w >> 8 as shaders/wall.vert has it
-};
-
-/// Chooses strides so that a cell is at least `cell_px` pixels large (each direction by itself, powers of
-/// two), then lists the patches that can be seen. One stride for the whole field, so that neighbours meet
-/// without cracks. `low_z` and `high_z` bound everything drawn [scene mm]. Cost follows the number of
-/// patches.
-[[nodiscard]] Detail chooseDetail(const engine::Version& field, const Placing& placing, const Camera& camera,
-                                  double cell_px, double low_z, double high_z);
 
 /// Pixels that one step of one sample in x and in y takes on the picture, at the middle of the field.
 [[nodiscard]] glm::dvec2 cellPixels(const Placing& placing, const Camera& camera);

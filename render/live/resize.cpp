@@ -1,12 +1,13 @@
-#include "render/live/enlarge.h"
+#include "render/live/resize.h"
 
 #include "enlarge.frag.h"
-#include "enlarge.vert.h"
+#include "reduce.frag.h"
 #include "render/vulkan/picture_pipeline.h"
+#include "resize.vert.h"
 
 namespace fettle::render {
 
-Enlarge::Enlarge(const Context& context, vk::Format codes) : context_(context), codes_(codes) {
+Resize::Resize(const Context& context, Way way, vk::Format format) : context_(context), format_(format) {
   constexpr auto kClamp = vk::SamplerAddressMode::eClampToEdge;
   sampler_ = vk::raii::Sampler(context.device(), vk::SamplerCreateInfo{}
                                                      .setMagFilter(vk::Filter::eLinear)
@@ -29,27 +30,29 @@ Enlarge::Enlarge(const Context& context, vk::Format codes) : context_(context), 
     layer.set =
         std::move(vk::raii::DescriptorSets(context.device(), wanted.setSetLayouts(*set_layout_)).front());
   }
-  pipeline_ = makePipeline(context, {.vertex = enlarge_vert_spirv,
-                                     .fragment = enlarge_frag_spirv,
-                                     .topology = vk::PrimitiveTopology::eTriangleStrip,
-                                     .colour = codes,
-                                     .layout = *layout_});
+  pipeline_ = makePipeline(
+      context, {.vertex = resize_vert_spirv,
+                .fragment = way == Way::kEnlarge ? std::span<const std::uint32_t>(enlarge_frag_spirv)
+                                                 : std::span<const std::uint32_t>(reduce_frag_spirv),
+                .topology = vk::PrimitiveTopology::eTriangleStrip,
+                .colour = format,
+                .layout = *layout_});
 }
 
-void Enlarge::set(const GpuImage& small, const GpuImage& large, std::uint32_t layers) {
+void Resize::set(const GpuImage& from, const GpuImage& to, std::uint32_t layers) {
   count_ = layers;
-  extent_ = large.extent();
+  extent_ = to.extent();
   for (std::uint32_t i = 0; i < count_; ++i) {
     const auto viewOf = [&](const GpuImage& image) {
       vk::ImageViewCreateInfo info;
       info.setImage(image.image())
           .setViewType(vk::ImageViewType::e2D)
-          .setFormat(codes_)
+          .setFormat(format_)
           .setSubresourceRange({vk::ImageAspectFlagBits::eColor, 0, 1, i, 1});
       return vk::raii::ImageView(context_.device(), info);
     };
-    layers_[i].from = viewOf(small);
-    layers_[i].to = viewOf(large);
+    layers_[i].from = viewOf(from);
+    layers_[i].to = viewOf(to);
     const vk::DescriptorImageInfo image{nullptr, *layers_[i].from, vk::ImageLayout::eShaderReadOnlyOptimal};
     const vk::WriteDescriptorSet write{*layers_[i].set, 0, 0, 1, vk::DescriptorType::eCombinedImageSampler,
                                        &image};
@@ -57,7 +60,7 @@ void Enlarge::set(const GpuImage& small, const GpuImage& large, std::uint32_t la
   }
 }
 
-void Enlarge::record(const vk::raii::CommandBuffer& commands) const {
+void Resize::record(const vk::raii::CommandBuffer& commands) const {
   for (std::uint32_t i = 0; i < count_; ++i) {
     vk::RenderingAttachmentInfo colour;
     colour.setImageView(*layers_[i].to)

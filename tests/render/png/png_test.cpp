@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/plan/picture.h"
+#include "render/png/png.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::render {
@@ -48,6 +48,27 @@ TEST(Png, AFolderThatIsNotThereIsAnInputErrorAndAnImageOfTheWrongSizeToo) {
   image.rgba.pop_back();
   EXPECT_FALSE(writePng(image, folder.file("a.png")));
   EXPECT_FALSE(std::filesystem::exists(folder.file("a.png")));
+}
+
+TEST(Png, RowsWrittenInBandsAreThePictureAndNoneMayBeMissing) {
+  const tests::TempFolder folder;
+  const Image image = someImage();
+  const auto rows = [&](int first, int count) {
+    const auto at = [](int row) { return std::ptrdiff_t{4} * 37 * row; };
+    return Image{37, count, {image.rgba.begin() + at(first), image.rgba.begin() + at(first + count)}};
+  };
+  engine::Result<PngWriter> writer = PngWriter::create(folder.file("a.png"), 37, 11);
+  ASSERT_TRUE(writer);
+  ASSERT_TRUE(writer->write(rows(0, 4)));
+  ASSERT_TRUE(writer->write(rows(4, 6)));
+  EXPECT_FALSE(writer->write(rows(0, 2)));  // one is left
+  EXPECT_FALSE(writer->finish());
+  EXPECT_FALSE(std::filesystem::exists(folder.file("a.png")));
+  ASSERT_TRUE(writer->write(rows(10, 1)));
+  ASSERT_TRUE(writer->finish());
+  const engine::Result<Image> back = readPng(folder.file("a.png"));
+  ASSERT_TRUE(back) << back.error().line();
+  EXPECT_EQ(back->rgba, image.rgba);
 }
 
 }  // namespace
