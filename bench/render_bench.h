@@ -16,7 +16,7 @@ struct RenderBenchOptions {
   int width = 1280;                             ///< of the picture [px]
   int height = 800;
   double error_px = 1.0;
-  std::int64_t vertex_budget = 65536;
+  std::int64_t vertex_budget = render::kFrameVertices;
   std::int64_t memory_budget_bytes = 0;  ///< LiveOptions::memory_budget_bytes
   std::vector<std::string> scenes;       ///< rows by name; none: all
   /// How frames are drawn while the camera moves, beside the loop and for the targets. kFull: the rows that

@@ -11,6 +11,7 @@
 #include "engine/field/version.h"
 #include "engine/io/export.h"
 #include "engine/io/import.h"
+#include "render/config.h"
 
 namespace fettle::app {
 
@@ -68,8 +69,8 @@ struct SideRange {
   int largest;
 };
 inline constexpr SideRange kFieldSides{1, engine::Grid::kMaxSide};
-inline constexpr SideRange kWindowSides{16, 16384};
-inline constexpr SideRange kPictureSides{16, 65536};
+inline constexpr SideRange kWindowSides{render::kSmallestPicture, render::kLargestPiece};
+inline constexpr SideRange kPictureSides{render::kSmallestPicture, render::kLargestPicture};
 
 /// "WIDTHxHEIGHT", both within `sides`. Errors name the option.
 [[nodiscard]] engine::Result<std::pair<int, int>> parseSize(const std::string& text,

@@ -10,10 +10,10 @@
 
 #include <glm/vec4.hpp>
 
+#include "render/config.h"
+
 namespace fettle::render {
 namespace {
-
-constexpr double kMarginPx = 3.0;
 
 // A rectangle of samples, last ones included.
 struct Samples {
@@ -86,8 +86,8 @@ class Screen {
       most = glm::max(most, at);
     }
     const glm::dvec2 edge(visible_.x, visible_.y), end = edge + glm::dvec2(visible_.width, visible_.height);
-    least = glm::clamp(glm::floor(least - kMarginPx), edge, end);
-    most = glm::clamp(glm::ceil(most + kMarginPx), edge, end);
+    least = glm::clamp(glm::floor(least - kDamageMarginPx), edge, end);
+    most = glm::clamp(glm::ceil(most + kDamageMarginPx), edge, end);
     const glm::ivec2 first(least), size = glm::ivec2(most) - first;
     return {first.x, first.y, size.x, size.y};
   }
@@ -146,8 +146,7 @@ std::vector<Key> keysOf(const PatchChoice& choice) {
 }  // namespace
 
 Rectangle damageOf(const DamageQuestion& question) {
-  // A stroke changes a few tiles; a filter's result, all of them.
-  if (question.tiles.size() > 256) return question.visible;
+  if (question.tiles.size() > kManyTiles) return question.visible;
   const PatchQuestion& q = question.now;
   const Screen screen(q, &question.before, question.visible);
   Rectangle damage{};

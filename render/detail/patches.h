@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/config.h"
 #include "render/detail/detail.h"
 #include "render/plan/placing.h"
 #include "shaders/layout.h"
@@ -29,7 +30,7 @@ struct PatchQuestion {
   double lowest = 0.0, highest = 0.0;  ///< heights that are drawn; others are cut to these [height_unit]
   double floor_z = 0.0;                ///< of the plate below; rim walls reach down to it [scene mm]
   double error_px = 1.0;
-  std::int64_t vertex_budget = 98304;
+  std::int64_t vertex_budget = kFrameVertices;
   /// Step between the samples that colours come from [samples], a power of two: a fragment is left out when a
   /// corner of its cell among those is a hole.
   std::int32_t shade_step = 1;

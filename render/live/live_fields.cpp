@@ -7,21 +7,13 @@
 
 #include "engine/base/stopwatch.h"
 #include "engine/field/difference.h"
+#include "render/config.h"
 #include "render/live/live_frame.h"
 
 namespace fettle::render {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// The coarsest copy of a field that comes by need is all that the first picture waits for.
-constexpr std::uint64_t kFixedBytes = std::uint64_t{8} << 20U;
-
-// What a view asks for follows its pixels, not the samples or the versions: at most 16 samples of 5 bytes a
-// pixel, where none of its panels shares a page with another. A picture of 3840 x 2160 pixels asks for 0.7 GB
-// at worst. A pool takes no more than this, nor than all that is shown takes as a whole, with room for one
-// state more beside a single one.
-constexpr std::uint64_t kPoolBytes = std::uint64_t{2} << 30U;
 
 // The finest level that stays on the device for good: what kFixedBytes and a quarter of the pool hold if
 // `textures` of them do. The coarsest patch, which is drawn when nothing else can be, has vertices every
@@ -102,8 +94,7 @@ void LiveFields::bringAll(LiveTexture& texture) {
     if (submissions_.begin() > 0.5) ++uploaded_.stalls;
     staging_.release(submissions_.done());
     UploadStatistics count;
-    texture.pump(staging_, submissions_.next(), submissions_.commands(), std::int64_t{16} << 20U, count,
-                 moved);
+    texture.pump(staging_, submissions_.next(), submissions_.commands(), kUploadBytesAtOnce, count, moved);
     uploaded_.tiles += count.tiles;
     uploaded_.bytes += count.bytes;
     uploaded_.changed_samples += count.changed_samples;
@@ -133,7 +124,7 @@ bool LiveFields::wantsPool(const Shown& next) const {
 std::uint64_t LiveFields::poolBudget(const Shown& next) const {
   std::uint64_t bytes = 0;
   const auto add = [&](const engine::Version& v) {
-    const PageGrid pages(v.grid().width, v.grid().height, 8);
+    const PageGrid pages(v.grid().width, v.grid().height, kLargestLog2Page);
     bytes += static_cast<std::uint64_t>(pages.entries() + 2) << (2 * pages.log2Side());
   };
   for (const engine::Version& v : next.versions) add(v);
@@ -218,9 +209,9 @@ engine::Result<bool> LiveFields::wantField(std::size_t i, const Shown& next) {
 
 engine::Result<LiveFields::Novelty> LiveFields::update(const Shown& next) {
   const auto start = Clock::now();
-  if (next.versions.empty() || next.versions.size() > LiveFrame::kMostPanels)
+  if (next.versions.empty() || next.versions.size() > kMostPanels)
     return engine::inputError(fmt::format("{} versions in one picture", next.versions.size()), "picture",
-                              "show one to four");
+                              fmt::format("show one to {}", kMostPanels));
   for (const engine::Version& v : next.versions) {
     if (v.empty() || (next.original && next.original->empty()))
       return engine::inputError("there is no field to draw", "picture");

@@ -16,11 +16,6 @@
 
 namespace fettle::render {
 
-/// Device bytes of samples, coarse copies and marks up to which all that is shown is brought over before the
-/// first picture: some 3.7 million samples. What takes more comes by need, so that no picture waits for it
-/// and the device holds no more than was looked at.
-inline constexpr std::uint64_t kWholeBytes = std::uint64_t{16} << 20U;
-
 /// Whether two versions are states of one field, so that only what differs needs to be looked at.
 [[nodiscard]] bool related(const engine::Version& a, const engine::Version& b);
 

@@ -193,7 +193,7 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
                       packing.add<gpu::Line>(p.on_top), packing.add<std::uint32_t>(p.pages)});
   const auto quads = packing.add<gpu::Quad>(furniture);
   if (slot.arena.bytes() < packing.bytes())
-    slot.arena = Buffer(context_, std::max<vk::DeviceSize>(2 * packing.bytes(), 1 << 16),
+    slot.arena = Buffer(context_, std::max<vk::DeviceSize>(2 * packing.bytes(), kArenaBytes),
                         vk::BufferUsageFlagBits::eUniformBuffer | vk::BufferUsageFlagBits::eStorageBuffer |
                             vk::BufferUsageFlagBits::eUniformTexelBuffer);
   packing.write(slot.arena.data());

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "render/config.h"
 #include "render/detail/patches.h"
 #include "render/live/resize.h"
 #include "render/plan/glyphs.h"
@@ -49,8 +50,6 @@ struct LivePanel {
 /// Threading: as Context. Throws vk::SystemError.
 class LiveFrame {
  public:
-  static constexpr std::size_t kMostPanels = 5;
-
   /// kBoth: targets have two layers, one for each eye of PanelUniforms::views.
   LiveFrame(Context& context, vk::Format colour, Pipelines::Views views = Pipelines::Views::kOne);
 

@@ -4,17 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "render/config.h"
 #include "render/live/live_overlay.h"
 #include "render/live/live_plan.h"
 #include "render/plan/live_view.h"
 
 namespace fettle::render {
 namespace {
-
-constexpr float kSeamPx = 0.25F;
-// What lies so far beyond a part of the picture is chosen with it: as far as seams and comparing fragments
-// reach, and more.
-constexpr int kAroundPartPx = 8;
 
 // Rays across a pixel.
 double raysOf(Sharpness sharpness) {
@@ -142,7 +138,7 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
   // Differences over about the width of a ray: finer ones would be noise that no pixel can show.
   u.paging.w = std::max(
       1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::ldexp(std::min(px.x, px.y), shift)))));
-  u.seam.x = static_cast<float>(kSeamPx / rays);
+  u.seam.x = static_cast<float>(kSeamRays / rays);
   if (fine) u.seam.y = static_cast<float>(u.seam.y / rays);
   const auto view = [&](const Camera& camera) {
     return part_ && !empty(panel.plot) ? viewOf(camera.part(cut(p.plot, *part_)), p.placing, panel.plot)

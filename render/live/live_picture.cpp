@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/stopwatch.h"
+#include "render/config.h"
 #include "render/detail/pick.h"
 #include "render/live/live_fields.h"
 #include "render/live/live_frame.h"
@@ -21,8 +22,6 @@ namespace fettle::render {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-constexpr vk::DeviceSize kStagingBytes = vk::DeviceSize{64} << 20U;
 
 engine::Error errorOf(const std::string& device, const char* what) {
   return engine::failure(fmt::format("drawing failed ({})", what), device, "start the picture anew").value();
@@ -362,11 +361,13 @@ engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input
     if (engine::Status ok = checkPart(input); !ok) return tl::unexpected(ok.error());
     const vk::Extent2D extent = extentOf(input);
     const std::uint32_t rays = input.sharpness == Sharpness::kFine ? 2 : 1;
-    const std::uint32_t most = std::min(16384U, impl_->context.limits().maxImageDimension2D) / rays;
-    if (input.view.width < 16 || input.view.height < 16 || std::max(extent.width, extent.height) > most)
+    const std::uint32_t most =
+        std::min<std::uint32_t>(kLargestPiece, impl_->context.limits().maxImageDimension2D) / rays;
+    if (std::min(input.view.width, input.view.height) < kSmallestPicture ||
+        std::max(extent.width, extent.height) > most)
       return engine::inputError(
           fmt::format("a picture of {} x {} pixels in one piece", extent.width, extent.height),
-          "picture size", fmt::format("give 16 to {} pixels each way", most));
+          "picture size", fmt::format("give {} to {} pixels each way", kSmallestPicture, most));
     if (impl_->canvas.image.extent() != extent) {
       impl_->submissions.finish();
       impl_->canvas.image = pictureImage(impl_->context, extent);

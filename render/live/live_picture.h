@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
+#include "render/config.h"
 #include "render/plan/camera.h"
 #include "render/plan/picture.h"
 #include "render/plan/stereo.h"
@@ -116,7 +117,7 @@ struct FrameInput {
   /// A picture for each eye. Off: nothing of it is made. Bounds hold for each eye's picture.
   Stereo stereo;
   /// Screen error wanted [px], > 0. What is reached is in FrameStatistics::bound_px.
-  double error_px = 1.0;
+  double error_px = kFrameErrorPx;
   Sharpness sharpness = Sharpness::kFull;
   /// Whether what cannot have changed since the last frame is left as it is: the picture is the same either
   /// way, to the bit.
@@ -124,15 +125,11 @@ struct FrameInput {
   /// Of a field by need: whether the frame is drawn with the pages that are there, or waits for all that it
   /// asks for and that the memory holds.
   enum class Pages { kAsTheyCome, kAll } pages = Pages::kAsTheyCome;
-  /// Vertices a frame may cost, all panels together, 4096 .. 2^28.
-  std::int64_t vertex_budget = 65536;
-  /// Vertices that each panel may take, 1 .. 2^28, one number a panel; empty: equal shares of vertex_budget.
+  /// Vertices a frame may cost, all panels together, kFewestFrameVertices .. kMostFrameVertices.
+  std::int64_t vertex_budget = kFrameVertices;
+  /// Vertices that each panel may take, 1 .. kMostFrameVertices, one number a panel; empty: equal shares of vertex_budget.
   std::vector<std::int64_t> panel_vertices;
 };
-
-/// Tiles whose detail (render/detail/detail.h) a frame measures at most, for each version: about 4 ms on two
-/// cores.
-inline constexpr std::size_t kMeasuredAFrame = 256;
 
 /// A field of which the finer samples are on the device by need: any of more than a few million samples.
 struct ResidencyStatistics {
@@ -201,10 +198,10 @@ struct LiveOptions {
   int max_image_side = 0;
   /// Bytes moved a frame at most while an edit or a filter result comes over; the rest waits for the next
   /// one.
-  std::int64_t upload_bytes_a_frame = std::int64_t{6} << 20;
+  std::int64_t upload_bytes_a_frame = kUploadBytesAFrame;
   /// Device memory that the samples of all versions, of the original and their marks may take [bytes]; 0:
   /// half of the largest heap of the device's own memory. What takes more than that or than kWholeBytes
-  /// (render/live/live_fields.h), or is larger than the device's images, is there by need: coarse copies
+  /// (render/config.h), or is larger than the device's images, is there by need: coarse copies
   /// always, finer samples in pages where the view asks for them, within upload_bytes_a_frame. Frames after a
   /// move may be coarser then than error_px; FrameStatistics says so. Once by need, versions of the same
   /// field stay so.

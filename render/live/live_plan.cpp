@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/config.h"
 #include "render/detail/pick.h"
 
 namespace fettle::render {
 namespace {
-
-constexpr std::int64_t kMostVertices = std::int64_t{1} << 28;
 
 // Where the panels lie: as layOut has them in a row, or two rows of two or three.
 render::Layout arranged(const FrameInput& input, int versions) {
@@ -66,14 +65,14 @@ engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& show
                                       const PictureSpans& spans) {
   const bool finite = std::isfinite(input.light_azimuth_deg) && input.light_elevation_deg >= 5.0 &&
                       input.light_elevation_deg <= 90.0;
-  if (!(input.error_px > 0.0) || input.vertex_budget < 4096 || input.vertex_budget > kMostVertices ||
-      !finite || !(input.split >= 0.0 && input.split <= 1.0))
+  if (!(input.error_px > 0.0) || input.vertex_budget < kFewestFrameVertices ||
+      input.vertex_budget > kMostFrameVertices || !finite || !(input.split >= 0.0 && input.split <= 1.0))
     return engine::inputError("the error, the budget, the split or the light is out of range", "picture",
                               "see FrameInput");
   const std::size_t panels = input.arrangement == Arrangement::kSplit
                                  ? std::min<std::size_t>(2, shown.versions.size())
                                  : shown.versions.size();
-  const auto allowed = [](std::int64_t vertices) { return vertices >= 1 && vertices <= kMostVertices; };
+  const auto allowed = [](std::int64_t vertices) { return vertices >= 1 && vertices <= kMostFrameVertices; };
   if (!input.panel_vertices.empty() &&
       (input.panel_vertices.size() != panels ||
        !std::all_of(input.panel_vertices.begin(), input.panel_vertices.end(), allowed)))

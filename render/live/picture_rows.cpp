@@ -40,10 +40,10 @@ FrameInput stillInput(const View& view) {
   FrameInput input;
   input.view = view;
   input.theme = Theme::kLight;
-  input.error_px = 0.25;
+  input.error_px = kStillErrorPx;
   input.sharpness = Sharpness::kFine;
   // More than a part has rays: what bounds the vertices is error_px.
-  input.vertex_budget = std::int64_t{1} << 28;
+  input.vertex_budget = kMostFrameVertices;
   return input;
 }
 

@@ -4,14 +4,10 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "render/config.h"
 #include "render/live/live_picture.h"
 
 namespace fettle::render {
-
-/// Sides of the parts that a picture of any size is drawn in [px], even. 1024: 80 MiB on the device at four
-/// rays a pixel, some tenths of a second between two looks at whether the job is cancelled; smaller parts draw
-/// more patches twice.
-inline constexpr int kPartSide = 1024;
 
 /// Takes the next rows of a picture, from the top on: as wide as the picture and as high as it likes. An error
 /// ends the drawing.

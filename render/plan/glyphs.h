@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "render/config.h"
 
 namespace fettle::render {
 
@@ -29,7 +30,7 @@ class Glyphs {
   Glyphs& operator=(Glyphs&&) noexcept;
   ~Glyphs();
 
-  static constexpr int kSide = 1024;  ///< the image is kSide x kSide, one byte of coverage each
+  static constexpr int kSide = kGlyphImageSide;  ///< the image is kSide x kSide, one byte of coverage each
 
   /// One character at a font size [px]; a box for one the font lacks, empty when the image is full (counted
   /// by lost()).

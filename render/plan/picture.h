@@ -15,14 +15,10 @@ enum class Projection {
   kPerspective,   ///< 35 degrees up and down; the scale bar then holds at the middle of the field
 };
 
-/// Longest side of a picture [px]: single precision places a point of it to 1/256 of a pixel. Each part that
-/// is drawn in one go is at most as large as the device's images.
-inline constexpr int kLargestPicture = 65536;
-
 /// From where, and how large.
 struct View {
-  int width = 1280;  ///< picture, pixels, 16 .. kLargestPicture
-  int height = 800;  ///< picture, pixels, 16 .. kLargestPicture
+  int width = 1280;  ///< picture, pixels, kSmallestPicture .. kLargestPicture
+  int height = 800;  ///< picture, pixels, kSmallestPicture .. kLargestPicture
   /// Turn of the camera about the vertical [degree], any finite value. 0 stands at the low-y side and looks
   /// along +y, so that x runs to the right as on a map; positive turns the camera counter-clockwise seen from
   /// above (90 stands at the high-x side). 315 stands at the corner x, y lowest.

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "render/config.h"
 #include "render/plan/colour_map.h"
 #include "render/plan/number_text.h"
 
@@ -24,9 +25,9 @@ constexpr double kLightUp = 0.70710678118654752;
 engine::Status check(const PictureSpec& spec) {
   const View& v = spec.view;
   const auto in = [](double x, double low, double high) { return x >= low && x <= high; };
-  if (!in(v.width, 16, kLargestPicture) || !in(v.height, 16, kLargestPicture))
+  if (!in(v.width, kSmallestPicture, kLargestPicture) || !in(v.height, kSmallestPicture, kLargestPicture))
     return inputError(fmt::format("a picture of {} x {} pixels", v.width, v.height), "picture size",
-                      fmt::format("give 16 to {} pixels each way", kLargestPicture));
+                      fmt::format("give {} to {} pixels each way", kSmallestPicture, kLargestPicture));
   if (!std::isfinite(v.azimuth_deg)) return inputError("the azimuth is not a number", "view", "give degrees");
   if (!(v.elevation_deg > 0.0 && v.elevation_deg <= 90.0))
     return inputError(fmt::format("an elevation of {} degrees", v.elevation_deg), "view",

@@ -9,11 +9,10 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "engine/filter/block.h"
+#include "render/config.h"
 
 namespace fettle::render {
 namespace {
-
-constexpr std::int64_t kSampleTarget = std::int64_t{1} << 20;
 
 template <class T>
 T percentile(std::vector<T>& values, double share) {
@@ -26,7 +25,7 @@ T percentile(std::vector<T>& values, double share) {
 // pattern.
 template <class Visit>
 void forSomeOf(std::int64_t tiles, std::int64_t tile_number, const Visit& visit) {
-  const std::int64_t n = std::clamp<std::int64_t>(kSampleTarget / tiles, 4, engine::kTileSamples);
+  const std::int64_t n = std::clamp<std::int64_t>(kRangeSamples / tiles, 4, engine::kTileSamples);
   constexpr std::int64_t kStep = 2531;  // odd: visits every sample of a tile before repeating one
   for (std::int64_t k = 0; k < n; ++k)
     visit(static_cast<std::size_t>((tile_number * 977 + k * kStep) & (engine::kTileSamples - 1)));
@@ -40,7 +39,7 @@ ValueSpan heightSpan(const engine::Version& field) {
   if (bounds.empty()) return {};
   const std::int64_t tiles = std::int64_t{reader.tileColumns()} * reader.tileRows();
   std::vector<float> values;
-  values.reserve(static_cast<std::size_t>(std::min(tiles * engine::kTileSamples, 2 * kSampleTarget)));
+  values.reserve(static_cast<std::size_t>(std::min(tiles * engine::kTileSamples, 2 * kRangeSamples)));
   std::int64_t number = 0;
   for (std::int32_t tr = 0; tr < reader.tileRows(); ++tr)
     for (std::int32_t tc = 0; tc < reader.tileColumns(); ++tc, ++number) {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "engine/field/difference.h"
+#include "render/config.h"
 
 namespace fettle::render {
 namespace {
@@ -22,13 +23,6 @@ std::uint64_t keyOf(std::int32_t column, std::int32_t row) {
 glm::ivec2 tileOf(std::uint64_t key) {
   return {static_cast<std::int32_t>(key & 0xffffffffU), static_cast<std::int32_t>(key >> 32U)};
 }
-
-// What a tile by need counts for at least, as bytes: looking for its pages, of which few or none may be on
-// the device, and forgetting its measures.
-constexpr std::int64_t kTileCost = 2048;
-// From so many changed tiles on (a filter's result, not a stroke) nobody looks for the rectangle of each: of
-// a filtered tile all is new, and looking reads both of them.
-constexpr std::size_t kManyTiles = 256;
 
 // Where two states of a tile differ in heights: the rectangle, or all of it.
 TileSpan changedSpan(const engine::TileChange& change, bool many) {
@@ -292,7 +286,7 @@ bool LiveTexture::pumpPages(StagingRing& ring, std::uint64_t submission,
     const Pending& p = pending_.at(*key);
     std::int64_t bytes = 0;
     if (!pages_->write(tileOf(*key), p.spans, reader, ring, submission, bytes)) break;
-    spent += std::max(bytes, kTileCost);
+    spent += std::max(bytes, kTileCostBytes);
     count.bytes += bytes;
     if (!p.spans[0].empty()) moved.push_back(tileOf(*key));
     for (const TileSpan& span : p.spans) {

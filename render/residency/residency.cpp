@@ -4,21 +4,17 @@
 #include <bit>
 #include <cassert>
 
+#include "render/config.h"
+
 namespace fettle::render {
-namespace {
-
-constexpr int kLargestLog2Side = 8, kSmallestLog2Side = 6;
-constexpr std::uint64_t kFewPages = 256;
-
-}  // namespace
 
 PoolShape choosePool(std::uint64_t budget, std::size_t bytes_a_sample, std::uint32_t max_side,
                      std::uint32_t max_layers, std::uint64_t max_bytes, std::optional<int> log2_side) {
   PoolShape shape;
   const auto pages = [&] { return budget / bytes_a_sample >> (2 * shape.log2_side); };
   shape.log2_side =
-      std::clamp(static_cast<int>(std::bit_width(max_side)) - 1, kSmallestLog2Side, kLargestLog2Side);
-  while (shape.log2_side > kSmallestLog2Side && pages() < kFewPages) --shape.log2_side;
+      std::clamp(static_cast<int>(std::bit_width(max_side)) - 1, kSmallestLog2Page, kLargestLog2Page);
+  while (shape.log2_side > kSmallestLog2Page && pages() < kFewPages) --shape.log2_side;
   if (log2_side) shape.log2_side = *log2_side;
   // The limit of an image's size counts its larger part, the heights.
   const std::uint64_t most = std::min(pages(), max_bytes / sizeof(float) >> (2 * shape.log2_side));

@@ -18,7 +18,7 @@ struct PoolShape {
 };
 /// The most that `budget` bytes hold, in images of sides up to `max_side` [samples, >= 64], of at most
 /// `max_layers` layers and `max_bytes` bytes. Pages are of 256 samples a side, or smaller ones where that
-/// makes fewer than 256 of them: few large pages would follow a view badly. `log2_side`, 6 .. 8: pages of
+/// makes fewer than kFewPages. `log2_side`, kSmallestLog2Page .. kLargestLog2Page: pages of
 /// that side in any case.
 [[nodiscard]] PoolShape choosePool(std::uint64_t budget, std::size_t bytes_a_sample, std::uint32_t max_side,
                                    std::uint32_t max_layers, std::uint64_t max_bytes,

@@ -14,7 +14,7 @@ namespace fettle::trials {
 struct DetailChoice {
   const char* name;
   double error_px = 1.0;
-  std::int64_t vertices = 65536;
+  std::int64_t vertices = render::kFrameVertices;
   render::Sharpness sharpness = render::Sharpness::kFull;
 };
 
