@@ -11,8 +11,7 @@
 #include "bench/machine.h"
 #include "bench/own_folder.h"
 #include "bench/repeats.h"
-#include "engine/io/export.h"
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {

@@ -10,8 +10,8 @@
 #include "app/commands/scan_options.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
+#include "engine/formats/formats.h"
 #include "engine/io/files/atomic_file.h"
-#include "engine/io/import.h"
 
 namespace fettle::app {
 

@@ -6,7 +6,7 @@
 #include "app/commands/write_options.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::app {
 

@@ -12,6 +12,7 @@
 #include "app/terminal.h"
 #include "app/work/open_document.h"
 #include "app/work/streams.h"
+#include "engine/formats/formats.h"
 #include "engine/io/raster/marks.h"
 #include "engine/session/session.h"
 #include "haptic/base/strokes.h"
@@ -52,12 +53,12 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
     return tl::unexpected(status.error());
   engine::SessionOpenOptions open;
   open.history_bytes = 0;
-  auto session = engine::openSession(options.scan, open, job);
+  auto session = engine::openSession(options.scan, open, engine::importField, job);
   if (!session) return tl::unexpected(session.error());
   if (const std::int64_t start = haptic::journalStart(*session);
       start > 0 && (session->history.first() > 1 || session->history.last() < start)) {
     open.history_bytes = engine::History::kNoBound;
-    session = engine::openSession(options.scan, open, job);
+    session = engine::openSession(options.scan, open, engine::importField, job);
     if (!session) return tl::unexpected(session.error());
   }
   if (session->journal.empty() && session->history.number() > 0)

@@ -18,6 +18,7 @@
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
 #include "engine/field/tile_store.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::app {
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "app/window/workstation.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::app {
 namespace {

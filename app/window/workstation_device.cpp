@@ -9,7 +9,7 @@
 
 #include "app/terminal.h"
 #include "app/window/workstation.h"
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::app {
 namespace {

@@ -8,7 +8,7 @@
 #include "app/window/workstation.h"
 #include "app/work/outputs.h"
 #include "app/work/session_guard.h"
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 #include "engine/io/raster/marks.h"
 
 namespace fettle::app {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/formats/formats.h"
 #include "engine/session/checksum.h"
 
 namespace fettle::app {
@@ -21,14 +22,14 @@ engine::Result<Document> openSessionDocument(const std::string& file, std::size_
   engine::SessionOpenOptions options;
   options.history_bytes = history_bytes;
   options.journal = engine::JournalReading::kLeave;
-  auto resumed = engine::SessionWriter::open(file, options, {}, job);
+  auto resumed = engine::SessionWriter::open(file, options, {}, engine::importField, job);
   engine::Session session;
   if (resumed) {
     document.writer = std::move(resumed->writer);
     session = std::move(resumed->session);
   } else {
     if (resumed.error().kind == engine::ErrorKind::kCancelled) return tl::unexpected(resumed.error());
-    auto read = engine::openSession(file, options, job);
+    auto read = engine::openSession(file, options, engine::importField, job);
     if (!read) return tl::unexpected(read.error());
     session = *std::move(read);
     document.warnings.push_back(fmt::format(

@@ -12,6 +12,7 @@
 
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::app {
 

@@ -8,6 +8,7 @@
 #include "app/terminal.h"
 #include "app/work/open_document.h"
 #include "app/work/recent_files.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::app {
 namespace {
@@ -63,7 +64,7 @@ std::vector<ScanGuard::Known>& ScanGuard::recentSessions() {
 
 engine::Status ScanGuard::embed(Known& session, const std::string& scan, engine::JobControl& job) {
   if (!engine::needsFile(session.facts, scan)) return {};
-  if (auto done = engine::embedScan(session.path, job); !done) {
+  if (auto done = engine::embedScan(session.path, engine::importField, job); !done) {
     if (done.error().kind == engine::ErrorKind::kCancelled) return done;
     return engine::inputError(fmt::format("it is the scan of the session {}, which cannot take it in: {}",
                                           session.path, done.error().what),

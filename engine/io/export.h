@@ -47,30 +47,4 @@ struct Exported {
   std::vector<std::string> warnings;  ///< what the format could not keep; one line each, no full stop
 };
 
-/// Writes a field, its sign applied, in the format that the extension of `path` names (any case):
-///
-///   .tif .tiff  GeoTIFF, float32, compressed without loss if asked, geo-reference, CRS, units, holes = NaN,
-///               declared
-///   .asc        ESRI ASCII grid, every float with enough digits to come back bit for bit, holes = declared
-///               number (ESRI readers know no NaN); anisotropic spacing as dx, dy; a coordinate system goes
-///               into a .prj file beside it, which is there before the grid is
-///   .xyz        text, one "x y z" a sample that is no hole, world coordinates, shortest exact digits; raster
-///   and
-///               units in comments
-///   .ply        binary little-endian points, double x and y, float z, world coordinates; raster and units in
-///               comments; with ExportOptions::mesh the surface: cells without a hole as triangles
-///   .stl        the surface as triangles, binary; x and y from the field's corner, float32, lateral unit
-///   .png        16-bit grey, 0 = hole, quantised: the warning says count and largest error
-///   .x3p        ISO 25178-72, metres: float32 where the field is in metres, else float64, and every digit of
-///               units, spacing and origin in an entry of its own, so that each float comes back
-///   .exr        OpenEXR, channel Y, float32, holes = NaN; units, spacing, origin: an attribute of its own
-///   .fettle     a session (engine/session) that begins with this field, or with ExportOptions::original,
-///               marks and sign included, bit for bit
-///
-/// Other formats take no marks: these go to their own file (marks.h). The file appears whole or not at all
-/// (atomic_file.h). Errors: kInput for an unknown extension, a path that cannot be written; kFailed for a
-/// full disk; kCancelled. Thread: any; a long job.
-[[nodiscard]] Result<Exported> exportField(const Version& field, const std::string& path,
-                                           const ExportOptions& options, JobControl& job);
-
 }  // namespace fettle::engine

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <span>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,85 +12,37 @@
 
 namespace fettle::engine {
 
-/// One format: a row of the table in formats.cpp. To add one, write these functions and add the row.
+/// Whether a file with these first bytes (up to Format::kHeadBytes) and this extension (lower case, with the
+/// dot) is of a format. One with a signature ignores the extension.
+using FormatRecogniser = bool(std::string_view head, std::string_view extension);
+
+/// Reads the file; options were checked (finite, positive). May throw std::bad_alloc. Contract: importField.
+using FormatReader = Result<Imported>(const InputFile& file, const ImportOptions& options, JobControl& job);
+
+/// May throw std::bad_alloc. Contract: importPreview.
+using FormatPreviewer = Result<std::optional<Preview>>(const InputFile& file, const ImportOptions& options,
+                                                       std::int64_t max_samples, JobControl& job);
+
+/// Writes the file whole or not at all (AtomicFile). May throw std::bad_alloc. Contract: exportField.
+using FormatWriter = Result<Exported>(const Version& field, const std::string& path,
+                                      const ExportOptions& options, JobControl& job);
+
+/// One format. Its source ends with a function that returns it, which engine/formats lists.
 struct Format {
   FormatInfo info;
-
-  /// Whether a file with these first bytes (up to kHeadBytes) and this extension (lower case, with the dot)
-  /// is of this format. Rows are asked in order; a format with a signature ignores the extension. Null for
-  /// formats that are only written.
-  bool (*recognises)(std::string_view head, std::string_view extension) = nullptr;
-
-  /// Reads the file; options were checked (finite, positive). May throw std::bad_alloc. Contract:
-  /// importField.
-  Result<Imported> (*read)(const InputFile& file, const ImportOptions& options, JobControl& job) = nullptr;
-
-  /// Writes the file whole or not at all (AtomicFile). May throw std::bad_alloc. Contract: exportField.
-  Result<Exported> (*write)(const Version& field, const std::string& path, const ExportOptions& options,
-                            JobControl& job) = nullptr;
+  FormatRecogniser* recognises = nullptr;  ///< null for formats that are only written
+  FormatReader* read = nullptr;
+  FormatWriter* write = nullptr;
+  FormatPreviewer* preview = nullptr;  ///< null where a preview would cost as much as the whole
+  bool picture = false;                ///< samples may be distances: ImportOptions::depth_camera
+  bool mesh = false;                   ///< ExportOptions::mesh and max_error
+  bool tiff = false;                   ///< ExportOptions::cloud_optimised and tiff_compression
+  bool units_settled = false;          ///< no doubt about units: they were settled at an import before
 
   static constexpr std::size_t kHeadBytes = 4096;
 };
 
-[[nodiscard]] std::span<const Format> formatTable();
-
-// The readers, writers and recognisers of the table, one source file a format.
-
-[[nodiscard]] bool looksLikeTiff(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readTiff(const InputFile&, const ImportOptions&, JobControl&);
-[[nodiscard]] Result<std::optional<Preview>> previewTiff(const InputFile&, const ImportOptions&, std::int64_t,
-                                                         JobControl&);
-[[nodiscard]] Result<Exported> writeTiff(const Version&, const std::string&, const ExportOptions&,
-                                         JobControl&);
-
-[[nodiscard]] bool looksLikePng(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readPng(const InputFile&, const ImportOptions&, JobControl&);
-[[nodiscard]] Result<Exported> writePng(const Version&, const std::string&, const ExportOptions&,
-                                        JobControl&);
-
-[[nodiscard]] bool looksLikeAsciiGrid(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readAsciiGrid(const InputFile&, const ImportOptions&, JobControl&);
-[[nodiscard]] Result<Exported> writeAsciiGrid(const Version&, const std::string&, const ExportOptions&,
-                                              JobControl&);
-
-[[nodiscard]] bool looksLikePly(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readPly(const InputFile&, const ImportOptions&, JobControl&);
-[[nodiscard]] Result<Exported> writePly(const Version&, const std::string&, const ExportOptions&,
-                                        JobControl&);
-
-[[nodiscard]] bool looksLikeXyz(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readXyz(const InputFile&, const ImportOptions&, JobControl&);
-[[nodiscard]] Result<Exported> writeXyz(const Version&, const std::string&, const ExportOptions&,
-                                        JobControl&);
-
-[[nodiscard]] bool looksLikePcd(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readPcd(const InputFile&, const ImportOptions&, JobControl&);
-
-[[nodiscard]] bool looksLikeLas(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readLas(const InputFile&, const ImportOptions&, JobControl&);
-
-[[nodiscard]] bool looksLikeSur(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readSur(const InputFile&, const ImportOptions&, JobControl&);
-
-[[nodiscard]] bool looksLikeStl(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readStl(const InputFile&, const ImportOptions&, JobControl&);
-[[nodiscard]] Result<Exported> writeStl(const Version&, const std::string&, const ExportOptions&,
-                                        JobControl&);
-
-[[nodiscard]] bool looksLikeX3p(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readX3p(const InputFile&, const ImportOptions&, JobControl&);
-[[nodiscard]] Result<Exported> writeX3p(const Version&, const std::string&, const ExportOptions&,
-                                        JobControl&);
-
-[[nodiscard]] bool looksLikeExr(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readExr(const InputFile&, const ImportOptions&, JobControl&);
-[[nodiscard]] Result<Exported> writeExr(const Version&, const std::string&, const ExportOptions&,
-                                        JobControl&);
-
-// In engine/session.
-[[nodiscard]] bool looksLikeSession(std::string_view head, std::string_view extension);
-[[nodiscard]] Result<Imported> readSession(const InputFile&, const ImportOptions&, JobControl&);
-[[nodiscard]] Result<Exported> writeSession(const Version&, const std::string&, const ExportOptions&,
-                                            JobControl&);
+/// What a format's source defines, to be declared by its name where it is listed.
+using FormatRow = const Format&();
 
 }  // namespace fettle::engine

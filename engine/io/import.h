@@ -72,24 +72,6 @@ struct Imported {
   std::vector<float> lone_values;
 };
 
-/// Reads a height field from a file of any format of formats() that can be read. The format is recognised by
-/// content; the extension only decides between formats whose files look alike (text).
-///
-/// Rows of top-down formats are flipped so that row 0 has the lowest y; Grid::origin is the centre of the
-/// lower-left sample. Lateral unit: that of the coordinate system; degrees are approximated by the length of
-/// a degree of longitude and latitude at the field's middle (warned about, with the error); none = mm (warned
-/// about). Height unit: that of the band or of the vertical coordinate system, else the lateral one. Rows
-/// that run upwards and columns that run leftwards in the file are warned about too.
-///
-/// Errors (all ErrorKind::kInput, one line): a path that cannot be read, an unknown or damaged file, one that
-/// holds no valid height, more samples than memory can hold (told from the header, before anything is
-/// allocated); kCancelled. Memory: the field plus at most 256 MB plus the size of the file; clouds take
-/// 40 bytes a point and 8 a cell more while they are gridded.
-///
-/// Thread: any, several at once; a long job: reports progress and looks at cancel() in `job`.
-[[nodiscard]] Result<Imported> importField(const std::string& path, const ImportOptions& options,
-                                           JobControl& job);
-
 /// "mm", "m", "um", "µm", "nm", "cm", "km", "ft", "ftUS", "in" and their English names, any case; nothing for
 /// others. "deg" is no length and not accepted.
 [[nodiscard]] std::optional<LengthUnit> lengthUnitFromName(std::string_view name);
@@ -102,8 +84,5 @@ struct FormatInfo {
   bool reads = false;
   bool writes = false;
 };
-
-/// All formats, in the order in which they are tried. Static, any thread.
-[[nodiscard]] std::span<const FormatInfo> formats();
 
 }  // namespace fettle::engine

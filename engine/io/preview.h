@@ -19,18 +19,4 @@ struct Preview {
   std::int32_t width = 0, height = 0;  ///< of the file
 };
 
-/// Reads a coarse picture of at most `max_samples` samples (>= 4), when the file is so large that this is of
-/// use - over four times as many - and it can be had for a small share of the whole: a TIFF that is not
-/// packed, that has overviews, or whose packed blocks need not all be unpacked. Nothing otherwise: other
-/// formats, depth images, a field without a valid height at the samples looked at.
-///
-/// Cost: at most 24 million samples unpacked, or the rows looked at read. Rows lie farther apart than columns
-/// where packed blocks would cost more: their first rows are looked at alone.
-///
-/// What is left unsaid are the warnings; who reads the whole gets them. Errors: as importField, as far as the
-/// file is looked at. Thread: any; reports progress and looks at cancel() in `job`.
-[[nodiscard]] Result<std::optional<Preview>> importPreview(const std::string& path,
-                                                           const ImportOptions& options,
-                                                           std::int64_t max_samples, JobControl& job);
-
 }  // namespace fettle::engine

@@ -62,6 +62,9 @@ struct Session {
   std::vector<JournalEntry> journal;
 };
 
+/// What reads the scan that a session refers to: importField of engine/formats.
+using ScanImport = Result<Imported>(const std::string& path, const ImportOptions& options, JobControl& job);
+
 /// Whether a session's journal is read: its ticks may take more memory than the field.
 enum class JournalReading : std::uint8_t { kRead, kLeave };
 
@@ -92,7 +95,7 @@ struct SessionSize {
 /// read, a file cut short), a referenced scan that is missing or not the same. kFailed: out of memory.
 /// kCancelled. Time: that of reading and unpacking the tiles; thread: any; a long job.
 [[nodiscard]] Result<Session> openSession(const std::string& path, const SessionOpenOptions& options,
-                                          JobControl& job);
+                                          ScanImport* import_scan, JobControl& job);
 
 /// Writes a session whole or not at all, in place of what stood at `path` (atomic_file.h). States 0 ..
 /// history.first(), which the history no longer holds, become one step "Earlier steps". The journal's `state`

@@ -142,11 +142,12 @@ Result<std::string> findScan(const OriginalRow& row, const SessionOpenOptions& o
 }
 
 Result<Version> referencedOriginal(const SessionIndex& index, const SessionOpenOptions& options,
-                                   OriginalScan& scan, const std::string& path, JobControl& job) {
+                                   OriginalScan& scan, const std::string& path, ScanImport* import_scan,
+                                   JobControl& job) {
   const Result<std::string> file = findScan(index.original, options, path);
   if (!file) return tl::unexpected(file.error());
   scan.read = fileStamp(*file);
-  Result<Imported> imported = importField(*file, index.original.scan.import, job);
+  Result<Imported> imported = import_scan(*file, index.original.scan.import, job);
   if (!imported) return tl::unexpected(imported.error());
   if (contentHash(imported->field) != index.original.content_hash || !(imported->field.grid() == index.grid))
     return inputError("the scan is read otherwise than when the session was made", *file,
@@ -169,7 +170,8 @@ std::pair<std::int64_t, std::int64_t> statesToHold(const SessionIndex& index, st
   return {first, last};
 }
 
-Result<Session> read(SessionTables& tables, const SessionOpenOptions& options, JobControl& job) {
+Result<Session> read(SessionTables& tables, const SessionOpenOptions& options, ScanImport* import_scan,
+                     JobControl& job) {
   const std::string& path = tables.database().shownPath();
   const Result<SessionIndex> found = readIndex(tables);
   if (!found) return tl::unexpected(found.error());
@@ -180,7 +182,7 @@ Result<Session> read(SessionTables& tables, const SessionOpenOptions& options, J
   session.storage = index.original.storage;
   Result<Version> original = session.storage == OriginalStorage::kEmbedded
                                  ? embeddedOriginal(tables, index, job)
-                                 : referencedOriginal(index, options, session.scan, path, job);
+                                 : referencedOriginal(index, options, session.scan, path, import_scan, job);
   if (!original) return tl::unexpected(original.error());
   session.original = *original;
 
@@ -267,9 +269,10 @@ Result<SessionIndex> readIndex(SessionTables& tables) {
   return index;
 }
 
-Result<Session> readSession(SessionTables& tables, const SessionOpenOptions& options, JobControl& job) {
+Result<Session> readSession(SessionTables& tables, const SessionOpenOptions& options, ScanImport* import_scan,
+                            JobControl& job) {
   try {
-    return read(tables, options, job);
+    return read(tables, options, import_scan, job);
   } catch (const std::bad_alloc&) {
     return failure("memory for the session could not be had", tables.database().shownPath());
   }
@@ -292,13 +295,14 @@ Result<Step> readStep(SessionTables& tables, const SessionIndex& index, std::int
   return Step{index.steps[static_cast<std::size_t>(number)].info, std::move(*before), after};
 }
 
-Result<Session> openSession(const std::string& path, const SessionOpenOptions& options, JobControl& job) {
+Result<Session> openSession(const std::string& path, const SessionOpenOptions& options,
+                            ScanImport* import_scan, JobControl& job) {
   Result<ReadingConnection> connection = ReadingConnection::open(path);
   if (!connection) return tl::unexpected(connection.error());
   SessionTables tables(connection->database());
   // One transaction: all tables as one commit left them.
   if (Status status = connection->database().execute("BEGIN"); !status) return tl::unexpected(status.error());
-  return readSession(tables, options, job);
+  return readSession(tables, options, import_scan, job);
 }
 
 }  // namespace fettle::engine

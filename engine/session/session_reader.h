@@ -40,7 +40,7 @@ struct SessionIndex {
 /// The session of an open connection, within a transaction that the caller began; contract: openSession.
 /// `tables.database().shownPath()` is the session's path.
 [[nodiscard]] Result<Session> readSession(SessionTables& tables, const SessionOpenOptions& options,
-                                          JobControl& job);
+                                          ScanImport* import_scan, JobControl& job);
 
 /// The step that led to state `number`, given that state: its `before` shares all other tiles with it.
 [[nodiscard]] Result<Step> readStep(SessionTables& tables, const SessionIndex& index, std::int64_t number,

@@ -47,11 +47,11 @@ bool needsFile(const SessionFacts& session, const std::string& path) {
   return sum && *sum == session.scan;
 }
 
-Status embedScan(const std::string& session_path, JobControl& job) {
+Status embedScan(const std::string& session_path, ScanImport* import_scan, JobControl& job) {
   SessionOpenOptions reading;
   reading.history_bytes = 0;
   reading.journal = JournalReading::kLeave;
-  const Result<ResumedSession> session = SessionWriter::open(session_path, reading, {}, job);
+  const Result<ResumedSession> session = SessionWriter::open(session_path, reading, {}, import_scan, job);
   if (!session) return tl::unexpected(session.error());
   if (Status status = session->writer->saveAs(session_path, OriginalStorage::kEmbedded, job); !status)
     return status;

@@ -35,6 +35,6 @@ struct SessionFacts {
 /// Puts the scan that a session refers to into the session, so that it needs no other file. Nothing to do
 /// where it is there already. Errors: as SessionWriter::open, and a full disk; the session is then as it was.
 /// Thread: any; a long job.
-[[nodiscard]] Status embedScan(const std::string& session_path, JobControl& job);
+[[nodiscard]] Status embedScan(const std::string& session_path, ScanImport* import_scan, JobControl& job);
 
 }  // namespace fettle::engine

@@ -296,7 +296,8 @@ Result<std::unique_ptr<SessionWriter>> SessionWriter::create(const Session& sess
 }
 
 Result<ResumedSession> SessionWriter::open(const std::string& path, const SessionOpenOptions& open_options,
-                                           const SessionWriterOptions& options, JobControl& job) {
+                                           const SessionWriterOptions& options, ScanImport* import_scan,
+                                           JobControl& job) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored))  // before a lock file is made
     return inputError("there is no such session", path, "check the name");
@@ -304,7 +305,7 @@ Result<ResumedSession> SessionWriter::open(const std::string& path, const Sessio
   if (!lock) return tl::unexpected(lock.error());
   auto file = SessionFile::open(path, std::move(*lock), options.durability);
   if (!file) return tl::unexpected(file.error());
-  Result<Session> session = readSession((*file)->tables(), open_options, job);
+  Result<Session> session = readSession((*file)->tables(), open_options, import_scan, job);
   if (!session) return tl::unexpected(session.error());
   Version original = session->original;
   return ResumedSession{std::move(*session),

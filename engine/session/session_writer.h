@@ -75,7 +75,8 @@ class SessionWriter {
   /// its folder cannot be written to (openSession and create elsewhere then).
   [[nodiscard]] static Result<ResumedSession> open(const std::string& path,
                                                    const SessionOpenOptions& open_options,
-                                                   const SessionWriterOptions& options, JobControl& job);
+                                                   const SessionWriterOptions& options,
+                                                   ScanImport* import_scan, JobControl& job);
 
   SessionWriter(const SessionWriter&) = delete;
   SessionWriter& operator=(const SessionWriter&) = delete;

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "haptic/trials/hand_stroke.h"
 #include "tests/support/temp_folder.h"
 

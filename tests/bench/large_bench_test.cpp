@@ -9,7 +9,7 @@
 
 #include "bench/large_scan.h"
 #include "engine/field/tile_store.h"
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::bench {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "engine/io/raster/marks.h"
 #include "engine/marks/edge_suggestion.h"
 #include "tests/end_to_end/program.h"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "engine/session/session.h"
 #include "tests/end_to_end/program.h"
 #include "tests/support/temp_folder.h"

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "tests/engine/io/io_support.h"
 #include "tests/fuzz/import_fuzz.h"
 #include "tests/fuzz/seeds.h"

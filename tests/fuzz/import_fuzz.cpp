@@ -2,14 +2,13 @@
 // damage_test.cpp in every build.
 
 #include "tests/fuzz/import_fuzz.h"
+#include "engine/formats/formats.h"
 
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
 #include <unistd.h>
-
-#include "engine/io/import.h"
 
 namespace fettle::tests {
 

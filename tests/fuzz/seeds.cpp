@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "engine/formats/formats.h"
 #include "tests/engine/io/io_support.h"
 #include "tests/engine/io/surface/instrument_files.h"
 #include "tests/support/temp_folder.h"

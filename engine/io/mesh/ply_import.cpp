@@ -363,8 +363,6 @@ class PlyBody {
   std::uint64_t reported_ = 0;
 };
 
-}  // namespace
-
 bool looksLikePly(std::string_view head, std::string_view) {
   return head.starts_with("ply\n") || head.starts_with("ply\r\n") || head.starts_with("ply ");
 }
@@ -382,6 +380,22 @@ Result<Imported> readPly(const InputFile& file, const ImportOptions& options, Jo
   if (range.columns > 0) return gridRange(std::move(mesh.corners), range, options, "PLY", file.path(), job);
   return mesh.corners.organized ? sampleMesh(std::move(mesh), options, "PLY", file.path(), job)
                                 : gridPoints(std::move(mesh.corners), options, "PLY", file.path(), job);
+}
+
+}  // namespace
+
+FormatWriter writePly;  // points_export.cpp
+
+const Format& plyFormat() {
+  static constexpr std::string_view kExtensions[] = {".ply"};
+  static constexpr Format kFormat{
+      .info = {"PLY", "PLY points or mesh", kExtensions, true, true},
+      .recognises = looksLikePly,
+      .read = readPly,
+      .write = writePly,
+      .mesh = true,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

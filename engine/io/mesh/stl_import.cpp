@@ -83,8 +83,6 @@ Status readText(const InputFile& file, TriangleMesh& mesh, JobControl& job) {
   return {};
 }
 
-}  // namespace
-
 bool looksLikeStl(std::string_view head, std::string_view extension) {
   return extension == ".stl" ||
          (head.starts_with("solid") && looksLikeText(head) && head.find("facet") != std::string_view::npos);
@@ -110,6 +108,22 @@ Result<Imported> readStl(const InputFile& file, const ImportOptions& options, Jo
     status = readBytes(file, count, mesh, job);
   if (!status) return tl::unexpected(status.error());
   return sampleMesh(std::move(mesh), options, "STL", file.path(), job);
+}
+
+}  // namespace
+
+FormatWriter writeStl;  // mesh_export.cpp
+
+const Format& stlFormat() {
+  static constexpr std::string_view kExtensions[] = {".stl"};
+  static constexpr Format kFormat{
+      .info = {"STL", "STL mesh", kExtensions, true, true},
+      .recognises = looksLikeStl,
+      .read = readStl,
+      .write = writeStl,
+      .mesh = true,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

@@ -193,8 +193,6 @@ void readSystem(const InputFile& file, const LasHeader& header, PointCloud& clou
                                          cloud.unit ? ", of it only the unit is kept" : ""));
 }
 
-}  // namespace
-
 bool looksLikeLas(std::string_view head, std::string_view) {
   return head.starts_with("LASF");
 }
@@ -225,6 +223,18 @@ Result<Imported> readLas(const InputFile& file, const ImportOptions& options, Jo
     }
   }
   return gridPoints(std::move(cloud), options, "LAS", file.path(), job);
+}
+
+}  // namespace
+
+const Format& lasFormat() {
+  static constexpr std::string_view kExtensions[] = {".las", ".laz"};
+  static constexpr Format kFormat{
+      .info = {"LAS", "LAS points", kExtensions, true, false},
+      .recognises = looksLikeLas,
+      .read = readLas,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

@@ -296,8 +296,6 @@ class PcdBody {
   JobControl& job_;
 };
 
-}  // namespace
-
 bool looksLikePcd(std::string_view head, std::string_view extension) {
   return head.starts_with("# .PCD") || (extension == ".pcd" && head.find("FIELDS") != std::string_view::npos);
 }
@@ -314,6 +312,18 @@ Result<Imported> readPcd(const InputFile& file, const ImportOptions& options, Jo
   if (cloud.organized)
     return gridOrganized(std::move(cloud), header->width, header->height, options, "PCD", file.path(), job);
   return gridPoints(std::move(cloud), options, "PCD", file.path(), job);
+}
+
+}  // namespace
+
+const Format& pcdFormat() {
+  static constexpr std::string_view kExtensions[] = {".pcd"};
+  static constexpr Format kFormat{
+      .info = {"PCD", "PCD point cloud", kExtensions, true, false},
+      .recognises = looksLikePcd,
+      .read = readPcd,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

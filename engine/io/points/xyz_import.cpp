@@ -113,8 +113,6 @@ std::string_view withoutByteOrderMark(std::string_view text) {
   return text;
 }
 
-}  // namespace
-
 bool looksLikeXyz(std::string_view head, std::string_view extension) {
   head = withoutByteOrderMark(head);
   if (!looksLikeText(head)) return false;
@@ -198,6 +196,21 @@ Result<Imported> readXyz(const InputFile& file, const ImportOptions& options, Jo
   if (columns.height) cloud.height_unit = columns.height;
   cloud.takeRaster(notes.raster());
   return gridPoints(std::move(cloud), options, "XYZ", path, job);
+}
+
+}  // namespace
+
+FormatWriter writeXyz;  // engine/io/mesh/points_export.cpp
+
+const Format& xyzFormat() {
+  static constexpr std::string_view kExtensions[] = {".xyz", ".txt", ".csv", ".pts", ".dat"};
+  static constexpr Format kFormat{
+      .info = {"XYZ", "text with x y z a line", kExtensions, true, true},
+      .recognises = looksLikeXyz,
+      .read = readXyz,
+      .write = writeXyz,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

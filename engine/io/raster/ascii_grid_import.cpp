@@ -145,8 +145,6 @@ Status readRows(TextReader& text, const std::string& first, const HeightRule& ru
   return {};
 }
 
-}  // namespace
-
 bool looksLikeAsciiGrid(std::string_view head, std::string_view) {
   if (!looksLikeText(head)) return false;
   const std::size_t start = head.find_first_not_of(" \t\r\n");
@@ -194,6 +192,21 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
   if (std::string_view rest; text.word(rest))
     warnings.push_back("there are more numbers than the header promises, the rest was left out");
   return finishImport(std::move(*builder), rule, tally, "AAIGrid", std::move(warnings), path);
+}
+
+}  // namespace
+
+FormatWriter writeAsciiGrid;  // ascii_grid_export.cpp
+
+const Format& asciiGridFormat() {
+  static constexpr std::string_view kExtensions[] = {".asc", ".agr", ".grd"};
+  static constexpr Format kFormat{
+      .info = {"AAIGrid", "ESRI ASCII grid", kExtensions, true, true},
+      .recognises = looksLikeAsciiGrid,
+      .read = readAsciiGrid,
+      .write = writeAsciiGrid,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

@@ -313,8 +313,6 @@ Result<Imported> readPicture(const InputFile& file, const ImportOptions& options
   return finishImport(std::move(*builder), rule, tally, "EXR", std::move(warnings), path);
 }
 
-}  // namespace
-
 bool looksLikeExr(std::string_view head, std::string_view) {
   return head.starts_with("\x76\x2f\x31\x01");
 }
@@ -328,6 +326,21 @@ Result<Imported> readExr(const InputFile& file, const ImportOptions& options, Jo
     return inputError("the picture cannot be read: " + reasonOf(error), file.path(),
                       "the file is cut short or damaged");
   }
+}
+
+}  // namespace
+
+FormatWriter writeExr;  // exr_export.cpp
+
+const Format& exrFormat() {
+  static constexpr std::string_view kExtensions[] = {".exr"};
+  static constexpr Format kFormat{
+      .info = {"EXR", "OpenEXR", kExtensions, true, true},
+      .recognises = looksLikeExr,
+      .read = readExr,
+      .write = writeExr,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

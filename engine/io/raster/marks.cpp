@@ -20,6 +20,8 @@
 
 namespace fettle::engine {
 
+FormatRow pngFormat, tiffFormat;  // png_import.cpp, tiff_import.cpp
+
 namespace {
 
 // Sets the marks of a field one tile row at a time, from rows that come from the top of the picture down.
@@ -187,8 +189,8 @@ Result<Version> importMarks(const Version& field, const std::string& path) {
   const Result<std::size_t> got = file->read(0, head.data(), head.size());
   if (!got) return tl::unexpected(got.error());
   try {
-    if (looksLikePng({head.data(), *got}, {})) return fromPng(field, *file);
-    if (looksLikeTiff({head.data(), *got}, {})) return fromTiff(field, *file);
+    if (pngFormat().recognises({head.data(), *got}, {})) return fromPng(field, *file);
+    if (tiffFormat().recognises({head.data(), *got}, {})) return fromTiff(field, *file);
   } catch (const std::bad_alloc&) {
     return noMemory(path);
   }

@@ -61,8 +61,6 @@ Status readRows(PngReader& reader, const HeightRule& rule, FieldBuilder& builder
   return reader.finish();
 }
 
-}  // namespace
-
 bool looksLikePng(std::string_view head, std::string_view) {
   return head.starts_with(std::string_view("\x89PNG\r\n\x1a\n", 8));
 }
@@ -111,6 +109,22 @@ Result<Imported> readPng(const InputFile& file, const ImportOptions& options, Jo
                                           : readRows<std::uint8_t>(*reader, rule, *builder, tally, job);
   if (!status) return tl::unexpected(status.error());
   return finishImport(std::move(*builder), rule, tally, "PNG", std::move(warnings), file.path());
+}
+
+}  // namespace
+
+FormatWriter writePng;  // png_export.cpp
+
+const Format& pngFormat() {
+  static constexpr std::string_view kExtensions[] = {".png"};
+  static constexpr Format kFormat{
+      .info = {"PNG", "16-bit grey PNG", kExtensions, true, true},
+      .recognises = looksLikePng,
+      .read = readPng,
+      .write = writePng,
+      .picture = true,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

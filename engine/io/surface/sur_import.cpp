@@ -208,8 +208,6 @@ Status readRows(SurBytes& bytes, const HeightRule& rule, FieldBuilder& builder, 
   return {};
 }
 
-}  // namespace
-
 bool looksLikeSur(std::string_view head, std::string_view) {
   return head.starts_with("DIGITAL SURF") || head.starts_with("DSCOMPRESSED");
 }
@@ -261,6 +259,18 @@ Result<Imported> readSur(const InputFile& file, const ImportOptions& options, Jo
   // As long as each count can be told from the next, its float stands for it and nothing is lost.
   if (tally.rounding < 0.5 * std::abs(rule.scale)) tally.rounding = 0.0;
   return finishImport(std::move(*builder), rule, tally, "SUR", std::move(warnings), file.path());
+}
+
+}  // namespace
+
+const Format& surFormat() {
+  static constexpr std::string_view kExtensions[] = {".sur"};
+  static constexpr Format kFormat{
+      .info = {"SUR", "Digital Surf topography", kExtensions, true, false},
+      .recognises = looksLikeSur,
+      .read = readSur,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

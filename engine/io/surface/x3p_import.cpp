@@ -423,8 +423,6 @@ void checkMainXml(XmlStream& xml, const Surface& surface, const std::string& fol
     warnings.emplace_back("main.xml is not what its checksum says: it was changed after it was written");
 }
 
-}  // namespace
-
 bool looksLikeX3p(std::string_view head, std::string_view) {
   return head.starts_with("PK\x03\x04");
 }
@@ -530,6 +528,21 @@ Result<Imported> readX3p(const InputFile& file, const ImportOptions& options, Jo
       finishImport(std::move(*builder), rule, tally, "X3P", std::move(warnings), file.path());
   if (imported && !own && !options.unit) doubtTexture(*imported, "metres");
   return imported;
+}
+
+}  // namespace
+
+FormatWriter writeX3p;  // x3p_export.cpp
+
+const Format& x3pFormat() {
+  static constexpr std::string_view kExtensions[] = {".x3p"};
+  static constexpr Format kFormat{
+      .info = {"X3P", "x3p surface (ISO 25178-72)", kExtensions, true, true},
+      .recognises = looksLikeX3p,
+      .read = readX3p,
+      .write = writeX3p,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

@@ -82,8 +82,6 @@ Status readSamples(const TiffScan& scan, TiffSamples& samples, FieldBuilder& bui
   return status;
 }
 
-}  // namespace
-
 bool looksLikeTiff(std::string_view head, std::string_view) {
   using namespace std::string_view_literals;
   return head.starts_with("II*\0"sv) || head.starts_with("MM\0*"sv) || head.starts_with("II+\0"sv) ||
@@ -106,6 +104,25 @@ Result<Imported> readTiff(const InputFile& file, const ImportOptions& options, J
   if (!known) return inputError("the samples are of a type that cannot be heights", path);
   if (!status) return tl::unexpected(status.error());
   return finishImport(std::move(*builder), scan->rule, tally, "GTiff", std::move(scan->warnings), path);
+}
+
+}  // namespace
+
+FormatWriter writeTiff;       // tiff_export.cpp
+FormatPreviewer previewTiff;  // tiff_preview.cpp
+
+const Format& tiffFormat() {
+  static constexpr std::string_view kExtensions[] = {".tif", ".tiff"};
+  static constexpr Format kFormat{
+      .info = {"GTiff", "GeoTIFF and TIFF", kExtensions, true, true},
+      .recognises = looksLikeTiff,
+      .read = readTiff,
+      .write = writeTiff,
+      .preview = previewTiff,
+      .picture = true,
+      .tiff = true,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine

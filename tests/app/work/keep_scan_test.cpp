@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "app/work/open_document.h"
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 #include "engine/session/session_scan.h"
 #include "tests/app/work/hand_play.h"
 #include "tests/app/work/part.h"
@@ -52,7 +52,7 @@ class KeptScan : public testing::Test {
   void replaceScan() { ASSERT_TRUE(engine::exportField(touch->upright().inverted(), scan, {}, job)); }
   // What a program that starts now would find: nothing is closed yet, as after a kill.
   void expectRecovered() {
-    const auto session = engine::openSession(app::recoveryPath(scan), {}, job);
+    const auto session = engine::openSession(app::recoveryPath(scan), {}, engine::importField, job);
     ASSERT_TRUE(session) << session.error().line();
     EXPECT_EQ(engine::contentHash(session->original), engine::contentHash(document.original));
     EXPECT_EQ(session->history.number(), touch->history().number());

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "engine/formats/formats.h"
 #include "engine/session/session.h"
 #include "haptic/journal/session_player.h"
 #include "tests/support/process.h"
@@ -95,7 +96,7 @@ TEST(SessionOfAHand, OpensAfterAKillAtAnyMomentWithAllButWhatWasBeingDone) {
       continue;
     }
     engine::JobControl job;
-    const engine::Result<engine::Session> session = engine::openSession(path, {}, job);
+    const engine::Result<engine::Session> session = engine::openSession(path, {}, engine::importField, job);
     ASSERT_TRUE(session) << "kill " << kill << ": " << session.error().line();
     const auto verified = engine::verifySession(path, job);
     ASSERT_TRUE(verified) << "kill " << kill << ": " << verified.error().line();

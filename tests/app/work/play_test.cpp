@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "app/work/open_document.h"
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 #include "haptic/journal/session_player.h"
 #include "tests/app/work/hand_play.h"
 #include "tests/app/work/part.h"
@@ -77,7 +77,7 @@ TEST(SessionJournal, ReplaysToTheBitsThatHandsFiltersAndUndoMade) {
   for (const auto& [what, count] : did) std::printf("  %3d %s\n", count, what.c_str());
 
   engine::JobControl job;
-  const auto session = engine::openSession(path, {}, job);
+  const auto session = engine::openSession(path, {}, engine::importField, job);
   ASSERT_TRUE(session) << session.error().line();
   EXPECT_EQ(engine::contentHash(session->history.current()), expected);
   const auto played = haptic::playSession(*session, job);
@@ -115,7 +115,7 @@ TEST(SessionJournal, ReplaysFiltersWhoseRangeWasLeftToTheNoiseToTheSameBits) {
   ASSERT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
 
   engine::JobControl job;
-  const auto session = engine::openSession(path, {}, job);
+  const auto session = engine::openSession(path, {}, engine::importField, job);
   ASSERT_TRUE(session) << session.error().line();
   const auto played = haptic::playSession(*session, job);
   ASSERT_TRUE(played) << played.error().line();
@@ -153,7 +153,7 @@ TEST(SessionJournal, BeginsWithWhatACommandHadMadeOfTheScan) {
     expected = engine::contentHash(touch->history().current());
     ASSERT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
   }
-  const auto session = engine::openSession(path, {}, job);
+  const auto session = engine::openSession(path, {}, engine::importField, job);
   ASSERT_TRUE(session) << session.error().line();
   EXPECT_EQ(haptic::journalStart(*session), 1);
   const auto played = haptic::playSession(*session, job);

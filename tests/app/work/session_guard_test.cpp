@@ -7,7 +7,7 @@
 #include "app/work/open_document.h"
 #include "app/work/recent_files.h"
 #include "app/work/session_guard.h"
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 #include "engine/session/session_writer.h"
 #include "tests/app/work/part.h"
 #include "tests/support/temp_folder.h"
@@ -64,7 +64,7 @@ TEST_F(Guard, GivesEachSessionOfAScanTheScanBeforeThatIsReplaced) {
   EXPECT_FALSE(holdsItsScan(other));
   fs::remove(scan);
   for (const std::string& path : {beside, recent, recovery}) {
-    const auto session = engine::openSession(path, {}, job);
+    const auto session = engine::openSession(path, {}, engine::importField, job);
     ASSERT_TRUE(session) << session.error().line();
     EXPECT_EQ(engine::contentHash(session->original), engine::contentHash(roughPart()));
     EXPECT_EQ(session->journal.size(), 1U);
@@ -73,7 +73,7 @@ TEST_F(Guard, GivesEachSessionOfAScanTheScanBeforeThatIsReplaced) {
 
 TEST_F(Guard, RefusesWhileAnotherProgramWorksOnASessionOfTheScan) {
   makeSession(app::recoveryPath(scan), scan);
-  const auto other = engine::SessionWriter::open(app::recoveryPath(scan), {}, {}, job);
+  const auto other = engine::SessionWriter::open(app::recoveryPath(scan), {}, {}, engine::importField, job);
   ASSERT_TRUE(other);
   app::ScanGuard guard;
   const auto refused = guard.spare(scan, job);

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "engine/field/builder.h"
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 #include "tests/support/process.h"
 
 namespace fettle::tests {

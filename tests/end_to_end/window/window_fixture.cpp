@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "tests/support/process.h"
 
 namespace fettle::tests {

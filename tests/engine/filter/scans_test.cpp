@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "tests/engine/filter/reference.h"
 #include "tests/support/shared_data.h"
 

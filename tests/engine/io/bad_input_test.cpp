@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include "engine/formats/formats.h"
 #include "tests/engine/io/io_support.h"
 #include "tests/support/temp_folder.h"
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
+#include "engine/formats/formats.h"
 #include "tests/engine/io/io_support.h"
 #include "tests/support/markdown_table.h"
 #include "tests/support/temp_folder.h"

@@ -10,8 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
-#include "engine/io/export.h"
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::engine {
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "engine/formats/formats.h"
 #include "engine/session/session_writer.h"
 #include "tests/engine/session/play.h"
 #include "tests/support/temp_folder.h"
@@ -41,7 +42,7 @@ TEST(SessionConcurrency, WorkGoesOnWhileAJobSavesElsewhereAndAnotherReads) {
   std::thread reader([&] {
     JobControl reading;
     while (!over) {
-      const auto session = openSession((*writer)->path(), {}, reading);
+      const auto session = openSession((*writer)->path(), {}, importField, reading);
       EXPECT_TRUE(session) << session.error().line();
     }
   });
@@ -56,7 +57,7 @@ TEST(SessionConcurrency, WorkGoesOnWhileAJobSavesElsewhereAndAnotherReads) {
   reader.join();
   EXPECT_EQ(saved, 4);
   ASSERT_TRUE((*writer)->close(job));
-  const auto back = openSession(folder.file("4.fettle"), {}, job);
+  const auto back = openSession(folder.file("4.fettle"), {}, importField, job);
   ASSERT_TRUE(back) << back.error().line();
   EXPECT_EQ(difference(play.session, *back, Compare::kWhole), "");
 }

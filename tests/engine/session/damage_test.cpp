@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "engine/session/session_writer.h"
 #include "tests/engine/session/play.h"
 #include "tests/support/temp_folder.h"
@@ -53,10 +53,10 @@ void expectRefused(const std::string& path, const std::string& reason) {
     EXPECT_FALSE(error.remedy.empty()) << error.line();
     EXPECT_EQ(error.line().find('\n'), std::string::npos);
   };
-  const auto opened = openSession(path, {}, job);
+  const auto opened = openSession(path, {}, importField, job);
   ASSERT_FALSE(opened);
   check(opened.error());
-  const auto resumed = SessionWriter::open(path, {}, {}, job);
+  const auto resumed = SessionWriter::open(path, {}, {}, importField, job);
   ASSERT_FALSE(resumed);
   check(resumed.error());
   EXPECT_FALSE(fs::exists(path + "-lock"));
@@ -78,9 +78,9 @@ TEST(NoSession, OtherFilesAreRefusedByName) {
   JobControl job;
   for (const std::string& other :
        {folder.file("none.fettle"), folder.path().string(), std::string("/dev/null")})
-    EXPECT_FALSE(openSession(other, {}, job)) << other;
+    EXPECT_FALSE(openSession(other, {}, importField, job)) << other;
   writeBytes(path, "");
-  const auto empty = openSession(path, {}, job);
+  const auto empty = openSession(path, {}, importField, job);
   ASSERT_FALSE(empty);
   EXPECT_NE(empty.error().line().find("empty"), std::string::npos);
   EXPECT_EQ(fs::file_size(path), 0U);  // it was not made a database
@@ -126,7 +126,7 @@ TEST(Damage, RowsThatWereChangedAreNoticed) {
     ASSERT_FALSE(play.session.notes.empty());
     ASSERT_TRUE(saveSession(play.session, path, job));
     runSql(path, sql);
-    const auto session = openSession(path, {}, job);
+    const auto session = openSession(path, {}, importField, job);
     ASSERT_FALSE(session) << sql;
     EXPECT_NE(session.error().line().find("damaged"), std::string::npos)
         << sql << ": " << session.error().line();
@@ -150,7 +150,7 @@ TEST(Damage, AFlippedBitAnywhereIsNoticedOrChangesNothing) {
         random() % (k % 2 == 0 ? std::min<std::size_t>(bytes.size(), 60000) : bytes.size());
     bad[at] = static_cast<char>(bad[at] ^ (1 << (random() % 8)));
     writeBytes(path, bad);
-    const auto session = openSession(path, {}, job);
+    const auto session = openSession(path, {}, importField, job);
     if (!session) {
       ++noticed;
       EXPECT_FALSE(session.error().line().empty());
@@ -172,7 +172,7 @@ TEST(Damage, AFileCutShortIsNoticedWhereverItEnds) {
   const std::string bytes = bytesOf(path);
   for (std::size_t size = 1; size < bytes.size(); size += 1 + bytes.size() / 97) {
     writeBytes(path, bytes.substr(0, size));
-    const auto session = openSession(path, {}, job);
+    const auto session = openSession(path, {}, importField, job);
     ASSERT_FALSE(session) << size;
     EXPECT_EQ(session.error().kind, ErrorKind::kInput) << session.error().line();
   }
@@ -192,7 +192,7 @@ TEST(Damage, APageOfZerosOrNoiseIsNoticedOrUnused) {
       for (std::size_t i = 0; i < 4096; ++i)
         bad[page * 4096 + i] = zeros ? '\0' : static_cast<char>(random());
       writeBytes(path, bad);
-      const auto session = openSession(path, {}, job);
+      const auto session = openSession(path, {}, importField, job);
       EXPECT_EQ(session ? difference(play.session, *session, Compare::kWhole) : "", "") << "page " << page;
       EXPECT_FALSE(verifySession(path, job)) << "page " << page;
     }
@@ -217,7 +217,7 @@ TEST(Damage, ALogCutShortLosesOnlyItsLastActions) {
     writeBytes(copy, file);
     writeBytes(copy + "-wal", log.substr(0, size));
     fs::remove(copy + "-shm");
-    const auto session = openSession(copy, {}, job);
+    const auto session = openSession(copy, {}, importField, job);
     ASSERT_TRUE(session) << session.error().line();
     Play replay(6, 200, 150);
     while (replay.session.journal.size() < session->journal.size()) replay.act(nullptr);

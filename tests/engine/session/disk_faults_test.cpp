@@ -12,6 +12,7 @@
 #include <sys/mount.h>
 #include <sys/resource.h>
 
+#include "engine/formats/formats.h"
 #include "engine/session/session_writer.h"
 #include "tests/engine/session/faulty_disk.h"
 #include "tests/engine/session/play.h"
@@ -171,7 +172,7 @@ AfterPowerCut cutPowerAfter(Durability durability, int actions, int keep_of_256,
     writer->reset();
     disk.heal();
   }
-  const auto session = openSession(copy, {}, job);
+  const auto session = openSession(copy, {}, importField, job);
   if (!session) {
     result.problem = session.error().line();
     return result;
@@ -234,7 +235,7 @@ TEST(FullDisk, OfATmpfsKeepsTheWorkUntilThereIsRoomOrAnotherPlace) {
     ASSERT_TRUE((*writer)->close(job));
     EXPECT_EQ(differenceOnDisk(play.session, elsewhere.file("b.fettle")), "");
     // What was committed before is still there to be opened.
-    const auto old = openSession(path, {}, job);
+    const auto old = openSession(path, {}, importField, job);
     ASSERT_TRUE(old) << old.error().line();
     EXPECT_GT(old->journal.size(), 0U);
   }

@@ -2,8 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/io/export.h"
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "tests/engine/session/play.h"
 #include "tests/support/temp_folder.h"
 
@@ -55,7 +54,7 @@ TEST(SessionFormat, AFieldIsAStepFromTheOriginalThatItWasMadeFrom) {
     EXPECT_EQ(difference(turned(made), read->field), "");
     ASSERT_TRUE(read->original);
     EXPECT_EQ(difference(turned(original), *read->original), "");
-    const auto session = openSession(path, {}, job);
+    const auto session = openSession(path, {}, importField, job);
     ASSERT_TRUE(session) << session.error().line();
     EXPECT_EQ(session->history.number(), inverted ? 2 : 1);
     EXPECT_EQ(difference(original, session->original), "");
@@ -67,7 +66,7 @@ TEST(SessionFormat, AFieldIsAStepFromTheOriginalThatItWasMadeFrom) {
     EXPECT_TRUE(read->original->grid() == read->field.grid());
   }
   ASSERT_TRUE(exportField(made, path, {}, job));
-  EXPECT_EQ(openSession(path, {}, job)->history.number(), 0);
+  EXPECT_EQ(openSession(path, {}, importField, job)->history.number(), 0);
 }
 
 TEST(SessionFormat, OptionsThatDoNotApplyAreRefusedAndOthersWinWithAWarning) {

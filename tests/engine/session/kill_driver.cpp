@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/formats/formats.h"
 #include "tests/engine/session/play.h"
 
 using namespace fettle::engine;
@@ -47,7 +48,7 @@ int main(int count, char** arguments) {
     if (!created) return refuse(created.error());
     writer = std::move(*created);
   } else {
-    auto resumed = SessionWriter::open(path, {}, options, job);
+    auto resumed = SessionWriter::open(path, {}, options, importField, job);
     if (!resumed) return refuse(resumed.error());
     writer = std::move(resumed->writer);
     play = std::make_unique<Play>(seed, resumed->session);

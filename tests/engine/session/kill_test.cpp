@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "engine/formats/formats.h"
 #include "engine/session/session.h"
 #include "tests/engine/session/play.h"
 #include "tests/support/process.h"
@@ -107,7 +108,7 @@ TEST(SessionKill, AtAnyMomentNothingButTheActionInProgressIsLost) {
     }
     JobControl job;
     const auto open_start = std::chrono::steady_clock::now();
-    const Result<Session> session = openSession(path, {}, job);
+    const Result<Session> session = openSession(path, {}, importField, job);
     slowest_open = std::max(
         slowest_open, std::chrono::duration<double>(std::chrono::steady_clock::now() - open_start).count());
     ASSERT_TRUE(session) << "kill " << kill << ": " << session.error().line();

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "engine/formats/formats.h"
 #include "engine/session/session_writer.h"
 #include "tests/engine/session/play.h"
 #include "tests/support/temp_folder.h"
@@ -45,13 +46,13 @@ TEST(ReadOnlyFolder, ASessionThereIsReadButNotWrittenAndSavedElsewhere) {
   const ReadOnly read_only(folder.path());
   if (!read_only.done()) GTEST_SKIP() << "mounting is not permitted";
   EXPECT_EQ(differenceOnDisk(play.session, path), "");
-  const auto writer = SessionWriter::open(path, {}, {}, job);
+  const auto writer = SessionWriter::open(path, {}, {}, importField, job);
   ASSERT_FALSE(writer);
   EXPECT_EQ(writer.error().kind, ErrorKind::kInput);
   EXPECT_NE(writer.error().line().find("Read-only file system"), std::string::npos) << writer.error().line();
   EXPECT_NE(writer.error().line().find("save the session elsewhere"), std::string::npos)
       << writer.error().line();
-  const auto session = openSession(path, {}, job);
+  const auto session = openSession(path, {}, importField, job);
   ASSERT_TRUE(session);
   EXPECT_FALSE(saveSession(*session, folder.file("b.fettle"), job));
   auto other = SessionWriter::create(*session, elsewhere.file("b.fettle"), {}, job);
@@ -99,7 +100,7 @@ TEST(TwoPrograms, TheSecondIsToldWhoWorksOnTheSessionAndMayRead) {
   };
   const std::string me = "process " + std::to_string(getpid()) + " is working on the session, " + path;
   EXPECT_TRUE(inChild([&] {
-    const auto second = SessionWriter::open(path, {}, {}, job);
+    const auto second = SessionWriter::open(path, {}, {}, importField, job);
     return !second && second.error().line().starts_with(me);
   }));
   EXPECT_TRUE(inChild([&] {
@@ -114,10 +115,10 @@ TEST(TwoPrograms, TheSecondIsToldWhoWorksOnTheSessionAndMayRead) {
   EXPECT_GT((*writer)->status().committed, before.committed);
   EXPECT_TRUE(inChild([&] { return differenceOnDisk(play.session, path).empty(); }));
   // The same within one program.
-  EXPECT_FALSE(SessionWriter::open(path, {}, {}, job));
+  EXPECT_FALSE(SessionWriter::open(path, {}, {}, importField, job));
   EXPECT_EQ(differenceOnDisk(play.session, path), "");
   ASSERT_TRUE((*writer)->close(job));
-  EXPECT_TRUE(SessionWriter::open(path, {}, {}, job));
+  EXPECT_TRUE(SessionWriter::open(path, {}, {}, importField, job));
   EXPECT_EQ(differenceOnDisk(play.session, path), "");
 }
 
@@ -133,7 +134,7 @@ TEST(TwoPrograms, ALockThatADeadProgramLeftMeansNothing) {
   }
   waitpid(child, nullptr, 0);
   ASSERT_TRUE(fs::exists(path + "-lock"));
-  EXPECT_TRUE(SessionWriter::open(path, {}, {}, job));
+  EXPECT_TRUE(SessionWriter::open(path, {}, {}, importField, job));
   EXPECT_FALSE(fs::exists(path + "-lock"));
 }
 
@@ -145,9 +146,9 @@ TEST(Links, ASessionBehindALinkIsOneSession) {
   auto writer = SessionWriter::create(play.session, folder.file("real.fettle"), {}, job);
   ASSERT_TRUE(writer);
   fs::create_symlink(folder.file("real.fettle"), other.file("link.fettle"));
-  EXPECT_FALSE(SessionWriter::open(other.file("link.fettle"), {}, {}, job));
+  EXPECT_FALSE(SessionWriter::open(other.file("link.fettle"), {}, {}, importField, job));
   writer->reset();
-  auto resumed = SessionWriter::open(other.file("link.fettle"), {}, {}, job);
+  auto resumed = SessionWriter::open(other.file("link.fettle"), {}, {}, importField, job);
   ASSERT_TRUE(resumed) << resumed.error().line();
   for (int a = 0; a < 5; ++a) play.act(resumed->writer.get());
   ASSERT_TRUE(resumed->writer->close(job));

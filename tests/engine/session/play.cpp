@@ -10,6 +10,7 @@
 
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
+#include "engine/formats/formats.h"
 #include "engine/session/tile_codec.h"
 
 namespace fettle::engine {
@@ -211,7 +212,7 @@ std::string difference(const Session& a, const Session& b, Compare compare) {
 
 std::string differenceOnDisk(const Session& session, const std::string& path) {
   JobControl job;
-  const auto back = openSession(path, {}, job);
+  const auto back = openSession(path, {}, importField, job);
   if (!back) return back.error().line();
   if (const auto whole = verifySession(path, job); !whole) return whole.error().line();
   return difference(session, *back, Compare::kWhole);

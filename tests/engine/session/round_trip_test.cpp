@@ -4,8 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/field/difference.h"
-#include "engine/io/export.h"
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "engine/session/session.h"
 #include "tests/engine/session/play.h"
 #include "tests/support/shared_data.h"
@@ -25,7 +24,7 @@ std::string saved(const Session& session, const std::string& path) {
 
 Result<Session> opened(const std::string& path, const SessionOpenOptions& options = {}) {
   JobControl job;
-  return openSession(path, options, job);
+  return openSession(path, options, importField, job);
 }
 
 RC_GTEST_PROP(Session, WhateverWasDoneComesBackBitForBit, ()) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 #include "engine/session/session_scan.h"
 #include "engine/session/session_writer.h"
 #include "tests/engine/session/play.h"
@@ -44,7 +44,7 @@ TEST_F(ReferredScan, IsEmbeddedWhereItsFileIsNoLongerTheOneThatWasRead) {
   for (int a = 0; a < 6; ++a) play.act(nullptr);
   ASSERT_TRUE(saveSession(play.session, path, job));
   EXPECT_EQ(sessionFacts(path)->storage, OriginalStorage::kReferenced);
-  auto open = SessionWriter::open(path, {}, {}, job);
+  auto open = SessionWriter::open(path, {}, {}, importField, job);
   ASSERT_TRUE(open);
   replaceScan();
   ASSERT_TRUE(saveSession(play.session, folder.file("b.fettle"), job));
@@ -81,14 +81,14 @@ TEST_F(ReferredScan, IsPutIntoASessionBeforeItsFileIsReplaced) {
   EXPECT_FALSE(needsFile(*facts, copy));
   {
     // Not while another program writes to it.
-    const auto other = SessionWriter::open(path, {}, {}, job);
+    const auto other = SessionWriter::open(path, {}, {}, importField, job);
     ASSERT_TRUE(other);
-    const auto refused = embedScan(path, job);
+    const auto refused = embedScan(path, importField, job);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().kind, ErrorKind::kInput);
   }
-  ASSERT_TRUE(embedScan(path, job));
-  ASSERT_TRUE(embedScan(path, job));  // again is nothing
+  ASSERT_TRUE(embedScan(path, importField, job));
+  ASSERT_TRUE(embedScan(path, importField, job));  // again is nothing
   facts = sessionFacts(path);
   ASSERT_TRUE(facts);
   EXPECT_EQ(facts->storage, OriginalStorage::kEmbedded);

@@ -15,7 +15,7 @@
 
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 #include "engine/session/session_writer.h"
 
 using namespace fettle::engine;
@@ -79,7 +79,7 @@ void sizes(const std::string& name, const Version& field, const fs::path& folder
   std::vector<double> opens;
   for (int k = 0; k < 5; ++k) {
     start = Clock::now();
-    const auto session = openSession(path, {}, job);
+    const auto session = openSession(path, {}, importField, job);
     if (!session) fail(session.error());
     opens.push_back(since(start));
   }
@@ -150,7 +150,7 @@ void commits(const Version& field, Durability durability, const fs::path& folder
              static_cast<double>(field.grid().samples()) * 4e-6 / s);
   if (Status status = (*writer)->close(job); !status) fail(status.error());
   const auto start = Clock::now();
-  const auto back = openSession(path, {}, job);
+  const auto back = openSession(path, {}, importField, job);
   if (!back) fail(back.error());
   fmt::print("  open with 61 steps of history ({:.1f} MB file): {:.0f} ms\n",
              static_cast<double>(fs::file_size(path)) * 1e-6, since(start) * 1e3);

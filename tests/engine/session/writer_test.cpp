@@ -1,3 +1,4 @@
+#include "engine/formats/formats.h"
 #include "engine/session/session_writer.h"
 
 #include <filesystem>
@@ -6,7 +7,6 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/field/live_field.h"
-#include "engine/io/export.h"
 #include "tests/engine/session/play.h"
 #include "tests/support/temp_folder.h"
 
@@ -53,7 +53,7 @@ TEST(SessionWriter, GoesOnWithAnOpenedSession) {
   created(play.session, path);
   JobControl job;
   for (int round = 0; round < 5; ++round) {
-    auto resumed = SessionWriter::open(path, {}, {}, job);
+    auto resumed = SessionWriter::open(path, {}, {}, importField, job);
     ASSERT_TRUE(resumed) << resumed.error().line();
     EXPECT_EQ(difference(play.session, resumed->session, Compare::kWhole), "");
     play = Play(1, resumed->session);
@@ -116,11 +116,11 @@ TEST(SessionWriter, SaveAsTakesEverythingAndGoesOnThere) {
   EXPECT_EQ(differenceOnDisk(play.session, folder.file("b 'q' % ?#.fettle")), "");
   // The first one stands where it stood when the work went elsewhere, or a little before.
   JobControl reading;
-  const auto old = openSession(folder.file("a.fettle"), {}, reading);
+  const auto old = openSession(folder.file("a.fettle"), {}, importField, reading);
   ASSERT_TRUE(old) << old.error().line();
   EXPECT_LE(old->journal.size(), then.journal.size());
   // It is free: another program may go on with it.
-  EXPECT_TRUE(SessionWriter::open(folder.file("a.fettle"), {}, {}, reading));
+  EXPECT_TRUE(SessionWriter::open(folder.file("a.fettle"), {}, {}, importField, reading));
 }
 
 TEST(SessionWriter, SaveAsReplacesAnotherSessionWholeWithItsLog) {
@@ -164,13 +164,13 @@ TEST(SessionWriter, SaveAsCanEmbedAScanThatWasReferredTo) {
   for (int a = 0; a < 10; ++a) play.act(writer.get());
   ASSERT_TRUE(writer->flush(job));
   // In its own place too.
-  auto other = SessionWriter::open(folder.file("b.fettle"), {}, {}, job);
+  auto other = SessionWriter::open(folder.file("b.fettle"), {}, {}, importField, job);
   ASSERT_TRUE(other);
   ASSERT_TRUE(other->writer->saveAs(folder.file("b.fettle"), OriginalStorage::kEmbedded, job));
   fs::remove(scan);
   EXPECT_EQ(differenceOnDisk(play.session, folder.file("c.fettle")), "");
   EXPECT_EQ(differenceOnDisk(other->session, folder.file("b.fettle")), "");
-  EXPECT_FALSE(openSession(folder.file("a.fettle"), {}, job));
+  EXPECT_FALSE(openSession(folder.file("a.fettle"), {}, importField, job));
 }
 
 // Its tiles lie behind those of the steps before; steps that are undone and replaced take only theirs away.
@@ -196,7 +196,7 @@ TEST(SessionWriter, AScanEmbeddedLaterStaysWhenTheStepsBeforeAreReplaced) {
     writer->commit(number + 1,
                    {{"Again", StepKind::kMark, {}, {}, 0}, history.state(number), history.state(3)}, {});
     ASSERT_TRUE(writer->flush(job)) << number;
-    const auto after = openSession(path, {}, job);
+    const auto after = openSession(path, {}, importField, job);
     ASSERT_TRUE(after) << number << ": " << after.error().line();
     EXPECT_EQ(difference(after->original, play.session.original), "") << number;
     EXPECT_EQ(after->history.last(), number + 1);

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "haptic/tick/replay.h"
 #include "haptic/tick/tick.h"
 #include "tests/numeric/support/touch_case.h"

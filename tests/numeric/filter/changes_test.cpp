@@ -14,7 +14,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/field/live_field.h"
-#include "engine/io/import.h"
+#include "engine/formats/formats.h"
 #include "engine/io/raster/marks.h"
 #include "haptic/tick/brush.h"
 #include "tests/engine/filter/reference.h"

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/builder.h"
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::tests {
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 #include "engine/io/raster/marks.h"
 #include "haptic/tick/replay.h"
 

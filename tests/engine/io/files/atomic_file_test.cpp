@@ -1,4 +1,5 @@
 #include "engine/io/files/atomic_file.h"
+#include "engine/formats/formats.h"
 
 #include <csignal>
 #include <filesystem>

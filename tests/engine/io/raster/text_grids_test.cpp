@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <png.h>
 
+#include "engine/formats/formats.h"
 #include "engine/io/units.h"
 #include "tests/engine/io/io_support.h"
 #include "tests/support/temp_folder.h"

@@ -1,6 +1,7 @@
 // What BlockPacker makes is a zlib stream of the predictor's bytes, told here once more in plain words, and
 // GDAL reads the files made of such blocks bit for bit.
 #include "engine/io/tiff/block_packer.h"
+#include "engine/formats/formats.h"
 
 #include <bit>
 #include <cfloat>

@@ -1,5 +1,4 @@
 // The coarse picture of a large TIFF: the samples it says it has, where it says they are.
-#include "engine/io/preview.h"
 
 #include <cmath>
 #include <filesystem>
@@ -10,7 +9,7 @@
 #include <gdal_frmts.h>
 #include <gtest/gtest.h>
 
-#include "engine/io/export.h"
+#include "engine/formats/formats.h"
 #include "tests/engine/io/io_support.h"
 #include "tests/support/temp_folder.h"
 

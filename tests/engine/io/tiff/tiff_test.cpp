@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 #include <ogr_srs_api.h>
 
+#include "engine/formats/formats.h"
 #include "tests/engine/io/io_support.h"
 #include "tests/support/temp_folder.h"
 

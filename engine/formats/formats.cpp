@@ -1,4 +1,4 @@
-#include "engine/io/format.h"
+#include "engine/formats/formats.h"
 
 #include <algorithm>
 #include <array>
@@ -9,47 +9,21 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/io/format.h"
 #include "engine/io/points/perspective.h"
-#include "engine/io/preview.h"
 #include "engine/io/unit_doubt.h"
 
 namespace fettle::engine {
 
+// Each at the end of its source: engine/io/*/*_import.cpp, session_format.cpp.
+FormatRow tiffFormat, pngFormat, plyFormat, pcdFormat, lasFormat, surFormat, x3pFormat, exrFormat, stlFormat,
+    asciiGridFormat, sessionFormat, xyzFormat;
+
 namespace {
 
-using namespace std::string_view_literals;
-
-constexpr std::array kTiff{".tif"sv, ".tiff"sv};
-constexpr std::array kPng{".png"sv};
-constexpr std::array kPcd{".pcd"sv};
-constexpr std::array kLas{".las"sv, ".laz"sv};
-constexpr std::array kSur{".sur"sv};
-constexpr std::array kExr{".exr"sv};
-constexpr std::array kStl{".stl"sv};
-constexpr std::array kX3p{".x3p"sv};
-constexpr std::array kAscii{".asc"sv, ".agr"sv, ".grd"sv};
-constexpr std::array kPly{".ply"sv};
-constexpr std::array kSession{".fettle"sv};
-constexpr std::array kXyz{".xyz"sv, ".txt"sv, ".csv"sv, ".pts"sv, ".dat"sv};
-
 // Signatures first; text that is nothing else is tried as points.
-constexpr std::array kTable{
-    Format{{"GTiff", "GeoTIFF and TIFF", kTiff, true, true}, looksLikeTiff, readTiff, writeTiff},
-    Format{{"PNG", "16-bit grey PNG", kPng, true, true}, looksLikePng, readPng, writePng},
-    Format{{"PLY", "PLY points or mesh", kPly, true, true}, looksLikePly, readPly, writePly},
-    Format{{"PCD", "PCD point cloud", kPcd, true, false}, looksLikePcd, readPcd, nullptr},
-    Format{{"LAS", "LAS points", kLas, true, false}, looksLikeLas, readLas, nullptr},
-    Format{{"SUR", "Digital Surf topography", kSur, true, false}, looksLikeSur, readSur, nullptr},
-    Format{{"X3P", "x3p surface (ISO 25178-72)", kX3p, true, true}, looksLikeX3p, readX3p, writeX3p},
-    Format{{"EXR", "OpenEXR", kExr, true, true}, looksLikeExr, readExr, writeExr},
-    Format{{"STL", "STL mesh", kStl, true, true}, looksLikeStl, readStl, writeStl},
-    Format{{"AAIGrid", "ESRI ASCII grid", kAscii, true, true},
-           looksLikeAsciiGrid,
-           readAsciiGrid,
-           writeAsciiGrid},
-    Format{{"Fettle", "Fettle session", kSession, true, true}, looksLikeSession, readSession, writeSession},
-    Format{{"XYZ", "text with x y z a line", kXyz, true, true}, looksLikeXyz, readXyz, writeXyz},
-};
+constexpr FormatRow* kTable[] = {tiffFormat, pngFormat, plyFormat, pcdFormat,       lasFormat,     surFormat,
+                                 x3pFormat,  exrFormat, stlFormat, asciiGridFormat, sessionFormat, xyzFormat};
 
 std::string extensionsOf(bool FormatInfo::*able) {
   std::vector<std::string_view> all;
@@ -87,7 +61,7 @@ Status checkOptions(const ImportOptions& options) {
 // Depth images are read as any picture of numbers, and then given the grid of their camera.
 Result<Imported> readDepthImage(const Format& format, const InputFile& file, ImportOptions options,
                                 JobControl& job) {
-  if (format.info.name != "PNG" && format.info.name != "GTiff")
+  if (!format.picture)
     return inputError(fmt::format("{} is no picture of distances", format.info.description), file.path(),
                       "--depth-camera is for PNG and TIFF");
   const bool assumed = !options.no_data;
@@ -100,36 +74,38 @@ Result<Imported> readDepthImage(const Format& format, const InputFile& file, Imp
   return image;
 }
 
+// Null where no format knows the file.
+Result<const Format*> recognised(const InputFile& file) {
+  std::string head(Format::kHeadBytes, '\0');
+  const Result<std::size_t> got = file.read(0, head.data(), head.size());
+  if (!got) return tl::unexpected(got.error());
+  head.resize(*got);
+  for (FormatRow* row : kTable)
+    if (row().recognises != nullptr && row().recognises(head, file.extension())) return &row();
+  return nullptr;
+}
+
 Result<Imported> import(const std::string& path, const ImportOptions& options, JobControl& job) {
   if (Status status = checkOptions(options); !status) return tl::unexpected(status.error());
   const Result<InputFile> file = InputFile::open(path);
   if (!file) return tl::unexpected(file.error());
-  std::string head(Format::kHeadBytes, '\0');
-  const Result<std::size_t> got = file->read(0, head.data(), head.size());
-  if (!got) return tl::unexpected(got.error());
-  head.resize(*got);
-  for (const Format& format : formatTable())
-    if (format.recognises != nullptr && format.recognises(head, file->extension())) {
-      Result<Imported> imported = options.depth_camera ? readDepthImage(format, *file, options, job)
-                                                       : format.read(*file, options, job);
-      // A session's units were settled when its scan was imported.
-      if (imported && imported->format != "Fettle") doubtUnits(*imported, options);
-      return imported;
-    }
-  return inputError("the file is in no format that is known", path,
-                    "known are " + extensionsOf(&FormatInfo::reads));
+  const Result<const Format*> format = recognised(*file);
+  if (!format) return tl::unexpected(format.error());
+  if (*format == nullptr)
+    return inputError("the file is in no format that is known", path,
+                      "known are " + extensionsOf(&FormatInfo::reads));
+  Result<Imported> imported = options.depth_camera ? readDepthImage(**format, *file, options, job)
+                                                   : (*format)->read(*file, options, job);
+  if (imported && !(*format)->units_settled) doubtUnits(*imported, options);
+  return imported;
 }
 
 }  // namespace
 
-std::span<const Format> formatTable() {
-  return kTable;
-}
-
 std::span<const FormatInfo> formats() {
   static const auto infos = [] {
-    std::array<FormatInfo, kTable.size()> all;
-    std::transform(kTable.begin(), kTable.end(), all.begin(), [](const Format& f) { return f.info; });
+    std::array<FormatInfo, std::size(kTable)> all;
+    std::ranges::transform(kTable, all.begin(), [](FormatRow* row) { return row().info; });
     return all;
   }();
   return infos;
@@ -150,12 +126,10 @@ Result<std::optional<Preview>> importPreview(const std::string& path, const Impo
     if (options.depth_camera) return std::nullopt;
     const Result<InputFile> file = InputFile::open(path);
     if (!file) return tl::unexpected(file.error());
-    std::string head(4, '\0');
-    const Result<std::size_t> got = file->read(0, head.data(), head.size());
-    if (!got) return tl::unexpected(got.error());
-    head.resize(*got);
-    if (!looksLikeTiff(head, {})) return std::nullopt;
-    return previewTiff(*file, options, max_samples, job);
+    const Result<const Format*> format = recognised(*file);
+    if (!format) return tl::unexpected(format.error());
+    if (*format == nullptr || (*format)->preview == nullptr) return std::nullopt;
+    return (*format)->preview(*file, options, max_samples, job);
   } catch (const std::bad_alloc&) {
     return inputError("the file needs more memory than is free", path, "cut the scan into parts");
   }
@@ -169,18 +143,20 @@ Result<Exported> exportField(const Version& field, const std::string& path, cons
   if (options.max_error && !(std::isfinite(*options.max_error) && *options.max_error >= 0.0))
     return inputError(fmt::format("{} cannot be the error of a mesh", *options.max_error), path);
   const std::string extension = extensionOf(path);
-  if ((options.mesh || options.max_error) && extension != ".ply" && extension != ".stl")
+  const Format* format = nullptr;
+  for (FormatRow* row : kTable)
+    if (row().write != nullptr &&
+        std::ranges::find(row().info.extensions, extension) != row().info.extensions.end())
+      format = &row();
+  if ((options.mesh || options.max_error) && !(format != nullptr && format->mesh))
     return inputError("only .ply and .stl hold a mesh", path, "write one of these or leave --mesh out");
-  if (options.cloud_optimised && extension != ".tif" && extension != ".tiff")
+  if (options.cloud_optimised && !(format != nullptr && format->tiff))
     return inputError("only .tif can be cloud-optimised", path, "write that or leave the option out");
-  if (options.tiff_compression && extension != ".tif" && extension != ".tiff")
+  if (options.tiff_compression && !(format != nullptr && format->tiff))
     return inputError("only .tif is compressed in the way that is asked for", path,
                       "write that or leave --compress out");
   try {
-    for (const Format& format : formatTable())
-      if (format.write != nullptr &&
-          std::ranges::find(format.info.extensions, extension) != format.info.extensions.end())
-        return format.write(field, path, options, job);
+    if (format != nullptr) return format->write(field, path, options, job);
   } catch (const std::bad_alloc&) {
     return failure("memory for writing could not be had", path);
   }

@@ -5,12 +5,15 @@
 
 #include <fmt/format.h>
 
+#include "engine/formats/formats.h"
 #include "engine/io/format.h"
 #include "engine/session/session.h"
 #include "engine/session/step_tiles.h"
 #include "engine/session/tables.h"
 
 namespace fettle::engine {
+
+namespace {
 
 bool looksLikeSession(std::string_view head, std::string_view extension) {
   // Any other database is left to be refused by name only if it is called a session.
@@ -29,7 +32,7 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
   SessionOpenOptions reading;
   reading.history_bytes = 0;
   reading.journal = JournalReading::kLeave;
-  Result<Session> session = openSession(file.path(), reading, job);
+  Result<Session> session = openSession(file.path(), reading, importField, job);
   if (!session) return tl::unexpected(session.error());
   Imported imported;
   imported.field = session->history.current();
@@ -69,6 +72,20 @@ Result<Exported> writeSession(const Version& field, const std::string& path, con
   if (inverted) session.history.push({"Invert", StepKind::kInvert, stepTimeNow(), {}, 0}, field);
   if (auto saved = saveSession(session, path, job); !saved) return tl::unexpected(saved.error());
   return Exported{"Fettle", {}};
+}
+
+}  // namespace
+
+const Format& sessionFormat() {
+  static constexpr std::string_view kExtensions[] = {".fettle"};
+  static constexpr Format kFormat{
+      .info = {"Fettle", "Fettle session", kExtensions, true, true},
+      .recognises = looksLikeSession,
+      .read = readSession,
+      .write = writeSession,
+      .units_settled = true,
+  };
+  return kFormat;
 }
 
 }  // namespace fettle::engine
