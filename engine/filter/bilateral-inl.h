@@ -42,3 +42,9 @@ void addRows(const float* centre, const float* above, const float* below, const 
     }
   }
 }
+
+void finishRow(const float* centre, const double* __restrict sum, const double* __restrict sum_weight,
+               double range, int n, float* __restrict out) noexcept {
+  for (int i = 0; i < n; ++i)
+    out[i] = static_cast<float>(static_cast<double>(centre[i]) + range * (sum[i] / sum_weight[i]));
+}

@@ -9,15 +9,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <limits>
 #include <vector>
 
 #include "engine/filter/block.h"
-#include "engine/simd/cpu.h"
-#ifdef FETTLE_CPU_LEVELS
-#include <immintrin.h>
-#endif
+#include "engine/simd/kernel.h"
 
 namespace fettle::engine {
 
@@ -28,13 +24,6 @@ constexpr float kBeyond = 6.0F;  // [range sigmas], past the last weight at sqrt
 
 #define FETTLE_KERNEL "engine/filter/bilateral-inl.h"
 #include "engine/simd/each_cpu-inl.h"
-
-FETTLE_EACH_CPU void finishRow(const float* centre, const double* __restrict sum,
-                               const double* __restrict sum_weight, double range, int n,
-                               float* __restrict out) noexcept {
-  for (int i = 0; i < n; ++i)
-    out[i] = static_cast<float>(static_cast<double>(centre[i]) + range * (sum[i] / sum_weight[i]));
-}
 
 class BilateralFilter final : public BlockFilter {
  public:
@@ -57,6 +46,7 @@ class BilateralFilter final : public BlockFilter {
     const int chunks = (block.out_columns + kChunk - 1) / kChunk;
     const auto per_range = static_cast<float>(1.0 / range_);
     const auto add_rows = FETTLE_AT_LEVEL(level_, addRows);
+    const auto finish_row = FETTLE_AT_LEVEL(level_, finishRow);
     for (int r = 0; r < block.out_rows; ++r) {
       sum_.assign(static_cast<std::size_t>(chunks * kChunk), 0.0);
       sum_weight_.assign(static_cast<std::size_t>(chunks * kChunk), 1.0);  // the centre's own
@@ -66,8 +56,8 @@ class BilateralFilter final : public BlockFilter {
         add_rows(centre, centreOf(r + dy), centreOf(r - dy), weights_.data() + dy * side_ + radius_,
                  dy == 0 ? 1 : -reach_x, reach_x, per_range, chunks, sum_.data(), sum_weight_.data());
       }
-      finishRow(centre, sum_.data(), sum_weight_.data(), range_, block.out_columns,
-                block.out + r * block.out_stride);
+      finish_row(centre, sum_.data(), sum_weight_.data(), range_, block.out_columns,
+                 block.out + r * block.out_stride);
     }
     return true;
   }

@@ -6,19 +6,6 @@
 #include "engine/filter/filter.h"
 #include "engine/simd/cpu.h"
 
-// The hot loops are compiled once for each kind of processor and chosen when the program starts. The bits are
-// the same for all: every kernel fixes its order of operations, and contraction to fused multiply-adds is
-// off. Sanitizers start before the loader can choose, so they get the plain version. Chosen by what a
-// processor can do: "arch=haswell" would be taken by that very processor alone and by none of its successors.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define FETTLE_EACH_CPU __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define FETTLE_EACH_CPU
-#endif
-// For what such a loop calls: a call that is not inlined would leave for the plain version.
-#define FETTLE_INTO_EACH_CPU inline __attribute__((always_inline))
-
 namespace fettle::engine {
 
 /// One rectangle of outputs and all samples of the field that their windows can reach.

@@ -3,31 +3,17 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <initializer_list>
 #include <tuple>
 
-#include "engine/filter/block.h"
+#include "engine/simd/kernel.h"
 
 namespace fettle::engine {
 
 namespace {
 
-// How many samples one lane (or two) cannot hold.
-FETTLE_EACH_CPU int misfits(const float* row, int n, double cut0, double cut1, int lanes) noexcept {
-  int wrong = 0;
-  if (lanes == 1) {
-    for (int i = 0; i < n; ++i) {
-      const double x = row[i] == row[i] ? static_cast<double>(row[i]) : 0.0;
-      wrong += (x + cut0) - cut0 != x ? 1 : 0;
-    }
-  } else {
-    for (int i = 0; i < n; ++i) {
-      const double x = row[i] == row[i] ? static_cast<double>(row[i]) : 0.0;
-      const double rest = x - ((x + cut0) - cut0);
-      wrong += (rest + cut1) - cut1 != rest ? 1 : 0;
-    }
-  }
-  return wrong;
-}
+#define FETTLE_KERNEL "engine/filter/exact_sum-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
 }  // namespace
 
@@ -48,11 +34,12 @@ SumLanes chooseLanes(const float* heights, std::ptrdiff_t stride, int columns, i
     // from 2^128 to below 2^-149.
     top += bits - 54;
   }
+  const auto count_misfits = FETTLE_AT_LEVEL(bestCpuLevel(), misfits);
   for (const int lanes : {1, 2}) {
     result.lanes = lanes;
     int wrong = 0;
     for (int r = 0; r < rows && wrong == 0; ++r)
-      wrong = misfits(heights + r * stride, columns, result.cut[0], result.cut[1], lanes);
+      wrong = count_misfits(heights + r * stride, columns, result.cut[0], result.cut[1], lanes);
     if (wrong == 0) return result;
   }
   result.lanes = SumLanes::kMaxLanes;

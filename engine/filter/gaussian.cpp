@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -15,11 +14,7 @@
 #include <tbb/cache_aligned_allocator.h>
 
 #include "engine/filter/block.h"
-#include "engine/simd/cpu.h"
-
-#ifdef FETTLE_CPU_LEVELS
-#include <immintrin.h>
-#endif
+#include "engine/simd/kernel.h"
 
 namespace fettle::engine {
 

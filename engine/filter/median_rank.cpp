@@ -12,16 +12,11 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "engine/filter/median.h"
 #include "engine/filter/ranks.h"
-#include "engine/simd/cpu.h"
-
-#ifdef FETTLE_CPU_LEVELS
-#include <immintrin.h>
-#endif
+#include "engine/simd/kernel.h"
 
 namespace fettle::engine {
 

@@ -163,3 +163,16 @@ void medianStrip<3>(const float* corner, std::ptrdiff_t stride, int last_row, in
 inline int medianAbreast() noexcept {
   return kAbreast;
 }
+
+// Bit i: row[i] is a hole, i < n <= 64.
+std::uint64_t holesOf(const float* row, int n) noexcept {
+  std::uint64_t holes = 0;
+  for (int i = 0; i < n; ++i) holes |= std::uint64_t{row[i] != row[i]} << i;
+  return holes;
+}
+
+bool anyHole(const float* row, int n) noexcept {
+  int holes = 0;
+  for (int i = 0; i < n; ++i) holes |= row[i] != row[i] ? 1 : 0;
+  return holes != 0;
+}

@@ -5,17 +5,12 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstring>
 #include <utility>
 #include <vector>
 
 #include "engine/filter/median.h"
 #include "engine/filter/sorting_network.h"
-#include "engine/simd/cpu.h"
-
-#ifdef FETTLE_CPU_LEVELS
-#include <immintrin.h>
-#endif
+#include "engine/simd/kernel.h"
 
 namespace fettle::engine {
 
@@ -52,25 +47,14 @@ Strip chooseStrip(int window, CpuLevel level) noexcept {
   }
 }
 
-// Bit i: row[i] is a hole, i < n <= 64.
-FETTLE_EACH_CPU std::uint64_t holesOf(const float* row, int n) noexcept {
-  std::uint64_t holes = 0;
-  for (int i = 0; i < n; ++i) holes |= std::uint64_t{row[i] != row[i]} << i;
-  return holes;
-}
-
-FETTLE_EACH_CPU bool anyHole(const float* row, int n) noexcept {
-  int holes = 0;
-  for (int i = 0; i < n; ++i) holes |= row[i] != row[i] ? 1 : 0;
-  return holes != 0;
-}
-
 class SmallMedian final : public BlockFilter {
  public:
   SmallMedian(int window, CpuLevel level)
       : radius_(window / 2),
         strip_(chooseStrip(window, level)),
         abreast_(FETTLE_AT_LEVEL(level, medianAbreast)()),
+        holes_of_(FETTLE_AT_LEVEL(level, holesOf)),
+        any_hole_(FETTLE_AT_LEVEL(level, anyHole)),
         by_ranks_(makeRankMedian(window, level)) {}
 
   bool run(const Block& block, const JobControl& job) override {
@@ -126,7 +110,7 @@ class SmallMedian final : public BlockFilter {
     const int left = std::max(block.first_column + first - radius_, 0);
     const int right = std::min(block.first_column + first + n + radius_, block.columns);
     for (int y = 0; y < block.rows; ++y) {
-      if (!anyHole(block.row(y) + left, right - left)) continue;
+      if (!any_hole_(block.row(y) + left, right - left)) continue;
       std::uint64_t reached = 0;
       for (int x = left; x < right; ++x) {
         if (const float v = block.row(y)[x]; v == v) continue;
@@ -142,7 +126,7 @@ class SmallMedian final : public BlockFilter {
     for (int r = 0; r < block.out_rows; ++r)
       if (left_[static_cast<std::size_t>(r)] != 0)
         left_[static_cast<std::size_t>(r)] &=
-            ~holesOf(block.row(block.first_row + r) + block.first_column + first, n);
+            ~holes_of_(block.row(block.first_row + r) + block.first_column + first, n);
   }
 
   // The rows with windows left, by their ranks.
@@ -194,6 +178,8 @@ class SmallMedian final : public BlockFilter {
   int radius_;
   Strip strip_;
   int abreast_;
+  decltype(&plain::holesOf) holes_of_;
+  decltype(&plain::anyHole) any_hole_;
   std::unique_ptr<BlockFilter> by_ranks_;
   std::vector<std::uint64_t> left_;  // of each row of outputs, those that are not done yet
 };

@@ -1,10 +1,6 @@
 #include "engine/filter/merge.h"
 
-#include <cstring>
-
-#ifdef FETTLE_CPU_LEVELS
-#include <immintrin.h>
-#endif
+#include "engine/simd/kernel.h"
 
 namespace fettle::engine {
 

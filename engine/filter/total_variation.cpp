@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "engine/filter/block.h"
+#include "engine/simd/kernel.h"
 
 namespace fettle::engine {
 
@@ -28,54 +29,18 @@ namespace {
 constexpr float kStep = 0.2F;
 constexpr double kSteepest = 1e15;  // [theta]; the squares of more would leave float
 
-// Differences to the next column and the next row in thetas; NaN where one of the two is missing.
-FETTLE_EACH_CPU void differences(const float* row, const float* next, double per_theta, int n,
-                                 float* __restrict along, float* __restrict across) noexcept {
-  for (int c = 0; c < n; ++c) {
-    const double here = static_cast<double>(row[c]);
-    const double a = (static_cast<double>(row[c + 1]) - here) * per_theta;
-    const double b = (static_cast<double>(next[c]) - here) * per_theta;
-    // Shortened together, so that the direction stays.
-    const double la = std::fabs(a), lb = std::fabs(b);
-    double most = la > kSteepest ? la : kSteepest;  // not a number: the bound
-    most = lb > most ? lb : most;
-    const double shorter = kSteepest / most;
-    along[c] = static_cast<float>(a * shorter);
-    across[c] = static_cast<float>(b * shorter);
-  }
-}
-
-// div p over a row; along[-1] is 0.
-FETTLE_EACH_CPU void divergence(const float* along, const float* across, const float* across_before, int n,
-                                float* __restrict out) noexcept {
-  for (int c = 0; c < n; ++c) out[c] = (along[c] - along[c - 1]) + (across[c] - across_before[c]);
-}
-
-// One step of one row of p.
-FETTLE_EACH_CPU void climb(const float* __restrict slope_along, const float* __restrict slope_across,
-                           const float* __restrict here, const float* __restrict next, int n,
-                           float* __restrict along, float* __restrict across) noexcept {
-  for (int c = 0; c < n; ++c) {
-    float a = along[c] + kStep * ((here[c + 1] - here[c]) + slope_along[c]);
-    float b = across[c] + kStep * ((next[c] - here[c]) + slope_across[c]);
-    a = a == a ? a : 0.0F;  // no neighbour, nothing flows
-    b = b == b ? b : 0.0F;
-    const float square = a * a + b * b;
-    const float length = std::sqrt(square > 1.0F ? square : 1.0F);
-    along[c] = a / length;
-    across[c] = b / length;
-  }
-}
-
-FETTLE_EACH_CPU void moveRow(const float* heights, const float* __restrict divergence, double theta, int n,
-                             float* __restrict out) noexcept {
-  for (int c = 0; c < n; ++c)
-    out[c] = static_cast<float>(static_cast<double>(heights[c]) + theta * static_cast<double>(divergence[c]));
-}
+#define FETTLE_KERNEL "engine/filter/total_variation-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
 class TotalVariationFilter final : public BlockFilter {
  public:
-  explicit TotalVariationFilter(const FilterSpec& spec) : theta_(spec.range_sigma), steps_(spec.window / 2) {}
+  TotalVariationFilter(const FilterSpec& spec, CpuLevel level)
+      : theta_(spec.range_sigma),
+        steps_(spec.window / 2),
+        differences_(FETTLE_AT_LEVEL(level, differences)),
+        divergence_(FETTLE_AT_LEVEL(level, divergence)),
+        climb_(FETTLE_AT_LEVEL(level, climb)),
+        move_row_(FETTLE_AT_LEVEL(level, moveRow)) {}
 
   bool run(const Block& block, const JobControl& job) override {
     columns_ = block.columns;
@@ -96,15 +61,15 @@ class TotalVariationFilter final : public BlockFilter {
         if (job.cancelled()) return false;
         // Of the row to come before this one moves: every step works on the one before alone.
         if (r + 1 < rows_) divergenceOf(r + 1, next_);
-        climb(at(slope_along_, r), at(slope_across_, r), here_.data(), next_.data(), columns_, at(along_, r),
-              at(across_, r));
+        climb_(at(slope_along_, r), at(slope_across_, r), here_.data(), next_.data(), columns_, at(along_, r),
+               at(across_, r));
         here_.swap(next_);
       }
     }
     for (int r = 0; r < block.out_rows; ++r) {
       divergenceOf(block.first_row + r, here_);
-      moveRow(block.row(block.first_row + r) + block.first_column, here_.data() + block.first_column, theta_,
-              block.out_columns, block.out + r * block.out_stride);
+      move_row_(block.row(block.first_row + r) + block.first_column, here_.data() + block.first_column,
+                theta_, block.out_columns, block.out + r * block.out_stride);
     }
     return true;
   }
@@ -126,18 +91,23 @@ class TotalVariationFilter final : public BlockFilter {
         std::copy_n(block.row(r + 1), columns_, next.begin());
       else
         std::fill(next.begin(), next.end(), kNone);
-      differences(row.data(), next.data(), 1.0 / theta_, columns_, at(slope_along_, r), at(slope_across_, r));
+      differences_(row.data(), next.data(), 1.0 / theta_, columns_, at(slope_along_, r),
+                   at(slope_across_, r));
     }
     std::fill(here_.begin(), here_.end(), 0.0F);
     std::fill(next_.begin(), next_.end(), 0.0F);
   }
 
   void divergenceOf(int row, std::vector<float>& out) {
-    divergence(at(along_, row), at(across_, row), at(across_, row - 1), columns_, out.data());
+    divergence_(at(along_, row), at(across_, row), at(across_, row - 1), columns_, out.data());
   }
 
   double theta_;
   int steps_;
+  decltype(&plain::differences) differences_;
+  decltype(&plain::divergence) divergence_;
+  decltype(&plain::climb) climb_;
+  decltype(&plain::moveRow) move_row_;
   int columns_ = 0;
   int rows_ = 0;
   std::ptrdiff_t stride_ = 0;
@@ -148,8 +118,8 @@ class TotalVariationFilter final : public BlockFilter {
 
 }  // namespace
 
-std::unique_ptr<BlockFilter> makeTotalVariationFilter(const FilterSpec& spec, CpuLevel) {
-  return std::make_unique<TotalVariationFilter>(spec);
+std::unique_ptr<BlockFilter> makeTotalVariationFilter(const FilterSpec& spec, CpuLevel level) {
+  return std::make_unique<TotalVariationFilter>(spec, level);
 }
 
 }  // namespace fettle::engine

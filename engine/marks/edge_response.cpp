@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/simd/kernel.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -24,27 +26,11 @@ FilterSpec medianOf(int window) {
   return spec;
 }
 
-// out[c] = sum of weights[k] * in[c + k] for c in [0, n).
-FETTLE_EACH_CPU void slide(const float* __restrict in, const float* __restrict weights, int taps, int n,
-                           float* __restrict out) noexcept {
-  for (int c = 0; c < n; ++c) out[c] = 0.0F;
-  for (int k = 0; k < taps; ++k) {
-    const float w = weights[k];
-    for (int c = 0; c < n; ++c) out[c] += w * in[c + k];
-  }
-}
+#define FETTLE_KERNEL "engine/marks/edge_response-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
-// out[c] = sum of weights[k] * in[k * stride + c].
-FETTLE_EACH_CPU void slideUp(const float* __restrict in, std::ptrdiff_t stride,
-                             const float* __restrict weights, int taps, int n,
-                             float* __restrict out) noexcept {
-  for (int c = 0; c < n; ++c) out[c] = 0.0F;
-  for (int k = 0; k < taps; ++k) {
-    const float w = weights[k];
-    const float* row = in + k * stride;
-    for (int c = 0; c < n; ++c) out[c] += w * row[c];
-  }
-}
+const auto kSlide = FETTLE_AT_LEVEL(bestCpuLevel(), slide);
+const auto kSlideUp = FETTLE_AT_LEVEL(bestCpuLevel(), slideUp);
 
 // Least squares plane z = a + b x + c y at x = y = 0 from weighted moments; the mean where the samples do not
 // span a plane.
@@ -217,27 +203,27 @@ void EdgeResponse::differentiate() {
     v->resize(size);
   for (int r = 0; r < tall_; ++r) {
     const std::size_t i = at(0, r), o = at(kernels_.radius, r);
-    slide(&z_[i], kernels_.smooth.data(), taps, n, &smooth_rows_[o]);
-    slide(&z_[i], kernels_.first.data(), taps, n, &first_rows_[o]);
-    slide(&z_[i], kernels_.second.data(), taps, n, &second_rows_[o]);
+    kSlide(&z_[i], kernels_.smooth.data(), taps, n, &smooth_rows_[o]);
+    kSlide(&z_[i], kernels_.first.data(), taps, n, &first_rows_[o]);
+    kSlide(&z_[i], kernels_.second.data(), taps, n, &second_rows_[o]);
   }
   for (int r = kernels_.radius; r < tall_ - kernels_.radius; ++r) {
     const std::size_t i = at(kernels_.radius, r - kernels_.radius), o = at(kernels_.radius, r);
-    slideUp(&first_rows_[i], wide_, kernels_.smooth.data(), taps, n, &gx_[o]);
-    slideUp(&smooth_rows_[i], wide_, kernels_.first.data(), taps, n, &gy_[o]);
-    slideUp(&second_rows_[i], wide_, kernels_.smooth.data(), taps, n, &hxx_[o]);
-    slideUp(&first_rows_[i], wide_, kernels_.first.data(), taps, n, &hxy_[o]);
-    slideUp(&smooth_rows_[i], wide_, kernels_.second.data(), taps, n, &hyy_[o]);
+    kSlideUp(&first_rows_[i], wide_, kernels_.smooth.data(), taps, n, &gx_[o]);
+    kSlideUp(&smooth_rows_[i], wide_, kernels_.first.data(), taps, n, &gy_[o]);
+    kSlideUp(&second_rows_[i], wide_, kernels_.smooth.data(), taps, n, &hxx_[o]);
+    kSlideUp(&first_rows_[i], wide_, kernels_.first.data(), taps, n, &hxy_[o]);
+    kSlideUp(&smooth_rows_[i], wide_, kernels_.second.data(), taps, n, &hyy_[o]);
   }
   if (!holes_) return;
   share_.resize(size);
   raw_.resize(std::max(raw_.size(), size));
   for (std::size_t i = 0; i < size; ++i) raw_[i] = static_cast<float>(valid_[i]);
   for (int r = 0; r < tall_; ++r)
-    slide(&raw_[at(0, r)], kernels_.smooth.data(), taps, n, &smooth_rows_[at(kernels_.radius, r)]);
+    kSlide(&raw_[at(0, r)], kernels_.smooth.data(), taps, n, &smooth_rows_[at(kernels_.radius, r)]);
   for (int r = kernels_.radius; r < tall_ - kernels_.radius; ++r)
-    slideUp(&smooth_rows_[at(kernels_.radius, r - kernels_.radius)], wide_, kernels_.smooth.data(), taps, n,
-            &share_[at(kernels_.radius, r)]);
+    kSlideUp(&smooth_rows_[at(kernels_.radius, r - kernels_.radius)], wide_, kernels_.smooth.data(), taps, n,
+             &share_[at(kernels_.radius, r)]);
 }
 
 void EdgeResponse::measure(int columns, int rows) {

@@ -1,10 +1,10 @@
-// Includes the file named by FETTLE_KERNEL once for each CpuLevel: see cpu.h. No include guard: every kernel
-// does it. The includer has included <cstring>, and <immintrin.h> where FETTLE_CPU_LEVELS is defined.
+// Includes the file named by FETTLE_KERNEL once for each CpuLevel: see kernel.h. No include guard: every kernel
+// does it.
 
 // All that takes or returns a vector is inlined: there is no call whose convention could differ.
 // To the end of the file, because that is where the compiler speaks of it.
 #pragma GCC diagnostic ignored "-Wpsabi"
-#ifdef FETTLE_CPU_LEVELS
+#if defined(FETTLE_CPU_LEVELS) && !defined(__clang__)
 // GCC 12 takes the undefined lanes inside its own intrinsics for the caller's variables.
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"
@@ -19,23 +19,36 @@ namespace plain {
 #ifdef FETTLE_CPU_LEVELS
 #undef FETTLE_LEVEL
 #define FETTLE_LEVEL 1
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2,fma,bmi,bmi2,popcnt"))), apply_to = function)
+#else
 #pragma GCC push_options
-#pragma GCC target("avx2,fma,bmi2,popcnt")
+#pragma GCC target("avx2,fma,bmi,bmi2,popcnt")
+#endif
 namespace avx2 {
 #include "engine/simd/vectors-inl.h"
 #include FETTLE_KERNEL
 }  // namespace avx2
-#pragma GCC pop_options
 #undef FETTLE_LEVEL
 #define FETTLE_LEVEL 2
+#ifdef __clang__
+#pragma clang attribute pop
+#pragma clang attribute push(__attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,fma,bmi,bmi2,popcnt"))), apply_to = function)
+#else
+#pragma GCC pop_options
 #pragma GCC push_options
 // The widest vectors though the compiler thinks half as wide ones the better bargain for everyday code.
-#pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,fma,bmi2,popcnt,prefer-vector-width=512")
+#pragma GCC target("avx512f,avx512bw,avx512dq,avx512vl,fma,bmi,bmi2,popcnt,prefer-vector-width=512")
+#endif
 namespace avx512 {
 #include "engine/simd/vectors-inl.h"
 #include FETTLE_KERNEL
 }  // namespace avx512
+#ifdef __clang__
+#pragma clang attribute pop
+#else
 #pragma GCC pop_options
+#endif
 #endif
 #undef FETTLE_LEVEL
 #undef FETTLE_KERNEL

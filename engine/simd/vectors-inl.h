@@ -9,8 +9,6 @@ using HalfFloats = float __attribute__((vector_size(32)));
 using Doubles = double __attribute__((vector_size(64)));  // 8
 using Longs = long long __attribute__((vector_size(64)));
 
-#define FETTLE_INLINE inline __attribute__((always_inline))
-
 template <class Vector, class Element>
 FETTLE_INLINE Vector load(const Element* from) noexcept {
   Vector v;

@@ -1,11 +1,9 @@
-// The kernels of touch_lanes.cpp, which includes this once for each kind of processor, each time in a
-// namespace of its own and with other instructions allowed. No include guard for that reason, and no
-// includes.
+// The kernels of touch_lanes.cpp; see kernel.h.
 //
 // Every expression is that of sphere_window.cpp, in the same order: the bits are the same.
 
 // One register, whatever its width: comparisons of wider vectors GCC 12 takes apart lane by lane.
-inline constexpr int kWidth = FETTLE_TOUCH_REGISTER == 0 ? 2 : FETTLE_TOUCH_REGISTER / 64;
+inline constexpr int kWidth = FETTLE_LEVEL == 0 ? 2 : 4;
 inline constexpr unsigned kAllLanes = (1u << kWidth) - 1u;
 using Lanes = double __attribute__((vector_size(kWidth * sizeof(double))));
 using LaneMask = long long __attribute__((vector_size(kWidth * sizeof(long long))));
@@ -26,11 +24,11 @@ inline void numbered(Lanes& to) noexcept {
 }
 
 inline unsigned bits(const LaneMask& mask) noexcept {
-#if FETTLE_TOUCH_REGISTER == 256
+#if FETTLE_LEVEL > 0
   __m256d m;
   std::memcpy(&m, &mask, sizeof m);
   return static_cast<unsigned>(_mm256_movemask_pd(m));
-#elif FETTLE_TOUCH_REGISTER == 128
+#elif defined(__SSE2__)
   __m128d m;
   std::memcpy(&m, &mask, sizeof m);
   return static_cast<unsigned>(_mm_movemask_pd(m));
@@ -162,7 +160,7 @@ inline void minima(const Valley& f, const LaneMask& lanes, unsigned asked, doubl
     low = moving & falls ? v : low;
     high = moving & ~falls ? v : high;
     const Lanes next = bend > zero ? v - slope / bend : zero - 1.0;
-    const Lanes to = (next > low) & (next < high) ? next : 0.5 * (low + high);
+    const Lanes to = ((next > low) & (next < high)) ? next : 0.5 * (low + high);
     Lanes moved = to - v;
     absolute(moved);
     v = moving ? to : v;

@@ -3,47 +3,21 @@
 
 #include "haptic/contact/touch_lanes.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
+#include "engine/simd/kernel.h"
 
 namespace fettle::haptic {
 
 namespace {
 
-// Explicit vectors are cut to the machine's before functions are cloned for machines (see median_small.cpp).
-// FETTLE_TOUCH_REGISTER: bits of a register whose intrinsics may be used, 0 for none.
-#if defined(__SSE2__)
-#define FETTLE_TOUCH_REGISTER 128
-#else
-#define FETTLE_TOUCH_REGISTER 0
-#endif
-namespace plain {
-#include "haptic/contact/touch_lanes-inl.h"
-}
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
-#define FETTLE_TOUCH_AVX2
-#pragma GCC push_options
-#pragma GCC target("avx2,bmi,bmi2")
-#undef FETTLE_TOUCH_REGISTER
-#define FETTLE_TOUCH_REGISTER 256
-namespace avx2 {
-#include "haptic/contact/touch_lanes-inl.h"
-}
-#pragma GCC pop_options
-#endif
+#define FETTLE_KERNEL "haptic/contact/touch_lanes-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
-TouchKernels chooseKernels() noexcept {
-#ifdef FETTLE_TOUCH_AVX2
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) return avx2::kernels();
-#endif
-  return plain::kernels();
-}
-
-const TouchKernels kKernels = chooseKernels();
+// Those of AVX2 with AVX-512 too: masks in registers of their own cost more than they save here.
+const TouchKernels kKernels =
+    FETTLE_AT_LEVEL(std::min(engine::bestCpuLevel(), engine::CpuLevel::kAvx2), kernels)();
 
 }  // namespace
 

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <limits>
 
-#include "engine/filter/block.h"
+#include "engine/simd/kernel.h"
 
 namespace fettle::render {
 namespace {
@@ -46,69 +46,12 @@ constexpr decltype(&spread<1>) kSpread[] = {nullptr,   spread<1>, spread<2>, spr
                                             spread<4>, spread<5>, spread<6>};
 static_assert(std::size(kSpread) == DetailMeasure::kTileLevels + 1);
 
-// `rows` rows of samples, row r at v[r] of the coarse row's height, 0 .. 1. Comparisons with NaN are false:
-// holes change nothing.
-FETTLE_EACH_CPU void addRows(const float* __restrict z, int rows, const float* v_of, const CoarseRow& coarse,
-                             const float* __restrict u, float* __restrict deviation) {
-  const float* __restrict low_left = coarse.low_left;
-  const float* __restrict left_rise = coarse.left_rise;
-  const float* __restrict top_right = coarse.top_right;
-  const float* __restrict right_fall = coarse.right_fall;
-  for (int r = 0; r < rows; ++r, z += kTileStride) {
-    const float v = v_of[r], w = 1.0F - v;
-    for (int c = 0; c < kColumns; ++c) {
-      // Chosen before they are computed with: arithmetic under a condition is not vectorised.
-      const bool lower = u[c] <= w;
-      const float base = lower ? low_left[c] : top_right[c];
-      const float slope = lower ? left_rise[c] : right_fall[c];
-      const float d = std::fabs(z[c] - (base + (lower ? v : w) * slope));
-      deviation[c] = d > deviation[c] ? d : deviation[c];
-    }
-  }
-}
+#define FETTLE_KERNEL "render/detail/detail_tile-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
-// Of three rows of samples, at each column; `most` grows to the largest magnitude.
-FETTLE_EACH_CPU void extremesOfRows(const float* first, const float* second, const float* third,
-                                    float* __restrict lowest, float* __restrict highest,
-                                    float* __restrict hole, float* __restrict most) {
-  for (int c = 0; c < kColumns; ++c) {
-    const float a = first[c], b = second[c], d = third[c];
-    float low = kInfiniteError, high = -kInfiniteError, any = 0.0F;
-    low = a < low ? a : low;
-    low = b < low ? b : low;
-    low = d < low ? d : low;
-    high = a > high ? a : high;
-    high = b > high ? b : high;
-    high = d > high ? d : high;
-    any = a == a ? any : 1.0F;
-    any = b == b ? any : 1.0F;
-    any = d == d ? any : 1.0F;
-    lowest[c] = low;
-    highest[c] = high;
-    hole[c] = any;
-    // Of holes alone both are infinite, of opposite signs.
-    const float up = high >= low && high > most[c] ? high : most[c];
-    most[c] = high >= low && -low > up ? -low : up;
-  }
-}
-
-// How far the samples of the cells of one row reach beyond their vertices.
-FETTLE_EACH_CPU void excessOfRow(const float* __restrict below, const float* __restrict above,
-                                 const float* __restrict lowest, const float* __restrict highest,
-                                 const float* __restrict hole, int cells, float* __restrict excess) {
-  for (int i = 0; i < cells; ++i) {
-    const float left_low = above[i] < below[i] ? above[i] : below[i];
-    const float right_low = above[i + 1] < below[i + 1] ? above[i + 1] : below[i + 1];
-    const float left_high = above[i] > below[i] ? above[i] : below[i];
-    const float right_high = above[i + 1] > below[i + 1] ? above[i + 1] : below[i + 1];
-    const float under = (right_low < left_low ? right_low : left_low) - lowest[i];
-    const float over = highest[i] - (right_high > left_high ? right_high : left_high);
-    const float most = under > over ? under : over;
-    // Where there are nothing but holes nothing is drawn: both are -infinity.
-    const float holed = lowest[i] <= highest[i] ? kInfiniteError : most;
-    excess[i] = hole[i] > 0.0F ? holed : most;
-  }
-}
+const auto kAddRows = FETTLE_AT_LEVEL(engine::bestCpuLevel(), addRows);
+const auto kExtremesOfRows = FETTLE_AT_LEVEL(engine::bestCpuLevel(), extremesOfRows);
+const auto kExcessOfRow = FETTLE_AT_LEVEL(engine::bestCpuLevel(), excessOfRow);
 
 }  // namespace
 
@@ -118,7 +61,8 @@ void TileExtremes::ofSamples(const float* heights, glm::ivec2 cells) {
   for (int j = 0; j < count.y; ++j) {
     const float* first = heights + 2 * j * kTileStride;
     const float* second = first + kTileStride;
-    extremesOfRows(first, second, 2 * j + 2 <= cells.y ? second + kTileStride : second, low, high, any, most);
+    kExtremesOfRows(first, second, 2 * j + 2 <= cells.y ? second + kTileStride : second, low, high, any,
+                    most);
     for (int i = 0; i < count.x; ++i) {
       const int a = 2 * i, b = a + 1, c = std::min(a + 2, cells.x), to = j * kMost + i;
       lowest[to] = std::min({low[a], low[b], low[c]});
@@ -168,12 +112,12 @@ void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const f
       for (int r = 0; r <= tall; ++r) v[r] = static_cast<float>(r) / static_cast<float>(tall);
     kSpread[level](below, above, u, columns, row);
     // The row of samples between two rows of cells is the next one's first; patches have theirs both.
-    addRows(heights + first * kTileStride, ends ? tall + 1 : tall, v, row, u, deviation);
+    kAddRows(heights + first * kTileStride, ends ? tall + 1 : tall, v, row, u, deviation);
 
     DetailMeasure::Error* line = out + (j / patch_cells) * across;
     const int at = j * TileExtremes::kMost;
-    excessOfRow(below, above, extremes.lowest + at, extremes.highest + at, extremes.hole + at, coarse.x,
-                excess);
+    kExcessOfRow(below, above, extremes.lowest + at, extremes.highest + at, extremes.hole + at, coarse.x,
+                 excess);
     for (int p = 0; p < patches; ++p)
       for (int i = p * patch_cells; i < std::min((p + 1) * patch_cells, coarse.x); ++i)
         line[p].excess = std::max(line[p].excess, excess[i]);

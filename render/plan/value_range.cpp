@@ -8,7 +8,7 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
-#include "engine/filter/block.h"
+#include "engine/simd/kernel.h"
 #include "render/config.h"
 
 namespace fettle::render {
@@ -63,18 +63,11 @@ ValueSpan heightSpan(const engine::Version& field) {
 
 namespace {
 
-// Lowest and highest difference of two tiles, in lanes; the other way round when there is none. A comparison
-// with a hole's NaN is false.
-constexpr int kLanes = 16;
-FETTLE_EACH_CPU void extremesOf(const float* a, const float* b, double sign_a, double sign_b, double* low,
-                                double* high) {
-  for (int i = 0; i < engine::kTileSamples; i += kLanes)
-    for (int k = 0; k < kLanes; ++k) {
-      const double d = sign_a * double{a[i + k]} - sign_b * double{b[i + k]};
-      low[k] = d < low[k] ? d : low[k];
-      high[k] = d > high[k] ? d : high[k];
-    }
-}
+#define FETTLE_KERNEL "render/plan/value_range-inl.h"
+#include "engine/simd/each_cpu-inl.h"
+
+using plain::kLanes;
+const auto kExtremesOf = FETTLE_AT_LEVEL(engine::bestCpuLevel(), extremesOf);
 
 // What a row of tiles says.
 struct RowSpan {
@@ -95,7 +88,7 @@ RowSpan deviationOfRow(const engine::FieldReader& a, const engine::FieldReader& 
     double low[kLanes], high[kLanes];
     std::fill_n(low, kLanes, row.extreme.low);
     std::fill_n(high, kLanes, row.extreme.high);
-    extremesOf(ta.samples.data(), tb.samples.data(), a.sign(), b.sign(), low, high);
+    kExtremesOf(ta.samples.data(), tb.samples.data(), a.sign(), b.sign(), low, high);
     row.extreme = {*std::min_element(low, low + kLanes), *std::max_element(high, high + kLanes)};
     forSomeOf(tiles, std::int64_t{tile_row} * a.tileColumns() + tc, [&](std::size_t i) {
       const double d = std::abs(double{a.sign()} * ta.samples[i] - double{b.sign()} * tb.samples[i]);
