@@ -366,7 +366,7 @@ void Workstation::act(Action action) {
       display_.stereo = static_cast<render::StereoMode>((static_cast<int>(display_.stereo) + 1) % 3);
       break;
     case Action::kViewLastStroke: {
-      const engine::FieldRect rect = touch_->lastRect();
+      const engine::SampleRect rect = touch_->lastRect();
       if (rect.empty()) break;
       Navigation::centreOn(view_, grid, (rect.column + 0.5 * rect.columns) * grid.spacingXMm(),
                            (rect.row + 0.5 * rect.rows) * grid.spacingYMm());

@@ -37,7 +37,7 @@ void StepKeeper::keepStroke(const engine::Version& field, const haptic::LoopPlac
   if (differs(field)) push(stepName(stroke_tool_), stepKind(stroke_tool_), field, at);
 }
 
-void StepKeeper::endStroke(const engine::Version& field, const engine::FieldRect& rect,
+void StepKeeper::endStroke(const engine::Version& field, const engine::SampleRect& rect,
                            const haptic::LoopPlace& at) {
   last_rect_ = rect;
   keepStroke(field, at);

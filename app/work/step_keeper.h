@@ -19,7 +19,7 @@ class StepKeeper {
   [[nodiscard]] const engine::History& history() const noexcept { return history_; }
   [[nodiscard]] LoopJournal& journal() noexcept { return journal_; }
   /// Where the last step changed something.
-  [[nodiscard]] engine::FieldRect lastRect() const noexcept { return last_rect_; }
+  [[nodiscard]] engine::SampleRect lastRect() const noexcept { return last_rect_; }
   /// Whether the loop's field is not the last step's: a stroke runs.
   [[nodiscard]] bool differs(const engine::Version& field) const { return !(field == committed_); }
   /// Puts a step read back from a session in front of those held.
@@ -33,7 +33,7 @@ class StepKeeper {
   /// Makes a step of a stroke as far as it has got; none when the field has not changed.
   void keepStroke(const engine::Version& field, const haptic::LoopPlace& at);
   /// A stroke ended that changed samples within `rect` only.
-  void endStroke(const engine::Version& field, const engine::FieldRect& rect, const haptic::LoopPlace& at);
+  void endStroke(const engine::Version& field, const engine::SampleRect& rect, const haptic::LoopPlace& at);
 
   /// A filter's adoption begins under a name for the list of steps: its rounds are one step.
   void nameAdoption(std::string name) { adoption_name_ = std::move(name); }
@@ -63,7 +63,7 @@ class StepKeeper {
   engine::History history_;
   engine::Version committed_;  // the last step's, what a running stroke is measured against
   LoopJournal journal_;
-  engine::FieldRect last_rect_;
+  engine::SampleRect last_rect_;
   haptic::Tool stroke_tool_ = haptic::Tool::kFeel;
   std::string adoption_name_ = "Filter";
   bool adopting_ = false;  // the running adoption has its step

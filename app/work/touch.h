@@ -62,7 +62,7 @@ class Touch final {
   [[nodiscard]] const engine::Version& original() const noexcept { return original_; }
   [[nodiscard]] const haptic::Scene& scene() const noexcept { return scene_; }
   /// Where the last step changed something.
-  [[nodiscard]] engine::FieldRect lastRect() const noexcept { return steps_.lastRect(); }
+  [[nodiscard]] engine::SampleRect lastRect() const noexcept { return steps_.lastRect(); }
 
   void setTool(haptic::Tool tool);
   [[nodiscard]] haptic::Tool tool() const noexcept { return tool_; }

@@ -25,7 +25,7 @@ struct Pair {
 
   // Calls f(column, row, height of a, height of b); NaN for a hole.
   template <class F>
-  void forEach(const TileRect& rect, F&& f) const {
+  void forEach(const SampleRect& rect, F&& f) const {
     float za[kTileSamples];
     float zb[kTileSamples];
     a.readHeights(rect.column, rect.row, rect.columns, rect.rows, za, kTileSide);
@@ -50,7 +50,7 @@ struct First {
 };
 
 First firstPass(const Pair& pair, JobControl& job) {
-  const std::vector<First> parts = forEachTile<First>(pair.a, job, [&](const TileRect& rect, First& part) {
+  const std::vector<First> parts = forEachTile<First>(pair.a, job, [&](const SampleRect& rect, First& part) {
     pair.forEach(rect, [&](std::int32_t c, std::int32_t r, double za, double zb) {
       const bool in_a = !std::isnan(za);
       const bool in_b = !std::isnan(zb);
@@ -85,12 +85,13 @@ struct Second {
 };
 
 Second secondPass(const Pair& pair, const Centre& a, const Centre& b, JobControl& job) {
-  const std::vector<Second> parts = forEachTile<Second>(pair.a, job, [&](const TileRect& rect, Second& part) {
-    pair.forEach(rect, [&](std::int32_t c, std::int32_t r, double za, double zb) {
-      if (!std::isnan(za)) part.a.add(c - a.column, r - a.row, za - a.height);
-      if (!std::isnan(zb)) part.b.add(c - b.column, r - b.row, zb - b.height);
-    });
-  });
+  const std::vector<Second> parts =
+      forEachTile<Second>(pair.a, job, [&](const SampleRect& rect, Second& part) {
+        pair.forEach(rect, [&](std::int32_t c, std::int32_t r, double za, double zb) {
+          if (!std::isnan(za)) part.a.add(c - a.column, r - a.row, za - a.height);
+          if (!std::isnan(zb)) part.b.add(c - b.column, r - b.row, zb - b.height);
+        });
+      });
   Second all;
   for (const Second& part : parts) {
     all.a.add(part.a);
@@ -115,7 +116,7 @@ struct Third {
 };
 
 Third thirdPass(const Pair& pair, const Plane& a, const Plane& b, JobControl& job) {
-  const std::vector<Third> parts = forEachTile<Third>(pair.a, job, [&](const TileRect& rect, Third& part) {
+  const std::vector<Third> parts = forEachTile<Third>(pair.a, job, [&](const SampleRect& rect, Third& part) {
     pair.forEach(rect, [&](std::int32_t c, std::int32_t r, double za, double zb) {
       if (!std::isnan(za)) part.a.add(a.residual(c, r, za));
       if (!std::isnan(zb)) part.b.add(b.residual(c, r, zb));
@@ -172,7 +173,7 @@ Result<Deviation> compareFields(const Version& a, const Version& b, JobControl& 
     // Nearest rank ceil(0.99 n), in integers: 0.99 is no double.
     result.p99 = selectFromTiles(
                      pair.a, job, [](std::int64_t n) { return (99 * n + 99) / 100 - 1; },
-                     [&](const TileRect& rect, auto&& take) {
+                     [&](const SampleRect& rect, auto&& take) {
                        pair.forEach(rect, [&](std::int32_t, std::int32_t, double za, double zb) {
                          take(std::abs(zb - za));
                        });

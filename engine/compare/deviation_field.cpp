@@ -25,7 +25,7 @@ Result<Version> deviationField(const Version& a, const Version& b, JobControl& j
   job.begin("taking the difference", static_cast<std::uint64_t>(tiles));
   tbb::parallel_for(std::int64_t{0}, tiles, [&](std::int64_t i) {
     if (job.cancelled()) return;
-    const TileRect rect = tileRect(from, i);
+    const SampleRect rect = tileRect(from, i);
     float za[kTileSamples];
     float zb[kTileSamples];
     from.readHeights(rect.column, rect.row, rect.columns, rect.rows, za, kTileSide);

@@ -280,7 +280,7 @@ double widthOf(const Patch& patch, const std::vector<float>& heights, double sca
 
 std::vector<EdgeWidth> edgeWidths(const FieldReader& field, double field_in_truth, const FieldReader& truth,
                                   const FieldReader& edges, const TruthOptions& options,
-                                  const TileRect& rect) {
+                                  const SampleRect& rect) {
   std::vector<EdgeWidth> widths;
   Patch patch;
   patch.sx = truth.grid().spacingXMm();

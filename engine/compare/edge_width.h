@@ -36,6 +36,6 @@ struct EdgeWidth {
 /// multiplied by `field_in_truth`.
 [[nodiscard]] std::vector<EdgeWidth> edgeWidths(const FieldReader& field, double field_in_truth,
                                                 const FieldReader& truth, const FieldReader& edges,
-                                                const TruthOptions& options, const TileRect& rect);
+                                                const TruthOptions& options, const SampleRect& rect);
 
 }  // namespace fettle::engine

@@ -141,7 +141,7 @@ Result<LiveDeviation> LiveDeviation::create(const Version& original, JobControl&
   job.begin("comparing", 2 * tileCount(reader));
   // Once to find the plane, once about it, so that no digit is lost to the height of the whole.
   for (int pass = 0; pass < 2; ++pass) {
-    live.sums_ = forEachTile<TileSums>(reader, job, [&](const TileRect& rect, TileSums& sums) {
+    live.sums_ = forEachTile<TileSums>(reader, job, [&](const SampleRect& rect, TileSums& sums) {
       live.measure(reader, rect.column / kTileSide, rect.row / kTileSide, sums);
     });
     if (job.cancelled()) return cancelled();

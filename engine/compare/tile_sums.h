@@ -10,6 +10,7 @@
 
 #include "engine/base/job.h"
 #include "engine/field/reader.h"
+#include "engine/field/sample_rect.h"
 
 namespace fettle::engine {
 
@@ -34,17 +35,9 @@ class CompensatedSum {
   double lost_ = 0.0;
 };
 
-/// A rectangle of samples that one tile holds.
-struct TileRect {
-  std::int32_t column = 0;
-  std::int32_t row = 0;
-  int columns = 0;
-  int rows = 0;
-};
-
 /// The samples of tile `index`, counted row-major from 0.
-[[nodiscard]] inline TileRect tileRect(const FieldReader& field, std::int64_t index) noexcept {
-  TileRect rect;
+[[nodiscard]] inline SampleRect tileRect(const FieldReader& field, std::int64_t index) noexcept {
+  SampleRect rect;
   rect.column = static_cast<std::int32_t>(index % field.tileColumns()) * kTileSide;
   rect.row = static_cast<std::int32_t>(index / field.tileColumns()) * kTileSide;
   rect.columns = std::min(kTileSide, field.width() - rect.column);

@@ -25,7 +25,7 @@ class MarkDistance {
   explicit MarkDistance(int reach) : reach_(reach) {}
 
   // Row-major, stride kTileSide.
-  const std::vector<int>& measure(const FieldReader& edges, const TileRect& rect) {
+  const std::vector<int>& measure(const FieldReader& edges, const SampleRect& rect) {
     const int side = kTileSide + 2 * reach_;
     marks_.resize(static_cast<std::size_t>(side) * side);
     along_.assign(static_cast<std::size_t>(side) * kTileSide, kFar);
@@ -121,7 +121,7 @@ TruthFigures measure(const Version& field, const Version& truth, const Version& 
   const double field_in_truth = field.grid().height_unit.mm / truth.grid().height_unit.mm;
   const int reach = static_cast<int>(std::floor(options.flat));
   const std::vector<TruthTile> tiles =
-      forEachTile<TruthTile>(t, job, [&](const TileRect& rect, TruthTile& part) {
+      forEachTile<TruthTile>(t, job, [&](const SampleRect& rect, TruthTile& part) {
         MarkDistance distance(reach);
         const std::vector<int>& squared = distance.measure(e, rect);
         float zf[kTileSamples];

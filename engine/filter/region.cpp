@@ -6,6 +6,7 @@
 
 #include "engine/field/live_field.h"
 #include "engine/field/piece.h"
+#include "engine/field/sample_rect.h"
 #include "engine/filter/catalogue.h"
 
 namespace fettle::engine {
@@ -16,11 +17,7 @@ tl::unexpected<Error> noMemory() {
   return failure("memory for filtering could not be had", "filter", "filter a smaller part");
 }
 
-struct Rect {
-  std::int32_t column, row, columns, rows;
-};
-
-Version piece(const Version& field, const Rect& rect) {
+Version piece(const Version& field, const SampleRect& rect) {
   return pieceOf(field, rect.column, rect.row, rect.columns, rect.rows);
 }
 
@@ -43,7 +40,7 @@ Result<Version> filterRange(const Version& input, const Version& original, const
   const auto high = [&](std::int32_t tile, std::int32_t side) {
     return static_cast<std::int32_t>(std::min<std::int64_t>(std::int64_t{tile} * kTileSide + reach, side));
   };
-  Rect around{low(tc0), low(tr0), high(tc1, grid.width), high(tr1, grid.height)};
+  SampleRect around{low(tc0), low(tr0), high(tc1, grid.width), high(tr1, grid.height)};
   around.columns -= around.column;
   around.rows -= around.row;
   const Version part = piece(input, around);

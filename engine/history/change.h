@@ -3,24 +3,16 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
 
 namespace fettle::engine {
-
-/// A rectangle of samples [column, column + columns) x [row, row + rows); empty while columns is 0.
-struct FieldRect {
-  std::int32_t column = 0, row = 0;
-  std::int32_t columns = 0, rows = 0;
-
-  [[nodiscard]] bool empty() const noexcept { return columns == 0; }
-  friend bool operator==(const FieldRect&, const FieldRect&) = default;
-};
 
 /// How far apart two versions are.
 struct Change {
   std::int64_t tiles = 0;  ///< places of the table whose tile is another object
   std::int64_t nodes = 0;  ///< inner nodes that are other objects
-  FieldRect rect;  ///< around those tiles, cut to the field: whole tiles, so it may hold more than changed
+  SampleRect rect;  ///< around those tiles, cut to the field: whole tiles, so it may hold more than changed
   bool inverted = false;  ///< whether the signs differ
 
   [[nodiscard]] bool none() const noexcept { return tiles == 0 && !inverted; }

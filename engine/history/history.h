@@ -32,7 +32,7 @@ struct StepInfo {
   StepKind kind = StepKind::kStroke;
   StepTime time{};
   /// Where samples or marks changed; whole tiles unless whoever made the step knew better.
-  FieldRect rect;
+  SampleRect rect;
   std::size_t bytes = 0;  ///< memory that undoing this step needs and the field after it does not [bytes]
 };
 

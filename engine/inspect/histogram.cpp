@@ -33,7 +33,7 @@ Result<HeightHistogram> countHeights(const Version& field, int bins, JobControl&
   job.begin("counting heights", tileCount(reader));
   tbb::parallel_for(std::int64_t{0}, static_cast<std::int64_t>(tileCount(reader)), [&](std::int64_t i) {
     if (job.cancelled()) return;
-    const TileRect rect = tileRect(reader, i);
+    const SampleRect rect = tileRect(reader, i);
     Counts& counts = parts.local();
     float z[kTileSamples];
     reader.readHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide);

@@ -19,7 +19,7 @@ Result<NoiseEstimate> estimateNoise(const Version& field, JobControl& job) {
   job.begin("estimating noise", kSelectPasses * tileCount(reader));
   const Selected median = selectFromTiles(
       reader, job, [](std::int64_t count) { return (count - 1) / 2; },
-      [&](const TileRect& rect, auto&& take) {
+      [&](const SampleRect& rect, auto&& take) {
         constexpr int kSide = kTileSide + 2;
         float z[kSide * kSide];  // samples outside the field are NaN, and so is what they take part in
         reader.readHeights(rect.column - 1, rect.row - 1, rect.columns + 2, rect.rows + 2, z, kSide);

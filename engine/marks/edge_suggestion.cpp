@@ -10,6 +10,8 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "engine/field/sample_rect.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -40,11 +42,7 @@ struct Blocks {
         height(grid.height) {}
   [[nodiscard]] std::int64_t count() const noexcept { return std::int64_t{across} * up; }
   // First sample and extent of block i.
-  struct Rect {
-    std::int32_t column, row;
-    int columns, rows;
-  };
-  [[nodiscard]] Rect rect(std::int64_t i) const noexcept {
+  [[nodiscard]] SampleRect rect(std::int64_t i) const noexcept {
     const auto c = static_cast<std::int32_t>(i % across) * side;
     const auto r = static_cast<std::int32_t>(i / across) * side;
     return {c, r, std::min(side, width - c), std::min(side, height - r)};
@@ -73,7 +71,7 @@ Noise measureNoise(const FieldReader& reader, double sigma, const Blocks& blocks
   tbb::enumerable_thread_specific<EdgeResponse> responses(sigma, EdgeResponse::Scatter::kMeasure);
   tbb::parallel_for(std::int64_t{0}, n, [&](std::int64_t i) {
     if (job.cancelled()) return;
-    const Blocks::Rect rect = blocks.rect(i * blocks.count() / n);
+    const SampleRect rect = blocks.rect(i * blocks.count() / n);
     EdgeResponse& response = responses.local();
     if (!response.run(reader, rect.column, rect.row, rect.columns, rect.rows, job)) return;
     Sampled& out = sampled[static_cast<std::size_t>(i)];
@@ -122,7 +120,7 @@ Noise measureNoise(const FieldReader& reader, double sigma, const Blocks& blocks
 // edge they lie on.
 class Thinning {
  public:
-  Thinning(const EdgeResponse& response, const Noise& noise, const Blocks::Rect& rect, int rim)
+  Thinning(const EdgeResponse& response, const Noise& noise, const SampleRect& rect, int rim)
       : response_(response), noise_(noise), rect_(rect), rim_(rim), wide_(rect.columns + 2 * rim) {
     const std::size_t n = static_cast<std::size_t>(wide_) * static_cast<std::size_t>(rect.rows + 2 * rim);
     strength_.resize(n);
@@ -166,7 +164,7 @@ class Thinning {
 
   const EdgeResponse& response_;
   const Noise& noise_;
-  const Blocks::Rect rect_;
+  const SampleRect rect_;
   const int rim_;
   const int wide_;
   std::vector<float> strength_;
@@ -246,7 +244,7 @@ Result<EdgeMap> findEdges(const Version& field, double sigma, JobControl& job) t
       tbb::blocked_range<std::int64_t>(0, blocks.count(), 1),
       [&](const auto& range) {
         for (std::int64_t i = range.begin(); i != range.end() && !job.cancelled(); ++i) {
-          const Blocks::Rect rect = blocks.rect(i);
+          const SampleRect rect = blocks.rect(i);
           EdgeResponse& response = responses.local();
           if (!response.run(reader, rect.column - rim, rect.row - rim, rect.columns + 2 * rim,
                             rect.rows + 2 * rim, job))

@@ -67,7 +67,7 @@ void EdgeSnap::run(TickState& state) noexcept {
 }
 
 void EdgeSnap::upkeep(TickState& state) noexcept {
-  const MarkedRect& rect = state.marked;
+  const engine::SampleRect& rect = state.marked;
   if (rect.columns > 0) distance_.markChanged(rect.column, rect.row, rect.columns, rect.rows);
   distance_.advance(state.field.reader());
   state.counters.snap_tiles_refused = distance_.refused();

@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/field/live_field.h"
+#include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
 #include "haptic/base/strokes.h"
 #include "haptic/base/tick_counters.h"
@@ -19,13 +20,6 @@
 #include "haptic/scene/scene.h"
 
 namespace fettle::haptic {
-
-/// The samples [column, column + columns) x [row, row + rows) whose marks a tool may have changed; they may
-/// reach beyond the field. Empty while columns is 0.
-struct MarkedRect {
-  std::int32_t column = 0, row = 0;
-  std::int32_t columns = 0, rows = 0;
-};
 
 /// What effects see and change within one tick.
 struct TickState {
@@ -43,7 +37,8 @@ struct TickState {
   glm::dvec3 weight_n{0.0};  ///< part of it that only holds up the stylus [N]
   double stored_mj = 0.0;    ///< energy that the forces so far can give back [N mm], at most
   double strength = 0.0;     ///< for tools: pressing force over limit, 0 .. 1
-  MarkedRect marked{};       ///< set by the marking tools
+  /// Samples whose marks a tool may have changed, set by the marking tools; may reach beyond the field.
+  engine::SampleRect marked{};
 };
 
 /// Why an effect has to forget.

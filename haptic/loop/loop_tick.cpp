@@ -32,16 +32,6 @@ bool edits(const Scene& scene, Tool tool) noexcept {
 
 }  // namespace
 
-SampleRect SampleRect::joined(const SampleRect& other) const noexcept {
-  if (empty()) return other;
-  if (other.empty()) return *this;
-  const std::int32_t c0 = std::min(column, other.column);
-  const std::int32_t r0 = std::min(row, other.row);
-  const std::int32_t c1 = std::max(column + columns, other.column + other.columns);
-  const std::int32_t r1 = std::max(row + rows, other.row + other.rows);
-  return {c0, r0, c1 - c0, r1 - r0};
-}
-
 LoopTick::LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, Device& device,
                    LoopChannels& channels, const LoopOptions& options, NearTiles* near)
     : scene_(std::move(scene)),
@@ -58,7 +48,7 @@ LoopTick::LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, 
   if (near_ != nullptr) near_->replaced();
 }
 
-SampleRect LoopTick::wholeField() const noexcept {
+engine::SampleRect LoopTick::wholeField() const noexcept {
   const engine::Grid& grid = scene_->field.grid();
   return {0, 0, grid.width, grid.height};
 }
@@ -270,7 +260,7 @@ bool LoopTick::samplesAreNear(const glm::dvec3& tip_mm) noexcept {
   const std::int32_t row = sample(tip_mm.y, grid.spacingYMm(), grid.height);
   const glm::dvec3 before = finite(state_.endpoint_mm) ? state_.endpoint_mm : tip_mm;
   const glm::dvec3 proxy = finite(state_.proxy_mm) ? state_.proxy_mm : tip_mm;
-  SampleRect rect{column, row, 1, 1};
+  engine::SampleRect rect{column, row, 1, 1};
   // Only a tick that felt something goes on from where that was.
   if (was_near_ && state_.tick > 0)
     for (const glm::dvec3& p : {before, proxy})
@@ -286,7 +276,7 @@ bool LoopTick::samplesAreNear(const glm::dvec3& tip_mm) noexcept {
   return near;
 }
 
-void LoopTick::noteTiles(const SampleRect& rect) noexcept {
+void LoopTick::noteTiles(const engine::SampleRect& rect) noexcept {
   using engine::kTileShift;
   for (std::int32_t r = rect.row >> kTileShift; r <= (rect.row + rect.rows - 1) >> kTileShift; ++r)
     for (std::int32_t c = rect.column >> kTileShift; c <= (rect.column + rect.columns - 1) >> kTileShift;
@@ -315,8 +305,8 @@ void LoopTick::noteEdit(const ForceSample& force, Tool tool) noexcept {
     const engine::Grid& grid = scene_->field.grid();
     const std::int32_t c0 = std::max(centre.column - reach, 0);
     const std::int32_t r0 = std::max(centre.row - reach, 0);
-    const SampleRect rect{c0, r0, std::min(centre.column + reach + 1, grid.width) - c0,
-                          std::min(centre.row + reach + 1, grid.height) - r0};
+    const engine::SampleRect rect{c0, r0, std::min(centre.column + reach + 1, grid.width) - c0,
+                                  std::min(centre.row + reach + 1, grid.height) - r0};
     dirty_ = dirty_.joined(rect);
     stroke_rect_ = stroke_rect_.joined(rect);
     if (job_valid_) noteTiles(rect);

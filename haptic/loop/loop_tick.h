@@ -156,10 +156,10 @@ class LoopTick {
   [[nodiscard]] bool carryOver(const engine::Version& live) noexcept;
   [[nodiscard]] LoopEvent eventNow(EventKind kind, std::uint64_t id) noexcept;
   void send(LoopEvent&& event) noexcept;
-  [[nodiscard]] SampleRect wholeField() const noexcept;
+  [[nodiscard]] engine::SampleRect wholeField() const noexcept;
 
   void noteEdit(const ForceSample& force, Tool tool) noexcept;
-  void noteTiles(const SampleRect& rect) noexcept;
+  void noteTiles(const engine::SampleRect& rect) noexcept;
   void noteStroke(bool editing) noexcept;
   void publish() noexcept;
 
@@ -186,11 +186,11 @@ class LoopTick {
   bool was_near_ = true;
 
   engine::Version published_;  // of the newest event; the next one carries it away
-  SampleRect dirty_;
+  engine::SampleRect dirty_;
   std::uint32_t since_publish_ = 0;
   std::uint32_t merged_ = 0;
 
-  SampleRect stroke_rect_;
+  engine::SampleRect stroke_rect_;
   bool in_stroke_ = false;
   bool stroke_ended_ = false;  // to be told
   std::uint32_t ticks_without_edit_ = 0;

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/field/live_field.h"
+#include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
 #include "haptic/base/strokes.h"
 #include "haptic/devices/device.h"
@@ -34,17 +35,6 @@ struct PreparedScene {
   engine::Version original;
   engine::LiveField field;
   Tick tick;
-};
-
-/// A rectangle of samples; empty while columns is 0.
-struct SampleRect {
-  std::int32_t column = 0, row = 0;
-  std::int32_t columns = 0, rows = 0;
-
-  [[nodiscard]] bool empty() const noexcept { return columns == 0; }
-  /// The smallest rectangle that holds both.
-  [[nodiscard]] SampleRect joined(const SampleRect& other) const noexcept;
-  friend bool operator==(const SampleRect&, const SampleRect&) = default;
 };
 
 enum class CommandKind : std::uint8_t {
@@ -89,7 +79,8 @@ struct LoopEvent {
   std::uint64_t tick = 0;    ///< ticks whose edits `version` holds
   std::uint64_t stroke = 0;  ///< strokes begun so far
   std::uint32_t merged = 0;  ///< earlier publications that found the ring full and are part of this one
-  SampleRect rect;  ///< kEdited, kSnapshot: since the event before; kStrokeEnded: of the stroke as well
+  engine::SampleRect
+      rect;  ///< kEdited, kSnapshot: since the event before; kStrokeEnded: of the stroke as well
   engine::Version before;
   engine::Version version;
   engine::Version retired;       ///< the state left (kAdopted, kRestored) or the version refused

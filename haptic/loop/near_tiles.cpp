@@ -65,8 +65,8 @@ void NearTiles::start() {
   });
 }
 
-bool NearTiles::ready(const engine::LiveField& field, const engine::Version& original, const SampleRect& rect,
-                      std::int32_t column, std::int32_t row) noexcept {
+bool NearTiles::ready(const engine::LiveField& field, const engine::Version& original,
+                      const engine::SampleRect& rect, std::int32_t column, std::int32_t row) noexcept {
   // A full ring means a keeper that waits for the disk: it is told with a later tick.
   if (!told_ && followed_.freePlaces() > 0)
     told_ = followed_.push(FollowedState{field.snapshot(), original, state_});

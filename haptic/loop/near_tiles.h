@@ -61,7 +61,7 @@ class NearTiles {
   /// Loop: whether every tile of the field and the original under the samples may be read now. `rect` lies in
   /// the field and is not empty; `column`, `row`: the sample to keep tiles around from now on.
   [[nodiscard]] bool ready(const engine::LiveField& field, const engine::Version& original,
-                           const SampleRect& rect, std::int32_t column, std::int32_t row) noexcept;
+                           const engine::SampleRect& rect, std::int32_t column, std::int32_t row) noexcept;
 
   /// Keeper: one look. May wait for the disk.
   void bring() noexcept;

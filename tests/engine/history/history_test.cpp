@@ -117,7 +117,7 @@ RC_GTEST_PROP(History, AnySequenceOfPushesUndosRedosAndBoundsEqualsARowOfCopies,
         RC_ASSERT(history.bytes() <= bound || history.first() == history.number() - 1);
         row.resize(static_cast<std::size_t>(++now));
         row.push_back(plainOf(live.snapshot()));
-        const FieldRect rect = history.info(now).rect;
+        const SampleRect rect = history.info(now).rect;
         // All that changed lies in the rectangle.
         for (int y = 0; y < height; ++y)
           for (int x = 0; x < width; ++x) {
@@ -204,7 +204,7 @@ TEST(History, AnInversionTouchesNoTileAndUndoesExactly) {
   const Version start = history.current();
   ASSERT_TRUE(history.push({"Invert", StepKind::kInvert, stepTimeNow(), {}, 0}, start.inverted()));
   EXPECT_EQ(history.bytes(), 0U);
-  EXPECT_EQ(history.info(1).rect, (FieldRect{0, 0, 70, 70}));
+  EXPECT_EQ(history.info(1).rect, (SampleRect{0, 0, 70, 70}));
   EXPECT_TRUE(*history.undo() == start);
 }
 

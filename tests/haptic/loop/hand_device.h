@@ -122,7 +122,7 @@ class Mirror {
     marks_.resize(heights_.size());
     take(start, {0, 0, width_, height_});
   }
-  void take(const engine::Version& version, const SampleRect& rect) {
+  void take(const engine::Version& version, const engine::SampleRect& rect) {
     if (rect.empty()) return;
     const std::size_t at = static_cast<std::size_t>(rect.row) * static_cast<std::size_t>(width_) +
                            static_cast<std::size_t>(rect.column);
