@@ -63,7 +63,7 @@ class Stages {
   explicit Stages(LargeReport& report) : report_(report) {}
 
   LargeStage& run(const std::string& name, double samples, const std::function<void()>& work) {
-    engine::forgetPeak();
+    engine::resetPeak();
     const std::uint64_t reads = diskReadsOfAll();
     LargeStage stage;
     stage.name = name;

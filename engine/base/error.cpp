@@ -11,7 +11,7 @@ std::string Error::line() const {
     if (!text.empty()) text += ", ";
     text += *part;
   }
-  // A file name may hold any byte; one error stays one line on the terminal.
+  // A file name may contain any byte; an error remains one line on the terminal.
   for (char& c : text)
     if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
   return text;

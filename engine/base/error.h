@@ -6,20 +6,20 @@
 
 namespace fettle::engine {
 
-/// What kind of refusal an Error is; it decides the exit status of a command.
+/// Kind of an Error; it decides the exit status of a command.
 enum class ErrorKind {
   kInput,      ///< bad usage, bad input file, path that cannot be read or written: exit 2
-  kFailed,     ///< the machine could not do it (full disk, out of memory, no Vulkan device): exit 1
-  kCancelled,  ///< the user asked to stop; nothing was written: exit 1
+  kFailed,     ///< the system failed (full disk, out of memory, no Vulkan device): exit 1
+  kCancelled,  ///< the user cancelled; nothing was written: exit 1
 };
 
-/// The world's refusal (file, device, GPU, user), as a value. Callers' bugs are asserts, not Errors.
-/// The three texts make the one line a user sees: "fettle: error: what, where, remedy".
-/// No text ends in a full stop or holds a line break.
+/// A failure from outside the program (file, device, GPU, user), as a value. Callers' bugs are asserts, not
+/// Errors. The three texts form the line shown to the user: "fettle: error: what, where, remedy". No text
+/// ends in a full stop or contains a line break.
 struct Error {
   ErrorKind kind = ErrorKind::kFailed;
   std::string what;    ///< what went wrong, e.g. "the file ends inside row 37"
-  std::string where;   ///< the file, option or device it went wrong with; may be empty
+  std::string where;   ///< the file, option or device concerned; may be empty
   std::string remedy;  ///< what to do about it; may be empty
 
   /// The three texts joined by ", ", empty ones left out, control characters replaced by spaces.

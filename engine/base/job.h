@@ -9,8 +9,8 @@ namespace fettle::engine {
 /// shows it. The owner keeps it alive until the job has returned.
 ///
 /// Threading: every method may be called from any thread, each is lock-free and never waits. All accesses
-/// are relaxed: the numbers only feed a progress bar, and a late sight of cancel() delays the stop by one
-/// step; the job's result itself reaches its reader by the join at the end of the job.
+/// are relaxed: the numbers are only shown in a progress bar, and seeing cancel() late delays the stop by one
+/// step; the join at the end of the job synchronises its result.
 class JobControl {
  public:
   /// Starts a stage of `total` steps; steps are whatever the job counts (tiles, rows, bytes).

@@ -32,12 +32,13 @@ std::optional<std::uint64_t> numberOf(const std::string& path, std::string_view 
   return std::nullopt;
 }
 
-// What a control group leaves. Its files are given by their names in version 2 or 1 of the interface.
+// Memory left within a control group's limit. Its files have different names in versions 2 and 1 of the
+// interface.
 std::optional<std::uint64_t> leftOf(const std::string& group, const char* limit_name, const char* used_name) {
   const auto limit = numberIn(group + limit_name);
   const auto used = numberIn(group + used_name);
   if (!limit || !used) return std::nullopt;
-  // Pages of files are given back when memory is wanted.
+  // Pages of files are released when memory is needed.
   std::uint64_t cache = 0;
   for (const char* key : {"inactive_file", "active_file"})
     cache += numberOf(group + "/memory.stat", key).value_or(0);
@@ -80,7 +81,7 @@ ResidentMemory residentMemory() {
   return {bytes("VmRSS:"), bytes("VmHWM:"), bytes("RssAnon:")};
 }
 
-bool forgetPeak() {
+bool resetPeak() {
   std::ofstream file("/proc/self/clear_refs");
   file << "5";
   file.flush();

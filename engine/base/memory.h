@@ -4,20 +4,20 @@
 
 namespace fettle::engine {
 
-/// Memory that this process may still take [bytes]: what the system calls available, or what is left of the
-/// control group's limit, its file cache not counted as taken, if that is less. 0 if neither is known. Reads
+/// Memory that this process may still take [bytes]: the system's figure of available memory, or the rest of
+/// the control group's limit (its file cache counts as free) if that is less. 0 if neither is known. Reads
 /// files; any thread.
 [[nodiscard]] std::uint64_t availableMemory();
 
-/// Memory of this process [bytes]; 0 where the system does not say. Any thread.
+/// Memory of this process [bytes]; 0 where the system does not report it. Any thread.
 struct ResidentMemory {
   std::uint64_t now = 0;   ///< all of it
-  std::uint64_t peak = 0;  ///< since it began, or since the last forgetPeak()
-  std::uint64_t own = 0;   ///< the part that no file could give back: heap, stacks
+  std::uint64_t peak = 0;  ///< since the start, or since the last resetPeak()
+  std::uint64_t own = 0;   ///< the part that is not backed by a file: heap, stacks
 };
 [[nodiscard]] ResidentMemory residentMemory();
 
-/// Lets ResidentMemory::peak begin anew; false where the system cannot.
-bool forgetPeak();
+/// Restarts ResidentMemory::peak; false where the system cannot.
+bool resetPeak();
 
 }  // namespace fettle::engine

@@ -6,7 +6,7 @@
 
 namespace fettle::engine {
 
-/// Of errors >= 0; zeros of none.
+/// Figures of errors >= 0; all 0 without errors.
 struct ErrorSummary {
   double mean = 0.0;
   double p99 = 0.0;  ///< 99th percentile, nearest rank
@@ -14,7 +14,7 @@ struct ErrorSummary {
 };
 [[nodiscard]] ErrorSummary errorSummary(std::vector<double> errors);
 
-/// Of repeated times.
+/// Figures of repeated times.
 struct TimeSpread {
   double median = 0.0;
   double worst = 0.0;

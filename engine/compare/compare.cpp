@@ -170,7 +170,7 @@ Result<Deviation> compareFields(const Version& a, const Version& b, JobControl& 
   result.sa_b = ratio(third.b.absolute.value(), first.b.samples);
   result.p99 = kNoFigure;
   if (first.samples > 0) {
-    // Nearest rank ceil(0.99 n), in integers: 0.99 is no double.
+    // Nearest rank ceil(0.99 n), in integers: 0.99 is not representable as a double.
     result.p99 = selectFromTiles(
                      pair.a, job, [](std::int64_t n) { return (99 * n + 99) / 100 - 1; },
                      [&](const SampleRect& rect, auto&& take) {

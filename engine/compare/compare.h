@@ -15,7 +15,7 @@ struct Deviation {
   std::int64_t samples = 0;  ///< valid in both
   std::int64_t only_a = 0;   ///< valid in a, a hole in b
   std::int64_t only_b = 0;   ///< a hole in a, valid in b
-  double rms = 0.0;          ///< sqrt(mean(d^2)): the mean is not taken out
+  double rms = 0.0;          ///< sqrt(mean(d^2)): the mean is not subtracted
   double mean = 0.0;         ///< mean(d)
   double max_abs = 0.0;      ///< max |d|
   double p99 = 0.0;  ///< smallest v with |d| <= v for at least 99 % of the samples (nearest rank), exact
@@ -29,8 +29,8 @@ struct Deviation {
 
 /// Deviation of b from a. Signs of the versions are applied. Exactness: differences in double, means in two
 /// compensated passes (relative error below 1e-14 of the largest height), p99 by exact selection.
-/// Threading: tiles on all workers of the calling arena; same bits for any thread count.
-/// Errors: sizes differ (kInput), cancelled.
+/// Threading: tiles on all workers of the calling arena; bit-identical for any thread count. Errors: sizes
+/// differ (kInput), cancelled.
 [[nodiscard]] Result<Deviation> compareFields(const Version& a, const Version& b, JobControl& job);
 
 /// Where "near an edge" ends and "flat" begins, and how edge width is measured. Distances in samples, centre
@@ -45,7 +45,7 @@ struct TruthOptions {
   int profile_half_length = 8;
 };
 
-/// How far a field is from the truth. Lengths in the height unit of the truth but for edge_width.
+/// How far a field is from the truth. Lengths in the height unit of the truth, except edge_width.
 struct TruthFigures {
   std::int64_t samples = 0;       ///< valid in both
   std::int64_t flat_samples = 0;  ///< of these, flats
@@ -59,17 +59,17 @@ struct TruthFigures {
   /// across true step edges; NaN when no profile could be measured. An ideal step has 0.8 samples at most:
   /// the sampling's own limit.
   double edge_width = 0.0;
-  double edge_width_truth = 0.0;   ///< the same for the truth itself over the same profiles: the floor
+  double edge_width_truth = 0.0;   ///< the same for the truth itself over the same profiles: the lower limit
   std::int64_t edge_profiles = 0;  ///< profiles measured
   std::int64_t unresolved_profiles =
       0;  ///< usable in the truth, but the field never spans 10 to 90 % in reach
 };
 
-/// Deviation of a field from the truth, overall, on flats and near edges, and the width of its edges. `edges`
-/// counts by its marks alone (heights not read): the samples where the truth has an edge, step or crease; the
-/// profiles find by themselves which are steps, and leave out corners, ribs, whatever has another edge in
-/// reach and where the field has too many holes. See edge_width.h for the method. Threading and determinism
-/// as compareFields. Errors: sizes differ or options out of range (kInput), cancelled.
+/// Deviation of a field from the truth, overall, on flats and near edges, and the width of its edges. Only
+/// the marks of `edges` are used (heights not read): the samples where the truth has an edge, step or crease;
+/// the profiles determine which are steps, and leave out corners, ribs, places with another edge in reach and
+/// where the field has too many holes. See edge_width.h for the method. Threading and determinism as
+/// compareFields. Errors: sizes differ or options out of range (kInput), cancelled.
 [[nodiscard]] Result<TruthFigures> compareToTruth(const Version& field, const Version& truth,
                                                   const Version& edges, JobControl& job,
                                                   const TruthOptions& options = {});

@@ -14,11 +14,11 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr int kCell = 16;            // one profile a cell of so many samples
-constexpr int kMaxHalf = 96;         // bound of a patch's half side, for very unlike spacings
+constexpr int kCell = 16;            // one profile per cell of this many samples
+constexpr int kMaxHalf = 96;         // bound of a patch's half side, for very different spacings
 constexpr double kOffLine = 1.0;     // [samples] a corner's boundary is farther off the parabola than this
 constexpr double kOffPlane = 0.1;    // of the step
-constexpr double kBesideEdge = 1.0;  // [samples] nearer ones may be on either side by the sampling alone
+constexpr double kEdgeMargin = 1.0;  // [samples] nearer ones may be on either side by the sampling alone
 constexpr double kBin = 0.5;         // [samples]
 constexpr double kLeastValid = 0.8;
 
@@ -30,7 +30,7 @@ struct Patch {
   int half_rows = 0;
   double sx = 1.0;
   double sy = 1.0;
-  double sample = 1.0;  // [mm], geometric mean of the spacings: what "a sample" is in any direction
+  double sample = 1.0;  // [mm], geometric mean of the spacings: length of "a sample" in any direction
   std::vector<float> truth;
 
   [[nodiscard]] int width() const noexcept { return 2 * half_columns + 1; }
@@ -104,7 +104,7 @@ std::pair<double, double> range3(const FieldReader& truth, std::int32_t c, std::
   return {low, high};
 }
 
-// The points half way between unlike 4-neighbours, within `radius` of the centre.
+// The points half way between different 4-neighbours, within `radius` of the centre.
 std::vector<glm::dvec2> boundary(const Patch& patch, double mid, double radius) {
   std::vector<glm::dvec2> points;
   const auto look = [&](int c, int r, int dc, int dr) {
@@ -156,7 +156,7 @@ std::optional<EdgeLine> fitLine(const Patch& patch, double mid, double radius) {
   return line;
 }
 
-// The land on one side: z = k0 + k1 x + k2 y.
+// The surface on one side: z = k0 + k1 x + k2 y.
 struct Land {
   std::array<double, 3> k{};
   [[nodiscard]] double at(glm::dvec2 p) const noexcept { return k[0] + k[1] * p.x + k[2] * p.y; }
@@ -189,7 +189,7 @@ std::optional<Lands> fitLands(const Patch& patch, EdgeLine& line, const TruthOpt
   forEachInReach(patch, line, options, [&](glm::dvec2 p, double d, int c, int r) {
     const double z = patch.truthAt(c, r);
     whole = whole && !std::isnan(z);
-    if (std::abs(d) >= kBesideEdge * patch.sample) (d < 0.0 ? below : above).add(p.x, p.y, z);
+    if (std::abs(d) >= kEdgeMargin * patch.sample) (d < 0.0 ? below : above).add(p.x, p.y, z);
   });
   if (!whole) return {};
   const auto k_below = below.solve();
@@ -206,7 +206,7 @@ std::optional<Lands> fitLands(const Patch& patch, EdgeLine& line, const TruthOpt
   const double step = lands.high.at(line.origin) - lands.low.at(line.origin);
   bool plane = step > 0.0;
   forEachInReach(patch, line, options, [&](glm::dvec2 p, double d, int c, int r) {
-    if (std::abs(d) < kBesideEdge * patch.sample) return;
+    if (std::abs(d) < kEdgeMargin * patch.sample) return;
     const Land& land = d < 0.0 ? lands.low : lands.high;
     plane = plane && std::abs(patch.truthAt(c, r) - land.at(p)) <= kOffPlane * step &&
             lands.high.at(p) - lands.low.at(p) >= 0.5 * step;
@@ -249,7 +249,7 @@ double rise(const std::vector<Block>& bins) {
   return crossing(0.9) - crossing(0.1);
 }
 
-// NaN when too much is missing or the profile does not reach; `lost` says which.
+// NaN when too many samples are missing or the profile does not reach; `lost` tells these apart.
 double widthOf(const Patch& patch, const std::vector<float>& heights, double scale, const EdgeLine& line,
                const Lands& lands, const TruthOptions& options, bool& lost) {
   const double bin = kBin * patch.sample;

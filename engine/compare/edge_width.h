@@ -8,24 +8,24 @@
 
 namespace fettle::engine {
 
-// Edge width: how far a height takes to climb a wall that is upright in truth.
+// Edge width: the distance over which the height rises at a wall that is vertical in truth.
 //
 // The method is that of the slanted edge of ISO 12233:2017, annex D (edge spread function), on heights:
-//  1. In every 16 x 16 cell, the marked sample beside which the truth jumps most is the centre of a patch.
-//  2. Around it, the truth is cut at half the jump into high and low; the points between unlike neighbours
-//  lie
-//     on the edge. Their main axis is the edge's direction, a parabola along it takes up its curvature.
+//  1. In every 16 x 16 cell, the marked sample next to the largest jump of the truth is the centre of a
+//  patch.
+//  2. Around it, the truth is cut at half the jump into high and low; the points between different neighbours
+//  lie on the edge. Their main axis is the edge's direction, a parabola along it models its curvature.
 //     Points off the parabola by more than a sample: a corner, no profile.
 //  3. Every sample of the patch gets its distance to the parabola. A plane is fitted to the truth on either
 //     side; where the truth is off its plane by more than a tenth of the step there is another edge in reach:
 //     no profile. (A crease has no step and ends here too.)
 //  4. Each height, less the low plane and divided by the step, is put into bins of half a sample by distance.
-//     The bin means are the profile: 10 to 30 samples in each, so noise sinks to a fifth or so.
+//     The bin means are the profile: 10 to 30 samples in each, so noise falls to about a fifth.
 //  5. The profile is made monotone (pool adjacent violators: Ayer, Brunk, Ewing, Reid and Silverman, An
 //     empirical distribution function for sampling with incomplete information, 1955), which noise is not and
 //     a blurred wall is; the width lies between its 10 % and 90 % points, linearly interpolated.
 
-/// What one patch gave [mm].
+/// Result of one patch [mm].
 struct EdgeWidth {
   double truth = 0.0;
   double field = 0.0;  ///< NaN: the field does not span 10 to 90 % within reach

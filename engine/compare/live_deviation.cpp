@@ -32,7 +32,7 @@ Extent extentOf(const FieldReader& field, std::int32_t tc, std::int32_t tr) noex
 struct Fit {
   double n = 0.0, residual = 0.0, square = 0.0, absolute = 0.0;
   double level = 0.0, by_column = 0.0, by_row = 0.0;  // about the centre of the grid
-  double explained = 0.0;                             // what the plane takes off the squares
+  double explained = 0.0;                             // part of the squares that the plane explains
 
   void solve(double c, double r, double cc, double cr, double rr, double ec, double er) noexcept {
     if (n == 0.0) return;
@@ -40,7 +40,7 @@ struct Fit {
     const double scc = cc - c * mc, scr = cr - c * mr, srr = rr - r * mr;
     const double sce = ec - residual * mc, sre = er - residual * mr;
     const double determinant = scc * srr - scr * scr;
-    // Samples on one line leave the tilt across it open: level across it, as Plane::fit.
+    // Samples on one line do not determine the tilt across it: level across it, as Plane::fit.
     if (determinant > 1e-12 * scc * srr) {
       by_column = (srr * sce - scr * sre) / determinant;
       by_row = (scc * sre - scr * sce) / determinant;
@@ -139,7 +139,7 @@ Result<LiveDeviation> LiveDeviation::create(const Version& original, JobControl&
     live.level_ = static_cast<double>(reader.sign()) * 0.5 *
                   (static_cast<double>(bounds.min) + static_cast<double>(bounds.max));
   job.begin("comparing", 2 * tileCount(reader));
-  // Once to find the plane, once about it, so that no digit is lost to the height of the whole.
+  // Once to find the plane, once about it, so that no precision is lost to the mean height.
   for (int pass = 0; pass < 2; ++pass) {
     live.sums_ = forEachTile<TileSums>(reader, job, [&](const SampleRect& rect, TileSums& sums) {
       live.measure(reader, rect.column / kTileSide, rect.row / kTileSide, sums);

@@ -11,8 +11,8 @@
 namespace fettle::engine {
 
 /// How often each change occurs: samples by b - a [height_unit]. Class i of kClasses counts the changes d
-/// with lowEnd(i) <= d < lowEnd(i + 1); zero is the border between the two middle ones, and samples that are
-/// the same number before and after are counted apart: there are so many of them.
+/// with lowEnd(i) <= d < lowEnd(i + 1); zero is the border between the two middle ones. Samples that are
+/// equal before and after are counted separately, since they are so many.
 struct ChangeHistogram {
   static constexpr int kClasses = 64;
   double reach = 0.0;  ///< the classes go from -reach to +reach; a power of two; 0: nothing changed
@@ -22,31 +22,30 @@ struct ChangeHistogram {
   [[nodiscard]] double lowEnd(int i) const noexcept { return reach * (2.0 * i / kClasses - 1.0); }
 };
 
-/// The figures of compareFields that a person watches while working, kept up to date at the cost of the tiles
-/// that changed.
+/// The figures of compareFields that are shown during work, updated at the cost of the changed tiles.
 struct LiveFigures {
   std::int64_t samples = 0;  ///< valid in both
   double max_abs = 0.0;      ///< as Deviation; 0 without samples
   double rms = 0.0;
   double sq_original = 0.0, sq = 0.0;  ///< about each field's own plane, as Deviation
-  /// About the plane of the ORIGINAL, for both: a plane of its own would have to be known before the first
-  /// sample is looked at. Off by no more than sa_plane_shift.
+  /// About the plane of the ORIGINAL, for both: the present field's plane would have to be known before the
+  /// first sample is read. The error is at most sa_plane_shift.
   double sa_original = 0.0, sa = 0.0;
   double sa_plane_shift = 0.0;  ///< mean distance between the two planes, an upper bound
   ChangeHistogram histogram;
 };
 
-/// Keeps sums of each tile, compared with the original, and adds them up anew each time: 24,000 tiles (100 M
-/// samples) take some milliseconds, a changed tile some 15 us. Sums are in double, tile by tile in a fixed
-/// order: the same figures whatever the way that led to a version, and for any thread count.
-/// Memory: 0.1 byte a sample. Threading: one thread at a time.
+/// Stores sums of each tile, compared with the original, and adds them again each time: 24,000 tiles (100 M
+/// samples) take some milliseconds, a changed tile about 15 us. Sums are in double, tile by tile in a fixed
+/// order: the figures do not depend on the edits that led to a version or on the thread count. Memory: 0.1
+/// byte per sample. Threading: one thread at a time.
 class LiveDeviation {
  public:
-  /// Looks at all of `original` once. Errors: cancelled, memory exhausted.
+  /// Reads all of `original` once. Errors: cancelled, memory exhausted.
   [[nodiscard]] static Result<LiveDeviation> create(const Version& original, JobControl& job);
 
-  /// Figures of `now`: same grid and memory as the original; signs are not looked at, both count the right
-  /// way up. Errors: cancelled (nothing has changed then), memory exhausted.
+  /// Figures of `now`: same grid and memory as the original; signs are ignored, both are taken as upright.
+  /// Errors: cancelled (nothing has changed then), memory exhausted.
   [[nodiscard]] Result<LiveFigures> update(const Version& now, JobControl& job);
 
  private:

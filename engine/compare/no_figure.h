@@ -4,7 +4,7 @@
 
 namespace fettle::engine {
 
-/// A figure that no sample gives: NaN here, "-" in a table, null in JSON.
+/// A figure without any sample: NaN here, "-" in a table, null in JSON.
 inline constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace fettle::engine

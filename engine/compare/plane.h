@@ -61,13 +61,13 @@ struct PlaneMoments {
 };
 
 /// The least-squares plane through a field's samples: height + by_column * (c - column) + by_row * (r - row).
-/// The spacing drops out of the fit, so it is done in samples.
+/// The spacing cancels in the fit, so it is done in samples.
 struct Plane {
   Centre centre;
   double by_column = 0.0;
   double by_row = 0.0;
 
-  /// Samples on one line leave the tilt across it open: then the plane is level across it.
+  /// Samples on one line do not determine the tilt across it: then the plane is level across it.
   [[nodiscard]] static Plane fit(const Centre& centre, const PlaneMoments& m) noexcept {
     Plane plane{centre, 0.0, 0.0};
     const double cc = m.cc.value();

@@ -22,12 +22,13 @@ struct Selected {
   double value = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The value of rank `rankOf(count)` (0 = smallest, < count) among those that `visit` makes of the field's
-/// tiles, exactly and without a copy of them. `visit(rect, take)` calls take(v) for each value of one tile,
-/// v >= 0 or NaN (left out); it is called kSelectPasses times a tile, from all workers at once, and must give
-/// the same values each time. NaN when there is no value or the job was cancelled: look at job.cancelled().
+/// The value of rank `rankOf(count)` (0 = smallest, < count) among those that `visit` produces for the
+/// field's tiles, exactly and without a copy of them. `visit(rect, take)` calls take(v) for each value of one
+/// tile, v >= 0 or NaN (left out); it is called kSelectPasses times per tile, from all workers at the same
+/// time, and must produce the same values each time. NaN when there is no value or the job was cancelled:
+/// check job.cancelled().
 ///
-/// The bits of doubles >= 0 are ordered as the numbers are, so four passes settle 16 bits each by counting
+/// The bits of doubles >= 0 are ordered as the numbers are, so four passes determine 16 bits each by counting
 /// (radix selection; Knuth, The Art of Computer Programming 3, section 5.2.5). Counts are integers: their
 /// sum, and so the result, is the same for any number of threads.
 template <class RankOf, class Visit>
@@ -50,7 +51,7 @@ template <class RankOf, class Visit>
         visit(tileRect(field, i), [&](double value) {
           if (std::isnan(value)) return;
           const auto bits = std::bit_cast<std::uint64_t>(value);
-          // What lies above the present digit must be the prefix found so far.
+          // The bits above the present digit must be the prefix found so far.
           if (shift + kBits < 64 && (bits >> (shift + kBits)) != (prefix >> (shift + kBits))) return;
           ++count[static_cast<std::size_t>((bits >> shift) & ((1U << kBits) - 1))];
         });

@@ -14,9 +14,9 @@
 
 namespace fettle::engine {
 
-/// A sum that carries what each addition rounded away; its error is one rounding of the result plus a term of
-/// second order in the number of addends. Neumaier, Rundungsfehleranalyse einiger Verfahren zur Summation
-/// endlicher Summen (1974), algorithm IV.
+/// A compensated sum, which carries the rounding error of each addition; its error is one rounding of the
+/// result plus a term of second order in the number of addends. Neumaier, Rundungsfehleranalyse einiger
+/// Verfahren zur Summation endlicher Summen (1974), algorithm IV.
 class CompensatedSum {
  public:
   void add(double x) noexcept {
@@ -45,9 +45,9 @@ class CompensatedSum {
   return rect;
 }
 
-/// Calls f(rect, part) for every tile on all workers of the arena, each with a part of its own, and gives the
-/// parts back in tile order (row-major), so that folding them is the same for any thread count. Parts of
-/// tiles after a cancel are as constructed: look at job.cancelled(). Advances the job by one a tile.
+/// Calls f(rect, part) for every tile on all workers of the arena, each with its own part, and returns the
+/// parts in tile order (row-major), so that combining them gives the same result for any thread count. Parts
+/// of tiles after a cancel are as constructed: check job.cancelled(). Advances the job by one per tile.
 template <class Part, class F>
 [[nodiscard]] std::vector<Part> forEachTile(const FieldReader& field, JobControl& job, const F& f) {
   const std::int64_t tiles = std::int64_t{field.tileColumns()} * field.tileRows();

@@ -86,7 +86,7 @@ struct TruthTile {
   std::vector<EdgeWidth> widths;
 };
 
-// Mean of the two middle ones for an even count; NaN of nothing.
+// Mean of the two middle ones for an even count; NaN without values.
 double median(std::vector<double> values) {
   if (values.empty()) return kNoFigure;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -99,12 +99,12 @@ Status check(const Version& field, const Version& truth, const Version& edges, c
   for (const Version* other : {&field, &edges})
     if (other->grid().width != truth.grid().width || other->grid().height != truth.grid().height)
       return inputError(
-          fmt::format("a truth of {} x {} samples cannot judge {} of {} x {}", truth.grid().width,
+          fmt::format("a truth of {} x {} samples cannot be compared with {} of {} x {}", truth.grid().width,
                       truth.grid().height, other == &field ? "a field" : "edges", other->grid().width,
                       other->grid().height),
           {}, "give field, truth and edges of one size");
   if (!(o.near_edge >= 0.0 && o.near_edge <= o.flat && o.flat <= 64.0))
-    return inputError(fmt::format("\"near\" within {} and \"flat\" beyond {} samples cannot be told apart",
+    return inputError(fmt::format("\"near\" within {} and \"flat\" beyond {} samples cannot be distinguished",
                                   o.near_edge, o.flat),
                       {}, "give 0 <= near <= flat <= 64");
   if (o.profile_reach < 4 || o.profile_reach > 64 || o.profile_half_length < 2 || o.profile_half_length > 64)

@@ -11,8 +11,8 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 
 constexpr int kLanes = 8;
 
-// Comparisons with NaN are false, so a hole never replaces a bound: `v < lo ? v : lo` is what the machine's
-// packed minimum does. A fixed number of lanes side by side, so that the compiler sees that too.
+// Comparisons with NaN are false, so a hole never replaces a bound: `v < lo ? v : lo` is the machine's packed
+// minimum. A fixed number of lanes, so that the compiler vectorises it.
 template <int kRows>
 HeightBounds boundsOf(const float* low, const float* high, int stride) noexcept {
   std::array<float, kLanes> lo;

@@ -18,12 +18,11 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
-// f(0) to f(n - 1): on all cores for fields whose tiles take longer than waking a worker does, 17 MB and
-// more.
+// f(0) to f(n - 1): on all cores where the tiles take longer than starting a worker, 17 MB and more.
 template <class F>
 void forEachIndex(std::size_t n, const F& f) {
-  constexpr std::size_t kWorthIt = 1024;
-  if (n >= kWorthIt)
+  constexpr std::size_t kParallelFrom = 1024;
+  if (n >= kParallelFrom)
     tbb::parallel_for(std::size_t{0}, n, f);
   else
     for (std::size_t i = 0; i < n; ++i) f(i);
@@ -70,11 +69,12 @@ Result<FieldBuilder> FieldBuilder::create(Grid grid, std::shared_ptr<FieldMemory
   FieldBuilder builder(std::move(grid), std::move(memory));
   const auto tiles = static_cast<std::size_t>(builder.tile_columns_) * builder.tile_rows_;
   builder.tiles_.reserve(tiles);
-  builder.memory_->bulk().reserve(tiles);  // a refusal shows below
+  builder.memory_->bulk().reserve(tiles);  // a failure is detected below
   for (std::size_t i = 0; i < tiles; ++i) {
     TileRef tile = TileRef::adopt(builder.memory_->bulk().acquire());
     if (!tile)
-      return failure(fmt::format("memory for {} samples could not be had", builder.grid_->samples()), what);
+      return failure(fmt::format("memory for {} samples could not be allocated", builder.grid_->samples()),
+                     what);
     builder.tiles_.push_back(std::move(tile));
   }
   forEachIndex(tiles, [&builder, start](std::size_t i) {
@@ -128,8 +128,8 @@ void FieldBuilder::writeMarks(std::int32_t column, std::int32_t row, std::int32_
 Node* FieldBuilder::buildNode(int level, std::int32_t column, std::int32_t row, bool& marked, bool& holed,
                               HeightBounds& bounds) {
   Node* node = memory_->nodes.acquire();
-  // A node is 1/16 of a tile's size for 64 tiles: where the tiles fitted, this failing means that the process
-  // cannot go on in any useful way.
+  // A node is 1/16 of a tile's size for 64 tiles: if the tiles fitted and this fails, the process cannot
+  // continue.
   if (node == nullptr) std::abort();
   node->level = level;
   node->marked_children = 0;
@@ -187,7 +187,7 @@ void FieldBuilder::summarise(std::size_t place) noexcept {
 void FieldBuilder::wrote(std::int32_t tc, std::int32_t tr, std::int32_t samples) noexcept {
   assert(missing_ != nullptr);
   const std::size_t place = static_cast<std::size_t>(tr) * tile_columns_ + tc;
-  // Release: what I wrote is there for whoever comes last. Acquire: I am the last, and see what all wrote.
+  // Release: this thread's writes are visible to the last one. Acquire: the last one sees all writes.
   const std::int32_t before = missing_[place].fetch_sub(samples, std::memory_order_acq_rel);
   assert(before >= samples);
   if (before == samples) summarise(place);
@@ -211,7 +211,7 @@ Version makeField(const Grid& grid, const std::vector<float>& heights,
   assert(heights.size() == static_cast<std::size_t>(grid.samples()));
   assert(marks.empty() || marks.size() == heights.size());
   Result<FieldBuilder> builder = FieldBuilder::create(grid, "field");
-  if (!builder) std::abort();  // a caller's bug: sizes are its own choice
+  if (!builder) std::abort();  // a caller's bug: it chooses the sizes
   builder->writeHeights(0, 0, grid.width, grid.height, heights.data(), grid.width);
   if (!marks.empty()) builder->writeMarks(0, 0, grid.width, grid.height, marks.data(), grid.width);
   return std::move(*builder).build();

@@ -9,22 +9,22 @@
 
 namespace fettle::engine {
 
-/// Makes the first version of a field: starts with every sample a hole and no mark, takes blocks of samples
-/// in any order, and turns into a Version.
+/// Makes the first version of a field: starts with every sample a hole and no mark, accepts blocks of samples
+/// in any order, and builds a Version from them.
 ///
 /// Threading: writeHeights and writeMarks may be called from several threads at once as long as no two calls
 /// touch the same sample, for marks the same row of a tile. create() and build() use all cores.
 class FieldBuilder {
  public:
-  /// What the samples are before they are written.
+  /// Content of the samples before they are written.
   enum class Start : std::uint8_t {
     kHoles,
-    kUnwritten,  ///< anything: the caller writes every sample before build(). Saves a pass over the field
+    kUnwritten,  ///< undefined: the caller writes every sample before build(). Saves a pass over the field
   };
 
-  /// Takes all tiles, from memory or a store as memoryFor (tile_store.h) decides. Errors: a side outside
-  /// 1 .. Grid::kMaxSide, a spacing that is not finite and positive, no room. `what` names the field in the
-  /// error, usually the file.
+  /// Allocates all tiles, in memory or in a store as memoryFor (tile_store.h) decides. Errors: a side outside
+  /// 1 .. Grid::kMaxSide, a spacing that is not finite and positive, not enough memory. `what` names the
+  /// field in the error, usually the file.
   [[nodiscard]] static Result<FieldBuilder> create(Grid grid, const std::string& what,
                                                    Start start = Start::kHoles);
 
@@ -46,15 +46,16 @@ class FieldBuilder {
   void writeMarks(std::int32_t column, std::int32_t row, std::int32_t columns, std::int32_t rows,
                   const std::uint8_t* marks, std::ptrdiff_t stride) noexcept;
 
-  /// Tile (tc, tr) itself, for readers that store whole tiles: fill `samples` and `marks` as Tile wants them
-  /// (no infinity; holes and no marks outside the field); build() makes the rest. Threading as writeHeights.
+  /// Tile (tc, tr) itself, for readers that store whole tiles: fill `samples` and `marks` as Tile requires
+  /// (no infinity; holes and no marks outside the field); build() computes the rest. Threading as
+  /// writeHeights.
   [[nodiscard]] Tile& tile(std::int32_t tc, std::int32_t tr) noexcept {
     return *tiles_[static_cast<std::size_t>(tr) * tile_columns_ + tc];
   }
 
-  /// Says that `samples` of tile (tc, tr) are written now, each sample once and for good, in a builder that
-  /// started kUnwritten: who says it of a tile's last ones makes its bounds and counts at once, while it lies
-  /// in the processor's cache. build() makes those of tiles of which not all was said. Threading: any.
+  /// Reports that `samples` of tile (tc, tr) are written now, each sample once and finally, in a builder that
+  /// started kUnwritten: the call that completes a tile computes its bounds and counts immediately, while it
+  /// is in the processor's cache. build() computes those of tiles not completed by reports. Threading: any.
   void wrote(std::int32_t tc, std::int32_t tr, std::int32_t samples) noexcept;
 
   /// Samples that were infinite and became holes.
@@ -66,7 +67,8 @@ class FieldBuilder {
   [[nodiscard]] Version build() &&;
 
  private:
-  /// What the nodes must know of a tile. In a store, looking at the tile again would read it from the disk.
+  /// The values of a tile that its node stores. In a store, reading the tile again would read it from the
+  /// disk.
   struct Summary {
     HeightBounds bounds;
     bool marked = false;
@@ -83,7 +85,7 @@ class FieldBuilder {
   std::shared_ptr<FieldMemory> memory_;
   std::vector<TileRef> tiles_;      // row-major
   std::vector<Summary> summaries_;  // of each
-  // Samples of each that wrote() has not heard of; none where the builder started with holes.
+  // Samples of each that wrote() has not reported yet; none where the builder started with holes.
   std::unique_ptr<std::atomic<std::int32_t>[]> missing_;
   std::int32_t tile_columns_ = 0;
   std::int32_t tile_rows_ = 0;

@@ -16,12 +16,13 @@ struct TileChange {
   TileRef after;
 };
 
-/// The tiles of which two versions of one grid do not share the very same memory, row-major within each node.
-/// Time and memory follow the number of changed tiles, not the size of the field. The sign is not looked at.
+/// The tiles of which two versions of one grid do not share the same memory, row-major within each node. Time
+/// and memory are proportional to the number of changed tiles, not to the size of the field. The sign is
+/// ignored.
 [[nodiscard]] std::vector<TileChange> changedTiles(const Version& before, const Version& after);
 
-/// Swaps the tiles of `changes` back to their `before` state (undo) or on to their `after` state (redo), in
-/// place. False, with the rest left undone, when a node could not be had (see LiveField).
+/// Swaps the tiles of `changes` to their `before` state (undo) or to their `after` state (redo), in place.
+/// False, with the rest unchanged, when a node could not be allocated (see LiveField).
 [[nodiscard]] bool undo(LiveField& field, const std::vector<TileChange>& changes) noexcept;
 [[nodiscard]] bool redo(LiveField& field, const std::vector<TileChange>& changes) noexcept;
 

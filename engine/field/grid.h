@@ -5,8 +5,8 @@
 
 namespace fettle::engine {
 
-/// A length unit as a file names it, and its exact size. Numbers stay in the file's own unit so that a
-/// round trip keeps every bit; whoever needs millimetres multiplies once.
+/// A length unit as a file names it, and its exact size. Numbers stay in the file's own unit so that a round
+/// trip keeps every bit; code that needs millimetres multiplies once.
 struct LengthUnit {
   std::string name = "mm";  ///< "mm", "m", "um", "nm", "ft", "ftUS", "in", "deg" (approximated, see io)
   double mm = 1.0;          ///< millimetres in one unit; finite and > 0
@@ -20,8 +20,8 @@ struct LengthUnit {
 ///   world  x = origin_x + c * spacing_x,  y = origin_y + r * spacing_y   [lateral_unit]
 ///   field  x = c * spacing_x * lateral_unit.mm, y likewise, z = height * height_unit.mm   [mm]
 /// Row 0 is the one with the LOWEST y, so that x, y, z is right-handed (x right, y up the picture, z towards
-/// the viewer); importers of top-down formats flip rows and exporters flip them back. Haptics and render
-/// work in field coordinates: local, in millimetres, so an origin 5e6 m away costs no digit.
+/// the viewer); importers of top-down formats flip rows and exporters flip them back. Haptics and render work
+/// in field coordinates: local, in millimetres, so an origin 5e6 m away costs no precision.
 struct Grid {
   std::int32_t width = 0;   ///< columns, 1 .. kMaxSide
   std::int32_t height = 0;  ///< rows, 1 .. kMaxSide
@@ -32,8 +32,8 @@ struct Grid {
   LengthUnit lateral_unit;
   LengthUnit height_unit;
   std::string crs_wkt;  ///< coordinate reference system as WKT; empty if none
-  /// Height of one count in the source when heights were integers times a scale (0 = not so): what a
-  /// 16-bit export needs to give the counts back.
+  /// Height of one count in the source when heights were integers times a scale (0 = not so): needed by a
+  /// 16-bit export to restore the counts.
   double height_per_count = 0.0;
 
   /// Most samples along one side: four 8-fold levels above an 8x8 block (32768) times 8.

@@ -34,7 +34,7 @@ Version LiveField::adopt(Version version) noexcept {
 }
 
 TileRef LiveField::newTile() noexcept {
-  // Who may grow a pool may wait for a disk as well.
+  // A writer that may grow a pool may wait for a disk as well.
   FieldMemory& memory = *state_.memory_;
   TileRef tile =
       TileRef::adopt(growth_ == Growth::kAllowed ? memory.bulk().acquire() : memory.tiles.tryAcquire());
@@ -42,7 +42,8 @@ TileRef LiveField::newTile() noexcept {
   return tile;
 }
 
-// Makes the node in `slot` ours alone, copying it if some version shares it. Null when the pool is dry.
+// Makes this field the only owner of the node in `slot`, copying it if a version shares it. Null when the
+// pool is empty.
 Node* LiveField::ownNode(Node*& slot) noexcept {
   if (InnerPool::unique(slot)) return slot;
   InnerPool& pool = state_.memory_->nodes;
@@ -56,8 +57,8 @@ Node* LiveField::ownNode(Node*& slot) noexcept {
     else
       InnerPool::retain(static_cast<const Node*>(child));
   }
-  // The shared node lives on in the version that shares it: unless that version was dropped between the two
-  // lines above, in which case this frees it, and with it only what the copy does not hold.
+  // The shared node remains in the version that shares it, unless that version was dropped between the two
+  // lines above; then this frees it, and with it only what the copy does not hold.
   releaseNode(slot);
   slot = copy;
   return copy;
@@ -99,7 +100,7 @@ bool LiveField::tileHoled(const Tile& tile, std::int32_t tc, std::int32_t tr) co
   return tile.nan_samples > static_cast<std::uint32_t>(kTileSamples - columns * rows);
 }
 
-// Carries the tile's bounds and flags up the path, stopping as soon as a level does not change.
+// Propagates the tile's bounds and flags up the path, until a level does not change.
 void LiveField::publish(const Path& path, std::int32_t tc, std::int32_t tr, bool holed) noexcept {
   HeightBounds bounds = path.tile->bounds;
   bool marked = path.tile->marked_samples != 0;
@@ -133,8 +134,8 @@ bool LiveField::writeHeights(std::int32_t column, std::int32_t row, std::int32_t
   const std::int32_t tr0 = row >> kTileShift;
   const std::int32_t tr1 = (row + rows - 1) >> kTileShift;
 
-  // Two passes when the rectangle touches several tiles: first own them all, then write, so that a dry pool
-  // leaves the field as it was.
+  // Two passes when the rectangle touches several tiles: first make all of them unshared, then write, so that
+  // an empty pool leaves the field unchanged.
   const bool several = tc1 > tc0 || tr1 > tr0;
   for (int pass = several ? 0 : 1; pass < 2; ++pass)
     for (std::int32_t tr = tr0; tr <= tr1; ++tr)
@@ -176,8 +177,7 @@ bool LiveField::writeHeights(std::int32_t column, std::int32_t row, std::int32_t
   return true;
 }
 
-// What a stylus does a thousand times a second: writeHeights of one sample, which touches one tile and rarely
-// a bound.
+// Called at the rate of the loop: writeHeights of one sample, which touches one tile and rarely a bound.
 bool LiveField::setHeight(std::int32_t column, std::int32_t row, float height) noexcept {
   assert(grid().contains(column, row));
   const std::int32_t tc = column >> kTileShift;

@@ -7,18 +7,17 @@
 
 namespace fettle::engine {
 
-/// Whether a LiveField may ask the system for memory when its pool runs dry.
+/// Whether a LiveField may request memory from the system when its pool is empty.
 enum class Growth {
-  kNever,    ///< the haptic loop: a write that finds the pool dry changes nothing and returns false
+  kNever,    ///< the haptic loop: a write that finds the pool empty changes nothing and returns false
   kAllowed,  ///< replay, import, jobs
 };
 
-/// The one state of a field that may be written. Writing copies what is shared with a version first (one tile
-/// and one node a level), and writes in place what is not.
+/// The only state of a field that may be written. Writing first copies what is shared with a version (one
+/// tile and one node per level), and writes in place what is not.
 ///
 /// Threading: one owner thread at a time. With Growth::kNever no method but the constructor and destructor
-/// allocates, locks or throws; snapshot() is O(1). Versions it gave out may be read and dropped by any
-/// thread.
+/// allocates, locks or throws; snapshot() is O(1). Its versions may be read and dropped by any thread.
 class LiveField {
  public:
   LiveField(Version start, Growth growth) noexcept;
@@ -32,17 +31,17 @@ class LiveField {
   /// The present state, immutable from now on. O(1).
   [[nodiscard]] Version snapshot() const noexcept { return state_; }
 
-  /// Goes on from another version of the same grid; returns the state it leaves, so that the caller decides
-  /// on which thread that is freed.
+  /// Continues from another version of the same grid; returns the previous state, so that the caller decides
+  /// on which thread it is freed.
   [[nodiscard]] Version adopt(Version version) noexcept;
 
-  /// Turns the field upside down: a sign, no sample is touched.
+  /// Turns the field upside down: changes the sign, no sample.
   void invert() noexcept { state_.sign_ = -state_.sign_; }
 
   /// Writes the samples [column, column + columns) x [row, row + rows), which must lie in the field, from
-  /// `heights` (row-major, stride in elements, [height_unit], with the version's sign as readHeights gives
-  /// them; NaN makes a hole, an infinity is taken as one). Tiles whose bits would not change are not copied.
-  /// False, and nothing changed, when the pool is dry (Growth::kNever) or memory is exhausted.
+  /// `heights` (row-major, stride in elements, [height_unit], with the version's sign as in readHeights; NaN
+  /// makes a hole, an infinity counts as one). Tiles whose bits would not change are not copied. False, and
+  /// nothing changed, when the pool is empty (Growth::kNever) or memory is exhausted.
   [[nodiscard]] bool writeHeights(std::int32_t column, std::int32_t row, std::int32_t columns,
                                   std::int32_t rows, const float* heights, std::ptrdiff_t stride) noexcept;
 
@@ -55,10 +54,10 @@ class LiveField {
   /// Puts a whole tile in place (bounds and counts already right), taking over the reference.
   [[nodiscard]] bool replaceTile(std::int32_t tc, std::int32_t tr, TileRef tile) noexcept;
 
-  /// A tile to fill and hand to replaceTile; empty when the pool is dry as above.
+  /// A tile to fill and pass to replaceTile; empty when the pool is empty as above.
   [[nodiscard]] TileRef newTile() noexcept;
 
-  /// Writes refused because the pool was dry.
+  /// Writes refused because the pool was empty.
   [[nodiscard]] std::uint64_t refusedWrites() const noexcept { return refused_; }
 
  private:

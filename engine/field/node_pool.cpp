@@ -17,7 +17,7 @@ namespace {
 void* slabMemory(std::size_t bytes, bool whole) noexcept {
   void* memory = std::aligned_alloc(bytes, bytes);
   if (memory == nullptr || !whole) return memory;
-  // Wishes that may be refused.
+  // Requests that may be refused.
   (void)madvise(memory, bytes, MADV_HUGEPAGE);
   (void)madvise(memory, bytes, MADV_POPULATE_WRITE);
   return memory;
@@ -37,9 +37,9 @@ auto ObjectPool<T, kSlabBytes>::addSlab() noexcept -> Slab* {
   static_assert(!std::is_same_v<T, Tile> || sizeof(Slab) - sizeof(Slab::items) <= 4096);
   if (slab_count_ == kMaxSlabs) return nullptr;
   if (source_ != nullptr) return takeIn(source_->take(kSlabBytes));
-  // From the second slab on (small fields stay small) large pages, because a stroke wanders over more tiles
-  // than the processor keeps small pages in mind: 3 % of a tick on 4096 x 4096 samples. And all of them now,
-  // because the haptic thread must not wait for the system to bring one.
+  // From the second slab on (small fields stay small) large pages, because a stroke covers more tiles than
+  // the TLB has entries for small pages: 3 % of a tick on 4096 x 4096 samples. And all of them populated now,
+  // because the haptic thread must not take page faults.
   return takeIn(slabMemory(kSlabBytes, slab_count_ > 0));
 }
 
@@ -57,7 +57,8 @@ auto ObjectPool<T, kSlabBytes>::takeIn(void* memory) noexcept -> Slab* {
     new (&slab->refs[i]) std::atomic<std::uint32_t>(0);
     new (&slab->next[i]) std::atomic<std::uint32_t>(0);
   }
-  // Release pairs with the acquire in tryAcquire: who finds a number of this slab finds it initialised.
+  // Release pairs with the acquire in tryAcquire: a thread that reads a number of this slab sees it
+  // initialised.
   slabs_[slab_count_++].store(slab, std::memory_order_release);
   total_.fetch_add(kCount, std::memory_order_relaxed);
   for (std::size_t i = kCount; i-- > 0;) push(slab, i);
@@ -66,13 +67,13 @@ auto ObjectPool<T, kSlabBytes>::takeIn(void* memory) noexcept -> Slab* {
 
 template <class T, std::size_t kSlabBytes>
 void ObjectPool<T, kSlabBytes>::push(Slab* slab, std::size_t index) noexcept {
-  // Counted before it is published: the count may be one high for a moment, never below zero.
+  // Counted before it is published: the count may briefly be one too high, never below zero.
   free_.fetch_add(1, std::memory_order_relaxed);
   const std::uint64_t number = slab->first + index + 1;
   std::uint64_t head = head_.load(std::memory_order_relaxed);
   do {
     slab->next[index].store(static_cast<std::uint32_t>(head), std::memory_order_relaxed);
-    // Release publishes next[index] and everything done to the object before it was given back.
+    // Release publishes next[index] and all changes of the object before it was returned.
   } while (!head_.compare_exchange_weak(head, (head & ~std::uint64_t{0xffffffff}) | number,
                                         std::memory_order_release, std::memory_order_relaxed));
 }
@@ -87,7 +88,7 @@ T* ObjectPool<T, kSlabBytes>::tryAcquire() noexcept {
     Slab* slab = slabs_[(number - 1) / kCount].load(std::memory_order_acquire);
     const std::size_t index = (number - 1) % kCount;
     // May read the link of an object that another thread has popped meanwhile: the slab is never unmapped,
-    // the value is then stale, and the pop count in the head makes the exchange fail.
+    // the value is then outdated, and the pop count in the head makes the exchange fail.
     const std::uint64_t next = slab->next[index].load(std::memory_order_relaxed);
     const std::uint64_t pops = (head >> 32) + 1;
     if (head_.compare_exchange_weak(head, pops << 32 | next, std::memory_order_acquire,
@@ -111,7 +112,7 @@ T* ObjectPool<T, kSlabBytes>::acquire() noexcept {
 template <class T, std::size_t kSlabBytes>
 bool ObjectPool<T, kSlabBytes>::reserve(std::size_t objects) noexcept {
   const std::scoped_lock lock(grow_);
-  // The system clears the pages of a large field for as long as its samples take to be read: on all cores.
+  // The system clears the pages of a large field, which takes as long as reading its samples: on all cores.
   constexpr std::size_t kAtOnce = 16;
   while (freeObjects() < objects) {
     const std::size_t missing = (objects - freeObjects() + kCount - 1) / kCount;

@@ -13,32 +13,32 @@
 
 namespace fettle::engine {
 
-/// Where a pool's slabs come from when that is not the heap.
+/// Source of a pool's slabs other than the heap.
 class SlabSource {
  public:
   virtual ~SlabSource() = default;
   /// `bytes` of memory, all zero, at a multiple of `bytes` (a power of two); null when there is no more. It
-  /// stays until the source dies. Threading: one at a time; the pool's lock sees to that.
+  /// stays until the source is destroyed. Threading: one call at a time, under the pool's lock.
   [[nodiscard]] virtual void* take(std::size_t bytes) noexcept = 0;
 };
 
 /// Preallocated objects of one type, counted by reference, for the field's tiles and nodes.
 ///
-/// Objects live in slabs whose address is a multiple of their size, so that an object finds its counter, its
-/// free-list link and its pool from its own address. Counters of neighbouring objects lie side by side:
-/// copying a node takes 64 references, and side by side these are a few cache lines instead of 64.
+/// Objects lie in slabs whose address is a multiple of their size, so that an object finds its counter, its
+/// free-list link and its pool from its own address. Counters of neighbouring objects are adjacent: copying a
+/// node takes 64 references, which are then in a few cache lines instead of 64.
 ///
 /// Threading: tryAcquire, retain and release may be called from any thread. They are lock-free (a loop of
-/// compare-and-swap that only repeats when another thread got through), never allocate and never call the
+/// compare-and-swap that only repeats when another thread succeeded), never allocate and never call the
 /// system. grow() takes a lock and allocates: never on the haptic thread.
 ///
 /// The free list is R. K. Treiber's stack (1986); the head carries a count of pops, so that a node that was
-/// popped and pushed again between a reader's two looks is not mistaken for the same one (the ABA problem).
+/// popped and pushed again between a reader's two reads is not mistaken for the same one (the ABA problem).
 template <class T, std::size_t kSlabBytes>
 class ObjectPool {
  public:
   ObjectPool() = default;
-  /// Takes its slabs from `source`, which outlives it; their pages are not asked for beforehand.
+  /// Takes its slabs from `source`, which outlives it; their pages are not populated beforehand.
   explicit ObjectPool(SlabSource& source) noexcept : source_(&source) {}
   ObjectPool(const ObjectPool&) = delete;
   ObjectPool& operator=(const ObjectPool&) = delete;
@@ -47,10 +47,10 @@ class ObjectPool {
   /// An object with one reference and unspecified content, or null when none is free.
   [[nodiscard]] T* tryAcquire() noexcept;
 
-  /// As tryAcquire, growing by one slab when dry. Null only when memory or the address table is exhausted.
+  /// As tryAcquire, growing by one slab when empty. Null only when memory or the address table is exhausted.
   [[nodiscard]] T* acquire() noexcept;
 
-  /// Makes at least `objects` free; false when memory ran out. Locks and allocates; much at a time on all
+  /// Makes at least `objects` free; false when memory ran out. Locks and allocates; large requests on all
   /// cores.
   bool reserve(std::size_t objects) noexcept;
 
@@ -60,20 +60,20 @@ class ObjectPool {
   }
 
   static void retain(const T* object) noexcept {
-    // Relaxed: who copies a reference holds one already, so the object cannot vanish meanwhile.
+    // Relaxed: a thread that copies a reference holds one already, so the object cannot be freed meanwhile.
     counter(object).fetch_add(1, std::memory_order_relaxed);
   }
 
   /// True when the caller held the last reference and now must recycle() the object.
   [[nodiscard]] static bool dropLast(const T* object) noexcept {
-    // Release: my reads of the object are over before the count falls. Acquire: whoever sees it fall to zero
-    // sees them over, and may overwrite.
+    // Release: this thread's reads of the object precede the decrement. Acquire: the thread that sees zero
+    // comes after all reads, and may overwrite.
     return counter(object).fetch_sub(1, std::memory_order_acq_rel) == 1;
   }
 
   /// Whether the caller holds the only reference, and so may write in place.
   [[nodiscard]] static bool unique(const T* object) noexcept {
-    // Acquire pairs with the release half of dropLast: other holders' reads are over.
+    // Acquire pairs with the release half of dropLast: other holders' reads are complete.
     return counter(object).load(std::memory_order_acquire) == 1;
   }
 
@@ -123,21 +123,21 @@ extern template class ObjectPool<Node, std::size_t{1} << 20>;
 
 class TileStore;
 
-/// The memory that all versions of a field share; it lives as long as the last of them.
+/// The memory that all versions of a field share; it exists as long as the last of them.
 ///
 /// With a store (tile_store.h) whole fields lie in a mapped file, and touching one of their tiles may wait
-/// for the disk; what a stroke writes, and every node with its bounds, lies in ordinary memory all the same.
-/// A tile goes back to the pool that it came from, whoever gives it back.
+/// for the disk; tiles that a stroke writes, and every node with its bounds, still lie in ordinary memory. A
+/// tile always returns to the pool that it came from.
 struct FieldMemory {
   FieldMemory();
   explicit FieldMemory(std::unique_ptr<TileStore> tile_store);
   ~FieldMemory();
 
   const std::unique_ptr<TileStore> store;  ///< null: all in ordinary memory
-  TilePool tiles;                          ///< in ordinary memory: for who may not wait
+  TilePool tiles;                          ///< in ordinary memory: for code that may not wait
   InnerPool nodes;
 
-  /// For who may wait: import, filters, jobs. The stored tiles when there is a store, else `tiles`.
+  /// For code that may wait: import, filters, jobs. The stored tiles when there is a store, else `tiles`.
   [[nodiscard]] TilePool& bulk() noexcept { return stored_ ? *stored_ : tiles; }
 
  private:
@@ -162,7 +162,7 @@ class TileRef {
     ref.tile_ = tile;
     return ref;
   }
-  /// Takes a reference of its own.
+  /// Adds a reference.
   static TileRef share(const Tile* tile) noexcept {
     if (tile != nullptr) TilePool::retain(tile);
     return adopt(const_cast<Tile*>(tile));
@@ -179,7 +179,7 @@ class TileRef {
   Tile* operator->() const noexcept { return tile_; }
   Tile& operator*() const noexcept { return *tile_; }
   explicit operator bool() const noexcept { return tile_ != nullptr; }
-  /// Gives the reference to the caller.
+  /// Transfers the reference to the caller.
   [[nodiscard]] Tile* detach() noexcept { return std::exchange(tile_, nullptr); }
 
  private:

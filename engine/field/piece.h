@@ -6,9 +6,9 @@
 
 namespace fettle::engine {
 
-/// The samples [column, column + columns) x [row, row + rows) of a field, with their marks, as a field of its
-/// own and of its own memory, with the heights as they read (sign applied). All of it lies in the field.
-/// Throws std::bad_alloc.
+/// The samples [column, column + columns) x [row, row + rows) of a field, with their marks, as a separate
+/// field with its own memory, with the sign applied to the heights. The rectangle lies in the field. Throws
+/// std::bad_alloc.
 [[nodiscard]] Version pieceOf(const Version& field, std::int32_t column, std::int32_t row,
                               std::int32_t columns, std::int32_t rows);
 

@@ -8,10 +8,10 @@
 
 namespace fettle::engine {
 
-/// A plain look at one state of a field: a root and how to read it. Cheap to copy, owns nothing; valid while
-/// the Version it came from lives, or until the next write of the LiveField it came from.
+/// A read-only view of one state of a field. Cheap to copy, owns nothing; valid while the Version it came
+/// from exists, or until the next write of the LiveField it came from.
 ///
-/// Heights come out with the version's sign applied. Threading: as many readers as you like, on any thread;
+/// Heights are returned with the version's sign applied. Threading: any number of readers, on any thread;
 /// nothing here allocates, locks or throws.
 class FieldReader {
  public:
@@ -55,18 +55,18 @@ class FieldReader {
 
   /// Bounds of the SAMPLES in one square of the pyramid: level 0 = 8 x 8 block, 1 = tile, 2 = 512 x 512, ...
   /// (x, y) counts squares of that level from the field's first; sign applied. Empty outside the field.
-  /// A cell on a square's right or upper edge also uses samples of the next square: who bounds cells must
-  /// join the squares (x..x+1, y..y+1).
+  /// A cell on a square's right or upper edge also uses samples of the next square: to bound cells, join the
+  /// squares (x..x+1, y..y+1).
   [[nodiscard]] HeightBounds bounds(int level, std::int32_t x, std::int32_t y) const noexcept;
 
   /// Bounds of the whole field, sign applied.
   [[nodiscard]] HeightBounds bounds() const noexcept;
 
-  /// Highest level for which bounds(level, ...) has more than one square to offer: root().level - 1.
+  /// Highest level for which bounds(level, ...) has more than one square: root().level - 1.
   [[nodiscard]] int topLevel() const noexcept { return root_->level - 1; }
 
   /// Copies the samples [column, column + columns) x [row, row + rows) to out, row-major with stride `stride`
-  /// (in elements, >= columns), sign applied. Samples outside the field come out as NaN.
+  /// (in elements, >= columns), sign applied. Samples outside the field are returned as NaN.
   void readHeights(std::int32_t column, std::int32_t row, std::int32_t columns, std::int32_t rows, float* out,
                    std::ptrdiff_t stride) const noexcept;
 

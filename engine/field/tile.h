@@ -7,7 +7,8 @@
 
 namespace fettle::engine {
 
-// The field is an 8-fold tree all the way down, so that the table of tiles IS the min/max pyramid:
+// The field is a tree with 8 x 8 children at every level, so that the table of tiles is also the min/max
+// pyramid:
 //
 //   level 0   block    8 x 8 samples          bounds kept in the tile
 //   level 1   tile    64 x 64 samples         bounds kept in its parent node (and in the tile)
@@ -15,8 +16,8 @@ namespace fettle::engine {
 //   level 3   node  4096 x 4096               8 x 8 nodes of level 2
 //   level 4, 5      32768, 262144
 //
-// A one-sample edit re-bounds one block (64 samples), one tile (64 blocks) and, only while a bound really
-// changed, one entry a level above. Copy-on-write copies one tile and one small node a level.
+// A one-sample edit re-bounds one block (64 samples), one tile (64 blocks) and, only while a bound changed,
+// one entry per level above. Copy-on-write copies one tile and one small node per level.
 
 inline constexpr int kBlockSide = 8;
 inline constexpr int kTileSide = 64;
@@ -53,7 +54,7 @@ struct alignas(64) Tile {
   }
 };
 static_assert(std::is_trivially_copyable_v<Tile>);
-static_assert(sizeof(Tile) <= kTileSamples * 4 + 1152, "the budget is 6 bytes a sample, all included");
+static_assert(sizeof(Tile) <= kTileSamples * 4 + 1152, "the budget is 6 bytes per sample, all included");
 
 /// Inner node of the tree: 8 x 8 children and their bounds. `children` point to Tiles in a node of level 2,
 /// to Nodes of level - 1 above it; null outside the field.
@@ -68,11 +69,11 @@ struct alignas(64) Node {
 static_assert(std::is_trivially_copyable_v<Node>);
 
 /// Recomputes the bounds of the blocks that the samples [column0, column1) x [row0, row1) of the tile touch,
-/// then the tile's own. O(blocks touched). Exact, never merely conservative.
+/// then the tile's own. O(blocks touched). Exact, not only conservative.
 void refreshBounds(Tile& tile, int column0, int row0, int column1, int row1) noexcept;
 
-/// The same after one sample changed, `old` being what it was and all bounds having been right. Whether the
-/// tile's own bounds changed.
+/// The same after one sample changed, `old` is its previous value, and all bounds were correct before.
+/// Returns whether the tile's own bounds changed.
 [[nodiscard]] bool refreshSampleBounds(Tile& tile, int column, int row, float old) noexcept;
 
 /// Recomputes the tile's count of marks.

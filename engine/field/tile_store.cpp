@@ -35,7 +35,7 @@ struct Folder {
   bool in_memory = false;
 };
 
-Result<Folder> lookAt(const std::string& folder) {
+Result<Folder> statFolder(const std::string& folder) {
   struct statfs facts {};
   if (statfs(folder.c_str(), &facts) != 0)
     return inputError(fmt::format("no tiles can be kept there ({})", std::strerror(errno)), folder,
@@ -49,7 +49,7 @@ Result<Folder> lookAt(const std::string& folder) {
 int openNameless(const std::string& folder) {
   int file = open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
   if (file >= 0 || (errno != EOPNOTSUPP && errno != EISDIR)) return file;
-  // A file system without nameless files: with a name, for a moment.
+  // A file system without unnamed files: with a name, removed immediately.
   std::string name = folder + "/fettle-tiles-XXXXXX";
   file = mkostemp(name.data(), O_CLOEXEC);
   if (file >= 0) unlink(name.c_str());
@@ -59,10 +59,10 @@ int openNameless(const std::string& folder) {
 }  // namespace
 
 Result<std::unique_ptr<TileStore>> TileStore::create(const std::string& folder, std::uint64_t at_least) {
-  const auto facts = lookAt(folder);
+  const auto facts = statFolder(folder);
   if (!facts) return tl::unexpected(facts.error());
   if (facts->in_memory)
-    return inputError("tiles kept there would lie in memory all the same", folder,
+    return inputError("tiles kept there would still be in memory", folder,
                       "name a folder on a disk with --store");
   if (facts->free_bytes < at_least)
     return inputError(fmt::format("the tiles need {} MB of the disk, {} MB are free", at_least >> 20,
@@ -80,15 +80,15 @@ TileStore::~TileStore() {
   close(file_);
 }
 
-// Some slabs' worth at a time: in pieces of their own they would lie all over the disk.
+// Several slabs at a time: allocated one by one they would be fragmented on the disk.
 bool TileStore::takeBlocks(std::uint64_t bytes) noexcept {
   constexpr std::uint64_t kAtOnce = std::uint64_t{64} << 20;
-  for (const std::uint64_t wanted : {std::max(bytes, kAtOnce), bytes}) {
+  for (const std::uint64_t amount : {std::max(bytes, kAtOnce), bytes}) {
     int problem = EINTR;
     while (problem == EINTR)
-      problem = posix_fallocate(file_, static_cast<off_t>(reserved_), static_cast<off_t>(wanted));
+      problem = posix_fallocate(file_, static_cast<off_t>(reserved_), static_cast<off_t>(amount));
     if (problem != 0) continue;
-    reserved_ += wanted;
+    reserved_ += amount;
     return true;
   }
   return false;
@@ -102,7 +102,7 @@ void* TileStore::take(std::size_t bytes) noexcept {
   } catch (const std::bad_alloc&) {
     return nullptr;
   }
-  // Twice the room, to find a multiple of the size in it; the rest goes back.
+  // Twice the size, to find a multiple of the size in it; the rest is unmapped.
   void* room = mmap(nullptr, 2 * bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (room == MAP_FAILED) return nullptr;
   char* const begin = static_cast<char*>(room);
@@ -117,7 +117,7 @@ void* TileStore::take(std::size_t bytes) noexcept {
     munmap(slab, bytes);
     return nullptr;
   }
-  // Where the loop has asked for all pages to stay, those of the file must not.
+  // If the loop has locked all pages, those of the file must be unlocked.
   munlock(slab + page, bytes - page);
   slabs_.insert(std::ranges::upper_bound(slabs_, slab, {}, &Mapped::at), {slab, bytes});
   used_ += bytes;
@@ -156,7 +156,7 @@ StorePolicy storePolicy() {
 }
 
 std::uint64_t fieldBytes(std::uint64_t width, std::uint64_t height) noexcept {
-  // Tiles carry marks and bounds, and a share of a node: 1.07 of the samples' own 4 bytes.
+  // Tiles contain marks and bounds, and a share of a node: 1.07 times the samples' 4 bytes.
   const std::uint64_t tiles = (width + kTileSide - 1) / kTileSide * ((height + kTileSide - 1) / kTileSide);
   return tiles * (sizeof(Tile) + 96);
 }
@@ -170,10 +170,10 @@ Result<Place> placeOf(std::uint64_t width, std::uint64_t height, std::uint64_t e
   if (!policy.always && (available == 0 || bytes <= comfortable)) return Place::kMemory;
 
   // Nodes, counters and the builder's notes stay in memory: a sixtieth of the tiles.
-  const bool enough_beside = available == 0 || extra_bytes + bytes / 60 <= available;
-  const auto disk = lookAt(policy.folder);
-  // Not to the last block: others write there too.
-  if (enough_beside && disk && !disk->in_memory && bytes <= disk->free_bytes / 10 * 9) return Place::kStore;
+  const bool enough_memory = available == 0 || extra_bytes + bytes / 60 <= available;
+  const auto disk = statFolder(policy.folder);
+  // Not to the last block: other programs write there too.
+  if (enough_memory && disk && !disk->in_memory && bytes <= disk->free_bytes / 10 * 9) return Place::kStore;
   if (policy.always && !disk) return tl::unexpected(disk.error());
   if (!policy.always && bytes + extra_bytes <= available) return Place::kMemory;
   return inputError(fmt::format("{} x {} samples need {} MB of memory, {} MB are free, nor are there as many "
@@ -184,8 +184,7 @@ Result<Place> placeOf(std::uint64_t width, std::uint64_t height, std::uint64_t e
 
 Result<std::shared_ptr<FieldMemory>> memoryFor(std::uint64_t width, std::uint64_t height,
                                                const std::string& what) {
-  // Small ones in any case, and without a look at the system: tests and pieces of scans are made by
-  // thousands.
+  // Small ones always, without a system call: tests and pieces of scans are made by thousands.
   constexpr std::uint64_t kSmall = std::uint64_t{64} << 20;
   if (!storePolicy().always && fieldBytes(width, height) <= kSmall) return std::make_shared<FieldMemory>();
   const auto place = placeOf(width, height, 0, what);

@@ -12,19 +12,20 @@
 
 namespace fettle::engine {
 
-/// Slabs of tiles in a mapped file, for fields larger than memory: the system writes out what is not looked
-/// at and reads it again when it is. The file has no name and goes with the process, however that ends.
+/// Slabs of tiles in a mapped file, for fields larger than memory: the system writes out pages that are not
+/// used and reads them again on demand. The file has no name and is freed with the process, however that
+/// ends.
 ///
-/// Blocks of the disk are taken before an address is handed out, so a full disk is a null from take() and
-/// never a signal in the middle of a write. A disk that fails while a tile is read does end the process.
-/// The first page of each slab - the counters of its tiles - is ordinary memory: taking, sharing and giving
-/// back tiles never waits for the disk.
+/// Disk blocks are allocated before an address is returned, so on a full disk take() returns null and a write
+/// never raises a signal. A disk that fails while a tile is read does end the process.
+/// The first page of each slab - the counters of its tiles - is ordinary memory: acquiring, sharing and
+/// returning tiles never waits for the disk.
 ///
 /// Threading: any thread, locked.
 class TileStore final : public SlabSource {
  public:
-  /// In `folder`, which must be able to take `at_least` bytes. Errors (kInput): no such folder, one that may
-  /// not be written, one whose files lie in memory, one without room.
+  /// In `folder`, which must have `at_least` bytes free. Errors (kInput): no such folder, not writable, its
+  /// files lie in memory, not enough space.
   [[nodiscard]] static Result<std::unique_ptr<TileStore>> create(const std::string& folder,
                                                                  std::uint64_t at_least);
   ~TileStore() override;
@@ -33,14 +34,14 @@ class TileStore final : public SlabSource {
 
   [[nodiscard]] void* take(std::size_t bytes) noexcept override;
 
-  /// Takes the lock off every page: what mlockall did to a store is not what a store is for.
+  /// Unlocks every page, after mlockall locked them: the system must be able to write them out.
   void letGo() noexcept;
 
   /// Whether an address lies in a slab of this store.
   [[nodiscard]] bool holds(const void* address) const noexcept;
 
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
-  /// Taken of the disk [bytes].
+  /// Disk space allocated [bytes].
   [[nodiscard]] std::uint64_t bytes() const noexcept;
 
  private:
@@ -61,9 +62,9 @@ class TileStore final : public SlabSource {
 
 /// Which fields lie in a store.
 struct StorePolicy {
-  /// Where; it is on a disk and has room.
+  /// Folder of the store; on a disk with enough space.
   std::string folder = "/var/tmp";
-  /// Every field, not only those that memory cannot hold well.
+  /// Every field, not only those above `share`.
   bool always = false;
   /// Share of the available memory that a field may take before it goes into a store, 0 .. 1. Half: a
   /// filter's result is as large as the field.
@@ -77,9 +78,9 @@ void setStorePolicy(const StorePolicy& policy);
 /// Memory of a field, tiles full at its borders too [bytes].
 [[nodiscard]] std::uint64_t fieldBytes(std::uint64_t width, std::uint64_t height) noexcept;
 
-/// Whether a field can be held, and where: in ordinary memory or in a store, as the policy says.
-/// `extra_bytes` of memory are wanted beside it. `what` names the field in the error. Errors (kInput):
-/// neither has room. Nothing is allocated.
+/// Whether a field can be held, and where: in ordinary memory or in a store, according to the policy.
+/// `extra_bytes` of memory are needed in addition. `what` names the field in the error. Errors (kInput): not
+/// enough space in either. Nothing is allocated.
 enum class Place : std::uint8_t { kMemory, kStore };
 [[nodiscard]] Result<Place> placeOf(std::uint64_t width, std::uint64_t height, std::uint64_t extra_bytes,
                                     const std::string& what);

@@ -161,8 +161,8 @@ FieldSummary summarize(const Version& version) {
 std::uint64_t contentHash(const Version& version) {
   constexpr std::uint64_t kPrime = 0x100000001b3;
   std::uint64_t hash = 0xcbf29ce484222325;
-  // A word at a time where FNV takes a byte: one multiplication a sample. The shift brings the high half
-  // down, which a multiplication alone would never let reach the low bits.
+  // Word by word where FNV takes bytes: one multiplication per sample. The shift mixes the high half into the
+  // low bits, which a multiplication alone would not do.
   const auto mix = [&hash](std::uint32_t word) {
     hash = (hash ^ word) * kPrime;
     hash ^= hash >> 32;

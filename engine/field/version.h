@@ -15,8 +15,9 @@ class LiveField;
 /// An immutable state of a field: samples, marks, bounds, sign. Copying one is O(1) and allocates nothing;
 /// versions share every tile in which they do not differ.
 ///
-/// Threading: a Version may be copied and read from any thread. The last copy frees the tiles nobody else
-/// holds, which takes time in proportion to their number: hand the last copy to a thread that may spend it.
+/// Threading: a Version may be copied and read from any thread. The last copy frees the tiles that no other
+/// version holds, which takes time proportional to their number: destroy the last copy on a thread that has
+/// the time.
 class Version {
  public:
   Version() = default;
@@ -37,10 +38,10 @@ class Version {
   /// The same field upside down (z -> -z): a sign, no sample is touched; inverted().inverted() is the same.
   [[nodiscard]] Version inverted() const noexcept;
 
-  /// The same samples with other facts about where they lie; width and height must agree.
+  /// The same samples with another position, spacing or units; width and height must agree.
   [[nodiscard]] Version withGrid(Grid grid) const;
 
-  /// Whether both are the very same state (same tiles, same sign), not merely equal ones. O(1).
+  /// Whether both are the same state (same tiles, same sign), not only equal in content. O(1).
   friend bool operator==(const Version& a, const Version& b) noexcept {
     return a.root_ == b.root_ && a.sign_ == b.sign_;
   }
@@ -54,12 +55,12 @@ class Version {
       : grid_(std::move(grid)), memory_(std::move(memory)), root_(root), sign_(sign) {}
 
   std::shared_ptr<const Grid> grid_;
-  std::shared_ptr<FieldMemory> memory_;  // after root_ is gone: members die in reverse, the body first
+  std::shared_ptr<FieldMemory> memory_;  // destroyed after root_ was released
   Node* root_ = nullptr;
   float sign_ = 1.0F;
 };
 
-/// What a field holds, in one pass over its tiles. Sums in double, tile by tile in a fixed order.
+/// Summary of a field, in one pass over its tiles. Sums in double, tile by tile in a fixed order.
 struct FieldSummary {
   std::int64_t no_data = 0;
   std::int64_t marked = 0;
@@ -69,7 +70,7 @@ struct FieldSummary {
 
 /// 64-bit hash over width, height, every sample's bits and every mark, row by row with the sign applied: the
 /// same for equal content, however it is cut into versions. A hole counts as one fixed pattern. The mixing is
-/// that of FNV-1a (Fowler, Noll, Vo) a word at a time. For telling results apart in tests and reports, not
+/// that of FNV-1a (Fowler, Noll, Vo) word by word. Distinguishes results in tests and reports; not secure
 /// against an adversary.
 [[nodiscard]] std::uint64_t contentHash(const Version& version);
 

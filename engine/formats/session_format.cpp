@@ -1,5 +1,4 @@
-// Sessions among the formats of scans: what is read is the field as the session's user left it, marks
-// included.
+// Sessions as a format of scans: the current field of the session is read, marks included.
 
 #include <tuple>
 
@@ -16,7 +15,7 @@ namespace fettle::engine {
 namespace {
 
 bool looksLikeSession(std::string_view head, std::string_view extension) {
-  // Any other database is left to be refused by name only if it is called a session.
+  // Another database is only recognised, and refused, if its name is that of a session.
   constexpr std::string_view kSqlite("SQLite format 3\0", 16);
   if (extension == ".fettle") return true;
   if (!head.starts_with(kSqlite) || head.size() < 72) return false;
@@ -27,7 +26,7 @@ bool looksLikeSession(std::string_view head, std::string_view extension) {
 
 Result<Imported> readSession(const InputFile& file, const ImportOptions& options, JobControl& job) {
   if (options.no_data || options.z_scale)
-    return inputError("a session holds heights and holes as they are",
+    return inputError("a session stores heights and holes unchanged",
                       options.no_data ? "--no-data" : "--z-scale", "leave the option out");
   SessionOpenOptions reading;
   reading.history_bytes = 0;
@@ -59,7 +58,7 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
 
 Result<Exported> writeSession(const Version& field, const std::string& path, const ExportOptions& options,
                               JobControl& job) {
-  // The right way up is what a session calls its original; an inverted field is one step away from it.
+  // A session's original is upright; an inverted field is one step away from it.
   const bool inverted = field.reader().sign() < 0;
   const auto upright = [](const Version& version) {
     return version.reader().sign() < 0 ? version.inverted() : version;

@@ -12,7 +12,7 @@ namespace fettle::engine {
 struct Change {
   std::int64_t tiles = 0;  ///< places of the table whose tile is another object
   std::int64_t nodes = 0;  ///< inner nodes that are other objects
-  SampleRect rect;  ///< around those tiles, cut to the field: whole tiles, so it may hold more than changed
+  SampleRect rect;  ///< around those tiles, clipped to the field: whole tiles, unchanged samples included
   bool inverted = false;  ///< whether the signs differ
 
   [[nodiscard]] bool none() const noexcept { return tiles == 0 && !inverted; }

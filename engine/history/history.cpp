@@ -84,7 +84,7 @@ bool History::push(StepInfo info, Version after) {
 }
 
 void History::keepBound(std::vector<Version>& dropped) {
-  // Only what lies behind: the state in use and all states ahead of it stay.
+  // Only earlier states: the current state and all later ones stay.
   while (bytes_ > bound_ && number_ > first_ + 1) {
     bytes_ -= steps_.front().info.bytes;
     dropped.push_back(std::exchange(start_, std::move(steps_.front().after)));

@@ -18,7 +18,7 @@ namespace fettle::engine {
 /// What made a step.
 enum class StepKind : std::uint8_t { kStroke, kFilter, kMark, kInvert, kImport };
 
-/// "stroke", "filter", "mark", "invert", "import"; these words stand in session files.
+/// "stroke", "filter", "mark", "invert", "import"; these words are stored in session files.
 [[nodiscard]] std::string_view stepKindName(StepKind kind) noexcept;
 [[nodiscard]] std::optional<StepKind> stepKindFromName(std::string_view name) noexcept;
 
@@ -26,14 +26,14 @@ enum class StepKind : std::uint8_t { kStroke, kFilter, kMark, kInvert, kImport }
 using StepTime = std::chrono::sys_time<std::chrono::milliseconds>;
 [[nodiscard]] StepTime stepTimeNow() noexcept;
 
-/// What a list of steps shows of one.
+/// Description of a step for a list of steps.
 struct StepInfo {
   std::string name;  ///< for a person, e.g. "Median 5 x 5"
   StepKind kind = StepKind::kStroke;
   StepTime time{};
-  /// Where samples or marks changed; whole tiles unless whoever made the step knew better.
+  /// Where samples or marks changed; whole tiles unless the caller of push() gave a smaller rectangle.
   SampleRect rect;
-  std::size_t bytes = 0;  ///< memory that undoing this step needs and the field after it does not [bytes]
+  std::size_t bytes = 0;  ///< memory needed only for undoing this step [bytes]
 };
 
 /// One edit: the state it was made on and the state it made.
@@ -43,43 +43,42 @@ struct Step {
   Version after;
 };
 
-/// Linear undo and redo: a row of states, each but the first made from the one before it by a step.
+/// Linear undo and redo: a sequence of states, each but the first made from the one before it by a step.
 ///
 ///   state   0 ------- 1 ------- 2 ------- 3 ------- 4          numbered from the original scan on
 ///              step 1    step 2    step 3    step 4
 ///           ^ first()           ^ number()          ^ last()
 ///
-/// Step k leads from state k - 1 to state k. Undo and redo move number(); a push throws the steps after it
-/// away. Versions share tiles, so a state costs what its step changed. Once the states together cost more
-/// than the bound the oldest are dropped: first() rises, numbers stay. (A session file keeps them, see
+/// Step k leads from state k - 1 to state k. Undo and redo move number(); a push discards the steps after it.
+/// Versions share tiles, so the memory of a state is what its step changed. Once the states together cost
+/// more than the bound the oldest are dropped: first() rises, numbers stay. (A session file keeps them, see
 /// session.h.)
 ///
-/// Threading: one thread (the main side). Dropping versions frees tiles, in proportion to what they alone
-/// hold: 50 ns a tile; the calls that drop hand them back, so that the caller may let go of them on another
-/// thread.
+/// Threading: one thread (the main side). Dropping versions frees the tiles that only they hold: 50 ns per
+/// tile; the calls that drop versions return them, so that the caller may free them on another thread.
 class History {
  public:
   static constexpr std::size_t kNoBound = std::numeric_limits<std::size_t>::max();
 
-  /// Holds nothing; of use only to be assigned to.
+  /// Empty; may only be assigned to.
   History() = default;
 
-  /// Starts at state `number`, the state of the field now.
+  /// Starts at state `number`, the present state of the field.
   explicit History(Version start, std::size_t bound_bytes = kNoBound, std::int64_t number = 0);
 
-  /// Puts a row of steps back, as a session file gives them: steps[0] leads from state `first` to first + 1
-  /// and its `before` is that state, each next one's `before` is `after` of the one before it; `number` lies
-  /// in first .. first + steps.size(). `state` is the version of `number`. Nothing is dropped, whatever the
-  /// bound.
+  /// Restores a sequence of steps, as read from a session file: steps[0] leads from state `first` to first +
+  /// 1 and its `before` is that state, each next one's `before` is `after` of the one before it; `number`
+  /// lies in first .. first + steps.size(). `state` is the version of `number`. Nothing is dropped, even
+  /// above the bound.
   History(Version state, std::int64_t number, std::int64_t first, std::vector<Step> steps,
           std::size_t bound_bytes);
 
   /// Adds the step from current() to `after` and goes there. No step is made, and false returned, when
-  /// `after` is the very same state. An empty `rect` is replaced by that of the changed tiles; info.bytes is
-  /// filled in. `dropped` gets the versions that the history lets go of: redo states, and the oldest beyond
+  /// `after` is the same state. An empty `rect` is replaced by that of the changed tiles; info.bytes is
+  /// filled in. `dropped` receives the versions that the history drops: redo states, and the oldest beyond
   /// the bound. The newest step is always kept. O(changed tiles), a few ns each.
   bool push(StepInfo info, Version after, std::vector<Version>& dropped);
-  /// As above, freeing what is dropped here and now.
+  /// As above, freeing what is dropped immediately.
   bool push(StepInfo info, Version after);
 
   [[nodiscard]] const Version& current() const noexcept { return state(number_); }
@@ -91,10 +90,11 @@ class History {
   [[nodiscard]] bool canUndo() const noexcept { return number_ > first_; }
   [[nodiscard]] bool canRedo() const noexcept { return number_ < last(); }
 
-  /// Goes one step back or on and gives the version to restore; nothing at the end of the row. O(1).
+  /// Goes one step back or forward and returns the version to restore; empty at the end of the sequence.
+  /// O(1).
   [[nodiscard]] std::optional<Version> undo() noexcept;
   [[nodiscard]] std::optional<Version> redo() noexcept;
-  /// Goes to any state that is held; nothing, and no move, for others. O(1).
+  /// Goes to any state that is held; empty, and no move, for others. O(1).
   [[nodiscard]] std::optional<Version> goTo(std::int64_t number) noexcept;
 
   /// State `number`, in first() .. last().
@@ -106,9 +106,8 @@ class History {
   /// Puts an older step in front of the first (read back from a session file); its `after` is state(first()).
   void prepend(Step step);
 
-  /// Memory that holding all states costs beyond holding one [bytes]. Kept up to date step by step; exact
-  /// unless a step brought tiles of an older state back (a tile is then counted each time it leaves or
-  /// comes).
+  /// Memory of all states beyond that of one [bytes]. Updated step by step; exact unless a step restored
+  /// tiles of an older state (a tile is then counted each time it is removed or added).
   [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
   [[nodiscard]] std::size_t bound() const noexcept { return bound_; }
   void setBound(std::size_t bound_bytes, std::vector<Version>& dropped);

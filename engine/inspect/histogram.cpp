@@ -13,7 +13,7 @@ namespace fettle::engine {
 
 Result<HeightHistogram> countHeights(const Version& field, int bins, JobControl& job) {
   if (bins < 1 || bins > kMostBins)
-    return inputError(fmt::format("{} bins cannot be", bins), "histogram",
+    return inputError(fmt::format("{} bins are not possible", bins), "histogram",
                       fmt::format("take 1 to {}", kMostBins));
   const FieldReader reader = field.reader();
   const HeightBounds bounds = reader.bounds();

@@ -21,7 +21,7 @@ Result<NoiseEstimate> estimateNoise(const Version& field, JobControl& job) {
       reader, job, [](std::int64_t count) { return (count - 1) / 2; },
       [&](const SampleRect& rect, auto&& take) {
         constexpr int kSide = kTileSide + 2;
-        float z[kSide * kSide];  // samples outside the field are NaN, and so is what they take part in
+        float z[kSide * kSide];  // samples outside the field are NaN, and so are results that use them
         reader.readHeights(rect.column - 1, rect.row - 1, rect.columns + 2, rect.rows + 2, z, kSide);
         const auto across = [](const float* row) { return double{row[0]} - 2.0 * row[1] + double{row[2]}; };
         for (int r = 0; r < rect.rows; ++r)

@@ -28,7 +28,7 @@ Result<SteepestCell> findSteepest(const Version& field, JobControl& job) {
   const Grid& grid = field.grid();
   const double by_x = grid.height_unit.mm / grid.spacingXMm();
   const double by_y = grid.height_unit.mm / grid.spacingYMm();
-  job.begin("looking for the steepest cell", tileCount(reader));
+  job.begin("finding the steepest cell", tileCount(reader));
   const std::vector<Best> parts = forEachTile<Best>(reader, job, [&](const SampleRect& rect, Best& best) {
     constexpr int kSide = kTileSide + 1;
     float z[kSide * kSide];  // outside the field: NaN, so that no cell reaches over the border

@@ -21,7 +21,7 @@ struct FreshTile {
 };
 
 tl::unexpected<Error> noMemoryForMarks() {
-  return failure("memory for the marks could not be had", "", "close other programs");
+  return failure("memory for the marks could not be allocated", "", "close other programs");
 }
 
 // The bits of row `row` of the tile that lie in the field.
@@ -43,10 +43,10 @@ Result<Version> changeMarks(const Version& field, TileRange range, const TileMar
   const std::int64_t across = std::max(c1 - c0, 0), up = std::max(r1 - r0, 0);
   job.begin("marking", static_cast<std::uint64_t>(across * up));
   tbb::enumerable_thread_specific<std::vector<FreshTile>> made;
-  std::atomic<bool> dry{false};
+  std::atomic<bool> pool_empty{false};
   tbb::parallel_for(std::int64_t{0}, across * up, [&](std::int64_t i) {
     // Relaxed: read again after the join.
-    if (job.cancelled() || dry.load(std::memory_order_relaxed)) return;
+    if (job.cancelled() || pool_empty.load(std::memory_order_relaxed)) return;
     const auto tc = c0 + static_cast<std::int32_t>(i % across);
     const auto tr = r0 + static_cast<std::int32_t>(i / across);
     const Tile& old = reader.tile(tc, tr);
@@ -57,7 +57,7 @@ Result<Version> changeMarks(const Version& field, TileRange range, const TileMar
     if (rows == old.marks) return;
     TileRef fresh = TileRef::adopt(field.memory()->bulk().acquire());
     if (!fresh) {
-      dry.store(true, std::memory_order_relaxed);
+      pool_empty.store(true, std::memory_order_relaxed);
       return;
     }
     *fresh = old;
@@ -66,7 +66,7 @@ Result<Version> changeMarks(const Version& field, TileRange range, const TileMar
     made.local().push_back({tc, tr, std::move(fresh)});
   });
   if (job.cancelled()) return cancelled();
-  if (dry.load(std::memory_order_relaxed)) return noMemoryForMarks();
+  if (pool_empty.load(std::memory_order_relaxed)) return noMemoryForMarks();
   LiveField live(field, Growth::kAllowed);
   for (std::vector<FreshTile>& tiles : made)
     for (FreshTile& t : tiles)

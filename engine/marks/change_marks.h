@@ -15,25 +15,25 @@ namespace fettle::engine {
 /// The marks of one tile: bit c of element r is sample (c, r), as Tile::marks.
 using MarkRows = std::array<std::uint64_t, kTileSide>;
 
-/// What to do with the samples that an outline or a list takes in.
+/// What to do with the samples inside an outline or in a list.
 enum class MarkChange : std::uint8_t {
-  kMark,    ///< holes among them stay unmarked: there is nothing to keep
-  kUnmark,  ///< every mark goes, a hole's too
+  kMark,    ///< holes among them stay unmarked: they have no height to keep
+  kUnmark,  ///< every mark is removed, also of a hole
 };
 
-/// The marks that a tile should have. `rows` comes with those it has; bits outside the field are cleared
-/// afterwards. Called from several threads at once, for another tile each.
+/// The marks that a tile should have. `rows` contains the present ones; bits outside the field are cleared
+/// afterwards. Called from several threads at the same time, for different tiles.
 using TileMarking =
     std::function<void(std::int32_t tile_column, std::int32_t tile_row, const Tile& tile, MarkRows& rows)>;
 
 /// The same heights, sign and grid with other marks; tiles whose marks do not change stay shared with
-/// `field`. `range` is cut to the field. Advances the job by one a tile of the range. Tiles on all workers of
-/// the calling arena; same result for any thread count. Errors: cancelled, memory exhausted. Throws what
-/// `marking` does.
+/// `field`. `range` is clipped to the field. Advances the job by one per tile of the range. Tiles on all
+/// workers of the calling arena; same result for any thread count. Errors: cancelled, memory exhausted.
+/// Throws what `marking` throws.
 [[nodiscard]] Result<Version> changeMarks(const Version& field, TileRange range, const TileMarking& marking,
                                           JobControl& job);
 
-/// Adds or takes away the marks that `chosen` has a bit for.
+/// Adds or removes the marks that `chosen` has a bit for.
 inline void applyChange(const Tile& tile, const MarkRows& chosen, MarkChange change,
                         MarkRows& rows) noexcept {
   for (int r = 0; r < kTileSide; ++r) {
@@ -53,9 +53,9 @@ inline void applyChange(const Tile& tile, const MarkRows& chosen, MarkChange cha
   }
 }
 
-/// No mark at all.
+/// Removes all marks.
 [[nodiscard]] Result<Version> clearMarks(const Version& field, JobControl& job);
-/// Marks what is not marked and the other way round; holes end unmarked.
+/// Marks what is not marked and vice versa; holes become unmarked.
 [[nodiscard]] Result<Version> invertMarks(const Version& field, JobControl& job);
 
 }  // namespace fettle::engine

@@ -1,6 +1,6 @@
 // Derivatives by Gaussian kernels: Canny, A Computational Approach to Edge Detection (1986), section VI, for
 // steps; Steger, An Unbiased Detector of Curvilinear Structures (1998), section 2, for lines of curvature.
-// Departures: a step is measured against the slope around it, since a height field has slopes that are no
+// Departures: a step is measured against the slope around it, since a height field has slopes that are not
 // edges; both are in units of the field's own noise (edge_suggestion.h).
 #include "engine/marks/edge_response.h"
 
@@ -15,7 +15,7 @@ namespace fettle::engine {
 namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
-// A sample is lonely when it lies this many times farther from its median than samples around it do: 6.7
+// A sample is an outlier when it lies this many times farther from its median than samples around it do: 6.7
 // standard deviations of normal noise.
 constexpr float kLonely = 10.0F;
 
@@ -40,7 +40,7 @@ double planeAtOrigin(const double (&m)[9]) noexcept {
   const double cxx = xx / w - mx * mx, cxy = xy / w - mx * my, cyy = yy / w - my * my;
   const double cxz = xz / w - mx * mz, cyz = yz / w - my * mz;
   const double det = cxx * cyy - cxy * cxy;
-  // Samples on a line leave the slope across it open.
+  // Samples on a line do not determine the slope across it.
   if (!(det > 1e-3 * std::max(cxx, cyy) * std::max(std::max(cxx, cyy), 1e-9))) return mz;
   const double b = (cyy * cxz - cxy * cyz) / det, c = (cxx * cyz - cxy * cxz) / det;
   return mz - b * mx - c * my;
@@ -71,10 +71,9 @@ EdgeResponse::EdgeResponse(double sigma, Scatter scatter)
       side_(std::max(1, static_cast<int>(std::lround(2.0 * sigma)))) {
   median_reach_ = sigma >= 1.5 ? 2 : 1;
   median_ = makeMedianFilter(medianOf(2 * median_reach_ + 1), bestCpuLevel());
-  // As far as a kernel reaches and some samples more, for a plane through one column alone is none.
+  // The kernel's reach and some samples more, since one column does not determine a plane.
   fill_reach_ = kernels_.radius + std::max(2, static_cast<int>(std::ceil(sigma)));
-  margin_ = side_ + 1 + kernels_.radius +
-            fill_reach_;  // the slope beside, its kernel, and what fills holes under that
+  margin_ = side_ + 1 + kernels_.radius + fill_reach_;  // slope at the side, its kernel, holes
 }
 
 bool EdgeResponse::run(const FieldReader& field, std::int32_t column, std::int32_t row, int columns, int rows,
@@ -91,7 +90,7 @@ bool EdgeResponse::run(const FieldReader& field, std::int32_t column, std::int32
   return true;
 }
 
-// Heights without lonely samples, less the first of them; holes and what lies outside as NaN.
+// Heights without outliers, minus the first of them; holes and samples outside as NaN.
 bool EdgeResponse::read(const FieldReader& field, const JobControl& job) {
   const std::size_t n = static_cast<std::size_t>(wide_) * static_cast<std::size_t>(tall_);
   z_.assign(n, kHole);
@@ -116,7 +115,7 @@ bool EdgeResponse::read(const FieldReader& field, const JobControl& job) {
   }
   block.holes = any_hole;
   block.magnitude = highest;
-  // Twice: the medians, then the medians of what is left.
+  // Twice: the medians, then the medians of the residuals.
   block.out_columns = block.columns;
   block.out_rows = block.rows;
   block.out_stride = block.stride;
@@ -131,7 +130,7 @@ bool EdgeResponse::read(const FieldReader& field, const JobControl& job) {
   block.magnitude = 2.0F * highest;
   block.out = spread_.data();
   if (!median_->run(block, job)) return false;
-  // The heights' own level would cost digits of the derivatives.
+  // The heights' mean level would cost precision of the derivatives.
   float level = kHole;
   for (std::int32_t r = r0; r < r1; ++r)
     for (std::int32_t c = c0; c < c1; ++c) {
@@ -139,8 +138,8 @@ bool EdgeResponse::read(const FieldReader& field, const JobControl& job) {
                             static_cast<std::size_t>(c - left);
       if (std::isnan(raw_[o])) continue;
       const std::size_t i = at(c - first_column_, r - first_row_);
-      // On a slope the median of a window that the border cuts lies beside its middle: what looks lonely is
-      // looked at again, against its own window.
+      // On a slope the median of a window cut by the border is not at its middle: an apparent outlier is
+      // tested again, against its own window.
       const bool lonely = rest_[o] > kLonely * spread_[o] &&
                           rest_[o] > kLonely * spreadAround(raw_, block.columns, block.rows, c - left,
                                                             r - low, median_reach_, middle_[o]);
@@ -157,7 +156,7 @@ bool EdgeResponse::read(const FieldReader& field, const JobControl& job) {
 // Continues the surface over holes that a kernel at some sample reaches.
 void EdgeResponse::fill() {
   const int reach = fill_reach_;
-  // Valid samples below and left of each corner: an empty neighbourhood is seen at once.
+  // Valid samples below and left of each corner: so an empty neighbourhood is detected immediately.
   const std::size_t stride = static_cast<std::size_t>(wide_) + 1;
   counts_.assign(stride * (static_cast<std::size_t>(tall_) + 1), 0);
   for (int r = 0; r < tall_; ++r)
@@ -165,7 +164,7 @@ void EdgeResponse::fill() {
       const std::size_t i = static_cast<std::size_t>(r + 1) * stride + static_cast<std::size_t>(c) + 1;
       counts_[i] = counts_[i - 1] + counts_[i - stride] - counts_[i - stride - 1] + valid_[at(c, r)];
     }
-  std::vector<double> weights;  // wider than the kernel: a slope wants a base
+  std::vector<double> weights;  // wider than the kernel: a slope needs a wider base
   for (int d = -reach; d <= reach; ++d) weights.push_back(std::exp(-0.25 * d * d / (sigma_ * sigma_)));
   for (int r = 0; r < tall_; ++r)
     for (int c = 0; c < wide_; ++c) {
@@ -248,10 +247,10 @@ void EdgeResponse::measure(int columns, int rows) {
         const float nx = gx / slope, ny = gy / slope;
         const int dx = static_cast<int>(std::lround(nx * static_cast<float>(side_)));
         const int dy = static_cast<int>(std::lround(ny * static_cast<float>(side_)));
-        // Where there is nothing, the surroundings slope as the sample does.
-        const auto beside = [&](std::size_t j) { return valid_[j] ? gx_[j] * nx + gy_[j] * ny : slope; };
-        step[o] =
-            share * std::max(0.0F, slope - 0.5F * (beside(at(x + dx, y + dy)) + beside(at(x - dx, y - dy))));
+        // Without a surface there, the slope of the surroundings is taken as that of the sample.
+        const auto slopeAt = [&](std::size_t j) { return valid_[j] ? gx_[j] * nx + gy_[j] * ny : slope; };
+        step[o] = share *
+                  std::max(0.0F, slope - 0.5F * (slopeAt(at(x + dx, y + dy)) + slopeAt(at(x - dx, y - dy))));
         step_x[o] = nx;
         step_y[o] = ny;
       }
@@ -265,7 +264,7 @@ void EdgeResponse::measure(int columns, int rows) {
       const float root = std::sqrt(half * half + mixed * mixed);
       crease[o] = share * (std::fabs(mean) + root);
       // Eigenvector of mean + root or mean - root, whichever is larger in size; from the larger of its two
-      // forms, for the other may vanish.
+      // forms, since the other may be zero.
       const float l = mean >= 0.0F ? root : -root;  // eigenvalue less the mean
       float vx = mixed, vy = l - half;
       if (std::fabs(l + half) > std::fabs(vy)) vx = l + half, vy = mixed;

@@ -11,18 +11,18 @@
 
 namespace fettle::engine {
 
-/// How much like an edge each sample of a block looks, in two ways, at one scale:
+/// Edge response of each sample of a block, of two kinds, at one scale:
 ///
-///   step    the slope at the sample, less what the surface slopes two sigma before and behind it along the
-///           steepest way: a step stands out of its surroundings, a tilted plane or a bend does not
+///   step    the slope at the sample, minus the slope of the surface two sigma before and behind it along the
+///           steepest way: a step is steeper than its surroundings, a tilted plane or a bend is not
 ///   crease  the larger principal curvature: a ridge, a groove, the foot of a chamfer
 ///
-/// Both are 0 on every plane, whatever its tilt. [height unit a sample], and a square sample.
+/// Both are 0 on every plane, whatever its tilt. [height unit per sample], and per square sample.
 ///
-/// Single samples far off are replaced by the median of their 3 x 3 (5 x 5 from sigma 1.5 on) surroundings,
-/// by the rule of Hampel (1974), which leaves all others as they are. Holes, and what lies beyond the border,
-/// are continued as the plane through what is around them
-/// (weighted least squares); a sample counts as much as the share of its surroundings that is not made up.
+/// Single outliers are replaced by the median of their 3 x 3 (5 x 5 from sigma 1.5 on) surroundings, by the
+/// rule of Hampel (1974), which leaves all others as they are. Holes, and what lies beyond the border, are
+/// continued as the plane through what is around them
+/// (weighted least squares); the weight of a sample is the share of its surroundings that is not filled in.
 class EdgeResponse {
  public:
   /// `sigma` in samples, kSmallestSigma .. kLargestSigma.
@@ -32,9 +32,9 @@ class EdgeResponse {
   static constexpr double kSmallestSigma = 0.7;
   static constexpr double kLargestSigma = 8.0;
 
-  /// Works out [column, column + columns) x [row, row + rows), which may reach beyond the field. What comes
-  /// out depends on how a field is cut by rounding alone. False when cancelled. Throws std::bad_alloc.
-  /// Threading: one at a time; each thread has its own.
+  /// Computes [column, column + columns) x [row, row + rows), which may reach beyond the field. Results
+  /// depend on how a field is divided only by rounding. False when cancelled. Throws std::bad_alloc.
+  /// Threading: one thread at a time; each thread needs its own object.
   [[nodiscard]] bool run(const FieldReader& field, std::int32_t column, std::int32_t row, int columns,
                          int rows, const JobControl& job);
 
@@ -43,7 +43,7 @@ class EdgeResponse {
   std::vector<float> step_x, step_y;      ///< unit vector across the step; 0, 0 where there is no slope
   std::vector<float> crease_x, crease_y;  ///< unit vector across the crease
   /// With Scatter::kMeasure: both along x alone and along y alone, with their signs. Linear in the heights,
-  /// so their scatter is that of the noise, however the surface is tilted.
+  /// so their scatter is that of the noise, for any tilt of the surface.
   std::vector<float> step_in_x, step_in_y, bend_in_x, bend_in_y;
   std::vector<std::uint8_t> whole;  ///< 1: a sample without hole or border near it
 
@@ -59,12 +59,12 @@ class EdgeResponse {
   double sigma_;
   EdgeKernels kernels_;
   Scatter scatter_;
-  int side_ = 1;  // how far along the slope the surroundings are looked at
+  int side_ = 1;  // distance along the slope at which the surroundings are sampled
   std::unique_ptr<BlockFilter> median_;
   int median_reach_ = 1;
   int fill_reach_ = 1;
 
-  // The block with a margin all round, wide_ x tall_ from (first_column_, first_row_) of the field.
+  // The block with a margin on all sides, wide_ x tall_ from (first_column_, first_row_) of the field.
   std::int32_t first_column_ = 0, first_row_ = 0;
   int wide_ = 0, tall_ = 0;
   int margin_ = 0;

@@ -18,8 +18,8 @@ namespace {
 
 // Blocks that the noise is measured on, spread over the field.
 constexpr std::int64_t kNoiseBlocks = 64;
-// An edge stands out by at least this share of the strongest half per cent: in a scan without noise all else
-// would be infinitely strong.
+// The strength of an edge is at least this share of the strongest half per cent: in a scan without noise
+// everything would be infinitely strong.
 constexpr double kFaintest = 1.0 / 2000.0;
 // Standard deviation of normal noise over the median of its absolute values.
 constexpr double kDeviations = 1.4826;
@@ -28,7 +28,7 @@ constexpr double kDeviations = 1.4826;
 constexpr double kRounding = 1.0 / (1 << 19);
 
 tl::unexpected<Error> noMemoryForEdges() {
-  return failure("memory for looking for edges could not be had", "", "close other programs");
+  return failure("memory for finding edges could not be allocated", "", "close other programs");
 }
 
 struct Blocks {
@@ -75,7 +75,7 @@ Noise measureNoise(const FieldReader& reader, double sigma, const Blocks& blocks
     EdgeResponse& response = responses.local();
     if (!response.run(reader, rect.column, rect.row, rect.columns, rect.rows, job)) return;
     Sampled& out = sampled[static_cast<std::size_t>(i)];
-    // Neighbours know the same: every third sample each way will do.
+    // Neighbours are correlated: every third sample in each direction suffices.
     for (int r = 0; r < rect.rows; r += 3)
       for (int c = 0; c < rect.columns; c += 3) {
         const auto o = static_cast<std::size_t>(r * rect.columns + c);
@@ -109,8 +109,8 @@ Noise measureNoise(const FieldReader& reader, double sigma, const Blocks& blocks
                          0.25 * exact / (sigma * sigma)});
   noise.crease = std::max({medianOf(&Sampled::bend_x, &Sampled::bend_y), kFaintest * quantile(crease, 0.995),
                            0.25 * exact / (sigma * sigma * sigma)});
-  // What white noise does to the one is sigma times what it does to the other. Where the surface itself bends
-  // everywhere, only one of them knows.
+  // White noise gives the first response sigma times that of the second. Where the surface is curved
+  // everywhere, only one of them measures the noise.
   noise.step = std::max(noise.step, 0.5 * sigma * noise.crease);
   noise.crease = std::max(noise.crease, 0.5 * noise.step / sigma);
   return noise;
@@ -132,7 +132,7 @@ class Thinning {
       for (int c = 0; c < rect_.columns; ++c) {
         const std::size_t i = at(c + rim_, r + rim_);
         const float s = strength_[i];
-        if (s >= EdgeMap::kLeastStrength && stands(c + rim_, r + rim_, s))
+        if (s >= EdgeMap::kLeastStrength && isPeak(c + rim_, r + rim_, s))
           out.push_back({rect_.column + c, rect_.row + r, s});
       }
   }
@@ -147,12 +147,12 @@ class Thinning {
   [[nodiscard]] float creaseStrength(std::size_t i) const noexcept {
     return noise_.crease > 0.0 ? static_cast<float>(response_.crease[i] / noise_.crease) : 0.0F;
   }
-  [[nodiscard]] bool stands(int c, int r, float s) const noexcept {
+  [[nodiscard]] bool isPeak(int c, int r, float s) const noexcept {
     const std::size_t i = at(c, r);
     const bool step = stepStrength(i) >= creaseStrength(i);
     float nx = step ? response_.step_x[i] : response_.crease_x[i];
     float ny = step ? response_.step_y[i] : response_.crease_y[i];
-    // One of two equals stands: the one that comes first along a direction that both agree on.
+    // Of two equals one is kept: the first along a direction that is the same for both.
     if (nx < 0.0F || (nx == 0.0F && ny < 0.0F)) nx = -nx, ny = -ny;
     for (int d = 1; d <= rim_; ++d) {
       const int dx = static_cast<int>(std::lround(nx * static_cast<float>(d)));
@@ -170,7 +170,7 @@ class Thinning {
   std::vector<float> strength_;
 };
 
-// A bit a sample, by tiles.
+// One bit per sample, by tiles.
 class TileBits {
  public:
   explicit TileBits(const Grid& grid) : range_(allTiles(grid)), width_(grid.width), height_(grid.height) {
@@ -182,7 +182,7 @@ class TileBits {
   }
   void set(std::int32_t c, std::int32_t r) noexcept { word(c, r) |= bit(c); }
   void clear(std::int32_t c, std::int32_t r) noexcept { word(c, r) &= ~bit(c); }
-  // Samples of one row, cut to the field.
+  // Samples of one row, clipped to the field.
   void setSpan(std::int32_t c0, std::int32_t c1, std::int32_t r) noexcept {
     if (r < 0 || r >= height_) return;
     for (std::int32_t c = std::max(c0, 0); c < std::min(c1, width_); ++c) set(c, r);
@@ -228,15 +228,15 @@ double EdgeChoice::strength() const noexcept {
 Result<EdgeMap> findEdges(const Version& field, double sigma, JobControl& job) try {
   if (!(sigma >= EdgeResponse::kSmallestSigma && sigma <= EdgeResponse::kLargestSigma))
     return inputError(
-        fmt::format("edges cannot be looked for at a scale of {} samples", sigma), "scale",
+        fmt::format("edges cannot be found at a scale of {} samples", sigma), "scale",
         fmt::format("give {} to {}", EdgeResponse::kSmallestSigma, EdgeResponse::kLargestSigma));
   const FieldReader reader = field.reader();
   const Blocks blocks(field.grid(), sigma);
-  job.begin("looking for edges", static_cast<std::uint64_t>(field.grid().samples()));
+  job.begin("finding edges", static_cast<std::uint64_t>(field.grid().samples()));
   const Noise noise = measureNoise(reader, sigma, blocks, job);
   if (job.cancelled()) return cancelled();
 
-  // A step's own bends lie one sigma beside it and must not stand there as lines of their own.
+  // A step's own curvature maxima lie one sigma from it and must not become separate lines.
   const int rim = std::max(1, static_cast<int>(std::lround(1.5 * sigma)));
   std::vector<std::vector<EdgeCandidate>> found(static_cast<std::size_t>(blocks.count()));
   tbb::enumerable_thread_specific<EdgeResponse> responses(sigma);
@@ -292,7 +292,7 @@ Result<EdgeSuggestion> suggestMarks(const Version& field, const EdgeMap& map, co
   std::vector<Spot> line;
   for (const EdgeCandidate& e : map.candidates) {
     job.advance();
-    // A line is walked from the first of its strong samples.
+    // A line is followed from the first of its strong samples.
     if (e.strength < high || !open.has(e.column, e.row)) continue;
     if (job.cancelled()) return cancelled();
     line.assign(1, {e.column, e.row});

@@ -68,8 +68,8 @@ MarkRows Polygon::inside(std::int32_t tile_column, std::int32_t tile_row) const 
   const std::int64_t first_column = std::int64_t{tile_column} * kTileSide;
   const std::int64_t first_row = std::int64_t{tile_row} * kTileSide;
   const std::int64_t below = first_row * kSteps, above = (first_row + kTileSide - 1) * kSteps;
-  // Edges that begin above the tile's last row cross none of its rows, nor do those before the first one with
-  // an upper end above the tile's first row.
+  // Edges that begin above the tile's last row cross none of its rows, and neither do those before the first
+  // one with an upper end above the tile's first row.
   const auto end = std::upper_bound(edges_.begin(), edges_.end(), above,
                                     [](std::int64_t y, const Edge& e) { return y < e.y; });
   const auto skip = std::upper_bound(highest_.begin(), highest_.end(), below) - highest_.begin();

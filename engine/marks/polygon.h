@@ -12,11 +12,11 @@ namespace fettle::engine {
 /// A closed line in the field's plane, for marking what lies inside: corners in samples (x = column,
 /// y = row), the last one joined to the first.
 ///
-/// A corner is taken to the nearest 1/256 of a sample and to within 2^20 samples of the origin; from there on
-/// everything is integers and exact. A sample is inside by the even-odd rule: a ray from it to the right
-/// crosses the line an odd number of times. A line that crosses itself leaves out what it goes round twice. A
-/// sample on the line itself belongs to it on a left or lower side and not on a right or upper one, so that
-/// two polygons with a common side share no sample and leave none out. Shimrat, Algorithm 112 (1962).
+/// A corner is rounded to the nearest 1/256 of a sample and clamped to within 2^20 samples of the origin; all
+/// further arithmetic is exact in integers. A sample is inside by the even-odd rule: a ray from it to the
+/// right crosses the line an odd number of times. A line that crosses itself leaves out regions it encloses
+/// twice. A sample on the line itself belongs to it on a left or lower side and not on a right or upper one,
+/// so that two polygons with a common side share no sample and leave none out. Shimrat, Algorithm 112 (1962).
 class Polygon {
  public:
   /// Corners that are not finite are left out.
@@ -26,7 +26,7 @@ class Polygon {
   [[nodiscard]] bool empty() const noexcept { return edges_.empty(); }
   /// The tiles of the field that may hold samples inside.
   [[nodiscard]] TileRange tiles(const Grid& grid) const noexcept;
-  /// The samples of one tile that are inside. Time follows the corners whose sides cross the tile's rows.
+  /// The samples of one tile that are inside. Time is proportional to the sides that cross the tile's rows.
   [[nodiscard]] MarkRows inside(std::int32_t tile_column, std::int32_t tile_row) const;
 
   static constexpr int kSteps = 256;  ///< of a corner in one sample
@@ -39,7 +39,7 @@ class Polygon {
   };
   std::vector<Edge> edges_;  // by the row of their lower end
   std::int64_t low_x_ = 0, high_x_ = 0, low_y_ = 0, high_y_ = 0;
-  std::vector<std::int64_t> highest_;  // of the edges up to each one: where its search may stop
+  std::vector<std::int64_t> highest_;  // maximum over the edges up to each one: where a search may stop
 };
 
 /// Marks or unmarks all samples inside. Errors as changeMarks; an empty polygon changes nothing.

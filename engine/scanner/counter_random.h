@@ -6,13 +6,13 @@
 
 namespace fettle::engine {
 
-// Random numbers without a state: a hash of (seed, stream, column, row), so that a value never depends on who
-// asked before, on which thread, or for how large a part of the field.
+// Random numbers without a state: a hash of (seed, stream, column, row), so that a value does not depend on
+// earlier calls, on the thread, or on the size of the part of the field.
 //   Salmon, Moraes, Dror, Shaw: Parallel random numbers: as easy as 1, 2, 3 (2011): the idea.
 //   Steele, Lea, Flood: Fast splittable pseudorandom number generators (2014): the mixing step (SplitMix64).
 //   Box, Muller: A note on the generation of random normal deviates (1958): uniform to normal.
 
-/// SplitMix64's finaliser: a bijection of 64-bit words in which every input bit moves every output bit.
+/// SplitMix64's finaliser: a bijection of 64-bit words in which every input bit affects every output bit.
 [[nodiscard]] constexpr std::uint64_t mixBits(std::uint64_t x) noexcept {
   x += 0x9e3779b97f4a7c15;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;

@@ -24,7 +24,7 @@ double depthFactor(const LaserModel& model, double height_mm) noexcept {
   return d * d;
 }
 
-// Rise per sample towards the flatter of two neighbours; one alone decides, none is flat.
+// Rise per sample towards the flatter of two neighbours; with one neighbour that one, without any flat.
 double flatterRise(double before, double here, double after) noexcept {
   const double a = std::abs(here - before);
   const double b = std::abs(after - here);
@@ -64,7 +64,7 @@ void addSensorNoise(ScanBlock& block, const LaserModel& model, double scale, con
 
 std::vector<double> speckleKernel(const LaserModel& model, double spacing_mm) {
   const double sigma = model.speckle_length_mm / spacing_mm;  // in samples
-  // Beyond 3 sigma lies 0.3 % of the weight. The longest kernel is bounded for absurdly fine grids.
+  // Beyond 3 sigma lies 0.3 % of the weight. The longest kernel is bounded, for extremely fine grids.
   const int half = static_cast<int>(std::min(3.0 * sigma, 512.0));
   std::vector<double> kernel;
   double power = 0.0;
@@ -121,8 +121,8 @@ void dropSteep(ScanBlock& block, const LaserModel& model, double scale, const Co
 }
 
 void dropShadowed(ScanBlock& block, const LaserModel& model, std::span<double> horizon) {
-  // Float heights carry an error of about 1e-6 of their size; a plane just as steep as the ray must not
-  // flicker.
+  // Float heights carry an error of about 1e-6 of their size; a plane exactly as steep as the ray must not be
+  // partly hidden.
   constexpr double kSlack = 1e-4;
   for (int r = block.rows - 1; r >= 0; --r) {
     const double y = (block.row + r) * block.spacing_mm;

@@ -11,7 +11,7 @@ namespace fettle::engine {
 
 /// The geometry and the errors of the simulated scanner, per unit of ScannerSpec::noise. The angle and the
 /// ratios were taken from a real scan of an industrial laser-triangulation camera (a plate with steps, 0.21
-/// mm spacing, 0.02 mm a count, sigma 0.04 mm): its shadows lie behind steps along the direction of travel
+/// mm spacing, 0.02 mm per count, sigma 0.04 mm): its shadows lie behind steps along the direction of travel
 /// and are 0.39 times as long as the step is high.
 struct LaserModel {
   double standoff_mm = 150.0;   ///< from the laser to the reference height 0
@@ -22,13 +22,13 @@ struct LaserModel {
       0.07;                      ///< standard deviation of speckle's correlation kernel along the laser line
   double line_ratio = 0.25;      ///< line-to-line offset against sigma_mm
   double count_ratio = 0.5;      ///< height of one count against sigma_mm
-  double mixed_step_mm = 0.2;    ///< least step beside which pixels mix
+  double mixed_step_mm = 0.2;    ///< least step next to which pixels mix
   double steep_from_deg = 45.0;  ///< faces steeper than this begin to lose samples
-  double steep_all_deg = 80.0;   ///< and from here on lose all of them
+  double steep_all_deg = 80.0;   ///< and faces steeper than this lose all of them
 };
 
-/// A square of samples while it is being scanned: the truth with one sample of margin, and what the scanner
-/// makes of it. At most kSide on a side.
+/// A square of samples during the simulation: the truth with one sample of margin, and the scanned heights.
+/// At most kSide on a side.
 struct ScanBlock {
   static constexpr int kSide = 64;
   static constexpr int kStride = kSide + 2;
@@ -50,16 +50,16 @@ struct ScanBlock {
   }
 };
 
-// Every effect is called only when its amplitude is not zero. Each draws from its own stream.
+// An effect is called only when its amplitude is not zero. Each uses its own stream of random numbers.
 
-/// Pixels beside a step see both levels at once: with probability `share` a sample whose 3 x 3 neighbourhood
-/// in the truth spans a step (more than mixed_step_mm and more than a 70 degree face would) comes out
-/// anywhere between the two levels. Curless and Levoy, Better optical triangulation through spacetime
-/// analysis (1995), section 2: discontinuities shift the imaged spot's centre.
+/// Pixels next to a step receive light from both levels: with probability `share` a sample whose 3 x 3
+/// neighbourhood in the truth spans a step (more than mixed_step_mm and more than a 70 degree face would)
+/// gets a random height between the two levels. Curless and Levoy, Better optical triangulation through
+/// spacetime analysis (1995), section 2: discontinuities shift the imaged spot's centre.
 void mixPixels(ScanBlock& block, const LaserModel& model, double share, const CounterRandom& random);
 
-/// Independent normal noise of each sample. Its sigma goes with the square of the distance, as both the
-/// camera's aperture and the triangulation angle shrink with it: Dorsch, Haeusler and Herrmann, Laser
+/// Independent normal noise of each sample. Its sigma is proportional to the square of the distance, as both
+/// the camera's aperture and the triangulation angle shrink with it: Dorsch, Haeusler and Herrmann, Laser
 /// triangulation: fundamental uncertainty in distance measurement (1994), eq. 8:
 /// dz = C lambda / (2 pi sin u sin theta).
 void addSensorNoise(ScanBlock& block, const LaserModel& model, double scale, const CounterRandom& random);
@@ -73,22 +73,23 @@ void addSpeckle(ScanBlock& block, const LaserModel& model, double scale, std::sp
 /// speckle's length.
 [[nodiscard]] std::vector<double> speckleKernel(const LaserModel& model, double spacing_mm);
 
-/// One offset a laser line: the part's carriage shakes and the laser's pointing drifts between exposures.
+/// One offset per laser line: the part's carriage vibrates and the laser's direction drifts between
+/// exposures.
 void addLineOffset(ScanBlock& block, const LaserModel& model, double scale, const CounterRandom& random);
 
 /// Heights are whole counts of the sensor (nearest; ties to even).
 void quantise(ScanBlock& block, const LaserModel& model, double scale);
 
-/// Steep faces send too little light back: from steep_from_deg on the chance of losing the sample grows with
-/// the square of the angle, to 1 at steep_all_deg; times `scale`. The angle is that of the flatter side in x
-/// and in y, so that a sample on the land beside a wall is not steep. After Feng, Liu and Xi, Analysis of
+/// Steep faces reflect too little light: from steep_from_deg on the probability of losing the sample grows
+/// with the square of the angle, to 1 at steep_all_deg; times `scale`. The angle is that of the flatter side
+/// in x and in y, so that a flat sample next to a wall is not steep. After Feng, Liu and Xi, Analysis of
 /// digitizing errors of a laser scanning system (2001): errors grow with the projected angle.
 void dropSteep(ScanBlock& block, const LaserModel& model, double scale, const CounterRandom& random);
 
 /// Samples the camera cannot see are lost. The camera looks from +y, so the sample (x, y, z) is hidden when
-/// some (x, y + t, z') has z' > z + t / camera_tangent. Going down the rows, `horizon` (one a column, start
-/// at -infinity) holds the highest z' - y' / camera_tangent so far: the march along each ray in O(1) a
-/// sample, exact for the sampled truth. Blocks must be passed from the highest rows down.
+/// some (x, y + t, z') has z' > z + t / camera_tangent. Going down the rows, `horizon` (one per column, start
+/// at -infinity) is the highest z' - y' / camera_tangent so far: the test along each ray in O(1) per sample,
+/// exact for the sampled truth. Blocks must be passed from the highest rows down.
 void dropShadowed(ScanBlock& block, const LaserModel& model, std::span<double> horizon);
 
 }  // namespace fettle::engine

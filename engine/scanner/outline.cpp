@@ -13,7 +13,7 @@ Outline Outline::rotated(double degrees) const noexcept {
   return other;
 }
 
-glm::dvec2 Outline::toOwn(glm::dvec2 p) const noexcept {
+glm::dvec2 Outline::toLocal(glm::dvec2 p) const noexcept {
   const glm::dvec2 q = p - centre;
   return {along.x * q.x + along.y * q.y, along.x * q.y - along.y * q.x};
 }
@@ -23,7 +23,7 @@ glm::dvec2 Outline::turned(glm::dvec2 own) const noexcept {
 }
 
 double Outline::distance(glm::dvec2 p) const noexcept {
-  const glm::dvec2 own = toOwn(p);
+  const glm::dvec2 own = toLocal(p);
   const double qx = std::abs(own.x) - half_length + radius;
   const double qy = std::abs(own.y) - half_width + radius;
   const double ox = std::max(qx, 0.0);
@@ -67,8 +67,8 @@ std::vector<Outline::Point> Outline::points(double step) const {
     const glm::dvec2 run = corners[(k + 1) % 4] - corners[k];
     const double length = std::sqrt(run.x * run.x + run.y * run.y);
     const int pieces = static_cast<int>(std::ceil(length / step));
-    // The end of the side is the next corner's first point; with no side to walk (circle, slot) the corner's
-    // last point is already that one.
+    // The end of the side is the next corner's first point; without a side (circle, slot) the corner's last
+    // point is already that one.
     for (int i = 1; i < pieces; ++i) add(start + run * (static_cast<double>(i) / pieces), side);
     if (radius > 0.0 && pieces == 0) line.pop_back();
   }

@@ -7,9 +7,9 @@
 namespace fettle::engine {
 
 /// A closed convex line in the plane of the part [mm]: a rectangle with round corners, turned by an angle.
-/// Everything machined parts need is one: a circle (half = radius both ways), a slot (radius = half_width), a
-/// sharp-cornered rectangle (radius = 0). One formula gives the exact signed distance of all of them, and
-/// each one's inner parallel is again one.
+/// All outlines of machined parts are special cases: a circle (half = radius in both directions), a slot
+/// (radius = half_width), a sharp-cornered rectangle (radius = 0). One formula gives the exact signed
+/// distance of all of them, and an inner parallel is again such an outline.
 struct Outline {
   glm::dvec2 centre{0.0, 0.0};
   double half_length = 1.0;    ///< along the outline's own u axis [mm], > 0
@@ -21,22 +21,22 @@ struct Outline {
     return {centre, radius, radius, radius, {1.0, 0.0}};
   }
 
-  /// The same, turned counter-clockwise about its centre by so many degrees.
+  /// The same, turned counter-clockwise about its centre by an angle in degrees.
   [[nodiscard]] Outline rotated(double degrees) const noexcept;
 
   /// p in the outline's own axes, from its centre.
-  [[nodiscard]] glm::dvec2 toOwn(glm::dvec2 p) const noexcept;
+  [[nodiscard]] glm::dvec2 toLocal(glm::dvec2 p) const noexcept;
   /// A direction in the outline's own axes, in those of the part.
   [[nodiscard]] glm::dvec2 turned(glm::dvec2 own) const noexcept;
 
-  /// Euclidean distance of p to the line, < 0 inside [mm]; exact but for rounding, for convex corners too.
+  /// Euclidean distance of p to the line, < 0 inside [mm]; exact apart from rounding, for convex corners too.
   /// Source of the formula: Quilez, "2D distance functions", rounded box.
   [[nodiscard]] double distance(glm::dvec2 p) const noexcept;
 
   /// The parallel line `by` inside this one [mm], 0 <= by < min(half_length, half_width).
   [[nodiscard]] Outline inset(double by) const noexcept;
 
-  /// Radius of the smallest circle about the centre that holds the line [mm].
+  /// Radius of the smallest circle about the centre that contains the line [mm].
   [[nodiscard]] double reach() const noexcept;
 
   struct Point {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kHole = std::numeric_limits<double>::quiet_NaN();
 
-// A smooth relief without any period in common along x and y; within +-1.
+// A smooth relief without a common period along x and y; within +-1.
 double relief(glm::dvec2 p, double wavelength) noexcept {
   const double k = 2.0 * std::numbers::pi / wavelength;
   return 0.5 * std::sin(k * p.x) * std::cos(0.7 * k * p.y) +
@@ -53,7 +53,7 @@ double applied(const Feature& f, glm::dvec2 p, double below) noexcept {
       return through(f, below, d);
     case FeatureKind::kRoof:
       if (d > 0.0) return below;
-      return below + f.slope_v * (f.outline.half_width - std::abs(f.outline.toOwn(p).y));
+      return below + f.slope_v * (f.outline.half_width - std::abs(f.outline.toLocal(p).y));
     case FeatureKind::kBump: {
       if (d >= 0.0) return below;
       const double t = 1.0 + d / std::min(f.outline.half_length, f.outline.half_width);
@@ -82,7 +82,7 @@ std::vector<const Feature*> Part::near(glm::dvec2 centre, double radius) const {
   std::vector<const Feature*> found;
   for (const Feature& f : features) {
     const glm::dvec2 apart = f.outline.centre - centre;
-    // A thousandth of slack: what rounding may take from the sum.
+    // A margin of a thousandth, for rounding of the sum.
     if (std::hypot(apart.x, apart.y) <= (f.outline.reach() + f.foot_mm + radius) * 1.001) found.push_back(&f);
   }
   return found;

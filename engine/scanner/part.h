@@ -10,7 +10,7 @@
 
 namespace fettle::engine {
 
-/// What a feature does inside its outline.
+/// Effect of a feature inside its outline.
 enum class FeatureKind {
   kSet,      ///< the height becomes `level` + slope . p + waviness: boss, pocket, rib, freeform pad
   kThrough,  ///< no surface: a through hole
@@ -26,8 +26,8 @@ enum class Rim {
   kFillet,   ///< a quarter circle of radius `rim_mm` from the top down (raised features only)
 };
 
-/// One operation on the height of what lies below it. Corner radii are at least rim_mm where there is a rim,
-/// so that bevels meet without mitre lines and the listed edges are all there are.
+/// One operation on the height of the features below it. Corner radii are at least rim_mm where there is a
+/// rim, so that bevels meet without mitre lines and the listed edges are all there are.
 struct Feature {
   FeatureKind kind = FeatureKind::kSet;
   Outline outline;
@@ -42,29 +42,29 @@ struct Feature {
   double foot_mm = 0.0;  ///< raised kSet: radius of the concave fillet outside the wall's foot, 0 = none
 };
 
-/// A part: features laid one over the other on a plane at height 0. All in millimetres, origin in the middle.
+/// A part: features placed over each other on a plane at height 0. All in millimetres, origin in the middle.
 struct Part {
   PartInfo info;
   std::vector<Feature> features;
 
   /// Exact height at p [mm], NaN in a through hole. On an outline itself the inside counts.
   [[nodiscard]] double heightAt(glm::dvec2 p) const noexcept;
-  /// The same over a subset of the features (in order), for a caller that knows which can matter.
+  /// The same over a subset of the features (in order), for a caller that knows which ones reach p.
   [[nodiscard]] static double heightAt(glm::dvec2 p, const std::vector<const Feature*>& features) noexcept;
   /// The features that can reach into a circle.
   [[nodiscard]] std::vector<const Feature*> near(glm::dvec2 centre, double radius) const;
 };
 
-/// The part of that name, or null. Lives for ever.
+/// The part of that name, or null. Valid for the life of the program.
 [[nodiscard]] const Part* findPart(std::string_view name) noexcept;
 
 /// Steps lower than this [mm] and slope jumps smaller than this [mm/mm] are not called edges.
 inline constexpr double kLeastEdge = 0.05;
 
-/// The lines of the part where its surface truly jumps or breaks: every outline and bevel line, cut to where
-/// the finished surface is different on its two sides, for later features may have removed it. A through
-/// hole's rim is none: it has no height on one side. Points at most `step` apart [mm], moved by `shift` and
-/// kept to [0, extent] in both axes.
+/// The lines of the part where its surface has a jump or a crease: every outline and bevel line, cut to where
+/// the finished surface differs on its two sides, since later features may have removed it. A through hole's
+/// rim is not one: it has no height on one side. Points at most `step` apart [mm], moved by `shift` and
+/// clipped to [0, extent] in both axes.
 [[nodiscard]] std::vector<Edge> edgesOf(const Part& part, double step, glm::dvec2 shift, glm::dvec2 extent);
 
 }  // namespace fettle::engine

@@ -98,7 +98,7 @@ Part bracket() {
       sunk(box({12, -12}, 17, 11, 4).rotated(12), 4.0, 0.6),
       raised(slot({12, -12}, 7, 3).rotated(12), 7.0),
       sunk(box({12, -12}, 4, 0.6).rotated(12), 5.5),
-      // Low ledges: the heights at which noise and edge begin to look alike.
+      // Low ledges: heights comparable with the noise.
       raised(box({-8, -34}, 12, 5, 0.5).rotated(-4), 8.3),
       raised(box({-8, -34}, 8, 3, 0.5).rotated(-4), 8.8),
       raised(box({-8, -34}, 4, 1.2).rotated(-4), 10.0),

@@ -7,11 +7,11 @@ namespace fettle::engine {
 
 namespace {
 
-// How far from the line its two sides are looked at [mm]: far above the rounding of a place, and so small
-// that even a fillet, upright where it meets its wall, adds less than 0.01 mm to a step.
+// Distance from the line at which its two sides are sampled [mm]: far above the rounding of a position, and
+// so small that even a fillet, vertical where it meets its wall, adds less than 0.01 mm to a step.
 constexpr double kAside = 1e-6;
 
-// What a line is at one of its points.
+// Properties of a line at one of its points.
 struct Crossing {
   bool edge = false;
   EdgeKind kind = EdgeKind::kStep;
@@ -45,7 +45,7 @@ void cutIntoEdges(const std::vector<Outline::Point>& line, const std::vector<Cro
                   bool closed, glm::dvec2 shift, std::vector<Edge>& edges) {
   const std::size_t n = line.size();
   std::size_t start = 0;
-  if (closed) {  // begin where a run begins, so that none is cut by the line's arbitrary first point
+  if (closed) {  // start at the start of a run, so that none is cut at the line's arbitrary first point
     while (start < n && crossings[(start + n - 1) % n].joins(crossings[start])) ++start;
     if (start == n) start = 0;
   }

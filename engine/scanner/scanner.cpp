@@ -20,7 +20,8 @@ namespace fettle::engine {
 
 namespace {
 
-// One stream of random numbers an effect, so that turning one off leaves the others' numbers alone.
+// One stream of random numbers per effect, so that switching one off does not change the numbers of the
+// others.
 enum Stream : std::uint64_t { kMixing = 1, kSensor, kSpeckle, kLines, kSteepness };
 
 Status check(const ScannerSpec& spec) {
@@ -29,7 +30,7 @@ Status check(const ScannerSpec& spec) {
     return inputError(fmt::format("a noise of {} cannot be simulated", spec.noise), "--noise",
                       "give 0 to 100");
   if (!within(spec.outliers, 1.0))
-    return inputError(fmt::format("a share of outliers of {} cannot be", spec.outliers), "--outliers",
+    return inputError(fmt::format("a share of outliers of {} is not possible", spec.outliers), "--outliers",
                       "give 0 to 1");
   if (!within(spec.dropouts, 10.0))
     return inputError(fmt::format("dropouts of {} cannot be simulated", spec.dropouts), "--dropouts",
@@ -37,7 +38,7 @@ Status check(const ScannerSpec& spec) {
   return {};
 }
 
-// The part laid into the field: where the part's origin is, and how far the samples lie apart.
+// Placement of the part in the field: the part's origin, and the sample spacing.
 struct Layout {
   Grid grid;
   double spacing_mm = 1.0;
@@ -141,7 +142,8 @@ struct ScannedTile {
   }
 };
 
-// The sample nearest each point of the lines, looked at every quarter of a sample. False: memory exhausted.
+// Marks the sample nearest each point of the lines, in steps of a quarter of a sample. False: memory
+// exhausted.
 bool markEdges(const std::vector<Edge>& edges, double spacing_mm, LiveField& field) {
   const auto mark = [&](glm::dvec2 p) {
     const auto column = static_cast<std::int32_t>(std::lround(p.x / spacing_mm));
@@ -168,7 +170,7 @@ Result<SimulatedScan> simulate(const ScannerSpec& spec, const Part& part, JobCon
   Grid asked;
   asked.width = spec.width;
   asked.height = spec.height;
-  // Before the layout divides by them: the builder knows which sizes there are.
+  // Before the layout divides by them: the builder checks which sizes are valid.
   if (spec.width < 1 || spec.height < 1) return tl::unexpected(FieldBuilder::create(asked, what).error());
   const Layout layout(part, spec.width, spec.height);
   const LaserModel model;
@@ -208,7 +210,7 @@ Result<SimulatedScan> simulateScan(const ScannerSpec& spec, JobControl& job) {
   try {
     return simulate(spec, *part, job);
   } catch (const std::bad_alloc&) {
-    return failure("memory is exhausted", fmt::format("the part {}", spec.part), "ask for fewer samples");
+    return failure("memory is exhausted", fmt::format("the part {}", spec.part), "choose fewer samples");
   }
 }
 

@@ -14,26 +14,26 @@
 
 namespace fettle::engine {
 
-// A laser-triangulation scan of a machined part that never existed, with what a real scan never has: the
-// truth. The scanner is the usual industrial one (a sheet of light straight down, a camera looking at it from
-// ahead at an angle, the part carried along):
+// A simulated laser-triangulation scan of a machined part, with its true surface, which a real scan does not
+// have. The scanner is the usual industrial one (a vertical sheet of light, a camera in front of it at an
+// angle, the part moved along):
 //
 //        z   laser sheet (x-z)    camera
 //        |        |              /              rows    = laser lines, x along them
 //        |        |            /  30 degrees    columns = pixels along one laser line
-//        |   _____v__________/___               scan    = along y, one row a line
+//        |   _____v__________/___               scan    = along y, one row per line
 //        +------------------------> y
 //
 // A part is a formula in millimetres, not a raster, so its truth is exact at every size. Noise is a pure
-// function of (seed, effect, column, row): the same bits for any thread count and in any order.
+// function of (seed, effect, column, row): bit-identical for any thread count and order.
 
-/// What kind of line an edge is.
+/// Kind of an edge.
 enum class EdgeKind {
   kStep,    ///< the height jumps (vertical wall)
   kCrease,  ///< the height is continuous, its slope jumps (chamfer, ridge, groove)
 };
 
-/// One sharp line of a part, where it truly is.
+/// One sharp line of a part, at its true position.
 struct Edge {
   EdgeKind kind = EdgeKind::kStep;
   /// The line in field coordinates [mm] (x = column * spacing, y = row * spacing, see Grid), two points or
@@ -48,7 +48,7 @@ struct Edge {
   bool closed = false;
 };
 
-/// What to scan and how badly. Every amplitude that is zero leaves its work undone, not merely unseen.
+/// What to scan, and the errors to simulate. An effect with amplitude zero is not computed.
 struct ScannerSpec {
   std::string part = "bracket";  ///< a name from parts()
   int width = 1024;              ///< columns, 1 .. Grid::kMaxSide
@@ -56,7 +56,7 @@ struct ScannerSpec {
   /// Scale of the height noise (sensor noise, speckle, line offset, quantisation), 0 .. 100; 1 = a realistic
   /// industrial scanner, sigma_mm about 0.02 mm; 0 = none of them.
   double noise = 1.0;
-  /// Share of the samples beside a step that come out as mixed pixels, 0 .. 1; 0 = none; 0.05 is realistic.
+  /// Share of the samples next to a step that become mixed pixels, 0 .. 1; 0 = none; 0.05 is realistic.
   double outliers = 0.0;
   /// Scale of the lost samples, 0 .. 10: 0 = none lost; 1 = realistic loss on steep faces, and samples that
   /// the camera cannot see are holes (any value > 0).
@@ -64,7 +64,7 @@ struct ScannerSpec {
   std::uint64_t seed = 1;
 };
 
-/// A scan and what it should have been. The three share one grid (mm, origin 0, square spacing) and one
+/// A scan and its true surface. The three versions share one grid (mm, origin 0, square spacing) and one
 /// memory; tiles in which truth and edges do not differ are shared.
 struct SimulatedScan {
   Version scan;
@@ -75,19 +75,19 @@ struct SimulatedScan {
 };
 
 /// Scans a part. The part is centred in the field, the spacing is the smallest square one with which all of
-/// it fits; the plate around it goes on as far as the field does. Threading: rows on all workers of the
-/// calling arena; blocks until done. Same spec, same bits. Errors: unknown part, a size or parameter outside
-/// its range, memory exhausted, cancelled.
+/// it fits; the plate around it fills the field. Threading: rows on all workers of the calling arena; blocks
+/// until done. Bit-identical for the same spec. Errors: unknown part, a size or parameter outside its range,
+/// memory exhausted, cancelled.
 [[nodiscard]] Result<SimulatedScan> simulateScan(const ScannerSpec& spec, JobControl& job);
 
 struct PartInfo {
-  std::string_view name;         ///< as ScannerSpec::part takes it
+  std::string_view name;         ///< value for ScannerSpec::part
   std::string_view description;  ///< one line
-  double width_mm = 0.0;         ///< extent along x of what is shown
+  double width_mm = 0.0;         ///< extent along x of the shown area
   double height_mm = 0.0;        ///< extent along y
 };
 
-/// The parts there are, in a fixed order.
+/// All parts, in a fixed order.
 [[nodiscard]] std::span<const PartInfo> parts() noexcept;
 
 }  // namespace fettle::engine

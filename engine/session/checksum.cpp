@@ -18,7 +18,7 @@ RowChecksum& RowChecksum::integer(std::int64_t value) {
 }
 
 RowChecksum& RowChecksum::real(double value) {
-  return integer(std::bit_cast<std::int64_t>(value + 0.0));  // SQLite keeps no sign of a zero
+  return integer(std::bit_cast<std::int64_t>(value + 0.0));  // SQLite does not keep the sign of a zero
 }
 
 RowChecksum& RowChecksum::text(std::string_view value) {
@@ -40,7 +40,7 @@ Result<FileChecksum> fileChecksum(const std::string& path) {
   if (!file) return tl::unexpected(file.error());
   const std::unique_ptr<XXH64_state_t, decltype(&XXH64_freeState)> state(XXH64_createState(),
                                                                          XXH64_freeState);
-  if (!state) return failure("memory could not be had", path);
+  if (!state) return failure("memory could not be allocated", path);
   XXH64_reset(state.get(), 0);
   std::vector<char> piece(std::size_t{1} << 20);
   FileChecksum sum;

@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kElsewhere = "make room on the disk or save the session elsewhere";
 constexpr const char* kDamage = "open a copy of it, or the scan itself";
 
-// Percent signs, question marks and hashes mean something in a file name given as URI.
+// Percent signs, question marks and hashes have a meaning in a file name given as URI.
 std::string uriOf(const std::string& path) {
   std::string uri = "file:";
   if (path.starts_with('/')) uri += "//";
@@ -99,21 +99,21 @@ std::string_view Statement::bytes(int column) const noexcept {
 Result<std::unique_ptr<Database>> Database::open(const std::string& path, DatabaseAccess access,
                                                  const std::string& shown) {
   const bool frozen = access == DatabaseAccess::kFrozen;
-  // A reader opens for writing too where it may: only then can it bring a crashed program's log in order and
-  // take the files beside the session away again.
+  // A reader opens for writing too where permitted: only then can it recover a crashed program's log and
+  // remove the files next to the session.
   const int flags = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE |
                     (frozen ? SQLITE_OPEN_READONLY | SQLITE_OPEN_URI : SQLITE_OPEN_READWRITE);
   sqlite3* handle = nullptr;
   const int code = sqlite3_open_v2((frozen ? uriOf(path) : path).c_str(), &handle, flags, nullptr);
   std::unique_ptr<Database> database(new Database(handle, shown));
-  if (handle == nullptr) return failure("memory for the session could not be had", shown);
+  if (handle == nullptr) return failure("memory for the session could not be allocated", shown);
   if (code != SQLITE_OK) return tl::unexpected(database->error());
-  // Content of a file that others may have made: nothing in its schema is run.
+  // The file may come from others: nothing in its schema is executed.
   sqlite3_db_config(handle, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_db_config(handle, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
-  sqlite3_busy_timeout(handle, 5000);  // another connection's checkpoint or recovery takes less
+  sqlite3_busy_timeout(handle, 5000);  // longer than another connection's checkpoint or recovery
   // In place of SQLite's own checkpoints, which would come in the middle of a commit.
   sqlite3_wal_hook(
       handle,
@@ -169,7 +169,7 @@ Result<std::string> Database::text(const std::string& sql) {
 Result<bool> Database::checkpoint() {
   int in_log = 0;
   int worked_in = 0;
-  // PASSIVE waits for nobody; a log that was worked in whole is written from its start again.
+  // PASSIVE does not wait; a log that was checkpointed completely is written from its start again.
   const int code =
       sqlite3_wal_checkpoint_v2(handle_, nullptr, SQLITE_CHECKPOINT_PASSIVE, &in_log, &worked_in);
   if (code != SQLITE_OK && code != SQLITE_BUSY) return tl::unexpected(error());
@@ -207,12 +207,12 @@ Error Database::error() const {
     case SQLITE_AUTH:
     case SQLITE_CANTOPEN:
       return input("the session cannot be opened: " + reason,
-                   "look at the rights of the file and its folder, or save the session elsewhere");
+                   "check the rights of the file and its folder, or save the session elsewhere");
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       return input("another program is using the session", "close it there, or save the session elsewhere");
     case SQLITE_CORRUPT:
-    case SQLITE_ERROR:  // "no such table": the statements themselves are ours
+    case SQLITE_ERROR:  // "no such table": the statements themselves are correct
     case SQLITE_MISMATCH:
     case SQLITE_SCHEMA:
       return input(fmt::format("the session is damaged: {}", sqlite3_errmsg(handle_)), kDamage);
@@ -221,12 +221,12 @@ Error Database::error() const {
     case SQLITE_INTERRUPT:
       return cancelled().value();
     case SQLITE_NOMEM:
-      return {ErrorKind::kFailed, "memory for the session could not be had", shown_, {}};
+      return {ErrorKind::kFailed, "memory for the session could not be allocated", shown_, {}};
     case SQLITE_IOERR:
       if (extended == SQLITE_IOERR_SHORT_READ || extended == SQLITE_IOERR_CORRUPTFS)
         return input("the session is damaged: the file ends too early", kDamage);
       if (extended == SQLITE_IOERR_NOMEM)
-        return {ErrorKind::kFailed, "memory for the session could not be had", shown_, {}};
+        return {ErrorKind::kFailed, "memory for the session could not be allocated", shown_, {}};
       return {ErrorKind::kFailed, "the session cannot be read or written: " + reason, shown_, kElsewhere};
     default:
       return input("the session cannot be read or written: " + reason, kElsewhere);
@@ -239,7 +239,7 @@ Result<Transaction> Transaction::begin(Database& database) {
 }
 
 Transaction::~Transaction() {
-  // SQLite has rolled back by itself after some errors; then this says so and nothing more.
+  // After some errors SQLite has rolled back by itself; then this only returns an error.
   if (database_ != nullptr) (void)database_->execute("ROLLBACK");
 }
 

@@ -19,9 +19,9 @@ class Database;
 /// Bytes of a page of every session, fixed when it is made.
 inline constexpr int kSessionPageBytes = 4096;
 
-/// A prepared statement. Bind (places count from 1), then step() until it gives false, then reset(). Values
-/// of a row are valid until the next step(); texts and blobs that are bound must live until the statement is
-/// reset.
+/// A prepared statement. Bind (positions count from 1), then step() until it returns false, then reset().
+/// Values of a row are valid until the next step(); bound texts and blobs must stay valid until the statement
+/// is reset.
 class Statement {
  public:
   Statement() = default;
@@ -32,7 +32,7 @@ class Statement {
   Statement& bindBlob(int place, std::string_view value) noexcept;
   Statement& bindNull(int place) noexcept;
 
-  /// True: a row is there. False: done. Error: as Database::error().
+  /// True: a row is available. False: done. Error: as Database::error().
   [[nodiscard]] Result<bool> step();
   /// For statements without rows: step, then reset.
   [[nodiscard]] Status run();
@@ -56,8 +56,8 @@ class Statement {
 enum class DatabaseAccess : std::uint8_t {
   kWrite,   ///< an existing file
   kCreate,  ///< an empty file, yet to become a database
-  kRead,    ///< an existing file; no statement may change it, but a crashed program's log is worked in
-  kFrozen,  ///< an existing file that nobody changes: no lock, no log, nothing is written anywhere
+  kRead,    ///< an existing file; no statement may change it, but a crashed program's log is recovered
+  kFrozen,  ///< an existing file that no program changes: no lock, no log, nothing is written
 };
 
 /// One SQLite connection with errors as values. `shown` is the path that errors name.
@@ -77,13 +77,13 @@ class Database {
   [[nodiscard]] Result<std::int64_t> integer(const std::string& sql);
   [[nodiscard]] Result<std::string> text(const std::string& sql);
 
-  /// Works the log into the file as far as readers allow. True when nothing is left in it.
+  /// Checkpoints the log into the file as far as readers allow. True when nothing is left in it.
   [[nodiscard]] Result<bool> checkpoint();
   /// Bytes in the log that this connection's last commit left.
   [[nodiscard]] std::uint64_t logBytes() const noexcept { return log_bytes_; }
   /// Statements end with an error soon after the job is cancelled; null ends that.
   void stopWith(const JobControl* job) noexcept;
-  /// The last connection to close leaves the log as it is.
+  /// The last connection to close leaves the log unchanged.
   void keepLogOnClose() noexcept;
 
   /// The error of the last call that failed: full disk, no right to write, damage, not a database, in use ...

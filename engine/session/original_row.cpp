@@ -1,4 +1,4 @@
-// The row that says where the scan of a session came from.
+// The row that describes the scan of a session.
 
 #include "engine/session/tables.h"
 
@@ -6,7 +6,7 @@ namespace fettle::engine {
 
 namespace {
 
-// One pass over the columns serves writing and the checksum, so that they cannot differ.
+// Writing and the checksum use the same pass over the columns, so that they cannot differ.
 template <class Text, class Integer, class Real>
 void eachColumn(const OriginalRow& r, Text&& text, Integer&& integer, Real&& real) {
   const ImportOptions& import = r.scan.import;
@@ -36,7 +36,7 @@ std::int64_t checksumOf(const OriginalRow& row) {
   return sum.value();
 }
 
-// What a NaN says already holds: NaN is always a hole; and SQLite keeps none.
+// NaN needs no entry: it is always a hole; and SQLite does not store NaN.
 OriginalRow storable(OriginalRow row) {
   if (row.scan.import.no_data && !(*row.scan.import.no_data == *row.scan.import.no_data))
     row.scan.import.no_data.reset();
@@ -52,7 +52,7 @@ Status SessionTables::writeOriginal(const OriginalRow& given) {
   if (!s) return tl::unexpected(s.error());
   int place = 1;
   std::vector<std::string> texts;
-  texts.reserve(16);  // bound texts must stay where they are
+  texts.reserve(16);  // bound texts must not move
   eachColumn(
       row,
       [&](const std::optional<std::string>& v) {
@@ -81,7 +81,7 @@ Result<OriginalRow> SessionTables::readOriginal() {
   Statement& q = **s;
   const Result<bool> found = q.step();
   if (!found) return tl::unexpected(found.error());
-  if (!*found) return damaged("it does not say which scan it began with", path);
+  if (!*found) return damaged("it does not record its scan", path);
   const auto real = [&](int column) {
     return q.isNull(column) ? std::nullopt : std::optional(q.real(column));
   };
@@ -103,7 +103,7 @@ Result<OriginalRow> SessionTables::readOriginal() {
     import.cell_rule = static_cast<CellRule>(rule);
   const bool right = q.integer(15) == checksumOf(row);
   q.reset();
-  if (!right) return damaged("what it says of its scan does not fit its checksum", path);
+  if (!right) return damaged("its record of the scan does not fit its checksum", path);
   return row;
 }
 

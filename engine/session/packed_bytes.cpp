@@ -11,7 +11,7 @@ std::string packBytes(std::string_view bytes) {
   if (bytes.empty()) return packed;
   packed.resize(ZSTD_compressBound(bytes.size()));
   const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 3);
-  if (ZSTD_isError(size) != 0) throw std::bad_alloc();  // the room is enough: nothing else can fail
+  if (ZSTD_isError(size) != 0) throw std::bad_alloc();  // the buffer is large enough: nothing else can fail
   packed.resize(size);
   return packed;
 }

@@ -27,19 +27,19 @@ bool mayWrite(const std::string& path) {
   return access(path.c_str(), W_OK) == 0 && access(folder.empty() ? "." : folder.c_str(), W_OK) == 0;
 }
 
-// What SQLite would say less clearly, or only after it had taken an empty file for an empty database.
+// Errors that SQLite would report less clearly, or only after treating an empty file as an empty database.
 Status checkFile(const std::string& path) {
   struct stat file {};
   if (stat(path.c_str(), &file) != 0)
     return inputError(fmt::format("the session cannot be read: {}", std::generic_category().message(errno)),
-                      path, errno == ENOENT ? "check the name" : "look at its rights");
+                      path, errno == ENOENT ? "check the name" : "check its rights");
   if (S_ISDIR(file.st_mode)) return inputError("the session is a folder", path, "name a file in it");
-  if (!S_ISREG(file.st_mode)) return inputError("the session is no ordinary file", path, "name a file");
+  if (!S_ISREG(file.st_mode)) return inputError("the session is not an ordinary file", path, "name a file");
   if (file.st_size == 0)
     return inputError("the file is empty, not a Fettle session", path, "name a session or a scan");
   if (access(path.c_str(), R_OK) != 0)
     return inputError(fmt::format("the session cannot be read: {}", std::generic_category().message(errno)),
-                      path, "look at its rights");
+                      path, "check its rights");
   return {};
 }
 
@@ -64,7 +64,7 @@ Result<ReadingConnection> ReadingConnection::open(const std::string& path) {
   if (!mayWrite(path)) {
     access = DatabaseAccess::kFrozen;
     if (hasLog(path)) {
-      // The index of the log can be built only beside it; so both go where one may write.
+      // The index of the log can only be built in the same folder; so both are copied to a writable folder.
       std::error_code error;
       const fs::path folder = fs::temp_directory_path(error);
       std::string name = (folder / "fettle-session-XXXXXX").string();
@@ -81,7 +81,7 @@ Result<ReadingConnection> ReadingConnection::open(const std::string& path) {
       access = DatabaseAccess::kRead;
     }
   } else {
-    // Whoever closes last may take log and index away only while no writer is there (see SessionLock).
+    // The last connection to close may remove log and index only while there is no writer (see SessionLock).
     auto lock = SessionLock::take(path, 0);
     if (lock) connection.lock_ = std::move(*lock);
   }

@@ -31,13 +31,13 @@ Status apply(SessionTables& tables, const SessionAction& action, HeadRow& head, 
   return tables.writeHead(head);
 }
 
-// Whether what a row refers to can be read again.
+// Whether the file that a row refers to can be read again.
 bool scanIsThere(const OriginalRow& row) {
   const Result<FileChecksum> sum = fileChecksum(row.scan.path);
   return sum && *sum == row.file;
 }
 
-// Tiles of state 0 get the next free ids, wherever these are: the row of step 0 says where.
+// Tiles of state 0 get the next free ids: the row of step 0 records them.
 Status embedTiles(SessionTables& tables, OriginalRow row, const Version& original, HeadRow& head,
                   JobControl& job) {
   const auto steps = tables.readSteps(head);
@@ -66,7 +66,7 @@ Result<std::unique_ptr<SessionFile>> SessionFile::open(const std::string& path, 
   file->database_ = std::move(*database);
   file->tables_ = std::make_unique<SessionTables>(*file->database_);
   if (Status status = file->tables_->recognise(); !status) return tl::unexpected(status.error());
-  // On a file system without shared memory it stays at a rollback journal: slower, as safe.
+  // On a file system without shared memory it keeps a rollback journal: slower, equally safe.
   if (auto mode = file->database_->text("PRAGMA journal_mode=WAL"); !mode)
     return tl::unexpected(mode.error());
   if (Status status = file->database_->execute(
@@ -96,7 +96,7 @@ Status SessionFile::copyTo(const std::string& path, const std::vector<const Sess
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   {
-    // Reads through log and file alike; writes what a full disk kept out of this one.
+    // Reads log and file; also writes what a full disk prevented in this one.
     std::string quoted;
     for (const char c : file->temporaryPath()) quoted += c == '\'' ? std::string("''") : std::string(1, c);
     job.begin("copying the session", 0);
@@ -104,7 +104,7 @@ Status SessionFile::copyTo(const std::string& path, const std::vector<const Sess
     Status copied = database_->execute("VACUUM INTO '" + quoted + "'");
     database_->stopWith(nullptr);
     if (!copied) {
-      // Which of the two files failed is not told apart.
+      // It is not known which of the two files failed.
       Error error = copied.error();
       if (error.kind != ErrorKind::kCancelled) error.where = fmt::format("{} to {}", path_, path);
       return tl::unexpected(error);
@@ -151,7 +151,7 @@ Status SessionFile::embed(const Version& original, JobControl& job) {
 }
 
 void SessionFile::checkpoint(std::size_t bytes) {
-  // One that fails (full disk, a reader in the way) loses nothing: the log holds everything and grows on.
+  // If it fails (full disk, a reader) nothing is lost: the log contains everything and continues to grow.
   if (database_->logBytes() > bytes) (void)database_->checkpoint();
 }
 

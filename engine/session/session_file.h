@@ -10,7 +10,7 @@
 
 namespace fettle::engine {
 
-/// One thing that the main side asked for.
+/// One request of the main thread.
 struct SessionAction {
   enum class Kind : std::uint8_t { kStep, kMove, kNote, kJournal };
   Kind kind = Kind::kJournal;
@@ -19,14 +19,14 @@ struct SessionAction {
   std::vector<JournalEntry> journal;
   std::string key;
   std::string text;
-  std::chrono::steady_clock::time_point asked;
+  std::chrono::steady_clock::time_point enqueued;
 };
 
 /// A session file open for writing: connection, lock and the head as last committed.
 /// Threading: one thread at a time.
 class SessionFile {
  public:
-  /// The caller holds the lock and gives it over. Reads no more than the head.
+  /// The caller passes the lock it holds. Reads only the head.
   [[nodiscard]] static Result<std::unique_ptr<SessionFile>> open(const std::string& path, SessionLock lock,
                                                                  Durability durability);
 
@@ -38,12 +38,12 @@ class SessionFile {
   [[nodiscard]] Status copyTo(const std::string& path, const std::vector<const SessionAction*>& waiting,
                               OriginalStorage storage, const Version& original, JobControl& job);
 
-  /// Puts the scan into this very file.
+  /// Embeds the scan in this file.
   [[nodiscard]] Status embed(const Version& original, JobControl& job);
 
-  /// Works the log in when it is longer than `bytes`.
+  /// Checkpoints the log when it is longer than `bytes`.
   void checkpoint(std::size_t bytes);
-  /// Works the log in and makes the session one ordinary file again, unless someone reads it.
+  /// Checkpoints the log and makes the session one ordinary file again, unless another program reads it.
   void settle();
 
   [[nodiscard]] const HeadRow& head() const noexcept { return head_; }
@@ -54,7 +54,7 @@ class SessionFile {
   SessionFile(std::string path, SessionLock lock) : path_(std::move(path)), lock_(std::move(lock)) {}
 
   std::string path_;
-  SessionLock lock_;  // let go of last
+  SessionLock lock_;  // released last
   std::unique_ptr<Database> database_;
   std::unique_ptr<SessionTables> tables_;
   HeadRow head_;

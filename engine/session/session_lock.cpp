@@ -20,7 +20,7 @@ std::string lockPath(const std::string& session_path) {
   return session_path + "-lock";
 }
 
-// Whether the name still leads to the file that was locked: its last holder may have removed it in between.
+// Whether the name still refers to the locked file: its last holder may have removed it in between.
 bool stillThere(const std::string& path, int descriptor) {
   struct stat by_name {};
   struct stat held {};
@@ -38,7 +38,7 @@ Result<std::optional<SessionLock>> SessionLock::take(const std::string& session_
     if (descriptor < 0)
       return inputError(
           fmt::format("the session cannot be written: {}", std::generic_category().message(errno)),
-          session_path, "look at the rights of its folder, or save the session elsewhere");
+          session_path, "check the rights of its folder, or save the session elsewhere");
     const bool locked = flock(descriptor, LOCK_EX | LOCK_NB) == 0;
     if (locked && stillThere(path, descriptor)) {
       const std::string holder = fmt::format("process {}\n", getpid());
@@ -55,7 +55,7 @@ Result<std::optional<SessionLock>> SessionLock::take(const std::string& session_
 
 SessionLock::~SessionLock() {
   if (descriptor_ < 0) return;
-  unlink(path_.c_str());  // before it is freed: whoever gets it afterwards sees that the name is gone
+  unlink(path_.c_str());  // before the unlock: a later holder detects that the name was removed
   close(descriptor_);
 }
 

@@ -8,16 +8,16 @@
 
 namespace fettle::engine {
 
-/// The right to write to a session: an advisory lock (flock) on the file NAME.fettle-lock beside it. The
-/// system frees it when the program ends, however it ends; a file that is left over means nothing. It is a
-/// file of its own because closing any descriptor of the session itself would drop SQLite's locks (a rule of
+/// The right to write to a session: an advisory lock (flock) on the file NAME.fettle-lock in the same folder.
+/// The system releases it when the program ends, however it ends; a remaining file has no meaning. It is a
+/// separate file because closing any descriptor of the session itself would release SQLite's locks (a rule of
 /// POSIX).
 ///
 /// Threading: one thread at a time.
 class SessionLock {
  public:
-  /// Tries for `wait_ms`. Nothing when another program (or writer of this one) has it. Errors: the lock file
-  /// cannot be made, because the folder is read-only.
+  /// Tries for `wait_ms`. Empty when another program (or writer of this one) has it. Errors: the lock file
+  /// cannot be created, because the folder is read-only.
   [[nodiscard]] static Result<std::optional<SessionLock>> take(const std::string& session_path, int wait_ms);
 
   SessionLock(SessionLock&& other) noexcept
@@ -38,7 +38,7 @@ class SessionLock {
   int descriptor_ = -1;
 };
 
-/// The refusal when another program has the lock.
+/// The error when another program has the lock.
 [[nodiscard]] tl::unexpected<Error> sessionInUse(const std::string& session_path, const std::string& shown);
 
 }  // namespace fettle::engine

@@ -19,10 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Tiles of the file that are in memory, by id: what states share in the file they share in memory.
+// Tiles of the file that are in memory, by id: tiles shared by states in the file are shared in memory.
 using TilesById = std::unordered_map<std::int64_t, TileRef>;
 
-// Where in index.places the tiles of each step stand.
+// Indices into index.places of the tiles of each step.
 std::vector<std::vector<std::size_t>> placesByStep(const SessionIndex& index) {
   std::vector<std::vector<std::size_t>> by_step(index.steps.size());
   for (std::size_t i = 0; i < index.places.size(); ++i)
@@ -30,8 +30,8 @@ std::vector<std::vector<std::size_t>> placesByStep(const SessionIndex& index) {
   return by_step;
 }
 
-// The tile that state `state` has where place `i` is: the last one there of a step at or below; null if that
-// is the original's and not in the file.
+// The tile of state `state` at the position of place `i`: the last one there of a step at or below; null if
+// it is the original's and not in the file.
 const TilePlace* placeAt(const SessionIndex& index, std::size_t i, std::int64_t state) {
   const std::int64_t position = index.places[i].position;
   const TilePlace* found = nullptr;
@@ -61,7 +61,7 @@ Result<Version> moved(const Version& from, std::int64_t state, std::span<const s
     TileRef tile = place == nullptr ? originalTile(original, position) : tiles.at(place->id);
     if (!live.replaceTile(static_cast<std::int32_t>(position % columns),
                           static_cast<std::int32_t>(position / columns), std::move(tile)))
-      return failure("memory for its tiles could not be had", path);
+      return failure("memory for its tiles could not be allocated", path);
   }
   const float sign = index.steps[static_cast<std::size_t>(state)].sign;
   if (live.snapshot().reader().sign() != sign) live.invert();
@@ -69,26 +69,26 @@ Result<Version> moved(const Version& from, std::int64_t state, std::span<const s
 }
 
 // Reads tiles that are not in `tiles` yet.
-Status load(SessionTables& tables, const Grid& grid, std::vector<TilePlace> wanted, TilePool& pool,
+Status load(SessionTables& tables, const Grid& grid, std::vector<TilePlace> needed, TilePool& pool,
             TilesById& tiles, JobControl& job) {
-  std::erase_if(wanted, [&](const TilePlace& p) { return tiles.contains(p.id); });
-  std::ranges::sort(wanted, {}, &TilePlace::id);
-  wanted.erase(std::unique(wanted.begin(), wanted.end(),
+  std::erase_if(needed, [&](const TilePlace& p) { return tiles.contains(p.id); });
+  std::ranges::sort(needed, {}, &TilePlace::id);
+  needed.erase(std::unique(needed.begin(), needed.end(),
                            [](const TilePlace& a, const TilePlace& b) { return a.id == b.id; }),
-               wanted.end());
-  std::vector<TileRef> room(wanted.size());
+               needed.end());
+  std::vector<TileRef> room(needed.size());
   for (TileRef& tile : room) {
     tile = TileRef::adopt(pool.acquire());
-    if (!tile) return failure("memory for its tiles could not be had", tables.database().shownPath());
+    if (!tile) return failure("memory for its tiles could not be allocated", tables.database().shownPath());
   }
-  job.begin("reading the session", wanted.size());
+  job.begin("reading the session", needed.size());
   if (Status status = loadTiles(
-          tables, grid, wanted, [&](std::size_t i) { return room[i].get(); }, job);
+          tables, grid, needed, [&](std::size_t i) { return room[i].get(); }, job);
       !status)
     return status;
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
+  for (std::size_t i = 0; i < needed.size(); ++i) {
     finishTile(*room[i]);
-    tiles.emplace(wanted[i].id, std::move(room[i]));
+    tiles.emplace(needed[i].id, std::move(room[i]));
   }
   return {};
 }
@@ -120,7 +120,7 @@ Result<Version> embeddedOriginal(SessionTables& tables, const SessionIndex& inde
   return std::move(*builder).build();
 }
 
-// The first of the places a referenced scan may be at where it is.
+// The first possible place of a referenced scan at which it exists.
 Result<std::string> findScan(const OriginalRow& row, const SessionOpenOptions& options,
                              const std::string& session) {
   std::vector<std::string> places{options.scan_path};
@@ -132,13 +132,13 @@ Result<std::string> findScan(const OriginalRow& row, const SessionOpenOptions& o
     const Result<FileChecksum> sum = fileChecksum(place);
     if (sum && *sum == row.file) return place;
     other = sum ? inputError("the scan is not the one the session was made with: its bytes differ", place,
-                             "put that one back in its place, or beside the session")
+                             "put the original file back, or copy it to the session's folder")
                       .value()
                 : sum.error();
   }
   if (other) return tl::unexpected(*other);
   return inputError(fmt::format("the scan of the session is missing: {}", places.front()), session,
-                    "put it back there, or beside the session");
+                    "put it back there, or copy it to the session's folder");
 }
 
 Result<Version> referencedOriginal(const SessionIndex& index, const SessionOpenOptions& options,
@@ -150,7 +150,7 @@ Result<Version> referencedOriginal(const SessionIndex& index, const SessionOpenO
   Result<Imported> imported = import_scan(*file, index.original.scan.import, job);
   if (!imported) return tl::unexpected(imported.error());
   if (contentHash(imported->field) != index.original.content_hash || !(imported->field.grid() == index.grid))
-    return inputError("the scan is read otherwise than when the session was made", *file,
+    return inputError("the scan is now imported differently than when the session was made", *file,
                       "open the session with the program that made it, and save it with the scan embedded");
   scan.path = *file;
   return std::move(imported->field);
@@ -192,25 +192,25 @@ Result<Session> read(SessionTables& tables, const SessionOpenOptions& options, S
 
   // The tiles of the current state, then those that differ in the states around it.
   std::vector<std::size_t> touched;  // one place for each position that a step up to now has touched
-  std::vector<TilePlace> wanted;
+  std::vector<TilePlace> needed;
   for (std::size_t i = 0; i < index.places.size();) {
     std::size_t end = i;
     while (end < index.places.size() && index.places[end].position == index.places[i].position) ++end;
     if (const TilePlace* place = placeAt(index, i, now)) {
       touched.push_back(i);
-      wanted.push_back(*place);
+      needed.push_back(*place);
     }
     i = end;
   }
   for (std::int64_t k = first + 1; k <= last; ++k)
     for (const std::size_t i : by_step[static_cast<std::size_t>(k)]) {
-      if (k > now) wanted.push_back(index.places[i]);
+      if (k > now) needed.push_back(index.places[i]);
       if (k <= now)
-        if (const TilePlace* before = placeAt(index, i, k - 1)) wanted.push_back(*before);
+        if (const TilePlace* before = placeAt(index, i, k - 1)) needed.push_back(*before);
     }
   TilesById tiles;
   if (Status status =
-          load(tables, index.grid, std::move(wanted), session.original.memory()->bulk(), tiles, job);
+          load(tables, index.grid, std::move(needed), session.original.memory()->bulk(), tiles, job);
       !status)
     return tl::unexpected(status.error());
 
@@ -274,7 +274,7 @@ Result<Session> readSession(SessionTables& tables, const SessionOpenOptions& opt
   try {
     return read(tables, options, import_scan, job);
   } catch (const std::bad_alloc&) {
-    return failure("memory for the session could not be had", tables.database().shownPath());
+    return failure("memory for the session could not be allocated", tables.database().shownPath());
   }
 }
 
@@ -283,11 +283,11 @@ Result<Step> readStep(SessionTables& tables, const SessionIndex& index, std::int
   const std::string& path = tables.database().shownPath();
   const auto by_step = placesByStep(index);
   const std::vector<std::size_t>& where = by_step[static_cast<std::size_t>(number)];
-  std::vector<TilePlace> wanted;
+  std::vector<TilePlace> needed;
   for (const std::size_t i : where)
-    if (const TilePlace* before = placeAt(index, i, number - 1)) wanted.push_back(*before);
+    if (const TilePlace* before = placeAt(index, i, number - 1)) needed.push_back(*before);
   TilesById tiles;
-  if (Status status = load(tables, index.grid, std::move(wanted), original.memory()->bulk(), tiles, job);
+  if (Status status = load(tables, index.grid, std::move(needed), original.memory()->bulk(), tiles, job);
       !status)
     return tl::unexpected(status.error());
   Result<Version> before = moved(after, number - 1, where, index, original, tiles, path);
@@ -300,7 +300,7 @@ Result<Session> openSession(const std::string& path, const SessionOpenOptions& o
   Result<ReadingConnection> connection = ReadingConnection::open(path);
   if (!connection) return tl::unexpected(connection.error());
   SessionTables tables(connection->database());
-  // One transaction: all tables as one commit left them.
+  // One transaction: all tables of the same commit.
   if (Status status = connection->database().execute("BEGIN"); !status) return tl::unexpected(status.error());
   return readSession(tables, options, import_scan, job);
 }

@@ -11,15 +11,15 @@
 
 namespace fettle::engine {
 
-/// A connection for reading. Waits its turn at nobody: while another program writes it sees the last commit.
-/// On a read-only disk a log that a crash left is read from copies in the temporary folder.
+/// A connection for reading. Never waits: while another program writes it reads the last commit. On a
+/// read-only disk a log that a crash left is read from copies in the temporary folder.
 class ReadingConnection {
  public:
   [[nodiscard]] static Result<ReadingConnection> open(const std::string& path);
   [[nodiscard]] Database& database() const noexcept { return *database_; }
 
  private:
-  // Destroyed from the last to the first: the connection before the lock that lets it clean up, and before
+  // Destroyed from the last to the first: the connection before the lock that permits its cleanup, and before
   // the copies.
   struct Copies;
   std::shared_ptr<Copies> copies_;
@@ -27,7 +27,7 @@ class ReadingConnection {
   std::unique_ptr<Database> database_;
 };
 
-/// Everything in the tables, as one moment has them.
+/// Content of the tables at one commit.
 struct SessionIndex {
   HeadRow head;
   Grid grid;

@@ -55,7 +55,7 @@ Result<OriginalRow> describeOriginal(const OriginalScan& scan, OriginalStorage s
     const fs::path relative = fs::relative(absolute, folder.empty() ? "." : folder, error);
     if (!error) row.relative_path = relative.string();
     const Result<FileChecksum> sum = fileChecksum(scan.path);
-    // Looked at after the bytes: a file that was put there while they were read shows, too.
+    // Checked after reading: a file replaced meanwhile is detected too.
     const bool as_read = !scan.read || fileStamp(scan.path) == scan.read;
     if (!as_read || scan.import.depth_camera) row.storage = OriginalStorage::kEmbedded;
     if (sum && as_read)
@@ -84,10 +84,10 @@ Status settleOldSession(const std::string& path, const std::string& shown) {
     const Result<std::int64_t> busy = (*old)->integer("PRAGMA wal_checkpoint(TRUNCATE)");
     if (!busy) return tl::unexpected(busy.error());
     if (*busy != 0)
-      return inputError("another program is reading the session that stands there", shown,
+      return inputError("another program is reading the existing session", shown,
                         "close it there, or choose another name");
   }
-  // Of a session that was deleted, or empty by now.
+  // Log of a session that was deleted, or empty.
   fs::remove(path + "-wal", error);
   fs::remove(path + "-shm", error);
   return {};

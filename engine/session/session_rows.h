@@ -8,10 +8,11 @@
 
 namespace fettle::engine {
 
-// The actions on a session as changes of rows. Each must stand in a transaction; `head` is changed along, and
-// is the file's again only once the transaction is committed.
+// The actions on a session as changes of rows. Each must be called in a transaction; `head` is updated too,
+// and corresponds to the file again once the transaction is committed.
 
-/// Puts step `number` (with the tiles in which its versions differ) after the current state and goes there.
+/// Inserts step `number` (with the tiles in which its versions differ) after the current state and makes it
+/// current.
 [[nodiscard]] Status putStep(SessionTables& tables, std::int64_t number, const Step& step, HeadRow& head,
                              std::uint64_t& bytes, JobControl& job);
 [[nodiscard]] Status putJournal(SessionTables& tables, std::vector<JournalEntry> journal, std::int64_t state,
@@ -19,20 +20,21 @@ namespace fettle::engine {
 [[nodiscard]] Status putNote(SessionTables& tables, const std::string& key, const std::string& text,
                              HeadRow& head);
 
-/// Facts about the scan as the file keeps them; reads the scan's file. `session_path` may not exist yet. The
-/// row's storage is kEmbedded where the scan could not be found again (OriginalStorage::kReferenced).
+/// The row about the scan; reads the scan's file. `session_path` may not exist yet. The row's storage is
+/// kEmbedded where the scan could not be found again (OriginalStorage::kReferenced).
 [[nodiscard]] Result<OriginalRow> describeOriginal(const OriginalScan& scan, OriginalStorage storage,
                                                    const Version& original, const std::string& session_path);
 
-/// The path with all links followed, as far as it exists: the name that locks and logs stand beside.
+/// The path with all links followed, as far as it exists: the name from which those of lock and log are
+/// derived.
 [[nodiscard]] std::string realPath(const std::string& path);
 
-/// Whether the name of a session that stands at `path` may be given to another file: works its log in, so
-/// that it will not be taken for the new one's. The caller holds the lock.
+/// Prepares the replacement of a session at `path`: checkpoints its log, so that it is not applied to the new
+/// file. The caller holds the lock.
 [[nodiscard]] Status settleOldSession(const std::string& path, const std::string& shown);
 
-/// Pragmas for a file under a temporary name: no file beside it and no flushing, for it is flushed whole
-/// before it is named. Its journal is in memory and nearly empty: new pages have nothing to be put back to.
+/// Pragmas for a file under a temporary name: no additional files and no flushing, since it is flushed as a
+/// whole before it is renamed. Its journal is in memory and nearly empty: new pages have no previous content.
 [[nodiscard]] Status beginBuilding(Database& database);
 
 }  // namespace fettle::engine

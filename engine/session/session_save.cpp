@@ -32,8 +32,8 @@ Status writeAll(SessionTables& tables, const Session& session, const OriginalRow
   if (Status status = storeTiles(tables, tiles, 0, head, size.tile_bytes, job); !status) return status;
   tiles.clear();
 
-  // What the history no longer holds is one step, under the number of the state that it leads to: numbers
-  // stay.
+  // States that the history no longer holds become one step, with the number of the state it leads to:
+  // numbers do not change.
   for (std::int64_t k = 1; k <= history.first(); ++k) {
     const Version& after = k == history.first() ? history.state(k) : session.original;
     const Step earlier{{"Earlier steps", StepKind::kImport, start.info.time, {}, 0}, session.original, after};
@@ -95,7 +95,7 @@ Result<SessionSize> saveSessionLocked(const Session& session, const std::string&
   try {
     return save(session, path, job);
   } catch (const std::bad_alloc&) {
-    return failure("memory for writing could not be had", path);
+    return failure("memory for writing could not be allocated", path);
   }
 }
 

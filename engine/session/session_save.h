@@ -7,10 +7,10 @@
 
 namespace fettle::engine {
 
-/// Waits this long for a reader that brings a session in order; a writer will not be waited for.
+/// Longest wait for a reader that recovers a session; a writer is not waited for.
 inline constexpr int kLockWaitMs = 1000;
 
-/// The right to write a session to `real_path` (links followed). Error: someone else has it.
+/// The right to write a session to `real_path` (links followed). Error: another program has it.
 [[nodiscard]] Result<SessionLock> lockSession(const std::string& real_path, const std::string& shown);
 
 /// saveSession for a caller who holds the lock of realPath(path).

@@ -13,11 +13,11 @@ namespace fettle::engine {
 
 struct OriginalRow;
 
-/// Where a session looks for a scan that it refers to, in this order: where the scan was, at the same place
-/// relative to the session, beside the session.
+/// Where a session searches for a scan that it refers to, in this order: the scan's path, the same path
+/// relative to the session, the session's folder.
 [[nodiscard]] std::vector<std::string> scanPlaces(const OriginalRow& row, const std::string& session_path);
 
-/// What a session says of itself in its first rows: no step and no tile is read.
+/// Facts from a session's first rows: no step and no tile is read.
 struct SessionFacts {
   OriginalStorage storage = OriginalStorage::kEmbedded;
   std::vector<std::string> scan_places;  ///< of a referenced scan: as scanPlaces(); else empty
@@ -29,12 +29,12 @@ struct SessionFacts {
 [[nodiscard]] Result<SessionFacts> sessionFacts(const std::string& session_path);
 
 /// Whether a session could no longer be opened, or only through another copy of its scan, if the file at
-/// `path` were replaced. Reads that file when it lies where the session looks. Thread: any.
+/// `path` were replaced. Reads that file when it lies at one of scanPlaces(). Thread: any.
 [[nodiscard]] bool needsFile(const SessionFacts& session, const std::string& path);
 
-/// Puts the scan that a session refers to into the session, so that it needs no other file. Nothing to do
-/// where it is there already. Errors: as SessionWriter::open, and a full disk; the session is then as it was.
-/// Thread: any; a long job.
+/// Embeds the scan that a session refers to, so that it needs no other file. No effect if it is embedded
+/// already. Errors: as SessionWriter::open, and a full disk; the session is then unchanged. Thread: any; a
+/// long job.
 [[nodiscard]] Status embedScan(const std::string& session_path, ScanImport* import_scan, JobControl& job);
 
 }  // namespace fettle::engine

@@ -49,7 +49,7 @@ Result<SessionSize> verifySession(const std::string& path, JobControl& job) {
   try {
     return verify(path, job);
   } catch (const std::bad_alloc&) {
-    return failure("memory for the session could not be had", path);
+    return failure("memory for the session could not be allocated", path);
   }
 }
 

@@ -19,12 +19,12 @@ namespace fettle::engine {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr auto kLook = std::chrono::milliseconds(20);  // how often a waiting call looks at its job's cancel
+constexpr auto kPollInterval = std::chrono::milliseconds(20);  // of a waiting call, for a cancel
 
 }  // namespace
 
-/// Two locks, always taken in this order: `file_lock_` for the file, held while it is written and by whoever
-/// else uses it; `queue_lock_` for everything the main side sees, held for a few instructions at a time.
+/// Two locks, always taken in this order: `file_lock_` for the file, held while it is written or used
+/// otherwise; `queue_lock_` for all data of the main thread's calls, held for a few instructions at a time.
 class SessionWriter::Impl {
  public:
   Impl(std::unique_ptr<SessionFile> file, Version original, const SessionWriterOptions& options)
@@ -37,8 +37,8 @@ class SessionWriter::Impl {
 
   ~Impl() { finish(); }
 
-  void ask(std::unique_ptr<SessionAction> action) {
-    action->asked = Clock::now();
+  void enqueue(std::unique_ptr<SessionAction> action) {
+    action->enqueued = Clock::now();
     {
       const std::scoped_lock lock(queue_lock_);
       if (action->kind == SessionAction::Kind::kStep) {
@@ -51,7 +51,7 @@ class SessionWriter::Impl {
         return;
       }
       queue_.push_back(std::move(action));
-      ++asked_;
+      ++enqueued_;
       try_again_ = true;
     }
     wake_worker_.notify_one();
@@ -68,7 +68,7 @@ class SessionWriter::Impl {
   SessionStatus status() const {
     const std::scoped_lock lock(queue_lock_);
     SessionStatus status = status_;
-    status.waiting = static_cast<std::size_t>(asked_ - status_.committed);
+    status.waiting = static_cast<std::size_t>(enqueued_ - status_.committed);
     status.tiles_done = progress_.done();
     status.tiles_total = progress_.total();
     return status;
@@ -81,8 +81,8 @@ class SessionWriter::Impl {
 
   Status flush(JobControl& job) {
     std::unique_lock lock(queue_lock_);
-    const std::uint64_t until = asked_;
-    // A try that is under way may have failed before the disk was made good: only a later one counts.
+    const std::uint64_t until = enqueued_;
+    // A running attempt may have failed before the cause was removed: only a later one counts.
     const std::uint64_t begun = tries_;
     if (status_.committed < until) {
       try_again_ = true;
@@ -91,7 +91,7 @@ class SessionWriter::Impl {
     while (status_.committed < until) {
       if (status_.error && failed_try_ > begun) return tl::unexpected(*status_.error);
       if (job.cancelled()) return cancelled();
-      wake_waiters_.wait_for(lock, kLook);
+      wake_waiters_.wait_for(lock, kPollInterval);
     }
     return {};
   }
@@ -106,7 +106,7 @@ class SessionWriter::Impl {
     }
     Result<SessionLock> lock = lockSession(realPath(path), path);
     if (!lock) return tl::unexpected(lock.error());
-    // Only this side takes from the front, and only under file_lock_: the actions stay where they are.
+    // Only this thread removes from the front, and only under file_lock_: the actions do not move.
     std::vector<const SessionAction*> waiting;
     {
       const std::scoped_lock queue_lock(queue_lock_);
@@ -117,7 +117,7 @@ class SessionWriter::Impl {
     if (copied) {
       auto file = SessionFile::open(path, std::move(*lock), options_.durability);
       if (file)
-        std::swap(file_, *file);  // the old one goes, at the end of the scope
+        std::swap(file_, *file);  // the old one is destroyed at the end of the scope
       else
         copied = tl::unexpected(file.error());
     }
@@ -159,7 +159,7 @@ class SessionWriter::Impl {
   }
 
  private:
-  // A text that still waits gives way to a newer one of its key, unless it is being written.
+  // A waiting text is replaced by a newer one of its key, unless it is being written.
   bool replaceNote(const SessionAction& action) {
     if (!action.journal.empty()) return false;
     for (std::size_t i = queue_.size(); i-- > fixed_;)
@@ -189,9 +189,9 @@ class SessionWriter::Impl {
     try {
       written = file_->write(*action, bytes, progress_);
     } catch (const std::bad_alloc&) {
-      written = failure("memory for writing could not be had", file_->path());
+      written = failure("memory for writing could not be allocated", file_->path());
     }
-    std::unique_ptr<SessionAction> done;  // its versions go after the lock
+    std::unique_ptr<SessionAction> done;  // its versions are freed after the lock is released
     {
       const std::scoped_lock lock(queue_lock_);
       fixed_ = 0;
@@ -200,7 +200,7 @@ class SessionWriter::Impl {
         queue_.pop_front();
         ++status_.committed;
         status_.committed_state = file_->head().state;
-        status_.last_commit_s = std::chrono::duration<double>(Clock::now() - done->asked).count();
+        status_.last_commit_s = std::chrono::duration<double>(Clock::now() - done->enqueued).count();
         status_.worst_commit_s = std::max(status_.worst_commit_s, status_.last_commit_s);
         status_.last_commit_bytes = bytes;
         status_.error.reset();
@@ -228,7 +228,7 @@ class SessionWriter::Impl {
     for (;;) {
       {
         std::unique_lock lock(queue_lock_);
-        // After an error only a new action or retry() starts another try.
+        // After an error only a new action or retry() starts another attempt.
         wake_worker_.wait(lock, [&] { return stop_ || (!queue_.empty() && (!status_.error || try_again_)); });
         if (queue_.empty() || (stop_ && status_.error)) return;
       }
@@ -266,11 +266,11 @@ class SessionWriter::Impl {
   std::condition_variable wake_worker_;
   std::condition_variable wake_waiters_;
   std::deque<std::unique_ptr<SessionAction>> queue_;
-  std::size_t fixed_ = 0;  // this many at the front are in use and may not change
-  std::uint64_t asked_ = 0;
-  std::uint64_t tries_ = 0;         // begun so far
-  std::uint64_t failed_try_ = 0;    // the last that failed
-  std::int64_t planned_state_ = 0;  // once all that waits is written
+  std::size_t fixed_ = 0;  // number of actions at the front that are in use and may not change
+  std::uint64_t enqueued_ = 0;
+  std::uint64_t tries_ = 0;         // attempts so far
+  std::uint64_t failed_try_ = 0;    // the last attempt that failed
+  std::int64_t planned_state_ = 0;  // after all waiting actions
   std::int64_t planned_last_ = 0;
   bool try_again_ = false;
   bool stop_ = false;
@@ -319,7 +319,7 @@ void SessionWriter::commit(std::int64_t number, Step step, std::vector<JournalEn
   action->number = number;
   action->step = std::move(step);
   action->journal = std::move(journal);
-  impl_->ask(std::move(action));
+  impl_->enqueue(std::move(action));
 }
 
 void SessionWriter::moveTo(std::int64_t number, std::vector<JournalEntry> journal) {
@@ -327,7 +327,7 @@ void SessionWriter::moveTo(std::int64_t number, std::vector<JournalEntry> journa
   action->kind = SessionAction::Kind::kMove;
   action->number = number;
   action->journal = std::move(journal);
-  impl_->ask(std::move(action));
+  impl_->enqueue(std::move(action));
 }
 
 void SessionWriter::setNote(std::string key, std::string text, std::vector<JournalEntry> journal) {
@@ -336,13 +336,13 @@ void SessionWriter::setNote(std::string key, std::string text, std::vector<Journ
   action->key = std::move(key);
   action->text = std::move(text);
   action->journal = std::move(journal);
-  impl_->ask(std::move(action));
+  impl_->enqueue(std::move(action));
 }
 
 void SessionWriter::addJournal(JournalEntry entry) {
   auto action = std::make_unique<SessionAction>();
   action->journal.push_back(std::move(entry));
-  impl_->ask(std::move(action));
+  impl_->enqueue(std::move(action));
 }
 
 void SessionWriter::retry() {

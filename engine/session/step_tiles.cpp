@@ -12,10 +12,10 @@ namespace fettle::engine {
 
 namespace {
 
-// Packed at once and then inserted: large enough to keep all threads busy, small enough to hold (2 MB) and to
-// stop soon.
+// Packed at once and then inserted: large enough to use all threads, small enough for memory (2 MB) and to
+// cancel soon.
 constexpr std::size_t kTilesWritten = 128;
-constexpr std::size_t kWorthThreads = 16;
+constexpr std::size_t kParallelFrom = 16;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ Status storeTiles(SessionTables& tables, const std::vector<TileToStore>& tiles, 
     if (job.cancelled()) return cancelled();
     const std::size_t count = std::min(kTilesWritten, tiles.size() - begin);
     const auto pack = [&](std::size_t i) { codecs.local().encode(*tiles[begin + i].tile, packed[i]); };
-    if (count < kWorthThreads)
+    if (count < kParallelFrom)
       for (std::size_t i = 0; i < count; ++i) pack(i);
     else
       tbb::parallel_for(std::size_t{0}, count, pack);

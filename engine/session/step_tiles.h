@@ -14,12 +14,13 @@ struct TileToStore {
   TileRef tile;
 };
 
-/// Every tile of a version; those in which two versions differ by any bit, as `after` has them. By position.
+/// Every tile of a version; those of `after` that differ from `before` in any bit. By position.
 [[nodiscard]] std::vector<TileToStore> allTiles(const Version& version);
 [[nodiscard]] std::vector<TileToStore> tilesThatDiffer(const Version& before, const Version& after);
 
 /// Packs tiles, on all worker threads when there are many, and inserts them with ids from head.next_tile on,
-/// which moves on; `bytes` counts what they take. Advances the job by one a tile; stops at its cancel.
+/// which is advanced; `bytes` counts their size. Advances the job by one per tile; stops when it is
+/// cancelled.
 [[nodiscard]] Status storeTiles(SessionTables& tables, const std::vector<TileToStore>& tiles,
                                 std::int64_t step, HeadRow& head, std::uint64_t& bytes, JobControl& job);
 

@@ -69,9 +69,9 @@ Status loadTiles(SessionTables& tables, const Grid& grid, std::span<const TilePl
         bad.store(place.id, std::memory_order_relaxed);
     });
     if (no_memory.load(std::memory_order_relaxed))
-      return failure("memory for its tiles could not be had", path);
+      return failure("memory for its tiles could not be allocated", path);
     if (const std::int64_t id = bad.load(std::memory_order_relaxed); id != 0)
-      return damaged(fmt::format("tile {} is none", id), path);
+      return damaged(fmt::format("tile {} is not a tile", id), path);
     job.advance(count);
   }
   return {};

@@ -11,7 +11,8 @@ namespace fettle::engine {
 
 namespace {
 
-// Small columns stand before long ones: a row's beginning lies in the tree's own pages, its end need not.
+// Small columns come before long ones: the beginning of a row lies in the tree's own pages, its end may lie
+// in overflow pages.
 constexpr const char* kSchema = R"(
 CREATE TABLE head(id INTEGER PRIMARY KEY CHECK(id=1), state INTEGER NOT NULL, last_state INTEGER NOT NULL,
   next_tile INTEGER NOT NULL, journal INTEGER NOT NULL, notes INTEGER NOT NULL, checksum INTEGER NOT NULL) STRICT;
@@ -127,10 +128,10 @@ Status SessionTables::recognise() {
   const Result<std::int64_t> format = database_->integer("PRAGMA user_version");
   if (!format) return tl::unexpected(format.error());
   if (*format > kSessionFormat)
-    return inputError(fmt::format("the session was written by a newer Fettle (format {}, this one knows {})",
+    return inputError(fmt::format("the session was written by a newer Fettle (format {}, supported up to {})",
                                   *format, kSessionFormat),
                       path, "update Fettle, or export the field with the program that wrote it");
-  if (*format < 1) return damaged(fmt::format("format {} never was", *format), path);
+  if (*format < 1) return damaged(fmt::format("format {} does not exist", *format), path);
   return {};
 }
 
@@ -183,7 +184,7 @@ Result<Grid> SessionTables::readGrid() {
   const std::int64_t width = q.integer(0);
   const std::int64_t height = q.integer(1);
   if (width < 1 || height < 1 || width > Grid::kMaxSide || height > Grid::kMaxSide)
-    return damaged(fmt::format("a field of {} x {} samples cannot be", width, height), path);
+    return damaged(fmt::format("a field of {} x {} samples is not valid", width, height), path);
   g.width = static_cast<std::int32_t>(width);
   g.height = static_cast<std::int32_t>(height);
   g.spacing_x = q.real(2);
@@ -246,7 +247,7 @@ Result<std::vector<StepRow>> SessionTables::readSteps(const HeadRow& head) {
 
 Status SessionTables::truncateSteps(std::int64_t number) {
   // Tiles lie in the order of their steps, so theirs are the last ids: a range of the table, no search. Only
-  // those of a scan that was embedded later lie among them or behind them.
+  // those of a scan that was embedded later lie among them or after them.
   const Result<Statement*> tiles =
       cached("DELETE FROM tile WHERE id>=(SELECT min(first_tile) FROM step WHERE number>?1) AND step>?1");
   if (!tiles) return tl::unexpected(tiles.error());
@@ -283,7 +284,7 @@ Result<std::vector<TilePlace>> SessionTables::readPlaces(const std::vector<StepR
         p.id >= steps[static_cast<std::size_t>(p.step)].first_tile +
                     steps[static_cast<std::size_t>(p.step)].tiles ||
         (!places.empty() && places.back().position == p.position && places.back().step == p.step))
-      return damaged(fmt::format("tile {} belongs nowhere", p.id), path);
+      return damaged(fmt::format("tile {} has no valid position", p.id), path);
     ++counts[static_cast<std::size_t>(p.step)];
     places.push_back(p);
   }

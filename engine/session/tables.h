@@ -14,17 +14,17 @@
 
 namespace fettle::engine {
 
-// The tables of a session file, row by row; what they mean is in docs/formats.md. Reading a row checks its
-// checksum and its ranges; errors are those of Database, and damaged().
+// The tables of a session file, row by row; docs/formats.md describes them. Reading a row checks its checksum
+// and its ranges; errors are those of Database, and damaged().
 
 inline constexpr std::int64_t kSessionApplicationId = 0x4654544C;  // "FTTL"
 inline constexpr std::int64_t kSessionFormat = 1;                  // user_version
 
-/// The file's one moving part: where the user is, and how much there must be.
+/// The only row that changes: the user's position, and the expected numbers of rows.
 struct HeadRow {
   std::int64_t state = 0;       ///< current one
   std::int64_t last_state = 0;  ///< furthest redo
-  std::int64_t next_tile = 1;   ///< ids are never used again
+  std::int64_t next_tile = 1;   ///< ids are never reused
   std::int64_t journal = 0;     ///< rows
   std::int64_t notes = 0;       ///< rows
 };
@@ -46,7 +46,7 @@ struct StepRow {
 };
 
 /// Where a stored tile belongs: state `step` and those after it have it at `position` (row * columns +
-/// column, in tiles), until a later step brings another.
+/// column, in tiles), until a later step replaces it.
 struct TilePlace {
   std::int64_t position = 0;
   std::int64_t step = 0;
@@ -61,7 +61,7 @@ class SessionTables {
 
   /// Makes the tables in an empty database.
   [[nodiscard]] Status create();
-  /// Refuses what is not a session or is of a newer format.
+  /// Error if the file is not a session or has a newer format.
   [[nodiscard]] Status recognise();
 
   [[nodiscard]] Status writeGrid(const Grid& grid);
@@ -85,7 +85,7 @@ class SessionTables {
 
   [[nodiscard]] Status appendJournal(std::int64_t id, const JournalEntry& entry);
   [[nodiscard]] Result<std::vector<JournalEntry>> readJournal(const HeadRow& head);
-  /// `is_new` tells whether there was none of that key.
+  /// `is_new`: whether there was none of that key.
   [[nodiscard]] Status writeNote(const std::string& key, const std::string& text, bool& is_new);
   [[nodiscard]] Result<SessionNotes> readNotes(const HeadRow& head);
 

@@ -10,7 +10,7 @@
 
 namespace fettle::engine {
 
-static_assert(std::endian::native == std::endian::little, "marks are stored as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "marks are stored as in memory");
 
 namespace {
 
@@ -87,8 +87,7 @@ void TileCodec::encode(const Tile& tile, std::string& out) {
     ZSTD_inBuffer from{c.planes.data() + begin, end - begin, 0};
     const std::size_t left =
         ZSTD_compressStream2(c.pack, &to, &from, end == size ? ZSTD_e_end : ZSTD_e_flush);
-    if (ZSTD_isError(left) != 0 || left != 0)
-      throw std::bad_alloc();  // room is enough: nothing else can fail
+    if (ZSTD_isError(left) != 0 || left != 0) throw std::bad_alloc();  // nothing else can fail
   }
   out.resize(to.pos);
 }

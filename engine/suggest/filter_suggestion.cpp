@@ -14,7 +14,7 @@
 #include "engine/filter/catalogue.h"
 #include "engine/inspect/noise.h"
 #include "engine/marks/edge_suggestion.h"
-#include "engine/suggest/stand_in.h"
+#include "engine/suggest/synthetic_sample.h"
 
 namespace fettle::engine {
 
@@ -29,7 +29,7 @@ struct Spot {
   std::int32_t column, row, columns, rows;
 };
 
-// The piece about the tile of the largest range of heights in [from, to) of tiles.
+// The piece around the tile with the largest range of heights in [from, to) of tiles.
 Spot steepestSpot(const FieldReader& field, std::int32_t tc0, std::int32_t tc1, std::int32_t tr0,
                   std::int32_t tr1) {
   std::int32_t column = tc0, row = tr0;
@@ -76,7 +76,7 @@ std::vector<FilterCandidate> candidatesFor(double sigma, int threads) {
       c.spec.window = trial.window;
       c.spec.passes = trial.passes;
       c.spec.threads = threads;
-      // Three figures: it is to be typed.
+      // Three digits: the value may be typed.
       if (hasRange(filter.kind)) c.spec.range_sigma = std::stod(fmt::format("{:.3g}", trial.noises * sigma));
       c.around_edges = trial.around_edges;
       if (trial.around_edges) c.thickness = reachOf(c.spec) + 1.0;
@@ -103,7 +103,7 @@ double rootMean(double squares, std::int64_t count) {
                    : std::numeric_limits<double>::quiet_NaN();
 }
 
-Status tryOn(const StandIn& piece, const FilterCandidate& candidate, Sums& sums) {
+Status tryOn(const SyntheticSample& piece, const FilterCandidate& candidate, Sums& sums) {
   JobControl quiet;
   const auto begin = Clock::now();
   Version start = piece.scan;
@@ -136,7 +136,7 @@ Status checked(double value, const char* what, const char* where) {
 }  // namespace
 
 double FilterCandidate::error() const noexcept {
-  return std::fmax(error_flat, error_edge);  // of one number and none, the number
+  return std::fmax(error_flat, error_edge);  // NaN is ignored if the other is a number
 }
 
 Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionRequest& request,
@@ -147,8 +147,8 @@ Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionReq
   const auto noise = estimateNoise(field, job);
   if (!noise) return tl::unexpected(noise.error());
   if (!(noise->sigma > 0.0))
-    return inputError("no noise can be seen in the scan that a filter should take away", "suggestion",
-                      "choose a filter by hand");
+    return inputError("no noise that a filter could remove was found in the scan", "suggestion",
+                      "choose a filter yourself");
   FilterSuggestion found;
   found.sigma = noise->sigma;
   found.candidates = candidatesFor(found.sigma, request.threads);
@@ -162,13 +162,13 @@ Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionReq
     const Spot& spot = spots[p];
     const Version piece = pieceOf(field, spot.column, spot.row, spot.columns, spot.rows);
     covered += piece.grid().samples();
-    const auto stand_in = standInOf(piece, found.sigma, p, quiet);
-    if (!stand_in) return tl::unexpected(stand_in.error());
-    outliers += stand_in->outliers;
+    const auto sample = makeSyntheticSample(piece, found.sigma, p, quiet);
+    if (!sample) return tl::unexpected(sample.error());
+    outliers += sample->outliers;
     found.samples += piece.grid().samples() - summarize(piece).no_data;
     for (std::size_t i = 0; i < found.candidates.size(); ++i) {
       if (job.cancelled()) return cancelled();
-      if (auto ok = tryOn(*stand_in, found.candidates[i], sums[i]); !ok) return tl::unexpected(ok.error());
+      if (auto ok = tryOn(*sample, found.candidates[i], sums[i]); !ok) return tl::unexpected(ok.error());
       job.advance();
     }
   }
@@ -195,7 +195,7 @@ Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionReq
   found.edge_share = static_cast<double>(sums[0].edges) / samples;
   return found;
 } catch (const std::bad_alloc&) {
-  return failure("memory for trying filters could not be had", "suggestion", "close other programs");
+  return failure("memory for trying filters could not be allocated", "suggestion", "close other programs");
 }
 
 }  // namespace fettle::engine

@@ -71,9 +71,9 @@ TEST(UnitDoubt, NoUnitFitsHeightsThatAreCounts) {
 
 // What no warning about coordinates in degrees may propose.
 void expectNoScale(const std::vector<std::string>& told) {
-  for (const std::string& doubt : told) {
-    EXPECT_EQ(doubt.find("--z-scale"), std::string::npos) << doubt;
-    EXPECT_EQ(doubt.find(" nm"), std::string::npos) << doubt;
+  for (const std::string& truthError : told) {
+    EXPECT_EQ(truthError.find("--z-scale"), std::string::npos) << truthError;
+    EXPECT_EQ(truthError.find(" nm"), std::string::npos) << truthError;
   }
 }
 
@@ -151,8 +151,8 @@ TEST(UnitDoubt, WholeNumbersMayBeCountsOrBrightness) {
   // What the file itself calls no length is not measured as one.
   grid.height_per_count = 0.0;
   grid.height_unit = {"intensity", 1.0};
-  for (const std::string& doubt : doubts(rough(grid, 250.0)))
-    EXPECT_NE(doubt.find("no length"), std::string::npos) << doubt;
+  for (const std::string& truthError : doubts(rough(grid, 250.0)))
+    EXPECT_NE(truthError.find("no length"), std::string::npos) << truthError;
 }
 
 TEST(UnitDoubt, WhatIsSmallerThanAtomsOrLargerThanPlanets) {

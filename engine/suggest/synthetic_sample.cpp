@@ -1,4 +1,4 @@
-#include "engine/suggest/stand_in.h"
+#include "engine/suggest/synthetic_sample.h"
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ Samples samplesOf(const Version& field) {
   return s;
 }
 
-// Samples that stand out of all their neighbours, and the median of these; NaN elsewhere.
+// Samples that differ strongly from all their neighbours, and the median of these; NaN elsewhere.
 std::vector<float> outliersOf(const Samples& s, double sigma, std::int64_t& count) {
   std::vector<float> instead(s.z.size(), std::nanf(""));
   const int w = s.grid.width, h = s.grid.height;
@@ -76,14 +76,15 @@ Result<Version> smoothed(const Version& field, double sigma, JobControl& job) {
 
 }  // namespace
 
-Result<StandIn> standInOf(const Version& piece, double sigma, std::uint64_t seed, JobControl& job) {
-  StandIn made;
+Result<SyntheticSample> makeSyntheticSample(const Version& piece, double sigma, std::uint64_t seed,
+                                            JobControl& job) {
+  SyntheticSample made;
   Samples clean = samplesOf(piece);
   const std::vector<float> raw = clean.z;
   const std::vector<float> instead = outliersOf(clean, sigma, made.outliers);
   for (std::size_t i = 0; i < raw.size(); ++i)
     if (instead[i] == instead[i]) clean.z[i] = instead[i];
-  // Without marks: nothing is to be kept from the smoothing.
+  // Without marks: everything is smoothed.
   auto surface = smoothed(makeField(clean.grid, clean.z, {}), sigma, job);
   if (!surface) return tl::unexpected(surface.error());
   made.surface = *std::move(surface);
