@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "bench/own_folder.h"
+#include "bench/temporary_folder.h"
 #include "engine/base/stopwatch.h"
 #include "engine/field/live_field.h"
 #include "engine/field/tile_store.h"
@@ -28,7 +28,7 @@ constexpr std::int64_t kStrokeTicks = 1000;
 }  // namespace
 
 engine::Result<CommitTimes> commitTimes(const engine::Version& field, int strokes, engine::JobControl& job) {
-  const auto folder = OwnFolder::create(engine::storePolicy().folder);
+  const auto folder = TemporaryFolder::create(engine::storePolicy().folder);
   if (!folder) return tl::unexpected(folder.error());
   engine::Session session;
   session.original = field;
@@ -59,7 +59,7 @@ engine::Result<CommitTimes> commitTimes(const engine::Version& field, int stroke
     engine::StepInfo info;
     info.name = "smoothing";
     info.time = engine::stepTimeNow();
-    if (!history.push(std::move(info), live.snapshot())) continue;  // a hand that touched nothing
+    if (!history.push(std::move(info), live.snapshot())) continue;  // no sample was changed
     const std::int64_t number = history.number();
     recorder.add(haptic::journal::StepMade{number,
                                            "smoothing",
@@ -74,7 +74,7 @@ engine::Result<CommitTimes> commitTimes(const engine::Version& field, int stroke
     const auto change = engine::measureChange(history.state(number - 1), history.current());
     times.tiles.push_back(static_cast<double>(change.tiles));
   }
-  if (times.durable_ms.empty()) return engine::failure("no stroke touched the field", "bench growth");
+  if (times.durable_ms.empty()) return engine::failure("no stroke changed the field", "bench growth");
   if (engine::Status closed = (*writer)->close(job); !closed) return tl::unexpected(closed.error());
   return times;
 }

@@ -20,16 +20,16 @@ namespace fettle::bench {
 namespace {
 
 constexpr double kBallSamples = 2.0;
-// Counting may have to go in single steps of 5 to 20 us.
+// Counting may have to be done in single steps of 5 to 20 us.
 constexpr std::size_t kCountedTicks = 24;
 constexpr std::size_t kCountedBallTicks = 2;
 constexpr int kTouchingBefore = 20;
-constexpr std::size_t kTicksBetweenLooks = 4096;
+constexpr std::size_t kTicksPerCheck = 4096;
 
 struct EffectCase {
   std::string name;
   haptic::Scene scene;
-  std::optional<haptic::EffectKind> effect;  // whose bytes the row tells
+  std::optional<haptic::EffectKind> effect;  // whose bytes the row reports
 };
 
 haptic::Scene sceneOf(std::vector<haptic::EffectKind> effects) {
@@ -38,8 +38,8 @@ haptic::Scene sceneOf(std::vector<haptic::EffectKind> effects) {
   return scene;
 }
 
-// Every kind there is: a new one appears by itself. Those that need the spring come with it, and their name
-// says so.
+// Every kind: a new one is included automatically. Those that need the spring are run with it, and their name
+// states it.
 std::vector<EffectCase> cases() {
   std::vector<EffectCase> all = {{"none", sceneOf({}), std::nullopt}};
   std::vector<haptic::EffectKind> kinds;
@@ -63,7 +63,7 @@ std::vector<EffectCase> cases() {
   return all;
 }
 
-// The workpiece with a marked line every 64 rows: something for edge snap to pull to.
+// The workpiece with a marked line every 64 rows, for edge snap.
 engine::Version markedWorkpiece(std::int32_t side) {
   const engine::Version plain = trials::workpiece(side, kSpacingMm);
   const auto samples = static_cast<std::size_t>(side);
@@ -75,7 +75,7 @@ engine::Version markedWorkpiece(std::int32_t side) {
   return engine::makeField(plain.grid(), heights, marks);
 }
 
-// Boost's and Fowler-Noll-Vo's way of folding words: order counts.
+// Combines words as Boost and Fowler-Noll-Vo do; depends on their order.
 void fold(std::uint64_t& hash, double value) noexcept {
   hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3;
 }
@@ -100,9 +100,9 @@ engine::Result<Outcome> run(const EffectCase& what, const engine::Version& field
   Outcome out;
   const haptic::DenormalScope as_in_the_loop;
   std::chrono::duration<double, std::nano> spent{0.0};
-  for (std::size_t i = 0; i < strokes.size(); i += kTicksBetweenLooks) {
+  for (std::size_t i = 0; i < strokes.size(); i += kTicksPerCheck) {
     if (job.cancelled()) return engine::cancelled();
-    const auto part = strokes.subspan(i, std::min(kTicksBetweenLooks, strokes.size() - i));
+    const auto part = strokes.subspan(i, std::min(kTicksPerCheck, strokes.size() - i));
     const auto begin = std::chrono::steady_clock::now();
     for (haptic::StrokeSample sample : part) {
       sample.tip_mm.z += raise;
@@ -123,7 +123,7 @@ engine::Result<Outcome> run(const EffectCase& what, const engine::Version& field
   return out;
 }
 
-// Once the tip has been touching for a while: ticks in free space cost next to nothing in any scene.
+// After the tip has touched for a while: ticks in free space cost almost nothing in any scene.
 InstructionCount count(const EffectCase& what, const engine::Version& field,
                        std::span<const haptic::StrokeSample> strokes) {
   engine::LiveField live(field, engine::Growth::kAllowed);

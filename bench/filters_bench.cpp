@@ -22,7 +22,7 @@ namespace {
 constexpr std::int32_t kProbeSide = 512;
 constexpr double kNoiseWidth = 0.3;  // of the rectangle that the noise is spread over
 
-/// Seconds by the clock on the wall and by that of the processors that worked for this process.
+/// Wall time and processor time of this process [s].
 struct Seconds {
   double wall = 0.0;
   double cpu = 0.0;
@@ -93,7 +93,7 @@ engine::Result<engine::Version> ground(std::int32_t side, FilterGround kind,
   return std::move(*builder).build();
 }
 
-/// Fields made when first asked for, all in one memory.
+/// Fields made on first use, all in one memory.
 class Grounds {
  public:
   engine::Result<engine::Version> get(std::int32_t side, FilterGround kind) {
@@ -109,7 +109,7 @@ class Grounds {
   std::map<std::pair<std::int32_t, FilterGround>, engine::Version> made_;
 };
 
-/// What the memory allows: floats copied from one array to another, each thread a part of its own.
+/// The memory's rate: floats copied from one array to another, each thread its own part.
 class Copy {
  public:
   explicit Copy(std::size_t samples) : from_(samples, 1.0F), to_(samples, 0.0F) {}
@@ -150,7 +150,7 @@ struct Run {
 
 engine::Result<Run> runOnce(const FiltersBenchRow& row, const engine::Version& field,
                             engine::JobControl& job) {
-  engine::JobControl own;  // applyFilter begins a stage of its own
+  engine::JobControl own;  // applyFilter begins its own stage
   engine::Result<engine::Filtered> result;
   if (job.cancelled()) return engine::cancelled();
   Run run;
@@ -176,7 +176,7 @@ engine::Status checked(const FiltersBenchOptions& options) {
   return {};
 }
 
-// The largest halving of the side with which all repeats take no longer than the limit.
+// The largest side, by halving, with which all repeats take no longer than the limit.
 engine::Result<std::int32_t> sideFor(const FiltersBenchRow& row, const FiltersBenchOptions& options,
                                      Grounds& grounds, engine::JobControl& job) {
   const std::int32_t probe = std::min(options.side, kProbeSide);

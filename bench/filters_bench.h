@@ -10,7 +10,7 @@
 
 namespace fettle::bench {
 
-/// What the field of a row holds beside its heights.
+/// Content of a row's field in addition to its heights.
 enum class FilterGround {
   kPlain,  ///< neither hole nor mark
   kHoles,  ///< round dropouts and single ones, about 1 % of the samples, in about a third of the tiles
@@ -27,7 +27,7 @@ struct FiltersBenchOptions {
   double limit_s = 10.0;  ///< a row that would take longer gets a smaller field, > 0 .. 1e6
 };
 
-/// One filter over one field: all of applyFilter, its report included. Rates in samples a second.
+/// One filter over one field: all of applyFilter, its report included. Rates in samples per second.
 struct FiltersBenchRow {
   engine::FilterKind kind = engine::FilterKind::kBox;
   int window = 0;
@@ -35,10 +35,10 @@ struct FiltersBenchRow {
   FilterGround ground = FilterGround::kPlain;
   std::int32_t side = 0;  ///< of this row's field; less than the option's where limit_s was met
   double median = 0.0, slowest = 0.0, fastest = 0.0;
-  double cpu = 0.0;   ///< median of samples per second of processor time: what a busy machine leaves alone
-  double copy = 0.0;  ///< median rate of plain copying of floats by as many threads, in the same run
+  double cpu = 0.0;       ///< median of samples per second of processor time: not affected by a busy machine
+  double copy = 0.0;      ///< median rate of plain copying of floats by as many threads, in the same run
   double copy_cpu = 0.0;  ///< the same per second of processor time
-  /// Rate over that of the row alike with one thread, median of the ratios of each time round; 0 without one.
+  /// Rate over that of the same row with one thread, median of the ratios of each round; 0 without one.
   double over_one = 0.0;
   std::uint64_t hash = 0;  ///< of the result; the same in every repeat
 };
@@ -48,19 +48,19 @@ struct FiltersBenchReport {
   std::vector<FiltersBenchRow> rows;
 };
 
-/// What a row is meant to reach on plain ground, machine by machine: a share of the copy with one thread, a
-/// gain over one thread with two. 0: no target was set.
+/// Target of a row on plain ground, for each machine: a share of the copy with one thread, a gain over one
+/// thread with two. 0: no target.
 struct FilterTarget {
   double share = 0.0;
   double over_one = 0.0;
 };
 [[nodiscard]] FilterTarget targetOf(const FiltersBenchRow& row) noexcept;
 
-/// Filters synthetic relief with noise, `repeats` times each row, going round all rows, with a plain copy of
-/// an array of as many floats each time round. A first run of each row, which fetches memory from the system,
-/// is not counted. Errors: kInput for options out of range, kFailed when two repeats differ in a bit,
-/// kCancelled. Memory: fields of all grounds and one result, 4.2 bytes a sample each, and two arrays to copy.
-/// Thread: any; blocks.
+/// Filters synthetic relief with noise, `repeats` times each row, alternating between all rows, with a plain
+/// copy of an array of as many floats in each round. A first run of each row, which obtains memory from the
+/// system, is not counted. Errors: kInput for options out of range, kFailed when two repeats differ in a bit,
+/// kCancelled. Memory: fields of all grounds and one result, 4.2 bytes per sample each, and two arrays to
+/// copy. Thread: any; blocks.
 [[nodiscard]] engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& options,
                                                               engine::JobControl& job);
 

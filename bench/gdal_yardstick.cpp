@@ -25,7 +25,7 @@ Dataset openTiff(const std::string& path) {
       GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers.data(), options.data(), nullptr));
 }
 
-// Rows a call.
+// Rows per call.
 bool readBand(const std::string& path, bool whole, std::vector<char>& buffer) {
   const Dataset dataset = openTiff(path);
   if (!dataset || GDALGetRasterCount(dataset.get()) < 1) return false;

@@ -11,10 +11,10 @@
 
 namespace fettle::bench {
 
-/// How a GeoTIFF lays its samples out.
+/// Layout of the samples of a GeoTIFF.
 enum class TiffLayout : std::uint8_t {
-  kPlainStrips,   ///< as they are, strips of 8 KB or one row
-  kPlainTiles,    ///< as they are, tiles of 256 x 256
+  kPlainStrips,   ///< not compressed, strips of 8 KB or one row
+  kPlainTiles,    ///< not compressed, tiles of 256 x 256
   kPackedStrips,  ///< Deflate with the predictor for floats, strips of 16 rows
 };
 
@@ -23,10 +23,10 @@ enum class TiffLayout : std::uint8_t {
 [[nodiscard]] engine::Status writeTiffAs(TiffLayout layout, const engine::Version& field,
                                          const std::string& path, engine::JobControl& job);
 
-/// Seconds that the packaged GDAL alone takes to bring the first band of a TIFF into one buffer, in the
-/// band's own type: the faster of one call for the whole band and of a call for each row of blocks, in the
-/// order of the file, threads of its own for packed blocks. Opening counts; `buffer` grows before that, and
-/// its pages are there. Nothing for a file that its GeoTIFF driver does not open. Errors (kInput): damaged.
+/// Seconds that the packaged GDAL alone takes to read the first band of a TIFF into one buffer, in the band's
+/// own type: the faster of one call for the whole band and of a call for each row of blocks, in the order of
+/// the file, with its own threads for packed blocks. Opening is included; `buffer` is resized and its pages
+/// populated before. Empty for a file that its GeoTIFF driver does not open. Errors (kInput): damaged.
 [[nodiscard]] engine::Result<std::optional<double>> secondsOfGdal(const std::string& path,
                                                                   std::vector<char>& buffer);
 

@@ -27,7 +27,7 @@ namespace {
 constexpr double kTicks = 50'000;
 constexpr int kWindows[] = {3, 5, 11, 21, 41, 101};
 constexpr double kBrushes[] = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
-constexpr double kWindowSide = 1024;  // of the field that windows are tried on
+constexpr double kWindowSide = 1024;  // of the field for the windows
 constexpr std::int32_t kBrushSide = 1024;
 
 GrowthPoint pointOf(double work, std::vector<double> costs) {
@@ -41,7 +41,7 @@ void add(Growth& growth, const std::string& series, const GrowthPoint& point, do
   growth.series.push_back({series, {point}, 0.0, target});
 }
 
-// Nanoseconds a tick, single ones by the clock left out: the whole way through, three times.
+// Nanoseconds per tick, without timing single ticks: all strokes, three times.
 GrowthPoint ticks(const engine::Version& field, const haptic::Scene& scene, haptic::Tool tool, double work,
                   double effort) {
   trials::HandMotion motion;
@@ -89,7 +89,7 @@ void versions(const engine::Version& field, double work, double effort, Growth& 
   add(growth, "undo", pointOf(work, std::move(undo)), 1e6);
 }
 
-// A stroke's way to the disk.
+// Writing a stroke to the disk.
 engine::Status commits(const engine::Version& field, double work, double effort, Growth& growth,
                        engine::JobControl& job) {
   engine::JobControl quiet;
@@ -117,18 +117,18 @@ engine::Result<GrowthPoint> filtering(const engine::Version& field, engine::Filt
                       if (!done) status = tl::unexpected(done.error());
                     }));
     if (!status) return tl::unexpected(status.error());
-    if (costs.back() > 5.0 * unit) break;  // one is enough to be sure of
+    if (costs.back() > 5.0 * unit) break;  // one repeat is enough
   }
   return pointOf(work, std::move(costs));
 }
 
-// Changed tiles, each by one sample, until the picture has them.
+// Tiles changed by one sample each, until the picture shows them.
 engine::Result<Growth> uploads(engine::JobControl& job) {
   Growth growth{"upload",
                 "Uploading",
                 "changed tiles",
                 "time on the drawing thread [ms]",
-                "1: only what changed is compared and moved",
+                "1: only changes are compared and moved",
                 {}};
   const engine::Version start = trials::workpiece(4096, kSpacingMm);
   auto created = render::LivePicture::create();
@@ -138,7 +138,7 @@ engine::Result<Growth> uploads(engine::JobControl& job) {
   input.view.width = 640;
   input.view.height = 480;
   engine::LiveField live(start, engine::Growth::kAllowed);
-  const auto bring = [&]() -> engine::Result<double> {
+  const auto upload = [&]() -> engine::Result<double> {
     if (auto ok = picture.update(live.snapshot()); !ok) return tl::unexpected(ok.error());
     double ms = 0.0;
     for (int i = 0; i < 10'000; ++i) {
@@ -149,7 +149,7 @@ engine::Result<Growth> uploads(engine::JobControl& job) {
     }
     return ms;
   };
-  if (const auto first = bring(); !first) return tl::unexpected(first.error());
+  if (const auto first = upload(); !first) return tl::unexpected(first.error());
   const std::int32_t side = start.grid().width >> engine::kTileShift;
   float height = 0.0F;
   for (std::int32_t tiles = 1; tiles <= side * side; tiles *= 4) {
@@ -159,11 +159,11 @@ engine::Result<Growth> uploads(engine::JobControl& job) {
       height += 0.01F;
       for (std::int32_t t = 0; t < tiles; ++t)
         (void)live.setHeight((t % side) << engine::kTileShift, (t / side) << engine::kTileShift, height);
-      const auto took = bring();
+      const auto took = upload();
       if (!took) return tl::unexpected(took.error());
       ms.push_back(*took);
     }
-    add(growth, "one sample a tile", pointOf(tiles, std::move(ms)));
+    add(growth, "one sample per tile", pointOf(tiles, std::move(ms)));
   }
   return growth;
 }
@@ -197,8 +197,8 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
   Growth tick{"tick",
               "A tick over the field's size",
               "samples of the field",
-              "time a tick [ns]",
-              "0: a tick looks at what is near",
+              "time per tick [ns]",
+              "0: a tick only reads samples near the tip",
               {}};
   Growth version{"version",   "Versions over the field's size", "samples of the field",
                  "time [ns]", "0: a tree of shared tiles",      {}};
@@ -213,13 +213,13 @@ engine::Result<GrowthReport> benchGrowth(const GrowthOptions& options, engine::J
   Growth window{"window",
                 "Filters over the window",
                 "side of the window [samples]",
-                "time a sample, one core [ns]",
+                "time per sample, one core [ns]",
                 "box 0 (running sums), Gaussian 1 (rows, then columns), median 0 for large windows",
                 {}};
   Growth brush{"brush",
                "A tick over the brush",
                "radius of the brush [samples]",
-               "time a tick [ns]",
+               "time per tick [ns]",
                "2: every sample within is smoothed in the tick",
                {}};
 

@@ -22,7 +22,7 @@ namespace fettle::bench {
 
 namespace {
 
-struct Way {
+struct HapticCase {
   const char* name;
   haptic::Tool tool;
   haptic::ContactLevel level;
@@ -31,18 +31,18 @@ struct Way {
   int search_rounds = 2048;
 };
 
-constexpr Way kWays[] = {
+constexpr HapticCase kHapticCases[] = {
     {"paper, feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 1, 0.0},
     {"paper, 3x3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 1, 0.0},
     {"certified radius 2, feel", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 10, 0.0},
     {"ball r = 2 samples, to rest", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0},
-    {"the same, 4 steps a tick", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0, 5},
+    {"the same, 4 steps per tick", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0, 5},
 };
 
 constexpr std::size_t kTimedTicks = 100'000;
 
-// Single ticks by the clock, apart from the runs that count ticks a second: reading it takes as long as a
-// part of a tick.
+// Times of single ticks, separate from the runs that measure ticks per second: reading the clock takes a
+// noticeable part of a tick.
 void timeTicks(const haptic::Scene& scene, const engine::Version& field,
                std::span<const haptic::StrokeSample> strokes, HapticBenchRow& row) {
   engine::LiveField live(field, engine::Growth::kAllowed);
@@ -66,33 +66,33 @@ void timeTicks(const haptic::Scene& scene, const engine::Version& field,
   row.worst_ns = ns.back();
 }
 
-engine::Result<HapticBenchRow> run(const Way& way, const engine::Version& field,
+engine::Result<HapticBenchRow> run(const HapticCase& test_case, const engine::Version& field,
                                    std::vector<haptic::StrokeSample>& strokes, double& raised_mm,
                                    const HapticBenchOptions& options, engine::JobControl& job) {
   haptic::Scene scene = haptic::defaultScene();
-  scene.level = way.level;
-  scene.search_rounds = way.search_rounds;
-  const double radius_mm = way.ball_samples * kSpacingMm;
+  scene.level = test_case.level;
+  scene.search_rounds = test_case.search_rounds;
+  const double radius_mm = test_case.ball_samples * kSpacingMm;
   if (radius_mm > 0.0) {
     scene.tip = haptic::TipShape::kSphere;
     scene.tip_radius_mm = radius_mm;
   }
   for (haptic::StrokeSample& s : strokes) {
-    s.tool = way.tool;
+    s.tool = test_case.tool;
     s.tip_mm.z += radius_mm - raised_mm;
   }
   raised_mm = radius_mm;
   const auto part = std::span<const haptic::StrokeSample>(strokes).first(
-      std::max<std::size_t>(1, strokes.size() / static_cast<std::size_t>(way.share)));
+      std::max<std::size_t>(1, strokes.size() / static_cast<std::size_t>(test_case.share)));
   HapticBenchRow row;
-  row.name = way.name;
+  row.name = test_case.name;
   std::vector<double> rates;
   for (int i = 0; i < options.repeats; ++i) {
     const auto result = haptic::replay(field, field, part, scene, {}, job);
     if (!result) return tl::unexpected(result.error());
     const std::uint64_t hash = engine::contentHash(result->field);
     if (i > 0 && hash != row.hash)
-      return engine::failure("two runs of the same strokes differ", way.name, "please report this");
+      return engine::failure("two runs of the same strokes differ", test_case.name, "please report this");
     row.hash = hash;
     row.ticks = result->report.ticks;
     row.contact_ticks = result->report.contact_ticks;
@@ -158,9 +158,9 @@ engine::Status touch(const Touched& what, const HapticBenchOptions& options, eng
     return {};
   };
   if (auto done = add(runPlain(what.field, strokes, options, job)); !done) return done;
-  double raised_mm = 0.0;  // a ball's endpoint is its centre: the same press is one radius higher
-  for (const Way& way : kWays)
-    if (auto done = add(run(way, what.field, strokes, raised_mm, options, job)); !done) return done;
+  double raised_mm = 0.0;  // a ball's endpoint is its centre: for the same press it is one radius higher
+  for (const HapticCase& test_case : kHapticCases)
+    if (auto done = add(run(test_case, what.field, strokes, raised_mm, options, job)); !done) return done;
   return {};
 }
 

@@ -13,13 +13,13 @@ struct HapticBenchOptions {
   std::int32_t side = 4096;        ///< samples along each side of the field, 64 .. 32768
   std::int64_t ticks = 1'000'000;  ///< of each run; certified contact and a ball take a tenth of them
   int repeats = 5;                 ///< 1 .. 100
-  /// Of the hand over the field, each > 0. A person who follows an edge goes at about 20.
+  /// Of the hand over the field, each > 0. A person follows an edge at about 20.
   std::vector<double> speeds_mm_s = {10.0, 20.0, 50.0};
 };
 
-/// One way of touching, run `repeats` times from the same start. Ticks a second.
+/// One case, run `repeats` times from the same start. Rates in ticks per second.
 struct HapticBenchRow {
-  std::string ground;  ///< what is touched: "rough part", "clean part", or a HardGround's name
+  std::string ground;  ///< the field: "rough part", "clean part", or a HardGround's name
   std::string name;
   double speed_mm_s = 0.0;
   std::int64_t ticks = 0;
@@ -27,8 +27,8 @@ struct HapticBenchRow {
   double median = 0.0;
   double slowest = 0.0;
   double fastest = 0.0;
-  // Of single ticks, clock included, from a pass of its own over at most 100,000 of them [ns]; 0 for the
-  // plain search.
+  // Of single ticks, clock included, from a separate pass over at most 100,000 of them [ns]; 0 for the plain
+  // search.
   double p50_ns = 0.0;
   double p99_ns = 0.0;
   double p999_ns = 0.0;
@@ -44,9 +44,9 @@ struct HapticBenchReport {
   std::vector<HapticBenchRow> rows;
 };
 
-/// Replays a hand that wanders over a milled, noisy workpiece, as fast as the machine can: the whole tick
-/// with collision, contact, force and, where named, 3 x 3 local smoothing; every way at each speed. Then over
-/// the same part without noise and over the hard grounds, 1024 samples square, at 20 mm/s. Yardstick of each:
+/// Replays a hand that moves over a milled, noisy workpiece, as fast as possible: the whole tick with
+/// collision, contact, force and, where named, 3 x 3 local smoothing; every case at each speed. Then over the
+/// same part without noise and over the hard grounds, 1024 samples square, at 20 mm/s. Yardstick of each:
 /// PlainSearch over the same strokes. Errors:
 /// kInput for options out of range, kCancelled, kFailed when two repeats differ in a bit. Thread: any;
 /// blocks.

@@ -9,8 +9,8 @@
 #include "bench/gdal_yardstick.h"
 #include "bench/import_files.h"
 #include "bench/machine.h"
-#include "bench/own_folder.h"
 #include "bench/repeats.h"
+#include "bench/temporary_folder.h"
 #include "engine/formats/formats.h"
 #include "haptic/trials/hand_stroke.h"
 
@@ -84,12 +84,12 @@ engine::Result<std::vector<Case>> makeFiles(const fs::path& folder, std::int32_t
   return cases;
 }
 
-// WallSeconds to read the whole file; the bytes are looked at by nobody, as with `cat FILE > /dev/null`.
+// Wall time to read the whole file; the bytes are not used, as with `cat FILE > /dev/null`.
 engine::Result<double> readPlainly(const std::string& path) {
   std::vector<char> buffer(std::size_t{1} << 20);
   const auto start = std::chrono::steady_clock::now();
   std::ifstream file;
-  file.rdbuf()->pubsetbuf(nullptr, 0);  // straight into ours
+  file.rdbuf()->pubsetbuf(nullptr, 0);  // directly into the buffer
   file.open(path, std::ios::binary);
   while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()))) {
   }
@@ -103,7 +103,7 @@ engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options,
   if (options.side < 16 || options.side > kLargest || options.repeats < 1 || options.repeats > 100)
     return engine::inputError("an option of the benchmark is out of range", "bench import",
                               "side 16 to 16384, repeats 1 to 100");
-  const auto folder = OwnFolder::create();
+  const auto folder = TemporaryFolder::create();
   if (!folder) return tl::unexpected(folder.error());
   std::vector<Case> cases;
   if (options.files.empty()) {

@@ -18,15 +18,15 @@ struct ImportBenchOptions {
   std::vector<std::string> files;
 };
 
-/// How fast one file becomes a field. Rates in bytes of the file a second.
+/// Import rate of one file. Rates in bytes of the file per second.
 struct ImportBenchRow {
-  std::string name;    ///< what was written, "PLY mesh"; of a file given, its name
+  std::string name;    ///< kind of file written, "PLY mesh"; of a given file, its name
   std::string format;  ///< FormatInfo::name of the reader
   std::int64_t bytes = 0;
   std::int64_t samples = 0;  ///< of the field
   double median = 0.0, slowest = 0.0, fastest = 0.0;
   double plain = 0.0;  ///< median rate of reading the same file into a buffer, in the same run
-  /// Median rate of GDAL alone (bench/gdal_yardstick.h) in the same run; 0 for files it is not asked to read.
+  /// Median rate of GDAL alone (bench/gdal_yardstick.h) in the same run; 0 for files that it does not read.
   double gdal = 0.0;
   std::uint64_t hash = 0;  ///< of the field; the same in every repeat
 };
@@ -36,10 +36,10 @@ struct ImportBenchReport {
   std::vector<ImportBenchRow> rows;
 };
 
-/// Imports each file `repeats` times, going round all of them, each time after a plain reading of it (1 MB at
-/// a time) and, for a TIFF, a reading by GDAL alone, so that the file is in the page cache for all and a
-/// change of the machine's speed meets all.
-/// Files made here lie in a folder of their own under the system's temporary folder and are removed.
+/// Imports each file `repeats` times, alternating between them, each time after plain reading (1 MB at a
+/// time) and, for a TIFF, reading by GDAL alone, so that the file is in the page cache for all and a change
+/// of the machine's speed affects all. Files made here lie in a new folder in the system's temporary folder
+/// and are removed.
 /// Errors: kInput for options out of range and files that cannot be read or made, kFailed when two repeats
 /// differ in a bit, kCancelled. Thread: any; blocks.
 [[nodiscard]] engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options,

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kCountMm = 1e-5;
 
-// Little-endian, as all three formats are and every machine this runs on is.
+// Little-endian, as all three formats and all supported machines are.
 template <class T>
 void put(std::string& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof(T));

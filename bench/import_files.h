@@ -7,11 +7,11 @@
 
 namespace fettle::bench {
 
-/// Plain files of the formats that are read and never written, for measuring how fast: as large as real ones,
-/// with nothing in them but the field. Whole or not at all; units as the format has them. Errors: kInput for
-/// paths that cannot be written. Holes are left out (PCD, LAS) or marked (SUR).
+/// Files of the formats that are only read, to measure their import: as large as real ones, containing only
+/// the field. Written whole or not at all; in the units of the format. Errors: kInput for paths that cannot
+/// be written. Holes are left out (PCD, LAS) or marked (SUR).
 
-/// Binary points, x and y as doubles, z as float [mm]: reads back bit for bit.
+/// Binary points, x and y as doubles, z as float [mm]: reads back bit-identical.
 [[nodiscard]] engine::Status writePcd(const engine::Version& field, const std::string& path);
 
 /// LAS 1.2, point format 0, coordinates in counts of 1e-5 [mm]; |coordinates| below 21 m.

@@ -32,7 +32,7 @@ std::string_view countedByName(CountedBy by) noexcept {
 
 namespace {
 
-// Not inlined and not empty: what is called between two marks must be called alike with and without work.
+// Not inlined and not empty: the call between two markers must be the same with and without work.
 [[gnu::noinline]] void callMarked(const std::function<void()>& work) {
   work();
 }
@@ -60,7 +60,7 @@ std::optional<std::int64_t> counted(const std::function<void()>& work) {
   const std::int64_t nothing = count([] {});
   const std::int64_t all = count(work);
   close(counter);
-  // A virtual machine may offer a counter that stands still.
+  // A virtual machine may offer a counter that does not count.
   if (nothing <= 0 || all < nothing) return std::nullopt;
   return all - nothing;
 }
@@ -81,7 +81,7 @@ void endChild(pid_t child) {
   }
 }
 
-// The child stops itself before nothing, between nothing and the work, and after it.
+// The child stops itself before the empty call, between it and the work, and after the work.
 std::optional<std::int64_t> stepped(const std::function<void()>& work) {
   const std::function<void()> nothing = [] {};
   const pid_t child = fork();
@@ -89,7 +89,7 @@ std::optional<std::int64_t> stepped(const std::function<void()>& work) {
   if (child == 0) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) != 0) _exit(1);
-    // Not before the work is there: its pages are the parent's, copied at the first write.
+    // Not before the work has run once: its pages are the parent's, copied at the first write.
     raise(SIGSTOP);
     callMarked(nothing);
     raise(SIGSTOP);

@@ -9,7 +9,7 @@ namespace fettle::bench {
 
 /// How instructions were counted.
 enum class CountedBy : std::uint8_t {
-  kNothing,  ///< not at all: neither way is allowed here
+  kNothing,  ///< not counted: neither method is permitted here
   kCounter,  ///< the processor's own counter, by perf_event_open
   kSteps,    ///< one by one, a traced copy of the process (ptrace)
 };
@@ -25,9 +25,9 @@ struct InstructionCount {
 /// Instructions that `work` takes in user space, the call itself included; code of other threads is not.
 ///
 /// By the processor's counter where the system allows it. Else `work` is run in a forked copy of the process
-/// that is stepped through one instruction at a time, 50,000 to 200,000 a second: keep it short. Then
-/// what `work` changes is lost with the copy; it must not wait for another thread, since the copy has none.
-/// Two markers around nothing are counted too and taken off. Thread: any; blocks.
+/// that is stepped through one instruction at a time, 50,000 to 200,000 per second: keep it short. Then
+/// changes made by `work` are lost with the copy; it must not wait for another thread, since the copy has
+/// none. The cost of two markers around an empty call is counted too and subtracted. Thread: any; blocks.
 [[nodiscard]] InstructionCount countInstructions(const std::function<void()>& work);
 
 }  // namespace fettle::bench

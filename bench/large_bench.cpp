@@ -19,8 +19,8 @@
 #include "bench/large_picture.h"
 #include "bench/large_scan.h"
 #include "bench/machine.h"
-#include "bench/own_folder.h"
 #include "bench/repeats.h"
+#include "bench/temporary_folder.h"
 #include "engine/base/memory.h"
 #include "engine/field/live_field.h"
 #include "engine/field/tile_store.h"
@@ -57,7 +57,7 @@ std::uint64_t diskReadsOfAll() noexcept {
   return static_cast<std::uint64_t>(usage.ru_majflt);
 }
 
-// Runs one stage and notes what it took.
+// Runs one stage and records its time and memory.
 class Stages {
  public:
   explicit Stages(LargeReport& report) : report_(report) {}
@@ -79,7 +79,7 @@ class Stages {
     return report_.stages.back();
   }
 
-  // As run, for what can fail.
+  // As run, for a stage that can fail.
   engine::Result<LargeStage*> tried(const std::string& name, double samples,
                                     const std::function<engine::Status()>& work) {
     engine::Status status;
@@ -92,7 +92,7 @@ class Stages {
   LargeReport& report_;
 };
 
-// Seconds that reading a file plainly takes, and, with a target, writing what was read and flushing it.
+// Seconds for plain reading of a file, and, with a target, for writing the data and flushing it.
 engine::Result<double> plainly(const std::string& from, const std::string& to) {
   const auto cannot = [](const std::string& path) {
     return engine::inputError("the file cannot be read or written plainly", path, "the disk may be full");
@@ -121,7 +121,7 @@ engine::Result<double> plainly(const std::string& from, const std::string& to) {
   return seconds;
 }
 
-// Ticks on both fields in turn, so that a change of the machine's speed meets both; then singly by the clock.
+// Ticks on both fields in turn, so that a change of the machine's speed affects both; then timed one by one.
 LargeTicks ticks(const engine::Version& large, const engine::Version& small, haptic::Tool tool,
                  const std::string& name, double effort) {
   const haptic::Scene scene = haptic::defaultScene();
@@ -168,14 +168,14 @@ LargeTicks ticks(const engine::Version& large, const engine::Version& small, hap
   return result;
 }
 
-// In real time, as in the window: what the loop felt and what it waited for.
+// In real time, as in the window: contact and waits of the loop.
 engine::Status liveLoop(const engine::Version& field, double effort, Stages& stages, LargeLoop& result,
                         engine::JobControl& job) {
   trials::HandMotion motion;
   motion.ticks = std::llround(kLoopSeconds * effort * 1000.0);
   motion.tool = haptic::Tool::kSmooth;
   haptic::ReplayDevice device(trials::handStroke(field, motion));
-  // All other samples, so that memory smaller than the field has forgotten those under the hand.
+  // All other samples, so that those under the hand are evicted if memory is smaller than the field.
   stages.run("read every sample", static_cast<double>(field.grid().samples()),
              [&] { static_cast<void>(engine::summarize(field)); });
   haptic::HapticLoop::Settings settings;
@@ -186,7 +186,7 @@ engine::Status liveLoop(const engine::Version& field, double effort, Stages& sta
   auto created = haptic::HapticLoop::create(field, field, scene, device, settings);
   if (!created) return tl::unexpected(created.error());
   haptic::HapticLoop& loop = **created;
-  const auto wanted = static_cast<std::uint64_t>(motion.ticks);
+  const auto target = static_cast<std::uint64_t>(motion.ticks);
   const auto takeRecords = [&] {
     for (haptic::LoopEvent event; loop.poll(event);) {
     }
@@ -195,7 +195,7 @@ engine::Status liveLoop(const engine::Version& field, double effort, Stages& sta
   engine::Status status;
   LargeStage& stage = stages.run("live loop", 0.0, [&] {
     status = loop.start();
-    while (status && loop.state().tick < wanted && !job.cancelled()) {
+    while (status && loop.state().tick < target && !job.cancelled()) {
       takeRecords();
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
@@ -207,10 +207,10 @@ engine::Status liveLoop(const engine::Version& field, double effort, Stages& sta
   const haptic::LoopState& state = loop.state();
   const haptic::TimingFigures compute = loop.timing().compute.figures();
   result.ticks = state.tick;
-  result.not_near = state.not_near;
+  result.not_prefetched = state.not_prefetched;
   result.disk_waits = loop.diskWaits();
-  result.brought = loop.nearTiles() != nullptr ? loop.nearTiles()->brought() : 0;
-  result.not_locked = loop.nearTiles() != nullptr ? loop.nearTiles()->notLocked() : 0;
+  result.prefetched = loop.tilePrefetcher() != nullptr ? loop.tilePrefetcher()->prefetched() : 0;
+  result.not_locked = loop.tilePrefetcher() != nullptr ? loop.tilePrefetcher()->notLocked() : 0;
   result.compute_p50_us = 1e-3 * static_cast<double>(compute.p50_ns);
   result.compute_p999_us = 1e-3 * static_cast<double>(compute.p999_ns);
   result.compute_worst_us = 1e-3 * static_cast<double>(compute.worst_ns);
@@ -222,15 +222,15 @@ engine::Status enoughRoom(const LargeOptions& options, const fs::path& folder, s
   const auto side = static_cast<std::uint64_t>(options.side);
   const std::uint64_t field = engine::fieldBytes(side, side);
   // The scan and the filtered one; the small field, buffers and the program.
-  constexpr std::uint64_t kBeside = std::uint64_t{200} << 20;
-  const auto place = engine::placeOf(side, side, kBeside, "bench large");
+  constexpr std::uint64_t kReserve = std::uint64_t{200} << 20;
+  const auto place = engine::placeOf(side, side, kReserve, "bench large");
   if (!place) return tl::unexpected(place.error());
   const bool stored = *place == engine::Place::kStore;
   store_bytes = stored ? field * 2 + field / 10 : 0;
   const std::uint64_t available = engine::availableMemory();
-  if (!stored && available != 0 && 2 * field + kBeside > available)
-    return engine::inputError(fmt::format("the way needs {} MB of memory, {} MB are free",
-                                          (2 * field + kBeside) >> 20, available >> 20),
+  if (!stored && available != 0 && 2 * field + kReserve > available)
+    return engine::inputError(fmt::format("the run needs {} MB of memory, {} MB are free",
+                                          (2 * field + kReserve) >> 20, available >> 20),
                               "bench large",
                               "take a smaller --side, or put the tiles on a disk with --store");
   std::error_code error;
@@ -241,7 +241,7 @@ engine::Status enoughRoom(const LargeOptions& options, const fs::path& folder, s
         fmt::format("{} need {} MB of the disk, {} MB are free", what, bytes >> 20, free_bytes >> 20),
         where.string(), "make room, take a smaller --side or another folder");
   };
-  // The scan, the saved one and its plain copy. A store beside them wants its own.
+  // The scan, the saved one and its plain copy. A store needs additional space.
   const std::uint64_t files = 3 * largeScanBytes(options.side);
   if (engine::Status ok = needs(folder, files, "the files"); !ok) return ok;
   if (stored) {
@@ -261,7 +261,7 @@ engine::Result<engine::Version> filtered(const engine::Version& field, engine::F
   return std::move(done->field);
 }
 
-// The first picture, then what a filter's undoing costs the window.
+// The first picture, then the cost of undoing a filter for the window.
 engine::Status draw(const engine::History& history, Stages& stages, double samples, engine::JobControl& job) {
   auto picture = LargePicture::create();
   if (!picture) return tl::unexpected(picture.error());
@@ -289,7 +289,8 @@ engine::Result<LargeReport> benchLarge(const LargeOptions& options, engine::JobC
     return engine::inputError("the side is out of range", "bench large", "256 to 131072");
   if (!(options.effort >= 0.01 && options.effort <= 1.0))
     return engine::inputError("the effort is out of range", "bench large", "0.01 to 1");
-  const auto folder = options.folder.empty() ? OwnFolder::create() : OwnFolder::create(options.folder);
+  const auto folder =
+      options.folder.empty() ? TemporaryFolder::create() : TemporaryFolder::create(options.folder);
   if (!folder) return tl::unexpected(folder.error());
   std::uint64_t store_bytes = 0;
   if (engine::Status room = enoughRoom(options, folder->path(), store_bytes); !room)
@@ -381,7 +382,7 @@ engine::Result<LargeReport> benchLarge(const LargeOptions& options, engine::JobC
   if (auto ok = filter("median 3 x 3", engine::FilterKind::kMedian, 3); !ok)
     return tl::unexpected(ok.error());
   stages.run("undo the filter", 0.0, [&] { (void)live.adopt(*history.undo()); });
-  // Another history of the same states: what the filter made is held by nobody then.
+  // A new history of the same states: no version then holds the filter's result.
   stages.run("free what it made", 0.0, [&] {
     engine::Version now = history.current();
     history = engine::History(history.state(0));

@@ -9,11 +9,11 @@
 
 namespace fettle::bench {
 
-/// What showing a version took.
+/// Times for showing a version.
 struct PictureSteps {
-  double first_s = 0.0;    ///< until a first frame shows it, coarsely perhaps
-  double rest_s = 0.0;     ///< until nothing is left to be moved or measured for
-  double longest_s = 0.0;  ///< that the thread of the window was held at once: by update() or by a frame
+  double first_s = 0.0;    ///< until a first frame shows it, possibly coarse
+  double rest_s = 0.0;     ///< until uploads and level of detail are complete
+  double longest_s = 0.0;  ///< longest time of update() or of a frame on the window's thread
   int frames = 0;
 };
 
@@ -24,7 +24,7 @@ class LargePicture {
  public:
   /// Errors as LivePicture::create.
   [[nodiscard]] static engine::Result<LargePicture> create();
-  /// Draws `version` until the picture is at rest. Errors: the picture's, kCancelled.
+  /// Draws `version` until the picture is complete. Errors: the picture's, kCancelled.
   [[nodiscard]] engine::Result<PictureSteps> show(const engine::Version& version, engine::JobControl& job);
 
  private:

@@ -18,7 +18,7 @@ static_assert(std::endian::native == std::endian::little, "the file is written i
 constexpr std::int32_t kStripRows = 64;
 constexpr std::uint64_t kFirstSample = 4096;
 
-// The directory of a BigTIFF, in the order of its numbers; what does not fit into an entry follows it.
+// The directory of a BigTIFF, in the order of its tags; values that do not fit into an entry follow it.
 class Directory {
  public:
   explicit Directory(std::uint64_t at) : at_(at) {}
@@ -85,7 +85,7 @@ std::string directoryOf(std::int32_t side, std::uint64_t at) {
   directory.add(259, kShort, one(1));   // not compressed
   directory.add(262, kShort, one(1));   // black is low
   directory.add(273, kLong8, offsets);
-  directory.add(277, kShort, one(1));  // one sample a pixel
+  directory.add(277, kShort, one(1));  // one sample per pixel
   directory.add<std::uint32_t>(278, kLong, {kStripRows});
   directory.add(279, kLong8, counts);
   directory.add(339, kShort, one(3));  // floats

@@ -10,7 +10,7 @@ namespace fettle::bench {
 
 /// Writes a scan of side x side samples as an uncompressed float32 BigTIFF with a GeoTIFF's spacing and
 /// corner, strip by strip, so that it may be larger than memory: the milled part of workpiece() with other
-/// noise, 0.05 mm a sample. Takes a strip of memory. Not atomic: for a folder of one's own. Errors: kInput
+/// noise, 0.05 mm per sample. Needs memory for one strip. Not atomic: for a private folder. Errors: kInput
 /// for a path that cannot be written or a full disk; kCancelled. Thread: any; a long job.
 [[nodiscard]] engine::Status writeLargeScan(const std::string& path, std::int32_t side,
                                             engine::JobControl& job);

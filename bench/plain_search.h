@@ -10,11 +10,11 @@
 
 namespace fettle::bench {
 
-/// What the tick is held against: the source's own search on nothing but an array of heights. No tiles, no
-/// marks, no edits, no effects, no counters, no bound on a search, no guard against bad input or holes.
+/// The yardstick of a tick: the source's own search on a plain array of heights. No tiles, marks, edits,
+/// effects, counters, bound of the search, or checks for bad input or holes.
 ///
-/// In contact it goes from the last proxy's cell to the nearest of the bounded closest points of the cells
-/// that share the present one, until none is nearer; free, it starts under the endpoint as soon as that is
+/// In contact it moves from the last proxy's cell to the nearest of the bounded closest points of the cells
+/// that share the present one, until none is nearer; free, it starts below the endpoint as soon as that is
 /// below the surface. Source: Potter, Johnson, Cohen, DETC2004-57539. Threading: one thread.
 class PlainSearch {
  public:
@@ -24,7 +24,7 @@ class PlainSearch {
   /// As before the first tick.
   void reset() noexcept { touching_ = false; }
 
-  /// Force of a spring of `stiffness` [N/mm] on the endpoint; zero when free or beside the field.
+  /// Force of a spring of `stiffness` [N/mm] on the endpoint; zero when free or outside the field.
   [[nodiscard]] glm::dvec3 tick(const glm::dvec3& endpoint_mm, double stiffness) noexcept;
 
  private:

@@ -76,7 +76,7 @@ std::uint64_t hashOf(const render::Image& image) {
   return h;
 }
 
-// What being half as sharp costs: the same view both ways, from twelve sides.
+// The error of half resolution: the same view at both resolutions, from twelve sides.
 engine::Status compareSharp(render::LivePicture& picture, const render::FrameInput& moving,
                             RenderBenchRow& row) {
   constexpr int kSides = 12;
@@ -105,14 +105,14 @@ engine::Status compareSharp(render::LivePicture& picture, const render::FrameInp
 }
 
 enum class Brush { kRests, kWorks };
-enum class Camera { kGoesRound, kStands };
+enum class Camera { kOrbits, kFixed };
 
-// One row of the report: what is shown, and what happens meanwhile.
+// One row of the report: what is shown, and what changes.
 struct Scene {
   std::string name;
   render::Shown shown;
   render::FrameInput input;
-  Camera camera = Camera::kGoesRound;
+  Camera camera = Camera::kOrbits;
   Brush brush = Brush::kRests;
   bool stylus = false;  // moves
 };
@@ -126,7 +126,7 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
   row.name = scene.name;
   row.samples = shown.versions.front().grid().samples();
   if (auto ok = picture.update(shown); !ok) return tl::unexpected(ok.error());
-  // The first frames bring over what is pending and compile shaders.
+  // The first frames upload pending data and compile shaders.
   for (int i = 0; i < 3 || i < 2000; ++i) {
     const auto warm = picture.drawAndWait(input);
     if (!warm) return tl::unexpected(warm.error());
@@ -140,7 +140,7 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
   std::vector<float> patch(31 * 31);
   for (int i = 0; i < options.frames; ++i) {
     if (job.cancelled()) return engine::cancelled();
-    if (scene.camera == Camera::kGoesRound) input.view.azimuth_deg = 315.0 + 360.0 * i / options.frames;
+    if (scene.camera == Camera::kOrbits) input.view.azimuth_deg = 315.0 + 360.0 * i / options.frames;
     if (scene.stylus) {
       input.overlays.lines.clear();
       const double x = 16.0 + 32.0 * i / options.frames;
@@ -159,7 +159,7 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
             engine::failure("memory is exhausted", "benchmark", "use smaller fields").value());
       render::Shown next = shown;
       next.versions = {live.snapshot()};
-      // The edit is the haptic side's work.
+      // The edit belongs to the haptic loop and is not measured.
       cpu_before = cpuMs();
       start = Clock::now();
       const auto update_start = start;
@@ -202,9 +202,9 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
   return row;
 }
 
-// Frames from all round while the loop runs on a thread of its own.
-engine::Status beside(render::LivePicture& picture, const Scene& scene, double seconds,
-                      RenderBesideLoop& out) {
+// Frames from all sides while the loop runs on its own thread.
+engine::Status drawWithLoop(render::LivePicture& picture, const Scene& scene, double seconds,
+                            RenderWithLoop& out) {
   if (auto ok = picture.update(scene.shown); !ok) return ok;
   haptic::LoopBenchOptions options;
   options.seconds = seconds;
@@ -279,7 +279,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     if (side < 64 || side > 32768)
       return engine::inputError("a side is out of range", "bench render", "give 64 to 32768 samples");
   if (!(options.loop_seconds >= 0.0 && options.loop_seconds <= 600.0))
-    return engine::inputError("the time beside the loop is out of range", "bench render", "give 0 to 600 s");
+    return engine::inputError("the time with the loop is out of range", "bench render", "give 0 to 600 s");
   RenderBenchReport report;
   report.machine = machine();
   render::LiveOptions live;
@@ -318,12 +318,12 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     for (const std::size_t k : {2, 3, 4}) scenes[k].brush = Brush::kWorks;
     scenes[5].name = "stylus, still";
     scenes[5].stylus = true;
-    // As the window draws when nothing moves.
+    // As the window draws a picture at rest.
     scenes[6].name = "fine";
     scenes[7].name = "fine, brush";
     for (const std::size_t k : {6, 7}) scenes[k].input.vertex_budget = std::int64_t{1} << 20;
     scenes[7].brush = Brush::kWorks;
-    for (const std::size_t k : {3, 4, 5, 7}) scenes[k].camera = Camera::kStands;
+    for (const std::size_t k : {3, 4, 5, 7}) scenes[k].camera = Camera::kFixed;
     if (i == 0) {
       const std::size_t first = scenes.size();
       scenes.insert(scenes.end(), 4, all_round);
@@ -360,7 +360,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     }
     all_round.input.sharpness = options.in_motion;
     if (i == 0 && options.loop_seconds > 0.0)
-      if (auto ok = beside(**picture, all_round, options.loop_seconds, report.loop); !ok)
+      if (auto ok = drawWithLoop(**picture, all_round, options.loop_seconds, report.loop); !ok)
         return tl::unexpected(ok.error());
   }
   report.peak_bytes = peakBytes();

@@ -21,12 +21,13 @@ engine::Version flatField() {
   return engine::makeField(grid, std::vector<float>(256, 0.0F));
 }
 
-// Long enough for a swing at a hundredth off the bound to change by a tenth: b / (2 m) * 0.01 * seconds.
+// Long enough for an oscillation one hundredth from the bound to change by a tenth: b / (2 m) * 0.01 *
+// seconds.
 double secondsFor(const StiffnessSweepOptions& options) {
   return std::clamp(20.0 * options.mass_kg * 1e-3 / options.damping_n_s_per_mm, 1.0, 20.0);
 }
 
-// Whether a mass pressed on the flat swings more and more.
+// Whether the oscillation of a mass pressed on the flat grows.
 bool buzzes(const engine::Version& field, double stiffness, double rate_hz,
             const StiffnessSweepOptions& options) {
   haptic::Scene scene;
@@ -60,12 +61,12 @@ bool buzzes(const engine::Version& field, double stiffness, double rate_hz,
 }
 
 // The one-period map of SimulatedHand for a constant force F: v' = p v + q F, x' = x + g v + s F. With
-// F = -K x its determinant is p + K (g q - p s), and the swing neither grows nor dies where that is 1.
+// F = -K x its determinant is p + K (g q - p s), and the amplitude is constant where that is 1.
 double exactBound(double rate_hz, const StiffnessSweepOptions& options) {
   constexpr double kLongestSubstep_s = 10e-6;
   const int substeps = static_cast<int>(std::ceil(1.0 / (rate_hz * kLongestSubstep_s) - 1e-9));
   const double h = 1.0 / (rate_hz * substeps);
-  const double push = h / (options.mass_kg * 1e-3);  // velocity a newton and substep
+  const double push = h / (options.mass_kg * 1e-3);  // velocity per newton and substep
   double p = 1.0, q = 0.0, g = 0.0, s = 0.0;
   for (int i = 0; i < substeps; ++i) {
     p -= options.damping_n_s_per_mm * push * p;

@@ -54,8 +54,8 @@ engine::Result<Report> measure(const BenchGrowthArguments& options, engine::JobC
                 {"copy_bytes_per_second", measured->copy_bytes_per_s},
                 {"growths", Report::array()}};
   for (const bench::Growth& growth : measured->growths) {
-    Report entry{{"id", growth.id},     {"title", growth.title},   {"work", growth.work},
-                 {"cost", growth.cost}, {"wanted", growth.wanted}, {"series", Report::array()}};
+    Report entry{{"id", growth.id},     {"title", growth.title},     {"work", growth.work},
+                 {"cost", growth.cost}, {"wanted", growth.expected}, {"series", Report::array()}};
     for (const bench::GrowthSeries& series : growth.series) {
       Report points = Report::array();
       for (const bench::GrowthPoint& p : series.points)

@@ -49,9 +49,9 @@ Report reportOf(const bench::LargeReport& measured) {
   const bench::LargeLoop& loop = measured.loop;
   report["live_loop"] = {{"ticks", loop.ticks},
                          {"contact_ticks", loop.contact_ticks},
-                         {"ticks_not_near", loop.not_near},
+                         {"ticks_not_near", loop.not_prefetched},
                          {"disk_waits", loop.disk_waits},
-                         {"tiles_brought", loop.brought},
+                         {"tiles_brought", loop.prefetched},
                          {"tiles_not_locked", loop.not_locked},
                          {"compute_p50_us", loop.compute_p50_us},
                          {"compute_p999_us", loop.compute_p999_us},

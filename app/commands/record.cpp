@@ -348,7 +348,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
                 {"reproduced", hash == replayed},
                 {"lost_rows", outcome->last.lost_records},
                 {"refused_edits", outcome->last.refused_edits},
-                {"not_near", outcome->last.not_near},
+                {"not_near", outcome->last.not_prefetched},
                 {"rate_hz", options.rate_hz},
                 {"scale", desk ? Report(workspace.scale()) : Report()},
                 {"felt_stiffness_n_per_mm", workspace.feltStiffness(scene.stiffness_n_per_mm)},

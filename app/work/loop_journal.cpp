@@ -77,7 +77,7 @@ void LoopJournal::moveTo(std::int64_t state) {
 
 void LoopJournal::restoreAsked(std::uint64_t id, std::int64_t state) {
   if (sink_ == nullptr) return;
-  recorder_.add(haptic::journal::RestoreAsked{id, state});
+  recorder_.add(haptic::journal::RestoreRequested{id, state});
   sink_->moveTo(state, recorder_.take());
 }
 

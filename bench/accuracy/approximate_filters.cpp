@@ -6,7 +6,7 @@
 namespace fettle::bench {
 namespace {
 
-// The plane on its side.
+// The plane transposed.
 Plane turned(const Plane& in) {
   Plane out{in.height, in.width, std::vector<double>(in.z.size())};
   constexpr std::int32_t kBlock = 32;

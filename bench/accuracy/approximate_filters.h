@@ -4,8 +4,8 @@
 
 namespace fettle::bench {
 
-// Filters as others make them faster, for studying what that gives away. No holes, no marks; windows shrink
-// at borders where nothing else is said. One thread, plain loops.
+// Faster approximate filters from the literature, to measure their error. No holes, no marks; windows shrink
+// at borders unless stated otherwise. One thread, plain loops.
 
 /// Separable Gaussian, weights and sums in float.
 [[nodiscard]] Plane gaussianInFloat(const Plane& in, double sigma, int radius);
@@ -14,7 +14,7 @@ namespace fettle::bench {
 /// Gaussian filter (1995). Borders are held constant. sigma >= 0.5.
 [[nodiscard]] Plane gaussianRecursive(const Plane& in, double sigma);
 
-/// Median of rows, then of columns of that: what is called separable median. `radius` samples each way.
+/// Median of rows, then of columns of the result, called separable median. `radius` samples each way.
 [[nodiscard]] Plane medianSeparable(const Plane& in, int radius);
 
 /// Median of heights rounded to `levels` steps between lowest and highest, by a histogram that slides along

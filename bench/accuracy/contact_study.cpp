@@ -12,7 +12,7 @@ namespace fettle::bench {
 namespace {
 
 constexpr int kRepeats = 5;
-constexpr double kCellMm = 0.05;  // of the subjects made here, and what others are brought to
+constexpr double kCellMm = 0.05;  // of the subjects made here; others are scaled to it
 
 AccuracyRow rowFor(const std::string& subject, const trials::ContactChoice& choice,
                    const trials::ContactFigures& figures, double newtons_a_mm) {
@@ -37,8 +37,8 @@ engine::Result<Study> contactStudy(const AccuracyOptions& options, engine::JobCo
   Study study;
   study.id = "contact";
   study.title = "Contact: which point of the surface is felt";
-  study.question = "What do I lose if I choose the fast level?";
-  study.cost_name = "time a tick";
+  study.question = "What is the error of the fast level?";
+  study.cost_name = "time per tick";
   study.cost_unit = "ns";
   study.error_name = "mean force error, 1 N/mm, cells of 0.05 mm";
   study.error_unit = "N";
@@ -50,11 +50,11 @@ engine::Result<Study> contactStudy(const AccuracyOptions& options, engine::JobCo
   const std::span<const trials::ContactChoice> choices = trials::contactChoices();
   job.begin("contact levels", subjects.size() * choices.size());
   const std::int64_t ticks = std::max<std::int64_t>(200, std::llround(50'000 * options.effort));
-  double point_doubt = 0.0, ball_doubt = 0.0;
+  double point_truth_error = 0.0, ball_truth_error = 0.0;
   for (const Subject& subject : subjects) {
     const double newtons_a_mm = kCellMm / subject.field.grid().spacingXMm();
     std::optional<trials::ContactTrial> trial;
-    double tried = -1.0;  // the tip that the trial is for
+    double tried = -1.0;  // the tip of the trial
     for (const trials::ContactChoice& choice : choices) {
       if (choice.ball_radius_cells != tried) {
         tried = choice.ball_radius_cells;
@@ -64,9 +64,9 @@ engine::Result<Study> contactStudy(const AccuracyOptions& options, engine::JobCo
         if (!next) return tl::unexpected(next.error());
         trial = *std::move(next);
         if (trial && tried > 0.0)
-          ball_doubt = std::max(ball_doubt, trial->doubt() * newtons_a_mm);
+          ball_truth_error = std::max(ball_truth_error, trial->truthError() * newtons_a_mm);
         else if (trial)
-          point_doubt = std::max(point_doubt, trial->doubt());
+          point_truth_error = std::max(point_truth_error, trial->truthError());
       }
       job.advance();
       if (!trial) continue;
@@ -82,12 +82,12 @@ engine::Result<Study> contactStudy(const AccuracyOptions& options, engine::JobCo
       "x 33 "
       "points of every cell in that radius, for twelve ticks of each subject: none was nearer by more than "
       "{:.1e} "
-      "mm. For a ball, the same on the field grown by the ball, 8 x 8 samples a cell, over 96 x 96 cells: "
+      "mm. For a ball, the same on the field grown by the ball, 8 x 8 samples per cell, over 96 x 96 cells: "
       "its "
       "centres stand one radius from the surface to within {:.1e} mm of cells of 0.05 mm, so errors below "
       "that are "
       "the reference's own. There a ball is at the closest point when it is within 0.02 cells of it.",
-      point_doubt, ball_doubt);
+      point_truth_error, ball_truth_error);
   const AccuracyRow& fast = rowOf(study, "noise", "paper, to rest");
   const AccuracyRow& sure = rowOf(study, "noise", "certified, 8 cells");
   const AccuracyRow& flat = rowOf(study, "flat", "paper, to rest");

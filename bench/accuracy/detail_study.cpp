@@ -34,7 +34,7 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
   study.id = "detail";
   study.title = "Picture: level of detail";
   study.question = "What does a faster frame leave out?";
-  study.cost_name = "time a frame";
+  study.cost_name = "time per frame";
   study.cost_unit = "ms";
   study.error_name = "mean difference of a pixel";
   study.error_unit = "codes of 255";

@@ -17,7 +17,7 @@ namespace fettle::bench {
 namespace {
 
 constexpr double kSigma = 5.0;
-constexpr int kGaussianRadius = 30;  // six sigma: what is cut off is 2e-9
+constexpr int kGaussianRadius = 30;  // six sigma: the weight cut off is 2e-9
 constexpr int kMedianRadius = 5;
 // Three boxes with the variance of the Gaussian: 3 (w^2 - 1) / 12 = sigma^2, next odd w.
 constexpr int kThreeBoxes = 11;
@@ -55,12 +55,12 @@ engine::FilterSpec specOf(engine::FilterKind kind, int window, double sigma, int
   return spec;
 }
 
-struct Way {
+struct FilterVariant {
   const char* name;
   std::function<engine::Result<Plane>(const engine::Version&, const Plane&, engine::JobControl&)> run;
 };
 
-Way ofEngine(const char* name, const engine::FilterSpec& spec) {
+FilterVariant ofEngine(const char* name, const engine::FilterSpec& spec) {
   return {
       name,
       [spec](const engine::Version& field, const Plane&, engine::JobControl& job) -> engine::Result<Plane> {
@@ -70,7 +70,7 @@ Way ofEngine(const char* name, const engine::FilterSpec& spec) {
       }};
 }
 
-Way ofPlane(const char* name, std::function<Plane(const Plane&)> run) {
+FilterVariant ofPlane(const char* name, std::function<Plane(const Plane&)> run) {
   return {name,
           [run = std::move(run)](const engine::Version&, const Plane& plane,
                                  engine::JobControl&) -> engine::Result<Plane> { return run(plane); }};
@@ -83,7 +83,7 @@ engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobCon
   study.id = "filter";
   study.title = "Filters: exact and approximate";
   study.question = "What would a faster filter change?";
-  study.cost_name = "time a sample, one thread";
+  study.cost_name = "time per sample, one thread";
   study.cost_unit = "ns";
   study.error_name = "mean height error";
   study.error_unit = "um";
@@ -97,7 +97,7 @@ engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobCon
   const Subject subjects[] = {{"noise", *std::move(noise)}, {"noisy step on a slope", *std::move(part)}};
 
   using engine::FilterKind;
-  const Way gaussians[] = {
+  const FilterVariant gaussians[] = {
       ofEngine("Gaussian 5, exact (used)", specOf(FilterKind::kGaussian, 2 * kGaussianRadius + 1, kSigma, 1)),
       ofEngine("Gaussian 5, cut at 3 sigma (used)", specOf(FilterKind::kGaussian, 31, kSigma, 1)),
       ofPlane("Gaussian 5, in float",
@@ -105,7 +105,7 @@ engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobCon
       ofPlane("Gaussian 5, recursive", [](const Plane& p) { return gaussianRecursive(p, kSigma); }),
       ofEngine("Gaussian 5, three boxes (used)", specOf(FilterKind::kBox, kThreeBoxes, 0.0, 3)),
   };
-  const Way medians[] = {
+  const FilterVariant medians[] = {
       ofEngine("median 11, exact (used)", specOf(FilterKind::kMedian, 2 * kMedianRadius + 1, 0.0, 1)),
       ofPlane("median 11, 65536 levels",
               [](const Plane& p) { return medianOfLevels(p, kMedianRadius, 65536); }),
@@ -117,21 +117,21 @@ engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobCon
   double check = 0.0;
   for (const Subject& subject : subjects) {
     const Plane in = planeOf(subject.field);
-    const auto study_of = [&](std::span<const Way> ways,
+    const auto study_of = [&](std::span<const FilterVariant> variants,
                               double (*surely)(const Plane&, std::int32_t, std::int32_t)) -> engine::Status {
       Plane exact;
-      for (const Way& way : ways) {
+      for (const FilterVariant& variant : variants) {
         if (job.cancelled()) return engine::cancelled();
         AccuracyRow row;
         row.subject = subject.name;
-        row.method = way.name;
+        row.method = variant.name;
         std::vector<double> ns;
         Plane out;
-        // Not the caller's job: its progress counts ways, not samples.
+        // Not the caller's job: its progress counts variants, not samples.
         engine::JobControl quiet;
         for (int i = 0; i < 3; ++i) {
           const auto begin = std::chrono::steady_clock::now();
-          auto made = way.run(subject.field, in, quiet);
+          auto made = variant.run(subject.field, in, quiet);
           ns.push_back(
               std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count() /
               static_cast<double>(in.z.size()));
@@ -173,11 +173,11 @@ engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobCon
   const AccuracyRow& recursive = rowOf(study, "noisy step on a slope", "Gaussian 5, recursive");
   const AccuracyRow& coarse = rowOf(study, "noisy step on a slope", "median 11, 256 levels");
   study.answer = fmt::format(
-      "Beside a 1 mm step three boxes in place of a Gaussian are off by up to {:.0f} um, a recursive "
+      "Next to a 1 mm step three boxes in place of a Gaussian are off by up to {:.0f} um, a recursive "
       "Gaussian by up to "
       "{:.0f} um ({:.1f} times as fast as the exact one). A median of 256 levels, as 8-bit image libraries "
       "do it, is "
-      "off by {:.1f} um on average. Fettle's filters are exact; nothing approximate is used unasked.",
+      "off by {:.1f} um on average. Fettle's filters are exact; approximations are only used on request.",
       boxes.error_worst, recursive.error_worst, exact.cost / recursive.cost, coarse.error);
   return study;
 }

@@ -7,14 +7,14 @@
 
 namespace fettle::bench {
 
-/// Mean, 99th percentile (nearest rank) and largest of errors >= 0; zeros of none.
+/// Mean, 99th percentile (nearest rank) and largest of errors >= 0; all 0 without errors.
 void summarise(std::vector<double> errors, AccuracyRow& row);
 
 /// Median and largest of repeated times.
 void spread(std::vector<double> costs, AccuracyRow& row);
 
-/// The rows of one method or subject that an answer speaks of; the first with both names. Asserts that there
-/// is one.
+/// The row of a subject and method that an answer quotes: the first with both names. Asserts that there is
+/// one.
 [[nodiscard]] const AccuracyRow& rowOf(const Study& study, const std::string& subject,
                                        const std::string& method);
 

@@ -7,7 +7,7 @@
 
 namespace fettle::bench {
 
-/// A whole field as one array of doubles, row by row; no holes are asked for.
+/// A whole field as one array of doubles, row by row; without holes.
 struct Plane {
   std::int32_t width = 0, height = 0;
   std::vector<double> z;

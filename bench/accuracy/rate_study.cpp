@@ -19,16 +19,16 @@ namespace fettle::bench {
 namespace {
 
 constexpr double kReferenceHz = 40'000.0;
-constexpr double kStiffness = 2.0;  // N/mm: what a good hand device holds at 1 kHz
+constexpr double kStiffness = 2.0;  // N/mm: stable on a good hand device at 1 kHz
 constexpr double kRates[] = {500.0, 1000.0, 2000.0, 5000.0, 10'000.0};
 
 struct Pressed {
-  std::vector<glm::dvec3> force_n;            // a tick
-  std::vector<haptic::StrokeSample> strokes;  // what the ticks were given
-  double work_mj = 0.0;                       // of the surface on the hand, from free air to free air
+  std::vector<glm::dvec3> force_n;            // per tick
+  std::vector<haptic::StrokeSample> strokes;  // inputs of the ticks
+  double work_mj = 0.0;                       // of the surface on the hand, from free space to free space
 };
 
-// From free air, a tap, a press and a slide of 5 mm, and back into free air.
+// From free space, a tap, a press and a slide of 5 mm, and back into free space.
 Pressed press(const engine::Version& field, double rate_hz, double seconds) {
   haptic::Scene scene = haptic::defaultScene();
   scene.effects = {haptic::EffectKind::kSpring};
@@ -60,7 +60,7 @@ Pressed press(const engine::Version& field, double rate_hz, double seconds) {
   return out;
 }
 
-// The work of the held forces over the recorded places [mJ]: each is constant while it is held.
+// The work of the held forces over the recorded positions [mJ]: each is constant while it is held.
 double heldWork(const Pressed& pressed) {
   double work_mj = 0.0;
   for (std::size_t i = 0; i + 1 < pressed.strokes.size(); ++i)
@@ -68,7 +68,7 @@ double heldWork(const Pressed& pressed) {
   return work_mj;
 }
 
-// Nanoseconds a tick over what the hand did, without the hand.
+// Nanoseconds per tick over the recorded strokes, without the simulated hand.
 std::vector<double> times(const engine::Version& field, const Pressed& pressed) {
   haptic::Scene scene = haptic::defaultScene();
   scene.effects = {haptic::EffectKind::kSpring};
@@ -110,7 +110,7 @@ engine::Result<Study> rateStudy(const AccuracyOptions& options, engine::JobContr
   double check = 0.0;
   for (const Subject& subject : *subjects) {
     const Pressed reference = press(subject.field, kReferenceHz, seconds);
-    // Doubling the reference's own rate: what its answer still moves by.
+    // Doubling the reference's own rate: the remaining change of its result.
     if (subject.name == "flat") {
       const Pressed doubled = press(subject.field, 2.0 * kReferenceHz, seconds);
       double sum = 0.0;
@@ -195,7 +195,7 @@ engine::Result<Study> energyStudy(const AccuracyOptions& options, engine::JobCon
   study.reference = fmt::format(
       "A spring is conservative: from free air to free air it gives nothing. The work is that of the held "
       "force over "
-      "the hand's own steps within a tick; summed anew from the recorded ticks it is the same to {:.1e} mJ. "
+      "the hand's own steps within a tick; summed again from the recorded ticks it is the same to {:.1e} mJ. "
       "A hand "
       "holds its own: 0.15 kg on 0.3 N/mm with damping takes up what is given out, which is why it does not "
       "buzz "

@@ -21,7 +21,7 @@
 namespace fettle::bench {
 namespace {
 
-// Where a filter starts from, and what that took of machine and hand.
+// Input of a filter, and the machine time and manual time it took.
 struct Start {
   const char* name;
   engine::Version field;
@@ -29,12 +29,12 @@ struct Start {
   double hand_s = 0.0;
 };
 
-struct FilterWay {
+struct FilterSetting {
   engine::FilterKind kind;
   int window;
   int passes;
 };
-constexpr FilterWay kFilterWays[] = {
+constexpr FilterSetting kFilterSettings[] = {
     {engine::FilterKind::kBox, 3, 2},
     {engine::FilterKind::kBox, 5, 2},
     {engine::FilterKind::kBox, 9, 2},
@@ -49,20 +49,20 @@ constexpr FilterWay kFilterWays[] = {
     {engine::FilterKind::kTotalVariation, 17, 1},
     {engine::FilterKind::kTotalVariation, 31, 1},
 };
-// Marks keep a box of 9, twice, off the edge itself. Edge-preserving filters need none so wide.
+// Marks keep a box of 9, applied twice, away from the edge itself. Edge-preserving filters need less.
 constexpr double kReach = 2 * (9 / 2);
 
 enum Column : std::uint8_t { kFlats, kNearEdges, kWidth, kHand };
 
-engine::FilterSpec specOf(const FilterWay& way) {
+engine::FilterSpec specOf(const FilterSetting& setting) {
   engine::FilterSpec spec;
-  spec.kind = way.kind;
-  spec.window = way.window;
-  spec.passes = way.passes;
+  spec.kind = setting.kind;
+  spec.window = setting.window;
+  spec.passes = setting.passes;
   return spec;
 }
 
-// How a hand goes about it: what it smooths and marks, and which edges it leaves out.
+// How a hand works: what it smooths and marks, and which edges it omits.
 struct Care {
   const char* name;
   int smooth_passes;
@@ -118,7 +118,7 @@ const AccuracyRow* bestOf(const Study& study, const std::string& subject, bool e
   return least;
 }
 
-// What a person's time brings: of each start, the best filter of either family.
+// The effect of manual time: for each start, the best filter of either family.
 Study effortView(const Study& study, const std::vector<Start>& starts) {
   Study view;
   view.id = "restoration_effort";
@@ -159,7 +159,7 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
   const auto starts = startsOf(scan, job);
   if (!starts) return tl::unexpected(starts.error());
 
-  job.begin("restoration", starts->size() * std::size(kFilterWays) + 1);
+  job.begin("restoration", starts->size() * std::size(kFilterSettings) + 1);
   const auto judge = [&](const std::string& subject, const std::string& method, const engine::Version& field,
                          double seconds, double hand_s) -> engine::Status {
     engine::JobControl quiet;
@@ -182,17 +182,18 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
   if (auto ok = judge("scan as it came", "nothing", scan.scan, 0.0, 0.0); !ok)
     return tl::unexpected(ok.error());
   for (const Start& start : *starts)
-    for (const FilterWay& way : kFilterWays) {
+    for (const FilterSetting& setting : kFilterSettings) {
       if (job.cancelled()) return engine::cancelled();
       engine::JobControl quiet;
       const auto begin = std::chrono::steady_clock::now();
-      const auto spec = engine::withMeasuredRange(specOf(way), scan.scan, quiet);
+      const auto spec = engine::withMeasuredRange(specOf(setting), scan.scan, quiet);
       if (!spec) return tl::unexpected(spec.error());
       const auto filtered = engine::applyFilter(start.field, scan.scan, *spec, quiet);
       if (!filtered) return tl::unexpected(filtered.error());
       const double seconds = start.machine_s + engine::secondsSince(begin);
-      const std::string method = fmt::format("{} {}{}", engine::name(way.kind), way.window,
-                                             way.passes > 1 ? fmt::format(", {} passes", way.passes) : "");
+      const std::string method =
+          fmt::format("{} {}{}", engine::name(setting.kind), setting.window,
+                      setting.passes > 1 ? fmt::format(", {} passes", setting.passes) : "");
       if (auto ok = judge(start.name, method, filtered->field, seconds, start.hand_s); !ok)
         return tl::unexpected(ok.error());
     }
@@ -201,7 +202,7 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
       "a true edge; flats: further than 12. Bilateral and tv take their range sigma from the scan's noise, "
       "which their time includes. The hand is simulated (tremor and wander as measured on surgeons) and "
       "traces the part's edges once for each thing it does.";
-  const auto said = [](const AccuracyRow& row) {
+  const auto figures = [](const AccuracyRow& row) {
     return fmt::format("{:.1f} um ({}: flats {:.1f}, near edges {:.1f}, edges {:.2f} mm wide)", row.error,
                        row.method, row.more[kFlats], row.more[kNearEdges], row.more[kWidth]);
   };
@@ -213,9 +214,10 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
       "A filter that keeps edges by itself brings {} alone and {} around those marked by hand: marked "
       "samples keep their noise, so that marking pays for a box, and for these only where not a sample of "
       "an edge may move.",
-      study.rows.front().error, said(*bestOf(study, "alone", false)),
-      said(*bestOf(study, "around suggested edges", false)), hand_s, said(*bestOf(study, by_hand, false)),
-      said(*bestOf(study, "alone", true)), said(*bestOf(study, by_hand, true)));
+      study.rows.front().error, figures(*bestOf(study, "alone", false)),
+      figures(*bestOf(study, "around suggested edges", false)), hand_s,
+      figures(*bestOf(study, by_hand, false)), figures(*bestOf(study, "alone", true)),
+      figures(*bestOf(study, by_hand, true)));
   study.views.push_back(effortView(study, *starts));
   return study;
 }

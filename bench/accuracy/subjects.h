@@ -9,7 +9,7 @@
 
 namespace fettle::bench {
 
-/// A field with a name, made to be hard in one way.
+/// A named field that is difficult in one respect.
 struct Subject {
   std::string name;
   engine::Version field;
@@ -20,8 +20,8 @@ struct Subject {
                                                       const std::function<double(int, int)>& height);
 
 /// "flat"; "step", a wall of 1 mm, slanted over the grid; "ridge", walls one sample wide, 0.5 mm high;
-/// "groove", concave corners of 90 degrees; "noise", white, sigma 20 um. 0.05 mm apart, `side` samples each
-/// way.
+/// "groove", concave corners of 90 degrees; "noise", white, sigma 20 um. 0.05 mm apart, `side` samples in
+/// each direction.
 [[nodiscard]] engine::Result<std::vector<Subject>> hardSubjects(std::int32_t side);
 
 /// White noise of sigma 1 at a sample, the same for the same `seed`.

@@ -62,8 +62,8 @@ glm::dvec3 ofTriangles(const haptic::Patch& patch, const glm::dvec3& e) {
   return glm::dvec3(glm::dot(to_one, to_one) <= glm::dot(to_two, to_two) ? one : two);
 }
 
-// Newton's method on the bilinear patch, held to the unit square a coordinate at a time: what a tick does
-// inside one cell, to `steps` steps, in T throughout.
+// Newton's method on the bilinear patch, clamped to the unit square one coordinate at a time: the computation
+// of a tick inside one cell, with `steps` steps, in T throughout.
 template <class T>
 glm::dvec3 ofBilinear(const haptic::Patch& patch, const glm::dvec3& e, int steps) {
   const Corners<T> k = cornersOf<T>(patch);
@@ -99,8 +99,8 @@ std::vector<Case> casesOf(double sigma_mm, double away_mm, std::size_t count) {
   return cases;
 }
 
-// Coordinate descent in long double from 5 x 5 starts and the best of them: slow, and another way than the
-// reference's quintic. Distance.
+// Coordinate descent in long double from 5 x 5 starts and the best of them: slow, and independent of the
+// reference's quintic. Returns the distance.
 double bruteDistance(const Case& c) {
   double best = 1e300;
   for (int i = 0; i < 25; ++i) {
@@ -125,8 +125,8 @@ engine::Result<Study> surfaceStudy(const AccuracyOptions& options, engine::JobCo
   Study study;
   study.id = "surface";
   study.title = "Surface: what a cell is taken for";
-  study.question = "Would two triangles a cell, or float, be as good?";
-  study.cost_name = "time a cell";
+  study.question = "Would two triangles per cell, or float, be as good?";
+  study.cost_name = "time per cell";
   study.cost_unit = "ns";
   study.error_name = "mean distance from the closest point";
   study.error_unit = "mm";
@@ -186,7 +186,7 @@ engine::Result<Study> surfaceStudy(const AccuracyOptions& options, engine::JobCo
       row.hash = engine::hashOf(flat);
       row.wrong = std::numeric_limits<double>::quiet_NaN();
       summarise(std::move(errors), row);
-      // A method in float comes after its twin in double.
+      // A method in float comes after the same in double.
       if (std::string_view(method.name).ends_with("float")) {
         double off = 0.0;
         for (std::size_t i = 0; i < count; ++i) off += glm::length(points[i] - found.back()[i]);

@@ -14,7 +14,7 @@
 namespace fettle::bench {
 namespace {
 
-// What 16 bits of a range [low, high] keep of a height.
+// A height rounded to 16 bits of the range [low, high].
 double sixteen(double z, double low, double high) {
   if (!(high > low)) return low;
   return low + std::round((z - low) / (high - low) * 65535.0) / 65535.0 * (high - low);
@@ -34,9 +34,9 @@ double half(double z) {
 engine::Result<Study> uploadStudy(const AccuracyOptions& options, engine::JobControl& job) {
   Study study;
   study.id = "upload";
-  study.title = "Upload: bits a sample on the way to the picture";
-  study.question = "Would 16 bits a sample do?";
-  study.cost_name = "bytes a sample";
+  study.title = "Upload: bits per sample for the picture";
+  study.question = "Would 16 bits per sample be enough?";
+  study.cost_name = "bytes per sample";
   study.cost_unit = "B";
   study.error_name = "mean height error";
   study.error_unit = "um";
@@ -46,7 +46,7 @@ engine::Result<Study> uploadStudy(const AccuracyOptions& options, engine::JobCon
   if (!part) return tl::unexpected(part.error());
   std::vector<StudiedScan> subjects{{"milled part", part->scan}};
   if (options.scan) subjects.push_back(*options.scan);
-  job.begin("bits a sample", subjects.size());
+  job.begin("bits per sample", subjects.size());
   constexpr double kTileBytes = engine::kTileSide * engine::kTileSide;
   for (const StudiedScan& subject : subjects) {
     if (job.cancelled()) return engine::cancelled();

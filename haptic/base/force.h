@@ -15,8 +15,8 @@ struct ClampedForce {
   bool clamped = false;
 };
 
-/// What the hand may get of a force. One that is not finite becomes zero, and counts as clamped: it is the
-/// last stop before the hand. `limit_n` > 0.
+/// Limits a force before it is sent to the device: the last check in that chain. A force that is not finite
+/// becomes zero and counts as clamped. `limit_n` > 0.
 [[nodiscard]] inline ClampedForce clampForce(const glm::dvec3& force_n, double limit_n) noexcept {
   // Scaled by the largest component, so that squares neither overflow nor vanish.
   if (!std::isfinite(force_n.x + force_n.y + force_n.z)) return {glm::dvec3(0.0), 0.0, true};

@@ -7,12 +7,12 @@
 
 namespace fettle::haptic {
 
-/// The newest value of a stream, handed from one thread to one other: three buffers, of which the writer owns
-/// one, the reader owns one, and the third waits in the middle. Publishing swaps the writer's with the middle
-/// one, taking swaps the reader's with the middle one, so neither ever waits, and a value is whole whenever
-/// it is seen. (Simpson, Four-slot fully asynchronous communication mechanism, 1990, does the same without a
-/// swap instruction, at the price of a fourth slot.) What was not taken before the next publish is dropped:
-/// for events that must all arrive use a ring.
+/// Passes the newest value of a stream from one thread to one other. There are three buffers: one belongs to
+/// the writer, one to the reader, and the third is exchanged between them. publish() swaps the writer's
+/// buffer with the third, take() swaps the reader's with it, so neither ever waits and no value is read half
+/// written. (Simpson, Four-slot fully asynchronous communication mechanism, 1990, does the same without a
+/// swap instruction, with a fourth slot.) What was not taken before the next publish is dropped: for events
+/// that must all arrive use a ring.
 ///
 /// Threading: one writer thread calls publish(), one reader thread take() and latest(); both wait-free.
 template <class T>
@@ -29,8 +29,8 @@ class LatestSlot {
   /// Writer thread.
   void publish(const T& value) noexcept {
     buffers_[back_].value = value;
-    // Release: the copy above is whole for whoever takes this index. Acquire: the reader's last look at the
-    // buffer that comes back is over before the next publish writes to it.
+    // Release: the copy above is complete for the reader that takes this index. Acquire: the reader has
+    // finished with the buffer that comes back before the next publish writes to it.
     const std::uint8_t old =
         middle_.exchange(static_cast<std::uint8_t>(back_ | kFresh), std::memory_order_acq_rel);
     back_ = old & kIndex;
@@ -38,11 +38,11 @@ class LatestSlot {
 
   /// Reader thread: makes the newest published value latest(). False when there is none since last time.
   bool take() noexcept {
-    // Relaxed: only a hint. The reader alone clears the bit, so a set one stays set until the exchange below
-    // synchronises; a late sight of it costs one call.
+    // Relaxed: only a hint. Only the reader clears the bit, so a set bit stays set until the exchange below
+    // synchronises; seeing it late costs one call.
     if ((middle_.load(std::memory_order_relaxed) & kFresh) == 0) return false;
     // Acquire: sees the whole value of the publish that set the bit. Release: this thread's reads of the
-    // buffer it gives back come before the writer's next write to it.
+    // returned buffer come before the writer's next write to it.
     const std::uint8_t old = middle_.exchange(front_, std::memory_order_acq_rel);
     front_ = old & kIndex;
     return true;
@@ -54,7 +54,7 @@ class LatestSlot {
  private:
   static constexpr std::uint8_t kIndex = 3;
   static constexpr std::uint8_t kFresh = 4;
-  static constexpr std::size_t kLine = 64;  // cache line: the two sides never write to the same one
+  static constexpr std::size_t kLine = 64;  // cache line: the two threads never write to the same one
 
   struct alignas(kLine) Buffer {
     T value;

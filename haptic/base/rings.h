@@ -10,8 +10,8 @@
 namespace fettle::haptic {
 
 /// A bounded queue from one thread to one other, for records that own things (versions, scenes) and so must
-/// be moved, not copied: a popped or refused record leaves nothing behind that someone would free later on
-/// the wrong thread. (boost::lockfree::spsc_queue copies on push and assigns on pop, which frees on the
+/// be moved, not copied: a popped or refused record leaves nothing behind that would later be freed on the
+/// wrong thread. (boost::lockfree::spsc_queue copies on push and assigns on pop, which frees on the
 /// consumer.)
 ///
 /// Two counters that only grow, each written by one side and cached by the other. Sources: Lamport, "Proving
@@ -19,7 +19,7 @@ namespace fettle::haptic {
 /// lock-free, cache-efficient shared ring buffer" (2010).
 ///
 /// Threading: one producer thread (push, freePlaces), one consumer thread (pop, waiting); all wait-free,
-/// noexcept, nothing allocates but the constructor. Construct and destroy while nobody uses it.
+/// noexcept, nothing allocates but the constructor. Construct and destroy while no thread uses it.
 template <class T>
 class SpscRing {
   static_assert(std::is_nothrow_move_assignable_v<T> && std::is_default_constructible_v<T>);
@@ -46,7 +46,7 @@ class SpscRing {
     return true;
   }
 
-  /// Producer: records that a push is sure to take.
+  /// Producer: number of pushes that are certain to succeed.
   [[nodiscard]] std::size_t freePlaces() noexcept {
     const std::size_t pushed = pushed_.load(std::memory_order_relaxed);
     if (pushed - popped_seen_ > mask_ / 2)
@@ -68,7 +68,7 @@ class SpscRing {
     return true;
   }
 
-  /// Consumer: records that as many pops are sure to give.
+  /// Consumer: number of pops that are certain to succeed.
   [[nodiscard]] std::size_t waiting() noexcept {
     pushed_seen_ = pushed_.load(std::memory_order_acquire);
     return pushed_seen_ - popped_.load(std::memory_order_relaxed);

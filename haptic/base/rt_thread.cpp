@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kPage = 4096;
 
-// Touches the stack below, page by page, so that no tick meets it for the first time. Out of line: the frame
+// Touches the stack below, page by page, so that no tick takes a page fault there. Out of line: the frame
 // must end before the ticks begin.
 [[gnu::noinline]] void touchStack(std::size_t bytes) {
   auto* stack = static_cast<volatile char*>(alloca(bytes));
@@ -51,7 +51,7 @@ RealTimeScope::RealTimeScope(const RealTimeWish& wish) : before_(std::make_uniqu
   if (wish.lock_memory) lockMemory();
   touchStack(wish.stack_bytes);
   if (wish.hold_latency) holdLatency();
-  // Last: what comes before may take long.
+  // Last: the steps before it may take long.
   if (wish.priority > 0) schedule(wish.priority);
 }
 

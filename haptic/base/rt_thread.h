@@ -7,7 +7,7 @@
 
 namespace fettle::haptic {
 
-/// What a thread that must be on time asks of the system.
+/// What a real-time thread requests from the system.
 struct RealTimeWish {
   int core = -1;                         ///< core to stay on; -1 = the last of those the process may use
   int priority = 80;                     ///< SCHED_FIFO priority, 1 .. 99; 0 = normal scheduling
@@ -16,19 +16,19 @@ struct RealTimeWish {
   std::size_t stack_bytes = 256 * 1024;  ///< of its stack, touched beforehand
 };
 
-/// What it got.
+/// What the system granted.
 struct RealTimeReport {
   int core = -1;  ///< pinned to; -1 = not pinned
   int priority = 0;
   bool memory_locked = false;
   bool latency_held = false;
-  /// One sentence for each thing missing: what, why, and how to allow it. Empty: all there.
+  /// One sentence for each request that was not granted: what, why, and how to allow it. Empty: all granted.
   std::vector<std::string> missing;
 };
 
 /// Makes the calling thread a real-time one for the life of the object: pinned, SCHED_FIFO, pages locked on
 /// fault, stack touched, processor kept awake. What the system does not allow is reported, and the thread
-/// runs on without it. The destructor gives everything back.
+/// runs on without it. The destructor restores the previous state.
 ///
 /// mlockall(MCL_FUTURE) is only asked for when the limit of locked memory is infinite or does not apply: with
 /// a finite one the first allocation beyond it would fail, wherever in the program that is.
@@ -56,8 +56,8 @@ class RealTimeScope {
 };
 
 /// Flushes denormal floats to zero on the calling thread while it lives (FTZ and DAZ on x86, FZ on ARM;
-/// nothing elsewhere): one denormal operand can cost 150 cycles. Who must get the same bits as the loop uses
-/// the same scope.
+/// nothing elsewhere): one denormal operand can cost 150 cycles. Code whose results must be bit-identical to
+/// the loop's uses the same scope.
 class DenormalScope {
  public:
   DenormalScope() noexcept;

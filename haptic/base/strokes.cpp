@@ -24,7 +24,7 @@ constexpr std::string_view kStrokesHeader = "t,x,y,z,tool";
 constexpr std::string_view kForcesHeader = "t,proxy_x,proxy_y,proxy_z,fx,fy,fz,contact";
 constexpr std::array<std::string_view, kTools> kToolNames = {"feel", "smooth", "mark", "unmark"};
 
-// Rows are gathered to about this many bytes before they go to the disk.
+// Rows are collected to about this many bytes before they are written to the disk.
 constexpr std::size_t kWriteBytes = std::size_t{1} << 20;
 // Longest row: eight numbers of at most 24 characters ("-2.2250738585072014e-308") and their commas.
 constexpr std::size_t kLongestRow = 8 * 25 + 16;
@@ -55,7 +55,7 @@ engine::Result<std::string> readWhole(const std::string& path) {
   return text;
 }
 
-// The next line without its end; text moves on behind it.
+// The next line without its line end; `text` then begins after it.
 std::string_view takeLine(std::string_view& text) noexcept {
   const std::size_t end = text.find('\n');
   std::string_view line = text.substr(0, end);
@@ -64,7 +64,7 @@ std::string_view takeLine(std::string_view& text) noexcept {
   return line;
 }
 
-// What a user sees of a field that is wrong: short, whatever the file holds.
+// The part of an invalid field that a message shows: short, whatever the file holds.
 std::string shown(std::string_view text) {
   return std::string(text.substr(0, 24)) + (text.size() > 24 ? "..." : "");
 }
@@ -82,7 +82,7 @@ std::optional<std::string> parseRow(std::string_view row, StrokeSample& out) {
       if (error == std::errc{} && stop == end) return "a row needs the five columns t,x,y,z,tool";
       if (error == std::errc::result_out_of_range)
         return fmt::format("{} = {} is outside the range of numbers", kColumns[i], shown(field));
-      return fmt::format("{} = \"{}\" is no number", kColumns[i], shown(field));
+      return fmt::format("{} = \"{}\" is not a number", kColumns[i], shown(field));
     }
     at = stop + 1;
   }
@@ -95,7 +95,7 @@ std::optional<std::string> parseRow(std::string_view row, StrokeSample& out) {
   return fmt::format("the tool \"{}\" is not one of feel, smooth, mark, unmark", shown(tool));
 }
 
-// Gathers rows and hands them over in large pieces.
+// Collects rows and writes them in large pieces.
 class RowWriter {
  public:
   static engine::Result<RowWriter> create(const std::string& path, std::string_view header) {

@@ -28,14 +28,14 @@ inline constexpr int kTools = 4;
 
 /// One tick of a recorded stylus session.
 struct StrokeSample {
-  double t = 0.0;          ///< [s]; as recorded, the replay does one tick a row whatever it says
+  double t = 0.0;          ///< [s] as recorded; the replay runs one tick per row whatever the value
   glm::dvec3 tip_mm{0.0};  ///< endpoint in field coordinates [mm] (see engine::Grid)
   Tool tool = Tool::kFeel;
 
   friend bool operator==(const StrokeSample&, const StrokeSample&) = default;
 };
 
-/// What one tick gave back.
+/// The result of one tick.
 struct ForceSample {
   double t = 0.0;            ///< [s]
   glm::dvec3 proxy_mm{0.0};  ///< point on the surface while in contact, else the endpoint [mm]
@@ -45,32 +45,33 @@ struct ForceSample {
   friend bool operator==(const ForceSample&, const ForceSample&) = default;
 };
 
-/// Reads a strokes file: CSV, first line exactly `t,x,y,z,tool`, then one row a tick; LF or CRLF; a last line
-/// without line end is fine; blank lines at the end are too. Numbers in any form std::from_chars takes,
+/// Reads a strokes file: CSV, first line exactly `t,x,y,z,tool`, then one row per tick; LF or CRLF; a last
+/// line without line end and blank lines at the end are accepted. Numbers in any form std::from_chars
+/// accepts,
 /// "nan" and "inf" included (a recorded dropout: the tick treats it as no input).
 /// Errors (kInput, naming the line, counted from 1 with the header): unreadable path, wrong header, wrong
-/// number of columns, something that is no number, a number outside double's range, an unknown tool.
-/// Memory: the file plus 40 bytes a row. Thread: any.
+/// number of columns, a field that is not a number, a number outside double's range, an unknown tool.
+/// Memory: the file plus 40 bytes per row. Thread: any.
 [[nodiscard]] engine::Result<std::vector<StrokeSample>> readStrokes(const std::string& path);
 
 /// Writes a strokes file, whole or not at all. Numbers are the shortest that read back to the same double.
 /// Errors: kInput, the path cannot be written; kFailed, full disk.
 [[nodiscard]] engine::Status writeStrokes(const std::string& path, std::span<const StrokeSample> strokes);
 
-/// A strokes file written while the session goes on: whole or not at all, as writeStrokes. A program that is
-/// killed leaves the temporary file beside the final path: a strokes file with all that was flushed.
-/// Threading: one thread at a time; writes to the disk, so not the loop's. Errors as writeStrokes.
+/// A strokes file written during a session: whole or not at all, as writeStrokes. A program that is killed
+/// leaves the temporary file in the folder of the final path: a strokes file with all rows that were flushed.
+/// Threading: one thread at a time; writes to the disk, so not on the loop's thread. Errors as writeStrokes.
 class StrokesWriter {
  public:
   [[nodiscard]] static engine::Result<StrokesWriter> create(const std::string& path);
   StrokesWriter(StrokesWriter&&) noexcept;
   StrokesWriter& operator=(StrokesWriter&&) noexcept;
-  ~StrokesWriter();  ///< without commit(): nothing is left
+  ~StrokesWriter();  ///< without commit(): the temporary file is removed
 
   [[nodiscard]] engine::Status append(const StrokeSample& row);
-  /// All rows so far go to the system.
+  /// Passes all rows so far to the operating system.
   [[nodiscard]] engine::Status flush();
-  /// Puts the file in its place; at most once, last.
+  /// Renames the file to its final path; at most once, last.
   [[nodiscard]] engine::Status commit();
 
  private:

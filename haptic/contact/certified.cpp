@@ -8,8 +8,8 @@
 //   h(v) = sy (sy v - ey) Q^2 + sx M (c Q + d N) = 0,
 // a quintic. Its roots in [0, 1] are isolated in Bernstein form: the number of sign changes of the
 // coefficients bounds the number of roots and is exact when 0 or 1 (Descartes' rule; Lane and Riesenfeld
-// 1981, "Bounds on a polynomial"), and halving the interval ends the count. A coefficient too small to
-// trust counts as whichever sign makes more changes, so rounding may add a candidate but never lose one that
+// 1981, "Bounds on a polynomial"), and halving the interval ends the count. A coefficient below its rounding
+// error counts with the sign that makes more changes, so rounding may add a candidate but never lose one that
 // matters.
 
 #include "haptic/contact/certified.h"
@@ -73,8 +73,8 @@ double largest(const double* a, int n) noexcept {
 }
 
 // h on [low, low + size] in Bernstein form, and how large rounding may have made the error of a coefficient.
-// Made afresh from the linear parts for each interval rather than halved by de Casteljau: beside a spike Q
-// spans 24 decades, and what happens where it is small would be lost in the rounding of where it is large.
+// Computed from the linear parts for each interval rather than halved by de Casteljau: next to a spike Q
+// spans 24 decades, and its small values would be lost in the rounding of its large ones.
 Quintic quintic(const Reduced& r, double low, double size, double& noise) noexcept {
   // One rounding, doubled for the sums of a few.
   constexpr double kEps = 4.5e-16;
@@ -144,12 +144,12 @@ Changes signChanges(const Quintic& h, double noise) noexcept {
   return first < 0 ? Changes::kOneUp : Changes::kOneDown;
 }
 
-// The root of h between two places of which it is below zero at the first and above at the other. To the last
-// bit: next to a spike a patch is a valley along which nothing else converges. Secants that do not stick to
-// one end (Dowell and Jarratt 1971, "A modified regula falsi method"), and the middle wherever such a step
-// has not halved what is left, so that 54 halvings are enough whatever h is like.
+// The root of h between two places, with h below zero at the first and above zero at the second. To full
+// precision: next to a spike a patch is a valley along which no other method converges. Secants that do not
+// keep one end fixed (Dowell and Jarratt 1971, "A modified regula falsi method"), and the middle wherever
+// such a step has not halved what is left, so that 54 halvings are enough for any h.
 double rootBetween(const Reduced& r, double low, double high, double h_low, double h_high) noexcept {
-  int kept = 0;  // the end that the last step left where it was: -1 low, 1 high
+  int kept = 0;  // the end that the last step did not move: -1 low, 1 high
   for (int i = 0; i < 54; ++i) {
     const double half = 0.5 * (high - low);
     const double middle = low + half;
@@ -176,8 +176,8 @@ double rootBetween(const Reduced& r, double low, double high, double h_low, doub
 }
 
 // Calls f(v) near every root in [0, 1] at which h goes from below to above zero: the minima along v. May call
-// it elsewhere too. kNodes bounds the halvings: five roots need far fewer unless they coincide to rounding,
-// and then every point near them is as good.
+// it elsewhere too. kNodes bounds the halvings: five roots need far fewer unless they coincide within
+// rounding, and then every point near them is equally good.
 template <class F>
 void forEachMinimum(const Reduced& r, F&& f) noexcept {
   struct Interval {
@@ -209,7 +209,7 @@ void forEachMinimum(const Reduced& r, F&& f) noexcept {
   }
 }
 
-// The least magnitude between two numbers.
+// The smallest magnitude between two numbers.
 double least(double a, double b) noexcept {
   return (a > 0.0) == (b > 0.0) ? std::min(std::abs(a), std::abs(b)) : 0.0;
 }
@@ -244,12 +244,12 @@ PatchPoint closestOnEdgeU(const Patch& s, const glm::dvec3& e, double u) noexcep
 
 namespace {
 
-// Going down from the point below or above the endpoint.
+// Descent from the point below or above the endpoint.
 PatchPoint descend(const Patch& s, const glm::dvec3& endpoint) noexcept {
   return closestOnPatch(s, endpoint, unit((endpoint.x - s.x0) / s.sx), unit((endpoint.y - s.y0) / s.sy));
 }
 
-// Where the descent may have come to rest somewhere else: all edges and all stationary points besides.
+// For the case that the descent ended in another minimum: all edges and all stationary points.
 PatchPoint bestOfAll(const Patch& s, const glm::dvec3& endpoint, PatchPoint best) noexcept {
   for (const double side : {0.0, 1.0}) {
     keepNearer(best, closestOnEdgeV(s, endpoint, side));
@@ -263,8 +263,8 @@ PatchPoint bestOfAll(const Patch& s, const glm::dvec3& endpoint, PatchPoint best
   return best;
 }
 
-// Whether no point of the patch is nearer than `rest`, where the descent came to rest, but for rounding. With
-// D = (du, dv) the way from there to another point S, and a = e - S(rest),
+// Whether no point of the patch is nearer than `rest`, where the descent ended, apart from rounding. With D =
+// (du, dv) the way from there to another point S, and a = e - S(rest),
 //   |S - e|^2 = |a|^2 - 2 (a.Su du + a.Sv dv) + (sx^2 + P^2) du^2 + (sy^2 + Q^2) dv^2 + 2 (P Q - k) du dv,
 //   P = p + d dv / 2,  Q = q + d du / 2,  k = az d,  p and q the slopes at rest.
 // At rest the second term is not above zero for any way that stays in the patch, and the rest is not below
@@ -290,9 +290,9 @@ bool nothingNearer(const Patch& s, const glm::dvec3& e, const PatchPoint& rest) 
   return sum + 2.0 * product - k * k > 1e-12 * (sum + 2.0 * std::abs(product) + k * k);
 }
 
-// Squared distance that no point of the patch undercuts, as seen along `away`, a direction from some point to
-// the endpoint, not zero: a patch lies in the hull of its corners, and so no nearer than the nearest of their
-// four planes across that direction. Off by a few roundings of the heights nearby.
+// A lower bound of the squared distance to the patch, from its extent along `away`, a direction from some
+// point to the endpoint, not zero: a patch lies in the hull of its corners, and so no nearer than the nearest
+// of their four planes across that direction. Off by a few roundings of the heights nearby.
 [[gnu::always_inline]] inline double hullDistance2(const Patch& s, const glm::dvec3& e,
                                                    const glm::dvec3& away) noexcept {
   const double along_u = away.x * s.sx + away.z * s.b;
@@ -331,16 +331,16 @@ class CellSearch {
 
   void run() noexcept {
     const double reach_mm = std::min(radius_mm_, std::sqrt(best_.distance2_mm2));
-    // A hair more on each side: which cells belong is decided by their distance, not by this rounding.
-    constexpr double kHair = 1e-6;
+    // A margin on each side: which cells belong is decided by their distance, not by this rounding.
+    constexpr double kCellTolerance = 1e-6;
     const auto index = [](double x, std::int32_t cells) {
       return static_cast<std::int32_t>(std::clamp(std::floor(x), -1.0, static_cast<double>(cells)));
     };
     const auto first = [&](double x, double spacing, std::int32_t cells) {
-      return std::max(index((x - reach_mm) / spacing - kHair, cells), 0);
+      return std::max(index((x - reach_mm) / spacing - kCellTolerance, cells), 0);
     };
     const auto last = [&](double x, double spacing, std::int32_t cells) {
-      return std::min(index((x + reach_mm) / spacing + kHair, cells), cells - 1);
+      return std::min(index((x + reach_mm) / spacing + kCellTolerance, cells), cells - 1);
     };
     const std::int32_t c0 = first(e_.x, surface_.spacingX(), surface_.cellColumns());
     const std::int32_t c1 = last(e_.x, surface_.spacingX(), surface_.cellColumns());
@@ -356,7 +356,7 @@ class CellSearch {
   [[nodiscard]] const SurfacePoint& best() const noexcept { return best_; }
 
  private:
-  // A window narrower than this (a block of 8 is) is looked at cell by cell.
+  // A window narrower than this (a block of 8 is) is searched cell by cell.
   static constexpr int kWindowWithoutPyramid = 12;
 
   // Squared horizontal distance to the square of `side` cells from `cell` up.
@@ -397,8 +397,8 @@ class CellSearch {
       }
   }
 
-  // Whether the patch, which is its middle plane give or take a quarter of its twist, is farther away than
-  // the best point, with room for rounding.
+  // Whether the patch, which differs from its middle plane by at most a quarter of its twist, is farther away
+  // than the best point, with a margin for rounding.
   [[nodiscard]] bool planeIsBeyond(const Patch& s) const noexcept {
     const double p = (s.b + 0.5 * s.d) / s.sx;
     const double q = (s.c + 0.5 * s.d) / s.sy;
@@ -409,7 +409,7 @@ class CellSearch {
     return apart > 0.0 && apart * apart > best_.distance2_mm2 * (1.0 + p * p + q * q) * (1.0 + 1e-9);
   }
 
-  // About the closest point of the patch's middle plane, cut to the cell.
+  // Approximately the closest point of the patch's middle plane, clamped to the cell.
   [[nodiscard]] glm::dvec3 nearMiddle(const Patch& s) const noexcept {
     const double b = s.b + 0.5 * s.d;
     const double c = s.c + 0.5 * s.d;
@@ -428,8 +428,8 @@ class CellSearch {
 
   // At most kWindowWithoutPyramid columns.
   void cells(std::int32_t c0, std::int32_t r0, std::int32_t c1, std::int32_t r1) noexcept {
-    // The horizontal distance of a cell is a part along x and a part along y: as many of each as the window
-    // has columns and rows, instead of one of both a cell.
+    // The horizontal distance of a cell is a part along x and a part along y: one of each per column and row
+    // of the window, instead of both per cell.
     std::array<double, kWindowWithoutPyramid> dx2;
     for (std::int32_t column = c0; column <= c1; ++column) {
       const double dx = beyond(e_.x, column * surface_.spacingX(), (column + 1) * surface_.spacingX());
@@ -453,7 +453,7 @@ class CellSearch {
   }
 
   // From a vertex or an edge where the best point rests, the cells around it are as near as it is, and not
-  // nearer: which is seen along the way from it to the endpoint, with room for rounding.
+  // nearer: shown by their extent along the line from it to the endpoint, with a margin for rounding.
   [[nodiscard]] bool hullIsBeyond(const Patch& s, const glm::dvec3& from) const noexcept {
     constexpr double kRounding = 1.0 + 4e-15;
     const glm::dvec3 away = e_ - from;

@@ -12,10 +12,10 @@ namespace {
 
 using namespace detail;
 
-// What one call of searchClosest carries along. Everything is inlined into it: it is where ticks are spent.
+// The state of one call of searchClosest. Everything is inlined into it: most of a tick's time is spent here.
 class Descent {
  public:
-  // `patches`: room for two; outside, so that all the rest of this can live in registers.
+  // `patches`: room for two; outside, so that the rest can be held in registers.
   Descent(Surface& surface, Patch* patches, const glm::dvec3& endpoint, CellIndex start, Pair at) noexcept
       : surface_(surface),
         endpoint_(endpoint),
@@ -29,15 +29,15 @@ class Descent {
   [[gnu::always_inline]] inline SearchResult run(int most_rounds) noexcept;
 
  private:
-  // What a look around from the present point came to.
-  enum class Look : std::uint8_t { kMoved, kRests, kSlides };
+  // Outcome of a search around the present point.
+  enum class Outcome : std::uint8_t { kMoved, kRests, kSlides };
 
   [[gnu::always_inline]] inline bool retreat() noexcept;
-  [[gnu::always_inline]] inline Look lookAcross(const PatchView& p, PairMask across, int side) noexcept;
-  [[gnu::always_inline]] inline Look lookAround(const PatchView& p, int upper) noexcept;
+  [[gnu::always_inline]] inline Outcome searchAcross(const PatchView& p, PairMask across, int side) noexcept;
+  [[gnu::always_inline]] inline Outcome searchAround(const PatchView& p, int upper) noexcept;
   [[gnu::always_inline]] inline bool enter(int dc, int dr, double f) noexcept;
 
-  // Takes the patch in `beyond_` for the present one.
+  // Makes the patch in `beyond_` the present one.
   [[gnu::always_inline]] inline void cross(CellIndex cell, Pair at, double f) noexcept {
     std::swap(here_, beyond_);
     cell_ = cell;
@@ -54,7 +54,7 @@ class Descent {
   const glm::dvec3& endpoint_;
   const Pair spacing_;
   Patch* here_;
-  Patch* beyond_;              // the neighbour looked at
+  Patch* beyond_;              // the neighbour examined
   int side_of_beyond_ = -1;    // behind which side of the present cell beyond_ lies; -1: none
   bool beyond_there_ = false;  // that neighbour exists
   CellIndex cell_;
@@ -62,15 +62,16 @@ class Descent {
   Pair last_;  // where distance was last seen to fall
   double last_f_ = HUGE_VAL;
   double crossed_f_ = HUGE_VAL;  // distance at the last crossing: to cross again it must have become smaller,
-                                 // so that rounding cannot send the search to and fro
+                                 // so that rounding cannot make the search alternate
   bool newton_failed_ = false;
   int shrinks_ = 0;
   int rounds_here_ = 0;
   SearchResult result_;
 };
 
-// Newton overshot: take less of its step, which starts downhill; when even a sliver is no better, the slow
-// way; when that is not either, rounding is all there is, and it returns false.
+// Newton's step was too long: try a part of it, since it starts downhill; when even a small part is no
+// better, one coordinate at a time; when that is no better either, only rounding is left, and it returns
+// false.
 bool Descent::retreat() noexcept {
   if (shrinks_ < kMostShrinks) {
     ++shrinks_;
@@ -84,9 +85,9 @@ bool Descent::retreat() noexcept {
   return true;
 }
 
-// On a side that holds the descent, in the lane that `across` names: does distance fall beyond it? Both
+// On a side that stops the descent, in the lane that `across` names: does distance fall beyond it? Both
 // patches have the same slope along their common side; only the slope across is the neighbour's own.
-Descent::Look Descent::lookAcross(const PatchView& p, PairMask across, int side) noexcept {
+Descent::Outcome Descent::searchAcross(const PatchView& p, PairMask across, int side) noexcept {
   const bool first = (side & 4) != 0;
   const int way = (side & 3) != 0 ? 1 : -1;
   const CellIndex other{cell_.column + (first ? way : 0), cell_.row + (first ? 0 : way)};
@@ -94,13 +95,13 @@ Descent::Look Descent::lookAcross(const PatchView& p, PairMask across, int side)
     side_of_beyond_ = side;
     beyond_there_ = surface_.hasCell(other) && surface_.patch(other, *beyond_);
   }
-  if (!beyond_there_ || !(p.f < crossed_f_)) return Look::kSlides;
+  if (!beyond_there_ || !(p.f < crossed_f_)) return Outcome::kSlides;
   const Pair slope = Pair{beyond_->b, beyond_->c} + Pair{beyond_->d, beyond_->d} * swapped(at_);
   const Pair g = spacing_ * p.away + Pair{p.z, p.z} * slope;
   const PairMask falls = way > 0 ? less(g, Pair{0.0, 0.0}) : less(Pair{0.0, 0.0}, g);
-  if (lanes(both(across, falls)) == 0) return Look::kSlides;
+  if (lanes(both(across, falls)) == 0) return Outcome::kSlides;
   cross(other, chosen(across, Pair{1.0, 1.0} - at_, at_), p.f);
-  return Look::kMoved;
+  return Outcome::kMoved;
 }
 
 bool Descent::enter(int dc, int dr, double f) noexcept {
@@ -111,9 +112,9 @@ bool Descent::enter(int dc, int dr, double f) noexcept {
   return true;
 }
 
-// At a vertex that holds the descent. Four edges meet there, along which the slopes of the four cells are
+// At a vertex that stops the descent. Four edges meet there, along which the slopes of the four cells are
 // those of the edges; the present cell has two of them and distance falls along neither.
-Descent::Look Descent::lookAround(const PatchView& p, int upper) noexcept {
+Descent::Outcome Descent::searchAround(const PatchView& p, int upper) noexcept {
   const int up_u = upper & 1;
   const int up_v = upper >> 1;
   const int dc = 2 * up_u - 1;
@@ -126,9 +127,9 @@ Descent::Look Descent::lookAround(const PatchView& p, int upper) noexcept {
   const bool falls_v = may_cross && spacing_[1] * p.away[1] * dr + p.z * (star.across_v - height) < 0.0;
   if ((falls_u && falls_v && enter(dc, dr, p.f)) || (falls_u && (enter(dc, 0, p.f) || enter(dc, dr, p.f))) ||
       (falls_v && (enter(0, dr, p.f) || enter(dc, dr, p.f))))
-    return Look::kMoved;
+    return Outcome::kMoved;
   result_.ringed = !falls_u && !falls_v && star.complete();
-  return Look::kRests;
+  return Outcome::kRests;
 }
 
 SearchResult Descent::run(int most_rounds) noexcept {
@@ -137,7 +138,7 @@ SearchResult Descent::run(int most_rounds) noexcept {
   const Pair one{1.0, 1.0};
   result_.cells = 1;
   result_.end = SearchEnd::kBound;
-  bool settled = false;  // no step inside the patch is worth taking
+  bool settled = false;  // no step inside the patch makes the distance smaller
   for (int round = 0; round < most_rounds && result_.cells < kMaxCellsVisited; ++round) {
     const Patch& s = *here_;
     const Pair e = Pair{endpoint_.x, endpoint_.y} - Pair{s.x0, s.y0};
@@ -150,7 +151,7 @@ SearchResult Descent::run(int most_rounds) noexcept {
     shrinks_ = 0;
     last_ = at_;
     last_f_ = p.f;
-    // Past that many rounds in one cell it is rounding that moves it.
+    // After that many rounds in one cell only rounding moves it.
     if (++rounds_here_ > kNewtonSteps) [[unlikely]]
       settled = true;
 
@@ -173,13 +174,12 @@ SearchResult Descent::run(int most_rounds) noexcept {
     }
     if (held != 3) {
       const PairMask across = held == 1 ? firstLane() : secondLane();
-      if (lookAcross(p, across, held << 2 | (lanes(high) & held)) == Look::kMoved) {
+      if (searchAcross(p, across, held << 2 | (lanes(high) & held)) == Outcome::kMoved) {
         settled = false;
         continue;
       }
-      // Along an edge the distance is quadratic: one exact step, and the next round sees whether it holds.
-      // Both lanes are stepped and one is thrown away, because which one is anybody's guess to a branch
-      // predictor.
+      // Along an edge the distance is quadratic: one exact step, and the next round checks it. Both lanes are
+      // stepped and one is discarded, because a branch predictor cannot predict which one.
       const Pair to = settled ? at_ : chosen(across, at_, unit(at_ - g / h));
       const Pair moved = absolute(to - at_);
       at_ = to;
@@ -192,7 +192,7 @@ SearchResult Descent::run(int most_rounds) noexcept {
         break;
       }
     }
-    if (lookAround(p, lanes(equal(at_, one))) == Look::kRests) {
+    if (searchAround(p, lanes(equal(at_, one))) == Outcome::kRests) {
       result_.end = SearchEnd::kAtRest;
       break;
     }

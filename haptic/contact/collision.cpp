@@ -34,7 +34,7 @@ RayWalk::RayWalk(Surface& surface, const glm::dvec3& from, const glm::dvec3& to)
   if (surface.cellColumns() < 1 || surface.cellRows() < 1) return;
   double enter = 0.0;
   double leave = 1.0;
-  // Endpoints 1e300 mm away overflow the direction: such a ray touches nothing that could be computed.
+  // Endpoints 1e300 mm away overflow the direction: for such a ray no contact can be computed.
   if (!std::isfinite(dx_) || !std::isfinite(dy_) || !std::isfinite(dz_)) return;
   if (!clip(gx_, dx_, surface.cellColumns(), enter, leave) ||
       !clip(gy_, dy_, surface.cellRows(), enter, leave))
@@ -49,7 +49,7 @@ RayWalk::RayWalk(Surface& surface, const glm::dvec3& from, const glm::dvec3& to)
   done_ = false;
 }
 
-// Where the ray meets the sides of the square of 2^shift cells that holds the present cell, uncut.
+// Where the ray meets the sides of the square of 2^shift cells that holds the present cell, not clipped.
 RayWalk::Exit RayWalk::exitOf(int shift) const noexcept {
   const double side = static_cast<double>(std::int64_t{1} << shift);
   Exit exit;
@@ -68,9 +68,9 @@ double RayWalk::leaveAt(const Exit& exit) const noexcept {
   return std::max(std::min(end_, std::min(exit.x, exit.y)), at_);
 }
 
-// Moves to the first cell beyond the square. The side that is crossed moves by whole numbers; the other
-// coordinate is computed, kept within the square and never moved backwards, so rounding cannot stall the
-// walk.
+// Moves to the first cell beyond the square. The coordinate across that side moves by whole numbers; the
+// other coordinate is computed, kept within the square and never moved backwards, so rounding cannot stall
+// the walk.
 void RayWalk::step(int shift, const Exit& exit, double leave) noexcept {
   if (std::min(exit.x, exit.y) >= end_) {
     done_ = true;
@@ -116,7 +116,7 @@ bool RayWalk::clears(int level, double ray_low) const noexcept {
 bool RayWalk::next(RayCell& out) noexcept {
   while (!done_ && steps_ < kMaxSteps) {
     ++steps_;
-    // Squares first while the ray leaves the smaller one: a short ray never looks at the pyramid.
+    // Larger squares are tried only after the ray left a smaller one: a short ray never reads the pyramid.
     if (level_ >= 0) {
       const int shift = 3 * (level_ + 1);
       const Exit exit = exitOf(shift);

@@ -22,7 +22,7 @@ SearchResult countedSearch(Surface& surface, const glm::dvec3& endpoint, CellInd
 
 // The contact test at what a search found. Where distance is at a local minimum over all cells that share the
 // point, the penetration vector is made of their normals with weights of one sign, and all normals have
-// z > 0: its own z tells the side, and no normal is worked out (four square roots at a vertex).
+// z > 0: its z decides the side, and no normal is computed (four square roots at a vertex).
 bool touchesAt(Surface& surface, const SearchResult& found, const glm::dvec3& endpoint,
                TickCounters& counters, Contact& out) noexcept {
   if (!found.ringed) return contactTest(surface, found.point, endpoint, counters, out);
@@ -69,8 +69,8 @@ bool ContactTracker::collide(Surface& surface, const glm::dvec3& endpoint, bool 
 
   RayWalk walk(surface, from, endpoint);
   RayCell candidate;
-  // Searches from cells that the ray only might touch are legal and bounded in number: the own cell, tried
-  // last, does not depend on them.
+  // The number of searches from cells that the ray may touch is limited: the endpoint's own cell, tried last,
+  // does not depend on them.
   constexpr int kMaxSearches = 16;
   int searches = 0;
   while (searches < kMaxSearches && walk.next(candidate)) {
@@ -86,8 +86,8 @@ bool ContactTracker::collide(Surface& surface, const glm::dvec3& endpoint, bool 
   counters.search_bound_hits += walk.stoppedByBound() ? 1 : 0;
   if (!below) return false;
   if (searchFrom(own, endpoint)) return true;
-  // Below the surface, and yet every local search came to rest on a sheet that faces away: the closest point
-  // of the cells next to it can not. Rare (spikes), so its cost does not matter.
+  // Below the surface, but every local search ended on a part that faces away: the closest point of the
+  // neighbouring cells cannot. Rare (spikes), so its cost does not matter.
   SurfacePoint closest;
   const double cell = std::max(surface.spacingX(), surface.spacingY());
   return certifiedClosest(surface, endpoint, cell, closest) &&

@@ -14,9 +14,9 @@ namespace fettle::haptic {
 /// The outcome of one tick's contact.
 struct Contact {
   bool touching = false;
-  // The rest means something only while touching.
+  // The rest is valid only while touching.
   SurfacePoint proxy;
-  glm::dvec3 penetration_mm{0.0};  ///< proxy minus endpoint; surfaceNormal() gives the normal to who needs it
+  glm::dvec3 penetration_mm{0.0};  ///< proxy minus endpoint; for the normal call surfaceNormal()
 };
 
 /// The two modes of the seed paper, as a state machine over ticks.
@@ -25,32 +25,32 @@ struct Contact {
 ///        +------+  ----------------------------->  +------------+
 ///        | free |                                  | in contact |  keeps the proxy's cell and parameters
 ///        +------+  <-----------------------------  +------------+
-///                   test not positive and none on the ray; endpoint beside the field or over a hole;
+///                   test not positive and none on the ray; endpoint outside the field or over a hole;
 ///                   bad input
 ///
-/// Test: dot(proxy - endpoint, normal) > 0. Exactly zero, an endpoint on the surface for one, is no contact;
-/// its force would be zero.
+/// Test: dot(proxy - endpoint, normal) > 0. Exactly zero, for example with an endpoint on the surface, is no
+/// contact; its force would be zero.
 ///
 /// Level paper. In contact, the search for the local closest point starts at the previous proxy. Free, or
-/// when that comes to nothing, it starts from the cells under the haptic ray (previous to current endpoint),
+/// when that finds no contact, it starts from the cells under the haptic ray (previous to current endpoint),
 /// one after the other until the test is positive. All below the surface is material: an endpoint that is
 /// below the surface of its own cell is found whatever the ray was, because its own cell is the ray's last.
 /// When it is not, only a ray that comes down through a patch counts (it went through a wall within one
-/// tick), so that a tip that clears a ridge is not held by it. So a fast hand can not fall through, and one
-/// that is pushed out of the far side of a wall stays with the near side until its proxy slides off.
+/// tick), so that a tip that passes above a ridge is not held by it. So a fast hand cannot fall through, and
+/// a tip pushed out of the far side of a wall stays in contact with the near side until its proxy slides off.
 ///
 /// Level certified. Has no memory but the endpoint: the tip touches when it is below the surface of its own
 /// cell, and the proxy is the true closest point within the radius.
 ///
-/// At both levels the tip touches only over a cell without holes: beside the field and over holes there is
-/// nothing to feel (counted). The side of the field and the walls of holes are no surface; who enters the
-/// material through them is in contact at once (counted).
+/// At both levels the tip touches only over a cell without holes: outside the field and over holes nothing is
+/// felt (counted). The sides of the field and the walls of holes are no surface; a tip that enters the
+/// material through them is in contact immediately (counted).
 ///
 /// At a point that is a local minimum of the distance over all cells that share it the penetration vector is
 /// a combination of their normals with weights of one sign, and all of these have z > 0: the sign of proxy.z
-/// - endpoint.z is the test, and no normal is worked out. Only where a hole, the border or the search's bound
-/// cuts the search short the mean normal is. It can point to the wrong side, at a pit with slopes of 1 and
-/// 1000 for one; where the two disagree over four cells the sign decides (counted).
+/// - endpoint.z is the test, and no normal is computed. The mean normal is used only where a hole, the border
+/// or the search's bound ended the search early. It can point to the wrong side, for example at a pit with
+/// slopes of 1 and 1000; where the two disagree over four cells the sign decides (counted).
 ///
 /// Threading: one thread; wait-free, noexcept, allocates nothing.
 class ContactTracker {
@@ -59,11 +59,11 @@ class ContactTracker {
       : level_(level), radius_cells_(certified_radius_cells), search_rounds_(search_rounds) {}
 
   /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt.
-  /// `contact` is overwritten (in place, because it is 100 bytes a tick).
+  /// `contact` is overwritten (in place, which saves copying 100 bytes per tick).
   void update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters,
               Contact& contact) noexcept;
 
-  /// Forgets contact and previous endpoint, as before the first tick: the next ray is a point.
+  /// Discards contact and previous endpoint, as before the first tick: the next ray is a point.
   void reset() noexcept {
     touching_ = false;
     has_previous_ = false;
@@ -75,7 +75,7 @@ class ContactTracker {
   [[nodiscard]] bool collide(Surface& surface, const glm::dvec3& endpoint, bool below, CellIndex own,
                              TickCounters& counters, Contact& out) noexcept;
 
-  /// Whether a ray within one cell stays above its patch: no walk is needed to see that it hits nothing.
+  /// Whether a ray within one cell stays above its patch: no walk is needed then: it hits nothing.
   [[nodiscard]] bool staysAbove(CellIndex own, const Patch& own_patch, const glm::dvec3& endpoint,
                                 bool below) const noexcept;
 

@@ -16,7 +16,7 @@ namespace fettle::haptic {
   return {-slope_x / length, -slope_y / length, 1.0 / length};
 }
 
-/// The surface's normal at a point and from how many cells it is the mean.
+/// The surface's normal at a point, and of how many cells it is the mean.
 struct SurfaceNormal {
   glm::dvec3 direction{0.0, 0.0, 1.0};  ///< unit length, z > 0
   int cells = 0;  ///< 1 inside a cell, 2 on an edge, up to 4 at a vertex; holes left out

@@ -9,16 +9,16 @@
 
 namespace fettle::haptic {
 
-/// Two doubles side by side, mostly what belongs to u and to v: one operation works on both, each rounded as
-/// it would be alone. A vector type of GCC and Clang; p[0], p[1] are the two.
+/// Two doubles in one register, mostly the values for u and for v: one operation works on both, each rounded
+/// as a single one would be. A vector type of GCC and Clang; p[0], p[1] are the two.
 using Pair = double __attribute__((vector_size(16)));
 
 [[nodiscard]] inline Pair swapped(Pair p) noexcept {
   return Pair{p[1], p[0]};
 }
 
-/// What comparing two pairs gives, lane by lane; comparisons with NaN are false. Intrinsics, because from the
-/// compilers' own comparison operators GCC 12 makes a detour through two general registers.
+/// Result of comparing two pairs, lane by lane; comparisons with NaN are false. Intrinsics, because GCC 12
+/// compiles the comparison operators of vectors through two general registers.
 #if defined(__SSE2__)
 using PairMask = __m128d;
 [[nodiscard]] inline PairMask equal(Pair a, Pair b) noexcept {
@@ -51,7 +51,7 @@ using PairMask = __m128d;
 [[nodiscard]] inline Pair absolute(Pair x) noexcept {
   return _mm_andnot_pd(_mm_set1_pd(-0.0), x);
 }
-/// True in one lane alone.
+/// True in the first lane only.
 [[nodiscard]] inline PairMask firstLane() noexcept {
   return _mm_castsi128_pd(_mm_set_epi64x(0, -1));
 }
@@ -63,7 +63,7 @@ using PairMask = __m128d;
   return _mm_movemask_pd(mask);
 }
 #else
-using PairMask = int;  // as lanes() gives it
+using PairMask = int;  // as lanes() returns it
 [[nodiscard]] inline PairMask equal(Pair a, Pair b) noexcept {
   return (a[0] == b[0] ? 1 : 0) | (a[1] == b[1] ? 2 : 0);
 }

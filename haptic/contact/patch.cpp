@@ -21,8 +21,8 @@ PatchPoint closestOnPatch(const Patch& s, const glm::dvec3& endpoint, double u0,
   for (int round = 0; round < kNewtonSteps; ++round) {
     const PatchView p(s, spacing, e, ez, at);
     if (p.f > last_f * kSame) [[unlikely]] {
-      // Newton overshot: take less of its step, which starts downhill; when even a sliver is no better, the
-      // slow way; when that is not either, rounding is all there is.
+      // Newton's step was too long: try a part of it, since it starts downhill; when even a small part is no
+      // better, one coordinate at a time; when that is no better either, only rounding is left.
       if (shrinks < kMostShrinks) {
         ++shrinks;
         at = last + 0.25 * (at - last);
@@ -44,8 +44,8 @@ PatchPoint closestOnPatch(const Patch& s, const glm::dvec3& endpoint, double u0,
         either(both(equal(at, zero), atMost(zero, g)), both(equal(at, one), atMost(g, zero)));
     if (const int sides = lanes(held); sides != 0) {
       if (sides == 3) return {at[0], at[1], p.f};
-      // On an edge the distance is quadratic: one exact step, and the next round sees whether it holds. Both
-      // lanes are stepped and one is thrown away, because which one is anybody's guess to a branch predictor.
+      // On an edge the distance is quadratic: one exact step, and the next round checks it. Both lanes are
+      // stepped and one is discarded, because a branch predictor cannot predict which one.
       const Pair step = unit(at - g / h) - at;
       const Pair to = chosen(held, at, unit(at + step));
       const bool rests =

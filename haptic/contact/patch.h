@@ -12,10 +12,10 @@ struct PatchPoint {
   double distance2_mm2 = 0.0;
 };
 
-/// The bounded local closest point: where distance, going down from (u0, v0) in [0, 1]^2, comes to rest
-/// within the patch. Newton's method while the Hessian is positive definite and the point stays inside, else
-/// the exact minimum along one parameter at a time (distance is quadratic in u alone and in v alone). Points
-/// on edges have u or v exactly 0 or 1. Never farther than the start, but for rounding; at most kNewtonSteps
+/// The bounded local closest point: where a descent of the distance from (u0, v0) in [0, 1]^2 ends within the
+/// patch. Newton's method while the Hessian is positive definite and the point stays inside, else the exact
+/// minimum along one parameter at a time (distance is quadratic in u alone and in v alone). Points on edges
+/// have u or v exactly 0 or 1. Never farther than the start, apart from rounding; at most kNewtonSteps
 /// rounds.
 ///
 /// Source: Potter, Johnson, Cohen 2004, "Height field haptics"; active set on a box as in Nocedal and Wright,

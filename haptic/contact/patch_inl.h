@@ -9,18 +9,18 @@
 namespace fettle::haptic::detail {
 
 // Newton converges quadratically: a step this small leaves an error of about its square. Smaller steps change
-// the distance by less than its last bit, so that comparing distances would stop making sense.
+// the distance by less than its last bit, so that distances could no longer be compared.
 inline constexpr double kLastStep = 1e-7;
-// One parameter at a time converges linearly and is exact on an edge: go on to the last bits.
+// One parameter at a time converges linearly and is exact on an edge: continue to full precision.
 inline constexpr double kLastCoordinateStep = 1e-14;
-// Distances this close are the same but for rounding.
+// Distances this close are equal apart from rounding.
 inline constexpr double kSame = 1.0 + 1e-15;
 // Largest fuv^2 / (fuu fvv) that counts as safely convex.
 inline constexpr double kLargestCoupling = 0.998;
-// Quarterings of a Newton step that overshot, before the slow way is taken.
+// Quarterings of a Newton step that was too long, before one coordinate at a time is stepped.
 inline constexpr int kMostShrinks = 8;
 
-/// A point of a patch as the endpoint sees it: f = away^2 + z^2 and halves of its derivatives. u and v go
+/// A point of a patch relative to the endpoint: f = away^2 + z^2 and halves of its derivatives. u and v go
 /// through all of this as one pair, which the machine adds, multiplies and compares in one instruction.
 struct PatchView {
   Pair pq;    ///< slopes along u and v [mm]
@@ -44,14 +44,15 @@ struct PatchView {
   }
 };
 
-/// Where a descent goes next, and whether that is so near that it is the last step.
+/// The next point of a descent, and whether it is so near that it is the last step.
 struct PatchStep {
   Pair to;
   bool last;
 };
 
-/// One step down from a point of the patch at which no side holds the descent: Newton's, cut at the first
-/// side it meets; or, where that leads nowhere or `newton_failed`, the exact minimum along u, then along v.
+/// One step down from a point of the patch at which no side stops the descent: Newton's, cut at the first
+/// side it meets; or, where that is no descent or after `newton_failed`, the exact minimum along u, then
+/// along v.
 /// A slow step clears `newton_failed` unless it is the last.
 [[nodiscard, gnu::always_inline]] inline PatchStep stepInside(const Patch& s, Pair spacing, double ez,
                                                               Pair at, const PatchView& p, Pair g, Pair h,
@@ -60,8 +61,8 @@ struct PatchStep {
   const Pair one{1.0, 1.0};
   double fuv = p.pq[0] * p.pq[1] + p.z * s.d;
   if (fuv * fuv > kLargestCoupling * h[0] * h[1]) [[unlikely]] {
-    // Not convex here: with less coupling the step is still downhill, and far better than one parameter at
-    // a time, which crawls along valleys.
+    // Not convex here: with less coupling the step is still downhill, and far better than one parameter at a
+    // time, which is slow along valleys.
     fuv = std::copysign(std::sqrt(kLargestCoupling * h[0] * h[1]), fuv);
   }
   if (!newton_failed) [[likely]] {

@@ -11,8 +11,8 @@ struct SharingCell {
 };
 
 /// Calls f(SharingCell) for the OTHER cells of the field that share the point: none for an interior point,
-/// one for an edge, three for a vertex, fewer at the border. Holes are not looked at. Order: across u, across
-/// v, across both.
+/// one for an edge, three for a vertex, fewer at the border. Holes are not tested for. Order: across u,
+/// across v, across both.
 template <class F>
 void forEachSharing(const Surface& surface, CellIndex cell, double u, double v, F&& f) noexcept {
   const int across_u = u == 0.0 ? -1 : (u == 1.0 ? 1 : 0);

@@ -42,7 +42,7 @@ bool onPlanes(const glm::dvec3& goal, const HalfSpace* h, const int* set, int n,
   const glm::dvec3& n2 = h[set[2]].normal;
   const double volume = glm::dot(across, n2);
   if (!(volume * volume > kParallel)) return false;
-  // The three planes meet in a point; its offset from the goal, told in the normals.
+  // The three planes meet in a point; its offset from the goal, in terms of the normals.
   const glm::dvec3 a = glm::cross(n1, n2) / volume;
   const glm::dvec3 b = glm::cross(n2, n0) / volume;
   const glm::dvec3 c = across / volume;
@@ -72,8 +72,8 @@ Projection projectOnHalfSpaces(const glm::dvec3& goal, const HalfSpace* h, int c
       at.solved = true;
       return at;
     }
-    // The new one holds, with none, one or two, or three of those that held before; the first of these that
-    // satisfies the others is the answer for all four, because it is unique.
+    // The new half-space is active, together with none, one, two or three of those active before; the first
+    // combination that satisfies the others is the answer for all four, because it is unique.
     Trial best;
     int best_set[3] = {worst, 0, 0};
     int best_n = 0;

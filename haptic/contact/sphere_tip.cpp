@@ -15,9 +15,10 @@ namespace {
 
 constexpr double kTolerance = 1e-6;
 constexpr double kRest = 1e-4;
-// What the window is loaded with around the centre, in steps: a hand at 50 mm/s over cells of 0.05 mm.
+// Margin around the centre with which the window is loaded, in steps: a hand at 50 mm/s over cells of 0.05
+// mm.
 constexpr double kRoomSteps = 2.0;
-// A step is tried again with what it ran into, and at last shorter.
+// A step is tried again with the contacts it met, and finally shorter.
 constexpr int kCutRounds = 6;
 constexpr int kHalvings = 12;
 
@@ -82,29 +83,30 @@ bool SphereTracker::clearOfAll(const Surface& surface, const glm::dvec3& a,
   return true;
 }
 
-void SphereTracker::look(const Surface& surface, const glm::dvec3& centre, TouchList& out) noexcept {
+void SphereTracker::findContacts(const Surface& surface, const glm::dvec3& centre,
+                                 SphereContactList& out) noexcept {
   const double reach = radius_ + slack_;
   if (!window_.holds(centre)) window_.load(surface, centre, reach, kRoomSteps * step_);
-  window_.touches(centre, reach, out);
+  window_.contacts(centre, reach, out);
   out.below = window_.heightUnder(centre) > centre.z;
-  looked_from_[&out == &lists_[0] ? 0 : 1] = centre;
+  list_centres_[&out == &lists_[0] ? 0 : 1] = centre;
 }
 
-// What an earlier tick knows of the surface goes when the surface may be another.
-void SphereTracker::forgetEdited(const Surface& surface) noexcept {
+// Data of an earlier tick is discarded when the surface may have changed.
+void SphereTracker::discardEdited(const Surface& surface) noexcept {
   if (felt_ == &surface && felt_refreshes_ == surface.refreshes()) return;
   felt_ = &surface;
   felt_refreshes_ = surface.refreshes();
-  window_.forget();
-  looked_from_.fill(glm::dvec3(NAN));
+  window_.invalidate();
+  list_centres_.fill(glm::dvec3(NAN));
 }
 
-// Out of the material, straight up: the material grown by the ball is all below one height, so that halving
-// finds it. Ends less than the tolerance above it.
+// Moves the centre straight up out of the material: the material grown by the ball is all below one height,
+// so that bisection finds it. Ends less than the tolerance above it.
 void SphereTracker::lift(const Surface& surface) noexcept {
-  TouchList& near = lists_[here_];
+  SphereContactList& near = lists_[here_];
   const auto isFree = [&](double z) {
-    look(surface, {centre_.x, centre_.y, z}, near);
+    findContacts(surface, {centre_.x, centre_.y, z}, near);
     return !near.below && near.nearest_mm >= radius_;
   };
   if (isFree(centre_.z)) return;
@@ -116,12 +118,12 @@ void SphereTracker::lift(const Surface& surface) noexcept {
     (isFree(middle) ? high : low) = middle;
   }
   centre_.z = high;
-  look(surface, centre_, near);
+  findContacts(surface, centre_, near);
 }
 
-// What a touch of the goal asks of a step from the centre: the surface's own plane there when the centre
-// respects it (flat and concave parts), else the plane square to the line from the point to the centre, which
-// it always does (Newton's step towards touching the point).
+// The half-space that a contact at the goal adds for a step from the centre: the surface's own plane there
+// when the centre satisfies it (flat and concave parts), else the plane perpendicular to the line from the
+// point to the centre, which the centre always satisfies (Newton's step towards touching the point).
 HalfSpace SphereTracker::cutFor(const glm::dvec3& point, const glm::dvec3& normal) const noexcept {
   const glm::dvec3 from = centre_ - point;
   const double offset = radius_ - glm::dot(normal, from);
@@ -131,38 +133,38 @@ HalfSpace SphereTracker::cutFor(const glm::dvec3& point, const glm::dvec3& norma
   return {from / distance, radius_ - distance};
 }
 
-int SphereTracker::halfSpacesAt(const TouchList& near) noexcept {
+int SphereTracker::halfSpacesAt(const SphereContactList& near) noexcept {
   for (int i = 0; i < near.count; ++i) {
-    const Touch& t = near.touches[static_cast<std::size_t>(i)];
+    const SphereContact& t = near.contacts[static_cast<std::size_t>(i)];
     half_spaces_[static_cast<std::size_t>(i)] = {t.normal, radius_ - t.distance_mm};
   }
   return near.count;
 }
 
-// Adds what the ball ran into at a goal: the two deepest touches there, or the surface above its centre.
-int SphereTracker::addCuts(const glm::dvec3& to, TouchList& there, double tolerance, int seen,
+// Adds what the ball met at a goal: the two deepest contacts there, or the surface above its centre.
+int SphereTracker::addCuts(const glm::dvec3& to, SphereContactList& there, double tolerance, int seen,
                            int cuts) noexcept {
-  const auto add = [&](const Touch& t) {
-    // The oldest makes room.
+  const auto add = [&](const SphereContact& t) {
+    // Replaces the oldest.
     const int at = cuts < kMostCuts ? cuts++ : oldest_cut_++ % kMostCuts;
     half_spaces_[static_cast<std::size_t>(seen + at)] = cutFor(t.point_mm, t.normal);
     cuts_[static_cast<std::size_t>(at)] = t;
   };
-  Touch under;
+  SphereContact under;
   if (there.below) {
     if (window_.under(to, under)) add(under);
     return cuts;
   }
   for (int n = 0; n < 2; ++n) {
-    Touch* deepest = nullptr;
+    SphereContact* deepest = nullptr;
     for (int i = 0; i < there.count; ++i) {
-      Touch& t = there.touches[static_cast<std::size_t>(i)];
+      SphereContact& t = there.contacts[static_cast<std::size_t>(i)];
       if (t.distance_mm < radius_ - tolerance && (deepest == nullptr || t.distance_mm < deepest->distance_mm))
         deepest = &t;
     }
     if (deepest == nullptr) break;
     add(*deepest);
-    deepest->distance_mm = radius_;  // taken; the list is looked up anew after this
+    deepest->distance_mm = radius_;  // used; the list is searched again after this
   }
   return cuts;
 }
@@ -180,18 +182,18 @@ glm::dvec3 SphereTracker::slideOf(const Projection& step) const noexcept {
   return glm::dvec3(0.0);
 }
 
-// The step with what holds the ball taken as curved, as it is: along it Newton's step for the distance to the
-// endpoint (the second derivative of the Lagrangian function; Nocedal and Wright 2006, "Numerical
-// Optimization", section 18.1), out of it by what the curve rises on the way. False when it is the plain step
-// or no minimum is that way.
+// The step with the active contacts taken as curved, as they are: along it Newton's step for the distance to
+// the endpoint (the second derivative of the Lagrangian function; Nocedal and Wright 2006, "Numerical
+// Optimization", section 18.1), out of it by what the curve rises on the way. False when it equals the plain
+// step or there is no minimum in that direction.
 bool SphereTracker::bentStep(const Projection& step, const glm::dvec3& slide, int seen,
                              glm::dvec3& out) const noexcept {
   if (step.count < 1 || step.count > 2) return false;
   const double long2 = length2(slide);
   if (!(long2 > 1e-20 * step_ * step_)) return false;
-  const auto touch = [&](int k) -> const Touch& {
+  const auto touch = [&](int k) -> const SphereContact& {
     const int index = step.active[static_cast<std::size_t>(k)];
-    return index < seen ? lists_[static_cast<std::size_t>(here_)].touches[static_cast<std::size_t>(index)]
+    return index < seen ? lists_[static_cast<std::size_t>(here_)].contacts[static_cast<std::size_t>(index)]
                         : cuts_[static_cast<std::size_t>(index - seen)];
   };
   const auto normal = [&](int k) -> const glm::dvec3& {
@@ -231,9 +233,9 @@ bool SphereTracker::bentStep(const Projection& step, const glm::dvec3& slide, in
   return true;
 }
 
-// Moves a step that came a little into the material out of it by the shortest way, as the touches there have
-// it.
-bool SphereTracker::liftedOut(const TouchList& there, glm::dvec3& step) noexcept {
+// Moves a step that ends slightly inside the material out of it by the shortest path, according to the
+// contacts there.
+bool SphereTracker::liftedOut(const SphereContactList& there, glm::dvec3& step) noexcept {
   if (there.below || there.nearest_mm < radius_ - slack_) return false;
   const int count = halfSpacesAt(there);
   const Projection out = projectOnHalfSpaces(glm::dvec3(0.0), half_spaces_.data(), count, 0.01 * tolerance_);
@@ -267,18 +269,18 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
       }
     };
     takeHalfSpaces();
-    // An edit may have raised the surface into the ball: half of it comes out a step.
+    // An edit may have raised the surface into the ball: half of it is undone per step.
     const double reach_in = std::max(tolerance, 0.5 * (radius_ - lists_[here_].nearest_mm));
-    TouchList& there = lists_[1 - here_];
+    SphereContactList& there = lists_[1 - here_];
     const glm::dvec3 start = centre_;
     const auto tryOut = [&](const glm::dvec3& to) {
-      look(surface, to, there);
+      findContacts(surface, to, there);
       if (there.below || !(there.nearest_mm >= radius_ - reach_in)) return false;
       centre_ = to;
       return true;
     };
     double part = 1.0;
-    double went2 = -1.0;  // squared length of a bent step that was taken
+    double bent_length2 = -1.0;  // squared length of a bent step that was taken
     bool moved = false;
     glm::dvec3 slide{0.0};
     for (int round = 0; round < kCutRounds + kHalvings && !moved; ++round) {
@@ -288,8 +290,8 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
         const double far = glm::length(step.y);
         const double back = glm::dot(step.y, last);
         if (round == 0) {
-          // Back where it came from, as in a bowl narrower than the press is deep, where each step
-          // overshoots: half as far as it came, and slowly more again, so that steps shrink whatever the
+          // The step reverses the last one, as in a bowl narrower than the press is deep, where each step is
+          // too long: half of the last length, then slowly more again, so that steps shrink for any
           // curvature.
           const double came = glm::length(last);
           longest = back < 0.0 && -2.0 * back > far * came ? 0.5 * came : std::min(step_, 1.3 * longest);
@@ -303,9 +305,9 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
             moved = tryOut(centre_ + bent);
             if (!moved && liftedOut(there, bent) && nearer()) moved = tryOut(centre_ + bent);
           }
-          went2 = length2(bent);
+          bent_length2 = length2(bent);
           if (moved) break;
-          went2 = -1.0;
+          bent_length2 = -1.0;
           takeHalfSpaces();
         }
       } else {
@@ -316,13 +318,13 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
       if (!moved && round < kCutRounds - 1) cuts = addCuts(to, there, tolerance, seen, cuts);
     }
     if (!moved) {
-      // Nowhere to go but for rounding: held where it is.
+      // No step left apart from rounding: the ball stays where it is.
       counters.search_bound_hits += step.solved ? 0 : 1;
       arrival = Arrival::kTouching;
       break;
     }
     here_ = 1 - here_;
-    const double length_2 = went2 >= 0.0 ? went2 : part * part * length2(step.y);
+    const double length_2 = bent_length2 >= 0.0 ? bent_length2 : part * part * length2(step.y);
     if (step.count == 0 && part == 1.0)
       arrival = Arrival::kFree;
     else if (length_2 <= rest * rest)
@@ -342,7 +344,7 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
     if (step.share[static_cast<std::size_t>(k)] > step.share[static_cast<std::size_t>(most)]) most = k;
   if (step.count > 0) {
     const int index = step.active[static_cast<std::size_t>(most)];
-    pressed_ = index < seen ? lists_[made_from].touches[static_cast<std::size_t>(index)]
+    pressed_ = index < seen ? lists_[made_from].contacts[static_cast<std::size_t>(index)]
                             : cuts_[static_cast<std::size_t>(index - seen)];
   }
   return arrival;
@@ -361,17 +363,18 @@ Contact SphereTracker::update(Surface& surface, const glm::dvec3& endpoint, Tick
     return contact;
   }
   const double farthest = kSphereSteps * step_;
-  forgetEdited(surface);
+  discardEdited(surface);
   if (!was_placed || !(length2(moved) <= farthest * farthest)) {
     centre_ = endpoint;
     lift(surface);
   } else {
-    // A ball that rests was looked at by the last tick.
-    if (looked_from_[static_cast<std::size_t>(here_)] != centre_) look(surface, centre_, lists_[here_]);
+    // The contacts of a ball at rest were found by the last tick.
+    if (list_centres_[static_cast<std::size_t>(here_)] != centre_)
+      findContacts(surface, centre_, lists_[here_]);
     if (lists_[here_].below || lists_[here_].nearest_mm < 0.5 * radius_) lift(surface);
   }
   const Arrival arrival = walk(surface, endpoint, counters);
-  if (lists_[here_].nearest_mm < radius_ - toleranceMm(centre_.z)) lift(surface);  // still not out of an edit
+  if (lists_[here_].nearest_mm < radius_ - toleranceMm(centre_.z)) lift(surface);  // raised by an edit
   touching_ = arrival != Arrival::kFree;
   if (!touching_) return contact;
 

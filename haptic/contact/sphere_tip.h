@@ -37,25 +37,26 @@ inline constexpr int kSphereSteps = 128;
 ///                 x            pressed().normal = from there to the centre
 ///              endpoint
 ///
-/// A ball on a height field is a point on another one: the material M = all at or below the surface, grown by
-/// the ball, is all at or below H(x, y) = max over |d| <= r of h((x, y) + d) + sqrt(r^2 - |d|^2). So the free
-/// space is in one piece, a centre can always be lifted out of the material, and the tip touches exactly when
-/// the endpoint is within r of the material or below the surface.
+/// A ball on a height field is equivalent to a point on another one: the material M = all at or below the
+/// surface, grown by the ball, is all at or below H(x, y) = max over |d| <= r of h((x, y) + d) + sqrt(r^2 -
+/// |d|^2). So the free space is connected, a centre can always be lifted out of the material, and the tip
+/// touches exactly when the endpoint is within r of the material or below the surface.
 ///
-/// One tick: the centre starts where it was and walks towards the endpoint, a step at a time. A step is the
-/// projection of the endpoint on the half-spaces n . (x - p) >= r of all touches nearby: their active set, at
-/// most three, holds the ball (Zilles and Salisbury 1995). For a convex part of the surface the half-space is
-/// an inner approximation, so the step and the way to it stay out of it. One or two touches leave the ball a
-/// way along them: there the step is Newton's on the curved surface rather than on its planes, and when it
-/// ends a little in the material it is moved out by the shortest way. Where that fails, the plain step is
-/// taken, and what rises into the ball on the way (concave parts) is added as a half-space of its own and the
-/// step is taken again. Every step makes the centre's distance to the endpoint smaller, so the ball comes to
-/// rest on both walls of a groove rather than to jump between them. It ends when a step is shorter than the
-/// tolerance, or after so many steps (counted in search_bound_hits; the centre is free of the material and
-/// goes on in the next tick). Fewer than kSphereSteps bound the tick's time: a ball that rolls into another
-/// hollow takes a few ticks for it, and one that is drawn through free air faster than that lags behind.
+/// One tick: the centre starts where it was and moves towards the endpoint in steps. A step is the projection
+/// of the endpoint on the half-spaces n . (x - p) >= r of all contacts nearby: their active set, at most
+/// three, supports the ball (Zilles and Salisbury 1995). For a convex part of the surface the half-space is
+/// an inner approximation, so the step and the path to it stay out of it. With one or two contacts the ball
+/// can slide along them: there the step is Newton's on the curved surface rather than on its planes, and when
+/// it ends slightly inside the material it is moved out by the shortest path. Where that fails, the plain
+/// step is taken, and what rises into the ball on its path (concave parts) is added as a further half-space
+/// and the step is computed again. Every step makes the centre's distance to the endpoint smaller, so the
+/// ball comes to rest on both walls of a groove and does not jump between them. It ends when a step is
+/// shorter than the tolerance, or after the largest number of steps (counted in search_bound_hits; the centre
+/// is free of the material and continues in the next tick). Fewer than kSphereSteps bound the tick's time: a
+/// ball that rolls into another hollow needs a few ticks for it, and one that is moved through free space
+/// faster than that lags behind.
 ///
-/// The samples around the ball, and the touches where it rests, are kept from tick to tick until the surface
+/// The samples around the ball, and the contacts where it rests, are kept from tick to tick until the surface
 /// is refreshed.
 ///
 /// Sources: Zilles, Salisbury 1995, "A constraint-based god-object method for haptic display"; Ruspini,
@@ -68,17 +69,19 @@ inline constexpr int kSphereSteps = 128;
 /// Continuity: steps are at most stepMm(), between a quarter of a cell and a cell, and both ends are free of
 /// the material. A ball cannot step over anything that would lift its centre by more than s^2 / (8 r) for a
 /// step s: 1/16 of a cell for r = 2 cells. A hand that moves more than kSphereSteps steps in one tick is
-/// placed anew, lifted out vertically, as it is at the first tick; so is a centre that an edit buried.
+/// placed again, lifted out vertically, as at the first tick; so is a centre that an edit left inside the
+/// material.
 ///
 /// Holes and borders. A ball rests on the rim of a hole that is too small for it, and falls into a larger
-/// one; there, and beside the field, walls hold it sideways. Unlike the point tip, which nothing holds there.
+/// one; there, and outside the field, walls support it sideways, unlike the point tip, which nothing supports
+/// there.
 ///
 /// As r -> 0 the centre goes to the closest point of the surface that the point tip has.
 ///
 /// Threading: one thread; wait-free, noexcept, allocates nothing.
 class SphereTracker {
  public:
-  /// `radius_mm` > 0; over kMostSphereCells cells it is cut to that (sphereProblem tells before).
+  /// `radius_mm` > 0; over kMostSphereCells cells it is clamped to that (sphereProblem reports it before).
   /// `most_steps`, 1 .. kSphereSteps, of a tick.
   SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps = kSphereSteps) noexcept;
 
@@ -86,7 +89,7 @@ class SphereTracker {
   /// by Surface::refreshes().
   [[nodiscard]] Contact update(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters) noexcept;
 
-  /// Forgets the centre, as before the first tick.
+  /// Discards the centre, as before the first tick.
   void reset() noexcept {
     placed_ = false;
     touching_ = false;
@@ -94,8 +97,8 @@ class SphereTracker {
 
   /// Centre after the last tick [mm]; equal to the endpoint while nothing is touched.
   [[nodiscard]] const glm::dvec3& centre() const noexcept { return centre_; }
-  /// The touch that bears most of the force, while touching: contact.proxy with its normal.
-  [[nodiscard]] const Touch& pressed() const noexcept { return pressed_; }
+  /// The contact that carries most of the force, while touching: contact.proxy with its normal.
+  [[nodiscard]] const SphereContact& pressed() const noexcept { return pressed_; }
   [[nodiscard]] double radiusMm() const noexcept { return radius_; }
   [[nodiscard]] double stepMm() const noexcept { return step_; }
   [[nodiscard]] double toleranceMm(double height_mm) const noexcept;
@@ -105,17 +108,17 @@ class SphereTracker {
 
   [[nodiscard]] bool clearOfAll(const Surface& surface, const glm::dvec3& a,
                                 const glm::dvec3& b) const noexcept;
-  void look(const Surface& surface, const glm::dvec3& centre, TouchList& out) noexcept;
-  void forgetEdited(const Surface& surface) noexcept;
+  void findContacts(const Surface& surface, const glm::dvec3& centre, SphereContactList& out) noexcept;
+  void discardEdited(const Surface& surface) noexcept;
   void lift(const Surface& surface) noexcept;
   [[nodiscard]] HalfSpace cutFor(const glm::dvec3& point, const glm::dvec3& normal) const noexcept;
-  [[nodiscard]] int halfSpacesAt(const TouchList& near) noexcept;
-  [[nodiscard]] int addCuts(const glm::dvec3& to, TouchList& there, double tolerance, int seen,
+  [[nodiscard]] int halfSpacesAt(const SphereContactList& near) noexcept;
+  [[nodiscard]] int addCuts(const glm::dvec3& to, SphereContactList& there, double tolerance, int seen,
                             int cuts) noexcept;
   [[nodiscard]] glm::dvec3 slideOf(const Projection& step) const noexcept;
   [[nodiscard]] bool bentStep(const Projection& step, const glm::dvec3& slide, int seen,
                               glm::dvec3& out) const noexcept;
-  [[nodiscard]] bool liftedOut(const TouchList& there, glm::dvec3& step) noexcept;
+  [[nodiscard]] bool liftedOut(const SphereContactList& there, glm::dvec3& step) noexcept;
   [[nodiscard]] Arrival walk(const Surface& surface, const glm::dvec3& endpoint,
                              TickCounters& counters) noexcept;
 
@@ -127,15 +130,15 @@ class SphereTracker {
   glm::dvec3 previous_{0.0};  // endpoint
   bool placed_ = false;
   bool touching_ = false;
-  Touch pressed_;  // the touch with the largest share of the force, after walk()
+  SphereContact pressed_;  // the contact with the largest share of the force, after walk()
   SphereWindow window_;
-  int here_ = 0;  // which list is that of the centre; the other is for where it may go
-  std::array<TouchList, 2> lists_;
-  std::array<glm::dvec3, 2> looked_from_{glm::dvec3(NAN), glm::dvec3(NAN)};  // centres of the lists
-  const Surface* felt_ = nullptr;  // what window and lists are of, and its refreshes() then
+  int here_ = 0;  // index of the centre's list; the other is for the next position
+  std::array<SphereContactList, 2> lists_;
+  std::array<glm::dvec3, 2> list_centres_{glm::dvec3(NAN), glm::dvec3(NAN)};  // centres of the lists
+  const Surface* felt_ = nullptr;  // the surface of window and lists, and its refreshes() then
   std::uint64_t felt_refreshes_ = 0;
-  std::array<HalfSpace, TouchList::kMost + kMostCuts> half_spaces_;
-  std::array<Touch, kMostCuts> cuts_;
+  std::array<HalfSpace, SphereContactList::kMost + kMostCuts> half_spaces_;
+  std::array<SphereContact, kMostCuts> cuts_;
   int oldest_cut_ = 0;
 };
 

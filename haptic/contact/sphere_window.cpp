@@ -7,14 +7,14 @@
 #include <glm/geometric.hpp>
 
 #include "haptic/contact/normal.h"
-#include "haptic/contact/touch_lanes.h"
+#include "haptic/contact/sphere_contact_lanes.h"
 
 namespace fettle::haptic {
 
 namespace {
 
-// Two cells must never both leave a touch on their common side to the other: what rounding may do to the
-// comparison, relative. A touch too many there does no harm, it is the same as its neighbour's.
+// Of two cells at least one must report a contact on their common side: the relative rounding allowed in that
+// comparison. A contact reported twice does no harm, both are the same.
 constexpr double kSeam = 1e-10;
 
 double beyond(double x, double low, double high) noexcept {
@@ -35,7 +35,7 @@ void SphereWindow::load(const Surface& surface, const glm::dvec3& centre, double
   sx_ = surface.spacingX();
   sy_ = surface.spacingY();
   const double around = reach_mm + room_mm;
-  // One cell more than the ball reaches: whether a side of a cell is a rim shows in its neighbour.
+  // One cell more than the ball reaches: its neighbour decides whether a side of a cell is a rim.
   const auto first = [&](double x, double s, std::int32_t samples) {
     return indexWithin((x - around) / s, -1, samples + 1) - 1;
   };
@@ -55,7 +55,7 @@ void SphereWindow::load(const Surface& surface, const glm::dvec3& centre, double
   const double unit = surface.heightUnit();
   const std::int32_t samples = columns_ * rows_;
   double highest = -HUGE_VAL;
-  double sum = 0.0;  // NaN when there is one; kept apart from the maximum, which drops them
+  double sum = 0.0;  // NaN when there is one; separate from the maximum, which ignores NaN
   for (std::int32_t k = 0; k < samples; ++k) {
     const double z = unit * static_cast<double>(raw_[static_cast<std::size_t>(k)]);
     z_[static_cast<std::size_t>(k)] = z;
@@ -77,7 +77,7 @@ bool SphereWindow::valid(std::int32_t i, std::int32_t j) const noexcept {
   return !std::isnan(z.z00 + z.z10 + z.z01 + z.z11);
 }
 
-bool SphereWindow::under(const glm::dvec3& at, Touch& out) const noexcept {
+bool SphereWindow::under(const glm::dvec3& at, SphereContact& out) const noexcept {
   const double x = at.x / sx_ - column_;
   const double y = at.y / sy_ - row_;
   if (!(x >= 0.0 && y >= 0.0 && x < columns_ - 1 && y < rows_ - 1)) return false;
@@ -114,14 +114,14 @@ double SphereWindow::heightUnder(const glm::dvec3& at) const noexcept {
     const double v = y - j;
     return z.z00 + (z.z10 - z.z00) * u + ((z.z01 - z.z00) + (z.z11 - z.z10 - z.z01 + z.z00) * u) * v;
   }
-  Touch point;
+  SphereContact point;
   return under(at, point) ? point.point_mm.z : -HUGE_VAL;
 }
 
 // The squared distance to the nearest of S(u, v), halved, has the second derivative I - J H^-1 J^T (the foot
 // moves with the centre): J the surface's derivatives that are free at the touch, H its own second
 // derivatives in them. The distance is the root of twice that.
-double SphereWindow::bend(const glm::dvec3& centre, const Touch& touch, const glm::dvec3& a,
+double SphereWindow::bend(const glm::dvec3& centre, const SphereContact& touch, const glm::dvec3& a,
                           const glm::dvec3& b) const noexcept {
   const glm::dvec3 m = centre - touch.point_mm;
   const double distance = glm::length(m);
@@ -156,10 +156,11 @@ double SphereWindow::bend(const glm::dvec3& centre, const Touch& touch, const gl
   return (glm::dot(a, b) - foot) / distance;
 }
 
-// One look for touches: everything relative to the centre.
+// One search for contacts: everything relative to the centre.
 class SphereWindow::Collector {
  public:
-  Collector(const SphereWindow& window, const glm::dvec3& centre, double reach, TouchList& out) noexcept
+  Collector(const SphereWindow& window, const glm::dvec3& centre, double reach,
+            SphereContactList& out) noexcept
       : w_(window),
         c_(centre),
         reach_(reach),
@@ -169,27 +170,27 @@ class SphereWindow::Collector {
         out_(out) {}
 
   void cell(std::int32_t i, std::int32_t j) noexcept;
-  void abreast(std::int32_t i0, std::int32_t i1, std::int32_t j0, std::int32_t j1) noexcept;
+  void vectorised(std::int32_t i0, std::int32_t i1, std::int32_t j0, std::int32_t j1) noexcept;
 
  private:
-  // Touches are kept with distance squared first; the root is taken of those that stay.
+  // Contacts are kept with squared distance first; the root is taken of those that remain.
   void add(std::int32_t i, std::int32_t j, double u, double v, const glm::dvec3& m, double d2) noexcept {
     const double distance = std::sqrt(d2);
     out_.nearest_mm = std::min(out_.nearest_mm, distance);
     int at = out_.count;
-    if (at == TouchList::kMost) {
+    if (at == SphereContactList::kMost) {
       at = 0;
-      for (int k = 1; k < TouchList::kMost; ++k)
-        if (out_.touches[static_cast<std::size_t>(k)].distance_mm >
-            out_.touches[static_cast<std::size_t>(at)].distance_mm)
+      for (int k = 1; k < SphereContactList::kMost; ++k)
+        if (out_.contacts[static_cast<std::size_t>(k)].distance_mm >
+            out_.contacts[static_cast<std::size_t>(at)].distance_mm)
           at = k;
-      if (out_.touches[static_cast<std::size_t>(at)].distance_mm <= distance) return;
+      if (out_.contacts[static_cast<std::size_t>(at)].distance_mm <= distance) return;
     } else {
       ++out_.count;
     }
-    Touch& t = out_.touches[static_cast<std::size_t>(at)];
+    SphereContact& t = out_.contacts[static_cast<std::size_t>(at)];
     t.point_mm = c_ - m;
-    // A centre on the surface itself has no direction; up is never wrong.
+    // A centre on the surface itself has no direction; up is always valid.
     t.normal = distance > 0.0 ? m * (1.0 / distance) : glm::dvec3(0.0, 0.0, 1.0);
     t.distance_mm = distance;
     t.cell = {w_.column_ + i, w_.row_ + j};
@@ -282,7 +283,7 @@ class SphereWindow::Collector {
   const SphereWindow& w_;
   glm::dvec3 c_;
   double reach_, reach2_, seam_x_, seam_y_;
-  TouchList& out_;
+  SphereContactList& out_;
 };
 
 // Minima inside the cell. The distance is quadratic in u, so that along v there is a function of v alone,
@@ -302,7 +303,7 @@ class SphereWindow::Valley {
         ey(centre.y - (w.row_ + j) * sy),
         w0(z.z00 - centre.z) {}
 
-  // Of g; leaves u, height and g's own second derivative behind.
+  // Slope of g; also stores u, the height and g's second derivative.
   [[nodiscard]] double slopeAt(double v) noexcept {
     const double p = b + d * v;
     const double w = w0 + c * v;
@@ -379,7 +380,7 @@ void SphereWindow::Collector::wall(std::int32_t ci, std::int32_t cj, std::int32_
   const double q = along_x ? c_.x - (w_.column_ + i) * s : c_.y - (w_.row_ + j) * s;
   const double t = std::clamp(q / s, 0.0, 1.0);
   const double other = along_x ? z[1] : z[w_.columns_];
-  if (c_.z >= z[0] + t * (other - z[0])) return;  // above the rim: its edge and its samples see to that
+  if (c_.z >= z[0] + t * (other - z[0])) return;  // above the rim: its edge and its samples handle that
   const bool at_end = q < 0.0 || q > s;
   const std::int32_t vi = i + (along_x && t == 1.0 ? 1 : 0);
   const std::int32_t vj = j + (!along_x && t == 1.0 ? 1 : 0);
@@ -394,7 +395,7 @@ void SphereWindow::Collector::wall(std::int32_t ci, std::int32_t cj, std::int32_
   add(ci, cj, along_x ? t : side, along_x ? side : t, {mx, my, 0.0}, d2);
 }
 
-// What the cells below and left of this one would report, where they are none; and the walls.
+// What the cells below and to the left would report, where there are none; and the walls.
 void SphereWindow::Collector::rims(std::int32_t i, std::int32_t j) noexcept {
   const bool left = w_.valid(i - 1, j);
   const bool below = w_.valid(i, j - 1);
@@ -420,7 +421,7 @@ void SphereWindow::Collector::cell(std::int32_t i, std::int32_t j) noexcept {
   const Corners z = w_.corners(i, j);
   if (!w_.whole_) [[unlikely]]
     rims(i, j);
-  // The patch is its middle plane give or take a quarter of its twist.
+  // The patch differs from its middle plane by at most a quarter of its twist.
   const double b = 0.5 * (z.z10 - z.z00 + z.z11 - z.z01);
   const double c = 0.5 * (z.z01 - z.z00 + z.z11 - z.z10);
   const double d = z.z11 - z.z10 - z.z01 + z.z00;
@@ -438,20 +439,20 @@ void SphereWindow::Collector::cell(std::int32_t i, std::int32_t j) noexcept {
 }
 
 // What cell() does, for cells without holes around them and two samples beyond each in the window.
-void SphereWindow::Collector::abreast(std::int32_t i0, std::int32_t i1, std::int32_t j0,
-                                      std::int32_t j1) noexcept {
-  const TouchKernels& kernels = touchKernels();
+void SphereWindow::Collector::vectorised(std::int32_t i0, std::int32_t i1, std::int32_t j0,
+                                         std::int32_t j1) noexcept {
+  const SphereContactKernels& kernels = sphereContactKernels();
   const LaneWindow window{w_.z_.data(), w_.columns_, w_.column_, w_.row_, w_.sx_, w_.sy_};
   const LaneProbe ball{c_.x, c_.y, c_.z, reach_, reach2_, seam_x_, seam_y_};
-  std::array<LaneCell, kMostSide * kMostSide + kTouchLanes> cells;
+  std::array<LaneCell, kMostSide * kMostSide + kSphereContactLanes> cells;
   const int count = kernels.reached(window, ball, i0, i1, j0, j1, cells.data());
   LaneFinds finds;
-  for (int from = 0; from < count; from += kTouchLanes) {
+  for (int from = 0; from < count; from += kSphereContactLanes) {
     const LaneCell* some = cells.data() + from;
-    kernels.look(window, ball, some, std::min(count - from, kTouchLanes), finds);
-    const auto take = [&](const LaneTouches& touches, std::size_t k, double u, double v) {
-      if ((touches.found >> k & 1u) != 0)
-        add(some[k].i, some[k].j, u, v, {touches.mx[k], touches.my[k], touches.mz[k]}, touches.d2[k]);
+    kernels.find(window, ball, some, std::min(count - from, kSphereContactLanes), finds);
+    const auto take = [&](const LaneContacts& contacts, std::size_t k, double u, double v) {
+      if ((contacts.found >> k & 1u) != 0)
+        add(some[k].i, some[k].j, u, v, {contacts.mx[k], contacts.my[k], contacts.mz[k]}, contacts.d2[k]);
     };
     // In the order of cell(), which decides how ties are broken.
     for (unsigned left = finds.sample.found | finds.edge_x.found | finds.edge_y.found | finds.inside.found |
@@ -473,17 +474,18 @@ void SphereWindow::Collector::abreast(std::int32_t i0, std::int32_t i1, std::int
   }
 }
 
-void SphereWindow::touches(const glm::dvec3& centre, double reach_mm, TouchList& out) const noexcept {
+void SphereWindow::contacts(const glm::dvec3& centre, double reach_mm,
+                            SphereContactList& out) const noexcept {
   collect(centre, reach_mm, out, true);
 }
 
-void SphereWindow::touchesCellByCell(const glm::dvec3& centre, double reach_mm,
-                                     TouchList& out) const noexcept {
+void SphereWindow::contactsCellByCell(const glm::dvec3& centre, double reach_mm,
+                                      SphereContactList& out) const noexcept {
   collect(centre, reach_mm, out, false);
 }
 
-void SphereWindow::collect(const glm::dvec3& centre, double reach_mm, TouchList& out,
-                           bool abreast) const noexcept {
+void SphereWindow::collect(const glm::dvec3& centre, double reach_mm, SphereContactList& out,
+                           bool vectorised) const noexcept {
   out.count = 0;
   out.nearest_mm = HUGE_VAL;
   const double reach2 = reach_mm * reach_mm;
@@ -493,8 +495,8 @@ void SphereWindow::collect(const glm::dvec3& centre, double reach_mm, TouchList&
   const std::int32_t j0 = clampedIndex((centre.y - reach_mm) / sy_ - row_, rows_ - 1);
   const std::int32_t j1 = clampedIndex((centre.y + reach_mm) / sy_ - row_, rows_ - 1);
   Collector collector(*this, centre, reach_mm, out);
-  if (abreast && whole_ && i1 + 2 < columns_ && j1 + 2 < rows_) [[likely]] {
-    collector.abreast(i0, i1, j0, j1);
+  if (vectorised && whole_ && i1 + 2 < columns_ && j1 + 2 < rows_) [[likely]] {
+    collector.vectorised(i0, i1, j0, j1);
     return;
   }
   std::array<double, kMostSide> dx2;
@@ -510,7 +512,7 @@ void SphereWindow::collect(const glm::dvec3& centre, double reach_mm, TouchList&
     const double* high = low + columns_;
     double before = std::max(low[i0], high[i0]);
     for (std::int32_t i = i0; i <= i1; ++i) {
-      // NaN may or may not come through the maxima; cell() looks again.
+      // NaN may or may not pass through the maxima; cell() tests again.
       const double after = std::max(low[i + 1], high[i + 1]);
       const double gap = std::max(centre.z - std::max(before, after), 0.0);
       before = after;

@@ -6,25 +6,25 @@
 
 #include <glm/vec3.hpp>
 
+#include "haptic/contact/sphere_contact_lanes.h"
 #include "haptic/contact/surface.h"
-#include "haptic/contact/touch_lanes.h"
 
 namespace fettle::haptic {
 
 /// The material around a ball's centre, and where its distance to the centre is a local minimum.
 ///
 /// The material M is everything at or below the bilinear surface of the cells without holes: the surface
-/// itself, and vertical walls below the rims of holes and below the field's own edges. Where the ball touches
-/// at rest, the point of M that it touches is a local minimum of the distance over M; such points are of four
-/// kinds, each with a test of its own that neighbouring cells agree on, so that a seam between two cells that
-/// lie in one plane is no contact (the "internal edge" of physics engines):
+/// itself, and vertical walls below the rims of holes and below the field's own edges. Where the ball rests,
+/// the point of M that it touches is a local minimum of the distance over M; such points are of four kinds,
+/// each with a test on which neighbouring cells agree, so that a seam between two cells in one plane is no
+/// contact (the "internal edge" of physics engines):
 ///   a sample: the centre is on the far side of the planes square to its edges;
-///   an edge: square to the foot, and the two cells beside it lead away from the centre;
+///   an edge: perpendicular at the foot, and the two cells next to it lead away from the centre;
 ///   a cell's inside: the surface's normal there goes through the centre;
 ///   a wall: level with the centre, out of the rim's side.
 
 /// A point of the material where the distance to the centre is a local minimum.
-struct Touch {
+struct SphereContact {
   glm::dvec3 point_mm{0.0};
   glm::dvec3 normal{0.0, 0.0, 1.0};  ///< from the point to the centre, unit length, z >= 0; z = 0 at a wall
   double distance_mm = 0.0;          ///< from the point to the centre
@@ -32,14 +32,14 @@ struct Touch {
   double u = 0.0, v = 0.0;           ///< of the point (the rim above it) in that cell
 };
 
-/// Touches near one centre, in a fixed order of cells.
-struct TouchList {
+/// Contacts near one centre, in a fixed order of cells.
+struct SphereContactList {
   static constexpr int kMost = 96;
-  std::array<Touch, kMost> touches;
+  std::array<SphereContact, kMost> contacts;
   int count = 0;
   /// Nearest distance among all found [mm]; HUGE_VAL when there is none.
   double nearest_mm = 0.0;
-  /// Whether the centre is below the surface; then the touches mean nothing.
+  /// Whether the centre is below the surface; then the contacts are not valid.
   bool below = false;
 };
 
@@ -48,7 +48,7 @@ struct TouchList {
 /// Threading: one thread; nothing allocates, locks or throws. About 25 kB.
 class SphereWindow {
  public:
-  /// Samples along a side at most: a ball of 16 cells radius and room to move.
+  /// Samples along a side at most: a ball of 16 cells radius and a margin.
   static constexpr std::int32_t kMostSide = 44;
 
   /// Copies what a ball of radius `reach_mm` needs anywhere within `room_mm` (horizontally) of `centre`,
@@ -58,23 +58,23 @@ class SphereWindow {
   [[nodiscard]] bool holds(const glm::dvec3& centre) const noexcept;
 
   /// To be called when the field may have changed: the next centre is not held.
-  void forget() noexcept { low_x_ = HUGE_VAL; }
+  void invalidate() noexcept { low_x_ = HUGE_VAL; }
 
-  /// All touches nearer than `reach_mm` (at most what load() was given); when there are more than fit, the
-  /// nearest ones.
-  void touches(const glm::dvec3& centre, double reach_mm, TouchList& out) const noexcept;
-  /// The same, bit for bit, one cell after the other: what touches() does at holes and rims, and what its
-  /// cells abreast (touch_lanes.h) are tested against.
-  void touchesCellByCell(const glm::dvec3& centre, double reach_mm, TouchList& out) const noexcept;
+  /// All contacts nearer than `reach_mm` (at most load()'s value); when there are more than fit, the nearest
+  /// ones.
+  void contacts(const glm::dvec3& centre, double reach_mm, SphereContactList& out) const noexcept;
+  /// Bit-identical, one cell after the other: used by contacts() at holes and rims, and the reference for its
+  /// vectorised part (sphere_contact_lanes.h) in tests.
+  void contactsCellByCell(const glm::dvec3& centre, double reach_mm, SphereContactList& out) const noexcept;
 
-  /// Height of the surface under (x, y) [mm]; -HUGE_VAL over holes and beside the field.
+  /// Height of the surface under (x, y) [mm]; -HUGE_VAL over holes and outside the field.
   [[nodiscard]] double heightUnder(const glm::dvec3& at) const noexcept;
   /// The point of the surface straight above or below `at`, and the surface's normal there; false over holes
-  /// and beside the field.
-  [[nodiscard]] bool under(const glm::dvec3& at, Touch& out) const noexcept;
-  /// How the distance to what is touched bends: the second derivative's bilinear form [1/mm] at `centre` for
-  /// two directions square to the line to the point; 0 for a plane, 1 / distance for a sample.
-  [[nodiscard]] double bend(const glm::dvec3& centre, const Touch& touch, const glm::dvec3& a,
+  /// and outside the field.
+  [[nodiscard]] bool under(const glm::dvec3& at, SphereContact& out) const noexcept;
+  /// Curvature of the distance to the contact: the second derivative's bilinear form [1/mm] at `centre` for
+  /// two directions perpendicular to the line to the point; 0 for a plane, 1 / distance for a sample.
+  [[nodiscard]] double bend(const glm::dvec3& centre, const SphereContact& touch, const glm::dvec3& a,
                             const glm::dvec3& b) const noexcept;
   /// Highest sample within the window [mm]; -HUGE_VAL when there is none.
   [[nodiscard]] double highest() const noexcept { return highest_; }
@@ -88,11 +88,12 @@ class SphereWindow {
     return {z[0], z[1], z[columns_], z[columns_ + 1]};
   }
   [[nodiscard]] bool valid(std::int32_t i, std::int32_t j) const noexcept;
-  void collect(const glm::dvec3& centre, double reach_mm, TouchList& out, bool abreast) const noexcept;
+  void collect(const glm::dvec3& centre, double reach_mm, SphereContactList& out,
+               bool vectorised) const noexcept;
   class Collector;
   class Valley;
 
-  std::array<double, kMostSide * kMostSide + kTouchLanes> z_{};  // lanes may read on past the last sample
+  std::array<double, kMostSide * kMostSide + kSphereContactLanes> z_{};  // lanes read past the end
   std::array<float, kMostSide * kMostSide> raw_{};
   std::int32_t column_ = 0, row_ = 0;    // field sample of z_[0]
   std::int32_t columns_ = 0, rows_ = 0;  // samples

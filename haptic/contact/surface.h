@@ -45,8 +45,8 @@ struct SurfacePoint {
   double distance2_mm2 = 0.0;  ///< squared distance to the endpoint it was searched for [mm^2]
 };
 
-/// One state of a field as the bilinear surface that is felt: cells in millimetres. Keeps the last tile it
-/// looked at, because a hand stays where it is for thousands of ticks.
+/// One state of a field as the bilinear surface that is felt: cells in millimetres. Caches the last tile it
+/// read, because a hand stays within one tile for thousands of ticks.
 ///
 /// A cell exists where all four corners are samples of the field that are not holes. A field of one row or
 /// one column has no cells.
@@ -67,13 +67,13 @@ class Surface {
     tile_ = nullptr;
     ++refreshes_;
   }
-  /// How often refresh() was called: what was read at the same number still holds.
+  /// How often refresh() was called: values read at the same number are still valid.
   [[nodiscard]] std::uint64_t refreshes() const noexcept { return refreshes_; }
 
   [[nodiscard]] const engine::FieldReader& reader() const noexcept { return reader_; }
   [[nodiscard]] double spacingX() const noexcept { return sx_; }
   [[nodiscard]] double spacingY() const noexcept { return sy_; }
-  /// Millimetres in one height unit as the reader gives heights out.
+  /// Millimetres per height unit of the reader's heights.
   [[nodiscard]] double heightUnit() const noexcept { return reader_.grid().height_unit.mm; }
   [[nodiscard]] std::int32_t cellColumns() const noexcept { return reader_.width() - 1; }
   [[nodiscard]] std::int32_t cellRows() const noexcept { return reader_.height() - 1; }
@@ -81,7 +81,7 @@ class Surface {
     return cell.column >= 0 && cell.row >= 0 && cell.column < cellColumns() && cell.row < cellRows();
   }
 
-  /// The cell below or above a point, whether or not it has a hole; false beside the field. A point on a
+  /// The cell below or above a point, whether or not it has a hole; false outside the field. A point on a
   /// line between cells belongs to the upper one, on the field's own far edge to the last.
   [[nodiscard]] bool cellUnder(const glm::dvec3& point, CellIndex& cell) const noexcept {
     const Pair at = Pair{point.x, point.y} / Pair{sx_, sy_};
@@ -127,7 +127,7 @@ class Surface {
   }
 
   /// The five samples around a vertex that one of its four cells lacks, as heights [mm]; NaN in holes and
-  /// beside the field.
+  /// outside the field.
   struct Star {
     double across_u;    ///< next sample along x, away from that cell
     double across_v;    ///< next sample along y, likewise
@@ -136,8 +136,8 @@ class Surface {
       return !std::isnan(across_u + across_v + corners[0] + corners[1] + corners[2]);
     }
   };
-  /// `column`, `row`: the vertex, a sample of the field; `dc`, `dr`: 1 or -1, the way from the cell across
-  /// it.
+  /// `column`, `row`: the vertex, a sample of the field; `dc`, `dr`: 1 or -1, the direction from the cell
+  /// across it.
   [[nodiscard, gnu::always_inline]] Star star(std::int32_t column, std::int32_t row, int dc,
                                               int dr) noexcept {
     using engine::kTileShift;
@@ -170,7 +170,7 @@ class Surface {
   struct Corners {
     float z00, z10, z01, z11;
   };
-  // Out of line: one cell in 32, and patch() is inlined wherever ticks are spent.
+  // Out of line: one cell in 32, and patch() is inlined in all hot loops.
   [[nodiscard, gnu::noinline]] Corners cornersAcrossTiles(CellIndex cell) const noexcept {
     return {sample(cell.column, cell.row), sample(cell.column + 1, cell.row),
             sample(cell.column, cell.row + 1), sample(cell.column + 1, cell.row + 1)};
@@ -185,8 +185,8 @@ class Surface {
     tile_column_ = tc;
     tile_row_ = tr;
   }
-  // Without the sign, which factor_ holds. Goes past the kept tile: a cell on a tile's edge would throw it
-  // out four times.
+  // Without the sign, which factor_ holds. Bypasses the cached tile: a cell on a tile's edge would evict it
+  // four times.
   [[nodiscard]] float sample(std::int32_t column, std::int32_t row) const noexcept {
     using engine::kTileShift;
     using engine::kTileSide;

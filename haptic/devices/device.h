@@ -16,12 +16,12 @@ enum class DeviceSpace : std::uint8_t {
   /// x to the user's right, y away from the user, z up; 0 in the middle of the workspace. A Workspace turns
   /// it into field coordinates.
   kDesk,
-  /// Field coordinates already (mouse, replayed strokes, simulated hand): nothing to map.
+  /// Field coordinates already (mouse, replayed strokes, simulated hand): not mapped.
   kField,
 };
 
-/// What a device can do and what it must never be asked for. The limits hold in the device's own millimetres.
-/// The defaults are those of an unknown device: low enough for any of the known ones.
+/// Capabilities and limits of a device. The limits hold in the device's own millimetres. The defaults are for
+/// an unknown device: low enough for any known one.
 struct DeviceProfile {
   std::string name = "unknown device";
   DeviceSpace space = DeviceSpace::kDesk;
@@ -30,13 +30,13 @@ struct DeviceProfile {
   double max_stiffness_n_per_mm = 0.4;    ///< >= 0; as felt, see Workspace
   double max_damping_n_s_per_mm = 0.004;  ///< >= 0
   double resolution_mm = 0.0;             ///< of the position at the origin, coarsest axis; 0 = not stated
-  double rate_hz = 1000.0;                ///< inputs a second at best
+  double rate_hz = 1000.0;                ///< inputs per second at most
   bool gives_force = false;               ///< false: write() is a no-op
 };
 
 enum class LinkState : std::uint8_t {
-  kDisconnected,  ///< not plugged in, or unplugged; the driver looks for it in the background
-  kUncalibrated,  ///< reports come, but where the stylus is, is not known: the position means nothing, and
+  kDisconnected,  ///< not plugged in, or unplugged; the driver searches for it in the background
+  kUncalibrated,  ///< reports arrive, but the position of the stylus is not known yet: it is not valid, and
                   ///< the driver itself sends zero force whatever is written
   kConnected,
 };
@@ -45,36 +45,36 @@ enum class LinkState : std::uint8_t {
 inline constexpr std::uint32_t kPrimaryButton = 1U << 0U;
 inline constexpr std::uint32_t kSecondaryButton = 1U << 1U;
 
-/// The newest a device has said.
+/// The newest input of a device.
 struct DeviceInput {
-  /// In the frame of the profile. Finite from the drivers of hardware; a replayed stroke hands on the NaN of
-  /// a recorded dropout, and a mouse gives one where a stylus is lifted off. Held while disconnected.
+  /// In the frame of the profile. Finite from the drivers of hardware; a replayed stroke returns the NaN of a
+  /// recorded dropout, and a mouse returns NaN where a stylus would be lifted off. Held while disconnected.
   glm::dvec3 position_mm{0.0};
   std::uint32_t buttons = 0;  ///< bit mask of the buttons held
-  /// One more for each input; never goes back. The same as last time: nothing new arrived. A change of `link`
-  /// alone does not count as an input.
+  /// Incremented for each input; never decreases. Unchanged: nothing new arrived. A change of `link` alone
+  /// does not count as an input.
   std::uint64_t sequence = 0;
   std::int64_t arrival_ns = 0;  ///< std::chrono::steady_clock, when it arrived at this machine
   LinkState link = LinkState::kDisconnected;
-  /// So long the report that is being written waits for the device to take it [ns]; 0 = nothing waits. When
-  /// it goes on for longer than some ms, the hand does not get what the loop gives.
+  /// Time for which the report being written has waited for the device [ns]; 0 = nothing waits. Above some ms
+  /// the device does not apply the forces of the loop.
   std::int64_t output_waits_ns = 0;
-  /// The force written last has not reached the device, which still gives an older one.
+  /// The force written last has not reached the device, which still applies an older one.
   bool output_pending = false;
   std::optional<Tool> tool{};  ///< set by devices that choose the tool themselves (a replayed stroke)
 
   friend bool operator==(const DeviceInput&, const DeviceInput&) = default;
 };
 
-/// Rare and not so rare events since start(), for the user's panel and for tests.
+/// Counters of events since start(), for the user's panel and for tests.
 struct DeviceCounters {
   std::uint64_t inputs = 0;          ///< good reports, those skipped for a newer one included
-  std::uint64_t skipped = 0;         ///< good reports that a newer one overtook before they were published
+  std::uint64_t skipped = 0;         ///< good reports replaced by a newer one before they were published
   std::uint64_t bad_inputs = 0;      ///< reports of a wrong length or form, left out
-  std::uint64_t outputs = 0;         ///< reports the device took
-  std::uint64_t forced_zeros = 0;    ///< outputs that were zero because no fresh force was there in time
-  std::uint64_t failed_outputs = 0;  ///< writes the system refused (stalled, unplugged)
-  std::uint64_t scaled_forces = 0;   ///< forces made smaller, direction kept, to spare a motor
+  std::uint64_t outputs = 0;         ///< reports accepted by the device
+  std::uint64_t forced_zeros = 0;    ///< outputs that were zero because no new force was written in time
+  std::uint64_t failed_outputs = 0;  ///< writes that failed (stalled, unplugged)
+  std::uint64_t scaled_forces = 0;   ///< forces scaled down, direction kept, to protect a motor
   std::uint64_t faults = 0;          ///< inputs in which the device itself reported a fault
   std::uint64_t lost_inputs = 0;  ///< gaps in the device's own numbering of its reports, if it numbers them
   std::uint64_t connects = 0;     ///< times the device was opened
@@ -98,18 +98,18 @@ class Device {
 
   [[nodiscard]] virtual const DeviceProfile& profile() const noexcept = 0;
 
-  /// The newest input. Wait-free: no lock, no allocation, no I/O, however the hardware behaves.
+  /// The newest input. Wait-free: no lock, no allocation, no I/O, whatever the hardware does.
   [[nodiscard]] virtual DeviceInput read() noexcept = 0;
 
-  /// The force to give from now on [N], in the frame of the profile; the newest wins, older ones that were
-  /// not sent yet are dropped. Wait-free like read(): at most one futex wake of the writer thread. A
-  /// non-finite force counts as zero. The driver keeps motors within their limits by scaling all of them
-  /// alike, but the clamp to max_force_n is the caller's: the safety stage is the one place that clamps.
-  /// A force that is not renewed for 10 ms is taken back (zero is sent).
+  /// The force to apply from now on [N], in the frame of the profile; the newest replaces older ones that
+  /// were not sent yet. Wait-free like read(): at most one futex wake of the writer thread. A non-finite
+  /// force counts as zero. The driver keeps motors within their limits by scaling all of them by one factor,
+  /// but the caller clamps to max_force_n: only the safety stage clamps. A force that is not renewed for 10
+  /// ms is replaced by zero.
   virtual void write(const glm::dvec3& force_n) noexcept = 0;
 
-  /// Allocates, starts threads. A device that is not plugged in is no error: its link stays kDisconnected and
-  /// it is picked up when it comes. Errors: kFailed when threads or system libraries cannot be had.
+  /// Allocates, starts threads. A device that is not plugged in is no error: its link stays kDisconnected
+  /// until it is plugged in. Errors: kFailed when threads or system libraries are not available.
   [[nodiscard]] virtual engine::Status start() = 0;
 
   /// Sends an explicit zero force to a device that gives force, then ends the threads. Takes some

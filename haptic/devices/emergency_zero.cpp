@@ -32,11 +32,12 @@ int armEmergencyZero(const char* path, std::span<const std::uint8_t> report) noe
   for (std::size_t i = 0; i < entries.size(); ++i) {
     Entry& e = entries[i];
     int expected = kEmpty;
-    // Acquire: the last disarm of this entry is over. From here until it is armed it is this thread's own.
+    // Acquire: the last disarm of this entry is complete. From here until it is armed only this thread uses
+    // it.
     if (report.size() > e.report.size() ||
         !e.state.compare_exchange_strong(expected, kBusy, std::memory_order_acquire))
       continue;
-    // Not blocking: should the path be no device but a pipe nobody reads, this must not hang.
+    // Not blocking: if the path is not a device but a pipe without a reader, this must not hang.
     e.file = ::open(path, O_WRONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
     if (e.file < 0) {
       e.state.store(kEmpty, std::memory_order_release);
@@ -54,14 +55,14 @@ void disarmEmergencyZero(int number) noexcept {
   if (number < 0) return;
   Entry& e = entries[static_cast<std::size_t>(number)];
   e.state.store(kBusy, std::memory_order_relaxed);
-  // A handler that runs on another thread just now may still write to the file; closing it then costs that
-  // write, on a device whose driver has sent its own zero before it came here.
+  // A handler running on another thread at this moment may still write to the file; closing it loses that
+  // write, on a device whose driver has already sent its own zero.
   ::close(e.file);
   e.state.store(kEmpty, std::memory_order_release);
 }
 
-// Relaxed both: a report that was encoded before the flag is seen is what the second round of zeros in
-// LastResort::fire is for.
+// Both relaxed: the second round of zeros in LastResort::fire follows any report that was encoded before the
+// flag was seen.
 void holdDevicesAtZero(HeldAtZero held) noexcept {
   held_at_zero.store(held == HeldAtZero::kYes, std::memory_order_relaxed);
 }

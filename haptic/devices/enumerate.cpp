@@ -25,8 +25,8 @@ namespace fettle::haptic {
 
 namespace {
 
-// The user's file where there is one: a broken one is an error, not a reason to drive motors by other
-// numbers.
+// The user's file where there is one: an invalid file is an error, so that motors are never driven with other
+// parameters.
 engine::Result<WoodenConfig> userConfig() {
   const std::string path = defaultWoodenConfigPath();
   std::error_code error;
@@ -185,7 +185,7 @@ engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word, doub
     if (!strokes) return tl::unexpected(strokes.error());
     std::vector<HandTarget> path = handPath(*strokes);
     if (path.empty())
-      return engine::inputError("the strokes hold no position to go to", rest, "give a recorded session");
+      return engine::inputError("the strokes contain no valid position", rest, "give a recorded session");
     HandSpec spec;
     spec.rate_hz = loop_rate_hz;
     return std::make_unique<SimulatedHand>(std::move(path), spec);

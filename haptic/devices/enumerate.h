@@ -24,11 +24,11 @@ enum class DeviceKind : std::uint8_t {
 /// "other", "woodenhaptics", "woodenhaptics-serial", "spacemouse".
 [[nodiscard]] std::string_view deviceKindName(DeviceKind kind) noexcept;
 
-/// One thing that is plugged in, as `fettle devices` shows it.
+/// One connected device, as `fettle devices` shows it.
 struct DeviceInfo {
   DeviceKind kind = DeviceKind::kOther;
-  std::string path;  ///< what openDevice() takes: /dev/hidraw3, /dev/serial/by-id/...
-  std::string name;  ///< maker and product, or the id when it tells neither
+  std::string path;  ///< argument of openDevice(): /dev/hidraw3, /dev/serial/by-id/...
+  std::string name;  ///< maker and product, or the id when the device states neither
   std::string serial;
   std::uint16_t vendor = 0;  ///< 0 for serial boards, here and below: not known
   std::uint16_t product = 0;
@@ -41,11 +41,11 @@ struct DeviceInfo {
   bool gives_position = false;  ///< 3 axes at least
   bool gives_force = false;
   std::string_view form;  ///< "W8", "P14", "S" where known; else empty
-  DeviceProfile profile;  ///< limits Fettle would hold it to; of kinds other than kOther
+  DeviceProfile profile;  ///< limits that Fettle applies; of kinds other than kOther
 };
 
-/// Everything plugged in that speaks HID, and serial boards that may be force devices; those that Fettle can
-/// use first. Nothing is left out for lacking bus, interface or maker. Takes some milliseconds.
+/// All connected HID devices, and serial boards that may be force devices; those that Fettle can use first. A
+/// device is listed even if bus, interface or maker are unknown. Takes some milliseconds.
 [[nodiscard]] std::vector<DeviceInfo> listDevices();
 
 /// A device by the word a user gives, not started yet:
@@ -55,22 +55,23 @@ struct DeviceInfo {
 ///   spacemouse[:WHICH]
 ///   mouse                   MouseStylus
 ///   hand                    SimulatedHand resting at (0, 0, 0)
-///   hand:FILE               SimulatedHand that wants to be where a strokes file says, with its tools
+///   hand:FILE               SimulatedHand that follows the positions of a strokes file, with its tools
 ///   replay:FILE             ReplayDevice in real time
 ///   a path of listDevices() the device there
-/// A device that is not plugged in is no error, it may come; a path that is not there is.
+/// A device that is not plugged in is no error, it may be plugged in later; a path that does not exist is
+/// one.
 /// Errors (kInput): an unknown word, a bad configuration or strokes file.
-/// `loop_rate_hz`: how often the device will be read; the simulated hand's time goes on by that.
+/// `loop_rate_hz`: how often the device will be read; the simulated hand's time step follows from it.
 [[nodiscard]] engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word,
                                                                  double loop_rate_hz = 1000.0);
 
-/// The way of a strokes file as a hand's targets: rows that are not finite or whose time does not rise are
-/// left out. Empty when no row is left.
+/// The positions of a strokes file as a hand's targets: rows that are not finite or whose time does not
+/// increase are left out. Empty when no row is left.
 [[nodiscard]] std::vector<HandTarget> handPath(std::span<const StrokeSample> strokes);
 
 /// Why a device cannot be opened and what to do, by DeviceInfo::open_error; both empty for 0.
 struct DeviceProblem {
-  std::string what;    ///< "no permission", "busy", "unplugged" or the system's words
+  std::string what;    ///< "no permission", "busy", "unplugged" or the system's message
   std::string remedy;  ///< one sentence
 };
 [[nodiscard]] DeviceProblem deviceProblem(int open_error);

@@ -9,26 +9,27 @@
 
 namespace fettle::haptic {
 
-/// Device millimetres to field millimetres and forces back: a uniform scale s, a turn about z (so that "away"
-/// on the desk is "into the picture" from wherever the view looks), and a shift that the clutch moves.
+/// Device millimetres to field millimetres and forces back: a uniform scale s, a rotation about z (so that
+/// "away" on the desk is "into the picture" for every view direction), and a shift that the clutch moves.
 ///
 ///     field = shift + s * turn(device)           F_device = turn^-1(F_field)
 ///
 /// Stiffness as felt. A spring of k [N/mm of the field] gives F = k * depth_field = k * s * depth_device, and
 /// the force comes back unscaled, so the hand feels k_felt = s * k [N/mm of the hand]; damping likewise:
-/// b_felt = s * b, since v_field = s * v_device. Limits and stability conditions are about what the device
-/// does, so they hold for the felt values: use fieldStiffness() for what a scene may ask for.
+/// b_felt = s * b, since v_field = s * v_device. Limits and stability conditions are those of the device, so
+/// they apply to the felt values: use fieldStiffness() for the largest value in a scene.
 ///
-/// Why forces come back unscaled: newtons stay newtons, so that limits and smoothing strength by force mean
-/// the same at every scale. It is passive as well: if a force field in the field is the gradient of a
-/// potential U, the one at the hand is that of U(field) / s. (Scaling the force by s too would make the two
-/// powers equal, and k_felt = s^2 k; at a scale of 0.1 nothing would be felt.)
+/// Why forces are not scaled: limits and smoothing strength by force are then the same at every scale. It is
+/// passive as well: if a force field in the field is the gradient of a potential U, the one at the hand is
+/// that of U(field) / s. (Scaling the force by s too would make the two powers equal, and k_felt = s^2 k; at
+/// a scale of 0.1 nothing would be felt.)
 ///
-/// The loop thread alone; wait-free.
+/// Loop thread only; wait-free.
 class Workspace {
  public:
   Workspace() = default;
-  /// scale [mm of the field a mm of the device] > 0, finite; field_centre_mm is where the device's origin is.
+  /// scale [mm of the field per mm of the device] > 0, finite; field_centre_mm is where the device's origin
+  /// is.
   Workspace(double scale, const glm::dvec3& field_centre_mm, double turn_rad = 0.0) noexcept
       : scale_(scale), shift_(field_centre_mm), cos_(std::cos(turn_rad)), sin_(std::sin(turn_rad)) {}
 
@@ -51,7 +52,7 @@ class Workspace {
   }
 
   enum class Clutch : std::uint8_t { kReleased, kHeld };
-  /// While held, the tip stays and the hand moves freely; on release the tip goes on from where it stayed.
+  /// While held, the tip stays and the hand moves freely; on release the tip continues from where it stayed.
   void setClutch(Clutch clutch, const glm::dvec3& device_mm) noexcept {
     if (clutch == clutch_) return;
     if (clutch == Clutch::kHeld)

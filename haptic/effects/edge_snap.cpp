@@ -73,9 +73,9 @@ void EdgeSnap::upkeep(TickState& state) noexcept {
   state.counters.snap_tiles_refused = distance_.refused();
 }
 
-void EdgeSnap::forget(Forget why) noexcept {
+void EdgeSnap::reset(ResetCause why) noexcept {
   touching_ = false;
-  if (why == Forget::kFieldChanged) distance_.lookOver();
+  if (why == ResetCause::kFieldChanged) distance_.rescan();
 }
 
 void addEdgeSnap(EffectList& list, const Scene& scene, const engine::Version& now) {
@@ -87,7 +87,7 @@ void addEdgeSnap(EffectList& list, const Scene& scene, const engine::Version& no
   list.upkeep.push_back(
       {[](void* data, TickState& state) noexcept { static_cast<EdgeSnap*>(data)->upkeep(state); }, &snap});
   list.resets.push_back(
-      {[](void* data, Forget why) noexcept { static_cast<EdgeSnap*>(data)->forget(why); }, &snap});
+      {[](void* data, ResetCause why) noexcept { static_cast<EdgeSnap*>(data)->reset(why); }, &snap});
 }
 
 }  // namespace fettle::haptic

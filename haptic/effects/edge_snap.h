@@ -17,17 +17,17 @@ namespace fettle::haptic {
 /// for signal and image processing", 1999), and the force its exact gradient: conservative, and continuous
 /// everywhere, in cusps between two edges too.
 ///
-/// The pull comes on over 50 ms after the tip touched, so that touching down beside an edge is no kick; it
-/// gives the hand at most 2 F R / 3 mJ each time (passivity, if listed, takes that back).
-/// Marks drawn or taken away, by hand or by another version, reach the pull within bounded work a tick: see
-/// MarkDistance. Where the pull changes under the tip meanwhile, it does by F at most.
+/// The pull rises over 50 ms after the tip touched, so that touching down near an edge causes no jump of
+/// force; it gives the hand at most 2 F R / 3 mJ each time (passivity, if listed, removes that).
+/// Marks added or removed, by the user or by another version, change the pull after bounded work per tick:
+/// see MarkDistance. If the pull changes under the tip meanwhile, it does by F at most.
 ///
 /// Sources: attraction by a potential, Khatib, "Real-time obstacle avoidance for manipulators and mobile
 /// robots" (1986), of which snapping is the opposite sign; guidance along edges as virtual fixtures,
 /// Rosenberg, "Virtual fixtures" (1993).
 /// Stability: restoring stiffness is at most 4 F / R along any sample row or column (a minimum of functions
-/// bends no more than they do, and a B-spline's second differences are averages of theirs): across the edge
-/// b > T / 2 * 4 F / R, together with what else holds the tip along the surface (friction).
+/// curves upwards no more than they do, and a B-spline's second differences are averages of theirs): across
+/// the edge b > T / 2 * 4 F / R, together with the other stiffness along the surface (friction).
 /// Cost: nine distances, some 60 multiplications, and up to one slice of MarkDistance. Memory: MarkDistance.
 class EdgeSnap {
  public:
@@ -39,11 +39,11 @@ class EdgeSnap {
 
   EdgeSnap(const EdgeSnapParams& params, const engine::FieldReader& reader);
 
-  /// At a point over the field (beside it: finite).
+  /// At a point over the field (outside it: finite).
   [[nodiscard]] Potential at(double x_mm, double y_mm) const noexcept;
   void run(TickState& state) noexcept;
   void upkeep(TickState& state) noexcept;
-  void forget(Forget why) noexcept;
+  void reset(ResetCause why) noexcept;
 
   [[nodiscard]] const MarkDistance& distance() const noexcept { return distance_; }
   /// U of a distance [N mm].

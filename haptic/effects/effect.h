@@ -21,7 +21,7 @@
 
 namespace fettle::haptic {
 
-/// What effects see and change within one tick.
+/// What effects read and change within one tick.
 struct TickState {
   const Contact& contact;
   engine::LiveField& field;
@@ -41,10 +41,10 @@ struct TickState {
   engine::SampleRect marked{};
 };
 
-/// Why an effect has to forget.
-enum class Forget : std::uint8_t {
+/// Why an effect is reset.
+enum class ResetCause : std::uint8_t {
   kContactEnded,  ///< the tip left the surface
-  kInputLost,     ///< an input that is none: zero force was given, and where the hand goes now is unknown
+  kInputLost,     ///< invalid input: zero force was applied, and the motion of the hand is unknown
   kFieldChanged,  ///< the field was replaced from outside (adoption, undo, scene)
 };
 
@@ -54,9 +54,9 @@ struct EffectStep {
   void* data = nullptr;
 };
 
-/// What an effect does when it has to forget. None may raise the force.
+/// How an effect resets its state. None may raise the force.
 struct EffectReset {
-  void (*run)(void* data, Forget why) noexcept = nullptr;
+  void (*run)(void* data, ResetCause why) noexcept = nullptr;
   void* data = nullptr;
 };
 
@@ -64,7 +64,7 @@ struct EffectReset {
 struct EffectData {
   EffectKind kind = EffectKind::kSpring;
   std::shared_ptr<void> memory;
-  std::size_t bytes = 0;  ///< all of it: the object and what it holds
+  std::size_t bytes = 0;  ///< the object and the memory it owns
 };
 
 /// The effects of one scene, composed once. A tick calls, each list in the scene's order:
@@ -72,7 +72,7 @@ struct EffectData {
 ///   contact --> in_contact --> always --> clamp --> finishing --> tool --> upkeep
 ///               (touching)     (free too)           (|F| <= limit)  (touching)
 ///
-/// What the scene does not list is in none of them, and its data does not exist: no memory, no call, and no
+/// An effect that the scene does not list is in none of them and has no data: no memory, no call, and no
 /// velocity is estimated unless a listed effect needs it.
 ///
 /// A new effect is a file in effects/ with an `add...` function, a word in EffectKind, its parameters, and a
@@ -80,7 +80,7 @@ struct EffectData {
 struct EffectList {
   std::vector<EffectStep> in_contact;    ///< forces while touching
   std::vector<EffectStep> always;        ///< forces in every tick with good input
-  std::vector<EffectStep> finishing;     ///< after the clamp; keep |F| <= limit
+  std::vector<EffectStep> finishing;     ///< after the clamp; they keep |F| <= limit
   std::array<EffectStep, kTools> tools;  ///< by Tool; an empty step does nothing
   std::vector<EffectStep> upkeep;        ///< after the tool: bounded work on data that edits touch
   std::vector<EffectReset> resets;       ///< called when contact, input or field is lost
@@ -88,7 +88,7 @@ struct EffectList {
   std::vector<EffectData> data;          ///< what the steps point to
   std::shared_ptr<void> marking;         ///< the disc of the marking tools, which every scene has
 
-  /// Whether a tick without contact has nothing to do but to say so.
+  /// Whether a tick without contact only reports that there is none.
   [[nodiscard]] bool onlyInContact() const noexcept {
     return always.empty() && finishing.empty() && upkeep.empty();
   }
@@ -98,17 +98,18 @@ struct EffectList {
   [[nodiscard]] std::size_t bytes() const noexcept;
 };
 
-/// Builds what `scene` lists. `original` is what Scene::max_change is measured against, with the same way up
-/// as `now`, the live field: its marks are what edge snap pulls to at first. Deterministic. May allocate and
-/// take its time (edge snap: a look at every tile); not for the haptic thread.
+/// Builds what `scene` lists. `original` is what Scene::max_change is measured against, with the same sign as
+/// `now`, the live field: edge snap first pulls to its marks. Deterministic. Allocates and may take long
+/// (edge snap reads every tile); not for the haptic thread.
 [[nodiscard]] EffectList composeEffects(const Scene& scene, const engine::Version& original,
                                         const engine::Version& now);
 
-/// Makes the data of an effect, which the list then owns, counted with what it holds beside itself.
+/// Makes the data of an effect, which the list then owns; `extra_bytes`: memory it owns apart from the
+/// object, for the count.
 template <class T>
-T& addData(EffectList& list, EffectKind kind, std::shared_ptr<T> data, std::size_t held_beside = 0) {
+T& addData(EffectList& list, EffectKind kind, std::shared_ptr<T> data, std::size_t extra_bytes = 0) {
   T& reference = *data;
-  list.data.push_back({kind, std::move(data), sizeof(T) + held_beside});
+  list.data.push_back({kind, std::move(data), sizeof(T) + extra_bytes});
   return reference;
 }
 

@@ -11,14 +11,14 @@ namespace {
 
 constexpr double kRest_s = 0.020;  // without slipping, after which a tip sticks again
 constexpr double kTurnedBack = 0.5;
-// A tip at rest is where it slipped to, but for rounding.
-constexpr double kHair = 1.0 + 1e-9;
+// A tip at rest is where it slipped to, apart from rounding.
+constexpr double kRelativeTolerance = 1.0 + 1e-9;
 
 void runFriction(void* data, TickState& state) noexcept {
   static_cast<Friction*>(data)->run(state);
 }
-void forgetFriction(void* data, Forget /*why*/) noexcept {
-  static_cast<Friction*>(data)->forget();
+void resetFriction(void* data, ResetCause /*why*/) noexcept {
+  static_cast<Friction*>(data)->reset();
 }
 
 }  // namespace
@@ -30,8 +30,8 @@ Friction::Friction(const FrictionParams& params) noexcept
 
 void Friction::run(TickState& state) noexcept {
   const double press = glm::length(state.press_n);
-  // Negated: a press of which nothing can be said holds nothing.
-  if (!(press > 0.0 && std::isfinite(press))) return forget();
+  // Negated: a NaN press counts as none.
+  if (!(press > 0.0 && std::isfinite(press))) return reset();
   const glm::dvec3 normal = state.press_n / press;
   if (!anchored_) {
     anchored_ = true;
@@ -44,10 +44,10 @@ void Friction::run(TickState& state) noexcept {
   strain -= normal * glm::dot(strain, normal);
   const double pull_n = stiffness_ * glm::length(strain);
   const double slide_n = dynamic_ * holding_n;
-  if (slipping_ &&
-      (pull_n < kTurnedBack * slide_n || (pull_n <= kHair * slide_n && state.t_s - slip_t_s_ >= kRest_s)))
+  if (slipping_ && (pull_n < kTurnedBack * slide_n ||
+                    (pull_n <= kRelativeTolerance * slide_n && state.t_s - slip_t_s_ >= kRest_s)))
     slipping_ = false;
-  if (pull_n > kHair * (slipping_ ? slide_n : static_ * holding_n)) {
+  if (pull_n > kRelativeTolerance * (slipping_ ? slide_n : static_ * holding_n)) {
     slipping_ = true;
     slip_t_s_ = state.t_s;
     strain *= slide_n / pull_n;
@@ -61,7 +61,7 @@ void addFriction(EffectList& list, const Scene& scene) {
   Friction& friction =
       addData(list, EffectKind::kFriction, std::make_shared<Friction>(scene.params.friction));
   list.in_contact.push_back({&runFriction, &friction});
-  list.resets.push_back({&forgetFriction, &friction});
+  list.resets.push_back({&resetFriction, &friction});
 }
 
 }  // namespace fettle::haptic

@@ -5,12 +5,12 @@
 namespace fettle::haptic {
 
 /// Holds up the stylus: F = +m g along z, 9.80665 m/s^2, in contact and in free space, as long as there is
-/// input. The clamp is on the sum of all forces, so a heavy stylus leaves less for the surface. It takes no
-/// part in what passivity observes: what it does on the hand, the stylus' weight takes back.
+/// input. The clamp is on the sum of all forces, so a heavy stylus leaves less for the surface. The passivity
+/// observer ignores it: the stylus' weight does the opposite work on the hand.
 ///
 /// Source: gravity compensation by a model of the arm, e.g. Craig, "Introduction to Robotics" (2005), section
 /// 10.4, here of a point mass at the tip.
-/// Stability: a constant force closes no loop. The stylus must weigh at least as much, else it rises.
+/// Stability: a constant force closes no loop. The stylus must weigh at least that much, otherwise it rises.
 /// Cost: one addition.
 void addGravity(EffectList& list, const Scene& scene);
 

@@ -16,7 +16,7 @@ constexpr std::uint8_t kNone = 255;
 
 std::uint64_t printOf(const engine::Tile& tile) noexcept {
   if (tile.marked_samples == 0) return 0;
-  std::uint64_t print = 0xcbf29ce484222325ULL;  // FNV-1a, a word at a time
+  std::uint64_t print = 0xcbf29ce484222325ULL;  // FNV-1a, word by word
   for (const std::uint64_t row : tile.marks) {
     print = (print ^ row) * 0x100000001b3ULL;
     print ^= print >> 32U;
@@ -41,10 +41,10 @@ MarkDistance::MarkDistance(const engine::FieldReader& reader, double reach_mm)
   const auto count = static_cast<std::size_t>(tiles());
   slots_.assign(count, -1);
   prints_.assign(count, 0);
-  wanted_.assign(count, 0);
+  requested_.assign(count, 0);
   waiting_.assign(count, 0);
-  // What differs from a field without marks has to be done; so the most memory that can take is known.
-  while (look_at_ < tiles()) look(reader);
+  // All tiles with marks have to be processed; so an upper bound of the memory is known.
+  while (next_tile_ < tiles()) scanSlice(reader);
   const std::size_t places = waiting_count_ + kSpareTiles;
   memory_.assign(places * kTileSamples, far_);
   free_slots_.reserve(places);
@@ -54,7 +54,7 @@ MarkDistance::MarkDistance(const engine::FieldReader& reader, double reach_mm)
 
 std::size_t MarkDistance::bytesHeld() const noexcept {
   return slots_.capacity() * sizeof(std::int32_t) + prints_.capacity() * sizeof(std::uint64_t) +
-         wanted_.capacity() + waiting_.capacity() * sizeof(std::int32_t) +
+         requested_.capacity() + waiting_.capacity() * sizeof(std::int32_t) +
          memory_.capacity() * sizeof(float) + free_slots_.capacity() * sizeof(std::int32_t);
 }
 
@@ -63,10 +63,10 @@ std::int32_t MarkDistance::tilesHeld() const noexcept {
       std::count_if(slots_.begin(), slots_.end(), [](std::int32_t slot) { return slot >= 0; }));
 }
 
-void MarkDistance::wantTile(std::int32_t tc, std::int32_t tr) noexcept {
+void MarkDistance::requestTile(std::int32_t tc, std::int32_t tr) noexcept {
   const auto tile = static_cast<std::size_t>(tr * tile_columns_ + tc);
-  if (wanted_[tile] != 0) return;
-  wanted_[tile] = 1;
+  if (requested_[tile] != 0) return;
+  requested_[tile] = 1;
   waiting_[(waiting_head_ + waiting_count_) % waiting_.size()] = static_cast<std::int32_t>(tile);
   ++waiting_count_;
 }
@@ -78,16 +78,16 @@ void MarkDistance::markChanged(std::int32_t column, std::int32_t row, std::int32
   const std::int32_t c1 = std::min(column + columns - 1 + reach_columns_, width_ - 1) >> kTileShift;
   const std::int32_t r1 = std::min(row + rows - 1 + reach_rows_, height_ - 1) >> kTileShift;
   for (std::int32_t r = r0; r <= r1; ++r)
-    for (std::int32_t c = c0; c <= c1; ++c) wantTile(c, r);
+    for (std::int32_t c = c0; c <= c1; ++c) requestTile(c, r);
 }
 
-void MarkDistance::look(const engine::FieldReader& reader) noexcept {
-  const std::int32_t end = std::min(look_at_ + kTilesASlice, tiles());
-  for (; look_at_ < end; ++look_at_) {
-    const std::int32_t tc = look_at_ % tile_columns_;
-    const std::int32_t tr = look_at_ / tile_columns_;
+void MarkDistance::scanSlice(const engine::FieldReader& reader) noexcept {
+  const std::int32_t end = std::min(next_tile_ + kTilesASlice, tiles());
+  for (; next_tile_ < end; ++next_tile_) {
+    const std::int32_t tc = next_tile_ % tile_columns_;
+    const std::int32_t tr = next_tile_ / tile_columns_;
     const std::uint64_t print = printOf(reader.tile(tc, tr));
-    std::uint64_t& known = prints_[static_cast<std::size_t>(look_at_)];
+    std::uint64_t& known = prints_[static_cast<std::size_t>(next_tile_)];
     if (print == known) continue;
     known = print;
     markChanged(tc << kTileShift, tr << kTileShift, kTileSide, kTileSide);
@@ -100,8 +100,8 @@ void MarkDistance::advance(const engine::FieldReader& reader) noexcept {
       rowSlice();
     else
       columnSlice(reader);
-  } else if (look_at_ < tiles()) {
-    look(reader);
+  } else if (next_tile_ < tiles()) {
+    scanSlice(reader);
   } else if (waiting_count_ > 0) {
     startJob(reader);
   }
@@ -111,10 +111,10 @@ void MarkDistance::startJob(const engine::FieldReader& reader) noexcept {
   job_tile_ = waiting_[waiting_head_];
   waiting_head_ = (waiting_head_ + 1) % waiting_.size();
   --waiting_count_;
-  // From here on a change of marks asks for the tile once more.
-  wanted_[static_cast<std::size_t>(job_tile_)] = 0;
+  // From here on a change of marks requests the tile again.
+  requested_[static_cast<std::size_t>(job_tile_)] = 0;
   job_line_ = 0;
-  job_near_ = false;
+  job_within_reach_ = false;
   job_in_rows_ = false;
   const std::int32_t tc = job_tile_ % tile_columns_;
   const std::int32_t tr = job_tile_ / tile_columns_;
@@ -156,7 +156,7 @@ void MarkDistance::columnSlice(const engine::FieldReader& reader) noexcept {
   job_in_rows_ = true;
 }
 
-// Second pass: for some rows, the lower envelope of one parabola a column.
+// Second pass: for some rows, the lower envelope of one parabola per column.
 void MarkDistance::rowSlice() noexcept {
   const int columns = kTileSide + 2 * reach_columns_;
   const double reach2 = reach_mm_ * reach_mm_;
@@ -197,7 +197,7 @@ void MarkDistance::rowSlice() noexcept {
       const double dx = (x - apex[k]) * sx_;
       const double d2 = dx * dx + height2(apex[k]);
       out[c] = d2 < reach2 ? static_cast<float>(std::sqrt(d2)) : far_;
-      job_near_ = job_near_ || d2 < reach2;
+      job_within_reach_ = job_within_reach_ || d2 < reach2;
     }
   }
   if (job_line_ >= kTileSide) finishJob();
@@ -205,7 +205,7 @@ void MarkDistance::rowSlice() noexcept {
 
 void MarkDistance::finishJob() noexcept {
   std::int32_t& slot = slots_[static_cast<std::size_t>(job_tile_)];
-  if (!job_near_) {
+  if (!job_within_reach_) {
     if (slot >= 0) free_slots_.push_back(slot);  // within its capacity: it came from there
     slot = -1;
   } else {

@@ -13,16 +13,16 @@ namespace {
 void runPassivity(void* data, TickState& state) noexcept {
   static_cast<Passivity*>(data)->run(state);
 }
-void forgetPassivity(void* data, Forget why) noexcept {
+void resetPassivity(void* data, ResetCause why) noexcept {
   // A contact that ended or a surface that was replaced is in the balance already.
-  if (why == Forget::kInputLost) static_cast<Passivity*>(data)->inputLost();
+  if (why == ResetCause::kInputLost) static_cast<Passivity*>(data)->inputLost();
 }
 
 }  // namespace
 
 void Passivity::run(TickState& state) noexcept {
-  // dt is 0 where the step is no measure of speed (VelocityFilter): a jump or a gap is no way that the hand
-  // went against the force, and is neither counted nor braked.
+  // dt is 0 where the step does not measure a speed (VelocityFilter): in a jump or a gap the hand did not
+  // move against the force, so it is neither counted nor damped.
   const double dt_s = state.motion->dt();
   const bool moved = known_ && dt_s > 0.0;
   const glm::dvec3 step = moved ? state.endpoint_mm - at_mm_ : glm::dvec3(0.0);
@@ -52,7 +52,7 @@ void addPassivity(EffectList& list, const Scene& scene) {
   Passivity& passivity =
       addData(list, EffectKind::kPassivity, std::make_shared<Passivity>(scene.params.passivity));
   list.finishing.push_back({&runPassivity, &passivity});
-  list.resets.push_back({&forgetPassivity, &passivity});
+  list.resets.push_back({&resetPassivity, &passivity});
   needMotion(list, scene);
 }
 

@@ -6,34 +6,34 @@
 
 namespace fettle::haptic {
 
-/// Passivity observer and controller: what is felt gives back no more energy than was put into it.
+/// Passivity observer and controller: the applied forces return no more energy than was put in.
 ///
-/// Observer. A force is held from one tick to the next, so what it did on the hand meanwhile is known
-/// exactly: W += F' . (x - x'), F' the force given last, after the clamp, without gravity compensation (whose
-/// work the stylus' weight takes back). W > 0: more came out than went in. Energy put in counts only as long
-/// as it can be stored (spring, stuck friction, snap: TickState::stored_mj); what was dissipated is no credit
-/// for later: W >= -stored. In free space nothing is stored.
+/// Observer. A force is held from one tick to the next, so its work on the hand meanwhile is known exactly: W
+/// += F' . (x - x'), F' the last force, after the clamp, without gravity compensation (the stylus' weight
+/// does the opposite work). W > 0: more came out than went in. Energy put in counts only as long as it can be
+/// stored (spring, stuck friction, snap: TickState::stored_mj); dissipated energy is no credit for later: W
+/// >= -stored. In free space nothing is stored.
 ///
-/// Controller. Would W be above zero at the next tick, if the hand went on as it went since the last? Then
-/// the part of the force along the motion is lowered until it would not: first the driving part is taken
-/// away, which is always safe, then the hand is braked, with at most b of damping. Never turns the force
-/// across the motion; |F| stays within the limit. What acceleration within one tick makes of the forecast is
-/// seen one tick later and taken back: at most about F_max (F_max + F_hand) T^2 / m is out at any time.
+/// Controller. If W would be above zero at the next tick, with the hand moving as since the last, the part of
+/// the force along the motion is lowered until it would not: first the driving part is removed, which is
+/// always safe, then the hand is damped, with at most b of damping. Never changes the force perpendicular to
+/// the motion; |F| stays within the limit. The error of the forecast by acceleration within one tick is seen
+/// one tick later and removed: at most about F_max (F_max + F_hand) T^2 / m is unaccounted at any time.
 ///
 /// Sources: Hannaford and Ryu, "Time-domain passivity control of haptic interfaces" (2002): observer,
 /// series damper; Ryu, Kim, Hannaford, "Stability control of haptic interfaces with reference energy" (2004):
-/// observing against what may be stored instead of against zero.
+/// the observer's bound is the energy that may be stored instead of zero.
 /// Jumps of the position, gaps above 20 ms and samples without time (VelocityFilter) are not counted.
-/// Stability: the brake is a sampled damper, b < 2 m / T (see viscosity.h); taking force away needs no bound.
-/// What comes after the tick (ForceGuard) only lowers forces; while it does, the observer counts with more
-/// than was given.
-/// Cost: some 20 multiplications, a square root in ticks where it acts. State: force, position, W.
+/// Stability: the controller is a sampled damper, b < 2 m / T (see viscosity.h); removing force needs no
+/// bound. What comes after the tick (ForceGuard) only lowers forces; while it does, the observer counts with
+/// more force than was applied.
+/// Cost: about 20 multiplications, a square root in ticks where it acts. State: force, position, W.
 class Passivity {
  public:
   explicit Passivity(const PassivityParams& params) noexcept : brake_(params.max_damping_n_s_per_mm) {}
 
   void run(TickState& state) noexcept;
-  /// No input: no force was given, and the way the hand goes without it is nothing to count.
+  /// No input: no force was applied, so the motion of the hand is not counted.
   void inputLost() noexcept { known_ = false; }
 
   /// W [N mm], within [-stored, small].

@@ -11,8 +11,8 @@ namespace fettle::haptic {
 /// for haptic display" (1995).
 /// Stability: sampled every T seconds and held, a wall of stiffness K feeds energy to a hand unless the
 /// device damps b > K T / 2 (Colgate and Schenkel, "Passivity of a class of sampled-data systems", 1994/1997;
-/// Colgate and Brown 1994). It is exact for a mass on the wall in the limit of a slow swing; bench/
-/// stiffness_sweep measures it.
+/// Colgate and Brown 1994). It is exact for a mass on the wall in the limit of a slow oscillation;
+/// bench/stiffness_sweep measures it.
 /// No state. Cost: three multiplications and additions.
 void addSpring(EffectList& list, const Scene& scene);
 

@@ -13,9 +13,10 @@ namespace {
 
 using std::numbers::pi;
 
-// A number that was computed to be just held is held.
+// A value computed as the largest stable one counts as stable.
 constexpr double kRounding = 1.0 + 1e-9;
-// The spring, or the friction, is named at fault while so much of what is held is left to it.
+// The spring, or the friction, is reported as the cause while at least this share of the stable stiffness is
+// left to it.
 constexpr double kLeastShare = 0.1;
 constexpr double kSplinePart = 1.02;  // of texture.h's bound on the curvature
 
@@ -65,18 +66,18 @@ double damping(const Scene& scene) noexcept {
          (lists(scene, EffectKind::kPassivity) ? scene.params.passivity.max_damping_n_s_per_mm : 0.0);
 }
 
-// To four digits: who types what is read gets no more than was meant.
+// To four digits: a value typed as it is displayed is not above the limit.
 double roundedDown(double value) noexcept {
   if (!(value > 0.0)) return 0.0;
   if (std::isinf(value)) return value;
   const double digits = std::floor(std::log10(value)) - 3.0;
-  // A power of ten above one is exact, below one it is not: divided by, 6 stays 6.
+  // A power of ten above one is exact, below one it is not: dividing by it keeps 6 exactly 6.
   const double unit = std::pow(10.0, std::abs(digits));
   return digits < 0.0 ? std::floor(value * unit * kRounding) / unit
                       : std::floor(value / unit * kRounding) * unit;
 }
 
-// What a device holds of a scene, in the field's millimetres.
+// What part of a scene is stable on a device, in the field's millimetres.
 class Hold {
  public:
   Hold(const Scene& scene, const DeviceProfile& profile, double rate_hz, double scale)
@@ -96,12 +97,12 @@ class Hold {
     if (damping(felt_) > damping_ * kRounding) return dampingProblem();
     return std::nullopt;
   }
-  /// The spring's, beside the rest of what is felt across the surface.
+  /// The spring's, with the rest of the stiffness across the surface.
   [[nodiscard]] double stiffnessLeft() const noexcept {
     const Relief relief = reliefOf(felt_);
     return (stiffness_ - relief.pressed_n_per_mm) / (1.0 + relief.slope_squared);
   }
-  /// Scale at which all of it is just held, were this hold's scale 1.
+  /// Largest stable scale of the whole scene, relative to a scale of 1.
   [[nodiscard]] double largestScale() const noexcept {
     const double infinite = std::numeric_limits<double>::infinity();
     const double stiff = std::max(across(felt_), frictionStiffness(felt_) + snapStiffness(felt_));
@@ -113,10 +114,10 @@ class Hold {
  private:
   // "a stiffness of 3 N/mm, felt as 9, is more than the omni holds at 1000 Hz"
   [[nodiscard]] StabilityProblem tooMuch(const std::string& subject, double value, const char* unit,
-                                         const char* beside = "") const {
+                                         const char* with = "") const {
     const std::string felt = scale_ == 1.0 ? "" : fmt::format(", felt as {:.4g},", value * scale_);
-    return {fmt::format("{} {:.6g} {}{}{} is more than the {} holds at {:.0f} Hz", subject, value, unit,
-                        beside, felt, device_, rate_hz_),
+    return {fmt::format("{} {:.6g} {}{}{} is more than the {} holds at {:.0f} Hz", subject, value, unit, with,
+                        felt, device_, rate_hz_),
             {},
             0.0,
             scene_};
@@ -158,7 +159,7 @@ class Hold {
     const double left = stiffness_ - snap;
     if (grip > 0.0 && left >= kLeastShare * stiffness_) {
       StabilityProblem p =
-          tooMuch("friction with a stiffness of", grip, "N/mm", snap > 0.0 ? " beside this edge snap" : "");
+          tooMuch("friction with a stiffness of", grip, "N/mm", snap > 0.0 ? " with this edge snap" : "");
       p.largest = p.mended.params.friction.stiffness_n_per_mm = roundedDown(left);
       p.remedy = fmt::format("at most {:.4g} N/mm ([friction] stiffness_n_per_mm)", p.largest);
       return p;
@@ -217,7 +218,7 @@ double largestStiffness(const Scene& scene, const DeviceProfile& profile, double
 }
 
 Scene stableScene(Scene scene, const DeviceProfile& profile, double rate_hz, double scale) {
-  // Across, along, damping: each is mended at once, and none brings another back.
+  // Across, along, damping: each is corrected in one step, and none causes another again.
   for (int i = 0; i < 3; ++i) {
     auto problem = stabilityProblem(scene, profile, rate_hz, scale);
     if (!problem) break;

@@ -8,9 +8,9 @@
 
 namespace fettle::haptic {
 
-/// What a scene asks of the device's own damping, by the conditions that each effect's header states.
+/// What a scene needs of the device's own damping, by the conditions that each effect's header states.
 struct StabilityNeed {
-  double stiffness_n_per_mm = 0.0;         ///< largest that the hand meets, across or along the surface
+  double stiffness_n_per_mm = 0.0;         ///< largest that the hand feels, across or along the surface
   double damping_n_s_per_mm = 0.0;         ///< that the scene itself adds (viscosity, coupling, brake)
   double device_damping_n_s_per_mm = 0.0;  ///< needed: K T / 2 + b a / (2 - a)
 };
@@ -19,38 +19,37 @@ struct StabilityNeed {
 /// snap's 4 F / R together. `scene` in range.
 [[nodiscard]] StabilityNeed stabilityNeed(const Scene& scene, double rate_hz) noexcept;
 
-/// Numbers of a scene that ask for more than a device holds.
+/// Numbers of a scene with which a device is not stable.
 struct StabilityProblem {
-  std::string what;    ///< a sentence: what is asked for, and what the device holds
+  std::string what;    ///< a sentence: the value requested, and what the device holds
   std::string remedy;  ///< names the largest stable value
-  /// That value, rounded down to four digits, so that what is read in `remedy` and typed is stable: stiffness
-  /// [N/mm], amplitude [mm], force [N] or damping [N s/mm], whichever `what` is about.
+  /// That value, rounded down to four digits, so that the value displayed in `remedy` is stable when typed:
+  /// stiffness [N/mm], amplitude [mm], force [N] or damping [N s/mm], whichever `what` is about.
   double largest = 0.0;
-  Scene mended;  ///< the scene with the numbers that `remedy` names, and no other, lowered to what it says
+  Scene mended;  ///< the scene with the numbers named in `remedy`, and only these, lowered to its values
 };
 
-/// The first thing of the scene that is more than the device is known to hold; nothing when all is well.
+/// The first value of the scene above what the device is known to hold stably; nothing when there is none.
 ///
-/// A profile says how much damping a device can be asked for (B) and which stiffness it holds (K), at 1 kHz;
-/// at another rate K goes with the rate (2 b / T). A rate above what the device itself delivers holds no more
-/// than that: between two inputs the force stands still. `scale` [mm of the field a mm of the hand, > 0]:
-/// stiffness and damping of the scene are felt that many times as large (Workspace). With a texture the force
-/// goes up to the scene's limit or the device's, whichever is less.
+/// A profile states the largest damping (B) and stiffness (K) with which a device is stable at 1 kHz; K is
+/// proportional to the rate (2 b / T). A rate above the device's own gives no more than that: between two
+/// inputs the force is constant. `scale` [mm of the field per mm of the hand, > 0]: stiffness and damping of
+/// the scene are felt that many times as large (Workspace). With a texture the force goes up to the scene's
+/// limit or the device's, whichever is less.
 ///
 /// Where two numbers share what is held - stiffness and a texture, friction and edge snap - the largest
-/// stiffness beside the other as it is gets named as long as that leaves a tenth of it; else the other one's
-/// largest, with the stiffness at most half of what is held.
+/// stiffness with the other unchanged is named as long as that is at least a tenth of what is held; otherwise
+/// the largest value of the other, with the stiffness at most half of what is held.
 [[nodiscard]] std::optional<StabilityProblem> stabilityProblem(const Scene& scene,
                                                                const DeviceProfile& profile, double rate_hz,
                                                                double scale = 1.0);
 
-/// Largest stiffness [N/mm] of the spring that the device holds beside the rest of the scene, rounded down to
+/// Largest stiffness [N/mm] of the spring that the device holds with the rest of the scene, rounded down to
 /// four digits; 0 when it holds none. As stabilityProblem().
 [[nodiscard]] double largestStiffness(const Scene& scene, const DeviceProfile& profile, double rate_hz,
                                       double scale = 1.0);
 
-/// The scene with every problem mended by itself (StabilityProblem::mended): the same scene when there is
-/// none.
+/// The scene with every problem corrected (StabilityProblem::mended): unchanged when there is none.
 [[nodiscard]] Scene stableScene(Scene scene, const DeviceProfile& profile, double rate_hz,
                                 double scale = 1.0);
 

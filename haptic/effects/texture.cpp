@@ -46,7 +46,7 @@ std::vector<Wave> wavesOf(TexturePattern pattern) {
   return waves;
 }
 
-// What a cubic B-spline through coefficients of a cosine with `cycles` makes of its amplitude at the knots.
+// Amplitude at the knots of a cubic B-spline whose coefficients are a cosine with `cycles`.
 double splineGain(int cycles) noexcept {
   return (2.0 + std::cos(2.0 * std::numbers::pi * cycles / kSide)) / 3.0;
 }
@@ -80,7 +80,8 @@ TextureTable::TextureTable(const TextureParams& params)
             weight * cosine[static_cast<std::size_t>(wave.x * c + wave.y * r + static_cast<int>(wave.phase)) &
                             (kSide - 1)];
   }
-  // A spline stays within its coefficients. The grating's peaks lie on knots, where its amplitude is exact.
+  // A spline stays within the range of its coefficients. The grating's peaks lie on knots, where its
+  // amplitude is exact.
   double most = 1.0;
   if (params.pattern == TexturePattern::kNoise) {
     most = 0.0;
@@ -97,7 +98,7 @@ TextureTable::Value TextureTable::at(double x_mm, double y_mm) const noexcept {
   const double row = std::floor(y);
   const CubicWeights wx(x - column);
   const CubicWeights wy(y - row);
-  // Into the period as doubles: a position may be too far for an int.
+  // Reduced to the period as doubles: a position may be too large for an int.
   const auto within = [](double i) { return static_cast<int>(i - kSide * std::floor(i / kSide)); };
   const int c0 = within(column) - 1 + kSide;
   const int r0 = within(row) - 1 + kSide;

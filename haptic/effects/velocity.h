@@ -12,13 +12,13 @@ namespace fettle::haptic {
 /// It lags by dt / 2 of the difference and tau of the low pass: 2.5 ms with the default of 2 ms at 1 kHz.
 /// Times are the samples' own, so a replay and the live loop compute the same, and a skipped tick counts.
 ///
-/// Starts anew, at rest, when there is no telling how fast the hand moves: first input, time that stands
-/// still, goes back or is not finite, a gap above 20 ms, a step faster than any hand (5 m/s: a jump).
-/// A restart gives zero velocity, so what is built on it fades out and never kicks.
+/// Restarts, at rest, when the speed of the hand cannot be known: first input, time that does not advance,
+/// goes back or is not finite, a gap above 20 ms, a step faster than any hand (5 m/s: a jump).
+/// A restart gives zero velocity, so forces that depend on it fade out and never jump.
 ///
-/// Source: the filtered backward difference is the common choice; its part in stability is worked out in
-/// Colgate and Brown, "Factors affecting the Z-width of a haptic display" (1994), and effects/viscosity.h.
-/// Threading: one thread; noexcept, allocates nothing.
+/// Source: the filtered backward difference is the common choice; its part in stability is derived in Colgate
+/// and Brown, "Factors affecting the Z-width of a haptic display" (1994), and effects/viscosity.h. Threading:
+/// one thread; noexcept, allocates nothing.
 class VelocityFilter {
  public:
   static constexpr double kLongestGap_s = 0.020;
@@ -34,11 +34,11 @@ class VelocityFilter {
     t_s_ = t_s;
     at_mm_ = at_mm;
     // Negated, so that NaN restarts; a step too far to be squared has an infinite length.
-    const bool goes_on =
+    const bool continuous =
         known_ && dt_s > 0.0 && dt_s <= kLongestGap_s && glm::length(step) <= kFastestHand * dt_s;
     known_ = true;
-    dt_s_ = goes_on ? dt_s : 0.0;
-    v_ = goes_on ? v_ + (dt_s / (dt_s + tau_s_)) * (step / dt_s - v_) : glm::dvec3(0.0);
+    dt_s_ = continuous ? dt_s : 0.0;
+    v_ = continuous ? v_ + (dt_s / (dt_s + tau_s_)) * (step / dt_s - v_) : glm::dvec3(0.0);
   }
   /// The next input is the first.
   void reset() noexcept {

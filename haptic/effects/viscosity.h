@@ -15,7 +15,7 @@ namespace fettle::haptic {
 ///   b < 2 m / T      (0.1 kg at 1 kHz: 0.2 N s/mm).
 /// In touch with a wall K, the device must damp b_device > K T / 2 + b a / (2 - a) for passivity (Colgate
 /// and Schenkel's condition at the Nyquist frequency, where the filtered difference is weighted so).
-/// What a device takes is in its profile: max_damping_n_s_per_mm; stability.h compares.
+/// What a device allows is in its profile: max_damping_n_s_per_mm; stability.h compares.
 /// No state of its own. Cost: three multiplications, and the filter's ten shared with coupling.
 void addViscosity(EffectList& list, const Scene& scene);
 

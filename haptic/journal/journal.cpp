@@ -85,7 +85,7 @@ journal::Entry entryOf(const json& in) {
     return journal::StepMade{state(), in.at("name").get<std::string>(), *kind, placeOf(in),
                              in.value("marks", false)};
   }
-  if (what == "restore") return journal::RestoreAsked{id(), state()};
+  if (what == "restore") return journal::RestoreRequested{id(), state()};
   if (what == "restored") return journal::Restored{id(), placeOf(in)};
   if (what == "base") return journal::FilterBase{id(), placeOf(in)};
   if (what == "filter") return journal::FilterBegun{id(), specOf(in)};
@@ -119,7 +119,7 @@ std::string journalText(const journal::Entry& entry) {
             if (e.marks) out["marks"] = true;
             put(out, e.at);
           },
-          [&](const journal::RestoreAsked& e) {
+          [&](const journal::RestoreRequested& e) {
             out = {{"do", "restore"}, {"id", e.id}, {"state", e.state}};
           },
           [&](const journal::Restored& e) {

@@ -12,11 +12,11 @@
 
 namespace fettle::haptic {
 
-// What happened in the window, as a session's journal keeps it: enough to make every state of the session
-// again, bit for bit, from the scan. docs/formats.md describes the JSON; session_player.h plays it.
+// Events of the window, as stored in a session's journal: sufficient to reproduce every state of the session,
+// bit-identical, from the scan. docs/formats.md describes the JSON; session_player.h plays it.
 
-/// Where in a loop's life something was: after `tick` ticks, or right after the command that the loop
-/// answered then, before it went on to the next tick.
+/// A point in a loop's sequence: after `tick` ticks, or immediately after the command that the loop answered
+/// then, before the next tick.
 struct LoopPlace {
   std::uint64_t tick = 0;
   bool answered = false;
@@ -34,7 +34,7 @@ struct Begin {
 struct Ticks {
   std::int64_t count = 0;
 };
-/// Ticks that were not recorded: nothing after them can be played.
+/// Ticks that were not recorded: nothing after them can be replayed.
 struct Lost {
   std::int64_t count = 0;
 };
@@ -42,8 +42,8 @@ struct SceneSet {
   LoopPlace at;
   haptic::Scene scene;
 };
-/// A step led to state `state`: what the field was there. With `marks` it is the state before with the marks
-/// that the entry's data tells (mark_codec.h): set by other means than strokes.
+/// A step led to state `state`: the field at that point. With `marks` it is the state before with the marks
+/// of the entry's data (mark_codec.h), set by other means than strokes.
 struct StepMade {
   std::int64_t state = 0;
   std::string name;
@@ -51,27 +51,27 @@ struct StepMade {
   LoopPlace at;
   bool marks = false;
 };
-/// State `state` as it is now was asked for ...
-struct RestoreAsked {
+/// The restoring of state `state` was requested ...
+struct RestoreRequested {
   std::uint64_t id = 0;
   std::int64_t state = 0;
 };
-/// ... and is felt from here on.
+/// ... and was restored here.
 struct Restored {
   std::uint64_t id = 0;
   LoopPlace at;
 };
-/// The field there is what a filter was computed on ...
+/// The field at that point is the input of a filter ...
 struct FilterBase {
   std::uint64_t id = 0;
   LoopPlace at;
 };
-/// ... whose result is now brought into the live field (haptic::adoptFiltered) ...
+/// ... whose result is now adopted into the live field (haptic::adoptFiltered) ...
 struct FilterBegun {
   std::uint64_t id = 0;  ///< of its base
   engine::FilterSpec spec;
 };
-/// ... which asked for the field there ...
+/// ... for which a snapshot was taken there ...
 struct Snapshot {
   LoopPlace at;
 };
@@ -81,7 +81,7 @@ struct Offered {
   bool taken = false;
 };
 
-using Entry = std::variant<Begin, Ticks, Lost, SceneSet, StepMade, RestoreAsked, Restored, FilterBase,
+using Entry = std::variant<Begin, Ticks, Lost, SceneSet, StepMade, RestoreRequested, Restored, FilterBase,
                            FilterBegun, Snapshot, Offered>;
 
 }  // namespace journal

@@ -69,7 +69,7 @@ engine::Result<engine::Version> applyMarkChanges(const engine::Version& before, 
       if (column >= grid.width || row >= grid.height)
         return engine::inputError("recorded marks lie outside the field", "journal");
       if (!field.setMark(column, row, bit(at + 8 + kBitBytes, i)))
-        return engine::failure("memory for marks could not be had", "journal", "close other programs");
+        return engine::failure("memory for marks could not be allocated", "journal", "close other programs");
     }
   }
   return field.snapshot();

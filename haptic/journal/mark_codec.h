@@ -9,8 +9,8 @@
 namespace fettle::haptic {
 
 /// The samples whose marks differ between two versions of one grid, and what they are afterwards: for each
-/// tile with any, its column and row [32-bit little-endian each] and twice 512 bytes, one bit a sample,
-/// row-major: which change, and to what. Bytes in proportion to what differs; a session keeps them
+/// tile with any, its column and row [32-bit little-endian each] and twice 512 bytes, one bit per sample,
+/// row-major: which change, and to what. Size proportional to the number of differences; a session keeps them
 /// compressed.
 [[nodiscard]] std::string packMarkChanges(const engine::Version& before, const engine::Version& after);
 

@@ -11,16 +11,16 @@
 
 namespace fettle::haptic {
 
-/// Collects a loop's life as journal entries until somebody takes them to a session. Ticks that were added
-/// stand before the entries added after them. Threading: main.
+/// Collects the events of a loop as journal entries until they are taken for a session. Ticks are ordered
+/// before entries that were added after them. Threading: main.
 class Recorder {
  public:
-  /// Enough ticks wait to be worth writing although nothing else happens: some seconds of them.
+  /// Number of waiting ticks that are written even without another event: some seconds of them.
   static constexpr std::int64_t kDue = 4096;
 
   void tick(const haptic::StrokeSample& input) { ticks_.add(input); }
   void add(const journal::Entry& entry, std::string data = {});
-  /// A filter that begins while an offer of one that was cancelled has no answer yet: told after that answer.
+  /// A filter that begins while the offer of a cancelled one has no answer yet is recorded after that answer.
   void beginFilter(const journal::FilterBegun& filter);
   void offerMade() { offer_open_ = true; }
   void offerAnswered(const journal::Offered& offered);

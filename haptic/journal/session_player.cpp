@@ -25,7 +25,7 @@ using haptic::CommandKind;
 using haptic::EventKind;
 using haptic::LoopCommand;
 
-// More rounds than any adoption was allowed (FilterPreview): the journal says where it ended.
+// More rounds than any adoption was allowed (FilterPreview): the journal records where it ended.
 constexpr int kMostRounds = 1000;
 
 Version upright(const Version& version) {
@@ -51,7 +51,7 @@ class Player final : public haptic::AdoptionPort {
     return std::move(played_);
   }
 
-  // What the adoption asks for, given where the journal says it was.
+  // Answers the requests of the adoption at the points that the journal records.
   engine::Result<Version> snapshot() override {
     snapshot_.reset();
     if (auto done = playUntil([&] { return snapshot_.has_value(); }); !done)
@@ -68,8 +68,8 @@ class Player final : public haptic::AdoptionPort {
   void pause() override {}
 
  private:
-  // As far as the adoption under way goes: the next filter's begin, a new loop or the journal's end show that
-  // it was cancelled there.
+  // Ends the running adoption: the next filter's begin, a new loop or the journal's end mean that it was
+  // cancelled there.
   template <class Done>
   engine::Status playUntil(const Done& done) {
     while (!done()) {
@@ -104,7 +104,7 @@ class Player final : public haptic::AdoptionPort {
 
   engine::Status play(const journal::Begin& begin, const std::string&) {
     const auto state = states_.find(begin.state);
-    if (state == states_.end()) return mismatch("work begins on a state that was never made");
+    if (state == states_.end()) return mismatch("a loop begins on a state that does not exist");
     auto loop = haptic::LoopPlayer::create(state->second, original_, begin.scene);
     if (!loop) return tl::unexpected(loop.error());
     loop_ = std::move(*loop);
@@ -128,9 +128,9 @@ class Player final : public haptic::AdoptionPort {
 
   engine::Status play(const journal::Lost& lost, const std::string&) {
     return engine::inputError(
-        fmt::format("{} ticks were not recorded: the window stood still for too long", lost.count),
+        fmt::format("{} ticks were not recorded: the window did not respond for too long", lost.count),
         fmt::format("journal entry {}", next_),
-        "what comes after cannot be made again; the session's stored states hold it");
+        "what follows cannot be replayed; the session's stored states contain it");
   }
 
   engine::Status play(const journal::SceneSet& set, const std::string&) {
@@ -145,7 +145,7 @@ class Player final : public haptic::AdoptionPort {
     Version state;
     if (step.marks) {
       const auto before = states_.find(step.state - 1);
-      if (before == states_.end()) return mismatch("marks on a state that was never made");
+      if (before == states_.end()) return mismatch("marks on a state that does not exist");
       auto marked = applyMarkChanges(before->second, data);
       if (!marked) return tl::unexpected(marked.error());
       state = *std::move(marked);
@@ -155,16 +155,16 @@ class Player final : public haptic::AdoptionPort {
       state = upright(*there);
     }
     states_[step.state] = std::move(state);
-    // Steps after it are gone.
+    // Steps after it are discarded.
     states_.erase(states_.upper_bound(step.state), states_.end());
     played_.state = step.state;
     ++played_.steps;
     return {};
   }
 
-  engine::Status play(const journal::RestoreAsked& asked, const std::string&) {
+  engine::Status play(const journal::RestoreRequested& asked, const std::string&) {
     const auto state = states_.find(asked.state);
-    if (state == states_.end()) return mismatch("a state is restored that was never made");
+    if (state == states_.end()) return mismatch("a state is restored that does not exist");
     asked_[asked.id] = state->second;
     played_.state = asked.state;
     return {};
@@ -172,7 +172,7 @@ class Player final : public haptic::AdoptionPort {
 
   engine::Status play(const journal::Restored& restored, const std::string&) {
     const auto version = asked_.find(restored.id);
-    if (version == asked_.end()) return mismatch("a state is restored that nobody asked for");
+    if (version == asked_.end()) return mismatch("a state is restored without a request");
     LoopCommand command;
     command.kind = CommandKind::kRestore;
     command.version = inverted_ ? version->second.inverted() : version->second;
@@ -189,7 +189,7 @@ class Player final : public haptic::AdoptionPort {
 
   engine::Status play(const journal::FilterBegun& filter, const std::string&) {
     const auto base = bases_.find(filter.id);
-    if (base == bases_.end()) return mismatch("a filter without the field it worked on");
+    if (base == bases_.end()) return mismatch("a filter without its input field");
     const Version input = base->second;
     const Version original = input.reader().sign() < 0.0F ? original_.inverted() : original_;
     engine::JobControl own;  // its stages are not this job's
@@ -226,10 +226,10 @@ class Player final : public haptic::AdoptionPort {
     return {};
   }
 
-  // Runs the ticks up to a place. Places never go back: entries were written in the order of the loop's
+  // Runs the ticks up to a place. Places never decrease: entries were written in the order of the loop's
   // answers.
   engine::Status advance(std::uint64_t tick) {
-    if (!loop_) return mismatch("something happened before work began");
+    if (!loop_) return mismatch("an event before a loop began");
     while (loop_->ticks() < tick) {
       if ((loop_->ticks() & 4095U) == 0 && job_.cancelled()) return engine::cancelled();
       if (ticks_.empty()) return mismatch("ticks are missing");

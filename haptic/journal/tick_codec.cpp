@@ -8,7 +8,7 @@
 namespace fettle::haptic {
 namespace {
 
-constexpr std::int64_t kPeriod_ns = 1'000'000;  // what times are told against; any loop's rate will do
+constexpr std::int64_t kPeriod_ns = 1'000'000;  // reference for time differences; correct for any rate
 constexpr std::int64_t kLongest_ns = std::int64_t{1} << 58;  // nine years: sums stay far from overflow
 constexpr std::uint64_t kLatest_ns = std::uint64_t{1} << 59;
 constexpr std::uint8_t kNewX = 1, kNewY = 2, kNewZ = 4, kNewTool = 8, kNoInput = 16;
@@ -108,7 +108,7 @@ std::string TickPacker::take() {
 
 engine::Result<std::vector<haptic::StrokeSample>> unpackTicks(std::string_view block) {
   const auto damaged = [] { return engine::inputError("the recorded ticks are damaged", "journal"); };
-  constexpr std::uint64_t kMostTicks = 1U << 28U;  // in one run: three days, and no memory asked for more
+  constexpr std::uint64_t kMostTicks = 1U << 28U;  // in one run: three days; limits the memory requested
   std::vector<haptic::StrokeSample> ticks;
   Bytes bytes(block);
   haptic::StrokeSample last;

@@ -10,12 +10,13 @@
 
 namespace fettle::haptic {
 
-/// Packs the inputs of ticks into bytes, bit for bit: a journal keeps one for every tick.
+/// Packs the inputs of ticks into bytes without loss: a journal stores one for every tick.
 ///
-/// A block stands on its own. Each tick is a byte of what is new in it, then only that: the time as a
-/// difference from one period after the tick before [ns, zigzag varint], positions as the doubles' bits, the
-/// tool as one byte. Ticks without a usable position (x not finite: nothing was there to be felt) are counted
-/// in runs of one tool, their times left out. A resting hand takes 2 to 4 bytes a tick, a moving one 27.
+/// A block can be decoded alone. Each tick is a byte that states what changed, then only the changes: the
+/// time as a difference from one period after the tick before [ns, zigzag varint], positions as the doubles'
+/// bits, the tool as one byte. Ticks without a usable position (x not finite: no contact possible) are
+/// counted in runs of one tool, their times left out. A resting hand takes 2 to 4 bytes per tick, a moving
+/// one 27.
 class TickPacker {
  public:
   void add(const haptic::StrokeSample& tick);
@@ -36,7 +37,7 @@ class TickPacker {
 };
 
 /// The ticks of a block; those without input have a NaN for x and the time of the tick before. Errors
-/// (kInput): bytes that no TickPacker made.
+/// (kInput): bytes that are not a block of TickPacker.
 [[nodiscard]] engine::Result<std::vector<haptic::StrokeSample>> unpackTicks(std::string_view block);
 
 }  // namespace fettle::haptic

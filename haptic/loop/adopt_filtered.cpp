@@ -24,7 +24,7 @@ struct ByRow {
 using Spots = std::set<TileSpot, ByRow>;
 
 tl::unexpected<engine::Error> noMemory() {
-  return engine::failure("memory for the filtered tiles could not be had", "adopting a filter's result",
+  return engine::failure("memory for the filtered tiles could not be allocated", "adopting a filter's result",
                          "close other programs or filter a smaller field");
 }
 
@@ -43,7 +43,7 @@ std::vector<TileSpot> changedSpots(const engine::Version& before, const engine::
   return spots;
 }
 
-// What is known of the live field while the rounds go on.
+// State of the live field during the rounds.
 class Adoption {
  public:
   Adoption(AdoptionPort& port, const engine::Version& base, const engine::Version& result,
@@ -89,7 +89,7 @@ class Adoption {
     return {};
   }
 
-  // Follows the edits of tiles that are not filtered yet and filters them again, with all that they reach.
+  // Collects the edits of tiles that are not filtered yet and filters them again, with all tiles they affect.
   engine::Status filterAgain(const engine::Version& now) {
     engine::LiveField raw(raw_, engine::Growth::kAllowed);
     std::vector<TileSpot> edited;
@@ -102,16 +102,16 @@ class Adoption {
          first_ ? changedSpots(raw_, now) : std::vector<TileSpot>(unfiltered_.begin(), unfiltered_.end()))
       if (!follow(spot)) return noMemory();
     raw_ = raw.snapshot();
-    const std::vector<TileSpot> stale = withHalo(edited, engine::reachOf(spec_), now.grid());
-    if (!stale.empty()) {
-      engine::Result<engine::Version> again = filterTiles(raw_, original_, spec_, stale, job_);
+    const std::vector<TileSpot> affected = withHalo(edited, engine::reachOf(spec_), now.grid());
+    if (!affected.empty()) {
+      engine::Result<engine::Version> again = filterTiles(raw_, original_, spec_, affected, job_);
       if (!again) return tl::unexpected(again.error());
       engine::LiveField filtered(filtered_, engine::Growth::kAllowed);
-      for (const TileSpot& spot : stale)
+      for (const TileSpot& spot : affected)
         if (!putTile(filtered, *again, spot)) return noMemory();
       filtered_ = filtered.snapshot();
-      report_.filtered_again += static_cast<std::int64_t>(stale.size());
-      due_.insert(stale.begin(), stale.end());
+      report_.filtered_again += static_cast<std::int64_t>(affected.size());
+      due_.insert(affected.begin(), affected.end());
     }
     due_.insert(unfiltered_.begin(), unfiltered_.end());
     return {};
@@ -120,7 +120,7 @@ class Adoption {
   engine::Result<engine::Version> merged(const engine::Version& now) {
     engine::LiveField out(now, engine::Growth::kAllowed);
     for (const TileSpot& spot : due_) {
-      // A tile filtered in an earlier round that the hand has worked on since is the hand's.
+      // A tile filtered in an earlier round and edited since keeps the edit.
       const bool mine = first_ || unfiltered_.contains(spot) || tileOf(now, spot) == tileOf(felt_, spot);
       if (mine && !putTile(out, filtered_, spot)) return noMemory();
     }
@@ -131,8 +131,8 @@ class Adoption {
   const engine::Version original_;
   const engine::FilterSpec spec_;
   engine::JobControl& job_;
-  engine::Version raw_;       // what the filter's input is, with the edits known so far
-  engine::Version filtered_;  // the filter of raw_, in all tiles that matter
+  engine::Version raw_;       // the filter's input, with the edits known so far
+  engine::Version filtered_;  // the filter of raw_, in all tiles that are needed
   engine::Version felt_;      // the live field right after the last adoption
   Spots due_;                 // tiles whose live content should become filtered_'s
   Spots unfiltered_;          // tiles whose live content is raw, after the first adoption

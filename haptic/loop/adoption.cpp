@@ -17,8 +17,8 @@ engine::Result<MergedResult> mergeResult(const engine::Version& now, const engin
     if (&present.tile(change.tile_column, change.tile_row) != change.before.get())
       out.conflicts.push_back({change.tile_column, change.tile_row});
     else if (!merged.replaceTile(change.tile_column, change.tile_row, std::move(change.after)))
-      return engine::failure("memory for the filtered tiles could not be had", "adopting a filter's result",
-                             "close other programs or filter a smaller field");
+      return engine::failure("memory for the filtered tiles could not be allocated",
+                             "adopting a filter's result", "close other programs or filter a smaller field");
   }
   out.version = merged.snapshot();
   return out;

@@ -15,18 +15,18 @@ struct TileSpot {
   friend bool operator==(const TileSpot&, const TileSpot&) = default;
 };
 
-/// The result of a job put into a later state of the field.
+/// The result of a job merged into a later state of the field.
 struct MergedResult {
   engine::Version version;
   /// Tiles that the job changed and that were edited since it began: left as `now` has them, row-major within
-  /// each node. What they should become is only known when they are filtered again.
+  /// each node. Their result is only known after filtering again.
   std::vector<TileSpot> conflicts;
 };
 
 /// Puts into `now` all tiles in which `result` differs from `base`, except where `now` no longer has base's
-/// tile. Compares addresses, which suffices: `base` keeps its tiles, so no other can have their place.
-/// The step of an adoption that takes time in proportion to what the job changed, done by the worker so that
-/// the loop's part is O(1) plus the tiles edited meanwhile (see LoopTick).
+/// tile. Compares addresses, which suffices: `base` keeps its tiles, so no other tile can have their address.
+/// This step of an adoption takes time proportional to what the job changed; the worker does it so that the
+/// loop's part is O(1) plus the tiles edited meanwhile (see LoopTick).
 ///
 /// All three versions are of one grid and share their memory. The sign is `now`'s. Errors: kFailed when
 /// memory runs out. Thread: any but the loop's (may grow the pool).

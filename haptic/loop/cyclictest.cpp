@@ -22,11 +22,11 @@ namespace fettle::haptic {
 
 namespace {
 
-// What a wake-up later than this counts as is told by the maximum alone. [us]
+// Wake-ups later than this are only known by the maximum. [us]
 constexpr int kHistogram_us = 20000;
 
 std::string programPath() {
-  const char* path = std::getenv("PATH");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  const char* path = std::getenv("PATH");  // NOLINT(concurrency-mt-unsafe): never set
   for (std::string_view rest = path == nullptr ? "" : path; !rest.empty();) {
     const std::string_view folder = rest.substr(0, rest.find(':'));
     rest.remove_prefix(std::min(folder.size() + 1, rest.size()));
@@ -36,8 +36,8 @@ std::string programPath() {
   return "";
 }
 
-// A child that outlives its parent would keep the machine busy for nobody; a parent that is gone already is
-// seen by its number.
+// A child that outlives its parent would keep the machine busy for no purpose; a parent that has already
+// ended is detected by its process id.
 void endWithParent(pid_t parent) noexcept {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
@@ -83,16 +83,17 @@ engine::Result<Cyclictest> Cyclictest::start(const Settings& settings) {
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) return engine::failure("no pipe can be had", "starting cyclictest");
+  if (pipe2(ends.data(), O_CLOEXEC) != 0)
+    return engine::failure("no pipe can be created", "starting cyclictest");
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) {
     close(ends[0]);
     close(ends[1]);
-    return engine::failure("no process can be had", "starting cyclictest");
+    return engine::failure("no process can be started", "starting cyclictest");
   }
   if (child == 0) {
-    // Only what is safe between fork and exec in a program with threads.
+    // Only calls that are safe between fork and exec in a program with threads.
     endWithParent(parent);
     dup2(ends[1], STDOUT_FILENO);
     dup2(ends[1], STDERR_FILENO);

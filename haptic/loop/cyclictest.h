@@ -11,8 +11,8 @@
 namespace fettle::haptic {
 
 /// The kernel developers' own measure of wake-up lateness (package rt-tests), as a child process: one thread
-/// on one core that does nothing but absolute sleeps. It holds /dev/cpu_dma_latency by itself, as our loop
-/// does. Threading: one thread.
+/// on one core that does nothing but absolute sleeps. It holds /dev/cpu_dma_latency itself, as the haptic
+/// loop does. Threading: one thread.
 class Cyclictest {
  public:
   struct Settings {
@@ -25,14 +25,14 @@ class Cyclictest {
   /// Whether the program is on the PATH.
   [[nodiscard]] static bool installed();
 
-  /// Starts it. Errors (kFailed): no process can be had.
+  /// Starts it. Errors (kFailed): no process can be started.
   [[nodiscard]] static engine::Result<Cyclictest> start(const Settings& settings);
   Cyclictest(Cyclictest&& other) noexcept;
   Cyclictest& operator=(Cyclictest&&) = delete;
   ~Cyclictest();  ///< ends it
 
   /// Waits for its end and adds what it measured to `lateness` (whole microseconds). Errors (kFailed): it
-  /// refused, with its own words - without the right to SCHED_FIFO, say.
+  /// refused, with its own message - for example without the right to SCHED_FIFO.
   [[nodiscard]] engine::Status finish(TimingHistogram& lateness);
 
  private:
@@ -43,15 +43,15 @@ class Cyclictest {
 };
 
 /// Adds a histogram as cyclictest prints it (-h): lines "microseconds count", comments with '#', of which
-/// "Max Latencies" and "Histogram Overflows" tell of what lay beyond the last class: it is added as the
+/// "Max Latencies" and "Histogram Overflows" describe what lay beyond the last class: it is added as the
 /// maximum, never too low. False when there is no such histogram in the text.
 [[nodiscard]] bool addCyclictestHistogram(const std::string& text, TimingHistogram& lateness);
 
-/// Child processes that keep a processor each busy at normal priority, through more memory than the caches
-/// hold, until the object ends. They end with their parent whatever happens to it.
+/// Child processes that each keep a processor busy at normal priority, with more memory than the caches hold,
+/// until the object is destroyed. They end with their parent in every case.
 class BusyProcesses {
  public:
-  /// Fewer than asked for when the system refuses; see size().
+  /// Fewer than requested when the system refuses; see size().
   explicit BusyProcesses(unsigned number);
   ~BusyProcesses();
   BusyProcesses(const BusyProcesses&) = delete;

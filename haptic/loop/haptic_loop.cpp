@@ -30,7 +30,7 @@ engine::Result<std::unique_ptr<HapticLoop>> HapticLoop::create(const engine::Ver
   if (const auto problem = limitsProblem(settings.options.limits))
     return engine::inputError(*problem, "safety limits of " + device.profile().name);
   if (!(settings.rate_hz >= Pacer::kLowestRate_hz && settings.rate_hz <= Pacer::kHighestRate_hz))
-    return engine::inputError("a loop runs at 1000 to 10000 ticks a second", "rate");
+    return engine::inputError("a loop runs at 1000 to 10000 ticks per second", "rate");
   if (!std::has_single_bit(settings.options.command_capacity) ||
       !std::has_single_bit(settings.options.event_capacity) || settings.options.event_capacity < 8 ||
       (settings.options.record_capacity != 0 && !std::has_single_bit(settings.options.record_capacity)))
@@ -42,7 +42,7 @@ engine::Result<std::unique_ptr<HapticLoop>> HapticLoop::create(const engine::Ver
     auto prepared = std::make_unique<PreparedScene>(scene, original);
     return std::unique_ptr<HapticLoop>(new HapticLoop(start, std::move(prepared), device, settings));
   } catch (const std::bad_alloc&) {
-    return engine::failure("memory for the loop could not be had", "loop", "close other programs");
+    return engine::failure("memory for the loop could not be allocated", "loop", "close other programs");
   }
 }
 
@@ -51,8 +51,8 @@ HapticLoop::HapticLoop(const engine::Version& start, std::unique_ptr<PreparedSce
     : settings_(settings),
       memory_(start.memory()),
       channels_(settings.options),
-      near_(memory_->store ? std::make_unique<NearTiles>() : nullptr),
-      tick_(std::move(scene), start, device, channels_, settings.options, near_.get()) {}
+      tile_prefetcher_(memory_->store ? std::make_unique<TilePrefetcher>() : nullptr),
+      tick_(std::move(scene), start, device, channels_, settings.options, tile_prefetcher_.get()) {}
 
 HapticLoop::~HapticLoop() {
   static_cast<void>(stop());
@@ -65,12 +65,12 @@ engine::Status HapticLoop::start() {
   } catch (const std::system_error& e) {
     return engine::failure(e.what(), "starting the haptic loop");
   } catch (const std::bad_alloc&) {
-    return engine::failure("memory for the haptic loop could not be had", "starting the haptic loop");
+    return engine::failure("memory for the haptic loop could not be allocated", "starting the haptic loop");
   }
-  // Acquire pairs with the release in main: the report is whole.
+  // Acquire pairs with the release in main: the report is complete.
   ready_.wait(false, std::memory_order_acquire);
   try {
-    if (near_) near_->start();
+    if (tile_prefetcher_) tile_prefetcher_->start();
   } catch (const std::system_error& e) {
     static_cast<void>(stop());
     return engine::failure(e.what(), "starting the thread that reads the field from the disk");
@@ -92,7 +92,7 @@ void HapticLoop::main() noexcept {
   const RealTimeScope real_time(settings_.wish);
   const HandlerStack handler_stack;
   const DenormalScope denormals;
-  // All pages are locked now, and a field in a store is there not to be.
+  // All pages are locked now; those of a field in a store must not be.
   if (memory_->store) memory_->store->letGo();
   const std::uint64_t waits_before = diskWaitsOfThisThread();
   const auto noteDiskWaits = [&] {

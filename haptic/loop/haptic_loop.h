@@ -8,13 +8,13 @@
 #include "engine/base/error.h"
 #include "haptic/base/rt_thread.h"
 #include "haptic/loop/loop_tick.h"
-#include "haptic/loop/near_tiles.h"
 #include "haptic/loop/pool_keeper.h"
+#include "haptic/loop/tile_prefetcher.h"
 #include "haptic/loop/timing.h"
 
 namespace fettle::haptic {
 
-/// The live loop: a thread of its own that owns the live version and runs one LoopTick a period.
+/// The live loop: its own thread, which owns the live version and runs one LoopTick per period.
 ///
 /// Life: construct, start(), any number of send() and poll(), stop(); once only.
 /// Threading: one main thread calls everything; timing() may be read by any. send(), poll() and state() never
@@ -28,7 +28,7 @@ class HapticLoop {
     PoolKeeper::Levels pool;
   };
 
-  /// Works on `start` (the right way up) as `scene` says; `original` is what Scene::max_change is measured
+  /// Works on `start` (upright) according to `scene`; `original` is what Scene::max_change is measured
   /// against, often `start` itself. The device is started and stopped by the caller, and outlives the loop.
   /// Errors (kInput): a scene, limits, a rate or ring capacities out of range, grids that differ.
   [[nodiscard]] static engine::Result<std::unique_ptr<HapticLoop>> create(const engine::Version& start,
@@ -40,7 +40,7 @@ class HapticLoop {
   HapticLoop& operator=(const HapticLoop&) = delete;
 
   /// Fills the pools, starts the thread and returns when it is about to tick. Errors: kFailed when no thread
-  /// can be had. What the thread did not get of the system is no error: see realTime().
+  /// can be started. What the system did not grant the thread is no error: see realTime().
   [[nodiscard]] engine::Status start();
 
   /// Ends the thread after a last tick with zero force. The field as it was left, the sign as felt; events
@@ -51,28 +51,28 @@ class HapticLoop {
   [[nodiscard]] bool send(LoopCommand&& command) noexcept {
     return channels_.commands.push(std::move(command));
   }
-  /// LoopChannels::disarm(): at once, past all commands, never refused.
+  /// LoopChannels::disarm(): immediately, before all queued commands, never refused.
   void disarm() noexcept { channels_.disarm(); }
   /// LoopChannels::armCommand(), to be sent.
   [[nodiscard]] LoopCommand armCommand() const noexcept { return channels_.armCommand(); }
-  /// The oldest event that was not seen yet; false when there is none.
+  /// The oldest event that was not polled yet; false when there is none.
   [[nodiscard]] bool poll(LoopEvent& event) noexcept { return channels_.events.pop(event); }
   /// The oldest record of a tick that was not taken yet (LoopOptions::record_capacity); false when there is
   /// none. The rest can be taken after stop().
   [[nodiscard]] bool pollRecord(TickRecord& record) noexcept { return channels_.records.pop(record); }
-  /// The newest tick; valid until the next call: who looks twice a round keeps a copy.
+  /// The newest tick; valid until the next call: copy it if it is needed longer.
   [[nodiscard]] const LoopState& state() noexcept {
     channels_.state.take();
     return channels_.state.latest();
   }
 
   [[nodiscard]] const LoopTiming& timing() const noexcept { return timing_; }
-  /// What the thread got of the system; empty before start().
+  /// What the system granted the thread; empty before start().
   [[nodiscard]] const RealTimeReport& realTime() const noexcept { return real_time_; }
-  /// What keeps the samples around the hand in memory; null for a field that lies there anyway.
-  [[nodiscard]] const NearTiles* nearTiles() const noexcept { return near_.get(); }
-  /// Times the loop's thread waited for the disk so far (major page faults; looked at every 1024 ticks and at
-  /// the end). Any thread.
+  /// Keeps the samples around the stylus in memory; null for a field that lies in memory anyway.
+  [[nodiscard]] const TilePrefetcher* tilePrefetcher() const noexcept { return tile_prefetcher_.get(); }
+  /// Times the loop's thread waited for the disk so far (major page faults; read every 1024 ticks and at the
+  /// end). Any thread.
   [[nodiscard]] std::uint64_t diskWaits() const noexcept {
     return disk_waits_.load(std::memory_order_relaxed);
   }
@@ -86,12 +86,12 @@ class HapticLoop {
   Settings settings_;
   std::shared_ptr<engine::FieldMemory> memory_;
   LoopChannels channels_;
-  std::unique_ptr<NearTiles> near_;
+  std::unique_ptr<TilePrefetcher> tile_prefetcher_;
   LoopTick tick_;
   LoopTiming timing_;
   RealTimeReport real_time_;
   std::optional<PoolKeeper> keeper_;
-  std::atomic<std::uint64_t> disk_waits_{0};  // relaxed: for show
+  std::atomic<std::uint64_t> disk_waits_{0};  // relaxed: for display
   std::atomic<bool> ready_{false};
   std::atomic<bool> stop_{false};
   std::thread thread_;

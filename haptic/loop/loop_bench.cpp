@@ -29,7 +29,7 @@ constexpr double kSpacing_mm = 0.1;
 constexpr double kSlice_s = 5.0;
 constexpr double kShortestCyclictest_s = 0.5;  // it takes some 10 ms to start
 
-// A noisy plate: smoothing never runs out of work.
+// A noisy plate, on which smoothing always changes samples.
 engine::Version benchField() {
   engine::Grid grid;
   grid.width = grid.height = kSide;
@@ -43,7 +43,7 @@ engine::Version benchField() {
   return engine::makeField(grid, heights);
 }
 
-// A hand that presses and sweeps, one input a tick.
+// A hand that presses and sweeps, one input per tick.
 class SimulatedPress : public Device {
  public:
   SimulatedPress() {
@@ -140,7 +140,7 @@ class Measurement {
     std::unique_ptr<BusyProcesses> load;
     if (options_.load == BenchLoad::kBusy)
       load = std::make_unique<BusyProcesses>(std::max(1U, static_cast<unsigned>(cores.size())));
-    // An even number, so that each has each core as long.
+    // An even number, so that both run on each core for the same time.
     const int slices = 2 * std::max(1, static_cast<int>(std::lround(options_.seconds / (2.0 * kSlice_s))));
     const double slice_s = options_.seconds / slices;
     chooseReference(slice_s);
@@ -174,12 +174,13 @@ class Measurement {
 
   void chooseReference(double slice_s) {
     if (!Cyclictest::installed())
-      report_.no_cyclictest = "cyclictest is not installed (package rt-tests): a plain thread stands in";
+      report_.no_cyclictest =
+          "cyclictest is not installed (package rt-tests): a plain thread is used instead";
     else if (slice_s < kShortestCyclictest_s)
-      report_.no_cyclictest = "the time is too short for cyclictest: a plain thread stands in";
+      report_.no_cyclictest = "the time is too short for cyclictest: a plain thread is used instead";
     else
       report_.reference.latency_held =
-          ::access("/dev/cpu_dma_latency", W_OK) == 0;  // it says so, and goes on
+          ::access("/dev/cpu_dma_latency", W_OK) == 0;  // it reports that and continues
   }
 
   engine::Status measure(int loop_core, int reference_core, Which which, double seconds) {
@@ -227,7 +228,7 @@ class Measurement {
     return done;
   }
 
-  // The main side's part: takes events and looks at the state as a display would.
+  // The main thread's part: takes events and reads the state as a display would.
   engine::Status wait(double seconds, HapticLoop* loop) {
     const auto begin = std::chrono::steady_clock::now();
     const std::chrono::duration<double> span(seconds);
@@ -265,13 +266,14 @@ engine::Result<LoopBenchReport> benchLoop(const LoopBenchOptions& options, engin
     return engine::inputError("the time to measure is not within 0 and 3600 s", "--seconds",
                               "give a time between");
   if (!(options.rate_hz >= Pacer::kLowestRate_hz && options.rate_hz <= Pacer::kHighestRate_hz))
-    return engine::inputError("a loop runs at 1000 to 10000 ticks a second", "--rate", "give a rate between");
+    return engine::inputError("a loop runs at 1000 to 10000 ticks per second", "--rate",
+                              "give a rate between");
   if (options.priority < 0 || options.priority > 99)
     return engine::inputError("a priority is within 0 and 99", "priority");
   try {
     return Measurement(options, job).run();
   } catch (const std::bad_alloc&) {
-    return engine::failure("memory for the measurement could not be had", "bench loop");
+    return engine::failure("memory for the measurement could not be allocated", "bench loop");
   } catch (const std::system_error& e) {
     return engine::failure(e.what(), "bench loop");
   }

@@ -10,9 +10,9 @@
 
 namespace fettle::haptic {
 
-/// What else keeps the machine busy while the loop is measured.
+/// Load on the machine while the loop is measured.
 enum class BenchLoad : std::uint8_t {
-  kIdle,  ///< nothing of ours
+  kIdle,  ///< no added load
   kBusy,  ///< as many processes as cores, at normal priority, that work through memory without a pause
 };
 
@@ -23,14 +23,14 @@ struct LoopBenchOptions {
   int priority = 80;  ///< SCHED_FIFO of both threads; 0 = normal
 };
 
-/// One thread's time keeping.
+/// Timing of one thread.
 struct LoopBenchRow {
   std::string name;  ///< "haptic loop", "cyclictest", "plain thread"
   TimingFigures lateness;
   TimingFigures compute;             ///< of the loop alone; of others: count 0
   std::uint64_t missed = 0;          ///< periods skipped; cyclictest does not count them
   std::uint64_t over_1_ms = 0;       ///< wake-ups later than 1 ms
-  std::vector<std::string> missing;  ///< what the system did not give (RealTimeReport)
+  std::vector<std::string> missing;  ///< what the system did not grant (RealTimeReport)
   bool latency_held = false;         ///< /dev/cpu_dma_latency
 };
 
@@ -48,15 +48,15 @@ struct LoopBenchReport {
   std::uint64_t events = 0;  ///< publications that the main side took
 };
 
-/// Measures the live loop beside cyclictest, or where that is not installed beside a thread that does its
-/// part (absolute sleep, pinned, same priority, memory locked). Both run at the same time on different cores,
-/// so that they meet the same weather, in slices of some seconds, and change cores from slice to slice, so
+/// Measures the live loop together with cyclictest, or where that is not installed with a plain thread in its
+/// place (absolute sleep, pinned, same priority, memory locked). Both run at the same time on different
+/// cores, so that conditions are equal, in slices of some seconds, and change cores from slice to slice, so
 /// that a core with more interrupts favours neither; on one core they take the slices in turns. The loop does
-/// all it does in a session: a simulated hand presses and smooths a 1024 x 1024 field for good, the main side
-/// takes the edits.
+/// all it does in a session: a simulated hand presses and smooths a 1024 x 1024 field throughout, the main
+/// thread takes the edits.
 ///
 /// Progress: stage "measuring", steps = milliseconds. Errors: kInput for options out of range; kCancelled;
-/// kFailed when threads or memory cannot be had. Thread: main; blocks.
+/// kFailed when threads or memory are not available. Thread: main; blocks.
 [[nodiscard]] engine::Result<LoopBenchReport> benchLoop(const LoopBenchOptions& options,
                                                         engine::JobControl& job);
 

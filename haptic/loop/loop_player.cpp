@@ -10,7 +10,7 @@ namespace fettle::haptic {
 
 namespace {
 
-// Free tiles and nodes before each tick: more than the largest brush takes in one.
+// Free tiles and nodes before each tick: more than the largest brush uses in one tick.
 constexpr std::size_t kTiles = 64;
 constexpr std::size_t kNodes = 256;
 
@@ -22,7 +22,7 @@ LoopOptions optionsOfAPlayer() {
 
 }  // namespace
 
-// The device: gives what it is told to.
+// The device: returns the given input.
 class LoopPlayer::Input final : public Device {
  public:
   Input() {
@@ -61,19 +61,20 @@ engine::Result<std::unique_ptr<LoopPlayer>> LoopPlayer::create(const engine::Ver
 }
 
 engine::Status LoopPlayer::run(const StrokeSample& input) {
-  // Nobody waits for what was published: it is let go of, so that the ring never fills.
+  // What was published is not needed here: it is released, so that the ring never fills.
   for (LoopEvent event; channels_.events.pop(event);) event = {};
   if (!memory_->tiles.reserve(kTiles) || !memory_->nodes.reserve(kNodes))
-    return engine::failure("memory for the edited tiles could not be had", "replay", "close other programs");
-  DeviceInput& said = input_->input;
-  ++said.sequence;
-  // The loop takes its time from its clock, and a tick its seconds from that: the same number again.
-  said.arrival_ns = std::llround(input.t * 1e9);
-  said.position_mm = input.tip_mm;
-  said.tool = input.tool;
-  said.link = LinkState::kConnected;
+    return engine::failure("memory for the edited tiles could not be allocated", "replay",
+                           "close other programs");
+  DeviceInput& read = input_->input;
+  ++read.sequence;
+  // The loop derives the seconds of a tick from its clock: the same number results.
+  read.arrival_ns = std::llround(input.t * 1e9);
+  read.position_mm = input.tip_mm;
+  read.tool = input.tool;
+  read.link = LinkState::kConnected;
   const DenormalScope as_in_the_loop;
-  loop_.run(said.arrival_ns, 0);
+  loop_.run(read.arrival_ns, 0);
   return {};
 }
 

@@ -9,15 +9,15 @@
 
 namespace fettle::haptic {
 
-/// What a live loop was given, played again without thread, clock or device: the very LoopTick of the live
-/// loop, tick by tick, each command in the tick that took it. Same start, inputs and commands: same bits, of
-/// the field and of everything the loop answers.
+/// Replays the inputs and commands of a live loop without thread, clock or device: with the LoopTick of the
+/// live loop, tick by tick, each command in the tick that took it. With the same start, inputs and commands
+/// the field and all answers of the loop are bit-identical.
 ///
-/// Threading: one thread; run() takes the loop's floating-point state (DenormalScope) and gives it back.
+/// Threading: one thread; run() sets the loop's floating-point state (DenormalScope) and restores it.
 class LoopPlayer {
  public:
-  /// `start` and `original` the right way up, as for HapticLoop. Errors (kInput): a scene out of range, grids
-  /// that differ.
+  /// `start` and `original` upright, as for HapticLoop. Errors (kInput): a scene out of range, grids that
+  /// differ.
   [[nodiscard]] static engine::Result<std::unique_ptr<LoopPlayer>> create(const engine::Version& start,
                                                                           const engine::Version& original,
                                                                           const Scene& scene);
@@ -26,7 +26,7 @@ class LoopPlayer {
   /// One tick with the input that was recorded (TickRecord::input). Its time must be what the loop measured:
   /// seconds since its first tick, to the nanosecond. Errors (kFailed): memory ran out.
   [[nodiscard]] engine::Status run(const StrokeSample& input);
-  /// The same with a command taken first, one that has an answer; the answer.
+  /// The same with a command first that has an answer; returns the answer.
   [[nodiscard]] engine::Result<LoopEvent> run(const StrokeSample& input, LoopCommand&& command);
 
   /// Ticks so far.
@@ -42,7 +42,7 @@ class LoopPlayer {
   std::unique_ptr<Input> input_;
   LoopOptions options_;
   LoopChannels channels_;
-  mutable LoopTick loop_;  // hands its field out as a reference that may be written
+  mutable LoopTick loop_;  // its accessor returns a mutable reference to the field
 };
 
 }  // namespace fettle::haptic

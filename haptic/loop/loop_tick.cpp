@@ -11,7 +11,7 @@ namespace fettle::haptic {
 
 namespace {
 
-// Inputs that arrive in a burst are not so many millimetres in so few microseconds.
+// Inputs that arrive in a burst must not give a wrong speed.
 constexpr double kShortestInput_s = 0.0005;
 
 bool hasAnswer(CommandKind kind) noexcept {
@@ -33,7 +33,7 @@ bool edits(const Scene& scene, Tool tool) noexcept {
 }  // namespace
 
 LoopTick::LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, Device& device,
-                   LoopChannels& channels, const LoopOptions& options, NearTiles* near)
+                   LoopChannels& channels, const LoopOptions& options, TilePrefetcher* tile_prefetcher)
     : scene_(std::move(scene)),
       device_(device),
       channels_(channels),
@@ -41,11 +41,11 @@ LoopTick::LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, 
       guard_(options.limits),
       workspace_(options.workspace),
       tool_(options.tool),
-      near_(near) {
+      tile_prefetcher_(tile_prefetcher) {
   static_cast<void>(scene_->field.adopt(scene_->scene.invert ? start.inverted() : std::move(start)));
   scene_->tick.fieldChanged();
   published_ = scene_->field.snapshot();
-  if (near_ != nullptr) near_->replaced();
+  if (tile_prefetcher_ != nullptr) tile_prefetcher_->replaced();
 }
 
 engine::SampleRect LoopTick::wholeField() const noexcept {
@@ -89,7 +89,7 @@ void LoopTick::takeCommands() noexcept {
     has_waiting_ = hasAnswer(waiting_.kind) && channels_.events.freePlaces() == 0;
     if (has_waiting_) return;
     take(waiting_);
-    // One swap of versions a tick: its cost is bounded, that of eight would be eight times as much.
+    // One swap of versions per tick, which bounds its cost.
     if (hasAnswer(waiting_.kind)) return;
   }
 }
@@ -108,8 +108,8 @@ void LoopTick::take(LoopCommand& command) noexcept {
       disturbance_ = Disturbance::kSurfaceReplaced;
       break;
     case CommandKind::kArm:
-      if (command.id < disarms_) break;  // overtaken
-      takeDisarm(command.id);            // it may know of one that came after this tick's look
+      if (command.id < disarms_) break;  // superseded
+      takeDisarm(command.id);            // it may include one after this tick's read
       guard_.arm();
       break;
     case CommandKind::kScene:
@@ -137,17 +137,17 @@ void LoopTick::take(LoopCommand& command) noexcept {
 void LoopTick::swapScene(LoopCommand& command) noexcept {
   PreparedScene& next = *command.scene;
   const bool turn = next.scene.invert != scene_->scene.invert;
-  // The live state moves over; each side ends up with what the other held. The local copy of the live state
-  // is not the last one, so its end frees nothing.
+  // The live state moves over; the two fields are exchanged. The local copy of the live state is not the last
+  // one, so destroying it frees nothing.
   {
-    engine::Version stand_in = next.field.adopt(scene_->field.snapshot());
-    const engine::Version live = scene_->field.adopt(std::move(stand_in));
+    engine::Version placeholder = next.field.adopt(scene_->field.snapshot());
+    const engine::Version live = scene_->field.adopt(std::move(placeholder));
   }
   refused_before_ += static_cast<std::uint64_t>(scene_->tick.counters().refused_edits);
   if (turn) next.field.invert();
   next.tick.fieldChanged();
   std::swap(scene_, command.scene);
-  if (near_ != nullptr) near_->replaced();  // the original may be another
+  if (tile_prefetcher_ != nullptr) tile_prefetcher_->replaced();  // the original may have changed
   disturbance_ = Disturbance::kSurfaceReplaced;
   LoopEvent event = eventNow(EventKind::kSceneChanged, command.id);
   event.retired_scene = std::move(command.scene);
@@ -161,7 +161,7 @@ bool LoopTick::carryOver(const engine::Version& live) noexcept {
   for (int i = 0; i < edited_count_; ++i) {
     const TileIndex t = edited_[static_cast<std::size_t>(i)];
     const engine::Tile* tile = &now.tile(t.column, t.row);
-    // The base holds its tiles, so the same address is the same tile, untouched.
+    // The base holds its tiles, so the same address is the same tile, unchanged.
     if (tile == &base.tile(t.column, t.row)) continue;
     if (!scene_->field.replaceTile(t.column, t.row, engine::TileRef::share(tile))) return false;
     ++state_.carried;
@@ -186,7 +186,7 @@ void LoopTick::adopt(LoopCommand& command) noexcept {
       command.version = field.adopt(std::move(live));
     }
     scene_->tick.fieldChanged();
-    if (near_ != nullptr) near_->replaced();
+    if (tile_prefetcher_ != nullptr) tile_prefetcher_->replaced();
   }
   LoopEvent event = eventNow(done ? EventKind::kAdopted : EventKind::kAdoptRefused, command.id);
   event.retired = std::move(command.version);
@@ -205,7 +205,7 @@ void LoopTick::restore(LoopCommand& command) noexcept {
   command.version = field.adopt(std::move(command.version));
   if (field.reader().sign() != sign) field.invert();
   scene_->tick.fieldChanged();
-  if (near_ != nullptr) near_->replaced();
+  if (tile_prefetcher_ != nullptr) tile_prefetcher_->replaced();
   disturbance_ = Disturbance::kSurfaceReplaced;
   job_valid_ = false;
   in_stroke_ = stroke_ended_ = false;
@@ -217,7 +217,7 @@ void LoopTick::restore(LoopCommand& command) noexcept {
 }
 
 Tool LoopTick::toolInEffect(const DeviceInput& input, double age_s) const noexcept {
-  // No editing by a hand that is not heard of.
+  // No editing without recent input.
   if (input.link != LinkState::kConnected || age_s >= options_.limits.silence_s) return Tool::kFeel;
   if (options_.edit_rule == EditRule::kWhileForceIsGiven && guard_.state() != SafetyState::kRamping &&
       guard_.state() != SafetyState::kActive)
@@ -234,7 +234,7 @@ void LoopTick::record(const StrokeSample& input, const ForceSample& force, std::
 
 void LoopTick::noteVelocity(const DeviceInput& input) noexcept {
   if (has_input_ && input.sequence == last_input_.sequence) return;
-  // A stylus that was lifted off has no place, and comes back without having been moved there.
+  // A stylus that was lifted off has no position, and its next position is not a movement.
   const auto placed = [](const DeviceInput& i) {
     return i.link == LinkState::kConnected && finite(i.position_mm);
   };
@@ -249,8 +249,8 @@ void LoopTick::noteVelocity(const DeviceInput& input) noexcept {
   has_input_ = true;
 }
 
-// What a tick may read lies around the tip, where it was the tick before, and the proxy.
-bool LoopTick::samplesAreNear(const glm::dvec3& tip_mm) noexcept {
+// A tick may read samples around the tip, the previous tip and the proxy.
+bool LoopTick::samplesArePrefetched(const glm::dvec3& tip_mm) noexcept {
   if (!finite(tip_mm)) return true;  // no input reads nothing
   const engine::Grid& grid = scene_->field.grid();
   const auto sample = [](double mm, double spacing_mm, std::int32_t side) {
@@ -261,19 +261,19 @@ bool LoopTick::samplesAreNear(const glm::dvec3& tip_mm) noexcept {
   const glm::dvec3 before = finite(state_.endpoint_mm) ? state_.endpoint_mm : tip_mm;
   const glm::dvec3 proxy = finite(state_.proxy_mm) ? state_.proxy_mm : tip_mm;
   engine::SampleRect rect{column, row, 1, 1};
-  // Only a tick that felt something goes on from where that was.
-  if (was_near_ && state_.tick > 0)
+  // Only a tick with contact continues from the previous position.
+  if (was_prefetched_ && state_.tick > 0)
     for (const glm::dvec3& p : {before, proxy})
       rect = rect.joined(
           {sample(p.x, grid.spacingXMm(), grid.width), sample(p.y, grid.spacingYMm(), grid.height), 1, 1});
-  const std::int32_t c0 = std::max(rect.column - NearTiles::kTouch, 0);
-  const std::int32_t r0 = std::max(rect.row - NearTiles::kTouch, 0);
-  rect = {c0, r0, std::min(rect.column + rect.columns + NearTiles::kTouch, grid.width) - c0,
-          std::min(rect.row + rect.rows + NearTiles::kTouch, grid.height) - r0};
-  const bool near = near_->ready(scene_->field, scene_->original, rect, column, row);
-  if (near != was_near_) disturbance_ = Disturbance::kSurfaceReplaced;
-  was_near_ = near;
-  return near;
+  const std::int32_t c0 = std::max(rect.column - TilePrefetcher::kMargin, 0);
+  const std::int32_t r0 = std::max(rect.row - TilePrefetcher::kMargin, 0);
+  rect = {c0, r0, std::min(rect.column + rect.columns + TilePrefetcher::kMargin, grid.width) - c0,
+          std::min(rect.row + rect.rows + TilePrefetcher::kMargin, grid.height) - r0};
+  const bool ready = tile_prefetcher_->ready(scene_->field, scene_->original, rect, column, row);
+  if (ready != was_prefetched_) disturbance_ = Disturbance::kSurfaceReplaced;
+  was_prefetched_ = ready;
+  return ready;
 }
 
 void LoopTick::noteTiles(const engine::SampleRect& rect) noexcept {
@@ -281,7 +281,7 @@ void LoopTick::noteTiles(const engine::SampleRect& rect) noexcept {
   for (std::int32_t r = rect.row >> kTileShift; r <= (rect.row + rect.rows - 1) >> kTileShift; ++r)
     for (std::int32_t c = rect.column >> kTileShift; c <= (rect.column + rect.columns - 1) >> kTileShift;
          ++c) {
-      // From the newest on: a hand stays where it is.
+      // Starting with the newest: consecutive ticks edit the same tiles.
       int i = edited_count_ - 1;
       while (i >= 0 && !(edited_[static_cast<std::size_t>(i)].column == c &&
                          edited_[static_cast<std::size_t>(i)].row == r))
@@ -334,7 +334,7 @@ void LoopTick::publish() noexcept {
   const bool due = since_publish_ >= options_.publish_ticks && !dirty_.empty();
   if (!due && !stroke_ended_) return;
   if (!stroke_ended_ && published_ == scene_->field.snapshot()) {
-    // The root is shared with what was published, so nothing was written since: the tool changed no bit.
+    // The root is still shared with the published version, so nothing was written since.
     dirty_ = {};
     since_publish_ = 0;
     return;
@@ -373,9 +373,9 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   if (first_ns_ < 0) first_ns_ = now_ns;
   StrokeSample sample{1e-9 * static_cast<double>(now_ns - first_ns_), tip_mm, tool};
   if (input.link != LinkState::kConnected) sample.tip_mm.x = std::numeric_limits<double>::quiet_NaN();
-  if (near_ != nullptr && !samplesAreNear(sample.tip_mm)) {
+  if (tile_prefetcher_ != nullptr && !samplesArePrefetched(sample.tip_mm)) {
     sample.tip_mm.x = std::numeric_limits<double>::quiet_NaN();
-    ++state_.not_near;
+    ++state_.not_prefetched;
   }
   const ForceSample force = scene_->tick.run(sample);
 

@@ -10,7 +10,7 @@
 #include "haptic/base/rings.h"
 #include "haptic/devices/device.h"
 #include "haptic/loop/messages.h"
-#include "haptic/loop/near_tiles.h"
+#include "haptic/loop/tile_prefetcher.h"
 #include "haptic/safety/safety.h"
 
 namespace fettle::haptic {
@@ -24,8 +24,8 @@ enum class ToolSwitch : std::uint8_t {
 /// When an editing tool may act at all.
 enum class EditRule : std::uint8_t {
   kAnytime,
-  /// Only while the guard passes force on (Ramping, Active): a hand that feels no surface - not armed yet, or
-  /// after a Fault - would press right through it. For devices that give force.
+  /// Only while the guard passes force to the device (Ramping, Active): a hand that feels no surface - not
+  /// armed yet, or after a Fault - would press through it. For force devices.
   kWhileForceIsGiven,
 };
 
@@ -49,10 +49,10 @@ struct LoopOptions {
 
 /// The two rings and the slot between the loop and the main side. The loop never waits on any of them.
 ///
-/// Disarming has a lane of its own, beside the ring of commands: it cannot find a ring full, waits behind no
-/// command whose answer has no place yet, and is there with the next tick. It overtakes what was sent before
-/// it, so an order to arm says how many times was disarmed when it was given, and is void when that is no
-/// longer true by the time the loop gets to it.
+/// Disarming does not use the ring of commands: it cannot find a full ring, does not wait behind a command
+/// whose answer has no place yet, and takes effect with the next tick. It overtakes commands sent before it,
+/// so a command to arm carries the number of disarms at its time, and is ignored when that number has changed
+/// by the time the loop reads it.
 struct LoopChannels {
   explicit LoopChannels(const LoopOptions& options)
       : commands(options.command_capacity),
@@ -60,16 +60,16 @@ struct LoopChannels {
         records(std::max<std::size_t>(options.record_capacity, 1)) {}
 
   /// Main thread, wait-free, never refused: no force from the next tick on (ForceGuard::disarm), whatever was
-  /// ordered before.
+  /// commanded before.
   void disarm() noexcept {
-    // Release: what was done before is seen by the tick that takes the force back.
+    // Release: earlier writes are visible to the tick that removes the force.
     disarms.fetch_add(1, std::memory_order_release);
   }
-  /// Main thread: an order to arm, to be sent as any command; void once disarm() is called after it.
+  /// Main thread: a command to arm, to be sent as any command; ignored once disarm() is called after it.
   [[nodiscard]] LoopCommand armCommand() const noexcept {
     LoopCommand command;
     command.kind = CommandKind::kArm;
-    command.id = disarms.load(std::memory_order_relaxed);  // written by this thread alone
+    command.id = disarms.load(std::memory_order_relaxed);  // only this thread writes it
     return command;
   }
 
@@ -81,55 +81,55 @@ struct LoopChannels {
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 
-/// All that happens in one tick of the live loop, without the thread and the clock, so that tests and benches
-/// run the very code:
+/// One tick of the live loop, without the thread and the clock, so that tests and benchmarks run the same
+/// code:
 ///
 ///   commands --> device.read --> workspace --> Tick::run (the tick of replay) --> ForceGuard
 ///            --> device.write --> dirty rectangle --> publish (every n ticks) --> state slot
 ///
 /// Edits. The loop keeps one dirty rectangle. Every publish_ticks ticks it sends {rectangle, snapshot} if the
-/// field's root really changed since. A snapshot is O(1); what it costs is one tile copy (17 KB, about 1 us)
-/// for each tile written again after it: sending the samples themselves would cost as much and would make the
-/// receiver assemble tiles that exist already. A full ring loses nothing: the rectangle grows until there is
-/// room, counted, and writes go on in place, so that a stalled reader holds at most the ring's versions.
+/// field's root changed since. A snapshot is O(1); its later cost is one tile copy (17 KB, about 1 us) for
+/// each tile written again after it: sending the samples would cost as much and the receiver would have to
+/// assemble tiles that exist already. A full ring loses nothing: the rectangle grows until there is room,
+/// counted, and writes continue in place, so that a stalled reader holds at most the ring's versions.
 ///
-/// Adoption of a job's result while a stroke goes on, in a bounded tick:
+/// Adoption of a job's result during a stroke, in a bounded tick:
 ///   1. main asks for a snapshot S and gets it within a tick; the loop starts a list of tiles edited since;
-///   2. a worker makes the version M that is to be felt: S with the result's tiles put in, O(changed tiles),
+///   2. a worker makes the new version M: S with the result's tiles inserted, O(changed tiles),
 ///      off the loop (mergeResult in adoption.h);
 ///   3. the loop takes over M's root, O(1), and puts back the tiles of its list whose memory is no longer
 ///      S's: at most kMostCarried, half a microsecond each (measured: 29 us for 64). Nothing else can differ,
 ///      so nothing is lost.
-/// Because S is asked for right before step 2 and not when the filter starts, the list holds what a hand
-/// edits in milliseconds (a few tiles), however long the filter took. It says kAdoptRefused, changing
-/// nothing, when S is not the newest snapshot, the list overflowed, or the pool is dry; asking again is
-/// always right. Which tiles were carried shows in changedTiles(M, event.version): the worker filters these
-/// again.
+/// Because S is requested immediately before step 2 and not when the filter starts, the list holds the edits
+/// of some milliseconds (a few tiles), however long the filter took. The answer is kAdoptRefused, with
+/// nothing changed, when S is not the newest snapshot, the list overflowed, or the pool is empty; the request
+/// can always be repeated. changedTiles(M, event.version) gives the tiles that were carried over: the worker
+/// filters these again.
 ///
-/// Restoring (undo) takes exactly the version asked for and hands back the state it leaves, the edits of the
-/// running stroke included; the stroke goes on as a new one.
+/// Restoring (undo) takes exactly the requested version and returns the state before it, the edits of the
+/// running stroke included; the stroke continues as a new one.
 ///
 /// A command that has an answer is left in its ring until the answer has a place.
 ///
-/// A field in a store (engine/field/tile_store.h). A tick whose samples are still on the disk is given no
-/// input: contact ends, the guard lets the force fade, and ramps it when the surface is there again. Counted,
-/// and recorded as it was given, so that a replay does the same.
+/// A field in a store (engine/field/tile_store.h). A tick whose samples are still on the disk runs without
+/// input: contact ends, the guard lets the force fade, and ramps it when the surface is available again.
+/// Counted, and recorded as a tick without input, so that a replay does the same.
 ///
-/// Time. The tick sees seconds since the first one, so that what is recorded is exactly what it saw.
+/// Time. A tick receives seconds since the first one, so that exactly its input is recorded.
 ///
 /// Threading: constructed on the main side (allocates); run() and stop() on one thread. run(): noexcept,
 /// wait-free, bounded (kMostCommands commands, of which one that swaps versions), no allocation, no lock, no
-/// system call but the device's wake.
+/// system call except the device's wake-up.
 class LoopTick {
  public:
   static constexpr int kMostCarried = 64;
   static constexpr int kMostCommands = 8;
 
-  /// Starts from `start`, the right way up (the scene's inversion is applied here). `device` and `channels`
-  /// outlive this; `options.limits` in range. `near`: for a field in a store, outlives this; null: every
+  /// Starts from `start`, upright (the scene's inversion is applied here). `device` and `channels` outlive
+  /// this; `options.limits` in range. `tile_prefetcher`: for a field in a store, outlives this; null: every
   /// sample is in memory.
   LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, Device& device,
-           LoopChannels& channels, const LoopOptions& options, NearTiles* near = nullptr);
+           LoopChannels& channels, const LoopOptions& options, TilePrefetcher* tile_prefetcher = nullptr);
 
   /// One tick. `now_ns`: monotonicNow() at wake-up; `since_ns`: since the previous tick's.
   void run(std::int64_t now_ns, std::int64_t since_ns) noexcept;
@@ -137,7 +137,7 @@ class LoopTick {
   /// The last tick: zero force, the rest of the edits published if the ring has room.
   void stop() noexcept;
 
-  /// What the tick is bound to; for tests on the loop's own thread.
+  /// The scene in effect; for tests on the loop's own thread.
   [[nodiscard]] PreparedScene& scene() noexcept { return *scene_; }
   [[nodiscard]] const ForceGuard& guard() const noexcept { return guard_; }
   [[nodiscard]] const LoopState& state() const noexcept { return state_; }
@@ -166,7 +166,7 @@ class LoopTick {
   [[nodiscard]] Tool toolInEffect(const DeviceInput& input, double age_s) const noexcept;
   void record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept;
   void noteVelocity(const DeviceInput& input) noexcept;
-  [[nodiscard]] bool samplesAreNear(const glm::dvec3& tip_mm) noexcept;
+  [[nodiscard]] bool samplesArePrefetched(const glm::dvec3& tip_mm) noexcept;
 
   // Places of the event ring that edits leave free for answers.
   static constexpr std::size_t kAnswerPlaces = 2;
@@ -182,17 +182,17 @@ class LoopTick {
   bool has_waiting_ = false;
   std::uint64_t disarms_ = 0;  // of LoopChannels::disarms, done
   Disturbance disturbance_ = Disturbance::kNone;
-  NearTiles* near_;
-  bool was_near_ = true;
+  TilePrefetcher* tile_prefetcher_;
+  bool was_prefetched_ = true;
 
-  engine::Version published_;  // of the newest event; the next one carries it away
+  engine::Version published_;  // of the newest event; moved into the next one
   engine::SampleRect dirty_;
   std::uint32_t since_publish_ = 0;
   std::uint32_t merged_ = 0;
 
   engine::SampleRect stroke_rect_;
   bool in_stroke_ = false;
-  bool stroke_ended_ = false;  // to be told
+  bool stroke_ended_ = false;  // not reported yet
   std::uint32_t ticks_without_edit_ = 0;
 
   engine::Version job_base_;  // S
@@ -202,7 +202,7 @@ class LoopTick {
   int edited_count_ = 0;
 
   std::int64_t first_ns_ = -1;        // wake-up of the first tick: the session's time 0
-  std::uint64_t refused_before_ = 0;  // by the scenes that were left
+  std::uint64_t refused_before_ = 0;  // by previous scenes
   DeviceInput last_input_;
   bool has_input_ = false;
   bool clutched_ = false;

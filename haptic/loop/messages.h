@@ -17,14 +17,14 @@
 
 namespace fettle::haptic {
 
-/// A scene made ready for the loop: its tick, composed, and the live field that the tick is bound to. Until
-/// the loop takes it, the field holds `stand_in`; then the live state moves over, O(1), and the scene that it
-/// leaves travels back to be destroyed.
+/// A scene prepared for the loop: its composed tick, and the live field that the tick is bound to. Until the
+/// loop takes it, the field holds `first` as a placeholder; then the live state moves over, O(1), and the
+/// previous scene is sent back to be destroyed.
 ///
 /// Threading: constructed (allocates) and destroyed on the main side, used by the loop in between.
 struct PreparedScene {
-  /// `scene` in range (sceneProblem). `first`, the right way up, is what Scene::max_change is measured
-  /// against; it also stands in, so nothing is held beyond what is held anyway.
+  /// `scene` in range (sceneProblem). `first`, upright, is what Scene::max_change is measured against; it is
+  /// also the placeholder, so no additional memory is held.
   PreparedScene(const Scene& scene_to_run, const engine::Version& first)
       : scene(scene_to_run),
         original(first),
@@ -40,11 +40,11 @@ struct PreparedScene {
 enum class CommandKind : std::uint8_t {
   kTool,       ///< `tool` from now on
   kScene,      ///< `scene` from now on: parameters, effects, inversion
-  kWorkspace,  ///< `workspace` from now on: where the device lies in the field
+  kWorkspace,  ///< `workspace` from now on: mapping of the device into the field
   kView,       ///< its `scale` and `turn_rad` from now on, without moving the tip
   kSnapshot,   ///< answers kSnapshot: the base of a job that will be adopted
-  kAdopt,      ///< go on from `version`, made from the newest kSnapshot; see LoopTick
-  kRestore,    ///< go on from exactly `version` (undo, redo); answers kRestored
+  kAdopt,      ///< continue from `version`, made from the newest kSnapshot; see LoopTick
+  kRestore,    ///< continue from exactly `version` (undo, redo); answers kRestored
   kArm,        ///< made by LoopChannels::armCommand(); disarming is no command: LoopChannels::disarm()
 };
 
@@ -52,7 +52,7 @@ enum class CommandKind : std::uint8_t {
 struct LoopCommand {
   CommandKind kind = CommandKind::kTool;
   Tool tool = Tool::kFeel;
-  std::uint64_t id = 0;  ///< comes back in the answer; kArm: how often was disarmed before it
+  std::uint64_t id = 0;  ///< returned in the answer; kArm: number of disarms before it
   Workspace workspace;
   double scale = 1.0;     ///< see Workspace::setView
   double turn_rad = 0.0;  ///< see Workspace::setView
@@ -66,13 +66,13 @@ enum class EventKind : std::uint8_t {
   kSnapshot,      ///< answer, with the present `version`
   kAdopted,       ///< answer: `version` is the adopted one with the tiles edited meanwhile carried over
   kAdoptRefused,  ///< answer: nothing changed; take a new snapshot and try again
-  kRestored,      ///< answer; `retired` is the state left, the running stroke included: redo goes there
+  kRestored,  ///< answer; `retired` is the previous state, the running stroke included: redo returns to it
   kSceneChanged,  ///< answer
 };
 
-/// loop -> main. Events with a version form a chain: `before` is the very version of the event before, so the
-/// tiles in which the two differ (engine::changedTiles) are all that changed, and within them only `rect`.
-/// Everything an event holds is dropped by whoever pops it: that is how memory gets off the loop.
+/// loop -> main. Events with a version form a chain: `before` is the version of the event before, so only the
+/// tiles in which the two differ (engine::changedTiles) changed, and within them only `rect`. The receiver
+/// destroys everything that an event holds: so no memory is freed on the loop.
 struct LoopEvent {
   EventKind kind = EventKind::kEdited;
   std::uint64_t id = 0;      ///< of the command it answers
@@ -83,15 +83,15 @@ struct LoopEvent {
       rect;  ///< kEdited, kSnapshot: since the event before; kStrokeEnded: of the stroke as well
   engine::Version before;
   engine::Version version;
-  engine::Version retired;       ///< the state left (kAdopted, kRestored) or the version refused
+  engine::Version retired;       ///< the previous state (kAdopted, kRestored) or the version refused
   engine::Version retired_base;  ///< an earlier kSnapshot's
   std::unique_ptr<PreparedScene> retired_scene;
 };
 
-/// What one tick was given and what came of it: loop -> main, one a tick, through a ring of their own. The
-/// inputs in order, written to a strokes file, are the session: a replay of them makes the same field.
+/// Input and output of one tick: loop -> main, one per tick, through a separate ring. The inputs in order,
+/// written to a strokes file, are the session: a replay of them makes the same field.
 struct TickRecord {
-  StrokeSample input;         ///< the very argument of Tick::run
+  StrokeSample input;         ///< the argument of Tick::run
   glm::dvec3 given_n{0.0};    ///< what the guard let through, device frame
   std::int64_t since_ns = 0;  ///< since the previous tick
   bool contact = false;
@@ -111,12 +111,12 @@ struct LoopState {
   SafetyState safety = SafetyState::kDisconnected;
   FaultCause cause = FaultCause::kNone;
   std::uint64_t stroke = 0;
-  std::uint64_t merged = 0;         ///< publications that found the ring full, so far
-  std::uint64_t refused_edits = 0;  ///< writes that found the tile pool dry, so far
-  std::uint64_t adopted = 0;        ///< versions adopted so far
-  std::uint64_t carried = 0;        ///< tiles carried over adoptions so far
-  std::uint64_t lost_records = 0;   ///< ticks whose record found its ring full, so far
-  std::uint64_t not_near = 0;  ///< ticks that felt nothing: samples still on the disk (NearTiles), so far
+  std::uint64_t merged = 0;          ///< publications that found the ring full, so far
+  std::uint64_t refused_edits = 0;   ///< writes that found the tile pool empty, so far
+  std::uint64_t adopted = 0;         ///< versions adopted so far
+  std::uint64_t carried = 0;         ///< tiles carried over adoptions so far
+  std::uint64_t lost_records = 0;    ///< ticks whose record found its ring full, so far
+  std::uint64_t not_prefetched = 0;  ///< ticks without surface: samples still on the disk
   TickCounters counters;
   SafetyCounters safety_counters;
 };

@@ -31,7 +31,7 @@ Pacer::Pacer(double rate_hz) noexcept
 Pacer::Tick Pacer::wait() noexcept {
   const timespec due{static_cast<time_t>(schedule_.due() / kSecond_ns),
                      static_cast<long>(schedule_.due() % kSecond_ns)};
-  // A signal handled on this thread interrupts the sleep; the due time is absolute, so it is just resumed.
+  // A signal handled on this thread interrupts the sleep; the due time is absolute, so it is resumed.
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
   }
   const std::int64_t now = monotonicNow();

@@ -7,8 +7,8 @@ namespace fettle::haptic {
 /// Nanoseconds of CLOCK_MONOTONIC, which is std::chrono::steady_clock's.
 [[nodiscard]] std::int64_t monotonicNow() noexcept;
 
-/// When ticks are due: a grid of times, one a period. A tick that comes late runs late; periods that passed
-/// wholly by then are counted and skipped, so two ticks never share a period and a stall is never made up for
+/// When ticks are due: a grid of times, one per period. A late tick runs late; periods that have passed
+/// completely by then are counted and skipped, so two ticks never share a period and a stall is not followed
 /// by a burst. The grid does not drift.
 class Schedule {
  public:
@@ -19,7 +19,7 @@ class Schedule {
   [[nodiscard]] std::int64_t due() const noexcept { return due_ns_; }
   [[nodiscard]] std::int64_t period() const noexcept { return period_ns_; }
 
-  /// The tick that was due wakes at `now_ns`: how late it is, and how many later ones it has swallowed.
+  /// The tick that was due wakes at `now_ns`: how late it is, and how many later ones are skipped.
   struct Wake {
     std::int64_t lateness_ns = 0;
     std::int64_t skipped = 0;
@@ -45,7 +45,7 @@ class Pacer {
   static constexpr double kLowestRate_hz = 1000.0;
   static constexpr double kHighestRate_hz = 10000.0;
 
-  /// `rate_hz` is held to kLowestRate_hz .. kHighestRate_hz.
+  /// `rate_hz` is clamped to kLowestRate_hz .. kHighestRate_hz.
   explicit Pacer(double rate_hz) noexcept;
 
   struct Tick {

@@ -13,9 +13,9 @@ namespace fettle::haptic {
 
 namespace {
 
-// Brings the pages of the newest slab into memory: the object on top of the free list lies in it, and a slab
-// lies at a multiple of its size. An older kernel refuses; then the loop meets a page when it first writes
-// it.
+// Populates the pages of the newest slab: the object on top of the free list lies in it, and a slab lies at a
+// multiple of its size. An older kernel refuses; then the loop takes a page fault when it first writes to a
+// page.
 template <class T, std::size_t kSlabBytes>
 void populateNewest(engine::ObjectPool<T, kSlabBytes>& pool) noexcept {
   T* object = pool.tryAcquire();
@@ -44,7 +44,7 @@ PoolKeeper::PoolKeeper(std::shared_ptr<engine::FieldMemory> memory, const Levels
   topUp();
   thread_ = std::thread([this] {
     while (!stop_.load(std::memory_order_relaxed)) {
-      std::this_thread::sleep_for(std::chrono::nanoseconds(levels_.look_every_ns));
+      std::this_thread::sleep_for(std::chrono::nanoseconds(levels_.poll_interval_ns));
       topUp();
     }
   });

@@ -10,28 +10,27 @@
 
 namespace fettle::haptic {
 
-/// Keeps the tiles and nodes that the loop takes in store: a thread of its own looks every few milliseconds
-/// and grows the pools when they are low, with their pages already in memory. The loop never asks, wakes or
-/// waits.
+/// Keeps enough free tiles and nodes for the loop: its own thread checks every few milliseconds and grows the
+/// pools when they are low, with their pages already in memory. The loop never requests, wakes or waits.
 ///
 /// Threading: constructed and destroyed on the main side; grown() from any thread.
 class PoolKeeper {
  public:
   struct Levels {
-    /// Free tiles below which more are made. The largest brush takes 16 a publication, 2,000 a second: half a
-    /// second's worth. 17 MB.
+    /// Free tiles below which more are made. The largest brush takes 16 per publication, 2,000 per second:
+    /// enough for half a second. 17 MB.
     std::size_t tiles = 1024;
     std::size_t nodes = 256;
-    std::int64_t look_every_ns = 2'000'000;
+    std::int64_t poll_interval_ns = 2'000'000;
   };
 
-  /// Fills up to the levels before it returns, then keeps watch.
+  /// Fills the pools to the levels before it returns, then monitors them.
   PoolKeeper(std::shared_ptr<engine::FieldMemory> memory, const Levels& levels);
   ~PoolKeeper();
   PoolKeeper(const PoolKeeper&) = delete;
   PoolKeeper& operator=(const PoolKeeper&) = delete;
 
-  /// Times the pools were grown; times memory was not to be had.
+  /// Times the pools were grown; times no memory was available.
   [[nodiscard]] std::uint64_t grown() const noexcept { return grown_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t failed() const noexcept { return failed_.load(std::memory_order_relaxed); }
 
@@ -40,11 +39,11 @@ class PoolKeeper {
 
   std::shared_ptr<engine::FieldMemory> memory_;
   Levels levels_;
-  // Relaxed all: counters for show, and a stop that may be seen one look late.
+  // All relaxed: counters for display, and a stop that may be seen one check late.
   std::atomic<std::uint64_t> grown_{0};
   std::atomic<std::uint64_t> failed_{0};
   std::atomic<bool> stop_{false};
-  std::thread thread_;  // last: starts when all else is there
+  std::thread thread_;  // last: starts when all other members exist
 };
 
 }  // namespace fettle::haptic

@@ -8,7 +8,7 @@
 
 namespace fettle::haptic {
 
-/// What a histogram says, in nanoseconds. A percentile is the upper end of its class: never too low, and too
+/// Figures of a histogram, in nanoseconds. A percentile is the upper end of its class: never too low, and too
 /// high by at most 1/32.
 struct TimingFigures {
   std::uint64_t count = 0;
@@ -17,7 +17,7 @@ struct TimingFigures {
   std::int64_t p999_ns = 0;
   std::int64_t p9999_ns = 0;
   std::int64_t worst_ns = 0;  ///< exact
-  double mean_ns = 0.0;       ///< exact but for rounding
+  double mean_ns = 0.0;       ///< exact apart from rounding
 
   friend bool operator==(const TimingFigures&, const TimingFigures&) = default;
 };
@@ -25,10 +25,10 @@ struct TimingFigures {
 /// Counts times in classes whose width is 1/32 of their octave (log-linear, as in G. Tene's HdrHistogram):
 /// exact below 32 ns, within 3.1 % above, up to 2^40 ns (18 min), longer ones in the last class.
 ///
-/// Threading: one writer (add), any number of readers at any time. All accesses are relaxed: each class is a
-/// number of its own, and figures() of a running histogram may miss the newest few; after the writer was
-/// joined they are exact. add() is wait-free and uses no read-modify-write instruction, since nobody else
-/// writes.
+/// Threading: one writer (add), any number of readers at any time. All accesses are relaxed: each class is
+/// independent, and figures() of a running histogram may miss the newest few; after the writer was joined
+/// they are exact. add() is wait-free and uses no read-modify-write instruction, since there is no other
+/// writer.
 class TimingHistogram {
   static constexpr int kSubBits = 5;
   static constexpr int kOctaves = 40;
@@ -70,8 +70,8 @@ class TimingHistogram {
     return f;
   }
 
-  /// Number of times in classes that lie wholly at or above `ns`: what took longer than a limit, too low by
-  /// at most the one class that holds the limit.
+  /// Number of times in classes that lie wholly at or above `ns`: times above a limit, too low by at most the
+  /// class that contains the limit.
   [[nodiscard]] std::uint64_t countAbove(std::int64_t ns) const noexcept {
     std::uint64_t n = 0;
     for (std::size_t i = 0; i < kClasses; ++i)
@@ -113,7 +113,7 @@ class TimingHistogram {
   std::atomic<std::uint64_t> worst_{0};
 };
 
-/// How a loop keeps its time. Written by the loop, read by anyone at any time; relaxed as above.
+/// Timing of a loop. Written by the loop, read by any thread at any time; relaxed as above.
 struct LoopTiming {
   TimingHistogram lateness;              ///< wake-up after the scheduled time
   TimingHistogram compute;               ///< from wake-up to the force written

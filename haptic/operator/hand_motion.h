@@ -18,12 +18,12 @@ class HandMotion {
   /// Never farther from zero than this many standard deviations: all sines at their peak, sqrt(2 * kSines).
   static constexpr double kBound = 4.0;
 
-  /// `sigma` in any unit, the band in Hz; `stream` tells axes and strokes apart.
+  /// `sigma` in any unit, the band in Hz; `stream` distinguishes axes and strokes.
   HandMotion(double sigma, double low_hz, double high_hz, std::uint64_t seed, std::uint64_t stream) noexcept
       : amplitude_(sigma * std::sqrt(2.0 / kSines)) {
     const engine::CounterRandom random(seed, stream);
     for (int k = 0; k < kSines; ++k) {
-      // One sine in each eighth of the band, so that few sines still fill it evenly.
+      // One sine in each eighth of the band, so that few sines still cover it evenly.
       const double hz = low_hz + (high_hz - low_hz) * (k + random.uniform(k, 0)) / kSines;
       sines_[static_cast<std::size_t>(k)] = {2.0 * std::numbers::pi * hz,
                                              2.0 * std::numbers::pi * random.uniform(k, 1)};

@@ -12,7 +12,7 @@ namespace fettle::haptic {
 namespace {
 
 constexpr double kAirSpeed = 80.0;  // [mm/s] mean speed of free moves
-constexpr double kOverlapMm = 1.0;  // a closed edge is followed so far past its start
+constexpr double kOverlapMm = 1.0;  // a closed edge is followed this far past its start
 constexpr double kTremorLow = 8.0;  // [Hz]
 constexpr double kTremorHigh = 12.0;
 constexpr double kWanderLow = 0.1;  // [Hz]
@@ -22,7 +22,7 @@ double length(glm::dvec2 v) noexcept {
   return std::hypot(v.x, v.y);
 }
 
-// The scan as a person feels it: bilinear, and over a hole as high as it was last.
+// The scan as it is felt: bilinear, and over a hole the last height.
 class FeltSurface {
  public:
   explicit FeltSurface(const engine::Version& scan)
@@ -61,7 +61,7 @@ class FeltSurface {
     return last_;
   }
 
-  // The lowest height within `radius` of p, looked for in eight directions.
+  // The lowest height within `radius` of p, sampled in eight directions.
   [[nodiscard]] double lowest(glm::dvec2 p, double radius) noexcept {
     double z = at(p);
     if (radius <= 0.0) return z;
@@ -106,7 +106,7 @@ class Path {
 
   [[nodiscard]] double end() const noexcept { return end_; }
 
-  // The place so far along [mm], 0 .. end().
+  // The point at arc length s [mm], 0 .. end().
   [[nodiscard]] glm::dvec2 place(double s) const noexcept {
     const double round = at_.back();
     if (s > round) s -= round;
@@ -123,7 +123,7 @@ class Path {
   double end_ = 0.0;
 };
 
-// Tells whether a place keeps a distance from every edge; cells as large as the distance hold the edges'
+// Tests whether a point keeps a distance from every edge; a grid with cells of that distance holds the edges'
 // points.
 class Clearance {
  public:
@@ -172,7 +172,7 @@ class Hand {
         clearance_(edges, spec.smooth_clear_mm),
         tip_(0.0, 0.0, surface_.highest() + spec.lift_mm) {}
 
-  // Follows `path`; beside a step the tip keeps to the lowest height within `guide` and comes down `approach`
+  // Follows `path`; near a step the tip stays at the lowest height within `guide` and comes down `approach`
   // away from the path's start.
   void trace(const Path& path, Tool tool, double guide, glm::dvec2 approach) {
     ++stroke_;
@@ -200,7 +200,7 @@ class Hand {
     double s = 0.0;
     for (std::int64_t i = 1; s < path.end(); ++i) {
       s = std::min(static_cast<double>(i) * step, path.end());
-      // The hand's own time starts with the stroke, so that it comes down where the trembling begins.
+      // The motion's time starts with the stroke, so that the tip comes down where the tremor begins.
       const bool only_feel = tool == Tool::kSmooth && !clearance_.keeps(path.place(s));
       add(tipAt(s, static_cast<double>(i) / spec_.rate_hz), only_feel ? Tool::kFeel : tool);
     }

@@ -31,7 +31,7 @@ std::atomic<bool> g_fired{false};
 
 struct Covered {
   int signal;
-  bool own_fault;  // raised by the program itself: returning from the handler is no way out
+  bool own_fault;  // raised by the program itself: returning from the handler does not continue
 };
 constexpr std::array<Covered, 9> kCovered{{{SIGSEGV, true},
                                            {SIGBUS, true},
@@ -46,7 +46,7 @@ std::array<struct sigaction, kCovered.size()> g_before;
 
 void restoreAndRaise(std::size_t i) noexcept {
   sigaction(kCovered[i].signal, &g_before[i], nullptr);
-  // Blocked until this handler returns; then it takes the way it had before.
+  // Blocked until this handler returns; then it has its previous effect.
   raise(kCovered[i].signal);
 }
 
@@ -83,7 +83,7 @@ engine::Status LastResort::install() {
     g_before[i] = now;
     struct sigaction action {};
     action.sa_sigaction = &onSignal;
-    // Whether a system call is interrupted stays as the program chose it.
+    // Keeps the program's setting for interrupted system calls.
     action.sa_flags = SA_SIGINFO | SA_ONSTACK | (now.sa_flags & SA_RESTART);
     sigemptyset(&action.sa_mask);
     if (sigaction(kCovered[i].signal, &action, nullptr) != 0)
@@ -102,26 +102,26 @@ void LastResort::reset() noexcept {
 }
 
 void LastResort::fire() noexcept {
-  // Relaxed: the loop may write one more force in the tick that is running; the reports below and the
-  // program's end are not ordered with it by any atomic, only by the drivers' renewal rule (a force that is
-  // not renewed for 10 ms is taken back).
+  // Relaxed: the loop may write one more force in the tick that is running; no atomic orders the reports
+  // below and the program's end after it, only the drivers' renewal rule (a force that is not renewed for 10
+  // ms is replaced by zero).
   g_fired.store(true, std::memory_order_relaxed);
   for (Slot& slot : g_slots) {
     SlotState ready = SlotState::kReady;
-    // Acquire: report and device are as the registration wrote them. A slot that another thread's handler is
-    // running is left to it; one that this very thread was running when it crashed in it, too.
+    // Acquire: report and device are as the registration wrote them. A slot in use by another thread's
+    // handler is skipped, also one in which this thread itself crashed.
     if (!slot.state.compare_exchange_strong(ready, SlotState::kRunning, std::memory_order_acquire)) continue;
     slot.report(slot.device);
     // Release: the destructor that sees kReady again may free the device.
     slot.state.store(SlotState::kReady, std::memory_order_release);
   }
-  // The drivers' own: last, since a device that takes no reports can hold it for seconds. Twice: a writer
-  // thread may have had a force in hand when the first zeros overtook it; it has given it away by the second,
-  // and has nothing but zeros from then on.
+  // Devices with drivers come last, since a device that accepts no reports can block for seconds. Twice: a
+  // writer thread may have been about to send a force at the first zeros; it has sent it by the second round,
+  // and sends only zeros from then on.
   holdDevicesAtZero(HeldAtZero::kYes);
   if (zeroAllDevices() == 0) return;
-  const timespec in_hand{0, 2'000'000};
-  nanosleep(&in_hand, nullptr);
+  const timespec writer_delay{0, 2'000'000};
+  nanosleep(&writer_delay, nullptr);
   zeroAllDevices();
 }
 
@@ -129,7 +129,7 @@ ZeroOnLastResort::ZeroOnLastResort(LastResort::ZeroReport report, void* device) 
   for (int i = 0; i < kMost; ++i) {
     Slot& slot = g_slots[static_cast<std::size_t>(i)];
     SlotState free = SlotState::kFree;
-    // Acquire: the previous holder is done with it.
+    // Acquire: the previous holder has finished with it.
     if (!slot.state.compare_exchange_strong(free, SlotState::kFilling, std::memory_order_acquire)) continue;
     slot.report = report;
     slot.device = device;
@@ -144,7 +144,7 @@ ZeroOnLastResort::~ZeroOnLastResort() {
   if (slot_ < 0) return;
   Slot& slot = g_slots[static_cast<std::size_t>(slot_)];
   SlotState ready = SlotState::kReady;
-  // Acquire: a handler's last use of the device is over. Release: so is mine, for the next holder.
+  // Acquire: a handler's last use of the device is complete. Release: so is this one, for the next holder.
   while (!slot.state.compare_exchange_weak(ready, SlotState::kFree, std::memory_order_acq_rel)) {
     ready = SlotState::kReady;
     sched_yield();

@@ -7,17 +7,17 @@
 
 namespace fettle::haptic {
 
-/// The last words of a program that is being ended: zero to every device that gives force. The drivers of
-/// this room are covered by zeroAllDevices() (devices/emergency_zero.h); whoever gives force by another way
-/// registers a function that works in a signal handler.
+/// Sends zero force to every force device when the program is ended. Devices with a driver are covered by
+/// zeroAllDevices() (devices/emergency_zero.h); other code that applies force registers a function that is
+/// safe in a signal handler.
 ///
 /// Covered: SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT (the program's own fault), SIGTERM, SIGINT, SIGHUP,
-/// SIGQUIT (asked to end), and exit(). After the zeros the signal takes the way it had before install(): the
-/// earlier handler is called or the default action ends the program, core dump included. What was ignored
+/// SIGQUIT (requests to end), and exit(). After the zeros the signal is handled as before install(): the
+/// earlier handler is called or the default action ends the program, core dump included. An ignored signal
 /// stays ignored, without zeros.
 ///
-/// NOT covered: SIGKILL, the out-of-memory killer and power loss. No program can answer these; what stops the
-/// force then is the device's own watchdog (WoodenHaptics: 500 ms by HID, 100 ms by USB serial).
+/// NOT covered: SIGKILL, the out-of-memory killer and power loss. No program can handle these; then the
+/// device's own watchdog stops the force (WoodenHaptics: 500 ms by HID, 100 ms by USB serial).
 class LastResort {
  public:
   /// What a device registers: an async-signal-safe function (one non-blocking write() of a ready report;
@@ -25,23 +25,23 @@ class LastResort {
   /// more than once.
   using ZeroReport = void (*)(void* device) noexcept;
 
-  /// Installs the handlers; call it after the program's own. Calling it again puts handlers that others
-  /// replaced since back in front. Errors: kFailed when the system refuses. Thread: main.
+  /// Installs the handlers; call it after the program's own. Calling it again reinstalls handlers that were
+  /// replaced since. Errors: kFailed when the system refuses. Thread: main.
   [[nodiscard]] static engine::Status install();
 
-  /// Whether the zeros were sent: from then on no force may be given (the loop asks each tick). Any thread,
-  /// wait-free, relaxed: the loop sees it at the latest a tick later.
+  /// Whether the zeros were sent: from then on no force may be applied (the loop checks in each tick). Any
+  /// thread, wait-free, relaxed: the loop sees it at the latest a tick later.
   [[nodiscard]] static bool fired() noexcept;
 
   /// Sends all zeros and sets fired(). Async-signal-safe, any thread; what the handlers call.
   static void fire() noexcept;
 
-  /// Forgets that it fired: for a program that lives on after SIGINT, and for tests. Thread: main.
+  /// Clears fired(): for a program that continues after SIGINT, and for tests. Thread: main.
   static void reset() noexcept;
 };
 
-/// A registration for as long as it lives. The destructor returns when no handler is using it any more.
-/// At most kMost at a time; `registered()` is false for one too many.
+/// A registration for the lifetime of the object. The destructor returns when no handler uses it any more. At
+/// most kMost at a time; `registered()` is false beyond that.
 class ZeroOnLastResort {
  public:
   static constexpr int kMost = 16;
@@ -57,8 +57,8 @@ class ZeroOnLastResort {
   int slot_ = -1;
 };
 
-/// A stack of its own for signal handlers of the calling thread, so that a stack overflow still says zero.
-/// Constructed and destroyed on that thread; allocates 64 KiB.
+/// A separate stack for signal handlers of the calling thread, so that zeros are sent even after a stack
+/// overflow. Constructed and destroyed on that thread; allocates 64 KiB.
 class HandlerStack {
  public:
   HandlerStack();

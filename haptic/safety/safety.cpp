@@ -12,11 +12,11 @@ namespace fettle::haptic {
 
 namespace {
 
-// Time that a step may use for a rise, however late the tick: two periods at 1 kHz.
+// Longest time that a step may use for a rise, however late the tick: two periods at 1 kHz.
 constexpr double kLongestRise_s = 0.002;
 // What a step with an impossible time counts for.
 constexpr double kNominal_s = 0.001;
-// Share of the allowed warmth from which the thermal limit falls.
+// Share of the allowed warmth above which the thermal limit falls.
 constexpr double kThermalKnee = 0.8;
 
 bool finite(const glm::dvec3& v) noexcept {
@@ -78,7 +78,7 @@ bool ForceGuard::armed() const noexcept {
 }
 
 void ForceGuard::disarm() noexcept {
-  wants_arm_ = false;
+  arm_requested_ = false;
   if (armed()) state_ = SafetyState::kUncalibrated;
 }
 
@@ -96,7 +96,7 @@ void ForceGuard::startRamp(double from_n) noexcept {
 }
 
 void ForceGuard::advanceState(const SafetyInput& input, double dt_s, double age_s) noexcept {
-  if (wants_fault_) fault(FaultCause::kLastResort);
+  if (fault_requested_) fault(FaultCause::kLastResort);
   if (input.link != LinkState::kConnected && armed()) fault(FaultCause::kUnplugged);
   if (state_ != SafetyState::kFault && !armed())
     state_ = input.link == LinkState::kDisconnected ? SafetyState::kDisconnected : SafetyState::kUncalibrated;
@@ -110,13 +110,13 @@ void ForceGuard::advanceState(const SafetyInput& input, double dt_s, double age_
       fault(FaultCause::kOutputStalled);
   }
 
-  // A late tick is a silence too: the driver takes a force back that is not renewed for 10 ms.
+  // A late tick counts as a silence too: the driver replaces a force that is not renewed for 10 ms by zero.
   const bool gap = age_s >= limits_.silence_s || dt_s >= limits_.silence_s;
-  const bool heard = !gap && input.output_waits_s < limits_.fault_s;
-  if (wants_arm_) {
-    wants_arm_ = false;
+  const bool responding = !gap && input.output_waits_s < limits_.fault_s;
+  if (arm_requested_) {
+    arm_requested_ = false;
     if (!armed()) {
-      if (input.link == LinkState::kConnected && heard && !wants_fault_) {
+      if (input.link == LinkState::kConnected && responding && !fault_requested_) {
         state_ = SafetyState::kArmed;
         cause_ = FaultCause::kNone;
         silent_ = false;
@@ -158,7 +158,7 @@ void ForceGuard::rampUnexpectedRise(const SafetyInput& input, double dt_s) noexc
 
 glm::dvec3 ForceGuard::limitSpeed(const glm::dvec3& force, const glm::dvec3& velocity) noexcept {
   const double speed = glm::length(velocity);
-  // A jump of the pose is no speed to brake; its rise is ramped instead.
+  // A jump of the pose is not a speed to be damped; its rise is ramped instead.
   if (!(speed > limits_.speed_limit_mm_per_s) || speed > limits_.jump_speed_mm_per_s) return force;
   ++counters_.over_speed;
   const glm::dvec3 along = velocity / speed;
@@ -187,9 +187,9 @@ void ForceGuard::noteHeld(const SafetyInput& input, double dt_s) noexcept {
   held_for_s_ += dt_s;
 }
 
-// A force on its way down to zero may go there whatever the device holds; from the nearest such force it may
-// differ by what the time allows. The set of these forces is convex and never shrinks while the device waits,
-// so this brings the output no farther from the one before.
+// A force that falls to zero may do so whatever force the device holds; from the nearest such force it may
+// differ by what the elapsed time allows. The set of these forces is convex and never shrinks while the
+// device waits, so this moves the output no farther from the one before.
 glm::dvec3 ForceGuard::limitRiseFromHeld(const glm::dvec3& force) noexcept {
   const double square = glm::dot(held_, held_);
   const double share = square > 0.0 ? std::clamp(glm::dot(force, held_) / square, 0.0, 1.0) : 0.0;
@@ -237,10 +237,10 @@ glm::dvec3 ForceGuard::step(const SafetyInput& input) noexcept {
     target = clamped.force_n;
     if (clamped.clamped) ++(ramping ? counters_.ceiling_held : counters_.clamped);
   }
-  // Rises get two periods at most; a fade to zero the whole time that passed.
+  // Rises use two periods at most; a fade to zero uses the whole elapsed time.
   const double step_n = 1000.0 * limits_.slew_n_per_ms * (giving ? std::min(dt_s, kLongestRise_s) : dt_s);
   bool held = false;
-  // A fade starts from what the hand has, which the brake or the motors may have made smaller.
+  // A fade starts from the force last applied, which the brake or the motors may have reduced.
   slewed_ = approach(giving ? slewed_ : output_, target, step_n, held);
   counters_.slewed += held ? 1 : 0;
 

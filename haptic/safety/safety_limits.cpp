@@ -35,7 +35,7 @@ std::optional<std::string> limitsProblem(const SafetyLimits& limits) {
 
 SafetyLimits limitsFor(const DeviceProfile& profile) noexcept {
   SafetyLimits limits;
-  // A profile is read from a file: what is no sensible number gives no force at all.
+  // A profile is read from a file: a value out of range gives no force at all.
   const bool sensible = within(profile.max_force_n, 0.0, 1000.0);
   limits.peak_force_n = sensible ? profile.max_force_n : 0.0;
   limits.continuous_force_n = 0.4 * limits.peak_force_n;

@@ -4,8 +4,8 @@
 
 namespace fettle::haptic {
 
-// What a scene may say about each effect: one table of the scene file each, the same names there. Ranges are
-// checked by sceneProblem and loadScene. Each effect's own header gives its source and stability condition.
+// Parameters of each effect: one table of the scene file each, with the same names. Ranges are checked by
+// sceneProblem and loadScene. Each effect's own header gives its source and stability condition.
 
 /// [friction]
 struct FrictionParams {
@@ -45,7 +45,7 @@ enum class TexturePattern : std::uint8_t {
 
 /// [texture]
 struct TextureParams {
-  double amplitude_mm = 0.02;  ///< from the highest to the lowest point, below the field's surface, 0 .. 1
+  double amplitude_mm = 0.02;  ///< highest to lowest point, both below the surface, 0 .. 1
   double wavelength_mm = 0.5;  ///< shortest there is, > 0 .. 100
   TexturePattern pattern = TexturePattern::kNoise;
 
@@ -81,7 +81,7 @@ struct VelocityParams {
   friend bool operator==(const VelocityParams&, const VelocityParams&) = default;
 };
 
-/// All of them. An effect that is not listed does not look at its own.
+/// All of them. An effect that is not listed does not use its own.
 struct EffectParams {
   FrictionParams friction;
   ViscosityParams viscosity;

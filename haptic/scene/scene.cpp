@@ -78,7 +78,7 @@ constexpr std::array<std::string_view, 2> kLevelNames = {"paper", "certified"};
 
 constexpr const char* kDynamicAboveStatic = "the dynamic friction must not be above the static one";
 
-// Friction, texture and coupling stand on the force with which the spring presses.
+// Friction, texture and coupling depend on the force with which the spring presses.
 bool needsSpring(EffectKind kind) noexcept {
   return kind == EffectKind::kFriction || kind == EffectKind::kTexture || kind == EffectKind::kCoupling;
 }

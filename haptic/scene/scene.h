@@ -18,7 +18,7 @@ enum class TipShape : std::uint8_t {
 };
 
 /// How the closest point of the surface is found.
-/// For the point tip; a ball has one way, sphere_tip.h.
+/// For the point tip; a ball has one method, sphere_tip.h.
 enum class ContactLevel : std::uint8_t {
   kPaper,      ///< local search from the previous proxy's cell (Potter, Johnson, Cohen 2004)
   kCertified,  ///< the true closest point of all cells within a radius, by branch and bound
@@ -45,12 +45,12 @@ inline constexpr int kEffectKinds = 9;
 /// "paper", "certified".
 [[nodiscard]] std::string_view levelName(ContactLevel level) noexcept;
 
-/// How a field is felt and worked on: all that a tick depends on besides the field and the hand. Values, no
-/// behaviour; a scene is turned into a tick once, when it is loaded.
+/// How a field is felt and edited: all that a tick depends on apart from the field and the input. Values, no
+/// behaviour; a scene is composed into a tick once, when it is loaded.
 struct Scene {
   TipShape tip = TipShape::kPoint;
   /// Ball's radius [mm]; the endpoint is its centre. > 0 .. 100, and at most 16 cells of the field that is
-  /// touched (sphereProblem). Nothing to a point.
+  /// touched (sphereProblem). Not used by a point.
   double tip_radius_mm = 0.1;
 
   ContactLevel level = ContactLevel::kPaper;
@@ -58,12 +58,12 @@ struct Scene {
   /// larger spacing are searched, so the result is the true closest point of the whole field whenever it is
   /// nearer than that. [cells], 1 .. 64. Also the radius when a replay measures level paper.
   int certified_radius_cells = 2;
-  /// Level paper: rounds a search may take in one tick, 2 .. 2048; each looks at a patch and takes a step,
-  /// the last one only looks. As many as there are: to rest. Fewer bound the tick's time and lag behind a
-  /// fast hand. A ball takes one step fewer, and never more than kSphereSteps.
+  /// Level paper: rounds a search may take in one tick, 2 .. 2048; each evaluates a patch and takes a step,
+  /// the last one only evaluates. With the largest number every search ends at rest. Fewer bound the tick's
+  /// time and lag behind a fast hand. A ball takes one step fewer, and never more than kSphereSteps.
   int search_rounds = 2048;
 
-  /// Spring: newtons a millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.
+  /// Spring: newtons per millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.
   double stiffness_n_per_mm = 1.0;
   /// Largest force [N], and what counts as full strength for smoothing. > 0 .. 1000; devices: 3 to 20.
   double force_limit_n = 8.0;
@@ -80,7 +80,7 @@ struct Scene {
   /// Feel and edit the field upside down (z -> -z); the result comes out the right way up again.
   bool invert = false;
 
-  /// Parameters of the other effects. Those of an effect that is not listed mean nothing.
+  /// Parameters of the other effects. Those of an effect that is not listed are ignored.
   EffectParams params;
 
   /// Which effects there are; each kind at most once. Forces act in this order, the spring before those that

@@ -49,11 +49,11 @@ double blend(const float* centre, std::ptrdiff_t stride, double strength) noexce
     sums = sumsAroundHoles(centre, stride);
   const double gauss = sums.gauss / sums.gauss_weight;
   const double box = sums.box / sums.box_weight;
-  // In this form a flat window stays flat to the bit.
+  // In this form a flat window stays exactly flat.
   return gauss + strength * (box - gauss);
 }
 
-// heightAt multiplies by the sign, which on the haptic thread makes a denormal zero.
+// heightAt multiplies by the sign, which turns a denormal into zero on the haptic thread.
 float exactHeight(const engine::FieldReader& reader, std::int32_t column, std::int32_t row) noexcept {
   using engine::kTileShift;
   using engine::kTileSide;
@@ -63,7 +63,7 @@ float exactHeight(const engine::FieldReader& reader, std::int32_t column, std::i
   return reader.sign() < 0.0F ? -height : height;
 }
 
-// By its bits: to the haptic thread it compares equal to zero.
+// By its bits: on the haptic thread it compares equal to zero.
 bool isDenormal(float height) noexcept {
   const auto size = std::bit_cast<std::uint32_t>(height) & 0x7fffffffU;
   return size != 0 && size < 0x00800000U;
@@ -83,12 +83,12 @@ Brush::Brush(double radius, std::optional<double> max_change, const engine::Vers
 float Brush::limited(double height, float old, std::int32_t column, std::int32_t row) const noexcept {
   if (!max_change_) return static_cast<float>(height);
   const float origin = exactHeight(original_.reader(), column, row);
-  // A denormal is zero to the haptic thread, which cannot measure how far from it a height is.
+  // A denormal is zero on the haptic thread, which cannot measure the distance of a height from it.
   if (std::isnan(origin) || isDenormal(origin)) return old;
   return engine::limitedChange(static_cast<float>(height), origin, *max_change_);
 }
 
-// The paper's brush of one sample, whose window is mostly within one tile: read where it lies.
+// The paper's brush of one sample, whose window is mostly within one tile: read in place.
 bool Brush::applyToOne(engine::LiveField& field, std::int32_t column, std::int32_t row,
                        double strength) noexcept {
   using engine::kTileShift;
@@ -130,7 +130,7 @@ bool Brush::apply(engine::LiveField& field, std::int32_t column, std::int32_t ro
           limited(blend(before + dc, stride, strength), before[dc], column - reach + dc, row - reach + dr);
     }
   }
-  // Only what lies in the field can be written.
+  // Only samples of the field can be written.
   const std::int32_t c0 = std::max(column - reach, 0);
   const std::int32_t r0 = std::max(row - reach, 0);
   const std::int32_t c1 = std::min(column + reach + 1, reader.width());

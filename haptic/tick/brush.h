@@ -18,10 +18,10 @@ namespace fettle::haptic {
 ///
 /// Holes and samples outside the field have no weight, the rest is renormalised. A hole stays a hole. A
 /// marked sample keeps its bits but counts as a neighbour. With `max_change` the result is clamped to within
-/// that of the original's sample, as exact numbers, whatever rounding does; where the original has a hole
-/// there is nothing to measure against, and the sample is kept.
+/// that of the original's sample, exactly, without rounding error; where the original has a hole there is no
+/// reference, and the sample is kept.
 ///
-/// No edge stops the window: a sample beside a step that is not marked itself is blended with both sides.
+/// No edge stops the window: a sample next to a step that is not marked itself is blended with both sides.
 ///
 /// A sample whose original is a denormal is kept, too, with `max_change`: the haptic thread flushes
 /// denormals, so that they count as zero there. They keep their bits where they are not smoothed.
@@ -31,15 +31,15 @@ namespace fettle::haptic {
 /// nothing.
 class Brush {
  public:
-  /// `radius` [samples]; `original` the same way up as the live field, same size, used only with max_change
-  /// [height unit].
+  /// `radius` [samples]; `original` with the same sign as the live field, same size, used only with
+  /// max_change [height unit].
   Brush(double radius, std::optional<double> max_change, const engine::Version& original);
 
-  /// Smooths around sample (column, row) of the field. False when the pool is dry: nothing changed.
+  /// Smooths around sample (column, row) of the field. False when the pool is empty: nothing changed.
   [[nodiscard]] bool apply(engine::LiveField& field, std::int32_t column, std::int32_t row,
                            double strength) noexcept;
 
-  /// Memory beside the object itself; the tiles of `original`, shared with others, do not count.
+  /// Memory apart from the object itself; the tiles of `original`, shared with others, do not count.
   [[nodiscard]] std::size_t bytesHeld() const noexcept {
     return (before_.capacity() + after_.capacity()) * sizeof(float) + marked_.capacity() +
            disc_.half_width.capacity() * sizeof(std::int32_t);

@@ -1,6 +1,6 @@
 // Drawing on the model: the keep mask under the tip (Potter, Johnson, Cohen, DETC2004-57539, "Edge
 // Selection"). The centre is the brush's: the lower-left sample of the proxy's cell. Holes are not marked,
-// there is nothing to keep; unmarking takes every mark away.
+// they have no height to keep; unmarking removes every mark.
 
 #include <cmath>
 #include <memory>

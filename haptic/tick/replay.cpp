@@ -18,7 +18,7 @@ namespace fettle::haptic {
 
 namespace {
 
-// Ticks between two looks at the clock's owner: about a millisecond.
+// Ticks between two checks for cancellation: about a millisecond.
 constexpr std::size_t kTicksAStep = 4096;
 
 std::int64_t countChangedSamples(const engine::Version& before, const engine::Version& after) {
@@ -81,7 +81,7 @@ engine::Result<ReplayResult> run(const engine::Version& start, const engine::Ver
   job.begin("replaying", strokes.size());
   const auto begin = std::chrono::steady_clock::now();
   {
-    const DenormalScope as_in_the_loop;  // the same bits there and here
+    const DenormalScope as_in_the_loop;  // bit-identical to the loop
     for (std::size_t i = 0; i < strokes.size(); i += kTicksAStep) {
       if (job.cancelled()) return engine::cancelled();
       const std::span<const StrokeSample> part =
@@ -105,7 +105,8 @@ engine::Result<ReplayResult> run(const engine::Version& start, const engine::Ver
   report.ticks_per_second = report.seconds > 0.0 ? static_cast<double>(report.ticks) / report.seconds : 0.0;
   report.counters = tick.counters();
   if (report.counters.refused_edits > 0)
-    return engine::failure("memory for the edited tiles could not be had", "replay", "close other programs");
+    return engine::failure("memory for the edited tiles could not be allocated", "replay",
+                           "close other programs");
 
   const engine::Version after = field.snapshot();
   report.samples_changed = countChangedSamples(felt, after);
@@ -134,7 +135,7 @@ engine::Result<ReplayResult> replay(const engine::Version& start, const engine::
   try {
     return run(start, original, strokes, scene, options, job);
   } catch (const std::bad_alloc&) {
-    return engine::failure("memory for the forces could not be had", "replay", "replay without forces");
+    return engine::failure("memory for the forces could not be allocated", "replay", "replay without forces");
   }
 }
 

@@ -19,7 +19,7 @@ enum class RecordForces : std::uint8_t { kNo, kYes };
 enum class MeasureContact : std::uint8_t { kNo, kYes };
 
 struct ReplayOptions {
-  RecordForces record_forces = RecordForces::kNo;  ///< 64 bytes a tick
+  RecordForces record_forces = RecordForces::kNo;  ///< 64 bytes per tick
   MeasureContact measure = MeasureContact::kNo;
 };
 
@@ -41,13 +41,13 @@ struct ReplayReport {
 };
 
 struct ReplayResult {
-  engine::Version field;  ///< the right way up, sharing every untouched tile with the start
+  engine::Version field;  ///< upright, sharing every unchanged tile with the start
   ReplayReport report;
-  std::vector<ForceSample> forces;  ///< one a tick, or empty
+  std::vector<ForceSample> forces;  ///< one per tick, or empty
 };
 
-/// Applies a recorded session: one tick a stroke sample, by the very tick that the live loop runs. Same
-/// start, strokes and scene: same bits, of the field and of the forces.
+/// Applies a recorded session: one tick per stroke sample, with the tick of the live loop. With the same
+/// start, strokes and scene the field and the forces are bit-identical.
 ///
 /// `original` is the field that Scene::max_change is measured against: same grid as `start`, usually the
 /// scan as imported; often `start` itself. Strokes and forces are in field coordinates [mm] of the field as

@@ -17,13 +17,13 @@ Tick::Tick(const Scene& scene, engine::LiveField& field, const engine::Version& 
       effects_(composeEffects(scene, original, field.snapshot())),
       force_limit_n_(scene.force_limit_n) {}
 
-void Tick::forget(Forget why) noexcept {
+void Tick::reset(ResetCause why) noexcept {
   for (const EffectReset& reset : effects_.resets) reset.run(reset.data, why);
 }
 
 void Tick::fieldChanged() noexcept {
   surface_.refresh(field_.reader());
-  forget(Forget::kFieldChanged);
+  reset(ResetCause::kFieldChanged);
 }
 
 ForceSample Tick::run(const StrokeSample& input) noexcept {
@@ -35,7 +35,7 @@ ForceSample Tick::run(const StrokeSample& input) noexcept {
     contact_ = {};
     weight_n_ = glm::dvec3(0.0);
     if (effects_.motion) effects_.motion->reset();
-    forget(Forget::kInputLost);
+    reset(ResetCause::kInputLost);
     return out;
   }
   const bool was_touching = contact_.touching;
@@ -45,7 +45,7 @@ ForceSample Tick::run(const StrokeSample& input) noexcept {
     tracker_.update(surface_, input.tip_mm, counters_, contact_);
   if (effects_.motion) effects_.motion->update(input.t, input.tip_mm);
   if (!contact_.touching) {
-    if (was_touching) forget(Forget::kContactEnded);
+    if (was_touching) reset(ResetCause::kContactEnded);
     if (effects_.onlyInContact()) return out;
   }
 
@@ -59,7 +59,7 @@ ForceSample Tick::run(const StrokeSample& input) noexcept {
   for (const EffectStep& effect : effects_.always) effect.run(effect.data, state);
   const ClampedForce clamped = clampForce(state.force_n, force_limit_n_);
   counters_.force_clamped += clamped.clamped ? 1 : 0;
-  // With nothing but the spring the two are the same number.
+  // With the spring alone the two are the same number.
   state.strength =
       state.force_n == state.press_n ? clamped.strength : clampForce(state.press_n, force_limit_n_).strength;
   state.force_n = clamped.force_n;

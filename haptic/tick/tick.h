@@ -22,20 +22,20 @@ namespace fettle::haptic {
 /// The contact reads the field, the tool edits it, and the edit is felt from the next tick on.
 ///
 /// Time. Effects that depend on time take it from StrokeSample::t: in a replay as recorded, in the live loop
-/// the time of the tick. A time that stands still, goes back, is not finite or has a gap above 20 ms is no
-/// measure of speed, and damping rests for that tick (VelocityFilter).
+/// the time of the tick. A time that does not advance, goes back, is not finite or has a gap above 20 ms
+/// gives no speed, and there is no damping in that tick (VelocityFilter).
 ///
 /// Threading: prepared anywhere (the constructor allocates), then run() on the one thread that owns the
 /// field: noexcept, allocates, locks and logs nothing with Growth::kNever, and its loops are bounded
 /// (kMaxCellsVisited, RayWalk::kMaxSteps, the brush). The field must outlive the tick.
 class Tick {
  public:
-  /// `scene` is in range (sceneProblem). `original`: see composeEffects. The live field is already the way up
+  /// `scene` is in range (sceneProblem). `original`: see composeEffects. The live field already has the sign
   /// that is to be felt.
   Tick(const Scene& scene, engine::LiveField& field, const engine::Version& original);
 
-  /// One tick. An input that is not finite is no input: zero force, contact ends, effects forget, counted.
-  /// Without contact there is force only from effects that act in free space.
+  /// One tick. An input that is not finite counts as none: zero force, contact ends, effects are reset,
+  /// counted. Without contact only effects that act in free space give force.
   ForceSample run(const StrokeSample& input) noexcept;
 
   /// The contact of the last tick.
@@ -46,17 +46,17 @@ class Tick {
   /// The surface as the last tick left it.
   [[nodiscard]] Surface& surface() noexcept { return surface_; }
 
-  /// What the scene composed: which effects there are and what they hold.
+  /// The composed effects of the scene and their data.
   [[nodiscard]] const EffectList& effects() const noexcept { return effects_; }
-  /// Force of the last tick that only holds up the stylus [N]: there with the hand at rest in free space.
+  /// Force of the last tick that only holds up the stylus [N]: also with the hand at rest in free space.
   [[nodiscard]] const glm::dvec3& weight() const noexcept { return weight_n_; }
 
-  /// To be called after the field changed from outside (adopt, undo): the next tick feels it, and what
-  /// effects remember of the old surface is forgotten.
+  /// To be called after the field was replaced (adopt, undo): the next tick feels it, and the effects' state
+  /// about the old surface is reset.
   void fieldChanged() noexcept;
 
  private:
-  void forget(Forget why) noexcept;
+  void reset(ResetCause why) noexcept;
 
   engine::LiveField& field_;
   Surface surface_;

@@ -25,21 +25,21 @@ using haptic::Surface;
 constexpr int kReachCells = 16;
 constexpr std::int32_t kBallSide = 97;  // samples of the square that a ball is tried on
 constexpr int kFiner = 8;               // of the grown surface
-constexpr int kDoubted = 12;            // ticks
+constexpr int kCheckedTicks = 12;       // ticks
 
 constexpr ContactChoice kChoices[] = {
-    {"paper, 1 Newton step a tick", ContactLevel::kPaper, 2},
-    {"paper, 2 steps a tick", ContactLevel::kPaper, 3},
-    {"paper, 4 steps a tick", ContactLevel::kPaper, 5},
-    {"paper, 8 steps a tick", ContactLevel::kPaper, 9},
+    {"paper, 1 Newton step per tick", ContactLevel::kPaper, 2},
+    {"paper, 2 steps per tick", ContactLevel::kPaper, 3},
+    {"paper, 4 steps per tick", ContactLevel::kPaper, 5},
+    {"paper, 8 steps per tick", ContactLevel::kPaper, 9},
     {"paper, to rest", ContactLevel::kPaper, 2048},
     {"certified, 1 cell", ContactLevel::kCertified, 2048, 1},
     {"certified, 2 cells", ContactLevel::kCertified, 2048, 2},
     {"certified, 4 cells", ContactLevel::kCertified, 2048, 4},
-    {"certified, 6 cells", ContactLevel::kCertified, 2048, 6},  // what the window has for a mouse
+    {"certified, 6 cells", ContactLevel::kCertified, 2048, 6},  // used by the window for a mouse
     {"certified, 8 cells", ContactLevel::kCertified, 2048, 8},
     {"ball, radius 1 cell", ContactLevel::kPaper, 2048, 2, 1.0},
-    {"ball, 2 cells, 4 steps a tick", ContactLevel::kPaper, 5, 2, 2.0},
+    {"ball, 2 cells, 4 steps per tick", ContactLevel::kPaper, 5, 2, 2.0},
     {"ball, radius 2 cells", ContactLevel::kPaper, 2048, 2, 2.0},
 };
 
@@ -135,7 +135,7 @@ engine::Result<ContactFigures> ContactTrial::measure(const ContactChoice& choice
   figures.ns = times.median;
   figures.ns_worst = times.worst;
 
-  // What of the grown surface is not the ball's own fault, see doubt(): a millionth of a cell for a point.
+  // The error of the grown surface, see truthError(): a millionth of a cell for a point.
   const double rounding = radius_mm_ > 0.0 ? 0.02 * cellMm(field_.grid()) : 1e-12;
   engine::LiveField live(field_, engine::Growth::kAllowed);
   haptic::Tick tick(scene, live, field_);
@@ -153,7 +153,7 @@ engine::Result<ContactFigures> ContactTrial::measure(const ContactChoice& choice
     const double distance_mm = truths_[i].distance_mm;
     if (!(distance_mm > 0.0) && !contact.touching) continue;
     errors.push_back(glm::length(felt - truths_[i].penetration_mm));
-    // More than rounding farther than the closest point, or there where nothing is to be felt, or not.
+    // More than rounding farther than the closest point, or contact in only one of the two.
     const bool same =
         contact.touching == (distance_mm > 0.0) || std::max(glm::length(felt), distance_mm) <= rounding;
     wrong += !same || glm::length(felt) > distance_mm * (1.0 + 1e-9) + rounding;
@@ -168,14 +168,14 @@ engine::Result<ContactFigures> ContactTrial::measure(const ContactChoice& choice
   return figures;
 }
 
-double ContactTrial::doubt() const {
+double ContactTrial::truthError() const {
   Surface surface(field_.reader());
   double worst = 0.0;
-  int looked = 0;
-  for (std::size_t i = 0; i < truths_.size() && looked < kDoubted;
+  int checked = 0;
+  for (std::size_t i = 0; i < truths_.size() && checked < kCheckedTicks;
        i += std::max<std::size_t>(1, truths_.size() / 97)) {
     if (truths_[i].beyond || truths_[i].distance_mm == 0.0) continue;
-    ++looked;
+    ++checked;
     const glm::dvec3& e = strokes_[i].tip_mm;
     if (radius_mm_ > 0.0) {
       haptic::SurfacePoint foot;

@@ -54,7 +54,7 @@ engine::Version workpiece(std::int32_t side, double spacing_mm, double noise_mm)
       const double noise = (static_cast<double>(state >> 11) * 0x1p-53 - 0.5) * noise_mm;
       const double x = c * spacing_mm;
       const double y = r * spacing_mm;
-      // Flanks of slope 1 and less: an open-loop hand can follow these, a wall would hold it.
+      // Flanks of slope 1 and less: an open-loop hand can follow these, a wall would stop it.
       const double step = std::clamp(8.0 * std::sin(x * 0.31) * std::sin(y * 0.23), -0.5, 0.5);
       const double rib = std::max(0.0, 0.4 - std::abs(std::fmod(x, 7.85) - 3.9));
       z[static_cast<std::size_t>(r) * side + c] =

@@ -8,8 +8,9 @@
 
 namespace fettle::trials {
 
-/// A hand that wanders over a whole field for a long time, for speed and end-to-end tests: sweeps along
-/// Lissajous curves, presses and lifts a few times a second, trembles at 9 Hz. Not a user with a purpose.
+/// A hand that moves over a whole field for a long time, for speed and end-to-end tests: sweeps along
+/// Lissajous curves, presses and lifts a few times per second, trembles at 9 Hz. It does not model a user's
+/// task.
 struct HandMotion {
   std::int64_t ticks = 1'000'000;
   haptic::Tool tool = haptic::Tool::kFeel;
@@ -20,12 +21,12 @@ struct HandMotion {
   double tremor_mm = 0.02;
 };
 
-/// The same motion over the same field gives the same strokes. Over holes it follows the last height it saw.
+/// The same motion over the same field gives the same strokes. Over holes it follows the last height.
 [[nodiscard]] std::vector<haptic::StrokeSample> handStroke(const engine::Version& field,
                                                            const HandMotion& motion);
 
-/// A field for such strokes: a milled part with steps, ribs and freeform areas, and noise of so much from its
-/// lowest to its highest; `side` samples square.
+/// A field for such strokes: a milled part with steps, ribs and freeform areas, and noise of the given range;
+/// `side` samples square.
 [[nodiscard]] engine::Version workpiece(std::int32_t side, double spacing_mm, double noise_mm = 0.04);
 
 }  // namespace fettle::trials

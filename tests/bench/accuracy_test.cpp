@@ -108,7 +108,7 @@ TEST(ContactStudy, CertifiedIsExactWithinItsRadiusAndMoreStepsAreNeverWorse) {
   const AccuracyRow& rest = rowOf(*study, "flat", "paper, to rest");
   EXPECT_LT(rest.error_worst, 1e-9);
   EXPECT_GT(rowOf(*study, "noise", "paper, to rest").wrong, 0.05);
-  EXPECT_GT(rowOf(*study, "flat", "paper, 1 Newton step a tick").error, rest.error);
+  EXPECT_GT(rowOf(*study, "flat", "paper, 1 Newton step per tick").error, rest.error);
 }
 
 // Of the note "0.12 um from the same in double".

@@ -69,8 +69,8 @@ TEST(LargeBench, AStoreGivesTheSameBits) {
   EXPECT_EQ(in_store->stroke_tiles, in_memory->stroke_tiles);
   EXPECT_GT(in_store->stored_bytes, 320U * 320U * 4U);
   EXPECT_GE(in_store->loop.ticks, 100U);
-  EXPECT_GT(in_store->loop.brought, 0U);
-  EXPECT_EQ(in_memory->loop.not_near, 0U);
+  EXPECT_GT(in_store->loop.prefetched, 0U);
+  EXPECT_EQ(in_memory->loop.not_prefetched, 0U);
 }
 
 TEST(LargeBench, TheScanIsASquareOfTheSizeAsked) {

@@ -10,7 +10,7 @@ void takeAxes(std::span<const std::uint8_t> bytes, std::span<std::int16_t> axes)
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const auto raw =
         static_cast<std::int16_t>(static_cast<std::uint16_t>(bytes[1 + 2 * i] | (bytes[2 + 2 * i] << 8U)));
-    // Out of range only by damage on the way; a full deflection is the most it can have meant.
+    // Out of range only by transmission errors; clamped to a full deflection.
     axes[i] = static_cast<std::int16_t>(std::clamp<int>(raw, -kSpaceMouseFull, kSpaceMouseFull));
   }
 }

@@ -27,7 +27,7 @@ void putInt16(std::span<std::uint8_t> bytes, std::size_t at, std::int16_t value)
 }
 
 std::int16_t milliampere(double ma) noexcept {
-  constexpr double kLimit = 6000.0;  // above it the serial boards take the value for nonsense
+  constexpr double kLimit = 6000.0;  // the serial boards reject values above it
   return std::isfinite(ma) ? static_cast<std::int16_t>(std::lround(std::clamp(ma, -kLimit, kLimit))) : 0;
 }
 

@@ -21,28 +21,28 @@ enum class WoodenForm : std::uint8_t {
 /// Longest report of any form, either way, without report id [bytes].
 inline constexpr std::size_t kWoodenLongest = 80;
 
-/// What one report says. Encoders that a form does not carry are 0.
+/// Content of one report. Encoders that a form does not carry are 0.
 struct WoodenReport {
   std::array<std::int16_t, 6> encoders{};  ///< counts, wrapping at 16 bits
   std::uint16_t counter = 0;               ///< W8: the firmware's report counter; 0 in old firmware
   bool calibration_latched = false;        ///< P14: the button in the home pose's rest was pressed
-  bool stylus_button = false;              ///< P14, S: folded into encoder d, and taken out of it again
+  bool stylus_button = false;              ///< P14, S: encoded in encoder d, removed from it here
   int fault = 0;                           ///< S: the board's error code; 0 = none
 
   friend bool operator==(const WoodenReport&, const WoodenReport&) = default;
 };
 
-/// What one output asks for.
+/// Content of one output.
 struct WoodenCommand {
   glm::dvec3 ma{0.0};  ///< motor currents a, b, c [mA]; rounded, clamped to +-6000; non-finite = 0
-  /// P14: presets encoders a, b, c to these counts instead of giving currents. Other forms ignore it.
+  /// P14: presets encoders a, b, c to these counts instead of setting currents. Other forms ignore it.
   std::optional<std::array<std::int16_t, 3>> preset{};
 };
 
 /// The form whose input reports have this many bytes; none for other sizes. HID forms only.
 [[nodiscard]] std::optional<WoodenForm> woodenFormOfSize(std::size_t bytes) noexcept;
 
-/// Nothing when the bytes are not one whole report of that form: wrong length; for S: not exactly
+/// Empty when the bytes are not one whole report of that form: wrong length; for S: not exactly
 /// `[n,n,n,n,n,n,n,n]` and an optional line end, or an encoder outside int (encoders wrap to 16 bits).
 [[nodiscard]] std::optional<WoodenReport> decodeWooden(WoodenForm form,
                                                        std::span<const std::uint8_t> bytes) noexcept;

@@ -45,7 +45,7 @@ struct CloseHid {
 };
 using HidHandle = std::unique_ptr<hid_device, CloseHid>;
 
-// hidapi gives wide strings; strange ones (lone surrogates, beyond Unicode) lose the strange characters.
+// hidapi returns wide strings; invalid characters (lone surrogates, beyond Unicode) are dropped.
 std::string utf8(const wchar_t* wide) {
   std::string out;
   for (; wide != nullptr && *wide != L'\0'; ++wide) {
@@ -70,7 +70,7 @@ std::string utf8(const wchar_t* wide) {
   return out;
 }
 
-// The kernel shows the report descriptor beside each hidraw node; hidapi 0.13 has no call for it.
+// The kernel provides the report descriptor of each hidraw node in sysfs; hidapi 0.13 has no call for it.
 void addSizes(HidInterface& interface) {
   const std::size_t slash = interface.path.rfind('/');
   const std::string node = slash == std::string::npos ? interface.path : interface.path.substr(slash + 1);
@@ -100,7 +100,7 @@ class HidPort final : public ReportPort {
   PortWrite write(std::span<const std::uint8_t> report) noexcept override {
     std::array<std::uint8_t, kWoodenLongest + 1> bytes;
     if (report.size() + 1 > bytes.size()) return PortWrite::kFailed;
-    bytes[0] = 0;  // hidapi wants the report id first; 0 = the device has none, and it is not sent
+    bytes[0] = 0;  // hidapi expects the report id first; 0 = the device has none, and it is not sent
     if (devicesHeldAtZero())
       std::fill_n(bytes.begin() + 1, report.size(), std::uint8_t{0});
     else
@@ -129,8 +129,8 @@ bool contains(const std::array<std::uint16_t, N>& ids, std::uint16_t id) noexcep
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-bool fits(std::uint16_t known, std::uint16_t wanted) noexcept {
-  return known == 0 || known == wanted;
+bool fits(std::uint16_t known, std::uint16_t expected) noexcept {
+  return known == 0 || known == expected;
 }
 
 }  // namespace
@@ -194,7 +194,7 @@ std::optional<OpenedPorts> HidSource::open() noexcept {
       return ports;
     }
   } catch (const std::bad_alloc&) {
-    // No memory just now: not opened; the link asks again.
+    // No memory at present: not opened; the link tries again.
   }
   return std::nullopt;
 }

@@ -4,7 +4,7 @@
 
 namespace fettle::haptic {
 
-/// When a device wants output.
+/// When a device accepts output.
 enum class Pacing : std::uint8_t {
   kNone,      ///< never: no output
   kFree,      ///< whenever there is a new force
@@ -13,21 +13,22 @@ enum class Pacing : std::uint8_t {
 
 /// Times of OutputRule [ns].
 struct OutputTimes {
-  /// Lock-step: so long the reply to an input waits for the loop to answer it; two periods of a 1 kHz loop,
+  /// Lock-step: longest wait of the reply to an input for the loop's force; two periods of a 1 kHz loop,
   /// since the loop's ticks and the device's inputs are not in step.
   std::int64_t reply_wait = 2'000'000;
-  /// A force older than this is taken back: the loop that computed it hangs, sits in a debugger or is gone.
+  /// A force older than this is replaced by zero: the loop that computed it hangs, is stopped in a debugger
+  /// or has ended.
   std::int64_t stale_after = 10'000'000;
-  /// Lock-step: after so long without input a zero is sent, since the device may be waiting for a reply that
-  /// got lost.
+  /// Lock-step: after this time without input a zero is sent, since the device may be waiting for a reply
+  /// that was lost.
   std::int64_t silence = 10'000'000;
-  /// Free: zeros are repeated at this pace, well inside the firmware's watchdog of 500 ms.
+  /// Free: zeros are repeated at this interval, well below the firmware's watchdog of 500 ms.
   std::int64_t keep_alive = 100'000'000;
 };
 
-/// Decides what the writer thread sends and when; knows no clock, no thread and no device, so that tests can
-/// walk it through hours in virtual time. One idea: the newest force, or zero when there is no fresh one.
-/// Not thread-safe: the writer thread's own.
+/// Decides what the writer thread sends and when; uses no clock, no thread and no device, so that tests can
+/// run hours of virtual time. Rule: the newest force, or zero when there is no recent one. Not thread-safe:
+/// used by the writer thread only.
 class OutputRule {
  public:
   enum class Send : std::uint8_t { kNothing, kForce, kZero };
@@ -52,7 +53,7 @@ class OutputRule {
   }
 
   /// What to send now, if anything; `inputs` = inputs received so far. The answer counts as sent, whether or
-  /// not the write then succeeds: a lost reply is made up for by the rule of silence.
+  /// not the write then succeeds: a lost reply is replaced by the rule of silence.
   [[nodiscard]] Send decide(std::int64_t now, std::uint64_t inputs) noexcept {
     if (pacing_ == Pacing::kNone) return Send::kNothing;
     if (inputs != seen_) {
@@ -64,7 +65,7 @@ class OutputRule {
     return pacing_ == Pacing::kFree ? decideFree(now, usable) : decideLockStep(now, usable);
   }
 
-  /// The latest moment at which decide() must be asked again though neither input nor force came.
+  /// The latest time at which decide() must be called again when neither input nor force arrives.
   [[nodiscard]] std::int64_t deadline(std::int64_t now) const noexcept {
     if (pacing_ == Pacing::kLockStep)
       return answered_ != seen_ ? waiting_since_ + times_.reply_wait : last_exchange_ + times_.silence;
@@ -83,8 +84,8 @@ class OutputRule {
 
   Send decideLockStep(std::int64_t now, bool usable) noexcept {
     if (answered_ != seen_) {
-      // A fresh force answers at once; without one the loop gets a moment, then the last one is repeated
-      // while it is young, and zero after that.
+      // A new force is sent immediately; without one there is a short wait for the loop, then the last force
+      // is repeated while it is recent, then zero.
       if (!fresh_ && now - waiting_since_ < times_.reply_wait) return Send::kNothing;
       ++answered_;
       waiting_since_ = now;

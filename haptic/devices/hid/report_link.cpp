@@ -15,8 +15,8 @@ namespace {
 constexpr std::chrono::milliseconds kReadWait{5};
 constexpr std::chrono::milliseconds kPlugWait{200};
 constexpr std::size_t kLongestReport = 256;
-// hidraw keeps 64 reports for a reader that is late; more in one go than twice that means a source that never
-// pauses, and then the loop must not be starved of the newest one.
+// hidraw buffers 64 reports for a late reader; more than twice that at once means a source that never pauses,
+// and then the newest one must still reach the loop.
 constexpr int kDrainLimit = 128;
 
 void add(std::atomic<std::uint64_t>& counter) noexcept {
@@ -78,8 +78,8 @@ void ReportLink::stop() noexcept {
 void ReportLink::write(const glm::dvec3& output) noexcept {
   published_ns_ = steadyNs();
   output_.publish({output, published_ns_});
-  // Adds one to a counter and, if the writer sleeps, makes one futex call that wakes it; never waits. It
-  // fails only when the counter is full, and then the writer has enough to wake up for.
+  // Increments a counter and, if the writer sleeps, makes one futex call that wakes it; never waits. It fails
+  // only when the counter is full, and then the writer is awake anyway.
   sem_post(&work_);
 }
 
@@ -97,7 +97,7 @@ DeviceCounters ReportLink::counters() const noexcept {
   return c;
 }
 
-void ReportLink::handOver(std::unique_ptr<ReportPort> port, Pacing pacing) noexcept {
+void ReportLink::passToWriter(std::unique_ptr<ReportPort> port, Pacing pacing) noexcept {
   {
     const std::lock_guard lock(mutex_);
     new_port_ = std::move(port);
@@ -132,13 +132,13 @@ void ReportLink::runReader() noexcept {
     if (!ports || !ports->reading) continue;
     add(connects_);
     const Pacing pacing = handler_.onOpen(ports->input_bytes);
-    handOver(std::move(ports->writing), pacing);
+    passToWriter(std::move(ports->writing), pacing);
     const Ended ended = readWhileConnected(*ports->reading);
     handler_.onLost();
-    // On a stop the writer keeps its port: it has a last zero to send.
+    // On a stop the writer keeps its port: it sends a last zero.
     if (ended == Ended::kStopping) return;
     add(disconnects_);
-    handOver(nullptr, Pacing::kNone);
+    passToWriter(nullptr, Pacing::kNone);
   } while (waitForPlug());
 }
 
@@ -173,10 +173,10 @@ ReportLink::Ended ReportLink::readWhileConnected(ReportPort& port) noexcept {
 
 void ReportLink::waitForWork(std::int64_t until_ns) noexcept {
   constexpr std::int64_t kSecond = 1'000'000'000;
-  // steady_clock is CLOCK_MONOTONIC, whatever somebody does to the wall clock meanwhile.
+  // steady_clock is CLOCK_MONOTONIC, which changes of the wall clock do not affect.
   const timespec at{.tv_sec = until_ns / kSecond, .tv_nsec = until_ns % kSecond};
   if (sem_clockwait(&work_, CLOCK_MONOTONIC, &at) != 0) return;
-  while (sem_trywait(&work_) == 0) {  // many wake-ups, one look
+  while (sem_trywait(&work_) == 0) {  // several wake-ups are handled at once
   }
 }
 
@@ -190,7 +190,7 @@ PortWrite ReportLink::send(ReportPort& port, OutputRule::Send what, const glm::d
   const PortWrite outcome = port.write({report.data(), size});
   writing_since_ns_.store(0, std::memory_order_relaxed);
   const std::int64_t took = steadyNs() - start;
-  // Relaxed, no compare-and-swap: this thread alone writes it.
+  // Relaxed, no compare-and-swap: only this thread writes it.
   if (took > longest_output_ns_.load(std::memory_order_relaxed))
     longest_output_ns_.store(took, std::memory_order_relaxed);
   add(outcome == PortWrite::kDone ? outputs_ : failed_outputs_);
@@ -215,7 +215,7 @@ void ReportLink::runWriter() noexcept {
         if (replace_port_) port = std::move(new_port_);
         replace_port_ = false;
         rule = OutputRule(pacing_, times_);
-        // From the opening on: the input that made the pacing known wants its reply too.
+        // From the opening on: the input that determined the pacing needs its reply too.
         rule.open(steadyNs(), inputs_at_open_);
       }
     }

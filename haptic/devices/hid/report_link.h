@@ -20,7 +20,7 @@
 
 namespace fettle::haptic {
 
-/// What a driver knows of its device's reports; called by the threads of a ReportLink.
+/// How a driver handles its device's reports; called by the threads of a ReportLink.
 class ReportHandler {
  public:
   ReportHandler() = default;
@@ -28,31 +28,31 @@ class ReportHandler {
   ReportHandler(const ReportHandler&) = delete;
   ReportHandler& operator=(const ReportHandler&) = delete;
 
-  /// Reader thread: the device was opened; `input_bytes` as in OpenedPorts. Returns how it wants output, as
-  /// far as that is known yet (see onCaughtUp).
+  /// Reader thread: the device was opened; `input_bytes` as in OpenedPorts. Returns when it accepts output,
+  /// as far as that is known yet (see onCaughtUp).
   virtual Pacing onOpen(std::size_t input_bytes) noexcept = 0;
-  /// Reader thread: one report. False when it is none of this device's: it is counted and left out.
+  /// Reader thread: one report. False when it is not one of this device's: it is counted and ignored.
   virtual bool onReport(std::span<const std::uint8_t> report, std::int64_t arrival_ns) noexcept = 0;
-  /// Reader thread: all reports that had come are in, `inputs` good ones since start(); what the loop sees is
-  /// to be brought up to date. Returns the pacing, which may have become known.
+  /// Reader thread: all reports received so far were handled, `inputs` good ones since start(); update what
+  /// the loop reads. Returns the pacing, which may have become known.
   virtual Pacing onCaughtUp(std::uint64_t inputs) noexcept = 0;
-  /// Reader thread: the device is gone, or the link stops.
+  /// Reader thread: the device was unplugged, or the link stops.
   virtual void onLost() noexcept = 0;
   /// Writer thread: one output report; `currents` is what the loop wrote, or zero. Returns its length; 0 =
   /// nothing can be sent.
   virtual std::size_t encode(const glm::dvec3& output, std::span<std::uint8_t> report) noexcept = 0;
 };
 
-/// The threads between a loop that must never wait and a wire that may: a reader thread (wait at most 5 ms,
-/// then drain to the newest report) and a writer thread (a write may block for 5 s on hidraw when the device
-/// stops taking reports). The loop touches neither: what it writes goes through a LatestSlot, what it reads
-/// comes from the slot that the handler publishes to.
+/// The threads between a loop that must never wait and a device that may block: a reader thread (wait at most
+/// 5 ms, then drain to the newest report) and a writer thread (a write may block for 5 s on hidraw when the
+/// device stops taking reports). The loop uses neither: it writes to a LatestSlot and reads from the slot
+/// that the handler publishes to.
 ///
 ///     device --report--> reader thread --handler--> [slot] --> loop --> [slot] --> writer thread --> device
 ///                             `------- count of inputs, wake-up -------------------^
 ///
 /// Two ports for one device: hidapi's read and write both replace the error text of their handle, so one
-/// handle shared by two threads is a race that frees twice (hidapi 0.13, register_device_error).
+/// handle shared by two threads is a data race with a double free (hidapi 0.13, register_device_error).
 class ReportLink {
  public:
   ReportLink(std::unique_ptr<ReportSource> source, ReportHandler& handler, const OutputTimes& times = {});
@@ -69,18 +69,18 @@ class ReportLink {
 
   /// Any thread, wait-free: since when a write has been waiting for the device [ns of steadyNs]; 0 = none is.
   [[nodiscard]] std::int64_t writingSinceNs() const noexcept {
-    // Relaxed: a number of its own, looked at once a tick.
+    // Relaxed: independent of other data, read once per tick.
     return writing_since_ns_.load(std::memory_order_relaxed);
   }
 
-  /// Loop thread, wait-free: whether the newest output has not been sent, so that the device holds an older
-  /// one.
+  /// Loop thread, wait-free: whether the newest output has not been sent, so that the device still applies an
+  /// older one.
   [[nodiscard]] bool outputPending() const noexcept {
-    // Relaxed: a number of its own; a late sight of it costs a tick of rise.
+    // Relaxed: independent of other data; seeing it late delays a rise by one tick.
     return published_ns_ != sent_ns_.load(std::memory_order_relaxed);
   }
 
-  /// Any thread. `inputs`, `bad_inputs` and the like are each right; together they may be of two moments.
+  /// Any thread. Each counter is exact; together they may be of slightly different times.
   [[nodiscard]] DeviceCounters counters() const noexcept;
 
  private:
@@ -93,7 +93,7 @@ class ReportLink {
   void runWriter() noexcept;
   enum class Ended : std::uint8_t { kGone, kStopping };
   [[nodiscard]] Ended readWhileConnected(ReportPort& port) noexcept;
-  void handOver(std::unique_ptr<ReportPort> port, Pacing pacing) noexcept;
+  void passToWriter(std::unique_ptr<ReportPort> port, Pacing pacing) noexcept;
   void setPacing(Pacing pacing) noexcept;
   [[nodiscard]] bool waitForPlug() noexcept;
   void waitForWork(std::int64_t until_ns) noexcept;
@@ -109,7 +109,7 @@ class ReportLink {
   std::thread reader_;
   std::thread writer_;
 
-  // Reader to writer, neither of them the loop: a lock is fine.
+  // Reader to writer, not the loop: a lock is allowed.
   std::mutex mutex_;
   std::condition_variable stopped_;
   bool stopping_ = false;
@@ -117,11 +117,11 @@ class ReportLink {
   bool replace_port_ = false;  // by new_port_, which may be null
   Pacing pacing_ = Pacing::kNone;
   std::uint64_t inputs_at_open_ = 0;
-  std::uint64_t generation_ = 0;  // one more with each change of port or pacing
+  std::uint64_t generation_ = 0;  // incremented with each change of port or pacing
 
-  // Counters: relaxed throughout, each is a number of its own. `inputs_` also tells the writer that there is
-  // something to answer; a late sight of it is mended by the semaphore, whose post follows the increment and
-  // synchronises with its wait.
+  // Counters: relaxed throughout, each is independent. The writer also reads `inputs_` to see that an input
+  // needs an answer; if it sees the value late, the semaphore, whose post follows the increment, synchronises
+  // with its wait.
   std::atomic<std::uint64_t> inputs_{0};
   std::atomic<std::uint64_t> skipped_{0};
   std::atomic<std::uint64_t> bad_inputs_{0};

@@ -10,9 +10,9 @@
 namespace fettle::haptic {
 
 enum class PortRead : std::uint8_t {
-  kReport,   ///< one whole report came
+  kReport,   ///< one whole report arrived
   kTimeout,  ///< none in time
-  kGone,     ///< the device is unplugged; the port is of no more use
+  kGone,     ///< the device is unplugged; the port cannot be used any more
 };
 
 struct ReadOutcome {
@@ -22,11 +22,11 @@ struct ReadOutcome {
 
 enum class PortWrite : std::uint8_t {
   kDone,
-  kFailed,  ///< this report did not get through (a stalled device); a later one may
+  kFailed,  ///< this report was not accepted (a stalled device); a later one may be
   kGone,    ///< unplugged
 };
 
-/// One end of a wire that carries whole reports (HID reports without report id, or text lines).
+/// One end of a connection that carries whole reports (HID reports without report id, or text lines).
 /// Threading: one thread at a time; both calls may wait.
 class ReportPort {
  public:
@@ -35,22 +35,22 @@ class ReportPort {
   ReportPort(const ReportPort&) = delete;
   ReportPort& operator=(const ReportPort&) = delete;
 
-  /// Waits for one report up to `timeout`; 0 = only what is there already.
+  /// Waits for one report up to `timeout`; 0 = only one that has already arrived.
   [[nodiscard]] virtual ReadOutcome read(std::span<std::uint8_t> buffer,
                                          std::chrono::milliseconds timeout) noexcept = 0;
-  /// May block for 5 s on a device that stopped taking reports.
+  /// May block for 5 s on a device that stopped accepting reports.
   [[nodiscard]] virtual PortWrite write(std::span<const std::uint8_t> report) noexcept = 0;
 };
 
-/// A device as opened: two ports, since its reader and its writer are two threads and neither may wait for
-/// the other.
+/// An opened device: two ports, since its reader and its writer are two threads and neither may wait for the
+/// other.
 struct OpenedPorts {
   std::unique_ptr<ReportPort> reading;
   std::unique_ptr<ReportPort> writing;  ///< null for devices without output
   std::size_t input_bytes = 0;          ///< of an input report as the device describes itself; 0 = not known
 };
 
-/// Finds and opens a device, again and again: hot plug is a source that had nothing and now has.
+/// Finds and opens a device; called repeatedly, which is how hot plugging works.
 class ReportSource {
  public:
   ReportSource() = default;

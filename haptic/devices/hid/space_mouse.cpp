@@ -11,7 +11,7 @@ namespace fettle::haptic {
 
 namespace {
 
-// A loop that was held up must not make the tip jump: what it missed is not made up for.
+// After a delay of the loop the tip must not jump: the time missed is not integrated.
 constexpr double kLongestStep = 0.010;  // [s]
 
 DeviceProfile spaceMouseProfile(const RateControl& control) {

@@ -17,10 +17,10 @@ namespace fettle::haptic {
 struct RateControl {
   double full_speed_mm_s = 100.0;  ///< at full deflection, > 0
   double full_turn_rad_s = 1.0;    ///< turn rate at full deflection, > 0
-  double dead_zone = 0.04;         ///< deflection taken for rest, of full; 0 .. 0.9
+  double dead_zone = 0.04;         ///< deflection treated as rest, share of full; 0 .. 0.9
   double exponent = 2.0;           ///< of the curve from deflection to speed, 1 .. 4: fine near rest
   double radius_mm = 100.0;        ///< the tip stays in this ball, > 0
-  double hold_s = 0.5;             ///< no report for so long: the cap counts as released, > 0
+  double hold_s = 0.5;             ///< without a report for this long the cap counts as released, > 0
 };
 
 /// Speed of one axis, -1 .. 1 of full, for a deflection -350 .. 350: zero in the dead zone, then rising
@@ -28,8 +28,8 @@ struct RateControl {
 [[nodiscard]] double rateOf(std::int16_t deflection, const RateControl& control) noexcept;
 
 /// A 3Dconnexion SpaceMouse: rate control of the tip, no force. read() integrates the deflection over the
-/// time since the read() before, so each read is a new input even while the cap rests and the mouse says
-/// nothing. Needs no calibration; a re-plug leaves the tip where it was.
+/// time since the read() before, so each read is a new input even while the cap rests and the mouse sends
+/// nothing. Needs no calibration; after a re-plug the tip is where it was.
 class SpaceMouse final : public Device, private ReportHandler {
  public:
   explicit SpaceMouse(std::unique_ptr<ReportSource> source, const RateControl& control = {});

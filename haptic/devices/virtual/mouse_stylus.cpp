@@ -12,31 +12,32 @@ namespace fettle::haptic {
 
 namespace {
 
-// Wishes that wait: a thousand cursor places a second for eight seconds in which the loop does not run.
-constexpr std::size_t kWishes = 8192;
-// Of them kept for buttons: places of the cursor between two others can be done without.
+// Requests that may wait: a thousand cursor positions per second for eight seconds in which the loop does not
+// run.
+constexpr std::size_t kRequests = 8192;
+// Of them reserved for buttons: cursor positions between two others can be omitted.
 constexpr std::size_t kButtonPlaces = 64;
-// A bunch of places from one frame of the window is followed over this many ticks.
+// The positions of one frame of the window are followed over this many ticks.
 constexpr std::size_t kSpreadTicks = 8;
-// Arrived: this part of the way's scale is left.
+// Arrived: at most this part of the distance's scale is left.
 constexpr double kArrived = 0.05;
 
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-MouseStylus::MouseStylus(const MouseFeel& feel) : feel_(feel), wishes_(kWishes) {
+MouseStylus::MouseStylus(const MouseFeel& feel) : feel_(feel), requests_(kRequests) {
   profile_.name = "mouse";
   profile_.space = DeviceSpace::kField;
   profile_.workspace_radius_mm = 1e9;  // the field is its workspace
   profile_.max_force_n = 0.0;
   profile_.gives_force = false;
-  wish_.press_mm = std::clamp(feel.press_mm, 0.0, feel.deepest_mm);
+  request_.press_mm = std::clamp(feel.press_mm, 0.0, feel.deepest_mm);
 }
 
-void MouseStylus::tell() noexcept {
-  // A ring without a place for a button is one of a loop that has stopped: nothing to make up for.
-  said_ += wishes_.push(Wish(wish_)) ? 1 : 0;
+void MouseStylus::send() noexcept {
+  // A ring without a place for a button belongs to a loop that has stopped: nothing needs to be sent again.
+  sent_ += requests_.push(Request(request_)) ? 1 : 0;
 }
 
 void MouseStylus::setCursor(const glm::dvec3& p) noexcept {
@@ -44,41 +45,41 @@ void MouseStylus::setCursor(const glm::dvec3& p) noexcept {
     leave();
     return;
   }
-  if (wish_.over && wish_.surface_mm == p) return;
-  wish_.surface_mm = p;
-  wish_.over = true;
-  if (wishes_.freePlaces() > kButtonPlaces) tell();
+  if (request_.over && request_.surface_mm == p) return;
+  request_.surface_mm = p;
+  request_.over = true;
+  if (requests_.freePlaces() > kButtonPlaces) send();
 }
 
 void MouseStylus::leave() noexcept {
-  if (!wish_.over) return;
-  wish_.over = false;
-  tell();
+  if (!request_.over) return;
+  request_.over = false;
+  send();
 }
 
 void MouseStylus::press(Tool tool) noexcept {
-  wish_.held = true;
-  wish_.tool = tool;
-  tell();
+  request_.held = true;
+  request_.tool = tool;
+  send();
 }
 
 void MouseStylus::release() noexcept {
-  if (!wish_.held) return;
-  wish_.held = false;
-  tell();
+  if (!request_.held) return;
+  request_.held = false;
+  send();
 }
 
 void MouseStylus::wheel(double steps) noexcept {
   if (!std::isfinite(steps)) return;
-  wish_.press_mm = std::clamp(wish_.press_mm - steps * feel_.wheel_step_mm, 0.0, feel_.deepest_mm);
-  if (wishes_.freePlaces() > kButtonPlaces) tell();
+  request_.press_mm = std::clamp(request_.press_mm - steps * feel_.wheel_step_mm, 0.0, feel_.deepest_mm);
+  if (requests_.freePlaces() > kButtonPlaces) send();
 }
 
 DeviceInput MouseStylus::read() noexcept {
   return readAt(steadyNs());
 }
 
-bool MouseStylus::accept(const Wish& wish) noexcept {
+bool MouseStylus::accept(const Request& wish) noexcept {
   switch (stage_) {
     case Stage::kHover:
       now_ = wish;
@@ -100,11 +101,12 @@ bool MouseStylus::accept(const Wish& wish) noexcept {
   return true;
 }
 
-void MouseStylus::takeWishes() noexcept {
-  const std::size_t waiting = wishes_.waiting() + (has_next_ ? 1 : 0);
-  // Where it hovers, the way there is nobody's stroke; but a press ends the taking in any case.
+void MouseStylus::takeRequests() noexcept {
+  const std::size_t waiting = requests_.waiting() + (has_next_ ? 1 : 0);
+  // While hovering, positions between are not part of a stroke and may be skipped; a press always ends the
+  // loop.
   for (std::size_t most = stage_ == Stage::kStroke ? 1 + waiting / kSpreadTicks : waiting; most > 0; --most) {
-    if (!has_next_ && !wishes_.pop(next_)) return;
+    if (!has_next_ && !requests_.pop(next_)) return;
     has_next_ = !accept(next_);
     if (has_next_) return;
     ++accepted_;
@@ -141,9 +143,9 @@ DeviceInput MouseStylus::readAt(std::int64_t now_ns) noexcept {
   const double passed_s =
       last_read_ns_ == 0 ? 0.0 : std::max(1e-9 * static_cast<double>(now_ns - last_read_ns_), 0.0);
   last_read_ns_ = now_ns;
-  takeWishes();
+  takeRequests();
   if (stage_ == Stage::kHover) followed_.store(accepted_, std::memory_order_release);
-  if (!now_.over && !placed_) return input_;  // never was over the field: not there yet
+  if (!now_.over && !placed_) return input_;  // never was over the field: no position yet
   if (!placed_) {
     // Comes down from the hover height, wherever it first appears.
     tip_mm_ = now_.surface_mm + glm::dvec3{0.0, 0.0, feel_.hover_mm};

@@ -10,23 +10,23 @@
 
 namespace fettle::haptic {
 
-/// How a mouse stands in for a stylus.
+/// How a mouse simulates a stylus.
 struct MouseFeel {
   double hover_mm = 1.0;        ///< height over the surface while not pressing, > 0
   double press_mm = 0.3;        ///< depth at first; the wheel changes it
   double wheel_step_mm = 0.05;  ///< depth a wheel step adds, > 0
-  double deepest_mm = 3.0;      ///< of the depth the wheel reaches, > 0
-  /// Time constant with which the tip follows the cursor and the depth [s], > 0: a window tells its cursor at
-  /// 60 Hz, the loop runs at 1000.
+  double deepest_mm = 3.0;      ///< largest depth that the wheel reaches, > 0
+  /// Time constant with which the tip follows the cursor and the depth [s], > 0: a window reports its cursor
+  /// at 60 Hz, the loop runs at 1000.
   double follow_s = 0.020;
-  /// The same where a stroke begins and ends, and nothing is smoothed [s], > 0: the way down and the last bit
-  /// to the place where the button was let go.
+  /// The same where a stroke begins and ends, and nothing is smoothed [s], > 0: the movement down and the
+  /// last movement to the place where the button was released.
   double land_s = 0.003;
 };
 
-/// All that the window wants of a MouseStylus at one time, so that a wish that is lost is made up for by the
-/// next.
-struct MouseWish {
+/// The complete state that the window requests of a MouseStylus at one time, so that a lost request is
+/// replaced by the next.
+struct MouseRequest {
   glm::dvec3 surface_mm{0.0};
   double press_mm = 0.0;
   Tool tool = Tool::kFeel;
@@ -37,11 +37,11 @@ struct MouseWish {
 /// The mouse as a stylus without force: the cursor's point on the surface gives x and y, holding the button
 /// presses the tip in, the wheel sets how deep. Its positions are field coordinates.
 ///
-/// A stroke is what the hand did, whatever the window's pace: what the window says goes through a ring, in
-/// order, so that a press and its release between two ticks are a stroke all the same. A press lifts the tip
-/// off (one input without a place: position NaN), puts it down where the button was pressed, follows the
-/// cursor, and gives the button back where it was let go: no way to the place of the press, no missing end.
-/// Off the surface the tip lifts while the button stays held.
+/// A stroke is what the user did, whatever the window's frame rate: requests of the window go through a ring,
+/// in order, so that a press and its release between two ticks are still a stroke. A press lifts the tip off
+/// (one input without a position: NaN), puts it down where the button was pressed, follows the cursor, and
+/// ends the stroke where the button was released: no movement to the place of the press, no missing end.
+/// Outside the surface the tip lifts while the button stays held.
 ///
 /// Threading: the window's thread calls the cursor functions, the loop's read(), both wait-free.
 class MouseStylus final : public Device {
@@ -60,54 +60,53 @@ class MouseStylus final : public Device {
   /// Window thread: the cursor points at no place of the surface; the tip lifts where it is.
   void leave() noexcept;
   /// Window thread: the button goes down for a stroke with this tool; where the cursor is, or at the first
-  /// place of the surface it comes to. The tool holds until the stroke's end.
+  /// place of the surface it comes to. The tool stays until the stroke's end.
   void press(Tool tool) noexcept;
   /// Window thread: the button goes up. Nothing when it is up.
   void release() noexcept;
   /// Window thread: wheel steps, up = less deep.
   void wheel(double steps) noexcept;
   /// Window thread: depth the button presses to now [mm].
-  [[nodiscard]] double pressMm() const noexcept { return wish_.press_mm; }
-  /// Window thread: whether the tip still has to do something that was said here; a stroke is done when its
-  /// end is.
-  [[nodiscard]] bool busy() const noexcept { return followed_.load(std::memory_order_acquire) != said_; }
+  [[nodiscard]] double pressMm() const noexcept { return request_.press_mm; }
+  /// Window thread: whether a request sent here is not completed yet; a stroke is completed with its end.
+  [[nodiscard]] bool busy() const noexcept { return followed_.load(std::memory_order_acquire) != sent_; }
 
   /// read() at a time given by the caller [ns]; read() takes the steady clock. For tests.
   [[nodiscard]] DeviceInput readAt(std::int64_t now_ns) noexcept;
 
  private:
-  using Wish = MouseWish;
+  using Request = MouseRequest;
   enum class Stage : std::uint8_t {
     kHover,    // over the cursor
-    kLifted,   // nowhere, for one input
+    kLifted,   // no position, for one input
     kLanding,  // straight down where the button was pressed
-    kStroke,   // after the cursor
-    kEnding,   // to where the button was let go
+    kStroke,   // follows the cursor
+    kEnding,   // to where the button was released
   };
 
-  void tell() noexcept;
-  void takeWishes() noexcept;
-  [[nodiscard]] bool accept(const Wish& wish) noexcept;
+  void send() noexcept;
+  void takeRequests() noexcept;
+  [[nodiscard]] bool accept(const Request& wish) noexcept;
   void move(double passed_s) noexcept;
 
   const MouseFeel feel_;
   DeviceProfile profile_;
-  SpscRing<Wish> wishes_;  // window to loop
-  // The window's own.
-  Wish wish_;
-  std::uint64_t said_ = 0;  // wishes
+  SpscRing<Request> requests_;  // window to loop
+  // Used by the window's thread only.
+  Request request_;
+  std::uint64_t sent_ = 0;  // requests
 
-  // The loop's own.
+  // Used by the loop's thread only.
   DeviceInput input_;
-  Wish now_;   // followed
-  Wish next_;  // popped, and too early for the stage
+  Request now_;   // followed
+  Request next_;  // popped, and not allowed in this stage yet
   bool has_next_ = false;
   Stage stage_ = Stage::kHover;
   glm::dvec3 tip_mm_{0.0};
   std::int64_t last_read_ns_ = 0;
   bool placed_ = false;
-  std::uint64_t accepted_ = 0;              // wishes
-  std::atomic<std::uint64_t> followed_{0};  // of said_, up to the end of the last stroke
+  std::uint64_t accepted_ = 0;              // requests
+  std::atomic<std::uint64_t> followed_{0};  // of sent_, up to the end of the last stroke
 };
 
 }  // namespace fettle::haptic

@@ -39,7 +39,7 @@ DeviceInput ReplayDevice::readAt(std::int64_t now_ns) noexcept {
   } else {
     const double t = strokes_.front().t + 1e-9 * static_cast<double>(now_ns - started_ns_);
     if (read_rows_ == 0) read_rows_ = 1;
-    // Half a nanosecond of grace: a row whose time is now is due, however the subtraction rounds.
+    // Half a nanosecond of tolerance: a row whose time is now is due, however the subtraction rounds.
     while (read_rows_ < strokes_.size() && !(strokes_[read_rows_].t > t + 5e-10)) ++read_rows_;
   }
   const StrokeSample& row = strokes_[read_rows_ - 1];

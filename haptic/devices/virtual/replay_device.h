@@ -11,15 +11,15 @@ namespace fettle::haptic {
 
 enum class ReplayPace : std::uint8_t {
   kRealTime,  ///< the row whose time has come, by the clock: rows may be skipped or repeated
-  kEachRead,  ///< one row a read(), whatever the time: every row once, the same on every run
+  kEachRead,  ///< one row per read(), whatever the time: every row once, the same on every run
 };
 
-/// A recorded strokes file as a device, in field coordinates, with the recorded tool. Feels no force. Before
-/// the first row's time the first row holds, after the end the last one; a row of NaN (a recorded dropout) is
-/// handed on as it is. Not plugged in when there are no rows. The loop thread alone.
+/// A recorded strokes file as a device, in field coordinates, with the recorded tool. Ignores force. Before
+/// the first row's time the first row is returned, after the end the last one; a row of NaN (a recorded
+/// dropout) is returned unchanged. Disconnected when there are no rows. Loop thread only.
 class ReplayDevice final : public Device {
  public:
-  /// Rows with times that never go back (a file's `t` column); rows that do are played at the time before.
+  /// Rows with times that never decrease (a file's `t` column); rows that do are played at the time before.
   explicit ReplayDevice(std::vector<StrokeSample> strokes, ReplayPace pace = ReplayPace::kRealTime);
 
   [[nodiscard]] const DeviceProfile& profile() const noexcept override { return profile_; }

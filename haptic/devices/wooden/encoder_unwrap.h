@@ -5,7 +5,7 @@
 namespace fettle::haptic {
 
 /// Follows an encoder whose count wraps at 16 bits. Right as long as it turns less than 32768 counts between
-/// two reports (at 1 kHz and 2000 counts a turn: 16,000 turns a second).
+/// two reports (at 1 kHz and 2000 counts per turn: 16,000 turns per second).
 class EncoderUnwrap {
  public:
   /// The next count is taken as it is.

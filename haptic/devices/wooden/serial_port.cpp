@@ -17,7 +17,7 @@ namespace fettle::haptic {
 
 namespace {
 
-// A board that takes no line for as long as its own watchdog is stalled.
+// A board that accepts no line for the time of its own watchdog is stalled.
 constexpr int kWriteWaitMs = 100;
 constexpr std::string_view kZeroLine = "[0,0,0]\n";
 
@@ -50,7 +50,7 @@ class SerialPort final : public ReportPort {
         if ((p.revents & (POLLHUP | POLLERR)) != 0) return {PortRead::kGone, 0};
         continue;
       }
-      if (n <= 0) return {PortRead::kGone, 0};  // end of file: the other side hung up
+      if (n <= 0) return {PortRead::kGone, 0};  // end of file: the device was disconnected
       filled_ += static_cast<std::size_t>(n);
     }
   }
@@ -144,7 +144,7 @@ std::optional<OpenedPorts> SerialSource::open() noexcept {
     ports.writing = std::move(writing);
     return ports;
   } catch (const std::exception&) {
-    return std::nullopt;  // no memory, or a folder that cannot be walked: not opened; the link asks again
+    return std::nullopt;  // no memory, or a folder that cannot be listed: not opened; the link tries again
   }
 }
 

@@ -20,7 +20,7 @@ struct SerialBoard {
 [[nodiscard]] std::vector<SerialBoard> serialBoards(const std::string& folder = "/dev/serial/by-id");
 
 /// A terminal line that carries text lines as reports: raw mode, one line with its line end is one report.
-/// USB boards ignore the baud rate. A line longer than 255 bytes comes in pieces that no codec takes.
+/// USB boards ignore the baud rate. A line longer than 255 bytes is split into pieces that no codec accepts.
 class SerialSource final : public ReportSource {
  public:
   /// Empty path: the first board of serialBoards().

@@ -8,26 +8,26 @@
 
 namespace fettle::haptic {
 
-/// Where the stylus is, from encoders that only know how far it moved: the user holds it in its home pose,
-/// and from then on the counts are right. Pure state, no clock, no thread; the reader thread's own.
+/// The position of the stylus from relative encoders: the user holds it in its home pose, and from then on
+/// the counts are absolute. Pure state, no clock, no thread; used by the reader thread only.
 class WoodenCalibration {
  public:
   enum class Method : std::uint8_t {
     kHost,    ///< W8, S: the difference to the home pose's counts is kept here
-    kDevice,  ///< P14: the device is told to preset its encoders, and is believed when they read so
+    kDevice,  ///< P14: the device is commanded to preset its encoders; confirmed when they read so
   };
 
   WoodenCalibration(Method method, const std::array<std::int16_t, 3>& home) noexcept
       : method_(method), home_(home) {}
 
   /// Takes one report. `requested`: the user asked for a calibration since the last one; the device's own
-  /// button (latched) asks for it too, once a press. `presets_sent` counts the presets sent so far.
+  /// button (latched) requests it too, once per press. `presets_sent` counts the presets sent so far.
   void onReport(const WoodenReport& report, bool requested, std::uint32_t presets_sent) noexcept {
     const bool pressed = report.calibration_latched && !was_latched_;
     was_latched_ = report.calibration_latched;
     if (requested || pressed) begin(report, presets_sent);
-    if (preset_wanted_ && presets_sent != presets_before_ && nearHome(report)) {
-      preset_wanted_ = false;
+    if (preset_requested_ && presets_sent != presets_before_ && nearHome(report)) {
+      preset_requested_ = false;
       calibrated_ = true;
       for (EncoderUnwrap& u : unwrap_) u.reset();
     }
@@ -35,9 +35,9 @@ class WoodenCalibration {
   }
 
   [[nodiscard]] bool calibrated() const noexcept { return calibrated_; }
-  /// The device is to be told to preset its encoders.
-  [[nodiscard]] bool presetWanted() const noexcept { return preset_wanted_; }
-  /// Encoders a, b, c of the last report, unwrapped; they mean something once calibrated() is true.
+  /// Whether the device is to be commanded to preset its encoders.
+  [[nodiscard]] bool presetRequested() const noexcept { return preset_requested_; }
+  /// Encoders a, b, c of the last report, unwrapped; valid once calibrated() is true.
   [[nodiscard]] const std::array<std::int32_t, 3>& counts() const noexcept { return counts_; }
 
  private:
@@ -52,7 +52,7 @@ class WoodenCalibration {
       return;
     }
     calibrated_ = false;
-    preset_wanted_ = true;
+    preset_requested_ = true;
     presets_before_ = presets_sent;
   }
 
@@ -71,7 +71,7 @@ class WoodenCalibration {
   std::array<std::int32_t, 3> counts_{};
   std::uint32_t presets_before_ = 0;
   bool was_latched_ = false;
-  bool preset_wanted_ = false;
+  bool preset_requested_ = false;
   bool calibrated_ = false;
 };
 

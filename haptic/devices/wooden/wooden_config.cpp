@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kRemedy = "compare it with the maker's configuration of your device";
 
-// Reads fields until one is wrong, and keeps that first problem: the fields after it are not looked at.
+// Reads fields until one is wrong, and keeps that first problem: the fields after it are not read.
 class Fields {
  public:
   explicit Fields(const nlohmann::json& object) : object_(object) {}
@@ -39,7 +39,7 @@ class Fields {
                         : field->is_boolean() ? (field->get<bool>() ? 1.0 : 0.0)
                                               : std::numeric_limits<double>::quiet_NaN();
     if (!(read >= low && read <= high)) {
-      problem_ = fmt::format("the field {} is no number from {} to {}", name, low, high);
+      problem_ = fmt::format("the field {} is not a number from {} to {}", name, low, high);
       return;
     }
     value = read;
@@ -57,7 +57,7 @@ class Fields {
   std::string problem_;
 };
 
-// A machine on a desk: wide enough for any, and narrow enough that millimetres given as metres are caught.
+// Ranges for a desktop device: wide enough for any, and narrow enough to detect millimetres given as metres.
 constexpr double kTinyM = 1e-4;
 constexpr double kHugeM = 2.0;
 
@@ -86,7 +86,7 @@ engine::Result<WoodenConfig> wooden(std::string_view name) {
 
 engine::Result<WoodenConfig> parseWoodenConfig(std::string_view json, const std::string& where) {
   const nlohmann::json object = nlohmann::json::parse(json, nullptr, false);
-  if (!object.is_object()) return engine::inputError("the file is no JSON object", where, kRemedy);
+  if (!object.is_object()) return engine::inputError("the file is not a JSON object", where, kRemedy);
 
   WoodenConfig c;
   c.name = "WoodenHaptics";
@@ -138,7 +138,7 @@ engine::Result<WoodenConfig> readWoodenConfig(const std::string& path) {
 }
 
 std::string defaultWoodenConfigPath() {
-  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): nobody sets it
+  const char* home = std::getenv("HOME");  // NOLINT(concurrency-mt-unsafe): never set
   return home == nullptr || *home == '\0' ? std::string() : std::string(home) + "/woodenhaptics.json";
 }
 

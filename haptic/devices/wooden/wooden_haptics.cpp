@@ -51,7 +51,7 @@ void WoodenHaptics::stop() noexcept {
 }
 
 void WoodenHaptics::calibrate() noexcept {
-  calibration_asked_.store(true, std::memory_order_relaxed);
+  calibration_requested_.store(true, std::memory_order_relaxed);
 }
 
 DeviceCounters WoodenHaptics::counters() const noexcept {
@@ -72,16 +72,16 @@ void WoodenHaptics::setForm(std::optional<WoodenForm> form) noexcept {
 }
 
 Pacing WoodenHaptics::pacing() const noexcept {
-  // Not known yet: a W8 will show itself within a millisecond, a P14 may be waiting for a reply that the host
-  // before us never sent, and is woken by the zeros that lock-step sends into silence.
+  // Not known yet: a W8 sends a report within a millisecond, a P14 may be waiting for a reply that the
+  // previous host never sent; the zeros that lock-step sends without input make it continue.
   return form_ == WoodenForm::kW8 ? Pacing::kFree : Pacing::kLockStep;
 }
 
 Pacing WoodenHaptics::onOpen(std::size_t input_bytes) noexcept {
   setForm(fixed_form_ ? fixed_form_ : woodenFormOfSize(input_bytes));
   counter_.reset();
-  calibration_asked_.store(false, std::memory_order_relaxed);  // asked for before there was a device
-  preset_wanted_.store(false, std::memory_order_relaxed);
+  calibration_requested_.store(false, std::memory_order_relaxed);  // requested before there was a device
+  preset_requested_.store(false, std::memory_order_relaxed);
   newest_.input.link = LinkState::kUncalibrated;
   newest_.input.buttons = 0;
   state_.publish(newest_);
@@ -100,10 +100,10 @@ bool WoodenHaptics::onReport(std::span<const std::uint8_t> report, std::int64_t 
   }
   counter_ = r->counter;
 
-  const bool asked = calibration_asked_.load(std::memory_order_relaxed) &&
-                     calibration_asked_.exchange(false, std::memory_order_relaxed);
+  const bool asked = calibration_requested_.load(std::memory_order_relaxed) &&
+                     calibration_requested_.exchange(false, std::memory_order_relaxed);
   calibration_->onReport(*r, asked, presets_sent_.load(std::memory_order_relaxed));
-  preset_wanted_.store(calibration_->presetWanted(), std::memory_order_relaxed);
+  preset_requested_.store(calibration_->presetRequested(), std::memory_order_relaxed);
   newest_.input.buttons = r->stylus_button ? kPrimaryButton : 0;
   newest_.input.arrival_ns = arrival_ns;
   return true;
@@ -134,9 +134,9 @@ std::size_t WoodenHaptics::encode(const glm::dvec3& currents_ma, std::span<std::
   if (report.size() < kWoodenLongest) return 0;
   WoodenCommand command;
   if (form < 0) return encodeWooden(WoodenForm::kP14, command, report.first<kWoodenLongest>());
-  // Currents of a pose from before an unplug must not reach a device that does not know its pose.
+  // Currents computed for a pose before an unplug must not reach a device that is not calibrated.
   if (may_give_force_.load(std::memory_order_relaxed)) command.ma = currents_ma;
-  if (preset_wanted_.load(std::memory_order_relaxed)) {
+  if (preset_requested_.load(std::memory_order_relaxed)) {
     command.preset = home_;
     presets_sent_.fetch_add(1, std::memory_order_relaxed);
   }

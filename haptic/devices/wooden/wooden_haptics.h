@@ -16,9 +16,9 @@
 
 namespace fettle::haptic {
 
-/// A WoodenHaptics, AluHaptics or Polhem device over any wire. The form over HID (W8 or P14) follows from the
-/// size of its reports: as the device describes itself, else as the first report shows. It comes up
-/// uncalibrated, and again after each re-plug: its encoders lose their zero with the power.
+/// A WoodenHaptics, AluHaptics or Polhem device over any port. The form over HID (W8 or P14) follows from the
+/// size of its reports: from the report descriptor, else from the first report. It starts uncalibrated, and
+/// again after each re-plug: its encoders lose their zero without power.
 class WoodenHaptics final : public Device, private ReportHandler {
  public:
   /// `form`: kS for a serial board; nothing for HID.
@@ -41,7 +41,7 @@ class WoodenHaptics final : public Device, private ReportHandler {
   void onLost() noexcept override;
   std::size_t encode(const glm::dvec3& currents_ma, std::span<std::uint8_t> report) noexcept override;
 
-  // The pose that a force is turned into currents at is the very one that the force was computed for.
+  // A force is converted into currents at the same pose for which it was computed.
   struct State {
     DeviceInput input;
     glm::dvec3 angles{0.0};
@@ -63,12 +63,12 @@ class WoodenHaptics final : public Device, private ReportHandler {
   State newest_;
   std::optional<std::uint16_t> counter_;
 
-  // All relaxed: each is a hint or a number of its own, and a late sight costs one report.
-  std::atomic<int> form_seen_{-1};              // form_ for the writer thread; -1 = not known
-  std::atomic<bool> calibration_asked_{false};  // calibrate() to the reader thread
-  std::atomic<bool> preset_wanted_{false};      // reader to writer thread
-  std::atomic<std::uint32_t> presets_sent_{0};  // writer to reader thread
-  std::atomic<bool> may_give_force_{false};     // reader to writer thread: calibrated and connected
+  // All relaxed: each is a hint or independent, and seeing it late costs one report.
+  std::atomic<int> form_seen_{-1};                  // form_ for the writer thread; -1 = not known
+  std::atomic<bool> calibration_requested_{false};  // calibrate() to the reader thread
+  std::atomic<bool> preset_requested_{false};       // reader to writer thread
+  std::atomic<std::uint32_t> presets_sent_{0};      // writer to reader thread
+  std::atomic<bool> may_give_force_{false};         // reader to writer thread: calibrated and connected
   std::atomic<std::uint64_t> scaled_forces_{0};
   std::atomic<std::uint64_t> faults_{0};
   std::atomic<std::uint64_t> lost_inputs_{0};

@@ -11,7 +11,7 @@
 namespace fettle::haptic {
 
 /// Geometry of a WoodenHaptics device in its maker's own frame: x towards the user, y right, z up; metres,
-/// radians. All functions are pure, allocate nothing and run in some 100 ns: the loop thread may call them.
+/// radians. All functions are pure, allocate nothing and run in about 100 ns: the loop thread may call them.
 /// Source: the makers' published kinematics (WoodenHaptics/woody-experimental, CWoodenDevice).
 
 /// Body angles from encoder counts (unwrapped, home pose already in them): theta_i = s_i 2 pi enc_i / cpr_i
@@ -33,10 +33,10 @@ namespace fettle::haptic {
 [[nodiscard]] glm::dvec3 woodenCurrents(const WoodenConfig& config, const glm::dvec3& torques_nm) noexcept;
 
 /// Currents within the motors' limits: all three scaled by one factor <= 1, so that the force keeps its
-/// direction (clamping each alone would turn it). Non-finite currents give zero.
+/// direction (clamping each alone would change it). Non-finite currents give zero.
 struct LimitedCurrents {
   glm::dvec3 ma{0.0};
-  double scale = 1.0;  ///< < 1: the limit bit
+  double scale = 1.0;  ///< < 1: the limit was active
 };
 [[nodiscard]] LimitedCurrents limitCurrents(const WoodenConfig& config, const glm::dvec3& ma) noexcept;
 

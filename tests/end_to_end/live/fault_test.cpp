@@ -99,7 +99,7 @@ TEST_P(LiveAttack, SilenceOf200MillisecondsIsAFaultThatStaysUntilArmed) {
   session->arm();
   session->goTo({0.0, 0.0, -3.0}, 300ms);
   session->expectForce();
-  session->felt("silence of 200 ms, armed anew", from);
+  session->felt("silence of 200 ms, armed again", from);
   EXPECT_GE(session->end()["safety"]["faults"], 1);  // a machine that stalls for 50 ms adds its own
 }
 
@@ -135,7 +135,7 @@ TEST_P(LiveAttack, StalledOutputHoldsTheWriterAloneNeverTheLoop) {
   session->arm();
   session->goTo({0.0, 0.0, -3.0}, 300ms);
   session->expectForce();
-  session->felt("output stalled for 1.5 s, armed anew", from);
+  session->felt("output stalled for 1.5 s, armed again", from);
   const auto stalled = session->end();
   EXPECT_GT(stalled["device"]["longest_output_us"], 1'400'000.0);
 

@@ -118,7 +118,7 @@ TEST_P(LiveSession, StrokeIsKeptWhenTheDeviceIsPulledOutAndWorkGoesOnAfterItIsBa
   session.expectForce();
   session.release();
   session.goTo({0.0, 0.0, 6.0}, 200ms);
-  session.felt("pulled out in a stroke, back, armed anew", back);
+  session.felt("pulled out in a stroke, back, armed again", back);
   const nlohmann::json report = session.end();
   EXPECT_GE(report["strokes"], 2);
   EXPECT_EQ(report["device"]["disconnects"], 1);

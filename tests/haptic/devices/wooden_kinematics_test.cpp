@@ -213,21 +213,21 @@ TEST(WoodenCalibration, HostOffsetMakesTheHomePoseReadItsCounts) {
 TEST(WoodenCalibration, DeviceIsBelievedOnlyWhenItReadsAsPreset) {
   WoodenCalibration calibration(WoodenCalibration::Method::kDevice, {0, 0, 6000});
   calibration.onReport(reportOf(5, 5, 6005), false, 0);
-  EXPECT_FALSE(calibration.presetWanted());
+  EXPECT_FALSE(calibration.presetRequested());
   calibration.onReport(reportOf(900, 900, 900, true), false, 0);  // its button
-  EXPECT_TRUE(calibration.presetWanted());
+  EXPECT_TRUE(calibration.presetRequested());
   calibration.onReport(reportOf(5, 5, 6005, true), false, 0);  // near home, but nothing was sent yet
   EXPECT_FALSE(calibration.calibrated());
   calibration.onReport(reportOf(900, 900, 900, true), false, 1);  // sent, not obeyed
   EXPECT_FALSE(calibration.calibrated());
   calibration.onReport(reportOf(2, -3, 6004, true), false, 2);
   EXPECT_TRUE(calibration.calibrated());
-  EXPECT_FALSE(calibration.presetWanted());
+  EXPECT_FALSE(calibration.presetRequested());
   EXPECT_EQ(calibration.counts(), (std::array<std::int32_t, 3>{2, -3, 6004}));
   calibration.onReport(reportOf(2, -3, 6004, true), false, 2);  // the latch holds: no second time
   EXPECT_TRUE(calibration.calibrated());
   calibration.onReport(reportOf(2, -3, 6004, false), false, 2);
-  calibration.onReport(reportOf(2, -3, 6004, true), false, 2);  // pressed anew
+  calibration.onReport(reportOf(2, -3, 6004, true), false, 2);  // pressed again
   EXPECT_FALSE(calibration.calibrated());
 }
 

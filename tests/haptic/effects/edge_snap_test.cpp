@@ -119,7 +119,7 @@ TEST(MarkDistance, FollowsMarksDrawnTakenAwayAndReplacedInBoundedSlices) {
   }
   // Another version: nobody says where.
   const engine::Version other = marked(flat(200, 180, 0.1, 0.12), {{5, 170}, {100, 64}});
-  distance.lookOver();
+  distance.rescan();
   while (!distance.upToDate()) distance.advance(other.reader());
   expectExact(distance, other.reader());
   EXPECT_EQ(distance.refused(), 0);

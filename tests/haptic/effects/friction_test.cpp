@@ -112,7 +112,7 @@ TEST(Friction, NoEnergyComesOutOverAnyWalkOnAnySurface) {
         if (e[k] < 1.0 || e[k] > 16.0) v[k] = -v[k];
       e.z = std::clamp(e.z, -3.0, -0.1);
       if (!touch.at(e).contact) {
-        friction.forget();
+        friction.reset();
         before = e;
         continue;
       }

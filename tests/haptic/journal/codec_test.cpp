@@ -133,7 +133,7 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
       haptic::journal::SceneSet{there, anyScene(random)},
       haptic::journal::StepMade{5, "Median \"5 x 5\"", engine::StepKind::kFilter, before, false},
       haptic::journal::StepMade{6, "Lasso", engine::StepKind::kMark, there, true},
-      haptic::journal::RestoreAsked{8, 2},
+      haptic::journal::RestoreRequested{8, 2},
       haptic::journal::Restored{8, there},
       haptic::journal::FilterBase{1, before},
       haptic::journal::FilterBegun{1, spec},

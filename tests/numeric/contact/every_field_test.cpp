@@ -245,7 +245,7 @@ TEST_P(EveryField, TheProxyIsNeverFartherThanTheOneBefore) {
 // between two minima; and after 8 ticks a point's proxy moves by no more than rounding makes of it. Certified
 // is a function of the endpoint: the same bits. Newton's last step leaves the gradient at a few roundings e
 // of its summands, which the flatness of the minimum turns into parameters: at most e / (1 - coupling), 500 e
-// by kLargestCoupling. A ball takes steps of 1e-4 of a cell for rest, and may slide on by such a step a tick.
+// by kLargestCoupling. A ball takes steps of 1e-4 of a cell for rest, and may slide on by such a step per tick.
 TEST_P(EveryField, ATipAtRestHasAProxyAtRest) {
   engine::LiveField live(hard().field, engine::Growth::kAllowed);
   Tick tick(scene(), live, hard().field);

@@ -1,5 +1,5 @@
 // Cells abreast against one after the other: the same touches, bit for bit.
-#include "haptic/contact/touch_lanes.h"
+#include "haptic/contact/sphere_contact_lanes.h"
 
 #include <gtest/gtest.h>
 
@@ -13,16 +13,16 @@ using tests::fieldOf;
 using tests::randomField;
 using tests::uniform;
 
-bool sameTouch(const Touch& a, const Touch& b) {
+bool sameContact(const SphereContact& a, const SphereContact& b) {
   return a.point_mm == b.point_mm && a.normal == b.normal && a.distance_mm == b.distance_mm &&
          a.cell == b.cell && a.u == b.u && a.v == b.v;
 }
 
-TEST(TouchLanes, FindWhatOneCellAfterTheOtherFinds) {
+TEST(SphereContactLanes, FindWhatOneCellAfterTheOtherFinds) {
   std::mt19937_64 random(19);
   SphereWindow window;
-  TouchList abreast;
-  TouchList plain;
+  SphereContactList vectorised;
+  SphereContactList plain;
   int found = 0;
   int insides = 0;
   for (int i = 0; i < 240; ++i) {
@@ -36,13 +36,13 @@ TEST(TouchLanes, FindWhatOneCellAfterTheOtherFinds) {
       window.load(surface, centre, reach, 0.5);
       const double ground = window.heightUnder(centre);
       centre.z = (std::isfinite(ground) ? ground : 0.0) + uniform(random, -0.2, 1.1) * reach;
-      window.touches(centre, reach, abreast);
-      window.touchesCellByCell(centre, reach, plain);
-      ASSERT_EQ(abreast.count, plain.count) << "field " << i << " centre " << k;
-      ASSERT_EQ(abreast.nearest_mm, plain.nearest_mm);
+      window.contacts(centre, reach, vectorised);
+      window.contactsCellByCell(centre, reach, plain);
+      ASSERT_EQ(vectorised.count, plain.count) << "field " << i << " centre " << k;
+      ASSERT_EQ(vectorised.nearest_mm, plain.nearest_mm);
       for (int t = 0; t < plain.count; ++t) {
-        const Touch& touch = plain.touches[static_cast<std::size_t>(t)];
-        ASSERT_TRUE(sameTouch(abreast.touches[static_cast<std::size_t>(t)], touch))
+        const SphereContact& touch = plain.contacts[static_cast<std::size_t>(t)];
+        ASSERT_TRUE(sameContact(vectorised.contacts[static_cast<std::size_t>(t)], touch))
             << "field " << i << " centre " << k << " touch " << t;
         insides += touch.u > 0.0 && touch.u < 1.0 && touch.v > 0.0 && touch.v < 1.0 ? 1 : 0;
       }
@@ -53,24 +53,24 @@ TEST(TouchLanes, FindWhatOneCellAfterTheOtherFinds) {
   EXPECT_GT(insides, 500);
 }
 
-TEST(TouchLanes, ABallOnSamplesAndEdgesOfAFlatTouchesOnce) {
+TEST(SphereContactLanes, ABallOnSamplesAndEdgesOfAFlatTouchesOnce) {
   // Level with everything around: seams decide, in lanes as one by one.
   const engine::Version field = fieldOf(30, 30, [](int, int) { return 1.0; });
   const Surface surface(field.reader());
   SphereWindow window;
-  TouchList abreast;
-  TouchList plain;
+  SphereContactList vectorised;
+  SphereContactList plain;
   for (const double x : {12.0, 12.25, 12.5, 13.0})
     for (const double y : {12.0, 12.5, 13.75}) {
       const glm::dvec3 centre{x, y, 3.0};
       window.load(surface, centre, 2.5, 0.5);
-      window.touches(centre, 2.5, abreast);
-      window.touchesCellByCell(centre, 2.5, plain);
+      window.contacts(centre, 2.5, vectorised);
+      window.contactsCellByCell(centre, 2.5, plain);
       ASSERT_GE(plain.count, 1);
-      ASSERT_EQ(abreast.count, plain.count);
+      ASSERT_EQ(vectorised.count, plain.count);
       for (int t = 0; t < plain.count; ++t)
-        EXPECT_TRUE(sameTouch(abreast.touches[static_cast<std::size_t>(t)],
-                              plain.touches[static_cast<std::size_t>(t)]));
+        EXPECT_TRUE(sameContact(vectorised.contacts[static_cast<std::size_t>(t)],
+                                plain.contacts[static_cast<std::size_t>(t)]));
     }
 }
 

@@ -1,5 +1,5 @@
 // A loop over a field on the disk: it feels what has been brought, never waits, and makes the same field.
-#include "haptic/loop/near_tiles.h"
+#include "haptic/loop/tile_prefetcher.h"
 
 #include <cmath>
 
@@ -43,12 +43,12 @@ struct StoredBench {
 
   HandDevice device;
   LoopChannels channels;
-  NearTiles near;
+  TilePrefetcher near;
   LoopTick loop;
   LoopEvent newest;
 };
 
-class NearTilesTest : public testing::Test {
+class TilePrefetcherTest : public testing::Test {
  protected:
   void SetUp() override {
     const std::string folder = folder_.path().string();
@@ -77,91 +77,91 @@ class NearTilesTest : public testing::Test {
   Scene scene_;
 };
 
-TEST_F(NearTilesTest, NothingIsFeltBeforeItWasBroughtAndEverythingAfter) {
+TEST_F(TilePrefetcherTest, NothingIsFeltBeforeTheTilesAreReadAndEverythingAfter) {
   StoredBench bench(field_, scene_, testOptions(Tool::kFeel));
   for (int i = 0; i < 20; ++i) bench.tickAt({600.0, 600.0, -0.5});
-  EXPECT_EQ(bench.loop.state().not_near, 20U);
+  EXPECT_EQ(bench.loop.state().not_prefetched, 20U);
   EXPECT_FALSE(bench.loop.state().contact);
-  bench.near.bring();
+  bench.near.prefetch();
   bench.tickAt({600.0, 600.0, 1.0});
   bench.tickAt({600.0, 600.0, -0.5});
-  EXPECT_EQ(bench.loop.state().not_near, 20U);
+  EXPECT_EQ(bench.loop.state().not_prefetched, 20U);
   EXPECT_TRUE(bench.loop.state().contact);
   // Somewhere else, quicker than the keeper looks.
   bench.tickAt({50.0, 50.0, -0.5});
-  EXPECT_EQ(bench.loop.state().not_near, 21U);
+  EXPECT_EQ(bench.loop.state().not_prefetched, 21U);
   EXPECT_FALSE(bench.loop.state().contact);
-  bench.near.bring();
+  bench.near.prefetch();
   bench.tickAt({50.0, 50.0, 1.0});
   bench.tickAt({50.0, 50.0, -0.5});
-  EXPECT_EQ(bench.loop.state().not_near, 21U);
+  EXPECT_EQ(bench.loop.state().not_prefetched, 21U);
   EXPECT_TRUE(bench.loop.state().contact);
 }
 
-TEST_F(NearTilesTest, AnotherStateIsFeltOnceItsTilesAreThere) {
+TEST_F(TilePrefetcherTest, AnotherStateIsFeltOnceItsTilesAreThere) {
   engine::LiveField job(field_, engine::Growth::kAllowed);
   for (int r = 590; r < 610; ++r)
     for (int c = 590; c < 610; ++c) ASSERT_TRUE(job.setHeight(c, r, 5.0F));
   StoredBench bench(field_, scene_, testOptions(Tool::kFeel));
   bench.tickAt({600.0, 600.0, 9.0});
-  bench.near.bring();
+  bench.near.prefetch();
   bench.tickAt({600.0, 600.0, 9.0});
-  const std::uint64_t before = bench.loop.state().not_near;
+  const std::uint64_t before = bench.loop.state().not_prefetched;
   LoopCommand restore;
   restore.kind = CommandKind::kRestore;
   restore.version = job.snapshot();
   ASSERT_TRUE(bench.channels.commands.push(std::move(restore)));
   bench.tickAt({600.0, 600.0, 4.8});
-  EXPECT_EQ(bench.loop.state().not_near, before + 1);
+  EXPECT_EQ(bench.loop.state().not_prefetched, before + 1);
   EXPECT_FALSE(bench.loop.state().contact);
-  bench.near.bring();
+  bench.near.prefetch();
   bench.tickAt({600.0, 600.0, 6.0});
   bench.tickAt({600.0, 600.0, 4.8});
-  EXPECT_EQ(bench.loop.state().not_near, before + 1);
+  EXPECT_EQ(bench.loop.state().not_prefetched, before + 1);
   EXPECT_TRUE(bench.loop.state().contact);
 }
 
-TEST_F(NearTilesTest, TheSystemMayTakeEverythingButWhatIsUnderTheHand) {
+TEST_F(TilePrefetcherTest, TheSystemMayTakeEverythingButWhatIsUnderTheHand) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the sanitizers take mlock away";
 #endif
   StoredBench bench(field_, scene_, testOptions(Tool::kSmooth));
   bench.tickAt({600.0, 600.0, 1.0});
-  bench.near.bring();
-  bench.near.bring();
+  bench.near.prefetch();
+  bench.near.prefetch();
   if (bench.near.notLocked() > 0) GTEST_SKIP() << "pages cannot be locked here";
   if (!sendOut()) GTEST_SKIP() << "pages cannot be sent out";
   const engine::FieldReader reader = field_.reader();
   const std::int32_t tile = 600 / engine::kTileSide;
-  for (std::int32_t tr = tile - NearTiles::kTiles; tr <= tile + NearTiles::kTiles; ++tr)
-    for (std::int32_t tc = tile - NearTiles::kTiles; tc <= tile + NearTiles::kTiles; ++tc)
+  for (std::int32_t tr = tile - TilePrefetcher::kTiles; tr <= tile + TilePrefetcher::kTiles; ++tr)
+    for (std::int32_t tc = tile - TilePrefetcher::kTiles; tc <= tile + TilePrefetcher::kTiles; ++tc)
       EXPECT_TRUE(fettle::tests::Pages(&reader.tile(tc, tr)).allInMemory()) << tc << " " << tr;
   EXPECT_FALSE(fettle::tests::Pages(&reader.tile(0, 0)).allInMemory());
   const std::int64_t before = waits();
   for (int i = 0; i < 500; ++i) bench.tickAt({600.0 + 0.1 * i, 600.0 + 0.05 * i, -0.3});
   EXPECT_EQ(waits(), before) << "the loop waited for the disk";
-  EXPECT_EQ(bench.loop.state().not_near, 1U);
+  EXPECT_EQ(bench.loop.state().not_prefetched, 1U);
   // Away from there, nothing is kept where the hand was.
   bench.tickAt({100.0, 100.0, 1.0});
-  for (int i = 0; i < 3; ++i) bench.near.bring();
+  for (int i = 0; i < 3; ++i) bench.near.prefetch();
   ASSERT_TRUE(sendOut());
   EXPECT_FALSE(fettle::tests::Pages(&reader.tile(tile + 2, tile + 2)).allInMemory());
   EXPECT_TRUE(fettle::tests::Pages(&reader.tile(1, 1)).allInMemory());
 }
 
-TEST_F(NearTilesTest, ALiveSessionOverTheDiskEqualsTheReplayOfWhatItWasGiven) {
+TEST_F(TilePrefetcherTest, ALiveSessionOverTheDiskEqualsTheReplayOfWhatItWasGiven) {
   LoopOptions options = testOptions(Tool::kSmooth);
   options.record_capacity = 1 << 15;
   StoredBench bench(field_, scene_, options);
   for (std::uint64_t i = 0; i < 20000; ++i) {
     // A keeper that falls behind now and then.
-    if (i % 16 == 0 && i / 1000 % 3 != 2) bench.near.bring();
+    if (i % 16 == 0 && i / 1000 % 3 != 2) bench.near.prefetch();
     bench.device.input.tool = static_cast<Tool>(i / 500 % kTools);
     bench.tickAt(sweep(i, kStoredSide - 1.0, 0.1, 0.8));
   }
   bench.loop.stop();
-  EXPECT_GT(bench.loop.state().not_near, 100U);
-  EXPECT_LT(bench.loop.state().not_near, 15000U);
+  EXPECT_GT(bench.loop.state().not_prefetched, 100U);
+  EXPECT_LT(bench.loop.state().not_prefetched, 15000U);
   std::vector<StrokeSample> strokes;
   for (TickRecord record; bench.channels.records.pop(record);) strokes.push_back(record.input);
   ASSERT_EQ(strokes.size(), 20000U);

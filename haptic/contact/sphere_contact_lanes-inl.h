@@ -1,14 +1,14 @@
-// The kernels of touch_lanes.cpp; see kernel.h.
+// The kernels of sphere_contact_lanes.cpp; see kernel.h.
 //
-// Every expression is that of sphere_window.cpp, in the same order: the bits are the same.
+// Every expression is that of sphere_window.cpp, in the same order: results are bit-identical.
 
-// One register, whatever its width: comparisons of wider vectors GCC 12 takes apart lane by lane.
+// One register, whatever its width: GCC 12 compiles comparisons of wider vectors lane by lane.
 inline constexpr int kWidth = FETTLE_LEVEL == 0 ? 2 : 4;
 inline constexpr unsigned kAllLanes = (1u << kWidth) - 1u;
 using Lanes = double __attribute__((vector_size(kWidth * sizeof(double))));
 using LaneMask = long long __attribute__((vector_size(kWidth * sizeof(long long))));
 
-// By reference throughout: how a vector wider than the processor's is passed by value is nobody's standard.
+// By reference throughout: no ABI defines how a vector wider than the processor's is passed by value.
 inline void load(Lanes& to, const double* from) noexcept {
   std::memcpy(&to, from, sizeof to);
 }
@@ -19,7 +19,7 @@ inline void store(double* to, const Lanes& from) noexcept {
 
 // 0, 1, 2 ...
 inline void numbered(Lanes& to) noexcept {
-  constexpr double kNumbers[kTouchLanes] = {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
+  constexpr double kNumbers[kSphereContactLanes] = {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
   load(to, kNumbers);
 }
 
@@ -50,7 +50,7 @@ inline void absolute(Lanes& a) noexcept {
 }
 
 // Cells from `at` on, those of `lanes`.
-inline void keep(LaneTouches& out, int at, unsigned lanes, const LaneMask& found, const Lanes& mx,
+inline void keep(LaneContacts& out, int at, unsigned lanes, const LaneMask& found, const Lanes& mx,
                  const Lanes& my, const Lanes& mz, const Lanes& d2) noexcept {
   const unsigned those = bits(found) & lanes;
   if (those == 0) return;
@@ -66,7 +66,7 @@ inline int reached(const LaneWindow& w, const LaneProbe& ball, std::int32_t i0, 
   const Lanes zero{};
   Lanes count;
   numbered(count);
-  // What a row's chunk needs to know of its columns.
+  // Values of the columns that all rows share.
   struct Columns {
     Lanes dx2;  // squared distance along x
     Lanes away;
@@ -107,7 +107,7 @@ inline int reached(const LaneWindow& w, const LaneProbe& ball, std::int32_t i0, 
       larger(highest, z11);
       Lanes gap = ball.z - highest;
       larger(gap, zero);
-      // The patch is its middle plane give or take a quarter of its twist.
+      // The patch differs from its middle plane by at most a quarter of its twist.
       const Lanes p = 0.5 * (z10 - z00 + z11 - z01) / w.sx;
       const Lanes q = 0.5 * (z01 - z00 + z11 - z10) / w.sy;
       Lanes d = z11 - z10 - z01 + z00;
@@ -146,7 +146,7 @@ inline void slopeAt(const Valley& f, const Lanes& v, Lanes& slope, Lanes& u, Lan
 
 // The one minimum between 0 and 1 of the lanes in `lanes`.
 inline void minima(const Valley& f, const LaneMask& lanes, unsigned asked, double reach2, const Lanes& start,
-                   int at, LaneTouches& out) noexcept {
+                   int at, LaneContacts& out) noexcept {
   const Lanes zero{};
   const Lanes one = zero + 1.0;
   Lanes v = start;
@@ -178,7 +178,7 @@ inline void minima(const Valley& f, const LaneMask& lanes, unsigned asked, doubl
   store(out.v.data() + at, v);
 }
 
-// The cells of one register, `at` and on in the finds.
+// The cells of one register; results go to `at` and following.
 inline void lookAt(const LaneWindow& w, const LaneProbe& ball, const LaneCell* cells, int count, int at,
                    LaneFinds& out) noexcept {
   struct Corners {
@@ -342,7 +342,7 @@ inline void lookAt(const LaneWindow& w, const LaneProbe& ball, const LaneCell* c
   minima(valley, may, some, ball.reach2, start, at, out.inside);
 }
 
-inline void look(const LaneWindow& w, const LaneProbe& ball, const LaneCell* cells, int count,
+inline void find(const LaneWindow& w, const LaneProbe& ball, const LaneCell* cells, int count,
                  LaneFinds& out) noexcept {
   out.sample.found = out.edge_x.found = out.edge_y.found = out.inside.found = out.twisted = 0;
   for (int at = 0; at < count; at += kWidth)
@@ -376,6 +376,6 @@ inline unsigned rises(const LaneWindow& w, const LaneProbe& ball, LaneCell cell)
   return below & over >> 1 & ((1u << kTwistPieces) - 1u);
 }
 
-inline TouchKernels kernels() noexcept {
-  return {reached, look, rises};
+inline SphereContactKernels kernels() noexcept {
+  return {reached, find, rises};
 }
