@@ -4,7 +4,7 @@
 
 namespace fettle::app {
 
-/// What a command or a window found out: one object with stable keys, in the order in which people read them.
+/// Results of a command or window: one object with stable keys, in reading order.
 using Report = nlohmann::ordered_json;
 
 }  // namespace fettle::app

@@ -17,12 +17,12 @@ namespace fettle::app {
 
 namespace {
 
-// Read by the signal handler: an atomic pointer is all a handler may touch.
+// Read by the signal handler: a handler may only access an atomic pointer.
 std::atomic<engine::JobControl*> interrupted_job{nullptr};
 static_assert(std::atomic<engine::JobControl*>::is_always_lock_free);
 
 void onSignal(int signal) {
-  // Sequentially consistent by default: once in a process's life, and never on a fast path.
+  // Sequentially consistent by default: executed once per process, not time critical.
   if (engine::JobControl* job = interrupted_job.load()) job->cancel();
   std::signal(signal, SIG_DFL);
 }
@@ -44,12 +44,12 @@ const char* nameOf(engine::ErrorKind kind) {
   return "failed";
 }
 
-// A terminal that is gone or full must not end the work: what cannot be said is left unsaid.
+// A closed or full terminal must not end the work: text that cannot be written is dropped.
 void toStderr(const std::string& text) {
   std::fputs(text.c_str(), stderr);
 }
 
-// A line of its own, also where a progress line stands.
+// A separate line, also while a progress line is shown.
 void lineToStderr(const std::string& text) {
   toStderr((isatty(STDERR_FILENO) != 0 ? "\r\x1b[K" : "") + text + "\n");
 }
@@ -82,7 +82,7 @@ std::string progressText(const engine::JobControl& job, const BatchState* batch)
   const char* stopping = job.cancelled() ? "  stopping" : "";
   if (batch == nullptr)
     return fmt::format("{} [{}] {:3d} %{}", job.stage(), bar(done, total), percent, stopping);
-  // Relaxed, as the job's own numbers: they only feed this line.
+  // Relaxed, as the job's own numbers: they are only shown in this line.
   const std::uint64_t behind = std::min(batch->done.load(std::memory_order_relaxed), batch->count);
   return fmt::format("[{}] {} of {}, {} {:3d} %{}", bar(behind, batch->count),
                      std::min(behind + 1, std::uint64_t{batch->count}), batch->count, job.stage(), percent,

@@ -13,7 +13,7 @@
 namespace fettle::app {
 
 /// For its lifetime, Ctrl-C (SIGINT), SIGTERM and SIGHUP cancel the job instead of ending the process; a
-/// second one ends it at once, as the system would. One at a time in a process.
+/// second one ends it immediately, as by default. One object at a time in a process.
 class InterruptGuard {
  public:
   explicit InterruptGuard(engine::JobControl& job);
@@ -22,18 +22,18 @@ class InterruptGuard {
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 };
 
-/// How far a command with many files is. Threading: as JobControl.
+/// Progress of a command with many files. Threading: as JobControl.
 struct BatchState {
-  std::atomic<std::size_t> done{0};  ///< files that are behind it, failed ones too
-  std::size_t count = 0;             ///< not changed while a ProgressLine looks on; >= 1
+  std::atomic<std::size_t> done{0};  ///< files finished, failed ones included
+  std::size_t count = 0;             ///< not changed while a ProgressLine exists; >= 1
 };
 
-/// What the progress line says: the job's stage, its bar and its share; with a batch the bar is that of the
-/// files, and stage and share are those of the file at work.
+/// Text of the progress line: the job's stage, its bar and its share; with a batch the bar counts files, and
+/// stage and share are those of the current file.
 [[nodiscard]] std::string progressText(const engine::JobControl& job, const BatchState* batch);
 
 /// For its lifetime, shows the job's progress as one line on stderr - but only when stderr is a terminal, and
-/// only once the job has taken a second. The line is wiped at the end.
+/// only after the job has run for a second. The line is erased at the end.
 class ProgressLine {
  public:
   explicit ProgressLine(const engine::JobControl& job, const BatchState* batch = nullptr);
@@ -52,10 +52,10 @@ class ProgressLine {
   std::thread thread_;
 };
 
-/// How the program speaks on stderr. Set once, before a command runs.
+/// What the program writes to stderr. Set once, before a command runs.
 struct Voice {
-  bool quiet = false;  ///< errors alone: no warnings, no progress line
-  bool json = false;   ///< errors as JSON objects; warnings are kept for the report
+  bool quiet = false;  ///< errors only: no warnings, no progress line
+  bool json = false;   ///< errors as JSON objects; warnings are collected for the report
 };
 void setVoice(const Voice& voice);
 [[nodiscard]] const Voice& voice() noexcept;
@@ -66,7 +66,7 @@ void setVoice(const Voice& voice);
 /// `warnings`.
 int report(const engine::Error& error);
 
-/// Prints "fettle: warning: ..." on stderr; with Voice::json keeps it. Threading: any.
+/// Prints "fettle: warning: ..." on stderr; with Voice::json collects it. Threading: any.
 void warn(const std::string& text);
 
 /// The warnings kept so far, which are kept no more.

@@ -56,7 +56,8 @@ engine::Result<Report> demo(const DemoOptions& options, engine::JobControl& job)
   ScanGuard guard;
   for (std::filesystem::directory_iterator it(options.folder, error), end; !error && it != end;
        it.increment(error))
-    if (auto status = guard.spare(it->path().string(), job); !status) return tl::unexpected(status.error());
+    if (auto status = guard.protectSessions(it->path().string(), job); !status)
+      return tl::unexpected(status.error());
   const auto run = runDemo(options, job);
   if (!run) return tl::unexpected(ended(run.error(), options, made));
   const std::string table_file = (std::filesystem::path(options.folder) / "table.csv").string();

@@ -151,8 +151,8 @@ engine::Result<ArmPolicy> armPolicy(const RecordArguments& options, const Chosen
   if (options.arm == "auto" && pushes_a_hand)
     return engine::inputError("a device that gives force is armed by the person who holds it", "--arm auto",
                               "leave it out and press a when the stylus is clear of the surface");
-  if (options.arm.empty()) return pushes_a_hand ? ArmPolicy::kAsk : ArmPolicy::kAuto;
-  return options.arm == "auto" ? ArmPolicy::kAuto : ArmPolicy::kAsk;
+  if (options.arm.empty()) return pushes_a_hand ? ArmPolicy::kByKey : ArmPolicy::kAuto;
+  return options.arm == "auto" ? ArmPolicy::kAuto : ArmPolicy::kByKey;
 }
 
 engine::Result<LiveSettings> settingsFor(const RecordArguments& options, const ChosenDevice& chosen,

@@ -242,7 +242,7 @@ engine::Status checkOutputs(const std::vector<Output>& outputs, const std::vecto
   ScanGuard guard;
   for (const Output& output : outputs)
     if (!output.path.empty() && !isStream(output.path))
-      if (auto status = guard.spare(output.path, job); !status) return status;
+      if (auto status = guard.protectSessions(output.path, job); !status) return status;
   return {};
 }
 

@@ -23,7 +23,8 @@ Keys::Keys(KeySource source) {
   }
   if (tcgetattr(STDIN_FILENO, &terminal_before) != 0) return;
   termios single = terminal_before;
-  // Keys one by one and unseen; Ctrl-C still sends its signal. tcsetattr from the background would stop us.
+  // Single keys without echo; Ctrl-C still sends its signal. tcsetattr from the background would stop the
+  // process.
   single.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   if (tcgetpgrp(STDIN_FILENO) != getpgrp() || tcsetattr(STDIN_FILENO, TCSANOW, &single) != 0) return;
   terminal_changed.store(true);

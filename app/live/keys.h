@@ -8,15 +8,15 @@
 
 namespace fettle::app {
 
-/// Where single keys come from.
+/// Source of single keys.
 enum class KeySource : std::uint8_t {
-  kTerminal,  ///< standard input when it is a terminal, nowhere otherwise
+  kTerminal,  ///< standard input if it is a terminal, otherwise none
   kAnyInput,  ///< standard input, whatever it is: one byte, one key; for scripts and other input aids
 };
 
-/// Single keys from standard input, without waiting and without echo. A terminal is given back as it was:
-/// by the destructor, and on a fatal signal by whoever calls restoreTerminal().
-/// Threading: one thread; one at a time in a process.
+/// Single keys from standard input, without waiting and without echo. The state of a terminal is restored by
+/// the destructor, and on a fatal signal by restoreTerminal(). Threading: one thread; one object at a time in
+/// a process.
 class Keys {
  public:
   explicit Keys(KeySource source);
@@ -24,7 +24,7 @@ class Keys {
   Keys(const Keys&) = delete;
   Keys& operator=(const Keys&) = delete;
 
-  /// Whether anybody can press one.
+  /// Whether keys can be read.
   [[nodiscard]] bool available() const noexcept { return available_; }
   /// The next key, if one was pressed. Line ends are left out.
   [[nodiscard]] std::optional<char> next() noexcept;

@@ -21,20 +21,20 @@ using haptic::LoopState;
 using haptic::SafetyState;
 using namespace std::chrono_literals;
 
-constexpr auto kLook = 5ms;          // between two looks at rings, keys and state
-constexpr double kArmAgain_s = 0.1;  // between two tries to arm by itself
-constexpr auto kFade = 30ms;         // a disarmed force is gone after peak / slew = 5 ms
+constexpr auto kPollInterval = 5ms;  // between two polls of rings, keys and state
+constexpr double kArmAgain_s = 0.1;  // between two automatic attempts to arm
+constexpr auto kFade = 30ms;         // a disarmed force has faded after peak / slew = 5 ms
 
 std::string remedyFor(FaultCause cause) {
   switch (cause) {
     case FaultCause::kInputLost:
-      return "the device was not heard of: check cable and power, then press a to arm";
+      return "no input from the device: check cable and power, then press a to arm";
     case FaultCause::kLoopStopped:
-      return "the program was held up: press a to arm";
+      return "the program was delayed: press a to arm";
     case FaultCause::kUnplugged:
-      return "plug the device in, calibrate it if it asks for that, then press a to arm";
+      return "plug the device in, calibrate it if necessary, then press a to arm";
     case FaultCause::kOutputStalled:
-      return "the device takes no force: plug it in again, or press a to arm when it has recovered";
+      return "the device accepts no force: plug it in again, or press a to arm when it has recovered";
     case FaultCause::kLastResort:
     case FaultCause::kNone:
       break;
@@ -54,7 +54,7 @@ std::string_view linkName(LinkState link) {
   return "";
 }
 
-// Uncalibrated, the guard's word, also stands for a ready device that nobody has armed.
+// The guard's state kUncalibrated also includes a ready device that is not armed.
 std::string stateName(const LoopState& state) {
   if (state.safety == SafetyState::kUncalibrated && state.link == LinkState::kConnected) return "not armed";
   return std::string(haptic::name(state.safety));
@@ -75,13 +75,13 @@ class LiveSession {
       device_.stop();
       return tl::unexpected(status.error());
     }
-    tellStart();
+    reportStart();
     engine::Status written = work();
     loop_.disarm();
     std::this_thread::sleep_for(kFade);
     outcome_.field = loop_.stop();
     device_.stop();
-    haptic::LastResort::reset();  // a signal ended the session, not the program: what was done is saved yet
+    haptic::LastResort::reset();  // a signal ended the session, not the program: the work is still saved
     if (written) written = drain();
     if (!written) return tl::unexpected(written.error());
     finish();
@@ -101,13 +101,13 @@ class LiveSession {
     outcome_.device = device_.counters();
   }
 
-  void tellStart() {
+  void reportStart() {
     for (const std::string& missing : loop_.realTime().missing)
-      tell("the loop got less than it asked for", missing);
-    if (settings_.arm == ArmPolicy::kAsk)
-      tell("no force yet", keys_.available()
-                               ? "hold the stylus clear of the surface and press a to arm, q to end"
-                               : "nobody can press a to arm: run it in a terminal, or with --keys");
+      report("the system did not grant the loop everything", missing);
+    if (settings_.arm == ArmPolicy::kByKey)
+      report("no force yet", keys_.available()
+                                 ? "hold the stylus clear of the surface and press a to arm, q to end"
+                                 : "no key can be read to arm: run it in a terminal, or with --keys");
   }
 
   engine::Status work() {
@@ -115,13 +115,13 @@ class LiveSession {
     while (!ended()) {
       if (engine::Status status = drain(); !status) return status;
       for (haptic::LoopEvent event; loop_.poll(event);)
-        if (event.kind == haptic::EventKind::kStrokeEnded) tell("stroke kept", "");
+        if (event.kind == haptic::EventKind::kStrokeEnded) report("stroke kept", "");
       while (const auto key = keys_.next()) press(*key);
       watch();
       if (settings_.arm == ArmPolicy::kAuto) armByItself();
       const double lived = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
       status_.show(now_, loop_.timing(), lived, lived > 0.0 ? static_cast<double>(now_.tick) / lived : 0.0);
-      std::this_thread::sleep_for(kLook);
+      std::this_thread::sleep_for(kPollInterval);
     }
     return {};
   }
@@ -145,13 +145,13 @@ class LiveSession {
     haptic::LoopCommand command;
     command.kind = kind;
     command.tool = tool;
-    // A full ring: the loop stands still, and its fault will say so.
+    // A full ring: the loop does not run, and its fault will report that.
     static_cast<void>(loop_.send(std::move(command)));
   }
 
   void choose(haptic::Tool tool) {
     send(CommandKind::kTool, tool);
-    tell(fmt::format("tool {}", haptic::toolName(tool)), "");
+    report(fmt::format("tool {}", haptic::toolName(tool)), "");
   }
 
   void press(char key) {
@@ -183,12 +183,12 @@ class LiveSession {
         quit_ = true;
         break;
       default:
-        tell("keys", "a arm, d disarm, c calibrate, f feel, s smooth, m mark, u unmark, q end");
+        report("keys", "a arm, d disarm, c calibrate, f feel, s smooth, m mark, u unmark, q end");
     }
   }
 
   void armByItself() {
-    // Who disarmed wants no force until they say otherwise.
+    // After a disarm by the user only the user arms again.
     if (disarmed_) return;
     const bool waits = now_.safety == SafetyState::kUncalibrated || now_.safety == SafetyState::kFault;
     if (!waits || now_.link != LinkState::kConnected || log_.seconds() - tried_at_ < kArmAgain_s) return;
@@ -196,7 +196,7 @@ class LiveSession {
     static_cast<void>(loop_.send(loop_.armCommand()));
   }
 
-  // The one place that looks: what the slot hands out is valid until the next look.
+  // The only place that reads the state: the slot's value is valid until the next read.
   void watch() {
     const LoopState before = std::exchange(now_, loop_.state());
     if (now_.tick == 0) return;
@@ -205,22 +205,22 @@ class LiveSession {
     const bool first = before.tick == 0;
     if (first || state.link != before.link) {
       const bool home = state.link == LinkState::kUncalibrated;
-      tell(fmt::format("device {}", linkName(state.link)),
-           home ? "hold the stylus in its home pose and press c, or the device's own button" : "");
+      report(fmt::format("device {}", linkName(state.link)),
+             home ? "hold the stylus in its home pose and press c, or the device's own button" : "");
     }
     if (state.safety_counters.faults > before.safety_counters.faults)
-      tell(fmt::format("fault, {}", haptic::name(state.cause)), remedyFor(state.cause));
+      report(fmt::format("fault, {}", haptic::name(state.cause)), remedyFor(state.cause));
     if (state.safety_counters.arms_refused > before.safety_counters.arms_refused)
-      tell("not armed", "the device must be connected, calibrated and heard of");
-    if (first || state.safety != before.safety) tell(stateName(state), "");
+      report("not armed", "the device must be connected, calibrated and sending input");
+    if (first || state.safety != before.safety) report(stateName(state), "");
     if (state.lost_records > 0 && before.lost_records == 0)
-      tell("ticks were not recorded", "the disk or the processor is too slow: a replay will differ");
+      report("ticks were not recorded", "the disk or the processor is too slow: a replay will differ");
   }
 
-  void tell(std::string what, std::string remedy) {
+  void report(std::string what, std::string remedy) {
     const double t = 1e-9 * static_cast<double>(now_.time_ns - first_ns_);
     outcome_.events.push_back({t, std::move(what), std::move(remedy)});
-    status_.tell(outcome_.events.back());
+    status_.report(outcome_.events.back());
   }
 
   haptic::HapticLoop& loop_;
@@ -231,10 +231,10 @@ class LiveSession {
   Keys keys_;
   StatusLine status_;
   LiveOutcome outcome_;
-  LoopState now_;              // as of the last look
+  LoopState now_;              // as of the last read
   std::int64_t first_ns_ = 0;  // of the first tick seen
   double tried_at_ = -1.0;
-  bool disarmed_ = false;  // by the person, who did not arm since
+  bool disarmed_ = false;  // by the user, who did not arm since
   bool quit_ = false;
 };
 

@@ -17,23 +17,23 @@
 
 namespace fettle::app {
 
-/// Who allows force. A person's hand on a device that gives force must be asked, at the start and after each
-/// fault: only the person knows that the hand holds the stylus and where it is.
+/// How force is allowed. The user of a force device must allow it, at the start and after each fault: only
+/// the user knows whether the hand holds the stylus and where it is.
 enum class ArmPolicy : std::uint8_t {
-  kAsk,   ///< the key 'a'
-  kAuto,  ///< by itself: devices without force and simulated ones
+  kByKey,  ///< the key 'a'
+  kAuto,   ///< automatically: devices without force and simulated ones
 };
 
 struct LiveSettings {
   haptic::HapticLoop::Settings loop;
-  ArmPolicy arm = ArmPolicy::kAsk;
+  ArmPolicy arm = ArmPolicy::kByKey;
   KeySource keys = KeySource::kTerminal;
-  double seconds = 0.0;          ///< ends after so long; 0 = not by itself
-  std::uint64_t most_ticks = 0;  ///< ends after so many ticks; 0 = not by itself
+  double seconds = 0.0;          ///< ends after this time; 0 = no limit
+  std::uint64_t most_ticks = 0;  ///< ends after this number of ticks; 0 = no limit
 };
 
 struct LiveOutcome {
-  engine::Version field;   ///< as the session left it, the right way up
+  engine::Version field;   ///< at the end of the session, upright
   std::string ended_by;    ///< "time", "end of the strokes", "key", "signal"
   haptic::LoopState last;  ///< the last tick
   haptic::RealTimeReport granted;

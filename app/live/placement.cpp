@@ -29,7 +29,7 @@ double fittedScale(const haptic::DeviceProfile& profile, const engine::Grid& gri
 std::optional<haptic::StabilityProblem> problemOnEveryDevice(const haptic::Scene& scene,
                                                              const engine::Grid& grid, double rate_hz) {
   std::optional<haptic::StabilityProblem> best;
-  double held = -1.0;  // of the scene, by the device that holds most of it
+  double held = -1.0;  // largest stable scale of the scene over the devices
   for (const haptic::KnownDevice& known : haptic::knownDevices()) {
     const haptic::DeviceProfile profile = *haptic::knownProfile(known.name);
     const double reach = reachScale(profile, grid);
@@ -45,7 +45,7 @@ std::optional<haptic::StabilityProblem> problemOnEveryDevice(const haptic::Scene
 }
 
 std::string withoutForceText(const haptic::StabilityProblem& problem) {
-  return fmt::format("nothing pushes a hand here, but no known device would hold this scene: {}: {}",
+  return fmt::format("this device gives no force, but on no known device would this scene be stable: {}: {}",
                      problem.what, problem.remedy);
 }
 

@@ -11,23 +11,24 @@
 
 namespace fettle::app {
 
-/// The scale [mm of the field a mm of the hand] that brings the smaller side of the field within the device's
-/// reach, or for a device that gives force the largest at which it holds the scene (haptic::stability.h) if
-/// that is less; 1 for a field of one row or column. 1 as well for a device that holds nothing of the scene:
-/// its stabilityProblem says so.
+/// The scale [mm of the field per mm of the hand] that brings the smaller side of the field within the
+/// device's reach, or for a device that gives force the largest at which it holds the scene
+/// (haptic::stability.h) if that is less; 1 for a field of one row or column. Also 1 for a device on which
+/// the scene is not stable at any scale: see its stabilityProblem.
 [[nodiscard]] double fittedScale(const haptic::DeviceProfile& profile, const engine::Grid& grid,
                                  const haptic::Scene& scene, double rate_hz);
 
-/// Without a device that gives force nothing can buzz. What is said of a scene that no device with known
-/// limits (haptic::knownDevices) would hold, felt at 1:1, or larger where the whole field is within reach
-/// then: the largest value on the device that holds most. Nothing when one of them holds it all.
+/// For sessions without a force device, where nothing can become unstable: the problem of a scene that is not
+/// stable on any device with known limits (haptic::knownDevices), at 1:1, or larger where the whole field is
+/// then within reach: the largest value on the device that holds most. Empty when the scene is stable on one
+/// of them.
 [[nodiscard]] std::optional<haptic::StabilityProblem> problemOnEveryDevice(const haptic::Scene& scene,
                                                                            const engine::Grid& grid,
                                                                            double rate_hz);
 /// The same as one line to warn with.
 [[nodiscard]] std::string withoutForceText(const haptic::StabilityProblem& problem);
 
-/// Limits of a session on this device: none but zero force for one that gives none.
+/// Limits of a session on this device: zero force for a device that gives none.
 [[nodiscard]] haptic::SafetyLimits sessionLimits(haptic::DeviceProfile profile);
 
 }  // namespace fettle::app

@@ -19,14 +19,14 @@ struct SessionEvent {
   std::string remedy;  ///< what the user may do; may be empty
 };
 
-/// Figures of what the device was told to give.
+/// Figures of the forces sent to the device.
 struct GivenForce {
   double peak_n = 0.0;
   double rate_n_per_ms = 0.0;  ///< largest change of the vector between two ticks, over the time between them
-  double rise_n_per_ms = 0.0;  ///< likewise of its size, upwards alone
+  double rise_n_per_ms = 0.0;  ///< likewise of its length, increases only
 };
 
-/// Takes the records of a session off the loop's ring and to the disk. One thread, not the loop's.
+/// Writes the records of a session from the loop's ring to the disk. One thread, not the loop's.
 class SessionLog {
  public:
   /// `strokes` outlives this.
@@ -34,7 +34,7 @@ class SessionLog {
 
   /// Errors: those of the strokes file (full disk); rows after one are not written.
   [[nodiscard]] engine::Status add(const haptic::TickRecord& record);
-  /// Once a second of session time, what was added goes to the system; cheap to call often.
+  /// Once per second of session time, passes added rows to the operating system; cheap, may be called often.
   [[nodiscard]] engine::Status flushIfDue();
 
   [[nodiscard]] std::int64_t rows() const noexcept { return rows_; }

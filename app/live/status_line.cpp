@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kRedraw_s = 0.2;
 
-// A terminal that is gone must not end the session.
+// A closed terminal must not end the session.
 void put(const std::string& text) {
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);
@@ -44,8 +44,8 @@ void StatusLine::show(const haptic::LoopState& state, const haptic::LoopTiming& 
       haptic::toolName(state.tool), state.contact ? ", touching" : "", state.stroke));
 }
 
-void StatusLine::tell(const SessionEvent& event) {
-  if (voice().quiet) return;  // the report has every event
+void StatusLine::report(const SessionEvent& event) {
+  if (voice().quiet) return;  // the report lists every event
   wipe();
   put(fmt::format("fettle: {:.3f} s: {}{}{}\n", event.t, event.what, event.remedy.empty() ? "" : ": ",
                   event.remedy));

@@ -8,8 +8,8 @@
 
 namespace fettle::app {
 
-/// What a live session shows: one line on stderr that is kept up to date, when stderr is a terminal, and a
-/// line for each event; nothing with Voice::quiet. One thread.
+/// Output of a live session: one line on stderr that is updated, when stderr is a terminal, and a line for
+/// each event; nothing with Voice::quiet. One thread.
 class StatusLine {
  public:
   StatusLine();
@@ -17,10 +17,10 @@ class StatusLine {
   StatusLine(const StatusLine&) = delete;
   StatusLine& operator=(const StatusLine&) = delete;
 
-  /// Redraws at most five times a second. `ticks_per_second` as measured.
+  /// Redraws at most five times per second. `ticks_per_second` as measured.
   void show(const haptic::LoopState& state, const haptic::LoopTiming& timing, double seconds,
             double ticks_per_second);
-  void tell(const SessionEvent& event);
+  void report(const SessionEvent& event);
 
  private:
   void wipe();

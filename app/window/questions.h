@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/work/touch.h"
+#include "app/work/loop_client.h"
 #include "render/window/window.h"
 
 namespace fettle::app {

@@ -21,13 +21,13 @@
 #include "app/work/filter_preview.h"
 #include "app/work/lasso.h"
 #include "app/work/live_change.h"
+#include "app/work/loop_client.h"
 #include "app/work/mark_edit.h"
 #include "app/work/open_document.h"
 #include "app/work/recent_files.h"
 #include "app/work/replaced_files.h"
 #include "app/work/scan_reading.h"
 #include "app/work/session_keeper.h"
-#include "app/work/touch.h"
 #include "engine/compare/compare.h"
 #include "render/live/live_picture.h"
 #include "render/window/window.h"
@@ -37,7 +37,7 @@ namespace fettle::app {
 struct ViewOptions {
   std::string scan;  ///< may be empty: a window to drop one on
   std::optional<haptic::Scene> scene;
-  TouchOptions touch;
+  LoopClientOptions touch;
   ScanOptions reading;
   render::WindowOptions window;
   double seconds = 0.0;       ///< ends after so long; 0 = not by itself
@@ -222,7 +222,7 @@ class Workstation {
   std::string saving_path_;
   engine::Version saved_;                  // upright, as the file holds it
   std::unique_ptr<SessionKeeper> keeper_;  // there with touch_, and outlives it
-  std::unique_ptr<Touch> touch_;
+  std::unique_ptr<LoopClient> touch_;
   Background<Document> loading_;
   std::shared_ptr<CoarseSlot> coarse_slot_;  // of the newest loading
   std::optional<engine::Preview> coarse_;    // while there is no touch_

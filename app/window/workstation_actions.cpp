@@ -79,13 +79,13 @@ void Workstation::setPressDepth(double depth_mm) {
   if (!touch_ || touch_->mouse() == nullptr || !std::isfinite(depth_mm)) return;
   haptic::MouseStylus& mouse = *touch_->mouse();
   const engine::Grid& grid = touch_->field().grid();
-  const double step = 0.1 * std::max(grid.spacingXMm(), grid.spacingYMm());  // of Touch's mouse
+  const double step = 0.1 * std::max(grid.spacingXMm(), grid.spacingYMm());  // of LoopClient's mouse
   mouse.wheel((mouse.pressMm() - depth_mm) / step);
 }
 
 void Workstation::setRate(double hz) {
   if (!touch_) return;
-  // What was computed belongs to the loop that ends (Touch::setRate).
+  // What was computed belongs to the loop that ends (LoopClient::setRate).
   filters_.cancel(*touch_);
   stylus_held_ = false;
   const engine::Status set = touch_->setRate(hz);
@@ -304,7 +304,7 @@ void Workstation::act(Action action) {
       filters_.compute(*touch_, FilterPreview::Keep::kReplace, seenPart());
       break;
     case Action::kFilterBeside:
-      filters_.compute(*touch_, FilterPreview::Keep::kBeside, seenPart());
+      filters_.compute(*touch_, FilterPreview::Keep::kAdd, seenPart());
       break;
     case Action::kFilterDrop:
       if (!filters_.variants().empty()) filters_.drop(filters_.variants().size() - 1);

@@ -136,7 +136,7 @@ void Workstation::takeDocument(Document document) {
   opening_ = {load_asked_, coarse_ms};
   opening_.read_ms = opening_.sinceAsked();
   const engine::Grid& grid = document.original.grid();
-  TouchOptions options = options_.touch;
+  LoopClientOptions options = options_.touch;
   options.fit_spring = !options_.scene.has_value();
   haptic::Scene scene = options_.scene.value_or(haptic::defaultScene());
   const auto noted = document.notes.find("scene");
@@ -155,7 +155,7 @@ void Workstation::takeDocument(Document document) {
   closeDocument(SessionKeeper::Afterwards::kDiscard);
   const engine::History history = document.history;
   keeper_ = std::make_unique<SessionKeeper>(document);
-  auto touch = Touch::start(history, document.original, scene, options, keeper_.get());
+  auto touch = LoopClient::start(history, document.original, scene, options, keeper_.get());
   if (!touch) {
     keeper_.reset();
     dropCoarse();
@@ -201,7 +201,7 @@ void Workstation::closeDocument(SessionKeeper::Afterwards afterwards) {
   filters_.cancel(*touch_);
   measuring_.cancel();
   write_after_scan_ = false;
-  costs_.forget();
+  costs_.reset();
   // A stroke that runs is a step yet.
   touch_->finish();
   if (const auto closed = keeper_->close(afterwards); !closed)
@@ -314,7 +314,7 @@ void Workstation::write(const std::string& path, Keeping keeping) {
                  outputs = writing_](engine::JobControl& job) -> engine::Result<engine::Version> {
     ScanGuard guard;  // of other sessions: this one does not need the file any more
     for (const std::string& output : outputs)
-      if (auto spared = guard.spare(output, job); !spared) return tl::unexpected(spared.error());
+      if (auto spared = guard.protectSessions(output, job); !spared) return tl::unexpected(spared.error());
     engine::ExportOptions options;
     options.original = original;
     auto done = engine::exportField(field, path, options, job);

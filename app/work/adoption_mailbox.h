@@ -10,8 +10,8 @@
 
 namespace fettle::app {
 
-/// Where a worker that brings a filter's result into the live field meets the main thread, which carries its
-/// questions to the loop and the loop's answers back. One question at a time.
+/// Passes the requests of a worker that adopts a filter's result to the main thread, which sends them to the
+/// loop and returns the loop's answers. One request at a time.
 ///
 /// Threading: the functions of AdoptionPort on one worker at a time, the others on main.
 class AdoptionMailbox final : public haptic::AdoptionPort {
@@ -20,13 +20,13 @@ class AdoptionMailbox final : public haptic::AdoptionPort {
   engine::Result<Answer> adopt(engine::Version version) override;
   void pause() override;
 
-  /// The command that asks the loop what the worker asked, once for each question. A snapshot takes the next
-  /// id and counts it up; the adoption after it carries the same.
+  /// The loop command for the worker's request, once per request. A snapshot takes the next id and increments
+  /// it; the adoption after it has the same id.
   [[nodiscard]] std::optional<haptic::LoopCommand> takeCommand(std::uint64_t& next_id);
-  /// Wakes the worker with the live version; without a question it has no effect.
+  /// Wakes the worker with the live version; no effect without a request.
   void answer(engine::Version live, bool adopted);
 
-  /// A worker that waits, or asks from now on, gets kCancelled, until open().
+  /// A worker that waits, or makes a request from now on, gets kCancelled, until open().
   void close();
   void open();
 
@@ -40,7 +40,7 @@ class AdoptionMailbox final : public haptic::AdoptionPort {
   bool sent_ = false;
   bool closed_ = false;
   std::uint64_t id_ = 0;     // of the newest snapshot
-  engine::Version version_;  // of the question
+  engine::Version version_;  // of the request
   std::optional<Answer> answer_;
 };
 

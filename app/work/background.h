@@ -12,9 +12,9 @@
 
 namespace fettle::app {
 
-/// One long piece of work on a thread of its own, looked at by the main thread once a frame. Starting another
-/// cancels the one under way and waits for it to notice (JobControl: some 50 ms); so does the destructor.
-/// Threading: the main thread calls everything.
+/// A long job on its own thread, polled by the main thread once per frame. Starting another cancels the
+/// running one and waits until it stops (JobControl: about 50 ms); so does the destructor. Threading: the
+/// main thread calls everything.
 template <class T>
 class Background {
  public:
@@ -36,7 +36,7 @@ class Background {
         run->result.emplace(
             engine::failure("memory ran out", "", "close other programs or take a smaller scan"));
       }
-      // Release: the result is there for whoever sees this.
+      // Release: publishes the result.
       run->done.store(true, std::memory_order_release);
     });
   }
@@ -46,7 +46,7 @@ class Background {
   }
 
   [[nodiscard]] bool busy() const noexcept { return run_ != nullptr; }
-  /// 0 .. 1; and what it is at.
+  /// 0 .. 1; and the name of the stage.
   [[nodiscard]] double progress() const noexcept {
     if (!run_ || run_->job.total() == 0) return 0.0;
     return std::min(1.0, static_cast<double>(run_->job.done()) / static_cast<double>(run_->job.total()));
@@ -54,7 +54,7 @@ class Background {
   [[nodiscard]] const char* stage() const noexcept { return run_ ? run_->job.stage() : ""; }
   [[nodiscard]] bool cancelling() const noexcept { return run_ && run_->job.cancelled(); }
 
-  /// Waits for the result: for ends that have nothing else to do. Nothing when no work is under way.
+  /// Waits for the result: for shutdown. Empty when no work is running.
   [[nodiscard]] std::optional<engine::Result<T>> wait() {
     if (!run_) return std::nullopt;
     thread_.join();
@@ -63,7 +63,7 @@ class Background {
     return result;
   }
 
-  /// The result, once, when it is there.
+  /// The result, once, when it is available.
   [[nodiscard]] std::optional<engine::Result<T>> take() {
     // Acquire: pairs with the release above.
     if (!run_ || !run_->done.load(std::memory_order_acquire)) return std::nullopt;
@@ -77,7 +77,7 @@ class Background {
     std::atomic<bool> done{false};
   };
   std::unique_ptr<Run> run_;
-  std::jthread thread_;  // last: joined before what it works on goes
+  std::jthread thread_;  // last: joined before the data it uses is destroyed
 };
 
 }  // namespace fettle::app

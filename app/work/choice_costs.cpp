@@ -73,7 +73,7 @@ void ChoiceCosts::measureDetail(const engine::Version& field, const render::View
   });
 }
 
-void ChoiceCosts::forget() noexcept {
+void ChoiceCosts::reset() noexcept {
   contact_run_.cancel();
   detail_run_.cancel();
   contact_.clear();

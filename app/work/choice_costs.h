@@ -11,26 +11,26 @@
 
 namespace fettle::app {
 
-/// How many vertices a frame may cost, from the fastest to the finest.
+/// Vertex budgets of a frame, from the fastest to the finest.
 [[nodiscard]] std::span<const trials::DetailChoice> detailChoices();
 
-/// What each level of contact and each level of detail gives away and takes on the scan in the window:
-/// measured in the background when they are about to be chosen, not before, and kept until another scan is
-/// opened. Edits made since do not count. Threading: main.
+/// Error and time of each level of contact and each level of detail on the scan in the window: measured in
+/// the background when they are about to be chosen, not before, and kept until another scan is opened. Later
+/// edits are ignored. Threading: main.
 class ChoiceCosts {
  public:
-  /// Over a field as felt: each of trials::contactChoices(), some 2000 ticks of a hand that wanders over it,
-  /// a tenth of that for balls. A second or two.
+  /// Over a field as felt: each of trials::contactChoices(), about 2000 ticks of a hand that moves over it, a
+  /// tenth of that for balls. Takes one or two seconds.
   void measureContact(const engine::Version& field);
-  /// From where the picture is looked at now, with a device of its own and 2^21 vertices as the truth:
-  /// seconds on a machine without a GPU. Only the first version's surface, without marks.
+  /// From the present camera, with a separate device and 2^21 vertices as the truth: takes seconds on a
+  /// machine without a GPU. Only the first version's surface, without marks.
   void measureDetail(const engine::Version& field, const render::View& view);
   void cancelContact() noexcept { contact_run_.cancel(); }
   void cancelDetail() noexcept { detail_run_.cancel(); }
-  /// What was measured was another scan.
-  void forget() noexcept;
+  /// Discards the results, which belong to another scan.
+  void reset() noexcept;
 
-  /// Takes results in; what went wrong, if anything did, but for a cancel.
+  /// Takes results over; returns errors other than a cancel.
   [[nodiscard]] std::vector<engine::Error> poll();
 
   [[nodiscard]] bool busy() const noexcept { return contact_run_.busy() || detail_run_.busy(); }

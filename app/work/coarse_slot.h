@@ -11,7 +11,7 @@
 
 namespace fettle::app {
 
-/// Brings the coarse picture of a scan from the thread that goes on to read the rest to the window.
+/// Passes the coarse picture of a scan from the thread that continues to read the rest to the window.
 /// Threading: any; a lock is held for a move.
 class CoarseSlot {
  public:
@@ -19,13 +19,13 @@ class CoarseSlot {
     const std::scoped_lock lock(mutex_);
     preview_ = std::move(preview);
   }
-  /// What was put since the last call.
+  /// The preview put since the last call.
   [[nodiscard]] std::optional<engine::Preview> take() {
     const std::scoped_lock lock(mutex_);
     return std::exchange(preview_, std::nullopt);
   }
 
-  /// What was put has been on the screen once, or will not be.
+  /// The preview was on the screen once, or will not be.
   void shown() {
     {
       const std::scoped_lock lock(mutex_);
@@ -33,13 +33,13 @@ class CoarseSlot {
     }
     seen_.notify_all();
   }
-  /// For who reads the rest: until shown(), a cancel, or as long as this at most.
+  /// For the reading thread: waits for shown(), a cancel, or at most this long.
   void waitShown(std::chrono::milliseconds most, const engine::JobControl& job) {
-    constexpr std::chrono::milliseconds kLook{10};
+    constexpr std::chrono::milliseconds kPollInterval{10};
     const auto end = std::chrono::steady_clock::now() + most;
     std::unique_lock lock(mutex_);
     while (!shown_ && !job.cancelled() && std::chrono::steady_clock::now() < end)
-      seen_.wait_for(lock, kLook, [this] { return shown_; });
+      seen_.wait_for(lock, kPollInterval, [this] { return shown_; });
   }
 
  private:

@@ -34,9 +34,10 @@ double spacingMm(const engine::Grid& grid) {
   return std::max(grid.spacingXMm(), grid.spacingYMm());
 }
 
-// A mouse knows no force: its depth stands for it. Two cells deep is pressing hard, on a coin as on a valley.
+// A mouse has no force: its depth replaces it. Two cells deep is pressing hard, at every scale of the field.
 haptic::Scene fitted(haptic::Scene scene, const engine::Grid& grid) {
-  // A cursor jumps up and down walls that a hand would go round, and would leave a local search behind them.
+  // A cursor jumps up and down walls around which a hand would move, and a local search would stay behind
+  // them.
   scene.level = haptic::ContactLevel::kCertified;
   scene.certified_radius_cells = 6;  // more than the four cells that it presses at most
   scene.stiffness_n_per_mm = std::clamp(scene.force_limit_n / (2.0 * spacingMm(grid)), 1e-6, 1000.0);
@@ -55,7 +56,7 @@ haptic::MouseFeel feelFor(const engine::Grid& grid) {
 
 }  // namespace
 
-DeviceLoop::DeviceLoop(TouchOptions options, const engine::Version& original)
+DeviceLoop::DeviceLoop(LoopClientOptions options, const engine::Version& original)
     : options_(std::move(options)), original_(original) {}
 
 engine::Status DeviceLoop::openDevice(haptic::Scene& scene) {
@@ -83,7 +84,7 @@ engine::Status DeviceLoop::start(const Start& start, std::vector<Notice>& notice
   armed_try_ns_ = 0;
   std::unique_ptr<haptic::Device> before;  // outlives the old loop, which startLoop() replaces
   engine::Status status;
-  // Its virtual time goes by the loop's ticks: another hand, at the beginning of its way.
+  // Its virtual time is that of the loop's ticks: a new hand, at the start of its path.
   if (loop_ && options_.device.rfind("hand:", 0) == 0) {
     auto device = haptic::openDevice(options_.device, options_.rate_hz);
     if (device)
@@ -93,7 +94,7 @@ engine::Status DeviceLoop::start(const Start& start, std::vector<Notice>& notice
   }
   if (status) status = startLoop(start, notices);
   if (status) return {};
-  // The old loop and its device stay what one can look at.
+  // The old loop and its device remain readable.
   if (before) device_ = std::move(before);
   options_.rate_hz = before_hz;
   return status;
@@ -109,9 +110,9 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
   settings.options.limits = sessionLimits(profile);
   settings.options.edit_rule =
       profile.gives_force ? haptic::EditRule::kWhileForceIsGiven : haptic::EditRule::kAnytime;
-  // One drag, one step: off the surface the mouse's tip lifts, and its button stays held.
+  // One drag is one step: outside the surface the mouse's tip lifts, and its button stays held.
   if (mouse_ != nullptr) settings.options.stroke_gap_ticks = std::numeric_limits<std::uint32_t>::max();
-  // A view of a large field keeps the main thread away for longer than a frame at times.
+  // With a large field the main thread is sometimes busy for longer than a frame.
   settings.options.event_capacity = 1024;
   settings.options.command_capacity = 1024;
   settings.options.record_capacity = start.records ? kRecordedTicks : 0;
@@ -125,7 +126,7 @@ engine::Status DeviceLoop::startLoop(const Start& start, std::vector<Notice>& no
   }
   if (const auto problem = stabilityProblem(scene, options_.rate_hz)) {
     haptic::Scene lowered = haptic::stableScene(scene, profile, options_.rate_hz, scale_at_start_);
-    // A device that holds nothing at all has no such scene.
+    // For a device that is never stable there is no such scene.
     if (!options_.lower_scene || stabilityProblem(lowered, options_.rate_hz))
       return engine::inputError(problem->what, "scene", problem->remedy);
     scene = std::move(lowered);
@@ -150,7 +151,7 @@ void DeviceLoop::stop() {
 }
 
 void DeviceLoop::send(LoopCommand&& command) {
-  // The ring is only full while the loop stands still.
+  // The ring is only full while the loop does not run.
   if (!unsent_.empty() || !loop_->send(std::move(command))) unsent_.push_back(std::move(command));
 }
 
@@ -191,7 +192,7 @@ void DeviceLoop::setView(double azimuth_deg, double zoom) {
   view_zoom_ = zoom;
   LoopCommand command;
   command.kind = CommandKind::kView;
-  // Never stiffer than at the start, where the whole field was within reach or the device at its limit.
+  // Never stiffer than at the start, where the whole field was within reach or the device was at its limit.
   command.scale = scale_at_start_ / std::max(zoom, 1.0);
   command.turn_rad = azimuth_deg * std::numbers::pi / 180.0;
   send(std::move(command));
@@ -211,7 +212,7 @@ std::optional<double> DeviceLoop::largestStiffness(const haptic::Scene& scene) c
 }
 
 void DeviceLoop::armByItself(const LoopState& state) {
-  // Who disarmed wants no force until they say otherwise, whatever the device does meanwhile.
+  // After a disarm by the user only the user arms again, whatever the device does meanwhile.
   if (disarmed_ || !armsItself()) return;
   const bool waits =
       state.safety == haptic::SafetyState::kUncalibrated || state.safety == haptic::SafetyState::kFault;
@@ -236,12 +237,12 @@ void DeviceLoop::watch(const LoopState& state, std::vector<Notice>& notices) {
     if (state.safety_counters.faults > seen_.safety_counters.faults)
       notices.push_back({fmt::format("fault, {}", haptic::name(state.cause)), "press A to arm again"});
     if (state.safety_counters.arms_refused > seen_.safety_counters.arms_refused)
-      notices.push_back({"not armed", "the device must be connected, calibrated and heard of"});
+      notices.push_back({"not armed", "the device must be connected, calibrated and sending input"});
     if (seen_.tick > 0 && state.link != seen_.link && state.link == haptic::LinkState::kUncalibrated)
       notices.push_back({"the device is not calibrated", "hold the stylus in its home pose and calibrate"});
   }
   if (state.refused_edits > seen_.refused_edits)
-    notices.push_back({"memory for edits came too late", "part of a stroke was not done"});
+    notices.push_back({"memory for edits was not available in time", "part of a stroke was not done"});
   seen_ = state;
 }
 

@@ -17,64 +17,65 @@
 
 namespace fettle::app {
 
-struct TouchOptions {
+struct LoopClientOptions {
   std::string device = "mouse";  ///< a word of haptic::openDevice
   double rate_hz = 1000.0;
-  /// Spring and depth of the mouse follow the field's spacing; off when a scene file says the spring.
+  /// Spring and depth of the mouse follow the field's spacing; off when a scene file states the spring.
   bool fit_spring = true;
-  /// What the device does not hold of the scene it begins with (haptic::stabilityProblem) is lowered to the
-  /// largest it holds, with a notice; without it such a scene is refused.
+  /// Values of the first scene with which the device is not stable (haptic::stabilityProblem) are lowered to
+  /// the largest stable ones, with a notice; otherwise such a scene is refused.
   bool lower_scene = false;
 };
 
-/// A device and the haptic loop that runs on it: one loop after another, as the rate changes. Arms by itself
-/// what cannot push. Threading: main.
+/// A device and its haptic loop: a new loop for each change of the rate. Arms devices without force
+/// automatically. Threading: main.
 class DeviceLoop {
  public:
   /// `original`, upright: what Scene::max_change is measured against.
-  DeviceLoop(TouchOptions options, const engine::Version& original);
+  DeviceLoop(LoopClientOptions options, const engine::Version& original);
 
   /// Opens the device; a mouse fits the scene to the field. Errors: those of haptic::openDevice.
   [[nodiscard]] engine::Status openDevice(haptic::Scene& scene);
-  /// Starts device and loop at a rate from an upright field. A simulated hand begins its way again when it is
-  /// not the first loop. Errors: a scene that the device does not hold, those of HapticLoop::create and start;
-  /// the loop that ended before can still be looked at then.
+  /// Starts device and loop at a rate from an upright field. A simulated hand restarts its path when it is
+  /// not the first loop. Errors: a scene with which the device is not stable, those of HapticLoop::create and
+  /// start; the previous loop can still be read then.
   struct Start {
     engine::Version field;
-    haptic::Scene* scene = nullptr;  ///< lowered to what the device holds (TouchOptions::lower_scene)
+    haptic::Scene* scene = nullptr;  ///< lowered to the stable values (LoopClientOptions::lower_scene)
     haptic::Tool tool = haptic::Tool::kFeel;
     bool records = false;  ///< every tick's input (HapticLoop::pollRecord)
     double rate_hz = 1000.0;
   };
   [[nodiscard]] engine::Status start(const Start& start, std::vector<Notice>& notices);
-  /// The loop has ended with a last tick of zero force; what it published and recorded can be polled still.
+  /// Ends the loop with a last tick of zero force; its events and records can still be polled.
   void stop();
   [[nodiscard]] bool running() const noexcept { return running_; }
 
   /// Sends a command as soon as the ring has room, in order.
   void send(haptic::LoopCommand&& command);
-  /// Sends what waits, arms by itself, measures the rate, adds notices of faults. Cheap; to be called often.
+  /// Sends waiting commands, arms automatically, measures the rate, adds notices of faults. Cheap; to be
+  /// called often.
   void poll(std::vector<Notice>& notices);
 
   /// Allows force, as soon as the device is ready and the commanded force small (ForceGuard::arm). A device
-  /// that cannot push, and a simulated hand, are armed by themselves when they come and after a fault.
+  /// without force, and a simulated hand, are armed automatically when they are connected and after a fault.
   void arm();
-  /// No force from the next tick on, past all that was sent before; and nothing arms again but arm().
+  /// No force from the next tick on, before all commands sent earlier; only arm() arms again.
   void disarm();
   /// Whether disarm() was called since the last arm().
   [[nodiscard]] bool disarmed() const noexcept { return disarmed_; }
-  /// As if disarm() had been called since the last arm(), or not.
+  /// Sets disarmed() without a command to the loop.
   void setDisarmed(bool disarmed) noexcept { disarmed_ = disarmed; }
-  /// Only a device that cannot push: one that does is armed by the person who holds it.
+  /// Only for a device without force: a force device is armed by its user.
   [[nodiscard]] bool armsItself() const;
   /// Whether a disarmed force has faded and everything sent has been taken.
   [[nodiscard]] bool atRest();
   void calibrate() { device_->calibrate(); }
-  /// The view turned or zoomed: "away" on the desk stays "into the picture". Devices in field coordinates
-  /// have nothing to turn.
+  /// The view turned or zoomed: "away" on the desk stays "into the picture". No effect for devices in field
+  /// coordinates.
   void setView(double azimuth_deg, double zoom);
 
-  /// What of a scene the device would not hold at a rate; nothing for one that gives no force.
+  /// The problem of a scene with which the device is not stable at a rate; empty for one without force.
   [[nodiscard]] std::optional<haptic::StabilityProblem> stabilityProblem(const haptic::Scene& scene,
                                                                          double rate_hz) const;
   /// Largest stiffness [N/mm] that the device holds with the rest of the scene; none when it gives no force.
@@ -85,7 +86,7 @@ class DeviceLoop {
   [[nodiscard]] haptic::HapticLoop& loop() noexcept { return *loop_; }
   [[nodiscard]] const haptic::HapticLoop& loop() const noexcept { return *loop_; }
   [[nodiscard]] double rate() const noexcept { return options_.rate_hz; }
-  /// Ticks per second, over the last second or so.
+  /// Ticks per second, over about the last second.
   [[nodiscard]] double measuredRate() const noexcept { return rate_meter_.hz; }
 
  private:
@@ -99,16 +100,16 @@ class DeviceLoop {
   void armByItself(const haptic::LoopState& state);
   void watch(const haptic::LoopState& state, std::vector<Notice>& notices);
 
-  TouchOptions options_;
+  LoopClientOptions options_;
   engine::Version original_;
   std::unique_ptr<haptic::Device> device_;
   haptic::MouseStylus* mouse_ = nullptr;  // device_, when it is one
   std::unique_ptr<haptic::HapticLoop> loop_;
   bool running_ = false;
-  std::vector<haptic::LoopCommand> unsent_;  // found the ring full
+  std::vector<haptic::LoopCommand> unsent_;  // when the ring was full
   bool disarmed_ = false;                    // by the user, who did not arm since
   haptic::LoopState seen_;
-  double scale_at_start_ = 1.0;  // the largest there is: see setView()
+  double scale_at_start_ = 1.0;  // the largest scale: see setView()
   double view_azimuth_deg_ = 0.0, view_zoom_ = 1.0;
   RateMeter rate_meter_;
   std::int64_t armed_try_ns_ = 0;

@@ -5,7 +5,7 @@
 
 namespace fettle::app {
 
-void EdgeTool::search(const Touch& touch) {
+void EdgeTool::search(const LoopClient& touch) {
   drop();
   using Found = std::shared_ptr<const engine::EdgeMap>;
   searching_.start([field = touch.newest(), scale = sigma](engine::JobControl& job) -> engine::Result<Found> {
@@ -15,7 +15,7 @@ void EdgeTool::search(const Touch& touch) {
   });
 }
 
-void EdgeTool::redraw(const Touch& touch) {
+void EdgeTool::redraw(const LoopClient& touch) {
   if (!map_) return;
   if (drawing_.busy()) {
     draw_again_ = true;
@@ -39,19 +39,19 @@ void EdgeTool::drop() {
   base_ = under_ = over_ = {};
 }
 
-bool EdgeTool::accept(Touch& touch) {
+bool EdgeTool::accept(LoopClient& touch) {
   if (!shown_) return false;
   if (!(shown_->field == base_)) touch.replaceMarks(base_, shown_->field, "Edge suggestion");
   drop();
   return true;
 }
 
-bool EdgeTool::poll(Touch& touch, std::vector<Notice>& notices) {
+bool EdgeTool::poll(LoopClient& touch, std::vector<Notice>& notices) {
   bool changed = false;
   const auto refused = [&](const engine::Error& error) {
     if (error.kind != engine::ErrorKind::kCancelled) notices.push_back({error.what, error.remedy});
   };
-  // What was dropped may have been done by then.
+  // A cancelled job may have finished meanwhile.
   const bool search_dropped = searching_.cancelling(), drawing_dropped = drawing_.cancelling();
   if (auto found = searching_.take(); found && !search_dropped) {
     changed = true;
@@ -79,7 +79,7 @@ bool EdgeTool::poll(Touch& touch, std::vector<Notice>& notices) {
 
 engine::Version EdgeTool::over(const engine::Version& live) {
   if (!shown_) return live;
-  const engine::Version upright = Touch::upright(live);
+  const engine::Version upright = LoopClient::upright(live);
   if (!(upright == under_)) {
     engine::LiveField field(over_, engine::Growth::kAllowed);
     const engine::FieldReader marks = shown_->field.reader();

@@ -5,28 +5,28 @@
 #include <vector>
 
 #include "app/work/background.h"
-#include "app/work/touch.h"
+#include "app/work/loop_client.h"
 #include "engine/marks/edge_suggestion.h"
 
 namespace fettle::app {
 
-/// The suggestion of edges in the window: looked for in the background, shown as marks that are not there
-/// yet, and taken as one step or dropped. While it is shown the field may be worked on; it stays where it was
-/// found. Threading: main.
+/// The suggestion of edges in the window: computed in the background, shown as marks that are not set yet,
+/// and accepted as one step or dropped. While it is shown the field may be edited; the suggestion does not
+/// change. Threading: main.
 class EdgeTool {
  public:
   double sigma = engine::EdgeMap::kUsualSigma;  ///< of the next search [samples]
   engine::EdgeChoice choice;                    ///< followed while shown
 
-  /// Looks for edges on the field as it is now.
-  void search(const Touch& touch);
-  /// The choice was turned: draws the suggestion anew from what was found.
-  void redraw(const Touch& touch);
+  /// Finds edges on the present field.
+  void search(const LoopClient& touch);
+  /// The choice was changed: draws the suggestion again from the edges found.
+  void redraw(const LoopClient& touch);
   void drop();
-  /// Makes a step of what is shown. False when nothing is.
-  bool accept(Touch& touch);
-  /// True when something to be seen changed.
-  [[nodiscard]] bool poll(Touch& touch, std::vector<Notice>& notices);
+  /// Makes a step of the shown suggestion. False when there is none.
+  bool accept(LoopClient& touch);
+  /// True when something visible changed.
+  [[nodiscard]] bool poll(LoopClient& touch, std::vector<Notice>& notices);
 
   /// Searching, drawing or showing.
   [[nodiscard]] bool on() const noexcept { return searching_.busy() || drawing_.busy() || shown_; }
@@ -37,8 +37,8 @@ class EdgeTool {
   }
   [[nodiscard]] const engine::EdgeMap* map() const noexcept { return map_.get(); }
 
-  /// `live` with the suggested marks on it, to be drawn in its place; `live` itself when there are none. Cost
-  /// follows the tiles that changed since the last call.
+  /// `live` with the suggested marks on it, to be drawn instead; `live` itself when there are none. Cost
+  /// proportional to the tiles that changed since the last call.
   [[nodiscard]] engine::Version over(const engine::Version& live);
 
  private:

@@ -8,7 +8,7 @@ namespace fettle::app {
 
 void EditLatency::noteEdit(const haptic::LoopEvent& event, const haptic::LoopState& newest, double rate_hz) {
   // Made after the event before was published, and at the earliest one period of publication ago for each
-  // publication that this one took along.
+  // publication merged into this one.
   const double period_ns = 1e9 / rate_hz;
   const std::uint64_t periods = haptic::LoopOptions::kPublishTicks * (std::uint64_t{event.merged} + 1);
   const std::uint64_t first = std::max(last_event_tick_, event.tick > periods ? event.tick - periods : 0);

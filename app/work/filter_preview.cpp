@@ -10,7 +10,7 @@
 namespace fettle::app {
 namespace {
 
-// Rounds of adoption: each leaves only what a hand edited in some milliseconds, so a still hand needs one.
+// Rounds of adoption: each leaves only the edits of some milliseconds, so without edits one is enough.
 constexpr int kMostRounds = 50;
 constexpr std::chrono::milliseconds kSeenFirst{1000};
 constexpr std::int32_t kFarthestReach = 512;  // [samples]
@@ -20,8 +20,8 @@ bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
          a.passes == b.passes && a.scope == b.scope && a.max_change == b.max_change;
 }
 
-// Filters what is seen and tells `done` after each part. Where that is most of the field, the second for
-// which it is worth doing twice is soon over.
+// Filters the visible part and calls `done` after each piece. Limited to about a second, since this work is
+// done twice.
 template <class Done>
 void filterSeen(const engine::Version& base, const engine::Version& original, const engine::FilterSpec& spec,
                 const std::vector<engine::TileRange>& seen, engine::JobControl& job, const Done& done) {
@@ -29,14 +29,14 @@ void filterSeen(const engine::Version& base, const engine::Version& original, co
   const auto begin = Clock::now();
   std::int64_t tiles = 0;
   for (const engine::TileRange& range : seen) tiles += range.tiles();
-  // With a filter that reaches far, a part takes as long as the whole.
+  // With a filter of a large reach, a part takes as long as the whole.
   if (engine::reachOf(spec) > kFarthestReach) return;
   const bool most = 2 * tiles > engine::allTiles(base.grid()).tiles();
   engine::Version so_far = base;
   for (const engine::TileRange& range : seen) {
     if (job.cancelled() || (most && Clock::now() - begin > kSeenFirst)) return;
     auto next = engine::filterRange(base, original, so_far, spec, range, job);
-    if (!next) return;  // the whole will say why
+    if (!next) return;  // filtering the whole will report why
     so_far = std::move(*next);
     done(so_far);
   }
@@ -51,7 +51,7 @@ std::string filterName(const engine::FilterSpec& spec) {
   return text;
 }
 
-void FilterPreview::compute(Touch& touch, Keep keep, std::vector<engine::TileRange> seen_first) {
+void FilterPreview::compute(LoopClient& touch, Keep keep, std::vector<engine::TileRange> seen_first) {
   keep_ = keep;
   apply_when_done_ = false;
   so_far_ = std::make_shared<SoFar>();
@@ -61,7 +61,7 @@ void FilterPreview::compute(Touch& touch, Keep keep, std::vector<engine::TileRan
                     seen = std::move(seen_first), original = touch.original(), asked = spec,
                     inverted = touch.scene().invert](engine::JobControl& job) -> engine::Result<Variant> {
     const engine::Version limit = inverted ? original.inverted() : original;
-    // Before any part of it is filtered: the result is brought into the field in parts, and replayed.
+    // Before any part of it is filtered: the result is adopted into the field in parts, and replayed.
     const auto ready = engine::withMeasuredRange(asked, base, job);
     if (!ready) return tl::unexpected(ready.error());
     const engine::FilterSpec& what = *ready;
@@ -75,7 +75,7 @@ void FilterPreview::compute(Touch& touch, Keep keep, std::vector<engine::TileRan
   });
 }
 
-void FilterPreview::apply(Touch& touch) {
+void FilterPreview::apply(LoopClient& touch) {
   if (applying()) return;
   if (!variants_.empty() && same(variants_.back().asked, spec)) {
     adopt(touch, variants_.back());
@@ -85,7 +85,7 @@ void FilterPreview::apply(Touch& touch) {
   apply_when_done_ = true;
 }
 
-void FilterPreview::adopt(Touch& touch, Variant variant) {
+void FilterPreview::adopt(LoopClient& touch, Variant variant) {
   touch.noteFilterBegun(variant.base_id, variant.spec, filterName(variant.spec));
   touch.allowPort();
   applying_.start([port = &touch.port(), original = touch.original(), inverted = touch.scene().invert,
@@ -95,7 +95,7 @@ void FilterPreview::adopt(Touch& touch, Variant variant) {
   });
 }
 
-void FilterPreview::cancel(Touch& touch) {
+void FilterPreview::cancel(LoopClient& touch) {
   computing_.cancel();
   applying_.cancel();
   if (applying_.busy()) touch.closePort();
@@ -111,8 +111,8 @@ void FilterPreview::drop(std::size_t variant) {
 
 std::vector<FilterPreview::Picture> FilterPreview::pictures() const {
   std::vector<Picture> pictures;
-  const bool beside = seen_so_far_.empty() || keep_ == Keep::kBeside;
-  if (beside)
+  const bool additional = seen_so_far_.empty() || keep_ == Keep::kAdd;
+  if (additional)
     for (const Variant& variant : variants_)
       pictures.push_back({variant.result.field, filterName(variant.spec)});
   if (!seen_so_far_.empty()) pictures.push_back({seen_so_far_, filterName(so_far_->spec) + " ..."});
@@ -121,7 +121,7 @@ std::vector<FilterPreview::Picture> FilterPreview::pictures() const {
   return pictures;
 }
 
-bool FilterPreview::poll(Touch& touch, std::vector<Notice>& notices) {
+bool FilterPreview::poll(LoopClient& touch, std::vector<Notice>& notices) {
   bool changed = false;
   if (so_far_) {
     const std::scoped_lock lock(so_far_->mutex);
@@ -130,7 +130,7 @@ bool FilterPreview::poll(Touch& touch, std::vector<Notice>& notices) {
       changed = true;
     }
   }
-  // What was cancelled may have been done by then.
+  // A cancelled job may have finished meanwhile.
   const bool dropped = computing_.cancelling();
   if (auto done = computing_.take(); done && dropped) {
     changed = true;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/work/background.h"
-#include "app/work/touch.h"
+#include "app/work/loop_client.h"
 #include "engine/field/tile_range.h"
 #include "engine/filter/catalogue.h"
 #include "haptic/loop/adopt_filtered.h"
@@ -16,42 +16,42 @@ namespace fettle::app {
 /// "Median 5 x 5", "Gaussian 7 x 7, 3 passes, only marks".
 [[nodiscard]] std::string filterName(const engine::FilterSpec& spec);
 
-/// Filters tried out on the field in the background while touch goes on, and the one that is applied.
-/// Threading: main.
+/// Filters previewed on the field in the background during touch, and the one that is applied. Threading:
+/// main.
 class FilterPreview {
  public:
   static constexpr std::size_t kMostVariants = 4;  // and the field itself: five pictures
 
   struct Variant {
-    engine::FilterSpec asked;  ///< as the panel had it
-    engine::FilterSpec spec;   ///< as computed: with a range sigma, where the panel left it to the noise
+    engine::FilterSpec asked;  ///< as set in the panel
+    engine::FilterSpec spec;   ///< as computed: with a range sigma from the noise if the panel gave none
     engine::Version base;      ///< as felt when it was computed
     engine::Filtered result;
-    std::uint64_t base_id = 0;  ///< the base's in the journal (Touch::noteFilterBase)
+    std::uint64_t base_id = 0;  ///< the base's in the journal (LoopClient::noteFilterBase)
   };
 
-  /// What the panel edits. A range sigma of 0 is one for the field's noise (engine::withMeasuredRange).
+  /// Edited by the panel. A range sigma of 0 means one for the field's noise (engine::withMeasuredRange).
   engine::FilterSpec spec;
 
-  /// A picture of a filter: what it made, or has made so far.
+  /// A picture of a filter: its result, or its result so far.
   struct Picture {
     engine::Version field;
     std::string title;
   };
 
-  /// Computes `spec` on the field as it is now. `keep`: beside the variants there are; else in their place.
-  /// `seen_first`: what is filtered before all else (visiblePart), to be shown while the rest is worked on.
-  enum class Keep : std::uint8_t { kReplace, kBeside };
-  void compute(Touch& touch, Keep keep, std::vector<engine::TileRange> seen_first = {});
-  /// Brings the newest variant into the field as one step; computes it first when there is none for `spec`.
-  void apply(Touch& touch);
-  void cancel(Touch& touch);
-  /// Takes in what was computed. True when something to be seen changed.
-  [[nodiscard]] bool poll(Touch& touch, std::vector<Notice>& notices);
+  /// Computes `spec` on the present field. `keep`: in addition to the existing variants, or replacing them.
+  /// `seen_first`: tiles that are filtered first (visiblePart), to be shown while the rest is computed.
+  enum class Keep : std::uint8_t { kReplace, kAdd };
+  void compute(LoopClient& touch, Keep keep, std::vector<engine::TileRange> seen_first = {});
+  /// Adopts the newest variant into the field as one step; computes it first when there is none for `spec`.
+  void apply(LoopClient& touch);
+  void cancel(LoopClient& touch);
+  /// Takes over computed results. True when something visible changed.
+  [[nodiscard]] bool poll(LoopClient& touch, std::vector<Notice>& notices);
 
   [[nodiscard]] const std::vector<Variant>& variants() const noexcept { return variants_; }
   void drop(std::size_t variant);
-  /// What is to be drawn beside the field.
+  /// What is to be drawn next to the field.
   [[nodiscard]] std::vector<Picture> pictures() const;
   [[nodiscard]] bool computing() const noexcept { return computing_.busy(); }
   [[nodiscard]] bool applying() const noexcept { return applying_.busy(); }
@@ -64,13 +64,13 @@ class FilterPreview {
   [[nodiscard]] double seconds() const noexcept { return seconds_; }
 
  private:
-  // The worker's latest result in parts; the main thread looks at it once a frame.
+  // The worker's latest result in parts; the main thread reads it once per frame.
   struct SoFar {
     std::mutex mutex;
     engine::Version field;
     engine::FilterSpec spec;
   };
-  void adopt(Touch& touch, Variant variant);
+  void adopt(LoopClient& touch, Variant variant);
 
   std::vector<Variant> variants_;
   Keep keep_ = Keep::kReplace;

@@ -8,7 +8,7 @@
 namespace fettle::app {
 namespace {
 
-constexpr double kPiece_px = 8.0;     // of a straight side, between two looks at the surface
+constexpr double kPiece_px = 8.0;     // of a straight side, between two points located on the surface
 constexpr double kApart_px = 2.0;     // between corners of a line drawn by hand
 constexpr double kSmallest_px = 3.0;  // across: less is a click
 

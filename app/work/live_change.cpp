@@ -7,7 +7,7 @@ namespace fettle::app {
 void LiveChange::begin(const engine::Version& original) {
   deviation_.reset();
   figures_.reset();
-  looked_at_ = {};
+  measured_ = {};
   working_.start([original](engine::JobControl& job) -> engine::Result<Work> {
     auto deviation = engine::LiveDeviation::create(original, job);
     if (!deviation) return tl::unexpected(deviation.error());
@@ -15,7 +15,7 @@ void LiveChange::begin(const engine::Version& original) {
   });
 }
 
-bool LiveChange::poll(const Touch& touch) {
+bool LiveChange::poll(const LoopClient& touch) {
   bool changed = false;
   if (auto done = working_.take(); done && *done) {
     deviation_ = std::move((*done)->deviation);
@@ -27,12 +27,12 @@ bool LiveChange::poll(const Touch& touch) {
   }
   if (working_.busy() || !deviation_) return changed;
   engine::Version now = touch.upright();
-  if (now == looked_at_) return changed;
-  looked_at_ = now;
+  if (now == measured_) return changed;
+  measured_ = now;
   working_.start([deviation = std::move(deviation_), now](engine::JobControl& job) -> engine::Result<Work> {
     const auto begin = std::chrono::steady_clock::now();
     auto figures = deviation->update(now, job);
-    // Without memory the figures stay as they were, and the next ones may do.
+    // Without memory the figures do not change; the next computation may succeed.
     const double ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
     return Work{deviation, figures ? std::optional(*figures) : std::nullopt, ms};

@@ -4,23 +4,23 @@
 #include <optional>
 
 #include "app/work/background.h"
-#include "app/work/touch.h"
+#include "app/work/loop_client.h"
 #include "engine/compare/live_deviation.h"
 
 namespace fettle::app {
 
-/// Figures of the change since the scan, while a stroke goes on: worked out in the background again and
-/// again, each time for the newest version there is. Threading: main.
+/// Figures of the change since the scan, during a stroke: computed repeatedly in the background, each time
+/// for the newest version. Threading: main.
 class LiveChange {
  public:
-  /// Another field: looks at all of `original` first.
+  /// Another field: first reads all of `original`.
   void begin(const engine::Version& original);
-  /// Takes in what was worked out, starts on what is new. True when figures changed.
-  [[nodiscard]] bool poll(const Touch& touch);
+  /// Takes over computed figures, starts on a new version. True when figures changed.
+  [[nodiscard]] bool poll(const LoopClient& touch);
 
-  /// Of some version at most a frame or two ago; none until the first is there.
+  /// Of a version at most one or two frames old; empty until the first is available.
   [[nodiscard]] const std::optional<engine::LiveFigures>& figures() const noexcept { return figures_; }
-  /// How long the last figures took [ms].
+  /// Time for computing the last figures [ms].
   [[nodiscard]] double tookMs() const noexcept { return took_ms_; }
 
  private:
@@ -30,7 +30,7 @@ class LiveChange {
     double ms = 0.0;
   };
   std::shared_ptr<engine::LiveDeviation> deviation_;  // not while working_
-  engine::Version looked_at_;                         // upright
+  engine::Version measured_;                          // upright
   std::optional<engine::LiveFigures> figures_;
   double took_ms_ = 0.0;
   Background<Work> working_;

@@ -23,7 +23,7 @@ bool LoopJournal::takeTicks(haptic::HapticLoop& loop) {
 }
 
 bool LoopJournal::reached(const haptic::LoopEvent& event) const noexcept {
-  // An event stands after all ticks before it and, when it is an answer, after the tick that took the command.
+  // An event follows all ticks before it and, when it is an answer, the tick that took the command.
   return sink_ == nullptr || recorded_ >= event.tick + (isAnswer(event.kind) ? 1 : 0);
 }
 
@@ -75,7 +75,7 @@ void LoopJournal::moveTo(std::int64_t state) {
   if (sink_ != nullptr) sink_->moveTo(state, {});
 }
 
-void LoopJournal::restoreAsked(std::uint64_t id, std::int64_t state) {
+void LoopJournal::restoreRequested(std::uint64_t id, std::int64_t state) {
   if (sink_ == nullptr) return;
   recorder_.add(haptic::journal::RestoreRequested{id, state});
   sink_->moveTo(state, recorder_.take());

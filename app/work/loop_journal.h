@@ -13,9 +13,9 @@
 
 namespace fettle::app {
 
-/// What a live loop writes into a session, so that it can be computed again: the input of each tick, each
-/// scene, step and round of a filter's adoption, with the tick that took it, in that order (journal.h).
-/// Without a sink no function has an effect. Threading: main.
+/// What a live loop writes to a session for replay: the input of each tick, each scene, step and round of a
+/// filter's adoption, with the tick that took it, in that order (journal.h). Without a sink no function has
+/// an effect. Threading: main.
 class LoopJournal {
  public:
   /// `sink` outlives this; null: nothing is recorded.
@@ -27,25 +27,25 @@ class LoopJournal {
   void begin(std::int64_t state, const haptic::Scene& scene);
   /// Takes the ticks that the loop has recorded. True when ticks were lost since the last call.
   [[nodiscard]] bool takeTicks(haptic::HapticLoop& loop);
-  /// Whether all ticks were taken that the journal has before this event.
+  /// Whether all ticks that precede this event in the journal were taken.
   [[nodiscard]] bool reached(const haptic::LoopEvent& event) const noexcept;
 
   /// A scene was sent to the loop under this id; it is recorded when the loop answers.
   void sceneSent(std::uint64_t id, const haptic::Scene& scene);
-  /// What the loop answered, in the order of its answers.
+  /// An answer of the loop, in the order of its answers.
   void answered(const haptic::LoopEvent& event);
   /// A filter begins to be computed on the field at `place`: its number from then on.
   [[nodiscard]] std::uint64_t filterBase(const haptic::LoopPlace& place);
   void filterBegun(std::uint64_t base, const engine::FilterSpec& spec);
   void offerMade() { recorder_.offerMade(); }
 
-  /// A step was made: it goes to the session with all recorded so far.
+  /// A step was made: it is written to the session with all recorded so far.
   void commit(const haptic::journal::StepMade& made, const engine::Step& step, std::string data);
   /// The history is in this state. What was recorded so far waits for the next entry of the session.
   void moveTo(std::int64_t state);
-  /// The loop is asked under this id to go to the history's state.
-  void restoreAsked(std::uint64_t id, std::int64_t state);
-  /// Writes what has been recorded: once it is much, or all.
+  /// The loop was requested, with this id, to restore the history's state.
+  void restoreRequested(std::uint64_t id, std::int64_t state);
+  /// Writes the recorded entries: when they are many, or all.
   void flushWhenDue();
   void flush();
 
@@ -58,7 +58,7 @@ class LoopJournal {
   std::uint64_t filters_ = 0;
 };
 
-/// Whether an event answers a command, and is not the loop's own.
+/// Whether an event answers a command.
 [[nodiscard]] constexpr bool isAnswer(haptic::EventKind kind) noexcept {
   return kind != haptic::EventKind::kEdited && kind != haptic::EventKind::kStrokeEnded;
 }

@@ -11,14 +11,14 @@ void MarkEdit::cancel() {
   working_.cancel();
 }
 
-bool MarkEdit::poll(Touch& touch, std::vector<Notice>& notices) {
+bool MarkEdit::poll(LoopClient& touch, std::vector<Notice>& notices) {
   bool changed = false;
-  // What was cancelled may have been done by then.
+  // A cancelled job may have finished meanwhile.
   const bool dropped = working_.cancelling();
   if (auto done = working_.take()) {
     changed = true;
     if (dropped) {
-      // Nobody waits for it.
+      // Its result is not needed.
     } else if (!*done) {
       if (done->error().kind != engine::ErrorKind::kCancelled)
         notices.push_back({done->error().what, done->error().remedy});
@@ -27,7 +27,7 @@ bool MarkEdit::poll(Touch& touch, std::vector<Notice>& notices) {
     }
   }
   if (!working_.busy() && !waiting_.empty()) {
-    Asked next = std::move(waiting_.front());
+    Request next = std::move(waiting_.front());
     waiting_.pop_front();
     name_ = std::move(next.name);
     working_.start([base = touch.newest(),

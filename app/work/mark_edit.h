@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "app/work/background.h"
-#include "app/work/touch.h"
+#include "app/work/loop_client.h"
 
 namespace fettle::app {
 
-/// Changes of many marks at once (lasso, box, all, none), worked out in the background in the order in which
-/// they were asked for. Each becomes one step; a stroke that runs meanwhile goes on and is kept.
+/// Changes of many marks at once (lasso, box, all, none), computed in the background in the order of the
+/// requests. Each becomes one step; a stroke that runs meanwhile continues and is kept.
 /// Threading: main.
 class MarkEdit {
  public:
@@ -19,23 +19,23 @@ class MarkEdit {
   using Change = std::function<engine::Result<engine::Version>(const engine::Version&, engine::JobControl&)>;
 
   void ask(std::string name, Change change);
-  /// Forgets what waits and what is under way.
+  /// Cancels waiting and running changes.
   void cancel();
-  /// Starts what waits, puts in place what is done. True when something to be seen changed.
-  [[nodiscard]] bool poll(Touch& touch, std::vector<Notice>& notices);
+  /// Starts waiting changes, applies finished ones. True when something visible changed.
+  [[nodiscard]] bool poll(LoopClient& touch, std::vector<Notice>& notices);
 
   [[nodiscard]] bool busy() const noexcept { return working_.busy() || !waiting_.empty(); }
   [[nodiscard]] double progress() const noexcept { return working_.progress(); }
 
  private:
-  struct Asked {
+  struct Request {
     std::string name;
     Change change;
   };
   struct Done {
     engine::Version base, marked;
   };
-  std::deque<Asked> waiting_;
+  std::deque<Request> waiting_;
   std::string name_;
   Background<Done> working_;
 };

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The session itself, to go on writing to it where that can be.
+// The session itself, to continue writing to it if possible.
 engine::Result<Document> openSessionDocument(const std::string& file, std::size_t history_bytes,
                                              engine::JobControl& job) {
   Document document;
@@ -98,7 +98,7 @@ engine::Result<Document> openDocument(const std::string& path, const ScanOptions
   }
   const auto import = importOptions(reading);
   if (!import) return tl::unexpected(import.error());
-  // Before the first byte: a file that is replaced while it is read shows, too.
+  // Before the first byte: a file that is replaced while it is read is detected too.
   const auto stamp = engine::fileStamp(path);
   auto imported = engine::importField(path, *import, job);
   if (!imported) return tl::unexpected(imported.error());

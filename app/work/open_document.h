@@ -10,23 +10,23 @@
 namespace fettle::app {
 
 /// Folder for work that was not saved when the program ended: $XDG_STATE_HOME/fettle, else
-/// ~/.local/state/fettle; made when it is not there. Empty when it cannot be: nothing is recovered then.
+/// ~/.local/state/fettle; created if necessary. Empty when it cannot be created: then nothing is recovered.
 [[nodiscard]] std::string recoveryFolder();
 
-/// Where unsaved work on a scan is kept: a session in that folder, named after the scan and a checksum of
-/// where it lies. Empty without such a folder.
+/// Where unsaved work on a scan is kept: a session in that folder, named after the scan and a checksum of its
+/// path. Empty without such a folder.
 [[nodiscard]] std::string recoveryPath(const std::string& scan);
 
 /// Whether a path is that of a session (by its extension).
 [[nodiscard]] bool isSessionPath(const std::string& path);
 
-/// Removes a session file with what SQLite and the lock keep beside it.
+/// Removes a session file with its SQLite and lock files.
 void removeSession(const std::string& path);
 
-/// A scan or session, read and ready to be worked on.
+/// A scan or session, read and ready for work.
 struct Document {
-  std::string path;            ///< as asked for: a scan or NAME.fettle
-  engine::OriginalScan scan;   ///< what the work begins with
+  std::string path;            ///< as requested: a scan or NAME.fettle
+  engine::OriginalScan scan;   ///< the original scan
   bool needs_scan = true;      ///< a session of it may refer to the scan's file; else it holds the scan
   engine::Version original;    ///< upright
   engine::History history;     ///< upright
@@ -37,9 +37,9 @@ struct Document {
   bool recovered = false;  ///< the session is the scan's recovery
 };
 
-/// What is done about unsaved work on a scan.
+/// Handling of unsaved work on a scan.
 enum class Recovery : std::uint8_t {
-  kTake,   ///< go on with it
+  kTake,   ///< continue with it
   kLeave,  ///< start from the scan; it stays until a step of the new work replaces it
 };
 

@@ -39,7 +39,7 @@ std::string extensionOf(const std::string& path) {
 
 namespace {
 
-// Formats whose files a terminal can show.
+// Formats whose files are text.
 bool isText(const std::string& extension) {
   return std::ranges::any_of(engine::formats(), [&](const engine::FormatInfo& format) {
     return (format.name == "XYZ" || format.name == "AAIGrid") &&
@@ -53,7 +53,7 @@ std::vector<std::string> extensionsFor(OutputKind kind) {
   return kind == OutputKind::kField ? extensionsOf(&engine::FormatInfo::writes) : std::vector<std::string>();
 }
 
-// One spelling for one place, links and dots resolved as far as the path exists.
+// A unique spelling of a path, links and dots resolved as far as the path exists.
 std::filesystem::path placeOf(const std::string& path) {
   std::error_code error;
   std::filesystem::path place = std::filesystem::weakly_canonical(path, error);
@@ -65,8 +65,8 @@ engine::Status checkExtension(const std::string& extension, OutputKind kind, con
   if (known.empty() || std::find(known.begin(), known.end(), extension) != known.end()) return {};
   const std::string meant = didYouMean(extension, known);
   return engine::inputError(
-      extension.empty() ? "no extension names the format to write"
-                        : fmt::format("{} is no format to write", extension),
+      extension.empty() ? "there is no extension that names the output format"
+                        : fmt::format("{} is not an output format", extension),
       where, fmt::format("{}{}take one of {}", meant, meant.empty() ? "" : " ", fmt::join(known, " ")));
 }
 
@@ -75,14 +75,14 @@ engine::Status checkStream(const Output& output) {
   if (!output.stream)
     return engine::inputError("this cannot be written to standard output", output.path, "name a file");
   if (output.stream->empty())
-    return engine::inputError("the format of standard output is not said", "--to",
+    return engine::inputError("the format of standard output is not given", "--to",
                               "give it as extension: --to xyz");
   const std::string extension = withDot(*output.stream);
   if (auto known = checkExtension(extension, output.kind, "--to"); !known) return known;
   const bool text = output.kind == OutputKind::kField && isText(extension);
   if (!text && isatty(STDOUT_FILENO) != 0)
-    return engine::inputError(fmt::format("standard output is a terminal, and {} is no text", extension), "-",
-                              "send it into a file or another program, with > or |");
+    return engine::inputError(fmt::format("standard output is a terminal, and {} is not text", extension),
+                              "-", "send it into a file or another program, with > or |");
   return {};
 }
 
@@ -98,11 +98,11 @@ engine::Status checkOutput(const Output& output) {
   if (folder.empty()) folder = ".";
   if (!std::filesystem::is_directory(folder, error))
     return std::filesystem::exists(folder, error)
-               ? engine::inputError("this is a file and no folder", folder.string(), "name another")
+               ? engine::inputError("this is a file, not a folder", folder.string(), "name another")
                : engine::inputError("there is no such folder", folder.string(), "make it or name another");
   if (std::filesystem::exists(output.path, error) && !std::filesystem::is_regular_file(output.path, error))
-    return engine::inputError("the output is no regular file", output.path,
-                              "outputs are put in place whole, by renaming: name a file");
+    return engine::inputError("the output is not a regular file", output.path,
+                              "outputs are written whole and renamed: name a file");
   if (access(folder.c_str(), W_OK) != 0)
     return engine::inputError("the folder cannot be written to", folder.string(),
                               "name another or change its rights");
@@ -119,7 +119,7 @@ engine::Status checkPlaces(const std::vector<Output>& outputs, const std::vector
   for (const Output& output : outputs) {
     if (output.path.empty()) continue;
     if (auto status = checkOutput(output); !status) return status;
-    // A file or folder of that name is another place than standard output.
+    // A file or folder of that name is not standard output.
     const auto place = isStream(output.path) ? std::filesystem::path() : placeOf(output.path);
     const auto [earlier, fresh] = taken.emplace(place, Use::kOutput);
     if (!fresh)

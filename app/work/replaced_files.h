@@ -5,14 +5,14 @@
 
 namespace fettle::app {
 
-/// Files that are there already where something is about to be written, for the question before they go.
+/// Existing files that are about to be overwritten, for the question before that.
 struct ReplacedFiles {
-  std::vector<std::string> texts;  ///< a sentence on each, for a person; empty: there is none
-  bool scan = false;               ///< the scan that is worked on is among them
+  std::vector<std::string> texts;  ///< a sentence about each, for the user; empty: no such file
+  bool scan = false;               ///< the open scan is among them
 };
 
-/// `outputs`: the paths that will be written, empty ones apart. `scan`: the file of the scan that is worked
-/// on; may be empty. A session among the outputs is opened for what it holds: some milliseconds.
+/// `outputs`: the paths that will be written, empty ones apart. `scan`: the file of the open scan; may be
+/// empty. A session among the outputs is opened to read its size: some milliseconds.
 [[nodiscard]] ReplacedFiles replacedFiles(const std::vector<std::string>& outputs, const std::string& scan);
 
 }  // namespace fettle::app

@@ -9,7 +9,7 @@
 
 namespace fettle::app {
 
-/// The import options that every command offers for formats that cannot say them.
+/// The import options that every command offers for formats that do not store these values.
 struct ScanOptions {
   std::optional<double> no_data;
   std::vector<double> spacing;
@@ -21,10 +21,10 @@ struct ScanOptions {
   std::string from;                  ///< format of standard input as extension; empty = by its content
 };
 
-/// The options as they were typed, each with a blank before it; empty without any.
+/// The options as typed, each preceded by a blank; empty without any.
 [[nodiscard]] std::string scanOptionsText(const ScanOptions& options);
 
-/// As the importer takes them. Errors: an unknown unit.
+/// In the importer's form. Errors: an unknown unit.
 [[nodiscard]] engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options);
 
 }  // namespace fettle::app

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Sessions that refer to a scan; others, and files that are none, are in no danger.
+// Sessions that refer to a scan; others, and other files, need no protection.
 std::optional<engine::SessionFacts> referring(const std::string& path) {
   auto facts = engine::sessionFacts(path);
   if (!facts || facts->storage == engine::OriginalStorage::kEmbedded) return std::nullopt;
@@ -31,7 +31,7 @@ engine::Status refuseToLoseWork(const std::string& path) {
   const auto facts = engine::sessionFacts(path);
   if (!facts)
     return engine::inputError(
-        fmt::format("what stands there cannot be read as a session: {}", facts.error().what), path,
+        fmt::format("the existing file cannot be read as a session: {}", facts.error().what), path,
         "name another file, or replace it with --force");
   if (facts->journal_entries == 0) return {};
   return engine::inputError(
@@ -76,7 +76,7 @@ engine::Status ScanGuard::embed(Known& session, const std::string& scan, engine:
   return {};
 }
 
-engine::Status ScanGuard::spare(const std::string& path, engine::JobControl& job) {
+engine::Status ScanGuard::protectSessions(const std::string& path, engine::JobControl& job) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return {};
   const std::string recovery = recoveryPath(path);

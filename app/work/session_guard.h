@@ -11,23 +11,23 @@
 
 namespace fettle::app {
 
-/// Refuses when a session with a journal stands at `path`, or a file that is called a session and cannot be
-/// read: what a person did by hand would be lost with it. Error: kInput, naming --force. Thread: any.
+/// Error (kInput, naming --force) when `path` is a session with a journal, or a file with a session's
+/// extension that cannot be read: manual work would be lost with it. Thread: any.
 [[nodiscard]] engine::Status refuseToLoseWork(const std::string& path);
 
-/// Keeps sessions whole while files are replaced: a session that refers to a scan instead of holding it could
-/// not be opened again once another file stood in the scan's place, so it is given the scan before.
+/// Protects sessions while files are replaced: a session that refers to a scan instead of containing it could
+/// not be opened again after another file replaced the scan, so the scan is embedded in it before.
 ///
-/// Looked at are the sessions that can be found: the scan's recovery, those in the folder of the file, and
-/// those opened last. They are read once for all calls: make a guard for each command.
+/// It checks the sessions that can be found: the scan's recovery, those in the folder of the file, and those
+/// opened last. They are read once for all calls: make a guard for each command.
 ///
 /// Threading: one thread at a time.
 class ScanGuard {
  public:
-  /// To be called before a file at `path` is replaced; does nothing where there is none. Says on stderr what
-  /// it did. Errors (kInput): a session of that scan cannot take it in, because another program works on it,
+  /// To be called before a file at `path` is replaced; no effect where there is none. Reports on stderr what
+  /// it did. Errors (kInput): the scan cannot be embedded in a session, because another program works on it,
   /// its folder is read-only or the disk is full; kCancelled. A long job when the scan is large.
-  [[nodiscard]] engine::Status spare(const std::string& path, engine::JobControl& job);
+  [[nodiscard]] engine::Status protectSessions(const std::string& path, engine::JobControl& job);
 
  private:
   struct Known {

@@ -9,7 +9,7 @@ using engine::OriginalStorage;
 using namespace std::chrono_literals;
 
 constexpr auto kTryAgain = 5s;
-constexpr auto kLookAgain = 1s;
+constexpr auto kRecheckInterval = 1s;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void SessionKeeper::note(std::vector<engine::JournalEntry> journal) {
 void SessionKeeper::setNote(const std::string& key, const std::string& text) {
   if (auto known = notes_.find(key); known != notes_.end() && known->second == text) return;
   notes_[key] = text;
-  // A file that is made later begins with the notes there are then.
+  // A file that is created later starts with the notes of that time.
   if (writer_)
     writer_->setNote(key, text);
   else if (making_.busy())
@@ -59,10 +59,10 @@ void SessionKeeper::hand(Waiting&& what) {
   }
   const bool step = what.kind == Waiting::Kind::kCommit;
   waiting_.push_back(std::move(what));
-  // The first step is what makes a session worth having.
+  // The session is created with the first step.
   if (step && !making_.busy() && !failed_) {
     if (recovery_path_.empty())
-      failed_ = engine::Error{engine::ErrorKind::kFailed, "there is no place to keep unsaved work", "",
+      failed_ = engine::Error{engine::ErrorKind::kFailed, "there is no folder for unsaved work", "",
                               "save the session under a name"};
     else
       make({recovery_path_, OriginalStorage::kReferenced, false});
@@ -131,16 +131,16 @@ void SessionKeeper::saveAs(const std::string& path, OriginalStorage storage) {
   const Place place{path, storageFor(storage), true};
   saved_.reset();
   if (making_.busy() || scan_ == Scan::kBeingPut)
-    wanted_ = place;
+    requested_ = place;
   else if (writer_)
     move(place);
   else
     make(place);
 }
 
-// A scan that is no file of its own (it came out of a session) can only be embedded.
-OriginalStorage SessionKeeper::storageFor(OriginalStorage wanted) const {
-  return original_scan_.path.empty() || scan_ != Scan::kReferenced ? OriginalStorage::kEmbedded : wanted;
+// A scan without its own file (it came from a session) can only be embedded.
+OriginalStorage SessionKeeper::storageFor(OriginalStorage storage) const {
+  return original_scan_.path.empty() || scan_ != Scan::kReferenced ? OriginalStorage::kEmbedded : storage;
 }
 
 bool SessionKeeper::scanReplaced() const {
@@ -149,15 +149,15 @@ bool SessionKeeper::scanReplaced() const {
 }
 
 void SessionKeeper::keepScan() {
-  scan_asked_ = true;
+  scan_requested_ = true;
   scan_kept_.reset();
-  if (scan_ == Scan::kReferenced) scan_ = Scan::kWanted;
+  if (scan_ == Scan::kReferenced) scan_ = Scan::kRequested;
   embedScan();
 }
 
-// As far as that can be done now; poll() comes back to it.
+// As far as possible now; poll() continues it.
 void SessionKeeper::embedScan() {
-  if (scan_ == Scan::kWanted && !making_.busy() && !saving_.busy() && !wanted_) {
+  if (scan_ == Scan::kRequested && !making_.busy() && !saving_.busy() && !requested_) {
     if (writer_) {
       scan_ = Scan::kBeingPut;
       saving_.start([writer = writer_.get()](engine::JobControl& job) -> engine::Result<bool> {
@@ -169,7 +169,7 @@ void SessionKeeper::embedScan() {
       scan_ = Scan::kEmbedded;
     }
   }
-  if (scan_ == Scan::kEmbedded && std::exchange(scan_asked_, false)) scan_kept_ = engine::Status{};
+  if (scan_ == Scan::kEmbedded && std::exchange(scan_requested_, false)) scan_kept_ = engine::Status{};
 }
 
 std::optional<engine::Status> SessionKeeper::saved() {
@@ -188,8 +188,8 @@ void SessionKeeper::poll() {
   if (auto done = saving_.take()) {
     if (scan_ == Scan::kBeingPut) {
       scan_ = *done ? Scan::kEmbedded : Scan::kReferenced;
-      if (!*done) looked_ = std::chrono::steady_clock::now() + kTryAgain;
-      if (!*done && std::exchange(scan_asked_, false)) scan_kept_ = tl::unexpected(done->error());
+      if (!*done) checked_at_ = std::chrono::steady_clock::now() + kTryAgain;
+      if (!*done && std::exchange(scan_requested_, false)) scan_kept_ = tl::unexpected(done->error());
     } else if (*done) {
       named_ = true;
       saved_ = engine::Status{};
@@ -197,14 +197,14 @@ void SessionKeeper::poll() {
       saved_ = tl::unexpected(done->error());
     }
   }
-  if (wanted_ && !making_.busy() && !saving_.busy()) {
-    const Place place = *std::exchange(wanted_, std::nullopt);
+  if (requested_ && !making_.busy() && !saving_.busy()) {
+    const Place place = *std::exchange(requested_, std::nullopt);
     saveAs(place.path, place.storage);
   }
   const auto now = std::chrono::steady_clock::now();
-  if (now - looked_ >= kLookAgain) {
-    looked_ = now;
-    if (scanReplaced()) scan_ = Scan::kWanted;
+  if (now - checked_at_ >= kRecheckInterval) {
+    checked_at_ = now;
+    if (scanReplaced()) scan_ = Scan::kRequested;
   }
   embedScan();
   if (now - tried_ < kTryAgain) return;
@@ -251,8 +251,8 @@ engine::Status SessionKeeper::close(Afterwards afterwards) {
   }
   if (!writer_) return waiting_.empty() || !failed_ ? engine::Status{} : tl::unexpected(*failed_);
   engine::JobControl job;
-  // What fails here is no worse than it was; the steps are written all the same.
-  if (scan_ == Scan::kWanted || scanReplaced())
+  // An error here changes nothing; the steps are still written.
+  if (scan_ == Scan::kRequested || scanReplaced())
     static_cast<void>(writer_->saveAs(writer_->path(), OriginalStorage::kEmbedded, job));
   engine::Status status = writer_->close(job);
   writer_.reset();

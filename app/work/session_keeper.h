@@ -15,19 +15,19 @@
 
 namespace fettle::app {
 
-/// Keeps what is done in a session file from the first step on, without the user asking: in the session that
-/// was opened, or in the scan's recovery until the user saves under a name.
+/// Stores all work in a session file from the first step on, automatically: in the session that was opened,
+/// or in the scan's recovery until the user saves under a name.
 ///
-///   steps, undo, journal ----> [waits while the file is made, on a thread of its own] ----> SessionWriter
+///   steps, undo, journal ----> [waits while the file is created, on its own thread] ----> SessionWriter
 ///
-/// Nothing is made for a scan that is only looked at. A session that refers to the scan's file gets the scan
-/// itself before the window replaces that file (keepScan), and as soon as it shows, within a second, that
-/// another program has.
+/// No file is created for a scan that is only viewed. The scan is embedded in a session that refers to its
+/// file before the window replaces that file (keepScan), and within a second after another program has
+/// replaced it.
 ///
-/// Threading: main; the disk is only waited for on threads of its own, close() excepted.
+/// Threading: main; only its own threads wait for the disk, except in close().
 class SessionKeeper final : public haptic::SessionSink {
  public:
-  /// Takes over the document's writer. Its history as it is now is where a new session begins.
+  /// Takes over the document's writer. A new session begins with the document's present history.
   explicit SessionKeeper(Document& document);
   /// As close(kKeep).
   ~SessionKeeper() override;
@@ -37,40 +37,41 @@ class SessionKeeper final : public haptic::SessionSink {
   void commit(std::int64_t number, engine::Step step, std::vector<engine::JournalEntry> journal) override;
   void moveTo(std::int64_t number, std::vector<engine::JournalEntry> journal) override;
   void note(std::vector<engine::JournalEntry> journal) override;
-  /// A text to be found again under a name, such as "camera".
+  /// Stores a text under a name, such as "camera".
   void setNote(const std::string& key, const std::string& text);
 
-  /// Once a frame: takes in what its threads have done, tries again after an error now and then.
+  /// To be called once per frame: takes over results of its threads, tries again after an error at intervals.
   void poll();
 
-  /// Puts the session at a path of the user's, whole or not at all, and goes on there; a recovery is removed.
-  /// The end shows in saved().
+  /// Saves the session at a path chosen by the user, whole or not at all, and continues there; a recovery is
+  /// removed. saved() reports the end.
   void saveAs(const std::string& path, engine::OriginalStorage storage);
-  [[nodiscard]] bool saving() const noexcept { return saving_.busy() || scan_ == Scan::kWanted; }
+  [[nodiscard]] bool saving() const noexcept { return saving_.busy() || scan_ == Scan::kRequested; }
   [[nodiscard]] double progress() const noexcept { return saving_.progress(); }
   void cancelSaving() noexcept { saving_.cancel(); }
   /// How saveAs() ended, once.
   [[nodiscard]] std::optional<engine::Status> saved();
 
-  /// Makes the work independent of the scan's file, which is about to be replaced: the session gets the scan,
-  /// and one that is made later has it from the start. The end shows in scanKept().
+  /// Makes the work independent of the scan's file, which is about to be replaced: the scan is embedded in
+  /// the session, also in one created later. scanKept() reports the end.
   void keepScan();
   /// How keepScan() ended, once. After an error the session refers to the file as before.
   [[nodiscard]] std::optional<engine::Status> scanKept() { return std::exchange(scan_kept_, std::nullopt); }
-  /// The file of the scan that the work began with; empty where it has none.
+  /// The file of the original scan; empty where there is none.
   [[nodiscard]] const std::string& scanPath() const noexcept { return original_scan_.path; }
 
-  /// Reads the step before the oldest that the history holds, from the file; the end shows in older().
+  /// Reads the step before the oldest of the history from the file; older() returns the result.
   void readOlder(const engine::History& history);
   [[nodiscard]] bool readingOlder() const noexcept { return reading_.busy(); }
-  /// How readOlder() ended, once: for Touch::prepend.
+  /// Result of readOlder(), once: for LoopClient::prepend.
   [[nodiscard]] std::optional<engine::Result<engine::Step>> older() { return reading_.take(); }
 
-  /// Whether the session lies where the user wants it (opened from there, or saved as).
+  /// Whether the session has a path chosen by the user (opened from there, or saved as).
   [[nodiscard]] bool named() const noexcept { return named_; }
-  /// Where it is written to; empty before the first step.
+  /// Path of the session; empty before the first step.
   [[nodiscard]] std::string path() const;
-  /// Steps and moves that are not on the disk yet; the file itself while it is being made.
+  /// Number of steps and moves that are not on the disk yet; counts the file itself while it is being
+  /// created.
   [[nodiscard]] std::size_t waiting() const;
   /// Why they cannot be written; they are kept in memory.
   [[nodiscard]] std::optional<engine::Error> error() const;
@@ -80,8 +81,8 @@ class SessionKeeper final : public haptic::SessionSink {
     kKeep,     ///< the file stays: it is the user's, or to be recovered
     kDiscard,  ///< a recovery is removed
   };
-  /// Writes what waits and lets go of the file. Blocks, some milliseconds a stroke; returns the error that
-  /// keeps something from being written. Of no use afterwards.
+  /// Writes waiting actions and closes the file. Blocks, some milliseconds per stroke; returns the error that
+  /// prevented writing. Not to be used afterwards.
   engine::Status close(Afterwards afterwards);
 
  private:
@@ -93,7 +94,7 @@ class SessionKeeper final : public haptic::SessionSink {
     std::vector<engine::JournalEntry> journal;
     std::string key, text;
   };
-  // A file that is being made, or is to be moved to.
+  // A file that is being created, or that the session is to be saved as.
   struct Place {
     std::string path;
     engine::OriginalStorage storage = engine::OriginalStorage::kReferenced;
@@ -107,14 +108,14 @@ class SessionKeeper final : public haptic::SessionSink {
   void move(const Place& place);
   void embedScan();
   [[nodiscard]] bool scanReplaced() const;
-  [[nodiscard]] engine::OriginalStorage storageFor(engine::OriginalStorage wanted) const;
+  [[nodiscard]] engine::OriginalStorage storageFor(engine::OriginalStorage storage) const;
 
-  // What becomes of the scan in a session that refers to its file.
+  // State of the scan in a session that refers to its file.
   enum class Scan : std::uint8_t {
     kReferenced,
-    kWanted,    // to be put in as soon as nothing else is done with the session
-    kBeingPut,  // by saving_
-    kEmbedded,  // in the session there is, and in each that will be made
+    kRequested,  // to be embedded when no other job uses the session
+    kBeingPut,   // by saving_
+    kEmbedded,   // in the present session, and in each that will be created
   };
 
   engine::OriginalScan original_scan_;
@@ -127,16 +128,16 @@ class SessionKeeper final : public haptic::SessionSink {
   std::vector<Waiting> waiting_;  // in order, until there is a writer
   bool named_ = false;
   bool closed_ = false;
-  std::optional<engine::Error> failed_;  // to make the file
+  std::optional<engine::Error> failed_;  // of creating the file
   std::chrono::steady_clock::time_point tried_{};
 
   Place making_place_, moving_place_;
-  std::optional<Place> wanted_;  // asked for while the file is being made
+  std::optional<Place> requested_;  // requested while the file is being created
   std::optional<engine::Status> saved_;
   Scan scan_ = Scan::kReferenced;
-  bool scan_asked_ = false;  // by keepScan()
+  bool scan_requested_ = false;  // by keepScan()
   std::optional<engine::Status> scan_kept_;
-  std::chrono::steady_clock::time_point looked_{};  // at the scan's file
+  std::chrono::steady_clock::time_point checked_at_{};  // last check of the scan's file
   Background<Writer> making_;
   Background<bool> saving_;
   Background<engine::Step> reading_;

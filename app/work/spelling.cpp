@@ -35,7 +35,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& candidates) {
-  constexpr std::size_t kLongest = 64;  // longer words are no slip of a finger, and cost their square
+  constexpr std::size_t kLongest = 64;  // longer words are not typing errors, and cost their square
   constexpr std::size_t kPrefix = 3;
   if (word.empty() || word.size() > kLongest) return std::nullopt;
   const std::string typed = lowerCase(word);

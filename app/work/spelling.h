@@ -7,9 +7,9 @@
 
 namespace fettle::app {
 
-/// The one of `candidates` that a mistyped word most likely stands for: the same in another case, the only
-/// one that begins with it (from three letters on), or the one with the fewest letters wrong, missing, in
-/// excess or swapped, one in three at most. Nothing where none is near, or two are equally so.
+/// The candidate that a mistyped word most likely means: equal except for case, the only one that begins with
+/// it (from three letters on), or the one with the fewest letters wrong, missing, in excess or swapped, one
+/// in three at most. Empty where none is near, or two are equally near.
 [[nodiscard]] std::optional<std::string> nearest(std::string_view word,
                                                  const std::vector<std::string>& candidates);
 

@@ -57,9 +57,9 @@ void StepKeeper::changeMarks(std::string name, const engine::Version& field, con
   push(std::move(name), engine::StepKind::kMark, field, at, Source::kMarks, std::move(changes));
 }
 
-void StepKeeper::restoreAsked(std::uint64_t id) {
+void StepKeeper::restoreRequested(std::uint64_t id) {
   adopting_ = false;
-  journal_.restoreAsked(id, history_.number());
+  journal_.restoreRequested(id, history_.number());
 }
 
 void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Version& after,

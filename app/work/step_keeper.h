@@ -8,9 +8,9 @@
 
 namespace fettle::app {
 
-/// The steps that a live field's versions become: a stroke, the adoption of a filter and a change of all
-/// marks are a step each. Every step goes to the session with the journal that makes it again. All versions
-/// here are upright. Threading: main.
+/// Makes steps of a live field's versions: a stroke, the adoption of a filter and a change of all marks are
+/// one step each. Every step is written to the session with the journal that replays it. All versions here
+/// are upright. Threading: main.
 class StepKeeper {
  public:
   StepKeeper(engine::History history, haptic::SessionSink* sink)
@@ -20,7 +20,7 @@ class StepKeeper {
   [[nodiscard]] LoopJournal& journal() noexcept { return journal_; }
   /// Where the last step changed something.
   [[nodiscard]] engine::SampleRect lastRect() const noexcept { return last_rect_; }
-  /// Whether the loop's field is not the last step's: a stroke runs.
+  /// Whether the loop's field differs from the last step's: a stroke runs.
   [[nodiscard]] bool differs(const engine::Version& field) const { return !(field == committed_); }
   /// Puts a step read back from a session in front of those held.
   void prepend(engine::Step step) { history_.prepend(std::move(step)); }
@@ -28,9 +28,9 @@ class StepKeeper {
   /// A loop starts from the history's state.
   void begin(const haptic::Scene& scene);
 
-  /// The running stroke is this tool's.
+  /// Sets the tool of the running stroke.
   void strokeIsOf(haptic::Tool tool) noexcept { stroke_tool_ = tool; }
-  /// Makes a step of a stroke as far as it has got; none when the field has not changed.
+  /// Makes a step of a running stroke; none when the field has not changed.
   void keepStroke(const engine::Version& field, const haptic::LoopPlace& at);
   /// A stroke ended that changed samples within `rect` only.
   void endStroke(const engine::Version& field, const engine::SampleRect& rect, const haptic::LoopPlace& at);
@@ -38,35 +38,35 @@ class StepKeeper {
   /// A filter's adoption begins under a name for the list of steps: its rounds are one step.
   void nameAdoption(std::string name) { adoption_name_ = std::move(name); }
   void adopted(const engine::Version& field, const haptic::LoopPlace& at);
-  /// What is adopted from now on is another step.
+  /// Later adoptions are another step.
   void endAdoption() noexcept { adopting_ = false; }
   [[nodiscard]] bool adopting() const noexcept { return adopting_; }
 
-  /// Other marks are put on the newest step's field; `changes` as haptic::packMarkChanges has them.
+  /// Changes the marks of the newest step's field; `changes` as of haptic::packMarkChanges.
   void changeMarks(std::string name, const engine::Version& field, const haptic::LoopPlace& at,
                    std::string changes);
 
-  /// Go through the history; the version to be restored, if there is such a state.
+  /// Move in the history; return the version to be restored, if there is such a state.
   std::optional<engine::Version> undo() { return history_.undo(); }
   std::optional<engine::Version> redo() { return history_.redo(); }
   std::optional<engine::Version> goTo(std::int64_t state) { return history_.goTo(state); }
-  /// The loop was asked under `id` to go to the history's state, and is there.
-  void restoreAsked(std::uint64_t id);
+  /// The loop was requested, with `id`, to restore the history's state, and has done so.
+  void restoreRequested(std::uint64_t id);
   void restored(const engine::Version& field) { committed_ = field; }
 
  private:
-  // Whether a step is what ticks and filters made of the field, or marks set on top of that.
+  // Whether a step was made by ticks and filters, or by changing marks.
   enum class Source : std::uint8_t { kLoop, kMarks };
   void push(std::string name, engine::StepKind kind, const engine::Version& after,
             const haptic::LoopPlace& at, Source source = Source::kLoop, std::string data = {});
 
   engine::History history_;
-  engine::Version committed_;  // the last step's, what a running stroke is measured against
+  engine::Version committed_;  // the last step's, the reference for a running stroke
   LoopJournal journal_;
   engine::SampleRect last_rect_;
   haptic::Tool stroke_tool_ = haptic::Tool::kFeel;
   std::string adoption_name_ = "Filter";
-  bool adopting_ = false;  // the running adoption has its step
+  bool adopting_ = false;  // the running adoption has a step
 };
 
 }  // namespace fettle::app

@@ -25,7 +25,7 @@ constexpr const char* kInput = "standard input";
 constexpr const char* kOutput = "standard output";
 constexpr std::size_t kPiece = std::size_t{1} << 18;
 
-// Where data goes that is written to "-". Set once, on the main thread.
+// Destination of data written to "-". Set once, on the main thread.
 std::optional<int> data_output;
 
 class Descriptor {
@@ -54,8 +54,8 @@ int writeAll(int to, const char* bytes, std::size_t count) {
   return 0;
 }
 
-// Waits for the descriptor to be ready or the job to be cancelled: a read or a write alone would go on
-// waiting after Ctrl-C, because signals start it again.
+// Waits for the descriptor to be ready or the job to be cancelled: a read or a write alone would continue to
+// wait after Ctrl-C, because it is restarted after signals.
 engine::Status await(int descriptor, short event, const engine::JobControl& job) {
   pollfd wait{descriptor, event, 0};
   do {
@@ -96,7 +96,7 @@ engine::Status copyOutput(const std::string& from, engine::JobControl& job) {
       const ssize_t now = write(*data_output, buffer.data() + at, static_cast<std::size_t>(got - at));
       if (now < 0 && errno == EINTR) continue;
       if (now < 0 && errno == EPIPE)
-        return engine::failure("the reader closed it before the whole was written", kOutput);
+        return engine::failure("the reader closed it before all data was written", kOutput);
       if (now <= 0) return engine::writeError(kOutput, now < 0 ? errno : ENOSPC);
       at += now;
     }
@@ -140,7 +140,7 @@ StandardInput::StandardInput(ScratchFolder folder, std::string path)
 engine::Result<StandardInput> StandardInput::read(const std::string& extension, engine::JobControl& job) {
   static bool taken = false;
   if (std::exchange(taken, true))
-    return engine::inputError("standard input can be read once only", "-", "give one - alone");
+    return engine::inputError("standard input can only be read once", "-", "give one - alone");
   auto folder = ScratchFolder::create();
   if (!folder) return tl::unexpected(folder.error());
   std::string path = folder->path() + "/stdin" + extension;
@@ -182,7 +182,7 @@ engine::Status writeTo(const std::string& path, const std::string& extension, en
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder->path(), error))
     if (entry.path() != file)
-      warn(fmt::format("{}: the {} file that belongs beside the scan is left out", kOutput,
+      warn(fmt::format("{}: the {} file that accompanies the scan is left out", kOutput,
                        entry.path().extension().string()));
   return copyOutput(file, job);
 }

@@ -9,17 +9,16 @@
 
 namespace fettle::app {
 
-/// "-": standard input where a scan is read, standard output where one is written. Both pass through a file
-/// in a folder of their own ($TMPDIR, else /tmp), because a format is
-/// recognised by a file's content, read from several places at once and completed at the end: so every format
-/// can stream, and what comes out is whole.
+/// "-": standard input where a scan is read, standard output where one is written. Both use a file in a
+/// temporary folder (in $TMPDIR, else /tmp), because a format is recognised by a file's content, read from
+/// several positions and completed at the end: so every format can be streamed, and the output is complete.
 [[nodiscard]] bool isStream(const std::string& path) noexcept;
 
 /// How messages name a path: "-" is standard input, standard output.
 [[nodiscard]] std::string shownInput(const std::string& path);
 [[nodiscard]] std::string shownOutput(const std::string& path);
 
-/// A folder for one run, readable by the user alone, removed with all that is in it.
+/// A folder for one run, readable by the user only, removed with its content.
 class ScratchFolder {
  public:
   /// Errors (kFailed): no folder for temporary files that can be written.
@@ -34,7 +33,7 @@ class ScratchFolder {
   std::shared_ptr<const std::string> path_;  // its deleter removes the folder
 };
 
-/// Standard input to its end, in a file that lives as long as this.
+/// Standard input up to its end, in a file that exists as long as this object.
 class StandardInput {
  public:
   /// `extension` with its dot, or empty: the name the file gets. Errors: kInput, it was read before in this
@@ -52,13 +51,13 @@ class StandardInput {
   std::string path_;
 };
 
-/// From the first call on, what the program prints on standard output goes to standard error, so that data
-/// alone is on standard output. Call before anything is printed.
+/// From the first call on, what the program prints on standard output goes to standard error, so that only
+/// data is on standard output. Call before anything is printed.
 void keepStandardOutputForData();
 
 /// Calls write(path) and returns its status. With "-" the path is that of a file with this extension (with
 /// its dot), which is then copied to standard output; nothing is written there when `write` fails. Errors of
-/// standard output: kFailed for a full disk and for a reader that went away.
+/// standard output: kFailed for a full disk and for a reader that closed it.
 [[nodiscard]] engine::Status writeTo(const std::string& path, const std::string& extension,
                                      engine::JobControl& job,
                                      const std::function<engine::Status(const std::string&)>& write);

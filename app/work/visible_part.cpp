@@ -18,7 +18,7 @@ std::vector<engine::TileRange> visiblePart(const engine::Grid& grid, std::span<c
     c0 = std::min(c0, s.column), c1 = std::max(c1, s.column);
     r0 = std::min(r0, s.row), r1 = std::max(r1, s.row);
   }
-  // Between two looks at the picture lies a step that was not looked at: one more of them on each side.
+  // The points seen are one step apart: add one step on each side.
   const auto step = [&](std::int32_t low, std::int32_t high) { return (high - low) / 8; };
   const std::int32_t dc = step(c0, c1), dr = step(r0, r1);
   c0 = std::clamp(c0 - dc, 0, grid.width - 1) / engine::kTileSide;

@@ -8,14 +8,14 @@
 
 namespace fettle::app {
 
-/// A sample that a person sees.
+/// A visible sample.
 struct Seen {
   std::int32_t column = 0, row = 0;
 };
 
-/// The part of a field that work should begin with: squares of tiles that cover what lies between the samples
-/// seen, the one nearest to `middle` first. Squares are of 4 x 4 tiles, larger ones on larger views, so that
-/// there are at most some 400. None when nothing is seen.
+/// The part of a field to process first: squares of tiles that cover the visible samples, the one nearest to
+/// `middle` first. Squares have 4 x 4 tiles, more on larger views, so that there are at most about 400. Empty
+/// when nothing is visible.
 [[nodiscard]] std::vector<engine::TileRange> visiblePart(const engine::Grid& grid, std::span<const Seen> seen,
                                                          const Seen& middle);
 

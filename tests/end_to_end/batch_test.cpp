@@ -115,7 +115,7 @@ TEST_F(Batch, RefusesBeforeAnythingIsReadWhatWouldEndInOneFile) {
       "replace an input");
   expectRefused(
       fettle({"filter", folder.file("a.tif"), "--out-dir", folder.file("b.asc"), "--filter", "box"}),
-      "a file and no folder");
+      "a file, not a folder");
   expectRefused(
       fettle({"filter", folder.file("a.tif"), folder.file("b.asc"), folder.file("c.x3p"), "--filter", "box"}),
       "--out-dir");

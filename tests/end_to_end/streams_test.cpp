@@ -76,7 +76,7 @@ TEST_F(Streams, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
   expectRefused(fettle({"convert", scan, "-", "--to", "docx"}), "docx");
   expectRefused(fettle({"convert", scan, folder.file("o.tif"), "--to", "tif"}), "--out-dir");
   expectRefused(fettle({"convert", "-", scan, "--out-dir", folder.file("d"), "--to", "tif"}), "-");
-  expectRefused(fettle({"compare", "-", "-"}, from(scan)), "once only");
+  expectRefused(fettle({"compare", "-", "-"}, from(scan)), "can only be read once");
   expectRefused(fettle({"synth", "-", "--to", "tif", "--truth", "-"}), "-");
   expectRefused(fettle({"synth", folder.file("o.tif"), "--edges", "-"}), "standard output");
   // What is wrong with the input names it, not the file that it is kept in.

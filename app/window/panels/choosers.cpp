@@ -97,7 +97,7 @@ std::string described(const haptic::Scene& scene) {
                              scene.search_rounds - 1);
   if (scene.level == haptic::ContactLevel::kCertified)
     return fmt::format("certified, {} cells", scene.certified_radius_cells);
-  return fmt::format("paper, {} steps a tick", scene.search_rounds - 1);
+  return fmt::format("paper, {} steps per tick", scene.search_rounds - 1);
 }
 
 }  // namespace

@@ -3,16 +3,16 @@
 #include <cmath>
 
 #include "engine/marks/change_marks.h"
-#include "tests/app/work/touch_bench.h"
+#include "tests/app/work/loop_client_bench.h"
 #include "tests/haptic/support/fields.h"
 
 namespace fettle::app {
 namespace {
 
 using haptic::Tool;
+using tests::LoopClientBench;
 using tests::markedSamples;
 using tests::sameMarks;
-using tests::TouchBench;
 
 constexpr int kWidth = 200, kHeight = 140, kStep = 90;
 
@@ -35,7 +35,7 @@ class EdgeToolTest : public ::testing::Test {
   }
   engine::Version seen() { return tool.over(bench.touch().field()); }
 
-  TouchBench bench{stepped()};
+  LoopClientBench bench{stepped()};
   EdgeTool tool;
 };
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "app/work/filter_preview.h"
+#include "app/work/loop_client.h"
 #include "app/work/session_keeper.h"
-#include "app/work/touch.h"
 
 namespace fettle::tests {
 
@@ -15,7 +15,7 @@ namespace fettle::tests {
 /// filters brought in while a stroke goes on, marks, scenes. On the real loop, in real time.
 class HandPlay {
  public:
-  HandPlay(app::Touch& touch, app::SessionKeeper& keeper, std::uint64_t seed)
+  HandPlay(app::LoopClient& touch, app::SessionKeeper& keeper, std::uint64_t seed)
       : touch_(touch), keeper_(keeper), random_(seed) {}
 
   /// One thing a person does; says what.
@@ -40,7 +40,7 @@ class HandPlay {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
 
-  app::Touch& touch_;
+  app::LoopClient& touch_;
   app::SessionKeeper& keeper_;
   std::mt19937_64 random_;
   app::FilterPreview filters_;

@@ -27,7 +27,7 @@ class KeptScan : public testing::Test {
     document = *std::move(opened);
     history = document.history;
     keeper = std::make_unique<SessionKeeper>(document);
-    auto started = app::Touch::start(history, document.original, brushScene(), {}, keeper.get());
+    auto started = app::LoopClient::start(history, document.original, brushScene(), {}, keeper.get());
     EXPECT_TRUE(started);
     touch = *std::move(started);
     hand = std::make_unique<HandPlay>(*touch, *keeper, 5);
@@ -66,7 +66,7 @@ class KeptScan : public testing::Test {
   app::Document document;
   engine::History history;
   std::unique_ptr<SessionKeeper> keeper;
-  std::unique_ptr<app::Touch> touch;
+  std::unique_ptr<app::LoopClient> touch;
   std::unique_ptr<HandPlay> hand;
 };
 

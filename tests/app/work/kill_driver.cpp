@@ -50,7 +50,7 @@ int main(int count, char** arguments) {
   const engine::History history = document.history;
   app::SessionKeeper keeper(document);
   if (creates) keeper.saveAs(path, engine::OriginalStorage::kEmbedded);
-  auto touch = app::Touch::start(history, document.original, tests::brushScene(), {}, &keeper);
+  auto touch = app::LoopClient::start(history, document.original, tests::brushScene(), {}, &keeper);
   if (!touch) return refuse(touch.error());
   tests::HandPlay play(**touch, keeper, std::strtoull(arguments[2], nullptr, 10));
   tell("ready\n");

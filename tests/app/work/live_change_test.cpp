@@ -3,14 +3,14 @@
 #include <cmath>
 
 #include "engine/compare/compare.h"
-#include "tests/app/work/touch_bench.h"
+#include "tests/app/work/loop_client_bench.h"
 #include "tests/haptic/support/fields.h"
 
 namespace fettle::app {
 namespace {
 
 using haptic::Tool;
-using tests::TouchBench;
+using tests::LoopClientBench;
 
 engine::Version rough(std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -39,7 +39,7 @@ class LiveChangeTest : public ::testing::Test {
   }
 
   engine::Version original = rough(3);
-  TouchBench bench{original};
+  LoopClientBench bench{original};
   LiveChange change;
   bool told = false;
 };
@@ -91,7 +91,7 @@ TEST_F(LiveChangeTest, what_has_been_looked_at_is_not_looked_at_again) {
   EXPECT_EQ(change.tookMs(), took);
 }
 
-TEST_F(LiveChangeTest, another_original_begins_anew) {
+TEST_F(LiveChangeTest, another_original_begins_again) {
   change.begin(original);
   ASSERT_TRUE(upToDate());
   change.begin(original);

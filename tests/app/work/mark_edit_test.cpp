@@ -3,15 +3,15 @@
 #include <atomic>
 
 #include "engine/marks/change_marks.h"
-#include "tests/app/work/touch_bench.h"
+#include "tests/app/work/loop_client_bench.h"
 #include "tests/haptic/support/fields.h"
 
 namespace fettle::app {
 namespace {
 
 using haptic::Tool;
+using tests::LoopClientBench;
 using tests::markedSamples;
-using tests::TouchBench;
 
 engine::Version plate() {
   return tests::fieldOf(
@@ -41,7 +41,7 @@ struct Held {
 };
 
 TEST(MarkEdit, changes_become_steps_in_the_order_they_were_asked_for) {
-  TouchBench bench(plate());
+  LoopClientBench bench(plate());
   MarkEdit edit;
   EXPECT_FALSE(edit.busy());
   edit.ask("All", engine::invertMarks);
@@ -67,7 +67,7 @@ TEST(MarkEdit, changes_become_steps_in_the_order_they_were_asked_for) {
 }
 
 TEST(MarkEdit, what_changes_nothing_is_no_step) {
-  TouchBench bench(plate());
+  LoopClientBench bench(plate());
   MarkEdit edit;
   edit.ask("None", engine::clearMarks);
   ASSERT_TRUE(bench.until([&] {
@@ -79,7 +79,7 @@ TEST(MarkEdit, what_changes_nothing_is_no_step) {
 
 TEST(MarkEdit, cancelled_nothing_is_done_however_far_it_had_got) {
   for (const bool finished : {false, true}) {
-    TouchBench bench(plate());
+    LoopClientBench bench(plate());
     MarkEdit edit;
     const Held held;
     edit.ask("All", held.change());
@@ -104,7 +104,7 @@ TEST(MarkEdit, cancelled_nothing_is_done_however_far_it_had_got) {
 }
 
 TEST(MarkEdit, a_stroke_made_meanwhile_is_kept) {
-  TouchBench bench(plate());
+  LoopClientBench bench(plate());
   MarkEdit edit;
   const Held held;
   edit.ask("All", held.change());
@@ -127,7 +127,7 @@ TEST(MarkEdit, a_stroke_made_meanwhile_is_kept) {
 }
 
 TEST(MarkEdit, what_cannot_be_done_is_said) {
-  TouchBench bench(plate());
+  LoopClientBench bench(plate());
   MarkEdit edit;
   edit.ask("Nothing", [](const engine::Version&, engine::JobControl&) -> engine::Result<engine::Version> {
     return engine::failure("no memory", "marks", "close other programs");

@@ -15,8 +15,8 @@ namespace fettle::tests {
 namespace {
 
 using app::Document;
+using app::LoopClient;
 using app::SessionKeeper;
-using app::Touch;
 
 constexpr std::size_t kHistoryBytes = std::size_t{64} << 20;
 
@@ -28,9 +28,9 @@ Document fromField(const engine::Version& field, const std::string& name) {
   return document;
 }
 
-std::unique_ptr<Touch> touchOf(const Document& document, const engine::History& history,
-                               SessionKeeper& keeper) {
-  auto touch = Touch::start(history, document.original, brushScene(), {}, &keeper);
+std::unique_ptr<LoopClient> touchOf(const Document& document, const engine::History& history,
+                                    SessionKeeper& keeper) {
+  auto touch = LoopClient::start(history, document.original, brushScene(), {}, &keeper);
   EXPECT_TRUE(touch) << (touch ? "" : touch.error().line());
   return touch ? std::move(*touch) : nullptr;
 }

@@ -56,9 +56,9 @@ TEST_F(Guard, GivesEachSessionOfAScanTheScanBeforeThatIsReplaced) {
   makeSession(other, other_scan);
   app::RecentFiles(app::recentFile()).add(recent);
   app::ScanGuard guard;
-  ASSERT_TRUE(guard.spare(folder.file("scans/new.tif"), job));
+  ASSERT_TRUE(guard.protectSessions(folder.file("scans/new.tif"), job));
   EXPECT_FALSE(holdsItsScan(beside));
-  const auto spared = guard.spare(scan, job);
+  const auto spared = guard.protectSessions(scan, job);
   ASSERT_TRUE(spared) << spared.error().line();
   for (const std::string& path : {beside, recent, recovery}) EXPECT_TRUE(holdsItsScan(path)) << path;
   EXPECT_FALSE(holdsItsScan(other));
@@ -76,7 +76,7 @@ TEST_F(Guard, RefusesWhileAnotherProgramWorksOnASessionOfTheScan) {
   const auto other = engine::SessionWriter::open(app::recoveryPath(scan), {}, {}, engine::importField, job);
   ASSERT_TRUE(other);
   app::ScanGuard guard;
-  const auto refused = guard.spare(scan, job);
+  const auto refused = guard.protectSessions(scan, job);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, engine::ErrorKind::kInput);
   EXPECT_NE(refused.error().line().find("is working on the session"), std::string::npos)

@@ -1,5 +1,5 @@
 // The live loop as the window sees it, with a simulated hand that gives force: armed and disarmed.
-#include "app/work/touch.h"
+#include "app/work/loop_client.h"
 
 #include <algorithm>
 #include <chrono>
@@ -25,11 +25,11 @@ bool givesForce(const haptic::LoopState& state) {
   return state.safety == SafetyState::kRamping || state.safety == SafetyState::kActive;
 }
 
-class TouchTest : public ::testing::Test {
+class LoopClientTest : public ::testing::Test {
  protected:
   // A hand that lands on a plate and lifts again, every second: one that is armed while it is deep inside
   // would feel nothing until it has come out.
-  std::unique_ptr<Touch> start(const std::string& tool = "feel") {
+  std::unique_ptr<LoopClient> start(const std::string& tool = "feel") {
     auto touch = tryStart(tool, haptic::defaultScene(), false);
     if (!touch) {
       ADD_FAILURE() << touch.error().line();
@@ -37,8 +37,8 @@ class TouchTest : public ::testing::Test {
     }
     return std::move(*touch);
   }
-  engine::Result<std::unique_ptr<Touch>> tryStart(const std::string& tool, const haptic::Scene& scene,
-                                                  bool lower_scene) {
+  engine::Result<std::unique_ptr<LoopClient>> tryStart(const std::string& tool, const haptic::Scene& scene,
+                                                       bool lower_scene) {
     const std::string strokes = folder_.file("strokes.csv");
     {
       std::ofstream out(strokes);
@@ -48,13 +48,13 @@ class TouchTest : public ::testing::Test {
     }
     const engine::Version plate = tests::fieldOf(
         64, 64, [](int, int) { return 0.0; }, 0.2, 0.2);
-    TouchOptions options;
+    LoopClientOptions options;
     options.device = "hand:" + strokes;
     options.lower_scene = lower_scene;
-    return Touch::start(engine::History(plate, std::size_t{1} << 20), plate, scene, options, nullptr);
+    return LoopClient::start(engine::History(plate, std::size_t{1} << 20), plate, scene, options, nullptr);
   }
   // Goes round as the window does.
-  static bool until(Touch& touch, const std::function<bool(const haptic::LoopState&)>& is) {
+  static bool until(LoopClient& touch, const std::function<bool(const haptic::LoopState&)>& is) {
     const auto end = std::chrono::steady_clock::now() + kPatience;
     while (std::chrono::steady_clock::now() < end) {
       touch.poll();
@@ -63,7 +63,7 @@ class TouchTest : public ::testing::Test {
     }
     return false;
   }
-  static void rounds(Touch& touch, std::uint64_t ticks) {
+  static void rounds(LoopClient& touch, std::uint64_t ticks) {
     const std::uint64_t end = touch.state().tick + ticks;
     EXPECT_TRUE(until(touch, [&](const haptic::LoopState& s) { return s.tick >= end; }));
   }
@@ -71,7 +71,7 @@ class TouchTest : public ::testing::Test {
   tests::TempFolder folder_;
 };
 
-TEST_F(TouchTest, who_disarmed_is_not_armed_again_by_the_program) {
+TEST_F(LoopClientTest, who_disarmed_is_not_armed_again_by_the_program) {
   const auto touch = start();
   ASSERT_TRUE(touch);
   ASSERT_TRUE(until(*touch, [](const auto& s) { return s.safety == SafetyState::kActive && s.contact; }))
@@ -88,7 +88,7 @@ TEST_F(TouchTest, who_disarmed_is_not_armed_again_by_the_program) {
   EXPECT_TRUE(until(*touch, givesForce));
 }
 
-TEST_F(TouchTest, arming_and_disarming_at_once_leaves_it_disarmed) {
+TEST_F(LoopClientTest, arming_and_disarming_at_once_leaves_it_disarmed) {
   const auto touch = start();
   ASSERT_TRUE(touch);
   ASSERT_TRUE(until(*touch, givesForce));
@@ -104,7 +104,7 @@ TEST_F(TouchTest, arming_and_disarming_at_once_leaves_it_disarmed) {
 }
 
 // The field, the step under way and who is armed outlive the loop.
-TEST_F(TouchTest, another_rate_begins_without_force_and_loses_nothing) {
+TEST_F(LoopClientTest, another_rate_begins_without_force_and_loses_nothing) {
   const auto touch = start("mark");
   ASSERT_TRUE(touch);
   ASSERT_TRUE(until(*touch, [](const auto& s) { return givesForce(s) && s.stroke > 0; }));
@@ -136,7 +136,7 @@ TEST_F(TouchTest, another_rate_begins_without_force_and_loses_nothing) {
   EXPECT_EQ(touch->state().link, haptic::LinkState::kConnected);
 }
 
-TEST_F(TouchTest, a_stiffness_that_the_hand_does_not_hold_is_refused_with_the_largest_that_it_does) {
+TEST_F(LoopClientTest, a_stiffness_that_the_hand_does_not_hold_is_refused_with_the_largest_that_it_does) {
   const auto touch = start();
   ASSERT_TRUE(touch);
   ASSERT_TRUE(until(*touch, givesForce));
@@ -170,7 +170,7 @@ TEST_F(TouchTest, a_stiffness_that_the_hand_does_not_hold_is_refused_with_the_la
 }
 
 // Another device than the scene was made with.
-TEST_F(TouchTest, a_scene_too_stiff_to_begin_with_is_refused_or_lowered_with_a_notice) {
+TEST_F(LoopClientTest, a_scene_too_stiff_to_begin_with_is_refused_or_lowered_with_a_notice) {
   haptic::Scene scene;
   scene.stiffness_n_per_mm = 40.0;
   const auto refused = tryStart("feel", scene, false);

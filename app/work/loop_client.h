@@ -19,42 +19,42 @@
 
 namespace fettle::app {
 
-/// The live loop as the window sees it: field, tools, undo, device. What the loop publishes is taken in by
-/// poll(), and what is shown is the newest version it has published.
+/// The window's interface to the live loop: field, tools, undo, device. poll() takes over what the loop
+/// published; the newest published version is shown.
 ///
-/// Steps (StepKeeper). Undo and redo ask the loop to restore a version; the history moves at once, the field
-/// when the loop answers. Undo while a stroke runs makes a step of it first.
+/// Steps (StepKeeper). Undo and redo ask the loop to restore a version; the history moves immediately, the
+/// field when the loop answers. Undo while a stroke runs makes a step of it first.
 ///
 /// Inversion is a sign that the scene sets: field() has it, history() and upright() do not.
 ///
-/// Threading: main thread; a worker uses port(), whose questions poll() carries to the loop.
-class Touch final {
+/// Threading: main thread; a worker uses port(), whose requests poll() sends to the loop.
+class LoopClient final {
  public:
   /// Opens and starts the device and the loop. `history` and `original` upright. `sink` outlives this; null:
-  /// nothing is recorded. Errors: those of openDevice, HapticLoop::create and start; a scene that the device
-  /// does not hold, as in setScene().
-  [[nodiscard]] static engine::Result<std::unique_ptr<Touch>> start(engine::History history,
-                                                                    const engine::Version& original,
-                                                                    const haptic::Scene& scene,
-                                                                    const TouchOptions& options,
-                                                                    haptic::SessionSink* sink);
+  /// nothing is recorded. Errors: those of openDevice, HapticLoop::create and start; a scene with which the
+  /// device is not stable, as in setScene().
+  [[nodiscard]] static engine::Result<std::unique_ptr<LoopClient>> start(engine::History history,
+                                                                         const engine::Version& original,
+                                                                         const haptic::Scene& scene,
+                                                                         const LoopClientOptions& options,
+                                                                         haptic::SessionSink* sink);
   /// As finish(), if that was not called.
-  ~Touch();
-  Touch(const Touch&) = delete;
-  Touch& operator=(const Touch&) = delete;
+  ~LoopClient();
+  LoopClient(const LoopClient&) = delete;
+  LoopClient& operator=(const LoopClient&) = delete;
 
-  /// Takes in what the loop published and answered. Cheap; to be called often.
+  /// Takes over the events and answers of the loop. Cheap; to be called often.
   void poll();
-  /// Lets the force fade, ends the loop and takes in what it published last: a running stroke becomes a step.
-  /// Some 30 ms with a device that gives force. Only the looks at field and history are of use afterwards.
+  /// Lets the force fade, ends the loop and takes over its last events: a running stroke becomes a step.
+  /// About 30 ms with a force device. Afterwards only field and history may be read.
   void finish();
   [[nodiscard]] bool finished() const noexcept { return !loop_.running(); }
 
   /// As felt.
   [[nodiscard]] const engine::Version& field() const noexcept { return field_; }
   [[nodiscard]] engine::Version upright() const { return upright(field_); }
-  /// Upright, with what the loop has been asked for and did not answer yet: after an undo the state gone back
-  /// to, else upright(). What work in the background begins with.
+  /// Upright, including requests that the loop has not answered yet: after an undo the state restored, else
+  /// upright(). Work in the background starts from it.
   [[nodiscard]] engine::Version newest() const {
     return restores_open_ > 0 ? history().current() : upright(field_);
   }
@@ -66,18 +66,18 @@ class Touch final {
 
   void setTool(haptic::Tool tool);
   [[nodiscard]] haptic::Tool tool() const noexcept { return tool_; }
-  /// Takes a scene; it is felt from the next tick or two on. Errors (kInput), which change nothing: out of
-  /// range (sceneProblem), or more than a device that gives force holds at this rate
-  /// (haptic::stabilityProblem): the message names the largest value that it does hold.
+  /// Sets a scene; it is felt after one or two ticks. Errors (kInput), which change nothing: out of range
+  /// (sceneProblem), or not stable with a force device at this rate (haptic::stabilityProblem): the message
+  /// names the largest stable value.
   [[nodiscard]] engine::Status setScene(const haptic::Scene& scene);
-  /// What of a scene the device would not hold; nothing for one that gives no force.
+  /// The problem of a scene with which the device is not stable; empty for one without force.
   [[nodiscard]] std::optional<haptic::StabilityProblem> stabilityProblem(const haptic::Scene& scene) const {
     return loop_.stabilityProblem(scene, loop_.rate());
   }
   /// Largest stiffness [N/mm] that the device holds with the rest of the scene; none when it gives no force.
   [[nodiscard]] std::optional<double> largestStiffness() const { return loop_.largestStiffness(scene_); }
 
-  /// What is done after an undo takes the place of the steps undone.
+  /// Later edits after an undo replace the steps undone.
   void undo();
   void redo();
   void goTo(std::int64_t state);
@@ -85,13 +85,13 @@ class Touch final {
   [[nodiscard]] bool canRedo() const noexcept { return history().canRedo() && !strokeRuns(); }
   /// Puts a step read back from a session in front of those held.
   void prepend(engine::Step step) { steps_.prepend(std::move(step)); }
-  /// Puts other marks in place as one step of kind kMark: `marked` is a version of the newest field
-  /// (upright(), the same memory) with marks set and cleared. Strokes made since `marked` was taken are kept.
+  /// Replaces the marks as one step of kind kMark: `marked` is a version of the newest field (upright(), the
+  /// same memory) with marks set and cleared. Strokes made since `marked` was taken are kept.
   void replaceMarks(const engine::Version& base, const engine::Version& marked, std::string name);
 
-  /// Called when a filter begins to be computed on field(): its number from then on.
+  /// To be called when a filter starts on field(); returns the base's number.
   [[nodiscard]] std::uint64_t noteFilterBase() { return steps_.journal().filterBase(place_); }
-  /// Called when its result is about to be brought in through the port, under a name for the list of steps.
+  /// To be called before its result is adopted through the port, with a name for the list of steps.
   void noteFilterBegun(std::uint64_t base, const engine::FilterSpec& spec, std::string name);
   [[nodiscard]] haptic::AdoptionPort& port() noexcept { return mailbox_; }
   /// Releases a worker that waits at the port, with kCancelled; until allowPort().
@@ -112,12 +112,12 @@ class Touch final {
   [[nodiscard]] double rate() const noexcept { return loop_.rate(); }
   [[nodiscard]] double measuredRate() const noexcept { return loop_.measuredRate(); }
   /// Ends the loop as finish() does - the force fades to zero, a running stroke becomes a step - and starts
-  /// another at this rate [Hz], 1000 .. 10000, from the history's state: some 10 ms, 30 with a device that
-  /// gives force. A device that pushes is to be armed again; who had disarmed stays disarmed. Figures of the
-  /// timing start at zero, and a simulated hand begins its way again. A filter under way is cancelled, and
-  /// results computed before are not to be brought in afterwards: the journal no longer has their base.
-  /// Errors: a rate out of range, or one at which the device does not hold the scene, and nothing has
-  /// happened; those of start(), after which it runs at the old rate, or is finished().
+  /// another at this rate [Hz], 1000 .. 10000, from the history's state: about 10 ms, 30 with a force device.
+  /// A force device must be armed again; a disarmed one stays disarmed. Timing figures restart at zero, and a
+  /// simulated hand restarts its path. A running filter is cancelled, and results computed before must not be
+  /// adopted afterwards: the journal no longer has their base. Errors: a rate out of range, or one at which
+  /// the device is not stable with the scene, with nothing changed; those of start(), after which it runs at
+  /// the old rate, or is finished().
   [[nodiscard]] engine::Status setRate(double rate_hz);
 
   [[nodiscard]] std::vector<Notice> takeNotices() { return std::exchange(notices_, {}); }
@@ -128,8 +128,8 @@ class Touch final {
   }
 
  private:
-  Touch(engine::History history, const engine::Version& original, const haptic::Scene& scene,
-        const TouchOptions& options, haptic::SessionSink* sink);
+  LoopClient(engine::History history, const engine::Version& original, const haptic::Scene& scene,
+             const LoopClientOptions& options, haptic::SessionSink* sink);
   [[nodiscard]] engine::Status startLoop(double rate_hz);
   void takeTicks();
   void take(haptic::LoopEvent&& event);
@@ -146,10 +146,10 @@ class Touch final {
   AdoptionMailbox mailbox_;
   EditLatency latency_;
   engine::Version field_;               // newest published
-  haptic::LoopPlace place_;             // where in the loop's life that was
+  haptic::LoopPlace place_;             // the loop's tick at that time
   std::deque<haptic::LoopEvent> held_;  // until the ticks before them are recorded
   std::uint64_t next_id_ = 1;           // of a command
-  std::uint64_t restores_open_ = 0;     // asked for, not answered
+  std::uint64_t restores_open_ = 0;     // requested, not answered
   std::vector<Notice> notices_;
 };
 

@@ -1,4 +1,4 @@
-#include "app/work/touch.h"
+#include "app/work/loop_client.h"
 
 #include <chrono>
 #include <cstdlib>
@@ -18,36 +18,38 @@ using haptic::EventKind;
 using haptic::LoopCommand;
 using namespace std::chrono_literals;
 
-constexpr auto kLook = 1ms;           // between two looks at the state while a force fades
-constexpr auto kLongestFade = 100ms;  // a disarmed force is gone after peak / slew = 5 ms
+constexpr auto kPollInterval = 1ms;   // between two reads of the state while a force fades
+constexpr auto kLongestFade = 100ms;  // a disarmed force has faded after peak / slew = 5 ms
 
 }  // namespace
 
-Touch::Touch(engine::History history, const engine::Version& original, const haptic::Scene& scene,
-             const TouchOptions& options, haptic::SessionSink* sink)
+LoopClient::LoopClient(engine::History history, const engine::Version& original, const haptic::Scene& scene,
+                       const LoopClientOptions& options, haptic::SessionSink* sink)
     : original_(original), scene_(scene), steps_(std::move(history), sink), loop_(options, original) {}
 
-engine::Result<std::unique_ptr<Touch>> Touch::start(engine::History history, const engine::Version& original,
-                                                    const haptic::Scene& scene, const TouchOptions& options,
-                                                    haptic::SessionSink* sink) {
-  std::unique_ptr<Touch> touch(new Touch(std::move(history), original, scene, options, sink));
+engine::Result<std::unique_ptr<LoopClient>> LoopClient::start(engine::History history,
+                                                              const engine::Version& original,
+                                                              const haptic::Scene& scene,
+                                                              const LoopClientOptions& options,
+                                                              haptic::SessionSink* sink) {
+  std::unique_ptr<LoopClient> touch(new LoopClient(std::move(history), original, scene, options, sink));
   if (auto status = haptic::LastResort::install(); !status) return tl::unexpected(status.error());
-  // The way out when the display is lost (render/window/window.cpp).
+  // The exit path when the display is lost (render/window/window.cpp).
   static const int at_quick_exit = std::at_quick_exit([] { haptic::LastResort::fire(); });
   static_cast<void>(at_quick_exit);
   if (auto status = touch->loop_.openDevice(touch->scene_); !status) return tl::unexpected(status.error());
   if (auto status = touch->startLoop(options.rate_hz); !status) return tl::unexpected(status.error());
   for (const std::string& missing : touch->realTime().missing)
-    touch->notices_.push_back({"the loop got less than it asked for", missing});
+    touch->notices_.push_back({"the system did not grant the loop everything", missing});
   return touch;
 }
 
-Touch::~Touch() {
+LoopClient::~LoopClient() {
   finish();
 }
 
-// From the history's state on. All that belonged to a loop before is reset.
-engine::Status Touch::startLoop(double rate_hz) {
+// Starts from the history's state. The data of the previous loop is reset.
+engine::Status LoopClient::startLoop(double rate_hz) {
   field_ = scene_.invert ? history().current().inverted() : history().current();
   place_ = {};
   restores_open_ = 0;
@@ -63,10 +65,10 @@ engine::Status Touch::startLoop(double rate_hz) {
   return {};
 }
 
-engine::Status Touch::setRate(double rate_hz) {
+engine::Status LoopClient::setRate(double rate_hz) {
   if (finished() || rate_hz == rate()) return {};
   if (!(rate_hz >= haptic::Pacer::kLowestRate_hz && rate_hz <= haptic::Pacer::kHighestRate_hz))
-    return engine::inputError("a loop runs at 1000 to 10000 ticks a second", "rate");
+    return engine::inputError("a loop runs at 1000 to 10000 ticks per second", "rate");
   if (const auto problem = loop_.stabilityProblem(scene_, rate_hz))
     return engine::inputError(problem->what, "rate", "first take " + problem->remedy);
   const bool disarmed = loop_.disarmed();
@@ -85,7 +87,7 @@ engine::Status Touch::setRate(double rate_hz) {
   return status;
 }
 
-void Touch::finish() {
+void LoopClient::finish() {
   closePort();
   if (finished()) return;
   disarm();
@@ -93,10 +95,10 @@ void Touch::finish() {
   while (device().profile().gives_force && std::chrono::steady_clock::now() < latest) {
     poll();
     if (loop_.atRest()) break;
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kPollInterval);
   }
   loop_.stop();
-  // What the loop published last; its ring has been waiting with all of it.
+  // The loop's last events; its ring still contains all of them.
   for (haptic::LoopEvent event; loop_.loop().poll(event);) held_.push_back(std::move(event));
   takeTicks();
   for (; !held_.empty(); held_.pop_front()) take(std::move(held_.front()));
@@ -104,16 +106,16 @@ void Touch::finish() {
   steps_.journal().flush();
 }
 
-bool Touch::strokeRuns() const noexcept {
+bool LoopClient::strokeRuns() const noexcept {
   return restores_open_ == 0 && steps_.differs(upright(field_));
 }
 
-// A stroke that runs becomes a step as far as it has got.
-void Touch::keepStroke() {
+// A running stroke becomes a step with its edits so far.
+void LoopClient::keepStroke() {
   if (strokeRuns()) steps_.keepStroke(upright(field_), place_);
 }
 
-void Touch::poll() {
+void LoopClient::poll() {
   if (finished()) return;
   loop_.poll(notices_);
   for (haptic::LoopEvent event; loop_.loop().poll(event);) held_.push_back(std::move(event));
@@ -124,14 +126,14 @@ void Touch::poll() {
   steps_.journal().flushWhenDue();
 }
 
-void Touch::takeTicks() {
+void LoopClient::takeTicks() {
   if (steps_.journal().takeTicks(loop_.loop()))
-    notices_.push_back({"the window stood still for too long to record every tick",
+    notices_.push_back({"the window did not respond for too long to record every tick",
                         "the work is kept; the journal cannot replay beyond this point"});
 }
 
-void Touch::take(haptic::LoopEvent&& event) {
-  // A stroke under way when a filter's result came is a step of its own, made before it.
+void LoopClient::take(haptic::LoopEvent&& event) {
+  // A stroke running when a filter's result was adopted is a separate step before it.
   if (event.kind == EventKind::kAdopted && !event.before.empty() && !steps_.adopting())
     steps_.keepStroke(upright(event.before), place_);
   steps_.journal().answered(event);
@@ -171,7 +173,7 @@ void Touch::take(haptic::LoopEvent&& event) {
   // What the event still holds is freed here, off the loop.
 }
 
-void Touch::setTool(haptic::Tool tool) {
+void LoopClient::setTool(haptic::Tool tool) {
   tool_ = tool;
   LoopCommand command;
   command.kind = CommandKind::kTool;
@@ -179,7 +181,7 @@ void Touch::setTool(haptic::Tool tool) {
   loop_.send(std::move(command));
 }
 
-engine::Status Touch::setScene(const haptic::Scene& scene) {
+engine::Status LoopClient::setScene(const haptic::Scene& scene) {
   // First, as its largest value is the smaller one.
   if (const auto problem = stabilityProblem(scene))
     return engine::inputError(problem->what, "scene", problem->remedy);
@@ -194,36 +196,36 @@ engine::Status Touch::setScene(const haptic::Scene& scene) {
   return {};
 }
 
-void Touch::restore(const engine::Version& version) {
+void LoopClient::restore(const engine::Version& version) {
   LoopCommand command;
   command.kind = CommandKind::kRestore;
   command.id = next_id_++;
   command.version = scene_.invert ? version.inverted() : version;
   ++restores_open_;
-  steps_.restoreAsked(command.id);
+  steps_.restoreRequested(command.id);
   loop_.send(std::move(command));
 }
 
-void Touch::undo() {
+void LoopClient::undo() {
   poll();
   keepStroke();
   if (const auto version = steps_.undo()) restore(*version);
 }
 
-void Touch::redo() {
+void LoopClient::redo() {
   poll();
   if (!canRedo()) return;
   if (const auto version = steps_.redo()) restore(*version);
 }
 
-void Touch::goTo(std::int64_t state) {
+void LoopClient::goTo(std::int64_t state) {
   poll();
   keepStroke();
   if (state == history().number()) return;
   if (const auto version = steps_.goTo(state)) restore(*version);
 }
 
-void Touch::replaceMarks(const engine::Version& base, const engine::Version& marked, std::string name) {
+void LoopClient::replaceMarks(const engine::Version& base, const engine::Version& marked, std::string name) {
   poll();
   keepStroke();
   std::string changes = haptic::packMarkChanges(base, marked);
@@ -237,17 +239,17 @@ void Touch::replaceMarks(const engine::Version& base, const engine::Version& mar
   restore(*after);
 }
 
-void Touch::noteFilterBegun(std::uint64_t base, const engine::FilterSpec& spec, std::string name) {
+void LoopClient::noteFilterBegun(std::uint64_t base, const engine::FilterSpec& spec, std::string name) {
   steps_.nameAdoption(std::move(name));
   steps_.journal().filterBegun(base, spec);
 }
 
-void Touch::allowPort() {
+void LoopClient::allowPort() {
   mailbox_.open();
   steps_.endAdoption();
 }
 
-void Touch::sendQuestion() {
+void LoopClient::sendQuestion() {
   std::optional<LoopCommand> command = mailbox_.takeCommand(next_id_);
   if (!command) return;
   if (command->kind == CommandKind::kAdopt) steps_.journal().offerMade();

@@ -8,24 +8,24 @@
 
 #include <gtest/gtest.h>
 
-#include "app/work/touch.h"
+#include "app/work/loop_client.h"
 
 namespace fettle::tests {
 
 /// The live loop with the mouse as stylus on a field, gone round with as the window does: for the parts of
 /// the window that work on it in the background.
-class TouchBench {
+class LoopClientBench {
  public:
   /// The test fails when there is no loop.
-  explicit TouchBench(const engine::Version& field, haptic::Scene scene = haptic::defaultScene()) {
+  explicit LoopClientBench(const engine::Version& field, haptic::Scene scene = haptic::defaultScene()) {
     scene.brush_radius_samples = 3.0;
     auto started =
-        app::Touch::start(engine::History(field, std::size_t{64} << 20), field, scene, {}, nullptr);
+        app::LoopClient::start(engine::History(field, std::size_t{64} << 20), field, scene, {}, nullptr);
     EXPECT_TRUE(started) << (started ? "" : started.error().line());
     if (started) touch_ = std::move(*started);
   }
 
-  [[nodiscard]] app::Touch& touch() { return *touch_; }
+  [[nodiscard]] app::LoopClient& touch() { return *touch_; }
   [[nodiscard]] const std::vector<app::Notice>& notices() const { return notices_; }
   [[nodiscard]] std::vector<app::Notice>& noticesToFill() { return notices_; }
 
@@ -56,7 +56,7 @@ class TouchBench {
   }
 
  private:
-  std::unique_ptr<app::Touch> touch_;
+  std::unique_ptr<app::LoopClient> touch_;
   std::vector<app::Notice> notices_;
 };
 
