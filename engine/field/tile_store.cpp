@@ -124,7 +124,7 @@ void* TileStore::take(std::size_t bytes) noexcept {
   return slab;
 }
 
-void TileStore::letGo() noexcept {
+void TileStore::unlock() noexcept {
   const std::scoped_lock guard(lock_);
   const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   for (const Mapped& slab : slabs_) munlock(slab.at + page, slab.bytes - page);

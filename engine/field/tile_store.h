@@ -35,7 +35,7 @@ class TileStore final : public SlabSource {
   [[nodiscard]] void* take(std::size_t bytes) noexcept override;
 
   /// Unlocks every page, after mlockall locked them: the system must be able to write them out.
-  void letGo() noexcept;
+  void unlock() noexcept;
 
   /// Whether an address lies in a slab of this store.
   [[nodiscard]] bool holds(const void* address) const noexcept;

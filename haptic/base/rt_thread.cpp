@@ -44,15 +44,15 @@ struct RealTimeScope::Before {
   int latency_file = -1;
 };
 
-RealTimeScope::RealTimeScope(const RealTimeWish& wish) : before_(std::make_unique<Before>()) {
+RealTimeScope::RealTimeScope(const RealTimeRequest& request) : before_(std::make_unique<Before>()) {
   pthread_getaffinity_np(pthread_self(), sizeof before_->cores, &before_->cores);
   pthread_getschedparam(pthread_self(), &before_->policy, &before_->parameters);
-  pin(wish.core >= 0 ? wish.core : lastCore(before_->cores));
-  if (wish.lock_memory) lockMemory();
-  touchStack(wish.stack_bytes);
-  if (wish.hold_latency) holdLatency();
+  pin(request.core >= 0 ? request.core : lastCore(before_->cores));
+  if (request.lock_memory) lockMemory();
+  touchStack(request.stack_bytes);
+  if (request.hold_latency) holdLatency();
   // Last: the steps before it may take long.
-  if (wish.priority > 0) schedule(wish.priority);
+  if (request.priority > 0) schedule(request.priority);
 }
 
 RealTimeScope::~RealTimeScope() {

@@ -8,7 +8,7 @@
 namespace fettle::haptic {
 
 /// What a real-time thread requests from the system.
-struct RealTimeWish {
+struct RealTimeRequest {
   int core = -1;                         ///< core to stay on; -1 = the last of those the process may use
   int priority = 80;                     ///< SCHED_FIFO priority, 1 .. 99; 0 = normal scheduling
   bool lock_memory = true;               ///< pages stay in memory once touched (whole process)
@@ -37,7 +37,7 @@ struct RealTimeReport {
 /// system).
 class RealTimeScope {
  public:
-  explicit RealTimeScope(const RealTimeWish& wish);
+  explicit RealTimeScope(const RealTimeRequest& request);
   ~RealTimeScope();
   RealTimeScope(const RealTimeScope&) = delete;
   RealTimeScope& operator=(const RealTimeScope&) = delete;

@@ -133,7 +133,7 @@ class Hold {
     if (left >= kLeastShare * stiffness_) {
       StabilityProblem p =
           tooMuch("a stiffness of", scene_.stiffness_n_per_mm, "N/mm", texture ? " with this texture" : "");
-      p.largest = p.mended.stiffness_n_per_mm = roundedDown(left);
+      p.largest = p.corrected.stiffness_n_per_mm = roundedDown(left);
       p.remedy = fmt::format("at most {:.4g} N/mm", p.largest);
       return p;
     }
@@ -145,9 +145,9 @@ class Hold {
     const double square = spring * wave * wave;
     const double half = felt_.force_limit_n * kSplinePart * wave * wave;
     const double rest = stiffness_ - spring;
-    p.largest = p.mended.params.texture.amplitude_mm =
+    p.largest = p.corrected.params.texture.amplitude_mm =
         roundedDown(rest / (half + std::sqrt(half * half + square * rest)));
-    p.mended.stiffness_n_per_mm = spring;
+    p.corrected.stiffness_n_per_mm = spring;
     p.remedy =
         fmt::format("an amplitude of at most {:.4g} mm with {:.4g} N/mm of stiffness", p.largest, spring);
     return p;
@@ -160,17 +160,17 @@ class Hold {
     if (grip > 0.0 && left >= kLeastShare * stiffness_) {
       StabilityProblem p =
           tooMuch("friction with a stiffness of", grip, "N/mm", snap > 0.0 ? " with this edge snap" : "");
-      p.largest = p.mended.params.friction.stiffness_n_per_mm = roundedDown(left);
+      p.largest = p.corrected.params.friction.stiffness_n_per_mm = roundedDown(left);
       p.remedy = fmt::format("at most {:.4g} N/mm ([friction] stiffness_n_per_mm)", p.largest);
       return p;
     }
     StabilityProblem p = tooMuch("edge snap with a stiffness of", snap, "N/mm");
     const double held = std::min(grip, roundedDown(0.5 * stiffness_));
-    p.largest = p.mended.params.edge_snap.force_n =
+    p.largest = p.corrected.params.edge_snap.force_n =
         roundedDown(0.25 * scene_.params.edge_snap.reach_mm * (stiffness_ - held));
     p.remedy = fmt::format("a force of at most {:.4g} N ([edge_snap] force_n)", p.largest);
     if (grip > 0.0) {
-      p.mended.params.friction.stiffness_n_per_mm = held;
+      p.corrected.params.friction.stiffness_n_per_mm = held;
       p.remedy += fmt::format(" with {:.4g} N/mm of friction", held);
     }
     return p;
@@ -183,9 +183,9 @@ class Hold {
     p.largest = roundedDown(damping_);
     p.remedy = fmt::format("at most {:.4g} N s/mm of them together", p.largest);
     const double share = p.largest / asked;
-    p.mended.params.viscosity.damping_n_s_per_mm *= share;
-    p.mended.params.coupling.damping_n_s_per_mm *= share;
-    p.mended.params.passivity.max_damping_n_s_per_mm *= share;
+    p.corrected.params.viscosity.damping_n_s_per_mm *= share;
+    p.corrected.params.coupling.damping_n_s_per_mm *= share;
+    p.corrected.params.passivity.max_damping_n_s_per_mm *= share;
     return p;
   }
 
@@ -222,7 +222,7 @@ Scene stableScene(Scene scene, const DeviceProfile& profile, double rate_hz, dou
   for (int i = 0; i < 3; ++i) {
     auto problem = stabilityProblem(scene, profile, rate_hz, scale);
     if (!problem) break;
-    scene = std::move(problem->mended);
+    scene = std::move(problem->corrected);
   }
   return scene;
 }

@@ -26,7 +26,7 @@ struct StabilityProblem {
   /// That value, rounded down to four digits, so that the value displayed in `remedy` is stable when typed:
   /// stiffness [N/mm], amplitude [mm], force [N] or damping [N s/mm], whichever `what` is about.
   double largest = 0.0;
-  Scene mended;  ///< the scene with the numbers named in `remedy`, and only these, lowered to its values
+  Scene corrected;  ///< the scene with the numbers named in `remedy`, and only these, lowered to its values
 };
 
 /// The first value of the scene above what the device is known to hold stably; nothing when there is none.
@@ -49,7 +49,7 @@ struct StabilityProblem {
 [[nodiscard]] double largestStiffness(const Scene& scene, const DeviceProfile& profile, double rate_hz,
                                       double scale = 1.0);
 
-/// The scene with every problem corrected (StabilityProblem::mended): unchanged when there is none.
+/// The scene with every problem corrected (StabilityProblem::corrected): unchanged when there is none.
 [[nodiscard]] Scene stableScene(Scene scene, const DeviceProfile& profile, double rate_hz,
                                 double scale = 1.0);
 

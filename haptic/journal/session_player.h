@@ -11,7 +11,7 @@ namespace fettle::haptic {
 
 /// Result of replaying a session's journal.
 struct PlayedSession {
-  engine::Version field;     ///< the state at its end, the right way up
+  engine::Version field;     ///< the state at its end, upright
   std::int64_t state = 0;    ///< its number
   std::int64_t loops = 0;    ///< times the session was opened and edited
   std::int64_t ticks = 0;    ///< played

@@ -89,11 +89,11 @@ engine::Version HapticLoop::stop() {
 }
 
 void HapticLoop::main() noexcept {
-  const RealTimeScope real_time(settings_.wish);
+  const RealTimeScope real_time(settings_.real_time);
   const HandlerStack handler_stack;
   const DenormalScope denormals;
   // All pages are locked now; those of a field in a store must not be.
-  if (memory_->store) memory_->store->letGo();
+  if (memory_->store) memory_->store->unlock();
   const std::uint64_t waits_before = diskWaitsOfThisThread();
   const auto noteDiskWaits = [&] {
     disk_waits_.store(diskWaitsOfThisThread() - waits_before, std::memory_order_relaxed);

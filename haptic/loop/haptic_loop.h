@@ -24,7 +24,7 @@ class HapticLoop {
   struct Settings {
     LoopOptions options;
     double rate_hz = 1000.0;  ///< 1000 .. 10000
-    RealTimeWish wish;
+    RealTimeRequest real_time;
     PoolKeeper::Levels pool;
   };
 

@@ -77,9 +77,9 @@ class SimulatedPress : public Device {
 // What cyclictest measures: how late an absolute sleep ends.
 class PlainThread {
  public:
-  PlainThread(double rate_hz, const RealTimeWish& wish, LoopTiming& timing)
-      : thread_([this, rate_hz, wish, &timing] {
-          const RealTimeScope real_time(wish);
+  PlainThread(double rate_hz, const RealTimeRequest& request, LoopTiming& timing)
+      : thread_([this, rate_hz, request, &timing] {
+          const RealTimeScope real_time(request);
           report_ = real_time.report();
           Pacer pacer(rate_hz);
           while (!stop_.load(std::memory_order_relaxed)) {
@@ -165,11 +165,11 @@ class Measurement {
  private:
   enum class Which : std::uint8_t { kBoth, kLoop, kReference };
 
-  RealTimeWish wishFor(int core) const {
-    RealTimeWish wish;
-    wish.core = core;
-    wish.priority = options_.priority;
-    return wish;
+  RealTimeRequest requestFor(int core) const {
+    RealTimeRequest request;
+    request.core = core;
+    request.priority = options_.priority;
+    return request;
   }
 
   void chooseReference(double slice_s) {
@@ -189,7 +189,7 @@ class Measurement {
       return which == Which::kReference ? wait(seconds, nullptr) : withLoop(loop_core, seconds);
     };
     if (!report_.no_cyclictest.empty()) {
-      PlainThread plain(options_.rate_hz, wishFor(reference_core), reference_timing_);
+      PlainThread plain(options_.rate_hz, requestFor(reference_core), reference_timing_);
       const engine::Status done = alongside();
       const RealTimeReport granted = plain.stop();
       report_.reference.missing = granted.missing;
@@ -209,7 +209,7 @@ class Measurement {
     settings.options.tool = Tool::kSmooth;
     settings.options.limits = limitsFor(device.profile());
     settings.rate_hz = options_.rate_hz;
-    settings.wish = wishFor(core);
+    settings.real_time = requestFor(core);
     Scene scene = defaultScene();
     scene.brush_radius_samples = 2.0;
     auto created = HapticLoop::create(field, field, scene, device, settings);

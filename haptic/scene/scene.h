@@ -77,7 +77,7 @@ struct Scene {
   /// [height unit of the field], >= 0; none = no limit.
   std::optional<double> max_change;
 
-  /// Feel and edit the field upside down (z -> -z); the result comes out the right way up again.
+  /// Feel and edit the field upside down (z -> -z); the result is upright again.
   bool invert = false;
 
   /// Parameters of the other effects. Those of an effect that is not listed are ignored.

@@ -79,23 +79,23 @@ DeviceInput MouseStylus::read() noexcept {
   return readAt(steadyNs());
 }
 
-bool MouseStylus::accept(const Request& wish) noexcept {
+bool MouseStylus::accept(const Request& request) noexcept {
   switch (stage_) {
     case Stage::kHover:
-      now_ = wish;
-      if (wish.held && wish.over) stage_ = Stage::kLifted;
+      now_ = request;
+      if (request.held && request.over) stage_ = Stage::kLifted;
       return true;
     case Stage::kLifted:
     case Stage::kLanding:
     case Stage::kEnding:
       return false;
     case Stage::kStroke:
-      if (!wish.held) {
+      if (!request.held) {
         now_.held = false;
         stage_ = Stage::kEnding;
         return true;
       }
-      now_ = {wish.surface_mm, wish.press_mm, now_.tool, wish.over, true};
+      now_ = {request.surface_mm, request.press_mm, now_.tool, request.over, true};
       return true;
   }
   return true;

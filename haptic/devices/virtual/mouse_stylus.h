@@ -86,7 +86,7 @@ class MouseStylus final : public Device {
 
   void send() noexcept;
   void takeRequests() noexcept;
-  [[nodiscard]] bool accept(const Request& wish) noexcept;
+  [[nodiscard]] bool accept(const Request& request) noexcept;
   void move(double passed_s) noexcept;
 
   const MouseFeel feel_;

@@ -84,9 +84,9 @@ void SimulatedHand::advance() noexcept {
   const double b = spec_.damping_n_s_per_mm;
   const double inverse_mass = 1000.0 / spec_.mass_kg;
   for (int i = 0; i < substeps_; ++i) {
-    const glm::dvec3 wish = target_ + target_speed * (step_ * i);
+    const glm::dvec3 aim = target_ + target_speed * (step_ * i);
     const glm::dvec3 sum =
-        force_ + k * (wish - x_) + b * (target_speed - v_) - spec_.device_damping_n_s_per_mm * v_;
+        force_ + k * (aim - x_) + b * (target_speed - v_) - spec_.device_damping_n_s_per_mm * v_;
     v_ += sum * (inverse_mass * step_);
     const glm::dvec3 moved = v_ * step_;
     x_ += moved;

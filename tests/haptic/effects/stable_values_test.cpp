@@ -85,15 +85,15 @@ TEST(StableValues, TheLargestThatIsNamedIsStableAndLittleMoreIsNot) {
           }
           EXPECT_NE(problem->what.find(ask.word), std::string::npos) << problem->what;
           EXPECT_NE(problem->what.find(device.name), std::string::npos) << problem->what;
-          EXPECT_EQ(problem->largest, ask.number(problem->mended)) << which;
+          EXPECT_EQ(problem->largest, ask.number(problem->corrected)) << which;
           EXPECT_LT(problem->largest, ask.number(ask.scene)) << which;
           ASSERT_GT(problem->largest, 0.0) << which;
-          EXPECT_EQ(stabilityProblem(problem->mended, device, rate, scale), std::nullopt) << which;
-          EXPECT_EQ(sceneProblem(problem->mended), std::nullopt) << which;
+          EXPECT_EQ(stabilityProblem(problem->corrected, device, rate, scale), std::nullopt) << which;
+          EXPECT_EQ(sceneProblem(problem->corrected), std::nullopt) << which;
           // What is read there and typed is held as well.
           const std::size_t at = problem->remedy.find("at most ");
           ASSERT_NE(at, std::string::npos) << problem->remedy;
-          Scene typed = problem->mended;
+          Scene typed = problem->corrected;
           ask.set(typed, std::stod(problem->remedy.substr(at + 8)));
           EXPECT_EQ(stabilityProblem(typed, device, rate, scale), std::nullopt) << problem->remedy;
           EXPECT_DOUBLE_EQ(ask.number(typed), problem->largest) << problem->remedy;
@@ -141,11 +141,11 @@ TEST(StableValues, AWholeSceneIsMendedAndADeviceThatHoldsNothingIsToldOf) {
   scene.params.viscosity.damping_n_s_per_mm = scene.params.coupling.damping_n_s_per_mm = 1.0;
   for (const DeviceProfile& device : devices())
     for (const double scale : {0.01, 1.0, 30.0}) {
-      const Scene mended = stableScene(scene, device, 1000.0, scale);
-      EXPECT_EQ(stabilityProblem(mended, device, 1000.0, scale), std::nullopt) << device.name << scale;
-      EXPECT_EQ(sceneProblem(mended), std::nullopt) << device.name << scale;
-      EXPECT_EQ(mended.effects, scene.effects);
-      const double largest = largestStableScale(mended, device, 1000.0);
+      const Scene corrected = stableScene(scene, device, 1000.0, scale);
+      EXPECT_EQ(stabilityProblem(corrected, device, 1000.0, scale), std::nullopt) << device.name << scale;
+      EXPECT_EQ(sceneProblem(corrected), std::nullopt) << device.name << scale;
+      EXPECT_EQ(corrected.effects, scene.effects);
+      const double largest = largestStableScale(corrected, device, 1000.0);
       EXPECT_GE(largest * 1.001, scale) << device.name;
     }
   DeviceProfile nothing;

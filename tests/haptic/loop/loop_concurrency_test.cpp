@@ -139,8 +139,8 @@ TEST(HapticLoop, NothingIsLostAgainstAStallingDisplayAdoptionsAndUndoWithAHandTh
   HapticLoop::Settings settings;
   settings.options = tests::testOptions(Tool::kFeel);
   settings.options.event_capacity = 16;
-  settings.wish.priority = 0;
-  settings.wish.lock_memory = settings.wish.hold_latency = false;
+  settings.real_time.priority = 0;
+  settings.real_time.lock_memory = settings.real_time.hold_latency = false;
   settings.pool.tiles = 100;
   auto created = HapticLoop::create(start, start, scene, hand, settings);
   ASSERT_TRUE(created);
@@ -259,8 +259,8 @@ TEST(HapticLoop, StateSlotIsNeverTorn) {
   HapticLoop::Settings settings;
   settings.options = tests::testOptions(Tool::kFeel);
   settings.rate_hz = 5000.0;
-  settings.wish.priority = 0;
-  settings.wish.lock_memory = settings.wish.hold_latency = false;
+  settings.real_time.priority = 0;
+  settings.real_time.lock_memory = settings.real_time.hold_latency = false;
   auto created = HapticLoop::create(start, start, defaultScene(), hand, settings);
   ASSERT_TRUE(created);
   HapticLoop& loop = **created;

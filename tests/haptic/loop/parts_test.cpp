@@ -143,7 +143,7 @@ TEST(Pacer, KeepsTheRateAndHoldsItToItsRange) {
 
 TEST(RealTimeScope, SaysForEachThingEitherThatItIsThereOrHowToAllowIt) {
   std::thread([] {
-    const RealTimeScope scope{RealTimeWish{}};
+    const RealTimeScope scope{RealTimeRequest{}};
     const RealTimeReport& report = scope.report();
     const std::size_t there = (report.core >= 0 ? 1U : 0U) + (report.priority > 0 ? 1U : 0U) +
                               (report.memory_locked ? 1U : 0U) + (report.latency_held ? 1U : 0U);
@@ -154,11 +154,11 @@ TEST(RealTimeScope, SaysForEachThingEitherThatItIsThereOrHowToAllowIt) {
 
 TEST(RealTimeScope, CoreThatDoesNotExistIsReportedNotFatal) {
   std::thread([] {
-    RealTimeWish wish;
-    wish.core = 1000;
-    wish.priority = 0;
-    wish.lock_memory = wish.hold_latency = false;
-    const RealTimeScope scope(wish);
+    RealTimeRequest request;
+    request.core = 1000;
+    request.priority = 0;
+    request.lock_memory = request.hold_latency = false;
+    const RealTimeScope scope(request);
     ASSERT_EQ(scope.report().missing.size(), 1U);
     EXPECT_NE(scope.report().missing[0].find("core 1000"), std::string::npos);
   }).join();
