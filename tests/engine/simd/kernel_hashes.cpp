@@ -14,7 +14,7 @@
 #include "engine/field/builder.h"
 #include "engine/filter/catalogue.h"
 #include "engine/marks/edge_response.h"
-#include "haptic/contact/touch_lanes.h"
+#include "haptic/contact/sphere_contact_lanes.h"
 #include "render/detail/detail_tile.h"
 #include "render/plan/value_range.h"
 
@@ -170,7 +170,7 @@ void touches() {
   std::vector<double> z(kSide * kSide + haptic::kTouchLanes);
   for (double& height : z) height = noise();
   const haptic::LaneWindow window{z.data(), kSide, 3, 5, 1.0, 0.6};
-  const haptic::TouchKernels& kernels = haptic::touchKernels();
+  const haptic::SphereContactKernels& kernels = haptic::sphereContactKernels();
   Hash hash;
   for (int i = 0; i < 400; ++i) {
     const double reach = i % 3 == 0 ? 6.0 : 1.5;
