@@ -92,7 +92,7 @@ TEST(NoSession, ANewerFormatSaysToUpdate) {
   JobControl job;
   ASSERT_TRUE(saveSession(somePlay().session, path, job));
   runSql(path, "PRAGMA user_version=2");
-  expectRefused(path, "written by a newer Fettle (format 2, this one knows 1)");
+  expectRefused(path, "written by a newer Fettle (format 2, supported up to 1)");
 }
 
 TEST(Damage, RowsThatWereChangedAreNoticed) {
