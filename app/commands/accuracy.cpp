@@ -8,6 +8,7 @@
 #include "app/commands/accuracy_page/plot.h"
 #include "app/commands/command.h"
 #include "app/commands/plots/gnuplot.h"
+#include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "bench/accuracy/studies.h"
 #include "bench/machine.h"

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/scan_options.h"
+#include "app/commands/output_checks.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
 #include "engine/formats/formats.h"

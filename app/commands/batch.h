@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/commands/command.h"
-#include "app/commands/scan_options.h"
+#include "app/commands/output_checks.h"
 
 namespace fettle::app {
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"

@@ -7,7 +7,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/demo/demo.h"
-#include "app/commands/scan_options.h"
+#include "app/commands/typed_values.h"
 #include "app/work/session_guard.h"
 #include "engine/io/files/atomic_file.h"
 

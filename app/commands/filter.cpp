@@ -10,7 +10,10 @@
 
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
+#include "app/commands/original_scan.h"
+#include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/typed_values.h"
 #include "app/commands/write_options.h"
 #include "app/terminal.h"
 #include "engine/filter/catalogue.h"

@@ -10,6 +10,8 @@
 
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/still_picture.h"
 #include "app/terminal.h"

@@ -2,6 +2,8 @@
 #include <memory>
 
 #include "app/commands/command.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/work/streams.h"
 #include "engine/io/raster/marks.h"

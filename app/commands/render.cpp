@@ -5,8 +5,11 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/still_picture.h"
+#include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
 #include "engine/io/raster/marks.h"

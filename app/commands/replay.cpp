@@ -7,6 +7,9 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/original_scan.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/live/placement.h"
 #include "app/terminal.h"

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
-#include "app/commands/scan_options.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/scan_files.h"
+#include "app/commands/typed_values.h"
 #include "engine/io/raster/marks.h"
 #include "engine/scanner/scanner.h"
 

@@ -2,6 +2,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/window/workstation.h"
 #include "haptic/loop/pacer.h"

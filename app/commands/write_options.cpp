@@ -1,7 +1,5 @@
 #include "app/commands/write_options.h"
 
-#include "app/commands/scan_options.h"
-
 namespace fettle::app {
 
 void addCompressOption(Command command, engine::ExportOptions& writing) {

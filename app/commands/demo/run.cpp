@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/demo/demo.h"
-#include "app/commands/scan_options.h"
+#include "app/commands/scan_files.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/raster/marks.h"
 #include "haptic/base/strokes.h"

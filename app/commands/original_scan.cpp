@@ -1,0 +1,86 @@
+#include "app/commands/original_scan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "app/commands/scan_files.h"
+#include "app/work/open_document.h"
+
+namespace fettle::app {
+
+void addOriginalOption(Command command, std::string& original) {
+  command.option("--original", original,
+                 "The scan that the work began with: changes are limited against it; without it against "
+                 "what is read, or against the original that a session has");
+}
+
+namespace {
+
+// Whether files of a format say where samples lie.
+bool keepsPlace(const engine::Imported& scan) {
+  return scan.format != "PNG" && scan.format != "STL";
+}
+
+// How far two numbers are apart. A format that loses the unit keeps the number: then that is what must agree.
+double apart(double a, double b, const engine::Grid& of_a, const engine::Grid& of_b) {
+  return std::min(std::abs(a - b),
+                  std::abs(a * of_a.lateral_unit.mm - b * of_b.lateral_unit.mm) / of_b.lateral_unit.mm);
+}
+
+// Whether two grids of the same sides put each sample in the same place, but for the rounding of a format.
+engine::Status checkSamePlace(const engine::Grid& original, const engine::Grid& scan,
+                              const std::string& where) {
+  constexpr double kPartOfSample = 0.05;
+  constexpr const char* kRemedy = "give the scan that this one was made from";
+  const auto refused = [&](const char* what, double ax, double ay, double bx, double by) {
+    return engine::inputError(
+        fmt::format(
+            "the {} of the original is {:.10g} x {:.10g} {} and that of the scan {:.10g} x {:.10g} {}", what,
+            ax, ay, original.lateral_unit.name, bx, by, scan.lateral_unit.name),
+        where, kRemedy);
+  };
+  // At the far side, where a wrong spacing adds up.
+  if (apart(original.spacing_x, scan.spacing_x, original, scan) * scan.width >
+          kPartOfSample * scan.spacing_x ||
+      apart(original.spacing_y, scan.spacing_y, original, scan) * scan.height >
+          kPartOfSample * scan.spacing_y)
+    return refused("spacing", original.spacing_x, original.spacing_y, scan.spacing_x, scan.spacing_y);
+  if (apart(original.origin_x, scan.origin_x, original, scan) > kPartOfSample * scan.spacing_x ||
+      apart(original.origin_y, scan.origin_y, original, scan) > kPartOfSample * scan.spacing_y)
+    return refused("origin", original.origin_x, original.origin_y, scan.origin_x, scan.origin_y);
+  return {};
+}
+
+}  // namespace
+
+engine::Result<engine::Version> originalOf(const engine::Imported& imported, const std::string& given,
+                                           const ScanOptions& reading, engine::JobControl& job) {
+  if (given.empty()) return imported.original.value_or(imported.field);
+  if (imported.original)
+    return engine::inputError("a session has its own original", given, "leave --original out");
+  const auto other = loadScan(given, reading, job);
+  if (!other) return tl::unexpected(other.error());
+  const engine::Version& original = other->original.value_or(other->field);
+  const engine::Grid &is = original.grid(), &wanted = imported.field.grid();
+  if (is.width != wanted.width || is.height != wanted.height)
+    return engine::inputError(fmt::format("the original has {} x {} samples and the scan {} x {}", is.width,
+                                          is.height, wanted.width, wanted.height),
+                              given, "give the scan that this one was made from");
+  if (!(is.height_unit == wanted.height_unit))
+    return engine::inputError(fmt::format("heights of the original are in {} and those of the scan in {}",
+                                          is.height_unit.name, wanted.height_unit.name),
+                              given, "convert one of them, or say --unit where a file states none");
+  if (keepsPlace(*other) && keepsPlace(imported))
+    if (auto same = checkSamePlace(is, wanted, given); !same) return tl::unexpected(same.error());
+  return original.withGrid(wanted);
+}
+
+engine::Status checkOriginal(const std::string& given, bool limited, const std::string& out) {
+  if (given.empty() || limited || isSessionPath(out)) return {};
+  return engine::inputError("the original is what changes are limited against, and nothing limits them",
+                            "--original", "give --max-change, or a scene with max_change, or leave it out");
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,49 @@
+#include "app/commands/scan_files.h"
+
+#include <fmt/format.h>
+
+#include "app/terminal.h"
+#include "app/work/outputs.h"
+#include "app/work/streams.h"
+#include "engine/formats/formats.h"
+
+namespace fettle::app {
+
+void addStreamFormat(Command command, std::string& to) {
+  command.option("--to", to, "With - for OUT, standard output: its format, as extension");
+}
+
+namespace {
+
+engine::Result<engine::Imported> warned(engine::Result<engine::Imported> imported, const std::string& name) {
+  if (imported)
+    for (const std::string& warning : imported->warnings) warn(fmt::format("{}: {}", name, warning));
+  return imported;
+}
+
+}  // namespace
+
+engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
+                                          engine::JobControl& job) {
+  const auto import = importOptions(options);
+  if (!import) return tl::unexpected(import.error());
+  if (!isStream(path)) return warned(engine::importField(path, *import, job), path);
+  const auto input = StandardInput::read(options.from.empty() ? "" : withDot(options.from), job);
+  if (!input) return tl::unexpected(input.error());
+  auto imported = engine::importField(input->path(), *import, job);
+  if (!imported) return tl::unexpected(input->renamed(imported.error()));
+  return warned(std::move(imported), shownInput(path));
+}
+
+engine::Status saveField(const engine::Version& field, const std::string& path, engine::JobControl& job,
+                         const engine::ExportOptions& writing, const std::string& to) {
+  return writeTo(path, withDot(to), job, [&](const std::string& file) -> engine::Status {
+    auto written = engine::exportField(field, file, writing, job);
+    if (!written) return tl::unexpected(written.error());
+    for (const std::string& warning : written->warnings)
+      warn(fmt::format("{}: {}", shownOutput(path), warning));
+    return {};
+  });
+}
+
+}  // namespace fettle::app

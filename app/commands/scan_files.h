@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+
+#include "app/commands/command.h"
+#include "app/work/scan_reading.h"
+#include "engine/field/version.h"
+#include "engine/io/export.h"
+#include "engine/io/import.h"
+
+namespace fettle::app {
+
+/// Imports a scan, "-" from standard input; what the importer warns of goes to stderr, each line naming the
+/// file.
+[[nodiscard]] engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
+                                                        engine::JobControl& job);
+
+/// Writes a field, to "-" in the format of the extension `to`; what the format could not keep goes to stderr.
+/// With `writing.original` a session begins with that.
+[[nodiscard]] engine::Status saveField(const engine::Version& field, const std::string& path,
+                                       engine::JobControl& job, const engine::ExportOptions& writing = {},
+                                       const std::string& to = {});
+
+/// --to EXT for a command whose OUT may be "-".
+void addStreamFormat(Command command, std::string& to);
+
+}  // namespace fettle::app

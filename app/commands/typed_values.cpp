@@ -1,0 +1,50 @@
+#include "app/commands/typed_values.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "engine/io/import.h"
+
+namespace fettle::app {
+
+engine::Result<double> parseHeight(const std::string& text, const engine::Grid& grid,
+                                   const std::string& option) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || !std::isfinite(value) || value < 0.0)
+    return engine::inputError(fmt::format("{} is not a length", text), option,
+                              "give a number at or above 0, such as 0.5 or 20um");
+  const std::string suffix(end, text.data() + text.size());
+  if (suffix.empty()) return value;
+  const auto unit = engine::lengthUnitFromName(suffix);
+  if (!unit)
+    return engine::inputError(fmt::format("unknown unit {}", suffix), option,
+                              "take one of nm, um, mm, cm, m, in, ft");
+  return value * unit->mm / grid.height_unit.mm;
+}
+
+std::string seedProblem(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  return error == std::errc{} && end == text.data() + text.size()
+             ? ""
+             : "give a whole number from 0 to 18446744073709551615";
+}
+
+engine::Result<std::pair<int, int>> parseSize(const std::string& text, const std::string& option,
+                                              SideRange sides) {
+  int width = 0;
+  int height = 0;
+  char rest = 0;
+  const auto fits = [&](int side) { return side >= sides.smallest && side <= sides.largest; };
+  if (std::sscanf(text.c_str(), "%6dx%6d%c", &width, &height, &rest) != 2 || !fits(width) || !fits(height))
+    return engine::inputError(fmt::format("{} is not a size", text), option,
+                              fmt::format("give WIDTHxHEIGHT, each {} to {}", sides.smallest, sides.largest));
+  return std::pair{width, height};
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "engine/base/error.h"
+#include "engine/field/grid.h"
+#include "render/config.h"
+
+namespace fettle::app {
+
+/// A length as the user types it, in height units of the field: "0.5" is in the field's own height unit,
+/// "0.5mm", "20um" in the unit that is named. Errors: not a number, unknown unit, negative, not finite.
+[[nodiscard]] engine::Result<double> parseHeight(const std::string& text, const engine::Grid& grid,
+                                                 const std::string& option);
+
+/// Sides that a size may have, both ends included.
+struct SideRange {
+  int smallest;
+  int largest;
+};
+inline constexpr SideRange kFieldSides{1, engine::Grid::kMaxSide};
+inline constexpr SideRange kWindowSides{render::kSmallestPicture, render::kLargestPiece};
+inline constexpr SideRange kPictureSides{render::kSmallestPicture, render::kLargestPicture};
+
+/// "WIDTHxHEIGHT", both within `sides`. Errors name the option.
+[[nodiscard]] engine::Result<std::pair<int, int>> parseSize(const std::string& text,
+                                                            const std::string& option, SideRange sides);
+
+/// What is wrong with a seed as typed; empty when nothing is. For Option::check.
+[[nodiscard]] std::string seedProblem(const std::string& text);
+
+}  // namespace fettle::app
