@@ -2,8 +2,6 @@
 
 #include "app/commands/command.h"
 #include "haptic/devices/enumerate.h"
-#include "haptic/devices/virtual/mouse_stylus.h"
-#include "haptic/devices/virtual/simulated_hand.h"
 
 namespace fettle::app {
 
@@ -64,15 +62,17 @@ Report builtIn(const std::string& id, const std::string& name, const std::string
 engine::Result<Report> devices() {
   Report rows = Report::array();
   for (const DeviceInfo& d : haptic::listDevices()) rows.push_back(pluggedIn(d));
-  // Spacemouse, woodenhaptics and the like need no path: the first one found is taken.
-  rows.push_back(builtIn("mouse", "mouse as a stylus", "needs a window",
-                         "the cursor points at the picture: see fettle view --help",
-                         haptic::MouseStylus().profile()));
-  rows.push_back(builtIn("hand:STROKES", "simulated hand in closed loop, on the way of a strokes file",
-                         "ready", "", haptic::SimulatedHand({haptic::HandTarget{}}, {}).profile()));
-  DeviceProfile replay;
-  replay.space = haptic::DeviceSpace::kField;
-  rows.push_back(builtIn("replay:STROKES", "strokes file in real time", "ready", "", replay));
+  // What can be plugged in needs no path: the first one found is taken.
+  for (const haptic::KnownDriver& driver : haptic::knownDrivers()) {
+    if (driver.kind != DeviceKind::kOther) continue;
+    DeviceProfile profile;  // without strokes a replay is nowhere
+    profile.space = haptic::DeviceSpace::kField;
+    if (const auto device = driver.open("", 1000.0)) profile = (*device)->profile();
+    rows.push_back(builtIn(
+        fmt::format("{}{}{}", driver.word, driver.argument.empty() ? "" : ":", driver.argument),
+        std::string(driver.title), driver.needs_window ? "needs a window" : "ready",
+        driver.needs_window ? "the cursor points at the picture: see fettle view --help" : "", profile));
+  }
   return Report{{"devices", rows}};
 }
 

@@ -48,13 +48,6 @@ struct RecordArguments {
   ScanOptions reading;
 };
 
-constexpr std::array kTools{haptic::Tool::kFeel, haptic::Tool::kSmooth, haptic::Tool::kMark,
-                            haptic::Tool::kUnmark};
-
-haptic::Tool toolOf(const std::string& name) {
-  return *std::find_if(kTools.begin(), kTools.end(), [&](auto t) { return haptic::toolName(t) == name; });
-}
-
 // What the word --device stands for, and what follows from it.
 struct ChosenDevice {
   std::unique_ptr<haptic::Device> device;
@@ -175,7 +168,7 @@ engine::Result<LiveSettings> settingsFor(const RecordArguments& options, const C
   haptic::LoopOptions& loop = settings.loop.options;
   loop.limits = sessionLimits(limited);
   loop.workspace = *workspace;
-  loop.tool = toolOf(options.tool);
+  loop.tool = *haptic::toolNamed(options.tool);
   loop.tool_switch =
       options.tool_switch == "always" ? haptic::ToolSwitch::kAlways : haptic::ToolSwitch::kButton;
   loop.edit_rule = profile.gives_force ? haptic::EditRule::kWhileForceIsGiven : haptic::EditRule::kAnytime;
@@ -389,16 +382,15 @@ void addRecord(Command root, Chosen& chosen) {
   command.option("OUT", options->out, "The field after it, format by extension").check(fileName());
   command
       .option("--device", options->device,
-              "An id of fettle devices, woodenhaptics, serial, spacemouse, hand:STROKES (simulated, in "
-              "closed loop) or replay:STROKES (in real time)")
+              fmt::format("An id of fettle devices or one of {}", haptic::driverWords()))
       .required();
   command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)")
       .check(fileName());
   command.option("--marks", options->marks, "Picture of marks to start from").check(fileName());
   command.option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF")
       .check(fileName());
-  command.option("--tool", options->tool, "feel, smooth, mark or unmark, at the start")
-      .check(oneOf({"feel", "smooth", "mark", "unmark"}))
+  command.option("--tool", options->tool, "The tool at the start")
+      .check(oneOf({haptic::kToolNames.begin(), haptic::kToolNames.end()}))
       .showDefault();
   command
       .option("--switch", options->tool_switch,

@@ -5,6 +5,7 @@
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/window/workstation.h"
+#include "haptic/devices/enumerate.h"
 #include "haptic/loop/pacer.h"
 #include "haptic/scene/scene.h"
 
@@ -55,7 +56,7 @@ void addView(Command root, Chosen& chosen) {
   command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
   command
       .option("--device", options->view.touch.device,
-              "mouse, an id of fettle devices, woodenhaptics, serial, spacemouse, hand:STROKES")
+              "An id of fettle devices or one of " + haptic::driverWords())
       .showDefault();
   command.option("--rate", options->view.touch.rate_hz, "Ticks of the loop a second, 1000 to 10000")
       .check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "engine/io/files/atomic_file.h"
 
@@ -22,7 +23,6 @@ using engine::inputError;
 
 constexpr std::string_view kStrokesHeader = "t,x,y,z,tool";
 constexpr std::string_view kForcesHeader = "t,proxy_x,proxy_y,proxy_z,fx,fy,fz,contact";
-constexpr std::array<std::string_view, kTools> kToolNames = {"feel", "smooth", "mark", "unmark"};
 
 // Rows are collected to about this many bytes before they are written to the disk.
 constexpr std::size_t kWriteBytes = std::size_t{1} << 20;
@@ -87,12 +87,11 @@ std::optional<std::string> parseRow(std::string_view row, StrokeSample& out) {
     at = stop + 1;
   }
   const std::string_view tool(at, static_cast<std::size_t>(end - at));
-  for (std::size_t i = 0; i < kToolNames.size(); ++i)
-    if (tool == kToolNames[i]) {
-      out = {numbers[0], {numbers[1], numbers[2], numbers[3]}, static_cast<Tool>(i)};
-      return std::nullopt;
-    }
-  return fmt::format("the tool \"{}\" is not one of feel, smooth, mark, unmark", shown(tool));
+  const std::optional<Tool> known = toolNamed(tool);
+  if (!known)
+    return fmt::format("the tool \"{}\" is not one of {}", shown(tool), fmt::join(kToolNames, ", "));
+  out = {numbers[0], {numbers[1], numbers[2], numbers[3]}, *known};
+  return std::nullopt;
 }
 
 // Collects rows and writes them in large pieces.
@@ -140,8 +139,10 @@ class RowWriter {
 
 }  // namespace
 
-std::string_view toolName(Tool tool) noexcept {
-  return kToolNames[static_cast<std::size_t>(tool)];
+std::optional<Tool> toolNamed(std::string_view word) noexcept {
+  for (std::size_t i = 0; i < kToolNames.size(); ++i)
+    if (word == kToolNames[i]) return static_cast<Tool>(i);
+  return std::nullopt;
 }
 
 engine::Result<std::vector<StrokeSample>> readStrokes(const std::string& path) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,10 +23,15 @@ enum class Tool : std::uint8_t {
   kUnmark,  ///< takes samples out of the keep mask
 };
 
-inline constexpr int kTools = 4;
+/// The words of the tools, in the order of Tool: of strokes files and the command line.
+inline constexpr std::array<std::string_view, 4> kToolNames = {"feel", "smooth", "mark", "unmark"};
+inline constexpr int kTools = static_cast<int>(kToolNames.size());
 
-/// "feel", "smooth", "mark", "unmark".
-[[nodiscard]] std::string_view toolName(Tool tool) noexcept;
+[[nodiscard]] constexpr std::string_view toolName(Tool tool) noexcept {
+  return kToolNames[static_cast<std::size_t>(tool)];
+}
+/// Nothing where no tool has the word.
+[[nodiscard]] std::optional<Tool> toolNamed(std::string_view word) noexcept;
 
 /// One tick of a recorded stylus session.
 struct StrokeSample {

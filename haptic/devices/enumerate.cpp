@@ -84,21 +84,70 @@ engine::Result<std::unique_ptr<Device>> openWooden(std::unique_ptr<ReportSource>
   return std::make_unique<WoodenHaptics>(*config, std::move(source), form);
 }
 
-engine::Result<std::unique_ptr<Device>> openKind(DeviceKind kind, const std::string& which) {
-  switch (kind) {
-    case DeviceKind::kWoodenHaptics:
-      return openWooden(std::make_unique<HidSource>(HidKind::kWoodenHaptics, which), std::nullopt);
-    case DeviceKind::kWoodenSerial:
-      return openWooden(std::make_unique<SerialSource>(which), WoodenForm::kS);
-    case DeviceKind::kSpaceMouse:
-      return std::make_unique<SpaceMouse>(std::make_unique<HidSource>(HidKind::kSpaceMouse, which));
-    case DeviceKind::kOther:
-      break;
-  }
-  return engine::inputError("there is no driver for this device", which, "see fettle devices");
+using Opened = engine::Result<std::unique_ptr<Device>>;
+
+// Of hardware: a path or a serial number, else the first that is found.
+Opened openWoodenHid(const std::string& which, double) {
+  return openWooden(std::make_unique<HidSource>(HidKind::kWoodenHaptics, which), std::nullopt);
 }
 
+Opened openWoodenSerial(const std::string& path, double) {
+  return openWooden(std::make_unique<SerialSource>(path), WoodenForm::kS);
+}
+
+Opened openSpaceMouse(const std::string& which, double) {
+  return std::make_unique<SpaceMouse>(std::make_unique<HidSource>(HidKind::kSpaceMouse, which));
+}
+
+// Follows the positions of a strokes file, with its tools; without one it rests at (0, 0, 0).
+Opened openHand(const std::string& file, double loop_rate_hz) {
+  if (file.empty()) return std::make_unique<SimulatedHand>(std::vector<HandTarget>{HandTarget{}}, HandSpec{});
+  const auto strokes = readStrokes(file);
+  if (!strokes) return tl::unexpected(strokes.error());
+  std::vector<HandTarget> path = handPath(*strokes);
+  if (path.empty())
+    return engine::inputError("the strokes contain no valid position", file, "give a recorded session");
+  HandSpec spec;
+  spec.rate_hz = loop_rate_hz;
+  return std::make_unique<SimulatedHand>(std::move(path), spec);
+}
+
+Opened openReplay(const std::string& file, double) {
+  if (file.empty()) return engine::inputError("no strokes are named", "replay", "give replay:STROKES");
+  auto strokes = readStrokes(file);
+  if (!strokes) return tl::unexpected(strokes.error());
+  return std::make_unique<ReplayDevice>(std::move(*strokes));
+}
+
+Opened openMouse(const std::string&, double) {
+  return std::make_unique<MouseStylus>();
+}
+
+constexpr KnownDriver kDrivers[] = {
+    {"woodenhaptics", "", "WoodenHaptics, AluHaptics, Polhem (mbed boards, HID)", DeviceKind::kWoodenHaptics,
+     true, false, openWoodenHid},
+    {"serial", "", "the same family, current boards (USB serial)", DeviceKind::kWoodenSerial, true, false,
+     openWoodenSerial},
+    {"spacemouse", "", "3Dconnexion SpaceMouse", DeviceKind::kSpaceMouse, false, false, openSpaceMouse},
+    {"mouse", "", "mouse as a stylus", DeviceKind::kOther, false, true, openMouse},
+    {"hand", "STROKES", "simulated hand in closed loop, on the way of a strokes file", DeviceKind::kOther,
+     true, false, openHand},
+    {"replay", "STROKES", "strokes file in real time", DeviceKind::kOther, false, false, openReplay},
+};
+
 }  // namespace
+
+std::span<const KnownDriver> knownDrivers() noexcept {
+  return kDrivers;
+}
+
+std::string driverWords() {
+  std::string words;
+  for (const KnownDriver& driver : kDrivers)
+    words += fmt::format("{}{}{}{}", words.empty() ? "" : ", ", driver.word,
+                         driver.argument.empty() ? "" : ":", driver.argument);
+  return words;
+}
 
 std::string_view deviceKindName(DeviceKind kind) noexcept {
   switch (kind) {
@@ -174,33 +223,17 @@ engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word, doub
   const std::size_t colon = word.find(':');
   const std::string_view head = std::string_view(word).substr(0, colon);
   const std::string rest = colon == std::string::npos ? std::string() : word.substr(colon + 1);
-  if (head == "woodenhaptics") return openKind(DeviceKind::kWoodenHaptics, rest);
-  if (head == "serial") return openKind(DeviceKind::kWoodenSerial, rest);
-  if (head == "spacemouse") return openKind(DeviceKind::kSpaceMouse, rest);
-  if (word == "mouse") return std::make_unique<MouseStylus>();
-  if (word == "hand")
-    return std::make_unique<SimulatedHand>(std::vector<HandTarget>{HandTarget{}}, HandSpec{});
-  if (head == "hand" && !rest.empty()) {
-    const auto strokes = readStrokes(rest);
-    if (!strokes) return tl::unexpected(strokes.error());
-    std::vector<HandTarget> path = handPath(*strokes);
-    if (path.empty())
-      return engine::inputError("the strokes contain no valid position", rest, "give a recorded session");
-    HandSpec spec;
-    spec.rate_hz = loop_rate_hz;
-    return std::make_unique<SimulatedHand>(std::move(path), spec);
+  for (const KnownDriver& driver : kDrivers)
+    if (head == driver.word && (colon == std::string::npos || !rest.empty()))
+      return driver.open(rest, loop_rate_hz);
+  for (const DeviceInfo& d : listDevices()) {
+    if (d.path != word) continue;
+    for (const KnownDriver& driver : kDrivers)
+      if (d.kind != DeviceKind::kOther && d.kind == driver.kind) return driver.open(word, loop_rate_hz);
+    return engine::inputError("there is no driver for this device", word, "see fettle devices");
   }
-  if (head == "replay" && !rest.empty()) {
-    auto strokes = readStrokes(rest);
-    if (!strokes) return tl::unexpected(strokes.error());
-    return std::make_unique<ReplayDevice>(std::move(*strokes));
-  }
-  for (const DeviceInfo& d : listDevices())
-    if (d.path == word) return openKind(d.kind, word);
-  return engine::inputError(
-      "there is no such device", word,
-      "use woodenhaptics, serial, spacemouse, mouse, hand:FILE, replay:FILE or a path that "
-      "fettle devices shows");
+  return engine::inputError("there is no such device", word,
+                            fmt::format("use {} or a path that fettle devices shows", driverWords()));
 }
 
 }  // namespace fettle::haptic

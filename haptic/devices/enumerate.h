@@ -48,16 +48,26 @@ struct DeviceInfo {
 /// device is listed even if bus, interface or maker are unknown. Takes some milliseconds.
 [[nodiscard]] std::vector<DeviceInfo> listDevices();
 
-/// A device by the word a user gives, not started yet:
-///   woodenhaptics[:WHICH]   WHICH = path or serial number; configuration from ~/woodenhaptics.json if it is
-///                           there, else woody_v2015
-///   serial[:PATH]           WoodenHaptics on a serial board
-///   spacemouse[:WHICH]
-///   mouse                   MouseStylus
-///   hand                    SimulatedHand resting at (0, 0, 0)
-///   hand:FILE               SimulatedHand that follows the positions of a strokes file, with its tools
-///   replay:FILE             ReplayDevice in real time
-///   a path of listDevices() the device there
+/// One device that Fettle can drive: what openDevice(), `fettle devices`, the help of --device and
+/// docs/devices.md (a test compares it) know of it.
+struct KnownDriver {
+  std::string_view word;
+  std::string_view argument;  ///< required after word and colon, as "STROKES"; empty: none is
+  std::string_view title;
+  DeviceKind kind = DeviceKind::kOther;  ///< of what is plugged in; kOther: built in
+  bool gives_force = false;              ///< of what is plugged in
+  bool needs_window = false;             ///< points at its picture
+  /// Not started yet. `argument`: what the user gave after the colon, may be empty:
+  /// of hardware a path or serial number, of others a strokes file.
+  engine::Result<std::unique_ptr<Device>> (*open)(const std::string& argument, double loop_rate_hz);
+};
+[[nodiscard]] std::span<const KnownDriver> knownDrivers() noexcept;
+
+/// What a user may say: "woodenhaptics, serial, spacemouse, hand:STROKES, ...".
+[[nodiscard]] std::string driverWords();
+
+/// A device by the word a user gives, not started yet: a word of knownDrivers(), with its argument after a
+/// colon, or a path of listDevices().
 /// A device that is not plugged in is no error, it may be plugged in later; a path that does not exist is
 /// one.
 /// Errors (kInput): an unknown word, a bad configuration or strokes file.

@@ -16,6 +16,7 @@
 #include "haptic/devices/virtual/mouse_stylus.h"
 #include "haptic/devices/virtual/replay_device.h"
 #include "haptic/devices/workspace.h"
+#include "tests/support/markdown_table.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::haptic {
@@ -396,6 +397,20 @@ TEST(KnownDevices, UnknownDeviceGetsTheLowestLimitsOfAll) {
     EXPECT_LE(unknown.max_damping_n_s_per_mm, d.max_damping_n_s_per_mm) << d.name;
   }
   EXPECT_EQ(knownProfile("falcon")->max_force_n, 8.0);
+}
+
+TEST(OpenDevice, DriversAreThoseOfTheDocuments) {
+  const auto rows = tests::markdownTable("docs/devices.md", "| device | word |");
+  ASSERT_EQ(rows.size(), knownDrivers().size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const KnownDriver& driver = knownDrivers()[i];
+    EXPECT_EQ(rows[i][0], driver.title);
+    const std::string argument = driver.argument.empty() ? "" : ":" + std::string(driver.argument);
+    EXPECT_EQ(rows[i][1], "`" + std::string(driver.word) + argument + "`");
+    if (driver.kind != DeviceKind::kOther) {
+      EXPECT_EQ(rows[i][3], driver.gives_force ? "yes" : "no");
+    }
+  }
 }
 
 TEST(OpenDevice, WordsNameDevicesAndWrongOnesAreRefused) {
