@@ -8,6 +8,8 @@
 #include <gdal.h>
 #include <gdal_frmts.h>
 
+#include "engine/base/stopwatch.h"
+
 namespace fettle::bench {
 
 namespace {
@@ -96,7 +98,7 @@ engine::Result<std::optional<double>> secondsOfGdal(const std::string& path, std
   for (const bool whole : {true, false}) {
     const auto start = std::chrono::steady_clock::now();
     if (!readBand(path, whole, buffer)) return engine::inputError("the file cannot be read", path);
-    const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double took = engine::secondsSince(start);
     best = whole ? took : std::min(best, took);
   }
   return best;

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/stopwatch.h"
+
 namespace fettle::bench {
 
 std::string machine() {
@@ -35,7 +37,7 @@ double copyBytesPerSecond() {
   for (int i = 0; i < 5; ++i) {
     const auto start = std::chrono::steady_clock::now();
     std::memcpy(to.data(), from.data(), kBytes);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds = engine::secondsSince(start);
     best = std::max(best, static_cast<double>(kBytes) / seconds);
   }
   return best;

@@ -12,13 +12,14 @@
 #include "app/work/streams.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/input_file.h"
 
 namespace fettle::app {
 
 namespace {
 
 bool canBeWritten(const std::string& path) {
-  const std::string extension = extensionOf(path);
+  const std::string extension = engine::extensionOf(path);
   return std::ranges::any_of(engine::formats(), [&](const engine::FormatInfo& format) {
     return format.writes && std::ranges::find(format.extensions, extension) != format.extensions.end();
   });

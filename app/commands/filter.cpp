@@ -16,6 +16,7 @@
 #include "app/commands/typed_values.h"
 #include "app/commands/write_options.h"
 #include "app/terminal.h"
+#include "engine/base/stopwatch.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
 #include "engine/io/raster/marks.h"
@@ -89,7 +90,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   spec = *ready;
   const auto start = std::chrono::steady_clock::now();
   const auto filtered = engine::applyFilter(field, *original, spec, job);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = engine::secondsSince(start);
   if (!filtered) return tl::unexpected(filtered.error());
   engine::ExportOptions writing = options.writing;
   writing.original = *original;

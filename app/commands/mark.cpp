@@ -6,6 +6,7 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/work/streams.h"
+#include "engine/base/stopwatch.h"
 #include "engine/io/raster/marks.h"
 #include "engine/marks/edge_suggestion.h"
 
@@ -60,7 +61,7 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     if (!inverted) return tl::unexpected(inverted.error());
     field = *std::move(inverted);
   }
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = engine::secondsSince(start);
   const auto written = writeTo(options.out, ".png", job,
                                [&](const std::string& file) { return engine::exportMarks(field, file); });
   if (!written) return tl::unexpected(written.error());

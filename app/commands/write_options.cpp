@@ -18,7 +18,7 @@ void addCompressOption(Command command, engine::ExportOptions& writing) {
 engine::Status checkCompress(const engine::ExportOptions& writing, const std::vector<BatchTask>& tasks) {
   if (!writing.tiff_compression) return {};
   for (const BatchTask& task : tasks)
-    if (const std::string extension = extensionOf(task.out);
+    if (const std::string extension = engine::extensionOf(task.out);
         !extension.empty() && extension != ".tif" && extension != ".tiff")
       return engine::inputError("only .tif is compressed in the way that is asked for", task.out,
                                 "write that or leave --compress out");

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/stopwatch.h"
 #include "haptic/safety/last_resort.h"
 
 namespace fettle::app {
@@ -119,7 +120,7 @@ class LiveSession {
       while (const auto key = keys_.next()) press(*key);
       watch();
       if (settings_.arm == ArmPolicy::kAuto) armByItself();
-      const double lived = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      const double lived = engine::secondsSince(begin);
       status_.show(now_, loop_.timing(), lived, lived > 0.0 ? static_cast<double>(now_.tick) / lived : 0.0);
       std::this_thread::sleep_for(kPollInterval);
     }

@@ -10,9 +10,8 @@ namespace {
 
 using haptic::Tool;
 
-constexpr double kKey_px = 40.0;        // what an arrow key moves the view by
-constexpr double kBrushStep = 1.0;      // [ and ]
-constexpr double kLargestBrush = 64.0;  // [samples], see Scene
+constexpr double kKey_px = 40.0;    // what an arrow key moves the view by
+constexpr double kBrushStep = 1.0;  // [ and ]
 
 }  // namespace
 
@@ -67,7 +66,7 @@ void Workstation::noteWithoutForce(const haptic::Scene& scene) {
 void Workstation::setBrushRadius(double samples) {
   if (!touch_ || !std::isfinite(samples)) return;
   haptic::Scene scene = touch_->scene();
-  const double radius = std::clamp(samples, 0.0, kLargestBrush);
+  const double radius = std::clamp(samples, 0.0, haptic::kMaxBrushRadius);
   const bool marking = touch_->tool() == Tool::kMark || touch_->tool() == Tool::kUnmark;
   double& wanted = marking ? scene.mark_radius_samples : scene.brush_radius_samples;
   if (wanted == radius) return;

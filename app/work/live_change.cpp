@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "engine/base/stopwatch.h"
+
 namespace fettle::app {
 
 void LiveChange::begin(const engine::Version& original) {
@@ -33,8 +35,7 @@ bool LiveChange::poll(const LoopClient& touch) {
     const auto begin = std::chrono::steady_clock::now();
     auto figures = deviation->update(now, job);
     // Without memory the figures do not change; the next computation may succeed.
-    const double ms =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    const double ms = engine::msSince(begin);
     return Work{deviation, figures ? std::optional(*figures) : std::nullopt, ms};
   });
   return changed;

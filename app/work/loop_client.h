@@ -14,6 +14,7 @@
 #include "app/work/notice.h"
 #include "app/work/step_keeper.h"
 #include "engine/base/error.h"
+#include "engine/field/upright.h"
 #include "engine/history/history.h"
 #include "haptic/scene/scene.h"
 
@@ -124,7 +125,7 @@ class LoopClient final {
   [[nodiscard]] EditLatency& latency() noexcept { return latency_; }
 
   [[nodiscard]] static engine::Version upright(const engine::Version& version) {
-    return version.reader().sign() < 0.0F ? version.inverted() : version;
+    return engine::upright(version);
   }
 
  private:

@@ -13,6 +13,7 @@
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
 #include "engine/formats/formats.h"
+#include "engine/io/files/input_file.h"
 
 namespace fettle::app {
 
@@ -28,13 +29,6 @@ std::string withDot(const std::string& extension) {
   std::transform(dotted.begin(), dotted.end(), dotted.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return dotted;
-}
-
-std::string extensionOf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
 }
 
 namespace {
@@ -91,7 +85,8 @@ engine::Status checkOutput(const Output& output) {
   std::error_code error;
   if (output.path.ends_with('/') || std::filesystem::is_directory(output.path, error))
     return engine::inputError("the output is a folder", output.path, "name a file in it");
-  if (auto known = checkExtension(extensionOf(output.path), output.kind, output.path); !known) return known;
+  if (auto known = checkExtension(engine::extensionOf(output.path), output.kind, output.path); !known)
+    return known;
   std::filesystem::path folder = std::filesystem::path(output.path).parent_path();
   if (output.makes_folder)
     while (!folder.empty() && !std::filesystem::exists(folder, error)) folder = folder.parent_path();

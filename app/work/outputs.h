@@ -9,9 +9,6 @@
 
 namespace fettle::app {
 
-/// The extension with its dot, lower case; empty without one.
-[[nodiscard]] std::string extensionOf(const std::string& path);
-
 /// An extension as typed, "tif" or ".TIF", with its dot and in lower case.
 [[nodiscard]] std::string withDot(const std::string& extension);
 

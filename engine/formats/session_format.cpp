@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/field/upright.h"
 #include "engine/formats/formats.h"
 #include "engine/io/format.h"
 #include "engine/session/session.h"
@@ -60,9 +61,6 @@ Result<Exported> writeSession(const Version& field, const std::string& path, con
                               JobControl& job) {
   // A session's original is upright; an inverted field is one step away from it.
   const bool inverted = field.reader().sign() < 0;
-  const auto upright = [](const Version& version) {
-    return version.reader().sign() < 0 ? version.inverted() : version;
-  };
   Session session;
   session.original = upright(options.original.value_or(field));
   session.history = History(session.original);

@@ -10,6 +10,7 @@
 #include <new>
 #include <thread>
 
+#include "engine/base/stopwatch.h"
 #include "engine/session/session_file.h"
 #include "engine/session/session_reader.h"
 #include "engine/session/session_save.h"
@@ -200,7 +201,7 @@ class SessionWriter::Impl {
         queue_.pop_front();
         ++status_.committed;
         status_.committed_state = file_->head().state;
-        status_.last_commit_s = std::chrono::duration<double>(Clock::now() - done->enqueued).count();
+        status_.last_commit_s = secondsSince(done->enqueued);
         status_.worst_commit_s = std::max(status_.worst_commit_s, status_.last_commit_s);
         status_.last_commit_bytes = bytes;
         status_.error.reset();

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/field/upright.h"
 #include "haptic/journal/journal.h"
 #include "haptic/journal/mark_codec.h"
 #include "haptic/journal/tick_codec.h"
@@ -28,10 +29,6 @@ using haptic::LoopCommand;
 // More rounds than any adoption was allowed (FilterPreview): the journal records where it ended.
 constexpr int kMostRounds = 1000;
 
-Version upright(const Version& version) {
-  return version.reader().sign() < 0.0F ? version.inverted() : version;
-}
-
 class Player final : public haptic::AdoptionPort {
  public:
   Player(const engine::Session& session, engine::JobControl& job)
@@ -40,7 +37,7 @@ class Player final : public haptic::AdoptionPort {
     const engine::History& stored = session.history;
     const std::int64_t start = std::min(journalStart(session), stored.last());
     for (std::int64_t k = std::max(stored.first(), std::int64_t{1}); k <= start; ++k)
-      states_[k] = upright(stored.state(k));
+      states_[k] = engine::upright(stored.state(k));
   }
 
   engine::Result<PlayedSession> run() {
@@ -152,7 +149,7 @@ class Player final : public haptic::AdoptionPort {
     } else {
       auto there = versionAt(step.at);
       if (!there) return tl::unexpected(there.error());
-      state = upright(*there);
+      state = engine::upright(*there);
     }
     states_[step.state] = std::move(state);
     // Steps after it are discarded.

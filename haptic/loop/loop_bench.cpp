@@ -15,6 +15,7 @@
 #include <sched.h>
 #include <unistd.h>
 
+#include "engine/base/stopwatch.h"
 #include "engine/field/builder.h"
 #include "haptic/loop/cyclictest.h"
 #include "haptic/loop/haptic_loop.h"
@@ -151,7 +152,7 @@ class Measurement {
                    : measure(first, first, even ? Which::kLoop : Which::kReference, slice_s);
       if (!done) return tl::unexpected(done.error());
     }
-    report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    report_.seconds = engine::secondsSince(begin);
     report_.rate_hz = options_.rate_hz;
     report_.load = options_.load;
     report_.machine = machineName();

@@ -20,7 +20,6 @@ namespace {
 constexpr int kMaxCertifiedRadius = 64;
 constexpr double kMaxStiffness = 1000.0;
 constexpr double kMaxForce = 1000.0;
-constexpr double kMaxBrushRadius = 64.0;
 constexpr double kMaxTipRadius = 100.0;
 
 constexpr std::array<std::string_view, kEffectKinds> kEffectNames = {"spring",    "smoothing", "friction",

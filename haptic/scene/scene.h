@@ -45,6 +45,9 @@ inline constexpr int kEffectKinds = 9;
 /// "paper", "certified".
 [[nodiscard]] std::string_view levelName(ContactLevel level) noexcept;
 
+/// Largest Scene::brush_radius_samples and mark_radius_samples.
+inline constexpr double kMaxBrushRadius = 64.0;
+
 /// How a field is felt and edited: all that a tick depends on apart from the field and the input. Values, no
 /// behaviour; a scene is composed into a tick once, when it is loaded.
 struct Scene {

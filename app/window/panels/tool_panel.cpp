@@ -12,8 +12,6 @@ namespace {
 
 using haptic::Tool;
 
-constexpr double kLargestBrush = 64.0;  // [samples], see Scene
-
 }  // namespace
 
 void Workstation::toolPanel() {
@@ -44,12 +42,14 @@ void Workstation::toolPanel() {
   beginFields();
   auto radius = static_cast<float>(samples);
   if (field("radius", [&] {
-        return ImGui::SliderFloat("##radius", &radius, 0.0F, static_cast<float>(kLargestBrush),
+        return ImGui::SliderFloat("##radius", &radius, 0.0F, static_cast<float>(haptic::kMaxBrushRadius),
                                   "%.0f samples", ImGuiSliderFlags_AlwaysClamp);
       }))
     setBrushRadius(std::round(static_cast<double>(radius)));
   double radius_mm = samples * cell;
-  if (field("", [&] { return typeNumber("##radius_mm", radius_mm, 0.0, kLargestBrush * cell, "%.4g mm"); }))
+  if (field("", [&] {
+        return typeNumber("##radius_mm", radius_mm, 0.0, haptic::kMaxBrushRadius * cell, "%.4g mm");
+      }))
     setBrushRadius(radius_mm / cell);
   if (touch_->mouse() != nullptr) {
     auto depth = static_cast<float>(touch_->mouse()->pressMm() / cell);
