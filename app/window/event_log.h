@@ -9,13 +9,13 @@
 
 namespace fettle::app {
 
-/// What the window tells whoever drives it (`fettle view --events FILE`): one JSON object a line, each
+/// What the window reports to whoever drives it (`fettle view --events FILE`): one JSON object a line, each
 /// written when it differs from the line before. A line is written after the frame that shows what it says.
 ///
-/// Threading: one thread. A reader that is slow holds the window up, one that has gone ends the telling.
+/// Threading: one thread. A reader that is slow delays the window, one that has gone ends the log.
 class EventLog {
  public:
-  /// Tells nobody.
+  /// Writes nowhere.
   EventLog() = default;
   /// Writes to a file, a named pipe or /dev/fd/N. Errors (kInput): it cannot be written to.
   [[nodiscard]] static engine::Result<EventLog> open(const std::string& path);
@@ -24,18 +24,18 @@ class EventLog {
   /// Writes `state`, with `aside` after it, unless `state` is the same as last time. `aside` is made only
   /// when needed: what changes all the time, or costs something to find out.
   template <class Aside>
-  void tell(Report state, const Aside& aside) {
+  void write(Report state, const Aside& aside) {
     if (!listens() || state == last_) return;
     last_ = state;
     state.update(aside());
-    write(state);
+    writeLine(state);
   }
 
  private:
   struct Closer {
     void operator()(std::FILE* file) const noexcept { std::fclose(file); }
   };
-  void write(const Report& line);
+  void writeLine(const Report& line);
 
   std::unique_ptr<std::FILE, Closer> file_;
   Report last_;

@@ -59,6 +59,7 @@ const Question* Questions::shown() const {
 }
 
 void Questions::ask(Question question) {
+  asked_ = true;
   if (isMessage(question)) {
     const auto same = [&](const Question& other) { return sameMessage(other, question); };
     if ((shown_ && same(*shown_)) || std::any_of(waiting_.begin(), waiting_.end(), same)) return;
@@ -69,7 +70,7 @@ void Questions::ask(Question question) {
   waiting_.push_back(std::move(question));
 }
 
-void Questions::forgetField() {
+void Questions::dropOfField() {
   const auto of_field = [](const Question& question) { return infoOf(question.kind).of_field; };
   std::erase_if(waiting_, of_field);
   if (shown_ && of_field(*shown_)) drop();
@@ -104,7 +105,10 @@ Question* Questions::next() {
   }
   if (!shown_) {
     key_ = Key::kNone;
-    if (waiting_.empty()) return nullptr;
+    if (waiting_.empty()) {
+      if (frames_without_ < kClosed) ++frames_without_;
+      return nullptr;
+    }
     shown_ = std::move(waiting_.front());
     waiting_.pop_front();
     frames_ = 0;
@@ -112,6 +116,7 @@ Question* Questions::next() {
     id_ = ImGui::GetID(title);
     ImGui::OpenPopup(title);
   }
+  frames_without_ = 0;
   return &*shown_;
 }
 

@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/work/loop_client.h"
@@ -55,8 +56,10 @@ class Questions {
   /// of what the user asked for before, answered or not; a message waits until the dialog on the screen is
   /// left, and stays until it is. A message that is there already is not there twice.
   void ask(Question question);
+  /// Whether something was asked since the last call: hands have nothing else to do until it is answered.
+  [[nodiscard]] bool takeAsked() { return std::exchange(asked_, false); }
   /// Drops those about a field that goes: where to save it, whether to.
-  void forgetField();
+  void dropOfField();
 
   /// Whether one is on the screen or is put there with the next frame. Keys are its own until it is answered.
   [[nodiscard]] bool pending() const { return !waiting_.empty() || unseen() || shown() != nullptr; }
@@ -81,6 +84,9 @@ class Questions {
   [[nodiscard]] bool take(render::Key key);
   /// Between begin() and end(): it is answered, and gone from the screen with the next frame.
   Question close();
+  /// Whether there was one in one of the last frames: for two of them ImGui still says that a text field has
+  /// the keyboard, that of the dialog which was closed.
+  [[nodiscard]] bool justClosed() const noexcept { return frames_without_ < kClosed; }
 
  private:
   // Put up and closed by ImGui before it could be seen.
@@ -88,11 +94,14 @@ class Questions {
   void drop();
 
   static constexpr int kSeen = 2;  // frames: ImGui measures a dialog in the first one and hides it there
+  static constexpr int kClosed = 3;
 
   std::deque<Question> waiting_;
   std::optional<Question> shown_;  // of no meaning once ImGui has closed the popup
   unsigned id_ = 0;                // ImGui's, of that popup
   int frames_ = 0;
+  int frames_without_ = kClosed;
+  bool asked_ = false;
   render::Key key_ = render::Key::kNone;
 };
 

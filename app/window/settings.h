@@ -22,7 +22,7 @@ struct Display {
   float marks_opacity = 0.65F;
   float light_azimuth_deg = 135.0F;
   float light_elevation_deg = 45.0F;
-  bool furniture = true;
+  bool decorations = true;
   std::int64_t vertices = 65536;  ///< a frame may cost, 4096 .. 2^22
   bool half_in_motion = true;     ///< the picture is half as sharp while the view moves (CameraMotion)
   // Not remembered: whoever comes next may have no glasses on.

@@ -1,416 +1,399 @@
 #include "app/window/workstation.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
-#include <glm/geometric.hpp>
 
 #include "app/terminal.h"
+#include "app/window/draw_field.h"
+#include "app/window/scene_edits.h"
 
 namespace fettle::app {
 namespace {
 
-constexpr double kIdle_s = 0.1;     // between two frames while nothing happens
-constexpr double kBusy_s = 0.03;    // ... while only figures move
-constexpr std::size_t kPlot = 240;  // frames of force shown
+constexpr double kIdle_s = 0.1;                                 // between two frames while nothing happens
+constexpr double kBusy_s = 0.03;                                // ... while only figures move
+constexpr std::uint64_t kSaveSettingsEvery = 120;               // frames
+constexpr auto kWithoutPicture = std::chrono::milliseconds(5);  // between two looks at touch
 
-std::string layoutFile() {
+std::string settingsPath(const char* file) {
   const std::string folder = settingsFolder();
-  return folder.empty() ? std::string() : folder + "/layout.ini";
-}
-std::string settingsFile() {
-  const std::string folder = settingsFolder();
-  return folder.empty() ? std::string() : folder + "/window.json";
+  return folder.empty() ? std::string() : folder + file;
 }
 
-double ms(std::int64_t ns) {
-  return 1e-6 * static_cast<double>(ns);
+// A worker is busy with something whose progress is shown.
+bool working(const Parts& p) {
+  return p.marking.busy() || p.costs.busy() || p.opening.busy() || p.saving.busy(p.document) ||
+         p.filters.computing() || p.filters.applying() || (p.document.isOpen() && p.picture.refining());
 }
 
 }  // namespace
 
-Workstation::Workstation(const ViewOptions& options)
-    : options_(options), recent_(recentFile()), settings_(Settings::load(settingsFile())) {
-  saved_settings_ = settings_;
-  display_ = settings_.display;
-  habits_ = settings_.habits;
-  side_panel_ = settings_.side_panel;
+Workstation::Workstation(const ViewOptions& options, std::unique_ptr<render::Window> window)
+    : options_(options),
+      window_(std::move(window)),
+      parts_(*window_, Settings::load(settingsPath("/window.json"))),
+      act_([this](Action action) { app::carryOut(action, parts_); }),
+      saved_settings_(parts_.settings) {
+  window_->setWhileWaiting([this] { whileWaiting(); });
 }
 
 Workstation::~Workstation() {
-  closeDocument(SessionKeeper::Afterwards::kKeep);
+  parts_.closeDocument(SessionKeeper::Afterwards::kKeep);
 }
 
 engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptions& options) {
-  std::unique_ptr<Workstation> station(new Workstation(options));
   render::WindowOptions window = options.window;
-  window.layout_file = layoutFile();
+  window.layout_file = settingsPath("/layout.ini");
   auto opened = render::Window::create(window);
   if (!opened) return tl::unexpected(opened.error());
-  station->window_ = std::move(*opened);
-  station->window_->setWhileWaiting([s = station.get()] { s->whileWaiting(); });
-  if (const auto made = station->makePicture(); !made) return tl::unexpected(made.error());
+  std::unique_ptr<Workstation> station(new Workstation(options, std::move(*opened)));
+  if (const auto made = station->parts_.picture.make(); !made) return tl::unexpected(made.error());
   if (!options.events.empty()) {
     auto events = EventLog::open(options.events);
     if (!events) return tl::unexpected(events.error());
     station->events_ = *std::move(events);
   }
-  station->view_.azimuth_deg = 330.0;
   if (!options.scan.empty()) station->open(options.scan);
   return station;
 }
 
 engine::Result<Report> Workstation::run(engine::JobControl& job) {
   const auto begin = std::chrono::steady_clock::now();
-  while (!quit_ && !quit_unasked_) {
-    goRound();
+  while (parts_.quit == Quit::kNo) {
+    runFrame();
     if (!end_) return tl::unexpected(end_.error());
     if (window_->closeAsked()) {
       window_->refuseClose();
-      act(Action::kQuit);
+      act_(Action::kQuit);
     }
     const double lived = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
   }
-  const Report report = this->report();
+  Report report = runReport(parts_, figures());
   // Who quits has saved what was to be saved. Else nobody was asked: unsaved work is there when the scan is
   // opened again.
-  const bool kept = !quit_ && unsaved();
-  const std::string path = path_;
-  closeDocument(kept ? SessionKeeper::Afterwards::kKeep : SessionKeeper::Afterwards::kDiscard);
-  if (kept) warn(fmt::format("{}: what was not saved is kept; open the scan again to go on with it", path));
+  const bool kept = parts_.quit != Quit::kDone && parts_.document.unsaved();
+  parts_.closeDocument(kept ? SessionKeeper::Afterwards::kKeep : SessionKeeper::Afterwards::kDiscard);
+  if (kept)
+    warn(fmt::format("{}: what was not saved is kept; open the scan again to go on with it",
+                     parts_.document.path()));
   return report;
 }
 
-bool Workstation::active() const {
-  return stale_ || !input_.empty() || camera_motion_.owesSharp() || stylus_held_ || drag_ != Drag::kNone ||
-         figures_.upload.pending_tiles > 0;
-}
-
-// What a person chose is written when it has changed, at most once in some seconds.
-void Workstation::rememberLayout() {
-  constexpr std::uint64_t kFrames = 120;
-  if (!quit_ && !quit_unasked_ && frames_ % kFrames != 0) return;
-  Settings now = settings_;
-  now.display = display_;
-  now.habits = habits_;
-  now.side_panel = side_panel_;
-  if (now == saved_settings_) return;
-  now.save(settingsFile());
-  saved_settings_ = now;
-}
-
-void Workstation::goRound() {
-  const bool working = mark_edit_.busy() || edges_.busy() || costs_.busy() || loading_.busy() ||
-                       saving_.busy() || filters_.computing() || filters_.applying() ||
-                       (touch_ && refinement_.owed());
-  window_->poll(active() ? 0.0 : working ? kBusy_s : kIdle_s);
+void Workstation::runFrame() {
+  window_->poll(isActive(parts_, input_) ? 0.0 : working(parts_) ? kBusy_s : kIdle_s);
   whileWaiting();
   handleInput();
   for (const std::string& path : window_->takeDrops()) {
-    ++hands_.drops;
+    input_.countDrop();
     askToOpen(path);
   }
+  releaseHandsWhenAsked();
   takeResults();
-  if (!picture_ || window_->displayLost()) {
+  releaseHandsWhenAsked();
+  if (!parts_.picture.made() || window_->displayLost()) {
     // Nothing to draw with: touch and workers go on.
     renewPicture();
-    return;
-  }
-  if (window_->minimised()) {
+  } else if (window_->minimised()) {
     // Nothing to draw, everything else goes on.
-    tell();
+    logState(events_, parts_, input_, figures());
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    return;
+  } else {
+    showFrame();
   }
-  frame();
 }
 
-// Also called again and again while the device draws: the cursor goes on to the loop, and what the loop tells
-// is taken off its ring.
+// Also called again and again while the device draws: the cursor goes on to the loop, and what the loop
+// reports is taken off its ring.
 void Workstation::whileWaiting() {
   window_->poll(0.0);
-  for (const render::InputEvent& event : window_->takeInput()) {
-    const bool at_once = std::none_of(input_.begin(), input_.end(), [](const Pending& p) {
-      return p.event.kind == render::InputKind::kKeyDown;
-    });
-    disarmAtOnce(event);
-    if (at_once) toStylus(event);
-    input_.push_back({event, at_once});
+  for (const render::InputEvent& event : window_->takeInput()) input_.add(event, parts_);
+  if (parts_.document.isOpen()) parts_.document.touch()->poll();
+}
+
+void Workstation::handleInput() {
+  input_.followSurface(parts_);
+  while (const auto event = input_.next(parts_)) {
+    const Input::Request request = Input::handle(*event, parts_);
+    if (request.action) act_(*request.action);
+    if (request.open) askToOpen(*request.open);
+    parts_.cursor = {event->x, event->y};
+    releaseHandsWhenAsked();
   }
-  if (touch_) touch_->poll();
+}
+
+// Hands have nothing else to do until a dialog is answered.
+void Workstation::releaseHandsWhenAsked() {
+  if (!parts_.feedback.questions.takeAsked()) return;
+  parts_.releaseHands();
+  parts_.picture.requestRedraw();
 }
 
 void Workstation::takeResults() {
-  takeCoarse();
-  if (auto done = loading_.take()) {
-    if (!*done) dropCoarse();
-    if (*done) {
-      takeDocument(std::move(**done));
-    } else if (!touch_ && loading_path_ == options_.scan &&
-               done->error().kind != engine::ErrorKind::kCancelled) {
-      // Named on the command line: its errors are the command's.
-      end_ = tl::unexpected(done->error());
-      return;
-    } else if (done->error().kind != engine::ErrorKind::kCancelled) {
-      message(done->error().line(), "");
+  Parts& p = parts_;
+  if (p.opening.takeCoarse(p.document.isOpen())) p.picture.requestRedraw();
+  takeOpened();
+  if (!end_) return;
+  if (p.document.keeper() != nullptr) p.document.keeper()->poll();
+  if (const auto saved = p.saving.poll(p.document, p.feedback)) {
+    if (saved->moved) {
+      p.recent.add(p.document.path());
+      window_->setTitle(p.document.fileName() + " - Fettle");
     }
-    stale_ = true;
+    resumeAfterSave(saved->afterwards);
   }
-  if (keeper_) keeper_->poll();
-  takeSaved();
-  if (!touch_) return;
-  touch_->poll();
-  if (auto older = keeper_->older()) {
-    if (*older) {
-      touch_->prepend(**older);
-      touch_->undo();
-    } else {
-      notices_.push_back({older->error().what, older->error().remedy});
-    }
-  }
-  lookAfterSession();
-  if (filters_.poll(*touch_, notices_)) stale_ = true;
-  pollMarking();
-  for (Notice& notice : touch_->takeNotices()) notices_.push_back(std::move(notice));
-  while (notices_.size() > 6) notices_.erase(notices_.begin());
-  if (change_.poll(*touch_)) stale_ = true;
-  for (const engine::Error& error : costs_.poll()) notices_.push_back({error.line(), ""});
-  if (auto done = measuring_.take(); done && *done) deviation_ = **done;
-  const engine::Version now = touch_->upright();
-  if (!measuring_.busy() && !(measured_ == now) && !stylus_held_) {
-    measured_ = now;
-    measuring_.start([original = touch_->original(), now](engine::JobControl& job) {
-      return engine::compareFields(original, now, job);
-    });
-  }
+  if (!p.document.isOpen()) return;
+  p.document.poll(p.view, p.feedback);
+  LoopClient& touch = *p.document.touch();
+  std::vector<Notice>& notices = p.feedback.notices;
+  bool changed = p.filters.poll(touch, notices);
+  changed |= p.marking.poll(touch, notices);
+  for (Notice& notice : touch.takeNotices()) notices.push_back(std::move(notice));
+  while (notices.size() > Feedback::kMostNotices) notices.erase(notices.begin());
+  changed |= p.change.poll(touch, p.stylus.held() || p.marking.held());
+  for (const engine::Error& error : p.costs.poll()) notices.push_back({error.line(), ""});
+  if (changed) p.picture.requestRedraw();
 }
 
-void Workstation::frame() {
+void Workstation::showFrame() {
   ImGui::GetIO().DisplaySize =
       ImVec2(static_cast<float>(window_->width()), static_cast<float>(window_->height()));
-  const std::optional<std::int64_t> edit = touch_ ? touch_->latency().takeUnshownEdit() : std::nullopt;
+  const std::optional<std::int64_t> edit_ns =
+      parts_.document.isOpen() ? parts_.document.touch()->latency().takeUnshownEdit() : std::nullopt;
   window_->beginFrame();
-  panels();
-  const bool announces = announcesPicture();
-  if (touch_ && !announces) drawPicture();
-  if (!touch_ && coarse_) drawCoarse();
-  if (!touch_ && !coarse_) stale_ = false;  // there is no picture to make
-  const auto shown = window_->present();
-  if (!shown) {
+  carryOut(layOutPanels(parts_, act_));
+  releaseHandsWhenAsked();
+  const bool announces = parts_.announcesPicture();
+  if (parts_.document.isOpen()) {
+    if (!announces) drawField(parts_, options_.sharp_motion);
+  } else if (parts_.opening.coarse() != nullptr) {
+    drawCoarse(parts_, options_.sharp_motion);
+  } else {
+    parts_.picture.skipRedraw();
+  }
+  if (const auto shown = window_->present())
+    noteShown(*shown, edit_ns, announces);
+  else
     losePicture(shown.error());
+}
+
+void Workstation::noteShown(const render::PresentReport& report, std::optional<std::int64_t> edit_ns,
+                            bool announces) {
+  using Frame = Opening::Frame;
+  const Parts& p = parts_;
+  const bool open = p.document.isOpen();
+  if (open && edit_ns && report.shown_ns > 0)
+    p.document.touch()->latency().noteShown(*edit_ns, report.shown_ns);
+  ++frames_;
+  if (announces) parts_.opening.noteAnnounced();
+  parts_.opening.noteFrame(p.picture.empty()                              ? Frame::kNothing
+                           : !open                                        ? Frame::kCoarse
+                           : p.picture.figures().upload.pending_tiles > 0 ? Frame::kDocument
+                                                                          : Frame::kWhole);
+  saveSettings();
+  logState(events_, p, input_, figures());
+}
+
+// What a person chose is written when it has changed, at most once in some seconds.
+void Workstation::saveSettings() {
+  if (parts_.quit == Quit::kNo && frames_ % kSaveSettingsEvery != 0) return;
+  if (parts_.settings == saved_settings_) return;
+  parts_.settings.save(settingsPath("/window.json"));
+  saved_settings_ = parts_.settings;
+}
+
+void Workstation::carryOut(PanelRequests requests) {
+  if (requests.open) askToOpen(*requests.open);
+  if (requests.rate_hz) setRate(*requests.rate_hz);
+  if (requests.answer) carryOut(*std::move(requests.answer));
+}
+
+void Workstation::carryOut(Answer answer) {
+  using Kind = Question::Kind;
+  using Choice = Answer::Choice;
+  Parts& p = parts_;
+  Question& question = answer.question;
+  const bool confirmed = answer.choice == Choice::kConfirm;
+  if (answer.choice == Choice::kBack) {
+    // Back to the dialog that the path was typed into.
+    if (question.kind == Kind::kReplace && question.typed)
+      p.feedback.questions.ask({.kind = question.from,
+                                .path = std::move(question.path),
+                                .afterwards = std::move(question.afterwards)});
     return;
   }
-  if (touch_ && edit && shown->shown_ns > 0) touch_->latency().noteShown(*edit, shown->shown_ns);
-  ++frames_;
-  opening_.announced = opening_.announced || announces;
-  noteOpening();
-  rememberLayout();
-  tell();
-}
-
-double Workstation::Opening::sinceAsked() const {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - asked).count();
-}
-
-// The first picture of a large field takes the main thread some seconds: a frame before it says so.
-bool Workstation::announcesPicture() const {
-  constexpr std::int64_t kAtOnce = std::int64_t{1} << 20;  // samples
-  return touch_ && shown_.versions.empty() && !opening_.announced &&
-         touch_->field().grid().samples() > kAtOnce;
-}
-
-// After a frame was shown.
-void Workstation::noteOpening() {
-  if (coarseIsShown() && opening_.coarse_ms == 0.0) {
-    opening_.coarse_ms = opening_.sinceAsked();
-    coarse_slot_->shown();
+  switch (question.kind) {
+    case Kind::kOpen:
+      askToOpen(question.path);
+      break;
+    case Kind::kSaveAs:
+    case Kind::kExport:
+      p.saving.askToWrite(std::move(question), Saving::Typed::kYes, p.document, p.feedback);
+      break;
+    case Kind::kUnsaved:
+      if (question.stop_asking) p.settings.ask_before_quitting = false;
+      if (confirmed)
+        p.saving.save(p.document, p.feedback, std::move(question.afterwards));
+      else
+        resumeAfterSave(question.afterwards);
+      break;
+    case Kind::kReplace:
+      p.saving.start(question.path, Saving::keepingOf(question.from), std::move(question.afterwards),
+                     p.document, p.feedback);
+      break;
+    case Kind::kRecover:
+      load(question.path, confirmed ? Recovery::kTake : Recovery::kLeave);
+      break;
+    case Kind::kShortcuts:
+    case Kind::kMessage:
+      break;
   }
-  if (!touch_ || shown_.versions.empty()) return;
-  if (opening_.seen_ms == 0.0) opening_.seen_ms = opening_.sinceAsked();
-  if (opening_.whole_ms == 0.0 && figures_.upload.pending_tiles == 0)
-    opening_.whole_ms = opening_.sinceAsked();
 }
 
-// The view is as large as the place it is drawn to.
-void Workstation::followArea() {
-  const render::Rectangle& area = window_->pictureArea();
-  if (view_.width != area.width || view_.height != area.height) stale_ = true;
-  view_.width = area.width;
-  view_.height = area.height;
+void Workstation::askToOpen(const std::string& path) {
+  if (parts_.document.unsaved())
+    parts_.feedback.questions.ask(
+        {.kind = Question::Kind::kUnsaved, .afterwards = {Afterwards::What::kOpen, path}});
+  else
+    open(path);
 }
 
-// How sharp the next frame is; one that owes a sharp one after it has to be drawn.
-render::Sharpness Workstation::seeMotion() {
-  const bool owed = camera_motion_.owesSharp();
-  const render::Sharpness sharpness =
-      camera_motion_.see(view_, drag_ != Drag::kNone, CameraMotion::Clock::now());
-  if (owed && !camera_motion_.owesSharp()) stale_ = true;
-  return sharpness;
+// With what waited for an answer, or for saving.
+void Workstation::resumeAfterSave(const Afterwards& afterwards) {
+  if (afterwards.what == Afterwards::What::kQuit) parts_.quit = Quit::kDone;
+  if (afterwards.what == Afterwards::What::kOpen) open(afterwards.path);
 }
 
-// What the user chose.
-render::FrameInput Workstation::frameInput(render::Sharpness sharpness) const {
-  render::FrameInput input;
-  input.view = view_;
-  input.vertex_budget = display_.vertices;
-  input.arrangement = display_.split && shown_.versions.size() == 2 ? render::Arrangement::kSplit
-                                                                    : render::Arrangement::kSideBySide;
-  input.split = display_.split_at;
-  input.contours = display_.contours ? render::Contours::kShow : render::Contours::kHide;
-  input.marks_opacity = display_.marks_opacity;
-  input.map = display_.map;
-  input.stereo.mode = display_.stereo;
-  input.stereo.eye_separation = static_cast<double>(display_.eye_separation);
-  input.theme = display_.theme;
-  if (display_.half_in_motion && !options_.sharp_motion) input.sharpness = sharpness;
-  input.furniture_scale = kFurniture * window_->scale();
-  input.decoration = display_.furniture ? render::Decoration::kFull : render::Decoration::kNone;
-  input.light_azimuth_deg = display_.light_azimuth_deg;
-  input.light_elevation_deg = display_.light_elevation_deg;
-  return input;
+void Workstation::open(const std::string& path) {
+  std::error_code error;
+  const std::string recovery = isSessionPath(path) ? std::string() : recoveryPath(path);
+  const SessionKeeper* const keeper = parts_.document.keeper();
+  const bool own = keeper != nullptr && keeper->path() == recovery;
+  if (!recovery.empty() && !own && std::filesystem::exists(recovery, error))
+    parts_.feedback.questions.ask({.kind = Question::Kind::kRecover, .path = path});
+  else
+    load(path, Recovery::kLeave);
 }
 
-// Whether it was drawn.
-bool Workstation::submit(const render::FrameInput& input) {
-  const auto start = std::chrono::steady_clock::now();
-  const auto target = window_->pictureTarget();
-  if (!target) return false;  // present() tells
-  const auto figures = picture_->draw(input, **target);
-  if (!figures) {
-    if (window_->usable()) status_text_ = figures.error().line();
-    return false;
+void Workstation::load(const std::string& path, Recovery recovery) {
+  parts_.dropCoarse();
+  parts_.opening.start(path, recovery, options_.reading, parts_.document.isOpen());
+}
+
+void Workstation::takeOpened() {
+  auto done = parts_.opening.take();
+  if (!done) return;
+  parts_.picture.requestRedraw();
+  if (*done) {
+    startDocument(std::move(**done));
+    return;
   }
-  const auto took = std::chrono::steady_clock::now() - start;
-  figures_ = *figures;
-  frame_ms_ = std::chrono::duration<double, std::milli>(took).count();
-  frame_times_.add(std::chrono::duration_cast<std::chrono::nanoseconds>(took).count());
-  tiles_uploaded_ += figures_.upload.tiles;
-  bytes_uploaded_ += figures_.upload.bytes;
-  return true;
+  parts_.dropCoarse();
+  const engine::Error& error = done->error();
+  if (error.kind == engine::ErrorKind::kCancelled) return;
+  if (!parts_.document.isOpen() && parts_.opening.path() == options_.scan)
+    end_ = tl::unexpected(error);  // named on the command line: its errors are the command's
+  else
+    parts_.feedback.message(error.line(), "");
 }
 
-// Of what can be turned and zoomed; null when there is nothing.
-const engine::Grid* Workstation::seenGrid() const {
-  if (touch_) return &touch_->field().grid();
-  return coarse_ ? &coarse_->field.grid() : nullptr;
+void Workstation::startDocument(Document document) {
+  Parts& p = parts_;
+  p.opening.noteRead(p.document.isOpen());
+  p.closeDocument(SessionKeeper::Afterwards::kDiscard);
+  const bool first = p.document.path().empty();
+  if (const auto opened = p.document.open(document, options_.scene, options_.touch); !opened) {
+    p.dropCoarse();
+    if (first)
+      end_ = opened;
+    else
+      p.feedback.message(opened.error().line(), "");
+    return;
+  }
+  LoopClient& touch = *p.document.touch();
+  const engine::Grid& grid = document.original.grid();
+  const bool looked_at = p.opening.coarse() != nullptr;
+  p.dropCoarse();  // its picture stays until there is one of the whole
+  p.opening.noteTouched();
+  p.saving.begin(grid.samples());
+  p.change.begin(document.original);
+  // Who has turned the coarse picture goes on from there.
+  const auto camera = document.notes.find("camera");
+  if (!looked_at) p.view = camera != document.notes.end() ? viewOf(camera->second) : startView();
+  p.picture.clear();
+  p.chooseTool(std::nullopt);
+  p.recent.add(p.document.path());
+  for (const std::string& warning : document.warnings) p.feedback.notices.push_back({warning, ""});
+  if (options_.scene) noteWithoutForce(touch, p.feedback.notices);
+  if (document.recovered)
+    p.feedback.notices.push_back(
+        {fmt::format("{} steps that were not saved are here again", touch.history().number()), ""});
+  p.feedback.status =
+      fmt::format("{}: {} x {} samples, {:.4g} x {:.4g} {}", p.document.fileName(), grid.width, grid.height,
+                  grid.spacing_x, grid.spacing_y, grid.lateral_unit.name);
+  window_->setTitle(p.document.fileName() + " - Fettle");
 }
 
-void Workstation::drawPicture() {
-  const haptic::LoopState state = touch_->state();
-  const double moved = glm::length(state.endpoint_mm - drawn_state_.endpoint_mm);
-  const double pixel_mm = figures_.pixels_per_mm > 0.0 ? 1.0 / figures_.pixels_per_mm : 0.0;
-  if (moved > pixel_mm || state.contact != drawn_state_.contact) stale_ = true;
-  followArea();
-
-  render::Shown shown;
-  shown.versions.push_back(edges_.over(touch_->field()));
-  // All of one sign: the loop inverts the field some ticks after the scene was changed, and a preview may
-  // have been computed before that.
-  const float sign = shown.versions.front().reader().sign();
-  const auto likeField = [sign](const engine::Version& v) {
-    return v.reader().sign() == sign ? v : v.inverted();
-  };
-  const std::vector<FilterPreview::Picture> pictures = filters_.pictures();
-  for (const FilterPreview::Picture& picture : pictures) shown.versions.push_back(likeField(picture.field));
-  if (display_.deviation) shown.original = likeField(touch_->original());
-  shown.marks = display_.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
-  if (edges_.suggestion() != nullptr) shown.accepted = touch_->field();
-  const bool same = shown.versions == shown_.versions && shown.original == shown_.original &&
-                    shown.marks == shown_.marks && shown.accepted == shown_.accepted;
-  if (!same) {
-    if (const auto status = picture_->update(shown); !status) {
-      // Of a lost device present() tells.
-      if (window_->usable()) message(status.error().line(), "");
-      return;
-    }
-    shown_ = std::move(shown);
-    stale_ = true;
-  }
-  const render::Sharpness sharpness = seeMotion();
-  const auto now = Refinement::Clock::now();
-  if (sharpness == render::Sharpness::kHalf) refinement_.restart(now);  // the view moves
-  if (!stale_ && figures_.upload.pending_tiles == 0 && !refinement_.due(now)) return;
-  stale_ = false;
-
-  render::FrameInput input = frameInput(sharpness);
-  input.panel_vertices = refinement_.vertices(input.vertex_budget, shown_.versions.size(), now);
-  if (shown_.versions.size() > 1) {
-    input.titles.emplace_back("as it is");
-    for (const FilterPreview::Picture& picture : pictures) input.titles.push_back(picture.title);
-    // One plot has room for one title.
-    if (input.arrangement == render::Arrangement::kSplit)
-      input.titles = {fmt::format("left: as it is, right: {}", input.titles[1]), ""};
-  }
-  const bool stylus = tool_on_ || touch_->mouse() == nullptr;
-  if (stylus && state.link == haptic::LinkState::kConnected) {
-    const haptic::Scene& scene = touch_->scene();
-    const engine::Grid& grid = touch_->field().grid();
-    render::StylusState tip;
-    tip.endpoint_mm = state.endpoint_mm;
-    tip.proxy_mm = state.proxy_mm;
-    tip.force_n = state.force_n;
-    tip.contact = state.contact;
-    if (scene.tip == haptic::TipShape::kSphere) tip.tip_radius_mm = scene.tip_radius_mm;
-    // The largest force is an arrow of sixty pixels.
-    render::appendStylus(tip, 60.0 * pixel_mm / scene.force_limit_n, input.overlays.lines);
-    const bool marking = touch_->tool() == haptic::Tool::kMark || touch_->tool() == haptic::Tool::kUnmark;
-    const double radius = marking ? scene.mark_radius_samples : scene.brush_radius_samples;
-    render::Overlays::Ring ring;
-    ring.x_mm = state.contact ? state.proxy_mm.x : state.endpoint_mm.x;
-    ring.y_mm = state.contact ? state.proxy_mm.y : state.endpoint_mm.y;
-    ring.radius_mm = std::max(radius, 0.5) * std::max(grid.spacingXMm(), grid.spacingYMm());
-    ring.colour = marking ? glm::vec3{1.0F, 0.55F, 0.0F} : glm::vec3{1.0F, 1.0F, 1.0F};
-    input.overlays.rings.push_back(ring);
-  }
-  drawn_state_ = state;
-  if (!submit(input)) return;
-  refinement_.drawn({.whole = figures_.redrawn == 1.0,
-                     .continued = figures_.continued,
-                     .tiles_coming = figures_.upload.pending_tiles > figures_.residency.pages_waiting,
-                     .pages_coming = figures_.residency.pages_waiting > 0},
-                    Refinement::Clock::now());
-  force_plot_.push_back(static_cast<float>(glm::length(state.force_n)));
-  if (force_plot_.size() > kPlot) force_plot_.erase(force_plot_.begin());
-  touch_->setView(view_.azimuth_deg, view_.zoom);
+void Workstation::setRate(double hz) {
+  LoopClient& touch = *parts_.document.touch();
+  // What was computed belongs to the loop that ends (LoopClient::setRate).
+  parts_.filters.cancel(touch);
+  const engine::Status set = touch.setRate(hz);
+  options_.touch.rate_hz = touch.rate();
+  // Without a loop there is nothing to work with; what was done is kept as at every end.
+  if (touch.finished())
+    end_ = set;
+  else if (!set)
+    parts_.feedback.message(set.error().line(), "the loop runs on as before");
+  parts_.picture.requestRedraw();
 }
 
-Report Workstation::report() const {
-  Report r{{"device", window_->device()}, {"frames", frames_}};
-  const haptic::TimingFigures frame = frame_times_.figures();
-  r["frame_p50_ms"] = ms(frame.p50_ns);
-  r["frame_p99_ms"] = ms(frame.p99_ns);
-  r["tiles_uploaded"] = tiles_uploaded_;
-  r["bytes_uploaded"] = bytes_uploaded_;
-  if (touch_) {
-    r["open_coarse_picture_ms"] = opening_.coarse_ms;
-    r["open_read_ms"] = opening_.read_ms;
-    r["open_touched_ms"] = opening_.touched_ms;
-    r["open_first_picture_ms"] = opening_.seen_ms;
-    r["open_whole_picture_ms"] = opening_.whole_ms;
-    const haptic::TimingFigures late = touch_->timing().lateness.figures();
-    const haptic::TimingFigures edit = touch_->latency().histogram().figures();
-    r["ticks"] = late.count;
-    r["rate_hz"] = touch_->measuredRate();
-    r["lateness_p50_us"] = 1e3 * ms(late.p50_ns);
-    r["lateness_p99_us"] = 1e3 * ms(late.p99_ns);
-    r["lateness_worst_us"] = 1e3 * ms(late.worst_ns);
-    r["edits_shown"] = edit.count;
-    r["edit_to_pixel_p50_ms"] = ms(edit.p50_ns);
-    r["edit_to_pixel_p99_ms"] = ms(edit.p99_ns);
-    r["steps"] = touch_->history().number();
-    r["filters_applied"] = filters_.applied();
-    r["saved"] = save_path_;
-    r["session"] = keeper_->path();
-    r["session_named"] = keeper_->named();
-    r["unsaved_changes"] = unsaved();
+// A graphics device that is lost - its driver restarted, it hung, it was unplugged, its memory ran out - takes
+// the picture with it and nothing else: field, history, marks and camera live with the document.
+void Workstation::losePicture(const engine::Error& why) {
+  parts_.picture.lose();
+  parts_.drag.stop();
+  const bool again = renewal_.lost(frames_, DeviceRenewal::Clock::now()) && !window_->displayLost();
+  if (again) return;
+  engine::Error end = why;
+  if (parts_.document.isOpen()) {
+    parts_.filters.cancel(*parts_.document.touch());
+    end.remedy = parts_.document.rescue() + end.remedy;
   }
-  r["validation_messages"] = window_->validationMessages();
-  return r;
+  end_ = tl::unexpected(std::move(end));
+}
+
+void Workstation::renewPicture() {
+  if (window_->displayLost()) {
+    losePicture(
+        engine::failure("the connection to the display was lost", "window", "open the window again").value());
+    return;
+  }
+  if (!renewal_.due(DeviceRenewal::Clock::now())) {
+    std::this_thread::sleep_for(kWithoutPicture);
+    return;
+  }
+  const std::string before = window_->device();
+  renewal_.begin(frames_);
+  engine::Status done = window_->renew();
+  if (done) done = parts_.picture.make();
+  if (!done) {
+    losePicture(done.error());
+    return;
+  }
+  std::vector<Notice>& notices = parts_.feedback.notices;
+  std::erase_if(notices, [](const Notice& n) { return n.what.starts_with("the graphics device was lost"); });
+  notices.push_back({before == window_->device()
+                         ? std::string("the graphics device was lost and has come back")
+                         : fmt::format("the graphics device was lost; {} draws now", window_->device()),
+                     "the field, its marks and its steps were not touched"});
 }
 
 }  // namespace fettle::app

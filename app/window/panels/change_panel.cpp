@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/panels/panels.h"
 #include "app/window/panels/widgets.h"
-#include "app/window/workstation.h"
 
 namespace fettle::app {
 namespace {
@@ -58,9 +58,9 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const std::string& 
 
 }  // namespace
 
-void Workstation::deviationPanel() {
-  const std::string& unit = touch_->field().grid().height_unit.name;
-  const auto& live = change_.figures();
+void changePanel(const PanelContext& context, const ChangeFigures& change) {
+  const std::string& unit = context.touch.field().grid().height_unit.name;
+  const auto& live = change.live();
   if (!live) {
     ImGui::TextDisabled("measuring ...");
     return;
@@ -69,11 +69,12 @@ void Workstation::deviationPanel() {
   figure("largest", fmt::format("{:.4g} {}", live->max_abs, unit));
   figure("rms", fmt::format("{:.4g} {}", live->rms, unit));
   // Exact figures of the whole field follow when the hand rests.
-  const bool settled = deviation_ && !measuring_.busy() && measured_ == touch_->upright();
-  figure("99 % within", settled ? fmt::format("{:.4g} {}", deviation_->p99, unit) : std::string("..."));
+  const engine::Deviation* const exact = change.exact(context.touch.upright());
+  figure("99 % within", exact != nullptr ? fmt::format("{:.4g} {}", exact->p99, unit) : std::string("..."));
   figure("Sq before, now", fmt::format("{:.4g}, {:.4g} {}", live->sq_original, live->sq, unit));
-  figure("Sa before, now", fmt::format("{:.4g}, {:.4g} {}", settled ? deviation_->sa_a : live->sa_original,
-                                       settled ? deviation_->sa_b : live->sa, unit));
+  figure("Sa before, now",
+         fmt::format("{:.4g}, {:.4g} {}", exact != nullptr ? exact->sa_a : live->sa_original,
+                     exact != nullptr ? exact->sa_b : live->sa, unit));
   const double share = live->samples > 0
                            ? 100.0 * static_cast<double>(h.unchanged) / static_cast<double>(live->samples)
                            : 100.0;

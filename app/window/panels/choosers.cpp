@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/panels/panels.h"
 #include "app/window/panels/widgets.h"
-#include "app/window/workstation.h"
+#include "app/window/scene_edits.h"
 #include "haptic/contact/sphere_tip.h"
 
 namespace fettle::app {
@@ -102,11 +103,12 @@ std::string described(const haptic::Scene& scene) {
 
 }  // namespace
 
-void Workstation::contactChooser() {
-  haptic::Scene scene = touch_->scene();
-  const engine::Grid& grid = touch_->field().grid();
+void contactChooser(const PanelContext& context, ChoiceCosts& costs) {
+  LoopClient& touch = context.touch;
+  haptic::Scene scene = touch.scene();
+  const engine::Grid& grid = touch.field().grid();
   const std::span<const trials::ContactChoice> choices = trials::contactChoices();
-  const std::vector<trials::ContactFigures>& measured = costs_.contact();
+  const std::vector<trials::ContactFigures>& measured = costs.contact();
   std::vector<Entry> entries;
   std::string now = described(scene), what;
   for (std::size_t i = 0; i < choices.size(); ++i) {
@@ -128,28 +130,29 @@ void Workstation::contactChooser() {
     chosen = chooser("##contact", now, entries, "off by", "a tick", opened);
     return false;
   });
-  if (opened && measured.empty() && !costs_.contactRun().busy()) costs_.measureContact(touch_->field());
+  if (opened && measured.empty() && !costs.contactRun().busy()) costs.measureContact(touch.field());
   if (chosen >= 0) {
     scene = choices[static_cast<std::size_t>(chosen)].in(scene, grid);
     if (const auto problem = scene.tip == haptic::TipShape::kSphere
                                  ? haptic::sphereProblem(scene.tip_radius_mm, grid)
                                  : std::nullopt)
-      notices_.push_back({*problem, ""});
+      context.notices.push_back({*problem, ""});
     else
-      takeScene(scene);
+      applyScene(touch, scene, context.notices);
   }
-  if (measuringLine(costs_.contactRun(), "Cancel##contact")) costs_.cancelContact();
+  if (measuringLine(costs.contactRun(), "Cancel##contact")) costs.cancelContact();
   if (!what.empty()) wrapped(what);
 }
 
-void Workstation::detailChooser() {
+void detailChooser(const PanelContext& context, Display& display, WindowPicture& picture,
+                   const render::View& view, ChoiceCosts& costs) {
   const std::span<const trials::DetailChoice> choices = detailChoices();
-  const std::vector<trials::DetailFigures>& measured = costs_.detail();
+  const std::vector<trials::DetailFigures>& measured = costs.detail();
   std::vector<Entry> entries;
-  std::string now = fmt::format("{} vertices", display_.vertices), what;
+  std::string now = fmt::format("{} vertices", display.vertices), what;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     Entry& entry = entries.emplace_back(Entry{choices[i].name, "", ""});
-    const bool chosen = display_.vertices == choices[i].vertices;
+    const bool chosen = display.vertices == choices[i].vertices;
     if (chosen) now = choices[i].name;
     if (measured.empty()) continue;
     const trials::DetailFigures& m = measured[i];
@@ -167,14 +170,14 @@ void Workstation::detailChooser() {
     chosen = chooser("##detail", now, entries, "off by", "a frame", opened);
     return false;
   });
-  if (opened && measured.empty() && !costs_.detailRun().busy() && view_.width > 0)
-    costs_.measureDetail(touch_->field(), view_);
+  if (opened && measured.empty() && !costs.detailRun().busy() && view.width > 0)
+    costs.measureDetail(context.touch.field(), view);
   if (chosen >= 0) {
-    display_.vertices = choices[static_cast<std::size_t>(chosen)].vertices;
-    stale_ = true;
+    display.vertices = choices[static_cast<std::size_t>(chosen)].vertices;
+    picture.requestRedraw();
   }
-  if (measuringLine(costs_.detailRun(), "Cancel##detail")) costs_.cancelDetail();
-  wrapped(what.empty() ? fmt::format("surface within {:.2g} px now", figures_.bound_px) : what);
+  if (measuringLine(costs.detailRun(), "Cancel##detail")) costs.cancelDetail();
+  wrapped(what.empty() ? fmt::format("surface within {:.2g} px now", picture.figures().bound_px) : what);
 }
 
 }  // namespace fettle::app

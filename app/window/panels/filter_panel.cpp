@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/panels/panels.h"
 #include "app/window/panels/widgets.h"
-#include "app/window/workstation.h"
 
 namespace fettle::app {
 
-void Workstation::filterPanel() {
-  engine::FilterSpec& spec = filters_.spec;
-  const engine::Grid& grid = touch_->field().grid();
+void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display) {
+  engine::FilterSpec& spec = filters.spec;
+  const engine::Grid& grid = context.touch.field().grid();
   beginFields();
   (void)field("filter", [&] {
     if (!ImGui::BeginCombo("##filter", engine::filterOf(spec.kind).title)) return false;
@@ -52,7 +52,7 @@ void Workstation::filterPanel() {
     });
   bool limited = spec.max_change.has_value();
   (void)field("max change", [&] {
-    if (ImGui::Checkbox("##maxchange", &limited)) act(Action::kFilterMaxChange);
+    if (ImGui::Checkbox("##maxchange", &limited)) context.act(Action::kFilterMaxChange);
     tip(Action::kFilterMaxChange);
     if (!spec.max_change) return false;
     ImGui::SameLine();
@@ -66,24 +66,24 @@ void Workstation::filterPanel() {
   ImGui::RadioButton("only marks", &scope, 1);
   tip(Action::kFilterScope);
   spec.scope = static_cast<engine::FilterScope>(scope);
-  if (filters_.computing() || filters_.applying()) {
-    ImGui::ProgressBar(static_cast<float>(filters_.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
-                       filters_.applying() ? "applying" : "filtering");
+  if (filters.computing() || filters.applying()) {
+    ImGui::ProgressBar(static_cast<float>(filters.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
+                       filters.applying() ? "applying" : "filtering");
     ImGui::SameLine();
-    if (ImGui::Button("Cancel")) filters_.cancel(*touch_);
+    if (ImGui::Button("Cancel")) filters.cancel(context.touch);
   } else {
-    if (ImGui::Button("Preview")) act(Action::kFilterPreview);
+    if (ImGui::Button("Preview")) context.act(Action::kFilterPreview);
     tip(Action::kFilterPreview);
     besideOrBelow("Beside");
-    if (ImGui::Button("Beside")) act(Action::kFilterBeside);
+    if (ImGui::Button("Beside")) context.act(Action::kFilterBeside);
     tip(Action::kFilterBeside);
     besideOrBelow("Apply");
-    if (ImGui::Button("Apply")) filters_.apply(*touch_);
+    if (ImGui::Button("Apply")) filters.apply(context.touch);
     tip(Action::kFilterApply);
   }
   std::optional<std::size_t> dropped;
-  for (std::size_t i = 0; i < filters_.variants().size(); ++i) {
-    const FilterPreview::Variant& v = filters_.variants()[i];
+  for (std::size_t i = 0; i < filters.variants().size(); ++i) {
+    const FilterPreview::Variant& v = filters.variants()[i];
     if (ImGui::SmallButton(fmt::format("x##{}", i).c_str())) dropped = i;
     ImGui::SameLine();
     ImGui::PushTextWrapPos(0.0F);
@@ -94,8 +94,8 @@ void Workstation::filterPanel() {
                                .c_str());
     ImGui::PopTextWrapPos();
   }
-  if (dropped) filters_.drop(*dropped);
-  if (filters_.variants().size() == 1) ImGui::Checkbox("split line", &display_.split);
+  if (dropped) filters.drop(*dropped);
+  if (filters.variants().size() == 1) ImGui::Checkbox("split line", &display.split);
 }
 
 }  // namespace fettle::app

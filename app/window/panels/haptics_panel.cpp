@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/panels/panels.h"
 #include "app/window/panels/widgets.h"
-#include "app/window/workstation.h"
+#include "app/window/scene_edits.h"
 
 namespace fettle::app {
 namespace {
@@ -59,12 +60,15 @@ std::string rateText(double hz) {
 
 }  // namespace
 
-void Workstation::hapticsPanel() {
-  const haptic::LoopState state = touch_->state();
-  const haptic::DeviceProfile& profile = touch_->device().profile();
+std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
+                                   ChoiceCosts& costs) {
+  LoopClient& touch = context.touch;
+  std::optional<double> rate_hz;
+  const haptic::LoopState state = touch.state();
+  const haptic::DeviceProfile& profile = touch.device().profile();
   figure("device", profile.name + (profile.gives_force ? "" : ", no force"));
   // A mouse is no device to plug in or to fear.
-  const bool mouse = touch_->mouse() != nullptr;
+  const bool mouse = touch.mouse() != nullptr;
   figure("link",
          mouse ? (state.link == haptic::LinkState::kConnected ? "on the surface" : "no tool on the surface")
          : state.link == haptic::LinkState::kConnected    ? "connected"
@@ -72,39 +76,39 @@ void Workstation::hapticsPanel() {
                                                           : "not plugged in");
   figure("safety", mouse ? "no force to guard" : std::string(haptic::name(state.safety)));
   ImGui::BeginDisabled(mouse);
-  if (ImGui::Button("Arm")) act(Action::kArm);
+  if (ImGui::Button("Arm")) context.act(Action::kArm);
   tip(Action::kArm);
   besideOrBelow("Disarm");
-  if (ImGui::Button("Disarm")) act(Action::kDisarm);
+  if (ImGui::Button("Disarm")) context.act(Action::kDisarm);
   tip(Action::kDisarm);
   besideOrBelow("Calibrate");
-  if (ImGui::Button("Calibrate")) act(Action::kCalibrate);
+  if (ImGui::Button("Calibrate")) context.act(Action::kCalibrate);
   tip(Action::kCalibrate);
   ImGui::EndDisabled();
-  const auto limit = static_cast<float>(touch_->scene().force_limit_n);
-  if (!force_plot_.empty())
-    ImGui::PlotLines("##force", force_plot_.data(), static_cast<int>(force_plot_.size()), 0,
+  const auto limit = static_cast<float>(touch.scene().force_limit_n);
+  if (const std::vector<float>& forces = stylus.forces(); !forces.empty())
+    ImGui::PlotLines("##force", forces.data(), static_cast<int>(forces.size()), 0,
                      fmt::format("force, 0 to {:.3g} N", limit).c_str(), 0.0F, limit,
                      ImVec2(ImGui::GetContentRegionAvail().x, 4.0F * ImGui::GetTextLineHeight()));
-  const haptic::TimingFigures compute = touch_->timing().compute.figures();
-  const haptic::TimingFigures late = touch_->timing().lateness.figures();
-  figure("ticks", fmt::format("{:.0f} of {:.0f} a second", touch_->measuredRate(), touch_->rate()));
+  const haptic::TimingFigures compute = touch.timing().compute.figures();
+  const haptic::TimingFigures late = touch.timing().lateness.figures();
+  figure("ticks", fmt::format("{:.0f} of {:.0f} a second", touch.measuredRate(), touch.rate()));
   figure("a tick takes",
          fmt::format("{:.1f} us, p99 {:.1f}", microseconds(compute.p50_ns), microseconds(compute.p99_ns)));
   figure("ticks late by",
          fmt::format("{:.0f} us, p99 {:.0f}", microseconds(late.p50_ns), microseconds(late.p99_ns)));
-  drawLateness(touch_->timing().lateness);
-  haptic::Scene scene = touch_->scene();
+  drawLateness(touch.timing().lateness);
+  haptic::Scene scene = touch.scene();
   beginFields();
   (void)field("rate", [&] {
-    const double now_hz = touch_->rate();
+    const double now_hz = touch.rate();
     if (!ImGui::BeginCombo("##rate", rateText(now_hz).c_str())) return false;
     for (int khz = 1; khz <= 10; ++khz)
-      if (const double hz = 1000.0 * khz; ImGui::Selectable(rateText(hz).c_str(), hz == now_hz)) setRate(hz);
+      if (const double hz = 1000.0 * khz; ImGui::Selectable(rateText(hz).c_str(), hz == now_hz)) rate_hz = hz;
     ImGui::EndCombo();
     return false;
   });
-  contactChooser();
+  contactChooser(context, costs);
   // A slip of the finger makes it a thousand times as stiff: what is too much is refused with words, and the
   // number there was stays.
   const auto type = [&](const char* name, const char* id, double& value, const char* format) {
@@ -112,16 +116,17 @@ void Workstation::hapticsPanel() {
       const auto typed = typedNumber(id, value, format);
       if (!typed) return false;
       value = *typed;
-      takeScene(scene);
-      const bool taken = touch_->scene() == scene;
-      scene = touch_->scene();
+      applyScene(touch, scene, context.notices);
+      const bool taken = touch.scene() == scene;
+      scene = touch.scene();
       return taken;
     });
   };
-  if (type("stiffness", "##stiffness", scene.stiffness_n_per_mm, "%.4g N/mm")) noteWithoutForce(scene);
+  if (type("stiffness", "##stiffness", scene.stiffness_n_per_mm, "%.4g N/mm"))
+    noteWithoutForce(touch, context.notices);
   (void)type("force limit", "##limit", scene.force_limit_n, "%.3g N");
   endFields();
-  if (const auto largest = touch_->largestStiffness())
+  if (const auto largest = touch.largestStiffness())
     figure("it holds", fmt::format("{:.4g} N/mm at most", *largest));
   ImGui::TextDisabled("effects");
   for (int i = 0; i < haptic::kEffectKinds; ++i) {
@@ -140,12 +145,13 @@ void Workstation::hapticsPanel() {
       scene.effects.insert(scene.effects.begin(), kind);  // before those that stand on it
     else
       scene.effects.push_back(kind);
-    takeScene(scene);
+    applyScene(touch, scene, context.notices);
   }
   ImGui::PushTextWrapPos(0.0F);
-  for (const std::string& missing : touch_->realTime().missing)
+  for (const std::string& missing : touch.realTime().missing)
     ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s", missing.c_str());
   ImGui::PopTextWrapPos();
+  return rate_hz;
 }
 
 }  // namespace fettle::app

@@ -1,37 +1,36 @@
-#include "app/window/workstation.h"
-
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/panels/panels.h"
 #include "app/window/panels/widgets.h"
 
 namespace fettle::app {
 
-void Workstation::historyPanel() {
-  const engine::History& history = touch_->history();
-  if (ImGui::Button("Undo")) act(Action::kUndo);
+void historyPanel(const PanelContext& context) {
+  const engine::History& history = context.touch.history();
+  if (ImGui::Button("Undo")) context.act(Action::kUndo);
   ImGui::SameLine();
-  if (ImGui::Button("Redo")) act(Action::kRedo);
+  if (ImGui::Button("Redo")) context.act(Action::kRedo);
   const std::string held = fmt::format("{} step{}, {}", history.last(), history.last() == 1 ? "" : "s",
                                        bytesText(static_cast<double>(history.bytes())));
   besideOrBelow(held.c_str());
   ImGui::TextDisabled("%s", held.c_str());
   const float lines = static_cast<float>(std::clamp<std::int64_t>(history.last() + 1, 3, 8));
   if (ImGui::BeginChild("steps", ImVec2(0.0F, lines * ImGui::GetTextLineHeightWithSpacing() + 8.0F), true)) {
-    std::int64_t wanted = -1;
-    if (history.first() == 0 && ImGui::Selectable("0  the scan", history.number() == 0)) wanted = 0;
+    std::int64_t chosen = -1;
+    if (history.first() == 0 && ImGui::Selectable("0  the scan", history.number() == 0)) chosen = 0;
     for (std::int64_t i = history.first() + 1; i <= history.last(); ++i) {
       const engine::StepInfo& info = history.info(i);
       const std::string text =
           fmt::format("{}  {}   {}##{}", i, info.name, bytesText(static_cast<double>(info.bytes)), i);
       if (i > history.number())
         ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
-      if (ImGui::Selectable(text.c_str(), i == history.number())) wanted = i;
+      if (ImGui::Selectable(text.c_str(), i == history.number())) chosen = i;
       if (i > history.number()) ImGui::PopStyleColor();
     }
-    if (wanted >= 0) touch_->goTo(wanted);
+    if (chosen >= 0) context.touch.goTo(chosen);
   }
   ImGui::EndChild();
 }

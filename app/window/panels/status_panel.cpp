@@ -1,11 +1,10 @@
-#include "app/window/workstation.h"
-
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <glm/geometric.hpp>
 
+#include "app/window/panels/panels.h"
 #include "app/window/panels/widgets.h"
 
 namespace fettle::app {
@@ -23,28 +22,30 @@ std::string limitOf(const std::vector<render::PanelDetail>& panels, bool more_co
 
 }  // namespace
 
-void Workstation::statusPanel() {
-  const haptic::TimingFigures late = touch_->timing().lateness.figures();
-  const haptic::LoopState state = touch_->state();
-  const haptic::TimingFigures edit = touch_->latency().histogram().figures();
-  figure("loop", fmt::format("{:.0f} of {:.0f} Hz", touch_->measuredRate(), touch_->rate()));
+void statusPanel(const PanelContext& context, const WindowPicture& picture, const OpeningTimes& times) {
+  LoopClient& touch = context.touch;
+  const render::FrameStatistics& figures = picture.figures();
+  const DrawFigures& draw = picture.drawFigures();
+  const haptic::TimingFigures late = touch.timing().lateness.figures();
+  const haptic::LoopState state = touch.state();
+  const haptic::TimingFigures edit = touch.latency().histogram().figures();
+  figure("loop", fmt::format("{:.0f} of {:.0f} Hz", touch.measuredRate(), touch.rate()));
   figure("late p50, p99",
          fmt::format("{:.0f}, {:.0f} us", microseconds(late.p50_ns), microseconds(late.p99_ns)));
-  figure("missed ticks", fmt::format("{}", touch_->timing().missed.load(std::memory_order_relaxed)));
+  figure("missed ticks", fmt::format("{}", touch.timing().missed.load(std::memory_order_relaxed)));
   figure("force", fmt::format("{:.2f} N{}", glm::length(state.force_n), state.contact ? ", touching" : ""));
-  figure("frame", fmt::format("GPU {:.1f} ms, CPU {:.1f}", figures_.device_ms, frame_ms_));
-  figure("surface", fmt::format("{} triangles, {:.2f} px{}", figures_.triangles, figures_.bound_px,
-                                limitOf(figures_.panels, refinement_.owed())));
-  figure("uploaded",
-         fmt::format("{} tiles, {}", tiles_uploaded_, bytesText(static_cast<double>(bytes_uploaded_))));
-  figure("last upload",
-         fmt::format("{} tiles, {}, {:.2f} ms", figures_.upload.tiles,
-                     bytesText(static_cast<double>(figures_.upload.bytes)), figures_.upload.ms));
+  figure("frame", fmt::format("GPU {:.1f} ms, CPU {:.1f}", figures.device_ms, draw.last_ms));
+  figure("surface", fmt::format("{} triangles, {:.2f} px{}", figures.triangles, figures.bound_px,
+                                limitOf(figures.panels, picture.refining())));
+  figure("uploaded", fmt::format("{} tiles, {}", draw.tiles_uploaded,
+                                 bytesText(static_cast<double>(draw.bytes_uploaded))));
+  figure("last upload", fmt::format("{} tiles, {}, {:.2f} ms", figures.upload.tiles,
+                                    bytesText(static_cast<double>(figures.upload.bytes)), figures.upload.ms));
   figure("first picture",
-         fmt::format("{:.1f} s, read in {:.1f}", 1e-3 * opening_.seen_ms, 1e-3 * opening_.read_ms));
+         fmt::format("{:.1f} s, read in {:.1f}", 1e-3 * times.seen_ms, 1e-3 * times.read_ms));
   figure("edit to pixel",
          edit.count == 0 ? std::string("-")
-                         : fmt::format("{:.0f} ms; p50 {:.0f}, p99 {:.0f}", touch_->latency().lastMs(),
+                         : fmt::format("{:.0f} ms; p50 {:.0f}, p99 {:.0f}", touch.latency().lastMs(),
                                        1e-3 * microseconds(edit.p50_ns), 1e-3 * microseconds(edit.p99_ns)));
 }
 

@@ -4,87 +4,88 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "app/window/panels/panels.h"
 #include "app/window/panels/widgets.h"
-#include "app/window/workstation.h"
+#include "app/window/scene_edits.h"
 
 namespace fettle::app {
-namespace {
 
 using haptic::Tool;
 
-}  // namespace
-
-void Workstation::toolPanel() {
+void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking& marking,
+               const Display& display) {
+  LoopClient& touch = context.touch;
   // As many buttons in a line as there is room for.
   bool first = true;
   const auto button = [&](const char* name, Action action, bool on) {
     if (!first) besideOrBelow(name);
     first = false;
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-    if (ImGui::Button(name)) act(action);
+    if (ImGui::Button(name)) context.act(action);
     if (on) ImGui::PopStyleColor();
     tip(action);
   };
-  const Tool tool = touch_->tool();
-  const bool lasso = lasso_.active();
-  button("View", Action::kNavigate, !tool_on_ && !lasso);
-  button("Feel", Action::kFeel, tool_on_ && tool == Tool::kFeel);
-  button("Smooth", Action::kSmooth, tool_on_ && tool == Tool::kSmooth);
-  button("Mark", Action::kMark, tool_on_ && tool == Tool::kMark);
-  button("Unmark", Action::kUnmark, tool_on_ && tool == Tool::kUnmark);
-  button("Lasso", Action::kLasso, lasso && lasso_.shape() == Lasso::Shape::kFree);
-  button("Box", Action::kBox, lasso && lasso_.shape() == Lasso::Shape::kBox);
+  const Tool tool = touch.tool();
+  const bool lasso = marking.lasso().active();
+  const auto is = [&](Lasso::Shape shape) { return lasso && marking.lasso().shape() == shape; };
+  button("View", Action::kNavigate, !stylus.on() && !lasso);
+  button("Feel", Action::kFeel, stylus.on() && tool == Tool::kFeel);
+  button("Smooth", Action::kSmooth, stylus.on() && tool == Tool::kSmooth);
+  button("Mark", Action::kMark, stylus.on() && tool == Tool::kMark);
+  button("Unmark", Action::kUnmark, stylus.on() && tool == Tool::kUnmark);
+  button("Lasso", Action::kLasso, is(Lasso::Shape::kFree));
+  button("Box", Action::kBox, is(Lasso::Shape::kBox));
 
-  const engine::Grid& grid = touch_->field().grid();
+  const engine::Grid& grid = touch.field().grid();
   const double cell = std::max(grid.spacingXMm(), grid.spacingYMm());
-  const bool marking = tool == Tool::kMark || tool == Tool::kUnmark;
-  const double samples = marking ? touch_->scene().mark_radius_samples : touch_->scene().brush_radius_samples;
+  const double samples = brushRadius(touch);
   beginFields();
   auto radius = static_cast<float>(samples);
   if (field("radius", [&] {
         return ImGui::SliderFloat("##radius", &radius, 0.0F, static_cast<float>(haptic::kMaxBrushRadius),
                                   "%.0f samples", ImGuiSliderFlags_AlwaysClamp);
       }))
-    setBrushRadius(std::round(static_cast<double>(radius)));
+    setBrushRadius(touch, std::round(static_cast<double>(radius)), context.notices);
   double radius_mm = samples * cell;
   if (field("", [&] {
         return typeNumber("##radius_mm", radius_mm, 0.0, haptic::kMaxBrushRadius * cell, "%.4g mm");
       }))
-    setBrushRadius(radius_mm / cell);
-  if (touch_->mouse() != nullptr) {
-    auto depth = static_cast<float>(touch_->mouse()->pressMm() / cell);
+    setBrushRadius(touch, radius_mm / cell, context.notices);
+  if (touch.mouse() != nullptr) {
+    auto depth = static_cast<float>(touch.mouse()->pressMm() / cell);
     if (field("depth", [&] {
           return ImGui::SliderFloat("##depth", &depth, 0.0F, 4.0F, "%.2f cells",
                                     ImGuiSliderFlags_AlwaysClamp);
         }))
-      setPressDepth(static_cast<double>(depth) * cell);
+      setPressDepth(touch, static_cast<double>(depth) * cell);
   }
-  haptic::Scene scene = touch_->scene();
+  haptic::Scene scene = touch.scene();
   bool limited = scene.max_change.has_value();
   (void)field("keep within", [&] {
-    if (ImGui::Checkbox("##within", &limited)) act(Action::kKeepWithin);
+    if (ImGui::Checkbox("##within", &limited)) context.act(Action::kKeepWithin);
     tip(Action::kKeepWithin);
     if (!scene.max_change) return false;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
-    if (typeNumber("##most", *scene.max_change, 0.0, 1e9, "%.4g " + grid.height_unit.name)) takeScene(scene);
+    if (typeNumber("##most", *scene.max_change, 0.0, 1e9, "%.4g " + grid.height_unit.name))
+      applyScene(touch, scene, context.notices);
     return false;
   });
   endFields();
-  bool marks = display_.marks, inverted = touch_->scene().invert;
-  if (ImGui::Checkbox("marks", &marks)) act(Action::kShowMarks);
+  bool marks = display.marks, inverted = touch.scene().invert;
+  if (ImGui::Checkbox("marks", &marks)) context.act(Action::kShowMarks);
   tip(Action::kShowMarks);
   besideOrBelow("upside down", Beside::kTick);
-  if (ImGui::Checkbox("upside down", &inverted)) act(Action::kInvert);
+  if (ImGui::Checkbox("upside down", &inverted)) context.act(Action::kInvert);
   tip(Action::kInvert);
-  if (ImGui::Button("Clear marks")) act(Action::kClearMarks);
+  if (ImGui::Button("Clear marks")) context.act(Action::kClearMarks);
   tip(Action::kClearMarks);
   besideOrBelow("Invert marks");
-  if (ImGui::Button("Invert marks")) act(Action::kInvertMarks);
+  if (ImGui::Button("Invert marks")) context.act(Action::kInvertMarks);
   tip(Action::kInvertMarks);
-  if (mark_edit_.busy()) {
+  if (marking.edit.busy()) {
     besideOrBelow("marking ...");
-    ImGui::ProgressBar(static_cast<float>(mark_edit_.progress()), ImVec2(-1.0F, 0.0F), "marking");
+    ImGui::ProgressBar(static_cast<float>(marking.edit.progress()), ImVec2(-1.0F, 0.0F), "marking");
   }
 }
 

@@ -29,7 +29,7 @@ void figure(const char* name, const std::string& value) {
 
 void tip(Action action) {
   if (!ImGui::IsItemHovered()) return;
-  const Shortcut& s = shortcutOf(action);
+  const ActionRow& s = rowOf(action);
   ImGui::SetTooltip("%s", fmt::format("{}: {}", s.name, keyText(s.key, s.modifiers)).c_str());
 }
 

@@ -6,7 +6,7 @@
 
 #include <imgui.h>
 
-#include "app/window/shortcuts.h"
+#include "app/window/actions.h"
 
 namespace fettle::app {
 

@@ -183,7 +183,7 @@ TEST_F(QuestionsTest, a_key_answers_only_what_was_on_the_screen_when_it_was_pres
 TEST_F(QuestionsTest, what_was_asked_about_a_field_goes_with_it) {
   questions_.ask(message("stays"));
   questions_.ask(of(Kind::kExport));
-  questions_.forgetField();
+  questions_.dropOfField();
   frames(3);
   EXPECT_EQ(shown(), Kind::kMessage);
   press(Key::kEscape);
@@ -191,7 +191,7 @@ TEST_F(QuestionsTest, what_was_asked_about_a_field_goes_with_it) {
   EXPECT_FALSE(questions_.pending());
   questions_.ask(of(Kind::kSaveAs));
   frames(3);
-  questions_.forgetField();
+  questions_.dropOfField();
   EXPECT_FALSE(questions_.pending());
   EXPECT_FALSE(ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel));
   frames(2);

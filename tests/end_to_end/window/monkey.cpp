@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "app/window/shortcuts.h"
+#include "app/window/actions.h"
 
 namespace fettle::tests {
 namespace {
@@ -73,7 +73,7 @@ void moveTo(std::vector<std::string>& words, int x, int y) {
 const std::vector<std::string>& keysOfActions() {
   static const std::vector<std::string> keys = [] {
     std::vector<std::string> all;
-    for (const app::Shortcut& s : app::shortcuts()) {
+    for (const app::ActionRow& s : app::actions()) {
       std::string key;
       if (s.modifiers.control) key += "ctrl+";
       if (s.modifiers.shift) key += "shift+";

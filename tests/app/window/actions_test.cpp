@@ -1,4 +1,4 @@
-#include "app/window/shortcuts.h"
+#include "app/window/actions.h"
 
 #include <map>
 #include <set>
@@ -9,22 +9,22 @@
 namespace fettle::app {
 namespace {
 
-TEST(Shortcuts, every_action_has_one_line_a_key_and_a_name) {
+TEST(Actions, every_action_has_one_line_a_key_and_a_name) {
   std::set<Action> seen;
-  for (const Shortcut& s : shortcuts()) {
+  for (const ActionRow& s : actions()) {
     EXPECT_TRUE(seen.insert(s.action).second) << s.name;
     EXPECT_NE(s.key, render::Key::kNone) << s.name;
     EXPECT_FALSE(s.name.empty());
     EXPECT_EQ(actionOf(s.key, s.modifiers), s.action) << s.name;
     EXPECT_FALSE(keyText(s.key, s.modifiers).empty()) << s.name;
   }
-  for (int i = 0; i <= static_cast<int>(Action::kEnterPanels); ++i)
+  for (int i = 0; i < static_cast<int>(Action::kCount); ++i)
     EXPECT_TRUE(seen.contains(static_cast<Action>(i))) << "action " << i;
 }
 
-TEST(Shortcuts, no_key_stands_for_two_actions) {
+TEST(Actions, no_key_stands_for_two_actions) {
   std::map<std::tuple<render::Key, bool, bool, bool>, std::string_view> keys;
-  for (const Shortcut& s : shortcuts())
+  for (const ActionRow& s : actions())
     for (const render::Key key : {s.key, s.other_key}) {
       if (key == render::Key::kNone) continue;
       const auto [at, fresh] =
@@ -33,21 +33,21 @@ TEST(Shortcuts, no_key_stands_for_two_actions) {
     }
 }
 
-TEST(Shortcuts, disarming_gives_way_to_typing_alone_and_pause_to_nothing) {
-  const Shortcut& disarm = shortcutOf(Action::kDisarm);
+TEST(Actions, disarming_gives_way_to_typing_alone_and_pause_to_nothing) {
+  const ActionRow& disarm = rowOf(Action::kDisarm);
   EXPECT_TRUE(disarms(disarm.key, disarm.modifiers, Typing::kNo));
   EXPECT_FALSE(disarms(disarm.key, disarm.modifiers, Typing::kYes));
   for (const bool held : {false, true})
     for (const Typing typing : {Typing::kNo, Typing::kYes})
       EXPECT_TRUE(disarms(render::Key::kPause, {held, held, held}, typing));
-  for (const Shortcut& s : shortcuts())
+  for (const ActionRow& s : actions())
     EXPECT_EQ(disarms(s.key, s.modifiers, Typing::kNo), s.action == Action::kDisarm) << s.name;
 }
 
-TEST(Shortcuts, stand_together_by_section) {
+TEST(Actions, stand_together_by_section) {
   std::set<std::string_view> past;
   std::string_view section;
-  for (const Shortcut& s : shortcuts()) {
+  for (const ActionRow& s : actions()) {
     if (s.section == section) continue;
     EXPECT_TRUE(past.insert(s.section).second) << s.section;
     section = s.section;

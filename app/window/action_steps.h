@@ -1,0 +1,320 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/window/parts.h"
+#include "app/window/scene_edits.h"
+#include "engine/marks/change_marks.h"
+
+/// What each action does, and how it stands in the menu: for the table in actions.cpp alone. Of those that
+/// need a document or a picture it is there.
+namespace fettle::app::steps {
+
+using haptic::Tool;
+
+inline constexpr double kKey_px = 40.0;    ///< what an arrow key moves the view by
+inline constexpr double kBrushStep = 1.0;  ///< [ and ] [samples]
+
+inline LoopClient& touchOf(Parts& p) {
+  return *p.document.touch();
+}
+inline bool hasField(const Parts& p) {
+  return p.document.isOpen();
+}
+
+// The next of `count` values of an enumeration, the first after the last.
+template <class Enum>
+void next(Enum& value, int count) {
+  value = static_cast<Enum>((static_cast<int>(value) + 1) % count);
+}
+
+// --- File, Edit
+
+inline void ask(Parts& p, Question::Kind kind, std::string path = {}) {
+  p.feedback.questions.ask({.kind = kind, .path = std::move(path)});
+}
+
+inline void quit(Parts& p) {
+  if (!p.document.unsaved())
+    p.quit = Quit::kDone;
+  else if (p.settings.ask_before_quitting)
+    p.feedback.questions.ask({.kind = Question::Kind::kUnsaved, .afterwards = {Afterwards::What::kQuit, ""}});
+  else
+    p.quit = Quit::kKeepWork;  // nothing is lost: it is there when the scan is opened again
+}
+
+inline void openScan(Parts& p) {
+  ask(p, Question::Kind::kOpen, p.document.path());
+}
+inline void save(Parts& p) {
+  p.saving.save(p.document, p.feedback, {});
+}
+inline void saveAs(Parts& p) {
+  ask(p, Question::Kind::kSaveAs, p.document.suggestedPath(".fettle"));
+}
+inline void exportField(Parts& p) {
+  ask(p, Question::Kind::kExport, p.document.suggestedPath("_fettled.tif"));
+}
+inline void undo(Parts& p) {
+  p.document.undo();
+}
+inline bool canUndo(const Parts& p) {
+  return hasField(p) && p.document.touch()->canUndo();
+}
+inline void redo(Parts& p) {
+  touchOf(p).redo();
+}
+inline bool canRedo(const Parts& p) {
+  return hasField(p) && p.document.touch()->canRedo();
+}
+
+// --- Tool
+
+template <Tool tool>
+void choose(Parts& p) {
+  // To paint over a suggestion is to take it first.
+  if (isMarkTool(tool)) (void)p.marking.edges.accept(touchOf(p));
+  p.chooseTool(tool);
+}
+template <Tool tool>
+bool chosen(const Parts& p) {
+  return p.stylus.on() && p.document.isOpen() && p.document.touch()->tool() == tool;
+}
+
+// What was begun last ends first.
+inline void navigate(Parts& p) {
+  if (p.marking.edit.busy())
+    p.marking.edit.cancel();
+  else if (p.marking.edges.on())
+    p.marking.edges.drop();
+  else if (!p.filters.variants().empty() || p.filters.computing() || p.filters.applying())
+    p.filters.cancel(touchOf(p));
+  else
+    p.chooseTool(std::nullopt);
+}
+
+template <BrushAdjustment::Of of>
+void adjustBrush(Parts& p) {
+  p.brush.begin(of, touchOf(p), p.cursor.x);
+}
+template <int by>
+void resizeBrush(Parts& p) {
+  setBrushRadius(touchOf(p), brushRadius(touchOf(p)) + by * kBrushStep, p.feedback.notices);
+}
+
+inline void keepWithin(Parts& p) {
+  haptic::Scene scene = touchOf(p).scene();
+  toggleLimit(scene.max_change, p.last_limit);
+  applyScene(touchOf(p), scene, p.feedback.notices);
+}
+inline void invert(Parts& p) {
+  haptic::Scene scene = touchOf(p).scene();
+  scene.invert = !scene.invert;
+  p.filters.cancel(touchOf(p));
+  applyScene(touchOf(p), scene, p.feedback.notices);
+}
+
+inline bool navigates(const Parts& p) {
+  return !p.stylus.on();
+}
+inline bool keepsWithin(const Parts& p) {
+  return hasField(p) && p.document.touch()->scene().max_change.has_value();
+}
+inline bool isInverted(const Parts& p) {
+  return hasField(p) && p.document.touch()->scene().invert;
+}
+
+// --- Marks
+
+template <Lasso::Shape shape>
+void lasso(Parts& p) {
+  p.chooseTool(std::nullopt);
+  p.marking.beginLasso(shape, p.cursor, p.window.pictureArea(), p.picture);
+}
+template <Lasso::Shape shape>
+bool isLasso(const Parts& p) {
+  return p.marking.lasso().active() && p.marking.lasso().shape() == shape;
+}
+inline void suggestEdges(Parts& p) {
+  p.settings.display.marks = true;
+  p.marking.edges.search(touchOf(p));
+}
+template <int steps>
+void sensitivity(Parts& p) {
+  p.marking.turnChoice(&engine::EdgeChoice::sensitivity, 0.05 * steps, 1.0, touchOf(p));
+}
+template <int steps>
+void thickness(Parts& p) {
+  p.marking.turnChoice(&engine::EdgeChoice::thickness, 1.0 * steps, 64.0, touchOf(p));
+}
+
+inline void invertMarks(Parts& p) {
+  p.marking.edit.ask("Invert marks", engine::invertMarks);
+}
+inline void clearMarks(Parts& p) {
+  p.marking.edit.ask("Clear marks", engine::clearMarks);
+}
+inline void coarserEdges(Parts& p) {
+  p.marking.scaleEdges(1.25, touchOf(p));
+}
+inline void finerEdges(Parts& p) {
+  p.marking.scaleEdges(0.8, touchOf(p));
+}
+
+// --- Filter
+
+inline void nextFilter(Parts& p) {
+  engine::FilterSpec& spec = p.filters.spec;
+  spec.kind = engine::filters()[(static_cast<std::size_t>(spec.kind) + 1) % engine::filters().size()].kind;
+  spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
+}
+template <FilterPreview::Keep keep>
+void preview(Parts& p) {
+  const LoopClient& touch = touchOf(p);
+  p.filters.compute(touchOf(p), keep, p.picture.seenPart(touch.field().grid(), p.view));
+}
+inline void dropPreview(Parts& p) {
+  if (!p.filters.variants().empty()) p.filters.drop(p.filters.variants().size() - 1);
+}
+template <int by>
+void window(Parts& p) {
+  p.filters.spec.window = std::clamp(p.filters.spec.window + by, 1, engine::FilterSpec::kMaxWindow);
+}
+template <int by>
+void passes(Parts& p) {
+  p.filters.spec.passes = std::clamp(p.filters.spec.passes + by, 1, engine::FilterSpec::kMaxPasses);
+}
+inline bool onlyMarks(const Parts& p) {
+  return p.filters.spec.scope == engine::FilterScope::kOnlyMarks;
+}
+inline void changeScope(Parts& p) {
+  p.filters.spec.scope = onlyMarks(p) ? engine::FilterScope::kKeepMarks : engine::FilterScope::kOnlyMarks;
+}
+inline void apply(Parts& p) {
+  if (!p.marking.edges.accept(touchOf(p)) && !p.filters.variants().empty()) p.filters.apply(touchOf(p));
+}
+template <int steps>
+void moveSplit(Parts& p) {
+  double& at = p.settings.display.split_at;
+  at = std::clamp(at + 0.02 * steps, 0.02, 0.98);
+}
+
+inline bool hasPreview(const Parts& p) {
+  return hasField(p) && !p.filters.variants().empty();
+}
+inline void limitFilter(Parts& p) {
+  toggleLimit(p.filters.spec.max_change, p.last_limit);
+}
+inline bool filterIsLimited(const Parts& p) {
+  return p.filters.spec.max_change.has_value();
+}
+inline bool canApply(const Parts& p) {
+  return hasField(p) && (!p.filters.variants().empty() || p.marking.edges.suggestion() != nullptr);
+}
+
+// --- View
+
+template <bool Display::*flag>
+void toggle(Parts& p) {
+  p.settings.display.*flag = !(p.settings.display.*flag);
+}
+template <bool Display::*flag>
+bool isOn(const Parts& p) {
+  return p.settings.display.*flag;
+}
+inline void deviation(Parts& p) {
+  toggle<&Display::deviation>(p);
+  p.picture.refreshRanges();
+}
+inline void theme(Parts& p) {
+  render::Theme& theme = p.settings.display.theme;
+  theme = theme == render::Theme::kDark ? render::Theme::kLight : render::Theme::kDark;
+}
+template <int degrees>
+void turnLight(Parts& p) {
+  float& azimuth = p.settings.display.light_azimuth_deg;
+  azimuth = std::fmod(azimuth + static_cast<float>(degrees), 360.0F);
+}
+template <int degrees>
+void liftLight(Parts& p) {
+  float& elevation = p.settings.display.light_elevation_deg;
+  elevation = std::clamp(elevation + static_cast<float>(degrees), 5.0F, 90.0F);
+}
+inline void lastStroke(Parts& p) {
+  const engine::SampleRect rect = touchOf(p).lastRect();
+  const engine::Grid& grid = touchOf(p).field().grid();
+  if (!rect.empty())
+    Navigation::centreOn(p.view, grid, (rect.column + 0.5 * rect.columns) * grid.spacingXMm(),
+                         (rect.row + 0.5 * rect.rows) * grid.spacingYMm());
+}
+template <int azimuth, int elevation>
+void look(Parts& p) {
+  p.view.azimuth_deg = azimuth;
+  p.view.elevation_deg = elevation;
+}
+inline void projection(Parts& p) {
+  using enum render::Projection;
+  p.view.projection = p.view.projection == kOrthographic ? kPerspective : kOrthographic;
+}
+template <int x, int y>
+void turn(Parts& p) {
+  Navigation::turn(p.view, x * kKey_px, y * kKey_px, p.window.pictureArea().width);
+}
+template <int x, int y>
+void pan(Parts& p) {
+  Navigation::pan(p.view, *p.seenGrid(), x * kKey_px, y * kKey_px, p.picture.pixelsPerMm());
+}
+template <int steps>
+void zoom(Parts& p) {
+  Navigation::zoom(p.view, *p.seenGrid(), steps, 0.0, 0.0, p.picture.pixelsPerMm());
+}
+inline void enterPanels(Parts& p) {
+  p.settings.side_panel = true;
+  p.enter_panels = true;
+  p.window.enterPanels();
+}
+inline void nextMap(Parts& p) {
+  next(p.settings.display.map, 5);
+}
+inline void stereo(Parts& p) {
+  next(p.settings.display.stereo, 3);
+}
+inline bool isStereo(const Parts& p) {
+  return p.settings.display.stereo != render::StereoMode::kOff;
+}
+inline bool isLight(const Parts& p) {
+  return p.settings.display.theme == render::Theme::kLight;
+}
+inline void mouseHabits(Parts& p) {
+  next(p.settings.habits, 3);
+}
+inline void viewAll(Parts& p) {
+  Navigation::showAll(p.view);
+}
+inline void sidePanel(Parts& p) {
+  p.settings.side_panel = !p.settings.side_panel;
+}
+inline bool hasSidePanel(const Parts& p) {
+  return p.settings.side_panel;
+}
+
+// --- Device, Help
+
+inline void arm(Parts& p) {
+  touchOf(p).arm();
+}
+inline void disarm(Parts& p) {
+  touchOf(p).disarm();
+}
+inline void calibrate(Parts& p) {
+  touchOf(p).calibrate();
+}
+inline void listShortcuts(Parts& p) {
+  ask(p, Question::Kind::kShortcuts);
+}
+
+}  // namespace fettle::app::steps

@@ -1,0 +1,232 @@
+#include "app/window/actions.h"
+
+#include <iterator>
+
+#include "app/window/action_steps.h"
+
+namespace fettle::app {
+namespace {
+
+using render::Key;
+using render::letter;
+using render::Modifiers;
+using namespace steps;
+using enum Needs;
+
+constexpr Modifiers kPlain{};
+constexpr Modifiers kControl{true, false, false};
+constexpr Modifiers kShift{false, true, false};
+constexpr Modifiers kAlt{false, false, true};
+constexpr Modifiers kControlShift{true, true, false};
+constexpr Key kNoKey = Key::kNone;
+// Groups of the menu that the section names, but for one.
+constexpr MenuPlace kNoMenu{}, kFirst{1}, kSecond{2}, kThird{3}, kMarksMenu{3, "Marks"};
+
+constexpr ActionRow kRows[] = {
+    ActionRow{Action::kOpen, "File", "Open a scan", letter('O'), kControl, kNoKey, kFirst, kNothing,
+              openScan},
+    ActionRow{Action::kSave, "File", "Save", letter('S'), kControl, kNoKey, kSecond, kField, save},
+    ActionRow{Action::kSaveAs, "File", "Save as", letter('S'), kControlShift, kNoKey, kSecond, kField,
+              saveAs},
+    ActionRow{Action::kExport, "File", "Export", letter('E'), kControl, kNoKey, kSecond, kField, exportField},
+    ActionRow{Action::kQuit, "File", "Quit", letter('Q'), kControl, kNoKey, kThird, kNothing, quit},
+
+    ActionRow{Action::kUndo, "Edit", "Undo", letter('Z'), kControl, kNoKey, kFirst, kField, undo, nullptr,
+              canUndo},
+    ActionRow{Action::kRedo, "Edit", "Redo", letter('Z'), kControlShift, kNoKey, kFirst, kField, redo,
+              nullptr, canRedo},
+
+    ActionRow{Action::kNavigate, "Tool", "End the tool: the mouse moves the view", Key::kEscape, kPlain,
+              kNoKey, kFirst, kField, navigate, navigates},
+    ActionRow{Action::kFeel, "Tool", "Feel", letter('T'), kPlain, kNoKey, kFirst, kField, choose<Tool::kFeel>,
+              chosen<Tool::kFeel>},
+    ActionRow{Action::kSmooth, "Tool", "Smooth", letter('S'), kPlain, kNoKey, kFirst, kField,
+              choose<Tool::kSmooth>, chosen<Tool::kSmooth>},
+    ActionRow{Action::kMark, "Tool", "Mark: keep from filters", letter('M'), kPlain, kNoKey, kFirst, kField,
+              choose<Tool::kMark>, chosen<Tool::kMark>},
+    ActionRow{Action::kUnmark, "Tool", "Unmark", letter('U'), kPlain, kNoKey, kFirst, kField,
+              choose<Tool::kUnmark>, chosen<Tool::kUnmark>},
+    ActionRow{Action::kBrushRadius, "Tool", "Brush radius, then move or type", letter('F'), kPlain, kNoKey,
+              kSecond, kField, adjustBrush<BrushAdjustment::Of::kRadius>},
+    ActionRow{Action::kBrushStrength, "Tool", "Press depth, then move or type", letter('F'), kShift, kNoKey,
+              kSecond, kField, adjustBrush<BrushAdjustment::Of::kDepth>},
+    ActionRow{Action::kBrushSmaller, "Tool", "Smaller brush", Key::kLeftBracket, kPlain, Key::kComma, kSecond,
+              kField, resizeBrush<-1>},
+    ActionRow{Action::kBrushLarger, "Tool", "Larger brush", Key::kRightBracket, kPlain, Key::kPeriod, kSecond,
+              kField, resizeBrush<1>},
+    ActionRow{Action::kInvert, "Tool", "Turn the field upside down", letter('I'), kPlain, kNoKey, kSecond,
+              kField, invert, isInverted},
+    ActionRow{Action::kKeepWithin, "Tool", "Keep strokes within a largest change", letter('X'), kShift,
+              kNoKey, kSecond, kField, keepWithin, keepsWithin},
+    ActionRow{Action::kShowMarks, "Tool", "Show or hide marks", letter('H'), kPlain, kNoKey, kMarksMenu,
+              kField, toggle<&Display::marks>, isOn<&Display::marks>},
+
+    ActionRow{Action::kClearMarks, "Marks", "Clear all marks", letter('M'), kAlt, kNoKey, kThird, kField,
+              clearMarks},
+    ActionRow{Action::kInvertMarks, "Marks", "Invert marks", letter('I'), kControl, kNoKey, kThird, kField,
+              invertMarks},
+    ActionRow{Action::kLasso, "Marks", "Mark inside a line (Ctrl: unmark)", letter('L'), kPlain, kNoKey,
+              kFirst, kField, lasso<Lasso::Shape::kFree>, isLasso<Lasso::Shape::kFree>},
+    ActionRow{Action::kBox, "Marks", "Mark inside a box (Ctrl: unmark)", letter('B'), kPlain, kNoKey, kFirst,
+              kField, lasso<Lasso::Shape::kBox>, isLasso<Lasso::Shape::kBox>},
+    ActionRow{Action::kEdges, "Marks", "Suggest edges", letter('E'), kPlain, kNoKey, kSecond, kField,
+              suggestEdges},
+    ActionRow{Action::kEdgesMore, "Marks", "Suggest more edges", Key::kRightBracket, kControl, Key::kPeriod,
+              kSecond, kField, sensitivity<1>},
+    ActionRow{Action::kEdgesFewer, "Marks", "Suggest fewer edges", Key::kLeftBracket, kControl, Key::kComma,
+              kSecond, kField, sensitivity<-1>},
+    ActionRow{Action::kEdgesThicker, "Marks", "Thicker edges", Key::kRightBracket, kAlt, Key::kPeriod,
+              kSecond, kField, thickness<1>},
+    ActionRow{Action::kEdgesThinner, "Marks", "Thinner edges", Key::kLeftBracket, kAlt, Key::kComma, kSecond,
+              kField, thickness<-1>},
+    ActionRow{Action::kEdgesCoarser, "Marks", "Look for edges at a larger scale", Key::kRightBracket,
+              kControlShift, Key::kPeriod, kSecond, kField, coarserEdges},
+    ActionRow{Action::kEdgesFiner, "Marks", "Look for edges at a smaller scale", Key::kLeftBracket,
+              kControlShift, Key::kComma, kSecond, kField, finerEdges},
+
+    ActionRow{Action::kFilterNext, "Filter", "Next filter", letter('N'), kPlain, kNoKey, kFirst, kField,
+              nextFilter},
+    ActionRow{Action::kFilterPreview, "Filter", "Preview", letter('P'), kPlain, kNoKey, kSecond, kField,
+              preview<FilterPreview::Keep::kReplace>},
+    ActionRow{Action::kFilterBeside, "Filter", "Preview beside the others", letter('V'), kPlain, kNoKey,
+              kSecond, kField, preview<FilterPreview::Keep::kAdd>},
+    ActionRow{Action::kFilterDrop, "Filter", "Drop the newest preview", letter('V'), kShift, Key::kDelete,
+              kSecond, kField, dropPreview, nullptr, hasPreview},
+    ActionRow{Action::kWindowLarger, "Filter", "Larger window", letter('W'), kPlain, kNoKey, kFirst, kField,
+              window<2>},
+    ActionRow{Action::kWindowSmaller, "Filter", "Smaller window", letter('W'), kShift, kNoKey, kFirst, kField,
+              window<-2>},
+    ActionRow{Action::kMorePasses, "Filter", "One more pass", letter('R'), kPlain, kNoKey, kFirst, kField,
+              passes<1>},
+    ActionRow{Action::kFewerPasses, "Filter", "One pass less", letter('R'), kShift, kNoKey, kFirst, kField,
+              passes<-1>},
+    ActionRow{Action::kFilterScope, "Filter", "Around the marks, or only them", letter('O'), kPlain, kNoKey,
+              kFirst, kField, changeScope, onlyMarks},
+    ActionRow{Action::kFilterMaxChange, "Filter", "Within a largest change, or without", letter('X'), kPlain,
+              kNoKey, kFirst, kField, limitFilter, filterIsLimited},
+    ActionRow{Action::kFilterApply, "Filter", "Apply; take suggested edges", Key::kEnter, kPlain,
+              Key::kKeypadEnter, kSecond, kField, apply, nullptr, canApply},
+    ActionRow{Action::kSplitPreview, "Filter", "Split line or side by side", letter('P'), kShift, kNoKey,
+              kSecond, kField, toggle<&Display::split>, isOn<&Display::split>},
+    ActionRow{Action::kSplitLeft, "Filter", "Split line to the left", Key::kLeft, kControl, kNoKey, kNoMenu,
+              kField, moveSplit<-1>},
+    ActionRow{Action::kSplitRight, "Filter", "Split line to the right", Key::kRight, kControl, kNoKey,
+              kNoMenu, kField, moveSplit<1>},
+
+    ActionRow{Action::kDeviation, "View", "Colours show the change since the scan", letter('D'), kPlain,
+              kNoKey, kFirst, kField, deviation, isOn<&Display::deviation>},
+    ActionRow{Action::kContours, "View", "Contour lines", letter('C'), kPlain, kNoKey, kFirst, kField,
+              toggle<&Display::contours>, isOn<&Display::contours>},
+    ActionRow{Action::kNextMap, "View", "Next colour map", letter('K'), kPlain, kNoKey, kFirst, kField,
+              nextMap},
+    ActionRow{Action::kStereo, "View", "One eye, two side by side, red-cyan glasses", letter('G'), kShift,
+              kNoKey, kFirst, kField, stereo, isStereo},
+    ActionRow{Action::kTheme, "View", "Light or dark background", letter('G'), kPlain, kNoKey, kFirst,
+              kNothing, theme, isLight, hasField},
+    ActionRow{Action::kDecorations, "View", "Scale bar and colour bar", letter('J'), kPlain, kNoKey, kFirst,
+              kNothing, toggle<&Display::decorations>, isOn<&Display::decorations>, hasField},
+    ActionRow{Action::kLightLeft, "View", "Light from further left", Key::kLeft, kAlt, kNoKey, kNoMenu,
+              kField, turnLight<10>},
+    ActionRow{Action::kLightRight, "View", "Light from further right", Key::kRight, kAlt, kNoKey, kNoMenu,
+              kField, turnLight<350>},
+    ActionRow{Action::kLightHigher, "View", "Light from higher up", Key::kUp, kAlt, kNoKey, kNoMenu, kField,
+              liftLight<5>},
+    ActionRow{Action::kLightLower, "View", "Light from lower down", Key::kDown, kAlt, kNoKey, kNoMenu, kField,
+              liftLight<-5>},
+    ActionRow{Action::kMouseHabits, "View", "Mouse as in Blender, CloudCompare, MeshLab", letter('M'), kShift,
+              kNoKey, kNoMenu, kNothing, mouseHabits},
+    ActionRow{Action::kViewAll, "View", "Whole field", Key::kHome, kPlain, kNoKey, kSecond, kPicture,
+              viewAll},
+    ActionRow{Action::kViewLastStroke, "View", "Centre on the last stroke", Key::kKeypadPeriod, kPlain,
+              letter('0'), kSecond, kField, lastStroke},
+    ActionRow{Action::kViewFront, "View", "From the front", keypadKey(1), kPlain, letter('1'), kSecond,
+              kPicture, look<0, 25>},
+    ActionRow{Action::kViewBack, "View", "From the back", keypadKey(1), kControl, kNoKey, kSecond, kPicture,
+              look<180, 25>},
+    ActionRow{Action::kViewRight, "View", "From the right", keypadKey(3), kPlain, letter('3'), kSecond,
+              kPicture, look<90, 25>},
+    ActionRow{Action::kViewLeft, "View", "From the left", keypadKey(3), kControl, kNoKey, kSecond, kPicture,
+              look<270, 25>},
+    ActionRow{Action::kViewTop, "View", "From above, like a map", keypadKey(7), kPlain, letter('7'), kSecond,
+              kPicture, look<0, 90>},
+    ActionRow{Action::kProjection, "View", "Perspective or parallel", keypadKey(5), kPlain, letter('5'),
+              kSecond, kPicture, projection},
+    ActionRow{Action::kTurnLeft, "View", "Turn left", Key::kLeft, kPlain, kNoKey, kNoMenu, kPicture,
+              turn<-1, 0>},
+    ActionRow{Action::kTurnRight, "View", "Turn right", Key::kRight, kPlain, kNoKey, kNoMenu, kPicture,
+              turn<1, 0>},
+    ActionRow{Action::kTiltUp, "View", "Tilt up", Key::kUp, kPlain, kNoKey, kNoMenu, kPicture, turn<0, 1>},
+    ActionRow{Action::kTiltDown, "View", "Tilt down", Key::kDown, kPlain, kNoKey, kNoMenu, kPicture,
+              turn<0, -1>},
+    ActionRow{Action::kPanLeft, "View", "Move left", Key::kLeft, kShift, kNoKey, kNoMenu, kPicture,
+              pan<1, 0>},
+    ActionRow{Action::kPanRight, "View", "Move right", Key::kRight, kShift, kNoKey, kNoMenu, kPicture,
+              pan<-1, 0>},
+    ActionRow{Action::kPanUp, "View", "Move up", Key::kUp, kShift, kNoKey, kNoMenu, kPicture, pan<0, 1>},
+    ActionRow{Action::kPanDown, "View", "Move down", Key::kDown, kShift, kNoKey, kNoMenu, kPicture,
+              pan<0, -1>},
+    ActionRow{Action::kZoomIn, "View", "Nearer", Key::kPageUp, kPlain, Key::kKeypadPlus, kSecond, kPicture,
+              zoom<2>},
+    ActionRow{Action::kZoomOut, "View", "Farther", Key::kPageDown, kPlain, Key::kKeypadMinus, kSecond,
+              kPicture, zoom<-2>},
+    ActionRow{Action::kSidePanel, "View", "Show or hide the panels", Key::kTab, kPlain, kNoKey, kThird,
+              kNothing, sidePanel, hasSidePanel},
+    ActionRow{Action::kEnterPanels, "View", "Into the panels by keyboard (Esc leaves)", functionKey(6),
+              kPlain, kNoKey, kThird, kNothing, enterPanels, nullptr, hasField},
+
+    ActionRow{Action::kArm, "Device", "Arm: allow force", letter('A'), kPlain, kNoKey, kFirst, kField, arm},
+    ActionRow{Action::kDisarm, "Device", "Disarm (Pause too, even while typing)", letter('A'), kShift, kNoKey,
+              kFirst, kField, disarm},
+    ActionRow{Action::kCalibrate, "Device", "Calibrate in the home pose", letter('A'), kControlShift, kNoKey,
+              kFirst, kField, calibrate},
+    ActionRow{Action::kShortcuts, "Help", "This list", functionKey(1), kPlain, kNoKey, kFirst, kNothing,
+              listShortcuts},
+};
+
+constexpr bool inOrder() {
+  for (std::size_t i = 0; i < std::size(kRows); ++i)
+    if (kRows[i].action != static_cast<Action>(i)) return false;
+  return std::size(kRows) == static_cast<std::size_t>(Action::kCount);
+}
+static_assert(inOrder(), "a row for each action, in the order of the enumeration");
+
+}  // namespace
+
+std::span<const ActionRow> actions() {
+  return kRows;
+}
+
+const ActionRow& rowOf(Action action) {
+  return kRows[static_cast<std::size_t>(action)];
+}
+
+bool ready(const ActionRow& row, const Parts& parts) {
+  switch (row.needs) {
+    case kField:
+      return parts.document.isOpen();
+    case kPicture:
+      return parts.seenGrid() != nullptr;
+    case kNothing:
+      break;
+  }
+  return true;
+}
+
+void carryOut(Action action, Parts& parts) {
+  parts.picture.requestRedraw();
+  if (const ActionRow& row = rowOf(action); ready(row, parts)) row.carry_out(parts);
+}
+
+std::optional<Action> actionOf(Key key, Modifiers modifiers) {
+  if (key == Key::kNone) return std::nullopt;
+  for (const ActionRow& row : kRows)
+    if ((row.key == key || row.other_key == key) && row.modifiers == modifiers) return row.action;
+  return std::nullopt;
+}
+
+bool disarms(Key key, Modifiers modifiers, Typing typing) {
+  if (key == Key::kPause) return true;
+  return typing == Typing::kNo && actionOf(key, modifiers) == Action::kDisarm;
+}
+
+}  // namespace fettle::app

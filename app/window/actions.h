@@ -1,0 +1,155 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "render/window/window.h"
+
+namespace fettle::app {
+
+struct Parts;
+
+/// Everything a person can ask for without pointing at something, in the order of the table in actions.cpp:
+/// another one is an entry here, a row there, and what it does.
+enum class Action : std::uint8_t {
+  kOpen,
+  kSave,
+  kSaveAs,
+  kExport,
+  kQuit,
+  kUndo,
+  kRedo,
+  kNavigate,
+  kFeel,
+  kSmooth,
+  kMark,
+  kUnmark,
+  kBrushRadius,
+  kBrushStrength,
+  kBrushSmaller,
+  kBrushLarger,
+  kInvert,
+  kKeepWithin,
+  kShowMarks,
+  kClearMarks,
+  kInvertMarks,
+  kLasso,
+  kBox,
+  kEdges,
+  kEdgesMore,
+  kEdgesFewer,
+  kEdgesThicker,
+  kEdgesThinner,
+  kEdgesCoarser,
+  kEdgesFiner,
+  kFilterNext,
+  kFilterPreview,
+  kFilterBeside,
+  kFilterDrop,
+  kWindowLarger,
+  kWindowSmaller,
+  kMorePasses,
+  kFewerPasses,
+  kFilterScope,
+  kFilterMaxChange,
+  kFilterApply,
+  kSplitPreview,
+  kSplitLeft,
+  kSplitRight,
+  kDeviation,
+  kContours,
+  kNextMap,
+  kStereo,
+  kTheme,
+  kDecorations,
+  kLightLeft,
+  kLightRight,
+  kLightHigher,
+  kLightLower,
+  kMouseHabits,
+  kViewAll,
+  kViewLastStroke,
+  kViewFront,
+  kViewBack,
+  kViewRight,
+  kViewLeft,
+  kViewTop,
+  kProjection,
+  kTurnLeft,
+  kTurnRight,
+  kTiltUp,
+  kTiltDown,
+  kPanLeft,
+  kPanRight,
+  kPanUp,
+  kPanDown,
+  kZoomIn,
+  kZoomOut,
+  kSidePanel,
+  kEnterPanels,
+  kArm,
+  kDisarm,
+  kCalibrate,
+  kShortcuts,
+  kCount
+};
+
+/// Where an action stands in the menus: items of a menu follow each other by group, then in the order of the
+/// table.
+struct MenuPlace {
+  int group = 0;               ///< 1, 2, ...; 0: in no menu
+  std::string_view menu = "";  ///< empty: that of its section
+};
+
+/// What must be there before an action can be carried out.
+enum class Needs : std::uint8_t {
+  kNothing,
+  kPicture,  ///< a document, or a coarse picture of one
+  kField,    ///< a document
+};
+
+struct ActionRow {
+  Action action;
+  std::string_view section;  ///< "File", "Edit", "Tool", "Marks", "Filter", "View", "Device", "Help"
+  std::string_view name;     ///< what it does, for menus and the list of keys (F1)
+  render::Key key;
+  render::Modifiers modifiers;
+  render::Key other_key;  ///< for keyboards that lack the first
+  MenuPlace menu;
+  Needs needs;
+  void (*carry_out)(Parts& parts);
+  bool (*ticked)(const Parts& parts) = nullptr;   ///< in the menu; null: never
+  bool (*enabled)(const Parts& parts) = nullptr;  ///< in the menu; null: when what it needs is there
+
+  [[nodiscard]] std::string_view menuTitle() const noexcept {
+    return menu.menu.empty() ? section : menu.menu;
+  }
+};
+
+/// In the order of the list of keys.
+[[nodiscard]] std::span<const ActionRow> actions();
+[[nodiscard]] const ActionRow& rowOf(Action action);
+/// Whether what it needs is there.
+[[nodiscard]] bool ready(const ActionRow& row, const Parts& parts);
+/// Carries it out, if it can be.
+void carryOut(Action action, Parts& parts);
+
+/// What a key stands for; nothing for keys without a meaning.
+[[nodiscard]] std::optional<Action> actionOf(render::Key key, render::Modifiers modifiers);
+/// Whether a key takes the force back, which no dialog and no tool may keep it from: that of Action::kDisarm,
+/// unless it is a letter being typed into a field, and Pause always.
+enum class Typing : std::uint8_t { kNo, kYes };
+[[nodiscard]] bool disarms(render::Key key, render::Modifiers modifiers, Typing typing);
+[[nodiscard]] constexpr render::Key keypadKey(int digit) noexcept {
+  return static_cast<render::Key>(static_cast<int>(render::Key::kKeypad0) + digit);
+}
+[[nodiscard]] constexpr render::Key functionKey(int n) noexcept {
+  return static_cast<render::Key>(static_cast<int>(render::Key::kF1) + n - 1);
+}
+/// "Ctrl+Shift+S", "F1", "keypad 7".
+[[nodiscard]] std::string keyText(render::Key key, render::Modifiers modifiers);
+
+}  // namespace fettle::app

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/work/loop_client.h"
+#include "render/window/window.h"
+
+namespace fettle::app {
+
+/// F and Shift+F: the brush's radius or the depth it presses is moved or typed, confirmed with the left
+/// button or Enter, left with the right one or Esc. Threading: main.
+class BrushAdjustment {
+ public:
+  enum class Of : std::uint8_t { kNothing, kRadius, kDepth };
+
+  /// kDepth needs a mouse; nothing begins without.
+  void begin(Of of, LoopClient& touch, double cursor_x);
+  /// Whether the event was its own.
+  bool handle(const render::InputEvent& event, LoopClient& touch, std::vector<Notice>& notices);
+  /// Ends it, as it was before.
+  void leave(LoopClient& touch, std::vector<Notice>& notices);
+
+  [[nodiscard]] Of of() const noexcept { return of_; }
+  [[nodiscard]] bool active() const noexcept { return of_ != Of::kNothing; }
+  /// Digits so far; empty: it is moved.
+  [[nodiscard]] const std::string& typed() const noexcept { return typed_; }
+
+ private:
+  void set(LoopClient& touch, double value, std::vector<Notice>& notices) const;
+  bool typeKey(render::Key key);
+  void end();
+
+  Of of_ = Of::kNothing;
+  double from_ = 0.0;    // [samples] or [mm]
+  double from_x_ = 0.0;  // of the cursor [pixels]
+  double press_mm_ = 0.0;
+  std::string typed_;
+};
+
+}  // namespace fettle::app

@@ -1,0 +1,28 @@
+#include "app/window/change_figures.h"
+
+namespace fettle::app {
+
+void ChangeFigures::begin(const engine::Version& original) {
+  live_.begin(original);
+  measured_ = original;
+  exact_.reset();
+}
+
+bool ChangeFigures::poll(const LoopClient& touch, bool working) {
+  const bool changed = live_.poll(touch);
+  if (auto done = measuring_.take(); done && *done) exact_ = **done;
+  const engine::Version now = touch.upright();
+  if (!measuring_.busy() && !(measured_ == now) && !working) {
+    measured_ = now;
+    measuring_.start([original = touch.original(), now](engine::JobControl& job) {
+      return engine::compareFields(original, now, job);
+    });
+  }
+  return changed;
+}
+
+const engine::Deviation* ChangeFigures::exact(const engine::Version& upright) const {
+  return exact_ && !measuring_.busy() && measured_ == upright ? &*exact_ : nullptr;
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,106 @@
+#include "app/window/draw_field.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace fettle::app {
+namespace {
+
+using Draws = WindowPicture::Draws;
+
+// What the user chose.
+render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, bool sharp_motion) {
+  const Display& display = parts.settings.display;
+  render::FrameInput input;
+  input.view = parts.view;
+  input.vertex_budget = display.vertices;
+  input.arrangement = display.split && parts.picture.shown().versions.size() == 2
+                          ? render::Arrangement::kSplit
+                          : render::Arrangement::kSideBySide;
+  input.split = display.split_at;
+  input.contours = display.contours ? render::Contours::kShow : render::Contours::kHide;
+  input.marks_opacity = display.marks_opacity;
+  input.map = display.map;
+  input.stereo.mode = display.stereo;
+  input.stereo.eye_separation = static_cast<double>(display.eye_separation);
+  input.theme = display.theme;
+  if (display.half_in_motion && !sharp_motion) input.sharpness = sharpness;
+  input.furniture_scale = WindowPicture::kDecorations * parts.window.scale();
+  input.decoration = display.decorations ? render::Decoration::kFull : render::Decoration::kNone;
+  input.light_azimuth_deg = display.light_azimuth_deg;
+  input.light_elevation_deg = display.light_elevation_deg;
+  return input;
+}
+
+render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& previews) {
+  const LoopClient& touch = *parts.document.touch();
+  const Display& display = parts.settings.display;
+  render::Shown shown;
+  shown.versions.push_back(parts.marking.edges.over(touch.field()));
+  // All of one sign: the loop inverts the field some ticks after the scene was changed, and a preview may
+  // have been computed before that.
+  const float sign = shown.versions.front().reader().sign();
+  const auto likeField = [sign](const engine::Version& v) {
+    return v.reader().sign() == sign ? v : v.inverted();
+  };
+  for (const FilterPreview::Picture& preview : previews) shown.versions.push_back(likeField(preview.field));
+  if (display.deviation) shown.original = likeField(touch.original());
+  shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
+  if (parts.marking.edges.suggestion() != nullptr) shown.accepted = touch.field();
+  return shown;
+}
+
+void addTitles(const std::vector<FilterPreview::Picture>& previews, render::FrameInput& input) {
+  if (previews.empty()) return;
+  input.titles.emplace_back("as it is");
+  for (const FilterPreview::Picture& preview : previews) input.titles.push_back(preview.title);
+  // One plot has room for one title.
+  if (input.arrangement == render::Arrangement::kSplit)
+    input.titles = {fmt::format("left: as it is, right: {}", input.titles[1]), ""};
+}
+
+}  // namespace
+
+void drawField(Parts& parts, bool sharp_motion) {
+  WindowPicture& picture = parts.picture;
+  LoopClient& touch = *parts.document.touch();
+  const haptic::LoopState state = touch.state();
+  if (parts.stylus_overlay.moved(state, picture.mmPerPixel())) picture.requestRedraw();
+  picture.fit(parts.view);
+  const std::vector<FilterPreview::Picture> previews = parts.filters.pictures();
+  if (const auto status = picture.show(shownOf(parts, previews)); !status) {
+    // present() reports a lost device.
+    if (parts.window.usable()) parts.feedback.message(status.error().line(), "");
+    return;
+  }
+  const render::Sharpness sharpness = picture.sharpness(parts.view, parts.drag.active());
+  if (!picture.takeDue(Draws::kRefined)) return;
+
+  render::FrameInput input = frameInput(parts, sharpness, sharp_motion);
+  addTitles(previews, input);
+  const bool stylus = parts.stylus.on() || touch.mouse() == nullptr;
+  if (stylus && state.link == haptic::LinkState::kConnected)
+    StylusOverlay::append(touch, state, picture.mmPerPixel(), input.overlays);
+  parts.stylus_overlay.begin(state);
+  if (!picture.draw(std::move(input), Draws::kRefined, parts.feedback.status)) return;
+  parts.stylus_overlay.drawn();
+  touch.setView(parts.view.azimuth_deg, parts.view.zoom);
+}
+
+void drawCoarse(Parts& parts, bool sharp_motion) {
+  WindowPicture& picture = parts.picture;
+  picture.fit(parts.view);
+  render::Shown shown;
+  shown.versions.push_back(parts.opening.coarse()->field);
+  if (const auto status = picture.show(std::move(shown)); !status) {
+    if (parts.window.usable()) parts.feedback.status = status.error().line();
+    parts.dropCoarse();
+    return;
+  }
+  const render::Sharpness sharpness = picture.sharpness(parts.view, parts.drag.active());
+  if (picture.takeDue(Draws::kCoarse))
+    (void)picture.draw(frameInput(parts, sharpness, sharp_motion), Draws::kCoarse, parts.feedback.status);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,114 @@
+#include "app/window/input.h"
+
+#include <algorithm>
+
+#include <imgui.h>
+
+namespace fettle::app {
+namespace {
+
+using render::InputEvent;
+using render::InputKind;
+using render::Key;
+
+// What cannot wait for the next frame: the mouse as stylus.
+void toStylus(const InputEvent& event, Parts& parts) {
+  LoopClient* const touch = parts.document.touch();
+  if (touch == nullptr || parts.marking.lasso().active()) return;
+  const Stylus::Hands hands = parts.feedback.questions.pending()            ? Stylus::Hands::kNone
+                              : parts.drag.active() || parts.brush.active() ? Stylus::Hands::kOther
+                                                                            : Stylus::Hands::kFree;
+  parts.stylus.handle(event, *touch, parts.picture, hands);
+}
+
+Input::Request handleKey(const InputEvent& event, Parts& parts) {
+  Questions& questions = parts.feedback.questions;
+  if (questions.pending()) {
+    questions.press(event);
+    return {};
+  }
+  if (event.panels_key && !questions.justClosed()) return {};  // a text field has it
+  if (event.modifiers == render::Modifiers{true, false, false} && event.key >= render::letter('1') &&
+      event.key <= render::letter('9')) {
+    const auto n = static_cast<std::size_t>(static_cast<int>(event.key) - '1');
+    const std::vector<std::string>& recent = parts.recent.paths();
+    return n < recent.size() ? Input::Request{std::nullopt, recent[n]} : Input::Request{};
+  }
+  return {actionOf(event.key, event.modifiers), std::nullopt};
+}
+
+// The wheel sets how deep the stylus presses.
+bool pressesDeeper(const InputEvent& event, const Parts& parts) {
+  LoopClient* const touch = parts.document.touch();
+  return event.kind == InputKind::kWheel && touch != nullptr && touch->mouse() != nullptr &&
+         parts.stylus.on() && (parts.stylus.held() || event.modifiers.control);
+}
+
+}  // namespace
+
+// Before the event waits for the frame under way, for a dialog or for a tool.
+void Input::disarmAtOnce(const InputEvent& event, Parts& parts) {
+  if (!parts.document.isOpen() || event.kind != InputKind::kKeyDown) return;
+  const Questions& questions = parts.feedback.questions;
+  const bool typing = ImGui::GetIO().WantTextInput && (questions.pending() || !questions.justClosed());
+  if (!disarms(event.key, event.modifiers, typing ? Typing::kYes : Typing::kNo)) return;
+  parts.document.touch()->disarm();
+  // What was pressed before and is not done yet must not arm after it.
+  for (Pending& before : queue_)
+    if (actionOf(before.event.key, before.event.modifiers) == Action::kArm) before.event.key = Key::kNone;
+}
+
+void Input::add(const InputEvent& event, Parts& parts) {
+  const bool at_once = std::none_of(queue_.begin(), queue_.end(), [](const Pending& pending) {
+    return pending.event.kind == InputKind::kKeyDown;
+  });
+  disarmAtOnce(event, parts);
+  if (at_once) toStylus(event, parts);
+  queue_.push_back({event, at_once});
+}
+
+void Input::followSurface(Parts& parts) const {
+  if (!parts.stylus.held() || !queue_.empty()) return;
+  InputEvent here;
+  here.kind = InputKind::kMove;
+  here.x = parts.cursor.x;
+  here.y = parts.cursor.y;
+  toStylus(here, parts);
+}
+
+std::optional<InputEvent> Input::next(Parts& parts) {
+  if (queue_.empty() || parts.feedback.questions.answering()) return std::nullopt;
+  const Pending pending = queue_.front();
+  queue_.pop_front();
+  const InputEvent& event = pending.event;
+  counts_.keys += event.kind == InputKind::kKeyDown;
+  counts_.buttons += event.kind == InputKind::kButtonDown || event.kind == InputKind::kButtonUp;
+  counts_.wheels += event.kind == InputKind::kWheel;
+  if (!pending.stylus_has_it) toStylus(event, parts);
+  if (event.kind != InputKind::kMove || !event.panels_mouse || ImGui::IsAnyMouseDown())
+    parts.picture.requestRedraw();
+  return event;
+}
+
+Input::Request Input::handle(const InputEvent& event, Parts& parts) {
+  LoopClient* const touch = parts.document.touch();
+  const bool dialog = parts.feedback.questions.pending();
+  if (touch != nullptr && parts.brush.active() && parts.brush.handle(event, *touch, parts.feedback.notices))
+    return {};
+  if (touch != nullptr && parts.marking.lasso().active() && !dialog &&
+      parts.marking.handle(event,
+                           {*touch, parts.picture, parts.view, parts.settings.display, parts.drag.active()}))
+    return {};
+  if (event.kind == InputKind::kKeyDown) return handleKey(event, parts);
+  const engine::Grid* const grid = parts.seenGrid();
+  if (grid == nullptr || dialog) return {};
+  if (pressesDeeper(event, parts)) {
+    if (!event.panels_mouse && parts.picture.inside(event.x, event.y)) touch->mouse()->wheel(event.wheel);
+    return {};
+  }
+  parts.drag.handle(event, parts.cursor, parts.stylus.on(),
+                    {*grid, parts.window.pictureArea(), parts.picture, parts.view, parts.settings});
+  return {};
+}
+
+}  // namespace fettle::app

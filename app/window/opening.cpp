@@ -1,0 +1,108 @@
+#include "app/window/opening.h"
+
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "engine/formats/formats.h"
+
+namespace fettle::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Memory that undo may take; older steps are read back from the session on demand.
+constexpr std::size_t kHistoryBytes = std::size_t{1} << 30;
+constexpr std::int64_t kCoarseSamples = std::int64_t{1} << 20;
+// Reading the rest takes all cores and, page by page, the lock under which the driver takes its memory: the
+// picture that is there already would wait for it. Longer than this it is not waited for in turn.
+constexpr std::chrono::milliseconds kShownFirst{500};
+
+}  // namespace
+
+double OpeningTimes::sinceAsked() const {
+  return std::chrono::duration<double, std::milli>(Clock::now() - asked).count();
+}
+
+Background<Document>::Work Opening::work(const std::string& path, Recovery recovery,
+                                         const ScanOptions& reading, std::shared_ptr<CoarseSlot> slot,
+                                         bool coarse_first) {
+  return [path, recovery, coarse_first, slot = std::move(slot), reading](engine::JobControl& job) {
+    const auto import = importOptions(reading);
+    if (coarse_first && import) {
+      // What is wrong with the file, reading the whole of it says.
+      auto coarse = engine::importPreview(path, *import, kCoarseSamples, job);
+      if (coarse && *coarse) {
+        slot->put(**std::move(coarse));
+        slot->waitShown(kShownFirst, job);
+      }
+    }
+    return openDocument(path, reading, recovery, kHistoryBytes, job);
+  };
+}
+
+void Opening::start(const std::string& path, Recovery recovery, const ScanOptions& reading, bool instead) {
+  path_ = path;
+  asked_ = Clock::now();
+  if (!instead) {
+    times_ = {asked_};
+    announced_ = false;
+  }
+  slot_ = std::make_shared<CoarseSlot>();
+  const bool coarse_first = !instead && recovery == Recovery::kLeave && !isSessionPath(path);
+  loading_.start(work(path, recovery, reading, slot_, coarse_first));
+}
+
+std::string Opening::fileName() const {
+  return std::filesystem::path(path_).filename().string();
+}
+
+bool Opening::takeCoarse(bool open) {
+  if (!slot_) return false;
+  auto coarse = slot_->take();
+  if (!coarse) return false;
+  if (open) {
+    slot_->shown();
+    return false;
+  }
+  coarse_ = std::move(coarse);
+  return true;
+}
+
+std::string Opening::coarseText() const {
+  if (coarse_->overview)
+    return fmt::format(
+        "coarse picture, the file's own overview, 1 in {} x {}: touch and tools wait for all "
+        "of {} x {} samples",
+        coarse_->step_columns, coarse_->step_rows, coarse_->width, coarse_->height);
+  return fmt::format("coarse picture, 1 sample in {} x {}: touch and tools wait for all of {} x {}",
+                     coarse_->step_columns, coarse_->step_rows, coarse_->width, coarse_->height);
+}
+
+bool Opening::dropCoarse() {
+  if (!coarse_) return false;
+  coarse_.reset();
+  slot_->shown();
+  return true;
+}
+
+void Opening::noteRead(bool instead) {
+  times_ = {asked_, instead ? 0.0 : times_.coarse_ms};
+  times_.read_ms = times_.sinceAsked();
+  announced_ = false;
+}
+
+void Opening::noteFrame(Frame frame) {
+  const auto note = [&](double& ms) {
+    if (ms == 0.0) ms = times_.sinceAsked();
+  };
+  if (frame == Frame::kCoarse && times_.coarse_ms == 0.0) {
+    note(times_.coarse_ms);
+    slot_->shown();
+  }
+  if (frame == Frame::kDocument || frame == Frame::kWhole) note(times_.seen_ms);
+  if (frame == Frame::kWhole) note(times_.whole_ms);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/work/background.h"
+#include "app/work/coarse_slot.h"
+#include "app/work/open_document.h"
+
+namespace fettle::app {
+
+/// From asking for the newest scan on [ms]: it was read, it could be touched, it was seen, and all of it lay
+/// on the device; 0: not yet.
+struct OpeningTimes {
+  std::chrono::steady_clock::time_point asked{};
+  double coarse_ms = 0.0;  ///< a coarse picture was seen; 0: there was none
+  double read_ms = 0.0, touched_ms = 0.0, seen_ms = 0.0, whole_ms = 0.0;
+  [[nodiscard]] double sinceAsked() const;
+};
+
+/// A scan or session on its way into the window: read in the background, and seen coarsely meanwhile where
+/// nothing else is open. The coarse picture can be looked at from all sides and nothing else: it is no
+/// document, no loop runs, nothing is touched, changed or saved. Threading: main.
+class Opening {
+ public:
+  /// Reads it; what was being read is cancelled. `instead`: a document is open and stays until this one is
+  /// there. The coarse picture of the one before is dropped first (dropCoarse).
+  void start(const std::string& path, Recovery recovery, const ScanOptions& reading, bool instead);
+  void cancel() { loading_.cancel(); }
+  /// What was read, once.
+  [[nodiscard]] std::optional<engine::Result<Document>> take() { return loading_.take(); }
+  [[nodiscard]] bool busy() const noexcept { return loading_.busy(); }
+  [[nodiscard]] double progress() const noexcept { return loading_.progress(); }
+  [[nodiscard]] const char* stage() const noexcept { return loading_.stage(); }
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  [[nodiscard]] std::string fileName() const;
+
+  /// Takes in a coarse picture, unless a document is `open`. True when there is one now that was not.
+  [[nodiscard]] bool takeCoarse(bool open);
+  [[nodiscard]] const engine::Preview* coarse() const noexcept { return coarse_ ? &*coarse_ : nullptr; }
+  [[nodiscard]] std::string coarseText() const;
+  /// Ends it. False when there is none.
+  bool dropCoarse();
+
+  [[nodiscard]] const OpeningTimes& times() const noexcept { return times_; }
+  /// The newest scan was read; `instead` of a document.
+  void noteRead(bool instead);
+  void noteTouched() { times_.touched_ms = times_.sinceAsked(); }
+  /// The first picture is being made, as a frame before it says.
+  void noteAnnounced() noexcept { announced_ = true; }
+  [[nodiscard]] bool announced() const noexcept { return announced_; }
+  /// A frame was shown: of the coarse picture; of the document; and all of that is on the device.
+  enum class Frame : std::uint8_t { kNothing, kCoarse, kDocument, kWhole };
+  void noteFrame(Frame frame);
+
+ private:
+  [[nodiscard]] static Background<Document>::Work work(const std::string& path, Recovery recovery,
+                                                       const ScanOptions& reading,
+                                                       std::shared_ptr<CoarseSlot> slot, bool coarse_first);
+
+  std::string path_;
+  std::chrono::steady_clock::time_point asked_{};
+  std::shared_ptr<CoarseSlot> slot_;  // of the newest loading
+  std::optional<engine::Preview> coarse_;
+  OpeningTimes times_;
+  bool announced_ = false;
+  Background<Document> loading_;
+};
+
+}  // namespace fettle::app

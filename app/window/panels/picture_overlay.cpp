@@ -1,0 +1,45 @@
+#include <utility>
+#include <vector>
+
+#include <imgui.h>
+
+#include "app/window/panels/panels.h"
+
+namespace fettle::app {
+namespace {
+
+ImVec2 at(const glm::dvec2& p) {
+  return ImVec2(static_cast<float>(p.x), static_cast<float>(p.y));
+}
+
+void drawLasso(const Lasso& lasso, float scale) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  std::vector<ImVec2> line;
+  for (const glm::dvec2& p : lasso.line()) line.push_back(at(p));
+  // Dark under light: seen on every ground.
+  for (const auto& [colour, width] :
+       {std::pair{IM_COL32(0, 0, 0, 160), 4.0F}, {IM_COL32(255, 170, 40, 255), 2.0F}}) {
+    if (line.size() > 1)
+      list.AddPolyline(line.data(), static_cast<int>(line.size()), colour, ImDrawFlags_Closed, width * scale);
+    const ImVec2 c = at(lasso.cross());
+    const float arm = 9.0F * scale;
+    list.AddLine(ImVec2(c.x - arm, c.y), ImVec2(c.x + arm, c.y), colour, width * scale);
+    list.AddLine(ImVec2(c.x, c.y - arm), ImVec2(c.x, c.y + arm), colour, width * scale);
+  }
+}
+
+}  // namespace
+
+void pictureOverlay(const Parts& parts) {
+  const auto scale = static_cast<float>(parts.window.scale());
+  const Display& display = parts.settings.display;
+  if (parts.picture.hasSplitLine(display)) {
+    const render::Rectangle plot = parts.picture.plot(parts.view, display);
+    ImGui::GetBackgroundDrawList()->AddCircleFilled(
+        at({plot.x + display.split_at * plot.width, plot.y + plot.height / 2}), 7.0F * scale,
+        IM_COL32(255, 255, 255, 220));
+  }
+  if (parts.marking.lasso().active()) drawLasso(parts.marking.lasso(), scale);
+}
+
+}  // namespace fettle::app

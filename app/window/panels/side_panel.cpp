@@ -1,0 +1,57 @@
+#include <utility>
+
+#include <imgui.h>
+
+#include "app/window/panels/panels.h"
+
+namespace fettle::app {
+namespace {
+
+// A part of the panels that can be folded away, and is found as it was left.
+bool section(Settings& settings, const char* name, bool open_at_first) {
+  const auto known = settings.panels.find(name);
+  ImGui::SetNextItemOpen(known != settings.panels.end() ? known->second : open_at_first, ImGuiCond_Once);
+  const bool open = ImGui::CollapsingHeader(name);
+  settings.panels[name] = open;
+  return open;
+}
+
+void noticeList(std::vector<Notice>& notices) {
+  for (const Notice& notice : notices) {
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s%s%s", notice.what.c_str(),
+                       notice.remedy.empty() ? "" : ": ", notice.remedy.c_str());
+    ImGui::PopTextWrapPos();
+  }
+  if (!notices.empty() && ImGui::SmallButton("Understood")) notices.clear();
+}
+
+}  // namespace
+
+std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
+  std::optional<double> rate_hz;
+  Settings& settings = parts.settings;
+  ImGui::Begin("Panels", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus);
+  width = ImGui::GetWindowSize().x;
+  if (std::exchange(parts.enter_panels, false)) {
+    ImGui::SetWindowFocus();
+    ImGui::SetKeyboardFocusHere();
+  }
+  noticeList(parts.feedback.notices);
+  const PanelContext context{*parts.document.touch(), parts.feedback.notices, act};
+  if (section(settings, "Tool", true)) toolPanel(context, parts.stylus, parts.marking, settings.display);
+  if (section(settings, "Edges", false)) edgePanel(context, parts.marking.edges);
+  if (section(settings, "Filters", true)) filterPanel(context, parts.filters, settings.display);
+  if (section(settings, "Steps", true)) historyPanel(context);
+  if (section(settings, "Change since the scan", true)) changePanel(context, parts.change);
+  if (section(settings, "Display", false))
+    displayPanel(context, settings, parts.picture, parts.view, parts.costs);
+  if (section(settings, "Status", true)) statusPanel(context, parts.picture, parts.opening.times());
+  if (section(settings, "Haptics", false)) rate_hz = hapticsPanel(context, parts.stylus_overlay, parts.costs);
+  ImGui::End();
+  return rate_hz;
+}
+
+}  // namespace fettle::app

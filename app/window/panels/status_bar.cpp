@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/panels/panels.h"
+#include "app/window/scene_edits.h"
+
+namespace fettle::app {
+namespace {
+
+void text(const std::string& what) {
+  ImGui::TextUnformatted(what.c_str());
+}
+
+// Whether it is to be cancelled.
+bool progressBar(double progress, float width, const char* what) {
+  ImGui::ProgressBar(static_cast<float>(progress), ImVec2(width, 0.0F), what);
+  ImGui::SameLine();
+  return ImGui::SmallButton("Cancel");
+}
+
+std::string brushText(const BrushAdjustment& brush, LoopClient& touch) {
+  const std::string now = brush.of() == BrushAdjustment::Of::kRadius
+                              ? fmt::format("brush radius {:.3g} samples", brushRadius(touch))
+                              : fmt::format("press depth {:.4g} mm", touch.mouse()->pressMm());
+  return fmt::format("{} {}: move or type, Enter or left button keeps it, Esc or right button leaves it", now,
+                     brush.typed().empty() ? "" : "[" + brush.typed() + "]");
+}
+
+// What lies open, how it is kept, and where the cursor is.
+std::string documentText(const Parts& parts) {
+  std::string line = parts.feedback.status;
+  if (!parts.document.isOpen()) return line;
+  if (const std::string kept = parts.document.keptText(); !kept.empty()) line += "  (" + kept + ")";
+  if (const auto& under = parts.stylus.underCursor(); parts.stylus.on() && under) {
+    const engine::Grid& grid = parts.document.touch()->field().grid();
+    line += fmt::format("   x {:.4f}  y {:.4f}  z {:.5g} {}",
+                        grid.origin_x + under->position_mm.x / grid.lateral_unit.mm,
+                        grid.origin_y + under->position_mm.y / grid.lateral_unit.mm,
+                        under->position_mm.z / grid.height_unit.mm, grid.height_unit.name);
+  }
+  return line;
+}
+
+void content(Parts& parts) {
+  const Lasso& lasso = parts.marking.lasso();
+  const engine::EdgeSuggestion* const edges = parts.marking.edges.suggestion();
+  if (parts.brush.active()) {
+    text(brushText(parts.brush, *parts.document.touch()));
+  } else if (lasso.active()) {
+    text(lasso.shape() == Lasso::Shape::kBox
+             ? "box: drag, or corners with arrows and Space; Enter marks, Ctrl+Enter unmarks, Esc leaves"
+             : "lasso: draw, or corners by click or arrows and Space; Enter or right button marks, with Ctrl "
+               "unmarks; Esc leaves");
+  } else if (edges != nullptr) {
+    text(fmt::format(
+        "suggested: {} lines; Enter takes them, Ctrl+[ and Ctrl+] fewer and more, M and U paint over "
+        "them, Esc drops them",
+        edges->lines));
+  } else if (const auto saving = parts.saving.progress(parts.document)) {
+    if (progressBar(*saving, 240.0F, "saving")) parts.saving.cancel(parts.document);
+  } else if (parts.opening.coarse() != nullptr) {
+    if (progressBar(parts.opening.progress(), 160.0F, "reading")) parts.opening.cancel();
+    ImGui::SameLine();
+    text(parts.opening.coarseText());
+  } else if (parts.document.isOpen() && parts.opening.busy()) {
+    if (progressBar(parts.opening.progress(), 240.0F, "opening")) parts.opening.cancel();
+  } else {
+    text(documentText(parts));
+  }
+}
+
+}  // namespace
+
+void statusBar(Parts& parts) {
+  const float height = ImGui::GetFrameHeight();
+  ImGui::SetNextWindowPos(ImVec2(0.0F, ImGui::GetIO().DisplaySize.y - height));
+  ImGui::SetNextWindowSize(ImVec2(ImGui::GetIO().DisplaySize.x, height));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(8.0F, 2.0F));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1.0F, 1.0F));
+  ImGui::Begin("##status", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
+  content(parts);
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+}
+
+void placeholder(Parts& parts, float width) {
+  const bool announces = parts.announcesPicture();
+  if (!announces && parts.seenGrid() != nullptr) return;
+  ImGui::SetNextWindowPos(ImVec2(0.5F * width, 0.45F * ImGui::GetIO().DisplaySize.y), ImGuiCond_Always,
+                          ImVec2(0.5F, 0.5F));
+  ImGui::Begin("##empty", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize |
+                   ImGuiWindowFlags_NoSavedSettings);
+  Opening& opening = parts.opening;
+  if (announces) {
+    ImGui::Text("%s: making the first picture", parts.document.fileName().c_str());
+  } else if (opening.busy()) {
+    ImGui::Text("%s: %s", opening.fileName().c_str(), opening.stage());
+    ImGui::ProgressBar(static_cast<float>(opening.progress()),
+                       ImVec2(360.0F * static_cast<float>(parts.window.scale()), 0.0F));
+    if (ImGui::Button("Cancel")) opening.cancel();
+  } else {
+    ImGui::TextUnformatted("Drop a scan here, or press Ctrl+O");
+  }
+  ImGui::End();
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,66 @@
+#include "app/window/parts.h"
+
+#include <fmt/format.h>
+
+#include "app/terminal.h"
+
+namespace fettle::app {
+
+const engine::Grid* Parts::seenGrid() const {
+  if (document.isOpen()) return &document.touch()->field().grid();
+  return opening.coarse() != nullptr ? &opening.coarse()->field.grid() : nullptr;
+}
+
+bool Parts::coarseIsShown() const {
+  return opening.coarse() != nullptr && !document.isOpen() && !picture.empty();
+}
+
+bool Parts::announcesPicture() const {
+  constexpr std::int64_t kAtOnce = std::int64_t{1} << 20;  // samples
+  return document.isOpen() && picture.empty() && !opening.announced() &&
+         document.touch()->field().grid().samples() > kAtOnce;
+}
+
+bool Parts::held() const {
+  return stylus.held() || marking.held() || drag.active();
+}
+
+void Parts::chooseTool(std::optional<haptic::Tool> tool) {
+  marking.leaveLasso();
+  stylus.choose(tool, *document.touch(), picture, cursor);
+}
+
+void Parts::releaseHands() {
+  drag.stop();
+  marking.release();
+  LoopClient* const touch = document.touch();
+  if (touch != nullptr) brush.leave(*touch, feedback.notices);
+  stylus.release(touch);
+}
+
+void Parts::leavePanels() {
+  enter_panels = false;
+  window.leavePanels();
+}
+
+void Parts::dropCoarse() {
+  if (!opening.dropCoarse() || document.isOpen()) return;
+  window.forgetPicture();
+  picture.clear();
+  drag.stop();
+}
+
+void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
+  if (!document.isOpen()) return;
+  releaseHands();
+  feedback.questions.dropOfField();
+  filters.cancel(*document.touch());
+  marking.reset();
+  change.cancel();
+  costs.reset();
+  saving.dropWaiting();
+  if (const auto closed = document.close(afterwards); !closed)
+    warn(fmt::format("{}: what was not written is gone", closed.error().line()));
+}
+
+}  // namespace fettle::app

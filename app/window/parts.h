@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+
+#include <glm/vec2.hpp>
+
+#include "app/window/active_document.h"
+#include "app/window/brush_adjustment.h"
+#include "app/window/change_figures.h"
+#include "app/window/feedback.h"
+#include "app/window/marking.h"
+#include "app/window/opening.h"
+#include "app/window/saving.h"
+#include "app/window/settings.h"
+#include "app/window/stylus.h"
+#include "app/window/stylus_overlay.h"
+#include "app/window/view_drag.h"
+#include "app/window/view_text.h"
+#include "app/window/window_picture.h"
+#include "app/work/choice_costs.h"
+#include "app/work/filter_preview.h"
+#include "app/work/recent_files.h"
+
+namespace fettle::app {
+
+/// Whether the window is to end: with all saved that was to be saved, or with unsaved work to be kept.
+enum class Quit : std::uint8_t { kNo, kDone, kKeepWork };
+
+/// The parts of the window, each with one duty: what actions change, panels show and the events report. None
+/// knows of this struct; what concerns several of them is done here or by who owns it. Threading: main.
+struct Parts {
+  Parts(render::Window& on, const Settings& remembered)
+      : window(on), settings(remembered), recent(recentFile()), picture(on) {}
+
+  render::Window& window;
+  Settings settings;
+  RecentFiles recent;
+  Feedback feedback;
+
+  ActiveDocument document;
+  Opening opening;
+  Saving saving;
+
+  WindowPicture picture;
+  render::View view = startView();
+  StylusOverlay stylus_overlay;
+
+  glm::dvec2 cursor{0.0};  ///< pixels of the window's frame
+  Stylus stylus;
+  BrushAdjustment brush;
+  ViewDrag drag;
+
+  Marking marking;
+  FilterPreview filters;
+  ChangeFigures change;
+  ChoiceCosts costs;
+  double last_limit = 0.05;  ///< [height unit], for limits that are switched on again
+
+  bool enter_panels = false;  ///< the keyboard goes to the panels with the next frame
+  Quit quit = Quit::kNo;
+
+  /// Of what can be turned and zoomed, a document or a coarse picture; null when there is none.
+  [[nodiscard]] const engine::Grid* seenGrid() const;
+  /// The coarse picture is on the screen.
+  [[nodiscard]] bool coarseIsShown() const;
+  /// The first picture of a large field takes the main thread some seconds: a frame before it says so.
+  [[nodiscard]] bool announcesPicture() const;
+  /// A hand holds the stylus, the lasso or the view.
+  [[nodiscard]] bool held() const;
+
+  /// Turns a tool on, or all off.
+  void chooseTool(std::optional<haptic::Tool> tool);
+  /// What is held is released, what was not confirmed is as before.
+  void releaseHands();
+  /// A dialog has the keyboard to itself: ImGui closes it when the panels take it.
+  void leavePanels();
+  /// Ends the coarse picture: it must not stay where the scan could not be read.
+  void dropCoarse();
+  /// Closes the document, if one is open, with all that is about it.
+  void closeDocument(SessionKeeper::Afterwards afterwards);
+};
+
+}  // namespace fettle::app

@@ -1,0 +1,199 @@
+#include "app/window/saving.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/work/outputs.h"
+#include "app/work/replaced_files.h"
+#include "app/work/session_guard.h"
+#include "engine/formats/formats.h"
+#include "engine/io/raster/marks.h"
+
+namespace fettle::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A scan up to so many samples goes into the session whole unless the user says otherwise.
+constexpr std::int64_t kEmbedded = std::int64_t{16} << 20;
+
+bool anyMark(const engine::Version& version) {
+  return version.reader().root().marked_children != 0;
+}
+
+// The marks lie next to the field: NAME_marks.png.
+std::string marksPath(const std::string& path) {
+  const fs::path p(path);
+  return (p.parent_path() / (p.stem().string() + "_marks.png")).string();
+}
+
+// The files that are written, and may replace others.
+std::vector<std::string> outputsOf(const std::string& path, Saving::Keeping keeping,
+                                   const ActiveDocument& document) {
+  if (isSessionPath(path)) {
+    // Onto itself a session loses nothing.
+    std::error_code none;
+    const bool itself =
+        keeping == Saving::Keeping::kWorkThere && fs::equivalent(path, document.keeper()->path(), none);
+    return itself ? std::vector<std::string>() : std::vector{path};
+  }
+  if (anyMark(document.touch()->upright())) return {path, marksPath(path)};
+  return {path};
+}
+
+engine::Result<engine::Version> writeFiles(const std::string& path, const std::vector<std::string>& outputs,
+                                           const engine::Version& field, const engine::Version& original,
+                                           engine::JobControl& job) {
+  ScanGuard guard;  // of other sessions: this one does not need the file any more
+  for (const std::string& output : outputs)
+    if (auto spared = guard.protectSessions(output, job); !spared) return tl::unexpected(spared.error());
+  engine::ExportOptions options;
+  options.original = original;
+  auto done = engine::exportField(field, path, options, job);
+  if (!done) return tl::unexpected(done.error());
+  if (anyMark(field) && !isSessionPath(path))
+    if (auto marks = engine::exportMarks(field, marksPath(path)); !marks)
+      return tl::unexpected(marks.error());
+  return field;
+}
+
+}  // namespace
+
+void Saving::begin(std::int64_t samples) {
+  path_.clear();
+  embeds = samples <= kEmbedded;
+}
+
+void Saving::save(ActiveDocument& document, Feedback& feedback, Afterwards afterwards) {
+  const SessionKeeper& keeper = *document.keeper();
+  if (keeper.named()) {
+    start(keeper.path(), Keeping::kWorkThere, std::move(afterwards), document, feedback);
+  } else if (!path_.empty()) {
+    // Written there before; but marks, when there were none then, may come upon a file of another's.
+    std::vector<std::string> outputs = outputsOf(path_, Keeping::kWorkThere, document);
+    std::erase_if(outputs, [&](const std::string& path) { return std::ranges::count(written_, path) > 0; });
+    if (replacedFiles(outputs, {}).texts.empty())
+      start(path_, Keeping::kWorkThere, std::move(afterwards), document, feedback);
+    else
+      askToWrite({.kind = Question::Kind::kSaveAs, .path = path_, .afterwards = std::move(afterwards)},
+                 Typed::kNo, document, feedback);
+  } else {
+    // Never over the scan itself without being asked to.
+    feedback.questions.ask({.kind = Question::Kind::kSaveAs,
+                            .path = document.suggestedPath(".fettle"),
+                            .afterwards = std::move(afterwards)});
+  }
+}
+
+void Saving::askToWrite(Question from, Typed typed, ActiveDocument& document, Feedback& feedback) {
+  const SessionKeeper& keeper = *document.keeper();
+  const Keeping keeping = keepingOf(from.kind);
+  std::error_code none;
+  if (keeping == Keeping::kCopy && fs::equivalent(from.path, keeper.path(), none)) {
+    feedback.message(
+        fmt::format("{} is the session that is worked on: everything is kept there as it is done", from.path),
+        "name another file for a copy");
+    return;
+  }
+  ReplacedFiles files = replacedFiles(outputsOf(from.path, keeping, document), keeper.scanPath());
+  if (files.texts.empty()) {
+    start(from.path, keeping, std::move(from.afterwards), document, feedback);
+    return;
+  }
+  feedback.questions.ask({.kind = Question::Kind::kReplace,
+                          .path = std::move(from.path),
+                          .afterwards = std::move(from.afterwards),
+                          .from = from.kind,
+                          .typed = typed == Typed::kYes,
+                          .replaced = std::move(files.texts)});
+}
+
+void Saving::start(const std::string& path, Keeping keeping, Afterwards afterwards, ActiveDocument& document,
+                   Feedback& feedback) {
+  if (auto status = checkPlaces({{path, OutputKind::kField}}, {}); !status) {
+    feedback.message(status.error().line(), "");
+    return;
+  }
+  target_ = path;
+  keeping_ = keeping;
+  afterwards_ = std::move(afterwards);
+  // A session that refers to the scan could not be opened again with another file in the scan's place.
+  SessionKeeper& keeper = *document.keeper();
+  waits_for_scan_ = replacedFiles(outputsOf(path, keeping, document), keeper.scanPath()).scan;
+  if (waits_for_scan_)
+    keeper.keepScan();
+  else
+    write(document);
+}
+
+void Saving::write(ActiveDocument& document) {
+  LoopClient& touch = *document.touch();
+  if (isSessionPath(target_) && keeping_ == Keeping::kWorkThere) {
+    touch.poll();
+    document.keeper()->saveAs(
+        target_, embeds ? engine::OriginalStorage::kEmbedded : engine::OriginalStorage::kReferenced);
+    return;
+  }
+  outputs_ = outputsOf(target_, keeping_, document);
+  writing_.start([path = target_, outputs = outputs_, field = touch.upright(), original = touch.original()](
+                     engine::JobControl& job) { return writeFiles(path, outputs, field, original, job); });
+}
+
+void Saving::cancel(ActiveDocument& document) {
+  if (writing_.busy())
+    writing_.cancel();
+  else
+    document.keeper()->cancelSaving();
+}
+
+std::optional<Saving::Saved> Saving::poll(ActiveDocument& document, Feedback& feedback) {
+  std::optional<engine::Status> ended;
+  SessionKeeper* const keeper = document.keeper();
+  bool moved = false;
+  if (auto kept = keeper != nullptr ? keeper->scanKept() : std::nullopt;
+      kept && std::exchange(waits_for_scan_, false)) {
+    if (*kept)
+      write(document);
+    else
+      ended = std::move(*kept);
+  }
+  if (auto done = writing_.take()) {
+    ended = *done ? engine::Status{} : tl::unexpected(done->error());
+    if (*done && keeping_ == Keeping::kWorkThere) {
+      path_ = target_;
+      written_ = outputs_;
+      document.noteSaved(**done);
+    }
+  }
+  if (auto done = keeper != nullptr ? keeper->saved() : std::nullopt) {
+    ended = std::move(*done);
+    moved = ended->has_value();
+    if (moved) document.noteMoved();
+  }
+  if (!ended) return std::nullopt;
+  Afterwards afterwards = std::exchange(afterwards_, {});
+  if (*ended) {
+    feedback.status = fmt::format("written: {}", target_);
+    return Saved{std::move(afterwards), moved};
+  }
+  if (ended->error().kind != engine::ErrorKind::kCancelled)
+    feedback.message(ended->error().line(), "the work is kept here; save it elsewhere");
+  return std::nullopt;
+}
+
+bool Saving::busy(const ActiveDocument& document) const {
+  const SessionKeeper* const keeper = document.keeper();
+  return writing_.busy() || waits_for_scan_ || (keeper != nullptr && keeper->saving());
+}
+
+std::optional<double> Saving::progress(const ActiveDocument& document) const {
+  const SessionKeeper* const keeper = document.keeper();
+  if (writing_.busy()) return writing_.progress();
+  if (keeper != nullptr && keeper->saving()) return keeper->progress();
+  return std::nullopt;
+}
+
+}  // namespace fettle::app

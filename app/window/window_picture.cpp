@@ -1,0 +1,166 @@
+#include "app/window/window_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "app/window/plane_map.h"
+#include "app/work/visible_part.h"
+#include "render/plan/overlay.h"
+
+namespace fettle::app {
+namespace {
+
+constexpr int kPicks = 12;  // places of the picture looked at for what is seen, each way
+
+bool same(const render::Shown& a, const render::Shown& b) {
+  return a.versions == b.versions && a.original == b.original && a.marks == b.marks &&
+         a.accepted == b.accepted;
+}
+
+}  // namespace
+
+engine::Status WindowPicture::make() {
+  auto live = render::LivePicture::create(window_.context(), render::Window::pictureFormat());
+  if (!live) return tl::unexpected(live.error());
+  live_ = std::move(*live);
+  clear();
+  return {};
+}
+
+void WindowPicture::clear() {
+  shown_ = {};
+  refinement_ = {};
+  figures_ = {};
+  needs_redraw_ = true;
+}
+
+void WindowPicture::fit(render::View& view) {
+  const render::Rectangle& area = window_.pictureArea();
+  if (view.width != area.width || view.height != area.height) needs_redraw_ = true;
+  view.width = area.width;
+  view.height = area.height;
+}
+
+engine::Status WindowPicture::show(render::Shown shown) {
+  if (same(shown, shown_)) return {};
+  if (auto status = live_->update(shown); !status) return status;
+  shown_ = std::move(shown);
+  needs_redraw_ = true;
+  return {};
+}
+
+render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) {
+  const bool owed = motion_.owesSharp();
+  const render::Sharpness sharpness = motion_.see(view, held, CameraMotion::Clock::now());
+  if (owed && !motion_.owesSharp()) needs_redraw_ = true;
+  return sharpness;
+}
+
+bool WindowPicture::takeDue(Draws draws) {
+  const auto now = Refinement::Clock::now();
+  if (draws == Draws::kRefined && motion_.owesSharp()) refinement_.restart(now);  // the view moves
+  const bool due = needs_redraw_ || figures_.upload.pending_tiles > 0 ||
+                   (draws == Draws::kRefined && refinement_.due(now));
+  if (due) needs_redraw_ = false;
+  return due;
+}
+
+bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& status) {
+  if (draws == Draws::kRefined)
+    input.panel_vertices =
+        refinement_.vertices(input.vertex_budget, shown_.versions.size(), Refinement::Clock::now());
+  const auto start = std::chrono::steady_clock::now();
+  const auto target = window_.pictureTarget();
+  if (!target) return false;  // present() says why
+  const auto figures = live_->draw(input, **target);
+  if (!figures) {
+    if (window_.usable()) status = figures.error().line();
+    return false;
+  }
+  const auto took = std::chrono::steady_clock::now() - start;
+  figures_ = *figures;
+  draw_figures_.last_ms = std::chrono::duration<double, std::milli>(took).count();
+  draw_figures_.times.add(std::chrono::duration_cast<std::chrono::nanoseconds>(took).count());
+  draw_figures_.tiles_uploaded += figures_.upload.tiles;
+  draw_figures_.bytes_uploaded += figures_.upload.bytes;
+  if (draws == Draws::kRefined)
+    refinement_.drawn({.whole = figures_.redrawn == 1.0,
+                       .continued = figures_.continued,
+                       .tiles_coming = figures_.upload.pending_tiles > figures_.residency.pages_waiting,
+                       .pages_coming = figures_.residency.pages_waiting > 0},
+                      Refinement::Clock::now());
+  return true;
+}
+
+void WindowPicture::refreshRanges() {
+  if (live_) live_->refreshRanges();
+}
+
+bool WindowPicture::inside(double x, double y) const {
+  const render::Rectangle& area = window_.pictureArea();
+  return x >= area.x && y >= area.y && x < area.x + area.width && y < area.y + area.height;
+}
+
+std::optional<render::Picked> WindowPicture::pick(double x, double y) const {
+  const render::Rectangle& area = window_.pictureArea();
+  return live_ ? live_->pick(x - area.x, y - area.y) : std::nullopt;
+}
+
+std::optional<glm::dvec2> WindowPicture::fieldAt(const glm::dvec2& pixel, const engine::Version& field,
+                                                 const render::View& view) const {
+  if (const auto picked = pick(pixel.x, pixel.y)) return glm::dvec2(picked->position_mm);
+  if (!live_) return std::nullopt;
+  const engine::Grid& grid = field.grid();
+  const engine::HeightBounds bounds = field.reader().bounds();
+  if (bounds.empty()) return std::nullopt;
+  const double z =
+      0.5 * (static_cast<double>(bounds.min) + static_cast<double>(bounds.max)) * grid.height_unit.mm;
+  const double wide = std::max(grid.width - 1, 1) * grid.spacingXMm(),
+               tall = std::max(grid.height - 1, 1) * grid.spacingYMm();
+  const double reach = 0.25 * std::max(wide, tall) / view.zoom;
+  const glm::dvec2 middle{view.centre_x * wide, view.centre_y * tall};
+  std::array<PlaneMap::Pair, 4> pairs;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const glm::dvec2 place = middle + reach * glm::dvec2(i % 2 == 0 ? -1.0 : 1.0, i < 2 ? -1.0 : 1.0);
+    const auto seen = live_->pixelOf(0, {place, z});
+    if (!seen) return std::nullopt;
+    pairs[i] = {{seen->first + window_.pictureArea().x, seen->second + window_.pictureArea().y}, place};
+  }
+  const auto plane = PlaneMap::through(pairs);
+  return plane ? plane->fieldAt(pixel) : std::nullopt;
+}
+
+std::vector<engine::TileRange> WindowPicture::seenPart(const engine::Grid& grid,
+                                                       const render::View& view) const {
+  const render::Rectangle& area = window_.pictureArea();
+  std::vector<Seen> seen;
+  for (int y = 0; y <= kPicks; ++y)
+    for (int x = 0; x <= kPicks; ++x)
+      if (const auto picked =
+              pick(area.x + area.width * x / double(kPicks), area.y + area.height * y / double(kPicks)))
+        seen.push_back({picked->column, picked->row});
+  if (seen.empty()) return {};
+  const auto along = [](double share, int side) {
+    return static_cast<std::int32_t>(std::clamp(share, 0.0, 1.0) * (side - 1));
+  };
+  return visiblePart(grid, seen, {along(view.centre_x, grid.width), along(view.centre_y, grid.height)});
+}
+
+render::Rectangle WindowPicture::plot(const render::View& view, const Display& display) const {
+  const render::Rectangle& area = window_.pictureArea();
+  const auto layout =
+      render::layOut(view, display.decorations ? render::Decoration::kFull : render::Decoration::kNone, 1,
+                     shown_.versions.size() > 1 ? render::Titles::kAbove : render::Titles::kNone,
+                     kDecorations * window_.scale());
+  render::Rectangle rectangle = layout.plots.front();
+  rectangle.x += area.x;
+  rectangle.y += area.y;
+  return rectangle;
+}
+
+bool WindowPicture::hasSplitLine(const Display& display) const {
+  return display.split && shown_.versions.size() == 2 && display.stereo == render::StereoMode::kOff;
+}
+
+}  // namespace fettle::app

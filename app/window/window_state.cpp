@@ -1,0 +1,264 @@
+#include "app/window/window_state.h"
+
+#include <cmath>
+#include <utility>
+
+#include <imgui.h>
+
+#include "haptic/safety/safety.h"
+
+namespace fettle::app {
+namespace {
+
+// Enough digits to tell two states apart, few enough that rounding does not make two of one.
+double rounded(double value) {
+  return std::round(value * 1e6) / 1e6;
+}
+
+double ms(std::int64_t ns) {
+  return 1e-6 * static_cast<double>(ns);
+}
+
+Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
+  const Question* const dialog = p.feedback.questions.shown();
+  const render::Rectangle& area = p.window.pictureArea();
+  const SessionKeeper* const keeper = p.document.keeper();
+  Report r{{"keys", input.counts().keys},
+           {"buttons", input.counts().buttons},
+           {"wheels", input.counts().wheels},
+           {"drops", input.counts().drops},
+           {"cursor", {std::lround(p.cursor.x), std::lround(p.cursor.y)}},
+           {"frame", {p.window.width(), p.window.height()}},
+           {"picture", {area.x, area.y, area.width, area.height}},
+           {"minimised", p.window.minimised()},
+           {"scale", rounded(p.window.scale())},
+           {"dialog", dialog != nullptr ? name(dialog->kind) : "none"},
+           {"dialog_path", dialog != nullptr ? dialog->path : ""},
+           {"text_field", ImGui::GetIO().WantTextInput},
+           {"message", dialog != nullptr ? dialog->said.what : ""},
+           {"status", p.feedback.status},
+           {"asks_before_quitting", p.settings.ask_before_quitting},
+           {"device_losses", run.device_losses},
+           {"loading", p.opening.busy()},
+           {"coarse", p.coarseIsShown()},
+           {"saving", p.saving.busy(p.document)},
+           {"path", p.document.path()},
+           {"save_path", keeper != nullptr && keeper->named() ? keeper->path() : p.saving.path()}};
+  Report notices = Report::array();
+  for (const Notice& notice : p.feedback.notices) notices.push_back(notice.what);
+  r["notices"] = notices;
+  if (p.seenGrid() != nullptr)
+    r["view"] = {rounded(p.view.azimuth_deg), rounded(p.view.elevation_deg), rounded(p.view.zoom),
+                 rounded(p.view.centre_x), rounded(p.view.centre_y)};
+  return r;
+}
+
+void addDocument(const Parts& p, Report& r) {
+  static constexpr const char* kTools[] = {"feel", "smooth", "mark", "unmark"};
+  const LoopClient& touch = *p.document.touch();
+  const SessionKeeper& keeper = *p.document.keeper();
+  const Lasso& lasso = p.marking.lasso();
+  r["tool"] = p.stylus.on() ? kTools[static_cast<std::size_t>(touch.tool())] : "view";
+  r["lasso"] = !lasso.active() ? "" : lasso.shape() == Lasso::Shape::kBox ? "box" : "free";
+  Report open_panels = Report::array();
+  for (const auto& [panel, open] : p.settings.panels)
+    if (p.settings.side_panel && open) open_panels.push_back(panel);
+  r["panels"] = open_panels;
+  r["steps"] = touch.history().number();
+  r["last_step"] = touch.history().last();
+  r["unsaved"] = p.document.unsaved();
+  r["session"] = keeper.path();
+  r["session_named"] = keeper.named();
+  r["session_waiting"] = keeper.waiting();
+  r["kept"] = keeper.waiting() == 0 && !keeper.error();
+}
+
+void addBrushAndView(const Parts& p, Report& r) {
+  const haptic::MouseStylus* const mouse = p.document.touch()->mouse();
+  const haptic::Scene& scene = p.document.touch()->scene();
+  const Display& display = p.settings.display;
+  const render::ValueRange& range = p.picture.figures().range;
+  r["inverted"] = scene.invert;
+  r["brush"] = rounded(scene.brush_radius_samples);
+  r["mark_brush"] = rounded(scene.mark_radius_samples);
+  r["press_mm"] = mouse != nullptr ? rounded(mouse->pressMm()) : 0.0;
+  r["adjusting"] = p.brush.of() == BrushAdjustment::Of::kRadius  ? "radius"
+                   : p.brush.of() == BrushAdjustment::Of::kDepth ? "depth"
+                                                                 : "";
+  r["typed"] = p.brush.typed();
+  r["perspective"] = p.view.projection == render::Projection::kPerspective;
+  r["marks"] = display.marks;
+  r["deviation"] = display.deviation;
+  r["contours"] = display.contours;
+  r["vertices"] = display.vertices;
+  r["colours"] = {rounded(range.low), rounded(range.high)};
+  r["contact_level"] =
+      scene.tip == haptic::TipShape::kSphere ? "ball" : std::string(haptic::levelName(scene.level));
+  r["measured"] = {!p.costs.contact().empty(), !p.costs.detail().empty()};
+  r["map"] = static_cast<int>(display.map);
+  r["light"] = {std::lround(display.light_azimuth_deg), std::lround(display.light_elevation_deg)};
+}
+
+void addFilters(const Parts& p, Report& r) {
+  const FilterPreview& filters = p.filters;
+  const EdgeTool& edges = p.marking.edges;
+  Report variants = Report::array();
+  for (const FilterPreview::Variant& v : filters.variants()) variants.push_back(filterName(v.spec));
+  r["filter"] = filterName(filters.spec);
+  r["max_change"] = filters.spec.max_change ? Report(*filters.spec.max_change) : Report();
+  r["variants"] = variants;
+  r["filtering"] = filters.computing();
+  r["suggested"] = edges.suggestion() != nullptr ? edges.suggestion()->samples : 0;
+  r["looking_for_edges"] = edges.busy();
+  r["applying"] = filters.applying();
+  r["filters_applied"] = filters.applied();
+}
+
+void addDevice(const Parts& p, Report& r) {
+  LoopClient& touch = *p.document.touch();
+  const haptic::LoopState now = touch.state();
+  const haptic::LoopState& drawn = p.stylus_overlay.state();
+  const haptic::Scene& scene = touch.scene();
+  r["device"] = touch.device().profile().name;
+  r["connected"] = now.link == haptic::LinkState::kConnected;
+  r["safety"] = std::string(haptic::name(now.safety));
+  Report effects = Report::array();
+  for (const haptic::EffectKind effect : scene.effects)
+    effects.push_back(std::string(haptic::effectName(effect)));
+  r["effects"] = effects;
+  r["stiffness_n_per_mm"] = rounded(scene.stiffness_n_per_mm);
+  r["rate_hz"] = touch.rate();
+  r["stroke"] = p.stylus.held() || p.marking.held();
+  r["touching"] = drawn.contact;
+  // The cells that the cursor points at and that the stylus was drawn over: the same when it has followed.
+  const engine::Grid& grid = touch.field().grid();
+  const auto cell = [&](double x_mm, double y_mm) {
+    return Report{std::lround(std::floor(x_mm / grid.spacingXMm())),
+                  std::lround(std::floor(y_mm / grid.spacingYMm()))};
+  };
+  const auto& under = p.stylus.underCursor();
+  r["under_cursor"] = under ? cell(under->position_mm.x, under->position_mm.y) : Report();
+  r["stylus_at"] = cell(drawn.endpoint_mm.x, drawn.endpoint_mm.y);
+}
+
+// The picture shows the field as the scene asks for it, and nothing works on it.
+bool fieldIsSettled(const Parts& p) {
+  const LoopClient& touch = *p.document.touch();
+  const haptic::MouseStylus* const mouse = p.document.touch()->mouse();
+  if ((mouse != nullptr && mouse->busy()) || p.filters.computing() || p.filters.applying() ||
+      p.marking.busy() || p.picture.empty())
+    return false;
+  const render::Shown& shown = p.picture.shown();
+  return shown.accepted.value_or(shown.versions.front()) == touch.field() &&
+         touch.history().current() == touch.upright() &&
+         (touch.field().reader().sign() < 0.0F) == touch.scene().invert;
+}
+
+// Nothing that a hand did is still to be seen.
+bool isSettled(const Parts& p, const Input& input) {
+  // A dialog has a frame drawn each time, and is in its place after some of them.
+  constexpr int kInPlace = 4;
+  const Questions& questions = p.feedback.questions;
+  const bool moves =
+      !questions.pending()
+          ? isActive(p, input) || (p.document.isOpen() && p.picture.refining())
+          : p.held() || p.picture.figures().upload.pending_tiles > 0 || questions.frames() < kInPlace;
+  return !moves && input.empty() && !p.opening.busy() && !p.saving.busy(p.document) &&
+         (!p.document.isOpen() || fieldIsSettled(p));
+}
+
+}  // namespace
+
+bool isActive(const Parts& parts, const Input& input) {
+  return parts.picture.active() || !input.empty() || parts.held();
+}
+
+Report windowState(const Parts& parts, const Input& input, const RunFigures& run) {
+  static constexpr const char* kLimits[] = {"none", "under way", "memory", "vertices"};
+  Report r = firstState(parts, input, run);
+  if (parts.document.isOpen()) {
+    addDocument(parts, r);
+    addBrushAndView(parts, r);
+    addFilters(parts, r);
+    addDevice(parts, r);
+  }
+  const bool settled = isSettled(parts, input);
+  // How near each panel comes to the field, and what keeps it from coming nearer: of a picture at rest alone,
+  // since it differs from frame to frame.
+  Report bounds = Report::array(), limits = Report::array();
+  for (const render::PanelDetail& panel : parts.picture.figures().panels) {
+    if (!settled) break;
+    bounds.push_back(rounded(panel.bound_px));
+    limits.push_back(kLimits[static_cast<std::size_t>(panel.limit)]);
+  }
+  r["bounds_px"] = bounds;
+  r["limits"] = limits;
+  r["settled"] = settled;
+  return r;
+}
+
+void logState(EventLog& log, const Parts& parts, const Input& input, const RunFigures& run) {
+  if (!log.listens()) return;
+  // What is written changes, or moves, without any of the state: a menu opens, a header closes, a line above
+  // grows. Figures change all the time.
+  const std::vector<render::PanelText> written = parts.window.texts();
+  std::size_t words = written.size();
+  const auto mix = [&](std::size_t value) { words = 31 * words + value; };
+  for (const render::PanelText& text : written) {
+    for (const char c : text.text)
+      if (c < '0' || c > '9') mix(static_cast<unsigned char>(c));
+    mix(static_cast<std::size_t>(std::lround(text.x)));
+    mix(static_cast<std::size_t>(std::lround(text.y)));
+  }
+  Report state = windowState(parts, input, run);
+  state["words"] = words;
+  log.write(std::move(state), [&] {
+    Report texts = Report::array();
+    for (const render::PanelText& text : written)
+      texts.push_back(
+          {{"text", text.text},
+           {"at",
+            {std::lround(text.x), std::lround(text.y), std::lround(text.width), std::lround(text.height)}},
+           {"cut", text.cut}});
+    return Report{{"frames", run.frames}, {"texts", texts}};
+  });
+}
+
+Report runReport(const Parts& parts, const RunFigures& run) {
+  const DrawFigures& draw = parts.picture.drawFigures();
+  const haptic::TimingFigures frame = draw.times.figures();
+  Report r{{"device", parts.window.device()}, {"frames", run.frames}};
+  r["frame_p50_ms"] = ms(frame.p50_ns);
+  r["frame_p99_ms"] = ms(frame.p99_ns);
+  r["tiles_uploaded"] = draw.tiles_uploaded;
+  r["bytes_uploaded"] = draw.bytes_uploaded;
+  if (parts.document.isOpen()) {
+    LoopClient& touch = *parts.document.touch();
+    const OpeningTimes& times = parts.opening.times();
+    r["open_coarse_picture_ms"] = times.coarse_ms;
+    r["open_read_ms"] = times.read_ms;
+    r["open_touched_ms"] = times.touched_ms;
+    r["open_first_picture_ms"] = times.seen_ms;
+    r["open_whole_picture_ms"] = times.whole_ms;
+    const haptic::TimingFigures late = touch.timing().lateness.figures();
+    const haptic::TimingFigures edit = touch.latency().histogram().figures();
+    r["ticks"] = late.count;
+    r["rate_hz"] = touch.measuredRate();
+    r["lateness_p50_us"] = 1e3 * ms(late.p50_ns);
+    r["lateness_p99_us"] = 1e3 * ms(late.p99_ns);
+    r["lateness_worst_us"] = 1e3 * ms(late.worst_ns);
+    r["edits_shown"] = edit.count;
+    r["edit_to_pixel_p50_ms"] = ms(edit.p50_ns);
+    r["edit_to_pixel_p99_ms"] = ms(edit.p99_ns);
+    r["steps"] = touch.history().number();
+    r["filters_applied"] = parts.filters.applied();
+    r["saved"] = parts.saving.path();
+    r["session"] = parts.document.keeper()->path();
+    r["session_named"] = parts.document.keeper()->named();
+    r["unsaved_changes"] = parts.document.unsaved();
+  }
+  r["validation_messages"] = parts.window.validationMessages();
+  return r;
+}
+
+}  // namespace fettle::app
