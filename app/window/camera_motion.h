@@ -19,20 +19,20 @@ class CameraMotion {
   [[nodiscard]] render::Sharpness see(const render::View& view, bool held, Clock::time_point now) {
     if (seen_ && !(*seen_ == view)) {
       moved_ = now;
-      owes_sharp_ = true;
-    } else if (owes_sharp_ && now - moved_ >= (held ? kRestHeld : kRest)) {
-      owes_sharp_ = false;
+      sharp_pending_ = true;
+    } else if (sharp_pending_ && now - moved_ >= (held ? kRestHeld : kRest)) {
+      sharp_pending_ = false;
     }
     seen_ = view;
-    return owes_sharp_ ? render::Sharpness::kHalf : render::Sharpness::kFull;
+    return sharp_pending_ ? render::Sharpness::kHalf : render::Sharpness::kFull;
   }
   /// Whether the last frame seen was not sharp: another one is to come even if nothing else happens.
-  [[nodiscard]] bool owesSharp() const noexcept { return owes_sharp_; }
+  [[nodiscard]] bool sharpPending() const noexcept { return sharp_pending_; }
 
  private:
   std::optional<render::View> seen_;
   Clock::time_point moved_;
-  bool owes_sharp_ = false;
+  bool sharp_pending_ = false;
 };
 
 }  // namespace fettle::app

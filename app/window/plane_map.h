@@ -8,7 +8,7 @@
 
 namespace fettle::app {
 
-/// Takes places of the picture to the field's plane, where there is no surface to point at: beside the field,
+/// Takes places of the picture to the field's plane, where there is no surface to point at: next to the field,
 /// over a hole. A picture of a plane is a homography, whatever the projection; four points that lie on no
 /// common line, three by three, say which.
 class PlaneMap {

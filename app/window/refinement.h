@@ -28,7 +28,7 @@ class Refinement {
     return state_ == State::kBegins || (state_ == State::kChosen && now - whole_ >= kQuiet);
   }
   /// Whether some of it is still to come.
-  [[nodiscard]] bool owed() const noexcept { return state_ != State::kFine; }
+  [[nodiscard]] bool pending() const noexcept { return state_ != State::kFine; }
 
   /// The next frame changes the picture as a whole, as is known before it is drawn.
   void restart(Clock::time_point now) noexcept {

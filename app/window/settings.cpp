@@ -93,14 +93,14 @@ Settings Settings::load(const std::string& path) {
 
 void Settings::save(const std::string& path) const {
   if (path.empty()) return;
-  const std::string beside = path + ".new";
+  const std::string written = path + ".new";
   {
-    std::ofstream out(beside, std::ios::trunc);
+    std::ofstream out(written, std::ios::trunc);
     out << text() << '\n';
     if (!out.flush()) return;
   }
   std::error_code ignored;
-  std::filesystem::rename(beside, path, ignored);
+  std::filesystem::rename(written, path, ignored);
 }
 
 }  // namespace fettle::app

@@ -42,7 +42,7 @@ struct Settings {
   /// Reads a file that save() wrote. What it lacks, what is of a wrong type or out of range stays as it is by
   /// itself; a file that cannot be read says nothing.
   [[nodiscard]] static Settings load(const std::string& path);
-  /// Writes all of it, whole or not at all; an empty path is none. Nobody is told of a failure: the next
+  /// Writes all of it, whole or not at all; an empty path is none. A failure is not reported: the next
   /// start is as the one before.
   void save(const std::string& path) const;
 

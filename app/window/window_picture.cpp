@@ -51,15 +51,15 @@ engine::Status WindowPicture::show(render::Shown shown) {
 }
 
 render::Sharpness WindowPicture::sharpness(const render::View& view, bool held) {
-  const bool owed = motion_.owesSharp();
+  const bool pending = motion_.sharpPending();
   const render::Sharpness sharpness = motion_.see(view, held, CameraMotion::Clock::now());
-  if (owed && !motion_.owesSharp()) needs_redraw_ = true;
+  if (pending && !motion_.sharpPending()) needs_redraw_ = true;
   return sharpness;
 }
 
 bool WindowPicture::takeDue(Draws draws) {
   const auto now = Refinement::Clock::now();
-  if (draws == Draws::kRefined && motion_.owesSharp()) refinement_.restart(now);  // the view moves
+  if (draws == Draws::kRefined && motion_.sharpPending()) refinement_.restart(now);  // the view moves
   const bool due = needs_redraw_ || figures_.upload.pending_tiles > 0 ||
                    (draws == Draws::kRefined && refinement_.due(now));
   if (due) needs_redraw_ = false;

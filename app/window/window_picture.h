@@ -49,9 +49,9 @@ class WindowPicture {
   void skipRedraw() noexcept { needs_redraw_ = false; }
   /// Something is to be drawn without waiting.
   [[nodiscard]] bool active() const noexcept {
-    return needs_redraw_ || motion_.owesSharp() || figures_.upload.pending_tiles > 0;
+    return needs_redraw_ || motion_.sharpPending() || figures_.upload.pending_tiles > 0;
   }
-  [[nodiscard]] bool refining() const noexcept { return refinement_.owed(); }
+  [[nodiscard]] bool refining() const noexcept { return refinement_.pending(); }
 
   /// The view is as large as the place it is drawn to.
   void fit(render::View& view);

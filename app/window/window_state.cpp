@@ -10,7 +10,7 @@
 namespace fettle::app {
 namespace {
 
-// Enough digits to tell two states apart, few enough that rounding does not make two of one.
+// Enough digits to keep two states apart, few enough that rounding does not make two of one.
 double rounded(double value) {
   return std::round(value * 1e6) / 1e6;
 }

@@ -39,7 +39,6 @@ Workstation::Workstation(const ViewOptions& options, std::unique_ptr<render::Win
     : options_(options),
       window_(std::move(window)),
       parts_(*window_, Settings::load(settingsPath("/window.json"))),
-      act_([this](Action action) { app::carryOut(action, parts_); }),
       saved_settings_(parts_.settings) {
   window_->setWhileWaiting([this] { whileWaiting(); });
 }
@@ -71,7 +70,7 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
     if (!end_) return tl::unexpected(end_.error());
     if (window_->closeAsked()) {
       window_->refuseClose();
-      act_(Action::kQuit);
+      app::carryOut(Action::kQuit, parts_);
     }
     const double lived = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
@@ -122,7 +121,7 @@ void Workstation::handleInput() {
   input_.followSurface(parts_);
   while (const auto event = input_.next(parts_)) {
     const Input::Request request = Input::handle(*event, parts_);
-    if (request.action) act_(*request.action);
+    if (request.action) app::carryOut(*request.action, parts_);
     if (request.open) askToOpen(*request.open);
     parts_.cursor = {event->x, event->y};
     releaseHandsWhenAsked();
@@ -168,7 +167,7 @@ void Workstation::showFrame() {
   const std::optional<std::int64_t> edit_ns =
       parts_.document.isOpen() ? parts_.document.touch()->latency().takeUnshownEdit() : std::nullopt;
   window_->beginFrame();
-  carryOut(layOutPanels(parts_, act_));
+  carryOut(layOutPanels(parts_));
   releaseHandsWhenAsked();
   const bool announces = parts_.announcesPicture();
   if (parts_.document.isOpen()) {
@@ -193,8 +192,8 @@ void Workstation::noteShown(const render::PresentReport& report, std::optional<s
     p.document.touch()->latency().noteShown(*edit_ns, report.shown_ns);
   ++frames_;
   if (announces) parts_.opening.noteAnnounced();
-  parts_.opening.noteFrame(p.picture.empty()                              ? Frame::kNothing
-                           : !open                                        ? Frame::kCoarse
+  parts_.opening.noteFrame(p.coarseIsShown()                              ? Frame::kCoarse
+                           : !open || p.picture.empty()                   ? Frame::kNothing
                            : p.picture.figures().upload.pending_tiles > 0 ? Frame::kDocument
                                                                           : Frame::kWhole);
   saveSettings();

@@ -77,7 +77,6 @@ class Workstation {
   std::unique_ptr<render::Window> window_;
   Parts parts_;
   Input input_;
-  Act act_;
   DeviceRenewal renewal_;
   EventLog events_;
   Settings saved_settings_;  // as the file has them

@@ -6,7 +6,6 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
-#include "app/window/panels/widgets.h"
 
 namespace fettle::app {
 namespace {

@@ -6,7 +6,6 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
-#include "app/window/panels/widgets.h"
 #include "app/window/scene_edits.h"
 #include "haptic/contact/sphere_tip.h"
 
@@ -19,7 +18,7 @@ struct Entry {
   std::string cost;
 };
 
-// A list to choose from, figures beside the names. The entry chosen, or -1. `opened`: the list is open.
+// A list to choose from, figures next to the names. The entry chosen, or -1. `opened`: the list is open.
 int chooser(const char* id, const std::string& now, const std::vector<Entry>& entries, const char* off_title,
             const char* cost_title, bool& opened) {
   int chosen = -1;

@@ -3,23 +3,16 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
-#include "app/window/panels/widgets.h"
 
 namespace fettle::app {
 
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,
                   ChoiceCosts& costs) {
   Display& display = settings.display;
-  bool deviation = display.deviation;
-  if (ImGui::Checkbox("colours show the change", &deviation)) context.act(Action::kDeviation);
-  tip(Action::kDeviation);
-  ImGui::Checkbox("contour lines", &display.contours);
-  tip(Action::kContours);
-  ImGui::Checkbox("scale bar and colour bar", &display.decorations);
-  tip(Action::kDecorations);
-  bool light = display.theme == render::Theme::kLight;
-  if (ImGui::Checkbox("light background", &light)) context.act(Action::kTheme);
-  tip(Action::kTheme);
+  actionTick("colours show the change", display.deviation, Action::kDeviation, context.act);
+  actionTick("contour lines", display.contours, Action::kContours, context.act);
+  actionTick("scale bar and colour bar", display.decorations, Action::kDecorations, context.act);
+  actionTick("light background", display.theme == render::Theme::kLight, Action::kTheme, context.act);
   ImGui::Checkbox("half as sharp while it moves", &display.half_in_motion);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(

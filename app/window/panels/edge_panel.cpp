@@ -2,7 +2,6 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
-#include "app/window/panels/widgets.h"
 
 namespace fettle::app {
 
@@ -43,8 +42,7 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
     return;
   }
   if (!edges.on()) {
-    if (ImGui::Button("Suggest edges")) context.act(Action::kEdges);
-    tip(Action::kEdges);
+    actionButton("Suggest edges", Action::kEdges, context.act);
     return;
   }
   const engine::EdgeSuggestion& found = *edges.suggestion();
@@ -52,11 +50,9 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
   ImGui::TextUnformatted(
       fmt::format("{} lines, {} samples, not marked yet", found.lines, found.samples).c_str());
   ImGui::PopTextWrapPos();
-  if (ImGui::Button("Take")) context.act(Action::kFilterApply);
-  tip(Action::kFilterApply);
+  actionButton("Take", Action::kFilterApply, context.act);
   ImGui::SameLine();
-  if (ImGui::Button("Drop")) context.act(Action::kNavigate);
-  tip(Action::kNavigate);
+  actionButton("Drop", Action::kNavigate, context.act);
   besideOrBelow("or paint over it");
   ImGui::TextDisabled("or paint over it");
 }

@@ -5,25 +5,22 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
-#include "app/window/panels/widgets.h"
 
 namespace fettle::app {
+namespace {
 
-void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display) {
-  engine::FilterSpec& spec = filters.spec;
-  const engine::Grid& grid = context.touch.field().grid();
-  beginFields();
-  (void)field("filter", [&] {
-    if (!ImGui::BeginCombo("##filter", engine::filterOf(spec.kind).title)) return false;
-    for (const engine::Filter& each : engine::filters())
-      if (ImGui::Selectable(each.title, each.kind == spec.kind) && each.kind != spec.kind) {
-        spec.kind = each.kind;
-        spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
-      }
-    ImGui::EndCombo();
-    return true;
-  });
-  const engine::Filter& filter = engine::filterOf(spec.kind);
+void kindField(engine::FilterSpec& spec) {
+  fieldName("filter");
+  if (!ImGui::BeginCombo("##filter", engine::filterOf(spec.kind).title)) return;
+  for (const engine::Filter& each : engine::filters())
+    if (ImGui::Selectable(each.title, each.kind == spec.kind) && each.kind != spec.kind) {
+      spec.kind = each.kind;
+      spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
+    }
+  ImGui::EndCombo();
+}
+
+void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid) {
   if (field("window", [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
     spec.window = std::clamp(spec.window | 1, 1, engine::FilterSpec::kMaxWindow);
   // In millimetres across the columns; the nearest odd number of samples is taken.
@@ -37,6 +34,10 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
                    engine::FilterSpec::kMaxWindow);
   if (field("passes", [&] { return ImGui::InputInt("##passes", &spec.passes, 1, 5); }))
     spec.passes = std::clamp(spec.passes, 1, engine::FilterSpec::kMaxPasses);
+}
+
+void sigmaFields(engine::FilterSpec& spec, const engine::Grid& grid) {
+  const engine::Filter& filter = engine::filterOf(spec.kind);
   const auto orElse = [](double value, const char* format, const engine::FilterParameter& parameter) {
     return value > 0.0 ? format : "0: " + std::string(parameter.when_zero);
   };
@@ -50,37 +51,35 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
           "##range", spec.range_sigma, 0.0, filter.range_sigma.most,
           orElse(spec.range_sigma, ("%.4g " + grid.height_unit.name).c_str(), filter.range_sigma));
     });
-  bool limited = spec.max_change.has_value();
+}
+
+void limitField(const PanelContext& context, engine::FilterSpec& spec, const engine::Grid& grid) {
   (void)field("max change", [&] {
-    if (ImGui::Checkbox("##maxchange", &limited)) context.act(Action::kFilterMaxChange);
-    tip(Action::kFilterMaxChange);
+    actionTick("##maxchange", spec.max_change.has_value(), Action::kFilterMaxChange, context.act);
     if (!spec.max_change) return false;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
     return typeNumber("##most", *spec.max_change, 0.0, 1e9, "%.4g " + grid.height_unit.name);
   });
-  endFields();
-  int scope = static_cast<int>(spec.scope);
-  ImGui::RadioButton("keep marks", &scope, 0);
-  besideOrBelow("only marks", Beside::kTick);
-  ImGui::RadioButton("only marks", &scope, 1);
-  tip(Action::kFilterScope);
-  spec.scope = static_cast<engine::FilterScope>(scope);
+}
+
+void runButtons(const PanelContext& context, FilterPreview& filters) {
   if (filters.computing() || filters.applying()) {
     ImGui::ProgressBar(static_cast<float>(filters.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
                        filters.applying() ? "applying" : "filtering");
     ImGui::SameLine();
     if (ImGui::Button("Cancel")) filters.cancel(context.touch);
   } else {
-    if (ImGui::Button("Preview")) context.act(Action::kFilterPreview);
-    tip(Action::kFilterPreview);
+    actionButton("Preview", Action::kFilterPreview, context.act);
     besideOrBelow("Beside");
-    if (ImGui::Button("Beside")) context.act(Action::kFilterBeside);
-    tip(Action::kFilterBeside);
+    actionButton("Beside", Action::kFilterBeside, context.act);
     besideOrBelow("Apply");
     if (ImGui::Button("Apply")) filters.apply(context.touch);
     tip(Action::kFilterApply);
   }
+}
+
+void previewList(const engine::Grid& grid, FilterPreview& filters) {
   std::optional<std::size_t> dropped;
   for (std::size_t i = 0; i < filters.variants().size(); ++i) {
     const FilterPreview::Variant& v = filters.variants()[i];
@@ -95,6 +94,27 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
     ImGui::PopTextWrapPos();
   }
   if (dropped) filters.drop(*dropped);
+}
+
+}  // namespace
+
+void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display) {
+  engine::FilterSpec& spec = filters.spec;
+  const engine::Grid& grid = context.touch.field().grid();
+  beginFields();
+  kindField(spec);
+  sizeFields(spec, grid);
+  sigmaFields(spec, grid);
+  limitField(context, spec, grid);
+  endFields();
+  int scope = static_cast<int>(spec.scope);
+  ImGui::RadioButton("keep marks", &scope, 0);
+  besideOrBelow("only marks", Beside::kTick);
+  ImGui::RadioButton("only marks", &scope, 1);
+  tip(Action::kFilterScope);
+  spec.scope = static_cast<engine::FilterScope>(scope);
+  runButtons(context, filters);
+  previewList(grid, filters);
   if (filters.variants().size() == 1) ImGui::Checkbox("split line", &display.split);
 }
 

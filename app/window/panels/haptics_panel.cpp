@@ -6,7 +6,6 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
-#include "app/window/panels/widgets.h"
 #include "app/window/scene_edits.h"
 
 namespace fettle::app {
@@ -58,17 +57,12 @@ std::string rateText(double hz) {
   return fmt::format("{:g} kHz", 1e-3 * hz);
 }
 
-}  // namespace
-
-std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
-                                   ChoiceCosts& costs) {
-  LoopClient& touch = context.touch;
-  std::optional<double> rate_hz;
-  const haptic::LoopState state = touch.state();
-  const haptic::DeviceProfile& profile = touch.device().profile();
+void deviceFigures(const PanelContext& context) {
+  const haptic::LoopState state = context.touch.state();
+  const haptic::DeviceProfile& profile = context.touch.device().profile();
   figure("device", profile.name + (profile.gives_force ? "" : ", no force"));
   // A mouse is no device to plug in or to fear.
-  const bool mouse = touch.mouse() != nullptr;
+  const bool mouse = context.touch.mouse() != nullptr;
   figure("link",
          mouse ? (state.link == haptic::LinkState::kConnected ? "on the surface" : "no tool on the surface")
          : state.link == haptic::LinkState::kConnected    ? "connected"
@@ -76,17 +70,17 @@ std::optional<double> hapticsPanel(const PanelContext& context, const StylusOver
                                                           : "not plugged in");
   figure("safety", mouse ? "no force to guard" : std::string(haptic::name(state.safety)));
   ImGui::BeginDisabled(mouse);
-  if (ImGui::Button("Arm")) context.act(Action::kArm);
-  tip(Action::kArm);
+  actionButton("Arm", Action::kArm, context.act);
   besideOrBelow("Disarm");
-  if (ImGui::Button("Disarm")) context.act(Action::kDisarm);
-  tip(Action::kDisarm);
+  actionButton("Disarm", Action::kDisarm, context.act);
   besideOrBelow("Calibrate");
-  if (ImGui::Button("Calibrate")) context.act(Action::kCalibrate);
-  tip(Action::kCalibrate);
+  actionButton("Calibrate", Action::kCalibrate, context.act);
   ImGui::EndDisabled();
+}
+
+void loopFigures(LoopClient& touch, const std::vector<float>& forces) {
   const auto limit = static_cast<float>(touch.scene().force_limit_n);
-  if (const std::vector<float>& forces = stylus.forces(); !forces.empty())
+  if (!forces.empty())
     ImGui::PlotLines("##force", forces.data(), static_cast<int>(forces.size()), 0,
                      fmt::format("force, 0 to {:.3g} N", limit).c_str(), 0.0F, limit,
                      ImVec2(ImGui::GetContentRegionAvail().x, 4.0F * ImGui::GetTextLineHeight()));
@@ -98,39 +92,36 @@ std::optional<double> hapticsPanel(const PanelContext& context, const StylusOver
   figure("ticks late by",
          fmt::format("{:.0f} us, p99 {:.0f}", microseconds(late.p50_ns), microseconds(late.p99_ns)));
   drawLateness(touch.timing().lateness);
-  haptic::Scene scene = touch.scene();
-  beginFields();
-  (void)field("rate", [&] {
-    const double now_hz = touch.rate();
-    if (!ImGui::BeginCombo("##rate", rateText(now_hz).c_str())) return false;
-    for (int khz = 1; khz <= 10; ++khz)
-      if (const double hz = 1000.0 * khz; ImGui::Selectable(rateText(hz).c_str(), hz == now_hz)) rate_hz = hz;
-    ImGui::EndCombo();
-    return false;
-  });
-  contactChooser(context, costs);
-  // A slip of the finger makes it a thousand times as stiff: what is too much is refused with words, and the
-  // number there was stays.
-  const auto type = [&](const char* name, const char* id, double& value, const char* format) {
-    return field(name, [&] {
-      const auto typed = typedNumber(id, value, format);
-      if (!typed) return false;
-      value = *typed;
-      applyScene(touch, scene, context.notices);
-      const bool taken = touch.scene() == scene;
-      scene = touch.scene();
-      return taken;
-    });
-  };
-  if (type("stiffness", "##stiffness", scene.stiffness_n_per_mm, "%.4g N/mm"))
-    noteWithoutForce(touch, context.notices);
-  (void)type("force limit", "##limit", scene.force_limit_n, "%.3g N");
-  endFields();
-  if (const auto largest = touch.largestStiffness())
-    figure("it holds", fmt::format("{:.4g} N/mm at most", *largest));
+}
+
+std::optional<double> rateField(double now_hz) {
+  std::optional<double> chosen;
+  fieldName("rate");
+  if (!ImGui::BeginCombo("##rate", rateText(now_hz).c_str())) return chosen;
+  for (int khz = 1; khz <= 10; ++khz)
+    if (const double hz = 1000.0 * khz; ImGui::Selectable(rateText(hz).c_str(), hz == now_hz)) chosen = hz;
+  ImGui::EndCombo();
+  return chosen;
+}
+
+// A number of the scene. A slip of the finger makes it a thousand times as stiff: what is too much is refused
+// with words, and the number there was stays. True when it was taken.
+bool sceneNumber(const PanelContext& context, const char* name, const char* id, double haptic::Scene::*number,
+                 const char* format) {
+  haptic::Scene scene = context.touch.scene();
+  fieldName(name);
+  const auto typed = typedNumber(id, scene.*number, format);
+  if (!typed) return false;
+  scene.*number = *typed;
+  applyScene(context.touch, scene, context.notices);
+  return context.touch.scene() == scene;
+}
+
+void effectTicks(const PanelContext& context) {
   ImGui::TextDisabled("effects");
   for (int i = 0; i < haptic::kEffectKinds; ++i) {
     const auto kind = static_cast<haptic::EffectKind>(i);
+    haptic::Scene scene = context.touch.scene();
     const auto listed = std::find(scene.effects.begin(), scene.effects.end(), kind);
     bool on = listed != scene.effects.end();
     std::string name(haptic::effectName(kind));
@@ -145,8 +136,27 @@ std::optional<double> hapticsPanel(const PanelContext& context, const StylusOver
       scene.effects.insert(scene.effects.begin(), kind);  // before those that stand on it
     else
       scene.effects.push_back(kind);
-    applyScene(touch, scene, context.notices);
+    applyScene(context.touch, scene, context.notices);
   }
+}
+
+}  // namespace
+
+std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
+                                   ChoiceCosts& costs) {
+  LoopClient& touch = context.touch;
+  deviceFigures(context);
+  loopFigures(touch, stylus.forces());
+  beginFields();
+  const std::optional<double> rate_hz = rateField(touch.rate());
+  contactChooser(context, costs);
+  if (sceneNumber(context, "stiffness", "##stiffness", &haptic::Scene::stiffness_n_per_mm, "%.4g N/mm"))
+    noteWithoutForce(touch, context.notices);
+  (void)sceneNumber(context, "force limit", "##limit", &haptic::Scene::force_limit_n, "%.3g N");
+  endFields();
+  if (const auto largest = touch.largestStiffness())
+    figure("it holds", fmt::format("{:.4g} N/mm at most", *largest));
+  effectTicks(context);
   ImGui::PushTextWrapPos(0.0F);
   for (const std::string& missing : touch.realTime().missing)
     ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s", missing.c_str());

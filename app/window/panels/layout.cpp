@@ -33,8 +33,9 @@ float sideOf(Parts& parts, const Act& act, float bar, std::optional<double>& rat
 
 }  // namespace
 
-PanelRequests layOutPanels(Parts& parts, const Act& act) {
+PanelRequests layOutPanels(Parts& parts) {
   PanelRequests requests;
+  const Act act = [&parts](Action action) { carryOut(action, parts); };
   if (parts.feedback.questions.pending()) parts.leavePanels();
   requests.open = menuBar(parts, act);
   const float bar = ImGui::GetFrameHeight();

@@ -1,18 +1,15 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 
-#include "app/window/actions.h"
+#include "app/window/panels/widgets.h"
 #include "app/window/parts.h"
 
 /// The panels of the window, laid out once a frame between Window::beginFrame() and present(): each function
 /// is in the file of its name, shows the parts that it is given and changes them as the user does. What is an
 /// action goes through `act`, so that keys, menus and buttons do the same.
 namespace fettle::app {
-
-using Act = std::function<void(Action)>;
 
 /// What every panel about the document needs.
 struct PanelContext {
@@ -70,6 +67,6 @@ struct PanelRequests {
   std::optional<Answer> answer;
 };
 /// All of it, around the place of the picture and over it.
-[[nodiscard]] PanelRequests layOutPanels(Parts& parts, const Act& act);
+[[nodiscard]] PanelRequests layOutPanels(Parts& parts);
 
 }  // namespace fettle::app

@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 
 #include "app/window/panels/panels.h"
-#include "app/window/panels/widgets.h"
 
 namespace fettle::app {
 namespace {

@@ -5,16 +5,14 @@
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
-#include "app/window/panels/widgets.h"
 #include "app/window/scene_edits.h"
 
 namespace fettle::app {
+namespace {
 
 using haptic::Tool;
 
-void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking& marking,
-               const Display& display) {
-  LoopClient& touch = context.touch;
+void toolButtons(const PanelContext& context, const Stylus& stylus, const Lasso& lasso) {
   // As many buttons in a line as there is room for.
   bool first = true;
   const auto button = [&](const char* name, Action action, bool on) {
@@ -25,17 +23,19 @@ void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking&
     if (on) ImGui::PopStyleColor();
     tip(action);
   };
-  const Tool tool = touch.tool();
-  const bool lasso = marking.lasso().active();
-  const auto is = [&](Lasso::Shape shape) { return lasso && marking.lasso().shape() == shape; };
-  button("View", Action::kNavigate, !stylus.on() && !lasso);
-  button("Feel", Action::kFeel, stylus.on() && tool == Tool::kFeel);
-  button("Smooth", Action::kSmooth, stylus.on() && tool == Tool::kSmooth);
-  button("Mark", Action::kMark, stylus.on() && tool == Tool::kMark);
-  button("Unmark", Action::kUnmark, stylus.on() && tool == Tool::kUnmark);
-  button("Lasso", Action::kLasso, is(Lasso::Shape::kFree));
-  button("Box", Action::kBox, is(Lasso::Shape::kBox));
+  const auto uses = [&](Tool tool) { return stylus.on() && context.touch.tool() == tool; };
+  const auto draws = [&](Lasso::Shape shape) { return lasso.active() && lasso.shape() == shape; };
+  button("View", Action::kNavigate, !stylus.on() && !lasso.active());
+  button("Feel", Action::kFeel, uses(Tool::kFeel));
+  button("Smooth", Action::kSmooth, uses(Tool::kSmooth));
+  button("Mark", Action::kMark, uses(Tool::kMark));
+  button("Unmark", Action::kUnmark, uses(Tool::kUnmark));
+  button("Lasso", Action::kLasso, draws(Lasso::Shape::kFree));
+  button("Box", Action::kBox, draws(Lasso::Shape::kBox));
+}
 
+void brushFields(const PanelContext& context) {
+  LoopClient& touch = context.touch;
   const engine::Grid& grid = touch.field().grid();
   const double cell = std::max(grid.spacingXMm(), grid.spacingYMm());
   const double samples = brushRadius(touch);
@@ -60,10 +60,8 @@ void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking&
       setPressDepth(touch, static_cast<double>(depth) * cell);
   }
   haptic::Scene scene = touch.scene();
-  bool limited = scene.max_change.has_value();
   (void)field("keep within", [&] {
-    if (ImGui::Checkbox("##within", &limited)) context.act(Action::kKeepWithin);
-    tip(Action::kKeepWithin);
+    actionTick("##within", scene.max_change.has_value(), Action::kKeepWithin, context.act);
     if (!scene.max_change) return false;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
@@ -72,17 +70,20 @@ void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking&
     return false;
   });
   endFields();
-  bool marks = display.marks, inverted = touch.scene().invert;
-  if (ImGui::Checkbox("marks", &marks)) context.act(Action::kShowMarks);
-  tip(Action::kShowMarks);
+}
+
+}  // namespace
+
+void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking& marking,
+               const Display& display) {
+  toolButtons(context, stylus, marking.lasso());
+  brushFields(context);
+  actionTick("marks", display.marks, Action::kShowMarks, context.act);
   besideOrBelow("upside down", Beside::kTick);
-  if (ImGui::Checkbox("upside down", &inverted)) context.act(Action::kInvert);
-  tip(Action::kInvert);
-  if (ImGui::Button("Clear marks")) context.act(Action::kClearMarks);
-  tip(Action::kClearMarks);
+  actionTick("upside down", context.touch.scene().invert, Action::kInvert, context.act);
+  actionButton("Clear marks", Action::kClearMarks, context.act);
   besideOrBelow("Invert marks");
-  if (ImGui::Button("Invert marks")) context.act(Action::kInvertMarks);
-  tip(Action::kInvertMarks);
+  actionButton("Invert marks", Action::kInvertMarks, context.act);
   if (marking.edit.busy()) {
     besideOrBelow("marking ...");
     ImGui::ProgressBar(static_cast<float>(marking.edit.progress()), ImVec2(-1.0F, 0.0F), "marking");

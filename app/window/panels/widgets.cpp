@@ -33,12 +33,22 @@ void tip(Action action) {
   ImGui::SetTooltip("%s", fmt::format("{}: {}", s.name, keyText(s.key, s.modifiers)).c_str());
 }
 
+void actionButton(const char* name, Action action, const Act& act) {
+  if (ImGui::Button(name)) act(action);
+  tip(action);
+}
+
+void actionTick(const char* name, bool ticked, Action action, const Act& act) {
+  if (ImGui::Checkbox(name, &ticked)) act(action);
+  tip(action);
+}
+
 void besideOrBelow(const char* text, Beside what) {
   const ImGuiStyle& style = ImGui::GetStyle();
-  const float beside = what == Beside::kButton ? style.FramePadding.x * 2.0F
+  const float needed = what == Beside::kButton ? style.FramePadding.x * 2.0F
                                                : ImGui::GetFrameHeight() + style.ItemInnerSpacing.x;
   ImGui::SameLine();
-  if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(text).x + beside) ImGui::NewLine();
+  if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(text).x + needed) ImGui::NewLine();
 }
 
 void beginFields() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -14,10 +15,16 @@ namespace fettle::app {
 /// cursor.
 void figure(const char* name, const std::string& value);
 
+/// Where an action goes that a button, a tick box or a menu asks for.
+using Act = std::function<void(Action)>;
+
 /// The keys of an action, under the cursor of the last item.
 void tip(Action action);
+/// A button and a tick box for an action, with its tip.
+void actionButton(const char* name, Action action, const Act& act);
+void actionTick(const char* name, bool ticked, Action action, const Act& act);
 
-/// Puts the next button or tick box, which reads `text`, beside the last item where there is room for it,
+/// Puts the next button or tick box, which reads `text`, next to the last item where there is room for it,
 /// else below.
 enum class Beside : std::uint8_t { kButton, kTick };
 void besideOrBelow(const char* text, Beside what = Beside::kButton);

@@ -13,17 +13,17 @@ TEST(CameraMotion, IsHalfAsSharpWhileTheViewMovesAndSharpWhenItRests) {
   render::View view;
   const CameraMotion::Clock::time_point start{};
   EXPECT_EQ(motion.see(view, false, start), Sharpness::kFull);
-  EXPECT_FALSE(motion.owesSharp());
+  EXPECT_FALSE(motion.sharpPending());
   view.azimuth_deg += 1.0;
   EXPECT_EQ(motion.see(view, false, start + milliseconds(10)), Sharpness::kHalf);
-  EXPECT_TRUE(motion.owesSharp());
+  EXPECT_TRUE(motion.sharpPending());
   // A frame between two events of the wheel is no rest.
   EXPECT_EQ(motion.see(view, false, start + milliseconds(30)), Sharpness::kHalf);
   view.zoom = 2.0;
   EXPECT_EQ(motion.see(view, false, start + milliseconds(50)), Sharpness::kHalf);
   EXPECT_EQ(motion.see(view, false, start + milliseconds(82)), Sharpness::kHalf);
   EXPECT_EQ(motion.see(view, false, start + milliseconds(83)), Sharpness::kFull);
-  EXPECT_FALSE(motion.owesSharp());
+  EXPECT_FALSE(motion.sharpPending());
   EXPECT_EQ(motion.see(view, false, start + milliseconds(84)), Sharpness::kFull);
 }
 

@@ -27,12 +27,12 @@ class RefinementOf64k : public testing::Test {
 TEST_F(RefinementOf64k, ComesOnceThePictureHasNotChangedAsAWholeForAWhile) {
   refinement.drawn({.whole = true, .continued = false}, start);
   EXPECT_FALSE(due(249));
-  EXPECT_TRUE(refinement.owed());
+  EXPECT_TRUE(refinement.pending());
   // A brush draws parts anew, and puts nothing off.
   EXPECT_EQ(frame(100, false), kChosen);
   EXPECT_TRUE(due(250));
   EXPECT_EQ(frame(250, true), Refinement::kMost);
-  EXPECT_FALSE(refinement.owed());
+  EXPECT_FALSE(refinement.pending());
   EXPECT_FALSE(due(10'000));
   // And goes on in the fine picture.
   EXPECT_EQ(frame(300, false), Refinement::kMost);
@@ -86,9 +86,9 @@ TEST_F(RefinementOfFour, EachPanelGetsWhatASinglePictureGetsOneAfterTheOther) {
   EXPECT_TRUE(due(251));
   EXPECT_EQ(four(251, kPart), (Vertices{kFine, kFine, kShare, kShare}));
   EXPECT_EQ(four(252, kPart), (Vertices{kFine, kFine, kFine, kShare}));
-  EXPECT_TRUE(refinement.owed());
+  EXPECT_TRUE(refinement.pending());
   EXPECT_EQ(four(253, kPart), Vertices(4, kFine));
-  EXPECT_FALSE(refinement.owed());
+  EXPECT_FALSE(refinement.pending());
   EXPECT_FALSE(due(10'000));
   // A brush at rest.
   EXPECT_EQ(four(300, kPart), Vertices(4, kFine));
@@ -112,11 +112,11 @@ TEST_F(RefinementOfFour, AnotherChangeEndsItAndAViewThatMovesNeverWaitsForAFineF
   (void)four(250, kPart);
   EXPECT_EQ(four(251, kWhole), (Vertices{kFine, kFine, kShare, kShare}));
   EXPECT_EQ(four(252, kWhole), Vertices(4, kShare));
-  for (int at = 600; refinement.owed(); ++at) (void)four(at, kPart);
+  for (int at = 600; refinement.pending(); ++at) (void)four(at, kPart);
   refinement.restart(start + milliseconds(700));
   EXPECT_EQ(four(700, kWhole), Vertices(4, kShare));
   // And so do more panels.
-  for (int at = 1000; refinement.owed(); ++at) (void)four(at, kPart);
+  for (int at = 1000; refinement.pending(); ++at) (void)four(at, kPart);
   EXPECT_EQ(refinement.vertices(kChosen, 5, start + milliseconds(1100)), Vertices(5, kChosen / 5));
 }
 
@@ -125,7 +125,7 @@ TEST_F(RefinementOfFour, PanelsThatAreAlwaysDrawnTogetherFollowInOneFrame) {
   (void)four(0, kWhole);
   EXPECT_EQ(four(250, kWhole), (Vertices{kFine, kShare, kShare, kShare}));
   EXPECT_EQ(four(500, kWhole), Vertices(4, kFine));
-  EXPECT_FALSE(refinement.owed());
+  EXPECT_FALSE(refinement.pending());
 }
 
 }  // namespace
