@@ -54,7 +54,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   if (!document.isOpen()) return;
   releaseHands();
   feedback.questions.dropOfField();
-  filters.cancel(*document.touch());
+  filters.finish(*document.touch());
   marking.reset();
   change.cancel();
   costs.reset();

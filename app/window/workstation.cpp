@@ -363,7 +363,7 @@ void Workstation::losePicture(const engine::Error& why) {
   if (again) return;
   engine::Error end = why;
   if (parts_.document.isOpen()) {
-    parts_.filters.cancel(*parts_.document.touch());
+    parts_.filters.finish(*parts_.document.touch());
     end.remedy = parts_.document.rescue() + end.remedy;
   }
   end_ = tl::unexpected(std::move(end));

@@ -105,6 +105,11 @@ void FilterPreview::cancel(LoopClient& touch) {
   seen_so_far_ = {};
 }
 
+void FilterPreview::finish(LoopClient& touch) {
+  cancel(touch);
+  (void)applying_.wait();
+}
+
 void FilterPreview::drop(std::size_t variant) {
   if (variant < variants_.size()) variants_.erase(variants_.begin() + static_cast<std::ptrdiff_t>(variant));
 }

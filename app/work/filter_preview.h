@@ -46,6 +46,8 @@ class FilterPreview {
   /// Adopts the newest variant into the field as one step; computes it first when there is none for `spec`.
   void apply(LoopClient& touch);
   void cancel(LoopClient& touch);
+  /// As cancel(), and waits until no worker uses the port of `touch`, which may be destroyed afterwards.
+  void finish(LoopClient& touch);
   /// Takes over computed results. True when something visible changed.
   [[nodiscard]] bool poll(LoopClient& touch, std::vector<Notice>& notices);
 

@@ -33,7 +33,9 @@ namespace avx2 {
 #define FETTLE_LEVEL 2
 #ifdef __clang__
 #pragma clang attribute pop
+// clang-format off
 #pragma clang attribute push(__attribute__((target("avx512f,avx512bw,avx512dq,avx512vl,fma,bmi,bmi2,popcnt"))), apply_to = function)
+// clang-format on
 #else
 #pragma GCC pop_options
 #pragma GCC push_options

@@ -167,7 +167,7 @@ void values(const Case& each, const Case& other) {
 void touches() {
   constexpr int kSide = 40;
   Noise noise;
-  std::vector<double> z(kSide * kSide + haptic::kTouchLanes);
+  std::vector<double> z(kSide * kSide + haptic::kSphereContactLanes);
   for (double& height : z) height = noise();
   const haptic::LaneWindow window{z.data(), kSide, 3, 5, 1.0, 0.6};
   const haptic::SphereContactKernels& kernels = haptic::sphereContactKernels();
@@ -181,13 +181,13 @@ void touches() {
                                  reach * reach,
                                  1e-12,
                                  1e-12};
-    std::array<haptic::LaneCell, 30 * 30 + haptic::kTouchLanes> cells;
+    std::array<haptic::LaneCell, 30 * 30 + haptic::kSphereContactLanes> cells;
     const int count = kernels.reached(window, ball, 4, 33, 4, 33, cells.data());
-    for (int at = 0; at < count; at += haptic::kTouchLanes) {
+    for (int at = 0; at < count; at += haptic::kSphereContactLanes) {
       haptic::LaneFinds finds;
-      kernels.look(window, ball, cells.data() + at, std::min(count - at, haptic::kTouchLanes), finds);
-      for (const haptic::LaneTouches* kind : {&finds.sample, &finds.edge_x, &finds.edge_y, &finds.inside})
-        for (int lane = 0; lane < haptic::kTouchLanes; ++lane) {
+      kernels.find(window, ball, cells.data() + at, std::min(count - at, haptic::kSphereContactLanes), finds);
+      for (const haptic::LaneContacts* kind : {&finds.sample, &finds.edge_x, &finds.edge_y, &finds.inside})
+        for (int lane = 0; lane < haptic::kSphereContactLanes; ++lane) {
           if ((kind->found >> lane & 1U) == 0) continue;
           const auto k = static_cast<std::size_t>(lane);
           const double numbers[] = {static_cast<double>(at + lane), kind->mx[k], kind->my[k], kind->mz[k],
