@@ -108,6 +108,9 @@ struct LivePicture::Impl {
         colour_format(colour),
         frame(context, colour),
         fields(context, submissions, staging, options) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl();
 
   engine::Status update(const Shown& next);
   engine::Result<FrameStatistics> draw(const FrameInput& input, const LiveTarget& target);
@@ -116,6 +119,15 @@ struct LivePicture::Impl {
                     const std::vector<gpu::Quad>& furniture, const glm::vec3& ground,
                     const LiveTarget& target);
 };
+
+LivePicture::Impl::~Impl() {
+  // The members below `submissions` go before it, and uploads may still be read from and written to them.
+  try {
+    submissions.finish();
+  } catch (const vk::SystemError&) {
+    // A lost device has nothing under way.
+  }
+}
 
 engine::Status LivePicture::Impl::update(const Shown& next) {
   const engine::Result<LiveFields::Novelty> novelty = fields.update(next);

@@ -213,6 +213,20 @@ Cancelled drawCancelled(LivePicture& picture, const Still& still, engine::JobCon
   return seen;
 }
 
+// A window that is closed right after a scan was opened, or a program that ends after a refused picture.
+TEST(Still, APictureMayEndWhileItsUploadsAreUnderWay) {
+  Shown shown;
+  shown.versions = {
+      fieldOf(gridOf(700, 500), [](int c, int r) { return c % 7 + r % 5; },
+              [](int c, int r) { return c == r; })};
+  shown.marks = MarksOverlay::kShow;
+  for (int i = 0; i < 20; ++i) {
+    const auto picture = LivePicture::create();
+    ASSERT_TRUE(picture) << picture.error().line();
+    EXPECT_TRUE((*picture)->update(shown));
+  }
+}
+
 TEST(Still, CancelledBeforeItBeginsHandsOnNothingAndTheNextOneIsRight) {
   const auto picture = LivePicture::create();
   ASSERT_TRUE(picture);
