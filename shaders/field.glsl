@@ -1,4 +1,4 @@
-// How shaders look into a field.
+// Access to the samples of a field.
 #ifdef FETTLE_EYES
 #extension GL_EXT_multiview : require
 #endif
@@ -6,19 +6,19 @@
 
 layout(constant_id = kSpecPaged) const bool kPaged = false;
 layout(constant_id = kSpecHoles) const bool kHoles = true;
-layout(constant_id = kSpecByNeed) const bool kByNeed = false;
+layout(constant_id = kSpecOnDemand) const bool kByNeed = false;
 layout(constant_id = kSpecGather) const bool kGather = false;
 
 layout(set = 0, binding = kBindPanel, std140) uniform PanelBlock { PanelUniforms panel; };
 layout(set = 0, binding = kBindHeights) uniform utexture2DArray heights_image;
 layout(set = 0, binding = kBindShade) uniform utexture2DArray shade_image;
-// A texture and no storage buffer: differences between fragments ask for entries outside the surface too, and not
-// every driver loads from buffers there.
+// A texture and not a storage buffer: differences between fragments also read entries outside the surface, and not
+// every driver allows that in buffers.
 layout(set = 0, binding = kBindPages) uniform utextureBuffer page_table;
 
 uint pageEntry(int number) { return texelFetch(page_table, number).x; }
 
-// Where sample `s` of a page lies in the pool.
+// Position of sample `s` of a page in the pool.
 ivec3 pooledTexel(uint entry, ivec2 s) {
   const ivec2 page = ivec2(entry & kEntrySideMask, entry >> kEntryUpShift & kEntrySideMask);
   return ivec3((page << panel.pages.pool.x) + (s & ((1 << panel.pages.pool.x) - 1)),
@@ -30,9 +30,9 @@ uint entryOf(int level, ivec2 s) {
   return pageEntry(panel.pages.level[level].x + page.y * panel.pages.level[level].y + page.x);
 }
 
-// Sample `s` of the field, of which the level of every 2^log2_step-th sample is there: a multiple of that, or on the
-// last column or row.
-uint rawByNeed(ivec2 s, int log2_step) {
+// Sample `s` of the field, from the level of every 2^log2_step-th sample: `s` is a multiple of that, or on the last
+// column or row.
+uint rawOnDemand(ivec2 s, int log2_step) {
   const ivec2 last = panel.size.zw - 1;
   s = clamp(s, ivec2(0), last);
   const int level = min(log2_step >> 1, kDataLevels - 1);
@@ -49,14 +49,15 @@ uint rawByNeed(ivec2 s, int log2_step) {
 }
 layout(set = 0, binding = kBindNearest) uniform sampler nearest;
 
-// The eye that is drawn for. FETTLE_EYES: a pass draws for both at once.
+// The eye that is drawn. FETTLE_EYES: a pass draws both at once.
 #ifdef FETTLE_EYES
 ViewUniforms viewUniforms() { return panel.views[gl_ViewIndex]; }
 #else
 ViewUniforms viewUniforms() { return panel.views[0]; }
 #endif
 
-// Where sample `s` of the virtual field lies in an image array. Pages are powers of two so that this is shifts.
+// Position of sample `s` of the virtual field in an image array. Pages are powers of two, so that this needs only
+// shifts.
 ivec3 texelOf(ivec2 s) {
   s = clamp(s, ivec2(0), panel.size.zw - 1);
   if (!kPaged) return ivec3(s, 0);
@@ -65,22 +66,22 @@ ivec3 texelOf(ivec2 s) {
 }
 
 uint rawHeight(ivec2 s, int log2_step) {
-  return kByNeed ? rawByNeed(s, log2_step) : texelFetch(heights_image, texelOf(s), 0).x;
+  return kByNeed ? rawOnDemand(s, log2_step) : texelFetch(heights_image, texelOf(s), 0).x;
 }
 
-// Colours may come from every 2^shade.x-th sample: a far view would else fetch a cache line for every pixel. Where those
-// are not on the device yet they come from a coarser level: so shadeCell() sets these three, which hold for what is
-// asked for after it.
+// Colours may come from every 2^shade.x-th sample: otherwise a far view would fetch a cache line for every pixel. Where
+// those are not on the device yet, colours come from a coarser level: shadeCell() sets these three variables, which the
+// reads after it use.
 int shade_log2 = panel.shade.x;       // of the step between samples
 ivec2 shade_size = panel.shade.zw;    // columns, rows
 int shade_difference = panel.paging.w;  // step of differences
 
-// The pages that a cell's colour is made of, samples from two before to three after it: 2 x 2 at most. Looked up once for
-// all of a fragment's samples.
+// The pages of the samples of a cell's colour, from two before to three after it: 2 x 2 at most. Looked up once for all
+// samples of a fragment.
 ivec2 window_page;     // of the lowest of them
 uvec4 window_entries;  // low, to the right, above, above to the right
 
-// Sets the window; whether it is on the device.
+// Sets the window; returns whether it is on the device.
 bool readable(int level, ivec2 cell) {
   const ivec2 last = panel.pages.level[level].zw - 1;
   const ivec2 low = clamp(cell - 2, ivec2(0), last), high = clamp(cell + 3, ivec2(0), last);
@@ -116,7 +117,7 @@ ivec3 originalTexelOf(ivec2 s) {
 
 uint shadeHeight(ivec2 s) { return texelFetch(shade_image, shadeTexelOf(s), 0).x; }
 
-// Place among those samples of the point `local` samples from sample `base`: cell, and where in it.
+// Position of the point `local` samples from sample `base` among those samples: cell, and position in the cell.
 ivec2 shadeCell(ivec2 base, vec2 local, out vec2 f) {
   if (kByNeed) {
     const ivec2 s = base + ivec2(floor(local));
@@ -137,7 +138,7 @@ ivec2 shadeCell(ivec2 base, vec2 local, out vec2 f) {
 // Bits of the heights at a cell's corners: (0, 0), (1, 0), (0, 1), (1, 1).
 uvec4 cellHeights(ivec2 cell) {
   if (kGather) {
-    // Half way between the four: no rounding can take others.
+    // Halfway between the four: rounding cannot select others.
     const vec2 at = vec2(cell + 1) / vec2(textureSize(shade_image, 0).xy);
     return textureGather(usampler2DArray(shade_image, nearest), vec3(at, 0.0)).wzxy;
   }
@@ -145,7 +146,7 @@ uvec4 cellHeights(ivec2 cell) {
                shadeHeight(cell + ivec2(1, 1)));
 }
 
-// On the bits, because a driver may take "x != x" for false.
+// On the bits, because a driver may evaluate "x != x" as false.
 bool isHole(uint raw) { return (raw & 0x7fffffffu) > 0x7f800000u; }
 
 bool cellIsHole(ivec2 cell) {
@@ -155,23 +156,23 @@ bool cellIsHole(ivec2 cell) {
 
 float heightOf(uint raw) { return panel.relief.x * uintBitsToFloat(raw); }
 
-// Scene z of a height; spikes are cut so that one wild sample does not fill the picture.
+// Scene z of a height; spikes are clipped so that a single outlier does not fill the picture.
 float sceneZ(float height) {
   return (clamp(height, panel.limits.x, panel.limits.y) - panel.relief.y) * panel.relief.z;
 }
 
 vec3 scenePoint(ivec2 s, float z) { return vec3(panel.placing.xy + vec2(s) * panel.placing.zw, z); }
 
-// The height that geometry takes at a sample. A hole takes the nearest height in the square of cells around it, so
-// that the valid part of a cell larger than one sample is drawn where it belongs; the fragments over the hole
-// itself are dropped.
+// The height that geometry uses at a sample. A hole takes the nearest height in the square of cells around it, so that
+// the valid part of a cell larger than one sample is drawn at its position; the fragments over the hole itself are
+// dropped.
 float drawnZ(ivec2 s, ivec2 stride) {
   uint raw = rawHeight(s, findMSB(stride.x));
   if (kHoles && isHole(raw)) {
     // At most 8 rings, so that a stride of 2^k costs no more than a stride of 8.
     const ivec2 step = max(stride >> 3, ivec2(1));
     const int log2_step = findMSB(step.x);
-    // On the last column and row as well, only places of that step are looked at.
+    // On the last column and row as well, only samples of that step are read.
     s &= ~(step - 1);
     const int rings = max(stride.x / step.x, stride.y / step.y);
     for (int ring = 1; ring <= rings && isHole(raw); ++ring)

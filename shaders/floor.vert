@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The plate under the surface: what is seen through a hole.
+// The plate under the surface, visible through holes.
 #include "field.glsl"
 
 void main() {

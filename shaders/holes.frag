@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Nothing but where the surface is: its depth, left out over holes.
+// Only the depth of the surface, without the holes.
 #include "field.glsl"
 
 layout(location = 0) flat in ivec2 base;

@@ -1,5 +1,5 @@
-// Read by C++ and by every shader, so that the two sides cannot drift apart. Only types whose std140, std430
-// and C++ layouts agree are used: 4-component vectors, matrices of them and arrays of them.
+// Included by C++ and by every shader, so that the two sides always agree. Only types whose std140, std430
+// and C++ layouts are equal are used: 4-component vectors, matrices of them and arrays of them.
 #ifndef FETTLE_SHADERS_LAYOUT_H
 #define FETTLE_SHADERS_LAYOUT_H
 
@@ -20,15 +20,15 @@ using glm::vec4;
 #endif
 
 // Cells along one side of a patch, the unit in which the surface is drawn; a power of two, 8 .. 32. 16: a
-// patch is one instance of kPatchVertices vertices, enough that the cost of an instance does not show, and
-// small enough to follow a wall without spending many fine cells beside it.
+// patch is one instance of kPatchVertices vertices, enough to make the cost per instance negligible, and
+// small enough to follow a wall without spending many fine cells next to it.
 FETTLE_CONST kPatchCells = 16;
-// One strip row: left and right vertex of every column, first and last doubled to jump to the next row.
+// One strip row: left and right vertex of every column, first and last doubled to connect to the next row.
 FETTLE_CONST kStripVertices = 2 * (kPatchCells + 1) + 2;
 FETTLE_CONST kPatchVertices = kStripVertices * kPatchCells;
 // A wall: top and bottom vertex of every column of a patch along one edge of the field.
 FETTLE_CONST kWallVertices = 2 * (kPatchCells + 1);
-// A seam is drawn as two strips: the vertices of a patch's edge, and beside each the edge of the coarser
+// A seam is drawn as two strips: the vertices of a patch's edge, and next to each the edge of the coarser
 // patch beyond it.
 FETTLE_CONST kSeamStripVertices = 2 * (kPatchCells + 1);
 FETTLE_CONST kSeamVertices = 2 * kSeamStripVertices;
@@ -41,52 +41,52 @@ FETTLE_CONST kDataLevels = 4;
 FETTLE_CONST kBindPanel = 0;     // uniform PanelUniforms
 FETTLE_CONST kBindHeights = 1;   // utexture2DArray, bits of a float; a hole is any NaN
 FETTLE_CONST kBindMarks = 2;     // utexture2DArray, non-zero = marked
-FETTLE_CONST kBindOriginal = 3;  // utexture2DArray, heights that the deviation is counted from
+FETTLE_CONST kBindOriginal = 3;  // utexture2DArray, heights from which the deviation is computed
 FETTLE_CONST kBindPatches = 4;   // buffer of Patch
 // utexture2DArray, every 2^shade.x-th sample of the heights; marks and original likewise.
 FETTLE_CONST kBindShade = 5;
 FETTLE_CONST kBindLines = 6;    // buffer of Line
 FETTLE_CONST kBindPages = 7;    // utextureBuffer, entries of the page table: which pages are on the device
 FETTLE_CONST kBindDepth = 8;    // texture2D, depth of the surface, in the pixels of the picture
-FETTLE_CONST kBindNearest = 9;  // sampler that takes the nearest texel
+FETTLE_CONST kBindNearest = 9;  // sampler that returns the nearest texel
 
 // Bindings of descriptor set 0 of the picture.
 FETTLE_CONST kBindGlyphs = 1;  // texture2D, coverage
 FETTLE_CONST kBindQuads = 2;   // buffer of Quad
 FETTLE_CONST kBindMap = 3;     // uniform PanelUniforms, for its colours
 
-// Bindings of descriptor set 0 of the pass that puts two eyes' pictures into one, and its one constant.
+// Bindings of descriptor set 0 of the pass that combines the pictures of two eyes, and its one constant.
 FETTLE_CONST kBindLeftEye = 0;   // texture2D
 FETTLE_CONST kBindRightEye = 1;  // texture2D
 FETTLE_CONST kSpecAnaglyph = 0;
 
-// Specialisation constants of the surface: what a picture leaves out is not in its code.
+// Specialisation constants of the surface: features that a picture does not use are not in its code.
 FETTLE_CONST kSpecPaged = 0;
 FETTLE_CONST kSpecMarks = 1;
 FETTLE_CONST kSpecDeviation = 2;
 FETTLE_CONST kSpecContours = 3;
-// Normals interpolated inside a cell: only worth it where cells are larger than rays.
+// Normals interpolated inside a cell: useful only where cells are larger than rays.
 FETTLE_CONST kSpecSmooth = 4;
 FETTLE_CONST kSpecHoles = 5;  // there may be holes
-// For speed: slopes of the cell alone where kSpecSmooth is off, the nearest of 256 colours.
+// For speed: slopes of the cell only where kSpecSmooth is off, the nearest of 256 colours.
 FETTLE_CONST kSpecCell = 6;
-// Samples lie in pages that are on the device by need: heights_image, marks_image and original_image are
+// Samples lie in pages that are on the device on demand: heights_image, marks_image and original_image are
 // pools of them.
-FETTLE_CONST kSpecByNeed = 7;
-// The samples that colours come from lie in one image layer, two or more each way: a cell's four are one
-// look-up.
+FETTLE_CONST kSpecOnDemand = 7;
+// The samples that colours come from are in one image layer, two or more in each direction: the four of a
+// cell are read in one look-up.
 FETTLE_CONST kSpecGather = 8;
-FETTLE_CONST kSpecPerspective = 9;  // not all points of a view are equally near
+FETTLE_CONST kSpecPerspective = 9;  // distances of points from the viewer differ
 FETTLE_CONST kSpecCount = 10;
 
 // What a Quad is filled with.
 FETTLE_CONST kFillSolid = 0;
 FETTLE_CONST kFillGlyph = 1;    // uv: texel of the glyph image
-FETTLE_CONST kFillColours = 2;  // uv.y: place in the colour map, 0 .. 1
-FETTLE_CONST kFillUp = 3;       // triangle standing on the quad's lower edge, colour as kFillColours
-FETTLE_CONST kFillDown = 4;     // triangle hanging from the quad's upper edge
+FETTLE_CONST kFillColours = 2;  // uv.y: position in the colour map, 0 .. 1
+FETTLE_CONST kFillUp = 3;       // triangle on the quad's lower edge, colour as kFillColours
+FETTLE_CONST kFillDown = 4;     // triangle at the quad's upper edge
 
-// How a page table is read (render/residency/page_table.h): one entry a page, the field's, then the
+// Layout of a page table (render/residency/page_table.h): one entry per page, the field's, then the
 // original's.
 struct PageHead {
   ivec4 level[kDataLevels];  // entry of a level's first page; pages across; columns, rows of samples
@@ -94,7 +94,7 @@ struct PageHead {
                // field
 };
 
-// Eyes that one panel may be drawn for. Everything that differs between two of them is in ViewUniforms.
+// Views that one panel may be drawn for. Everything that differs between two of them is in ViewUniforms.
 FETTLE_CONST kMostViews = 2;
 FETTLE_CONST kBothViews = 3;  // mask of them
 
@@ -102,37 +102,38 @@ FETTLE_CONST kBothViews = 3;  // mask of them
 // field.glsl).
 struct ViewUniforms {
   mat4 clip_from_scene;  // bytes  0 ..  63
-  // (x, y of gl_FragCoord, depth, 1) to homogeneous (samples from `origin` in x, in y, scene z, 1). Worked
-  // out in double precision about a sample near the middle of what is seen, so that no fraction is lost far
-  // out.
+  // (x, y of gl_FragCoord, depth, 1) to homogeneous (samples from `origin` in x, in y, scene z, 1). Computed
+  // in double precision about a sample near the middle of the visible part, so that no fraction is lost far
+  // from the field's origin.
   mat4 field_from_pixel;  //  64 .. 127
   ivec4 origin;           // 128: virtual sample; -; -
 };
 
-// Scene coordinates: millimetres from the middle of what is shown, x and y as in the field, z up with the
-// exaggeration in it. "Virtual" samples: a field of one row or column is drawn as two equal ones.
+// Scene coordinates: millimetres from the middle of what is shown, x and y as in the field, z up,
+// exaggeration included. "Virtual" samples: a field of one row or column is drawn as two equal ones.
 struct PanelUniforms {
   ViewUniforms views[kMostViews];  // bytes   0 .. 287
   vec4 placing;                    // 288: x, y of virtual sample (0, 0) [scene mm]; spacing x, y [mm]
-  vec4 relief;      // 304: sign of heights; height at scene z 0; scene mm a height unit; floor's scene z
-  vec4 limits;      // 320: lowest and highest height drawn; steeper ones are cut; sign of the original; -
+  vec4 relief;      // 304: sign of heights; height at scene z 0; scene mm per height unit; floor's scene z
+  vec4 limits;      // 320: lowest and highest height drawn; others are clipped; sign of the original; -
   vec4 colouring;   // 336: value of the first colour; 1 / range; contour step (value); -
   vec4 light;       // 352: unit vector to the light; share of light without direction
   vec4 marks_tint;  // 368: linear red, green, blue; opacity
   vec4 no_data;     // 384: linear red, green, blue
   vec4 wall;        // 400: linear red, green, blue
-  vec4 ground;      // 416: linear red, green, blue: where there is nothing
+  vec4 ground;      // 416: linear red, green, blue: background
   ivec4 size;       // 432: virtual columns, rows; true columns, rows
   ivec4 paging;  // 448: log2 of a page's columns, rows; pages across; step of differences [2^shade.x samples]
   ivec4 shade;   // 464: log2 of the step between samples that colours come from; -; columns, rows of those
-  // Seam: how far seams overlap [px]; drawn so far from its sample, a point is beside it [scene mm]; -; -.
+  // Seam: how far seams overlap [px]; from this distance between drawn and exact position on, a point counts
+  // as displaced [scene mm]; -; -.
   vec4 seam;               // 480
   vec4 suggested_tint;     // 496: of marks that are suggested: linear red, green, blue; opacity
   vec4 colours[kColours];  // 512: linear red, green, blue
-  PageHead pages;          // where samples are on the device by need
+  PageHead pages;          // where samples are on the device on demand
 };
 
-// What the image of marks holds a sample; nothing is 0.
+// Values of the image of marks per sample; 0 is no mark.
 FETTLE_CONST kMarked = 1;
 FETTLE_CONST kSuggested = 2;
 
@@ -140,8 +141,8 @@ struct Patch {
   ivec4 place;  // first column, first row; log2 of the stride in columns, in rows
 };
 
-// An entry: the page's place in a layer of the pool [pages], and the layer; and whether colours may not be
-// read there.
+// An entry: the page's position in a layer of the pool [pages], and the layer; and whether colours must not
+// be read there.
 FETTLE_CONST kEntryUpShift = 8;
 FETTLE_CONST kEntryLayerShift = 16;
 FETTLE_CONST kEntrySideMask = 0xff;
@@ -158,7 +159,7 @@ struct Line {
 // A filled rectangle of the finished picture.
 struct Quad {
   vec4 pixels;  // left, top, right, bottom
-  vec4 uv;      // the same corners in what fills it
+  vec4 uv;      // the same corners in the source of the fill
   vec4 colour;  // linear red, green, blue; opacity (kFillColours: opacity only)
   ivec4 fill;   // one of kFill..; -; -; -
 };

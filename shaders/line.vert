@@ -3,7 +3,7 @@
 #ifdef FETTLE_EYES
 #extension GL_EXT_multiview : require
 #endif
-// Lines of a width in pixels: a rectangle round each, coloured by the distance to the line.
+// Lines of a width in pixels: a rectangle around each, coloured by the distance to the line.
 #include "layout.h"
 
 layout(set = 0, binding = kBindPanel, std140) uniform PanelBlock { PanelUniforms panel; };
@@ -23,7 +23,7 @@ void main() {
 #endif
   vec4 a = clip_from_scene * vec4(l.from.xyz, 1.0), b = clip_from_scene * vec4(l.to.xyz, 1.0);
   index = gl_InstanceIndex;
-  // What lies before the near plane is cut off, or its projection would turn round.
+  // The part in front of the near plane is clipped, otherwise its projection would be mirrored.
   if (a.z < 0.0 && b.z < 0.0) {
     place = vec2(0.0);
     run = 0.0;

@@ -25,7 +25,7 @@ void main() {
   if (q.fill.x == kFillColours) rgb = mapped(uv.y);
   if (q.fill.x == kFillUp || q.fill.x == kFillDown) {
     rgb = mapped(q.fill.x == kFillUp ? 1.0 : 0.0);
-    // uv runs -1 .. 1 across and 0 (tip) .. 1 (base); the edge is softened over a pixel.
+    // uv goes from -1 to 1 across and from 0 (tip) to 1 (base); the edge is softened over one pixel.
     const float inside = uv.y - abs(uv.x);
     opacity *= clamp(inside / fwidth(uv.y) + 0.5, 0.0, 1.0);
   }

@@ -1,11 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// Closes the gap between a patch's edge and the coarser edge of the patch beyond it: two strips from the one to the
-// other that overlap both by a fraction of a pixel, one to the left and right, one up and down, because a vertex in the
-// middle of the coarser edge is rounded to one side of it or the other. (One strip that overlaps across the edge turns
-// over where the edge does, on walls and spikes, and leaves a hole there.) place: first sample of the edge; level | the other's level << 8; side as in
-// wall.vert.
+// Closes the gap between a patch's edge and the coarser edge of the patch beyond it: two strips from one to the other
+// that overlap both by a fraction of a pixel, one to the left and right, one up and down, because a vertex in the
+// middle of the coarser edge is rounded to one of its sides. (A single strip that overlaps across the edge turns over
+// where the edge does, on walls and spikes, and leaves a hole there.) place: first sample of the edge; level | the
+// other's level << 8; side as in wall.vert.
 #include "field.glsl"
 
 layout(set = 0, binding = kBindPatches, std430) readonly buffer Patches { Patch patches[]; };
@@ -25,7 +25,7 @@ void main() {
   const ivec2 s = min(p.place.xy + along * stride * (gl_VertexIndex >> 1), last);
   base = p.place.xy;
   place = vec2(s - p.place.xy);
-  // The coarser edge's own vertices before and after this place.
+  // The vertices of the coarser edge before and after this position.
   const ivec2 a = (ivec2(1) - along) * s + along * (s & ~(wide - 1));
   const ivec2 b = min(a + along * wide, last);
   const int run = (b.x - a.x) + (b.y - a.y);
@@ -33,7 +33,7 @@ void main() {
   const float fine = drawnZ(s, stride), coarse = mix(drawnZ(a, wide), drawnZ(b, wide), t);
   const vec4 at_fine = clipOf(s, fine), at_coarse = clipOf(s, coarse);
   gl_Position = at_fine;
-  // Behind the viewer nothing has a place in the picture.
+  // Points behind the viewer have no position in the picture.
   if (min(at_fine.w, at_coarse.w) <= 0.0) return;
   const vec2 half_px = 0.5 * push.plot_px.xy;
   const vec2 across = (gl_InstanceIndex & 1) == 0 ? vec2(1.0, 0.0) : vec2(0.0, 1.0);

@@ -1,8 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The surface, shaded once a pixel from the depth of what is seen there: geometry costs no more than its depth, however
-// many triangles a pixel has.
+// Shades the surface once per pixel from the depth that is visible there: geometry costs only its depth, regardless of
+// the number of triangles per pixel.
 #include "shading.glsl"
 
 layout(constant_id = kSpecPerspective) const bool kPerspective = false;
@@ -22,13 +22,14 @@ void main() {
   vec4 at = at_no_depth + viewUniforms().field_from_pixel[2] * depth;
   if (kPerspective) at.xyz /= at.w;
   const SurfacePoint p = surfacePoint(viewUniforms().origin.xy, at.xy, at.z);
-  // Between neighbours as they are seen: at the edge of something in front these tell nothing, but for that pixel alone.
+  // Differences between neighbouring pixels: at the silhouette of something in front they are wrong, but only for that
+  // pixel.
   const vec3 scene = vec3(at.xy * panel.placing.zw, at.z);
   const vec3 facet = cross(dFdx(scene), dFdy(scene));
   const float contour = kContours ? contourOf(p) : 0.0;
   const float contour_width = kContours ? fwidth(contour) : 1.0;
   vec3 c = surfaceColour(p, facet, contour, contour_width);
-  // The geometry keeps clear of holes but for rounding.
+  // The geometry excludes holes except for rounding.
   if (kHoles && p.hole) c = panel.no_data.rgb;
   colour = vec4(c, 1.0);
 }

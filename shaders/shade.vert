@@ -1,13 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// All of the plot, as far away as can be: it passes where it is farther than what is there, so that no fragment is
-// spent on the ground.
+// All of the plot at the largest depth: the depth test passes where this is farther than the surface, so that no
+// fragment is spent on the background.
 #include "field.glsl"
 
 layout(push_constant) uniform Push { vec4 plot_px; } push;
 
-// What a place in the picture gives of the field's place under it; the rest comes from its depth.
+// The part of the field position that follows from the position in the picture; the rest comes from the depth.
 layout(location = 0) noperspective out vec4 at_no_depth;
 
 void main() {

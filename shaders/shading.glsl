@@ -1,4 +1,5 @@
-// Colour of a point of the surface, from the exact samples (or every 2^shade.x-th) whatever the geometry's stride.
+// Colour of a point of the surface, from the exact samples (or every 2^shade.x-th), regardless of the geometry's
+// stride.
 #include "field.glsl"
 
 layout(constant_id = kSpecMarks) const bool kMarks = false;
@@ -10,8 +11,8 @@ layout(constant_id = kSpecCell) const bool kCell = false;
 layout(set = 0, binding = kBindMarks) uniform utexture2DArray marks_image;
 layout(set = 0, binding = kBindOriginal) uniform utexture2DArray original_image;
 
-// Half the difference between the neighbours of `s` along `d`, or what one neighbour and the sample itself can
-// say; height units a step. `h` is the height at s.
+// Half the difference between the neighbours of `s` along `d`, or the difference to one neighbour where the other is a
+// hole; height units per step. `h` is the height at s.
 float slope(ivec2 s, ivec2 d, float h) {
   const uint after = shadeHeight(s + d);
   const uint before = shadeHeight(s - d);
@@ -24,14 +25,14 @@ float slope(ivec2 s, ivec2 d, float h) {
 }
 
 // Slope at a corner of the cell, of which `inward` is the slope along the cell's own edge: the mean of that and of the
-// slope to the sample outside, when there is one. `sign` is +1 when the outer sample lies after the corner.
+// slope to the sample outside, when there is one. `sign` is +1 when the outer sample comes after the corner.
 float cornerSlope(ivec2 outer, float at, float inward, float sign) {
   const uint raw = shadeHeight(outer);
   const bool inside = all(greaterThanEqual(outer, ivec2(0))) && all(lessThan(outer, shade_size));
   return (kHoles && isHole(raw)) || !inside ? inward : 0.5 * (inward + sign * (heightOf(raw) - at));
 }
 
-// Slopes interpolated between the cell's corners from the samples around it: shading without facets.
+// Slopes interpolated between the cell's corners from the samples around it: smooth shading.
 vec2 smoothSlopes(ivec2 c, vec2 f, vec4 h) {
   const vec2 low = vec2(h.y - h.x, h.z - h.x), high = vec2(h.w - h.z, h.w - h.y);  // edges: (x at y0, y at x0), ...
   const float x0 = mix(cornerSlope(c + ivec2(-1, 0), h.x, low.x, -1.0), cornerSlope(c + ivec2(2, 0), h.y, low.x, 1.0), f.x);
@@ -48,14 +49,14 @@ vec3 mapped(float value) {
   return mix(panel.colours[i].rgb, panel.colours[i + 1].rgb, t - float(i));
 }
 
-// A point of the surface as it is drawn, and what the samples say about it.
+// A point of the surface as it is drawn, with its values from the samples.
 struct SurfacePoint {
   ivec2 cell;     // among the samples that colours come from
-  vec2 f;         // place in it, 0 .. 1
+  vec2 f;         // position in it, 0 .. 1
   vec4 h;         // heights of its corners
-  bool hole;      // one of them is none
-  bool beside;    // drawn beside its place: see below
-  bool compared;  // there is something to compare with
+  bool hole;      // one of them is a hole
+  bool displaced;    // drawn away from its exact position: see below
+  bool compared;  // the original has a height here
   float value;    // what the colours show
 };
 
@@ -80,17 +81,18 @@ SurfacePoint surfacePoint(ivec2 base, vec2 local, float drawn_z) {
     const vec4 d = p.h - panel.limits.z * uintBitsToFloat(before);
     p.value = mix(mix(d.x, d.y, p.f.x), mix(d.z, d.w, p.f.x), p.f.y);
   }
-  // Where a coarse cell stands in for a wall, the drawn point is not over the sample's place but beside it: it shows the
-  // wall at its own height, so it takes colour and light from there. Else walls would be striped.
-  p.beside = abs(drawn_z - sceneZ(height)) > panel.seam.y;
-  if (!kDeviation && p.beside) p.value = panel.relief.y + drawn_z / panel.relief.z;
+  // Where a coarse cell is drawn in place of a steep wall, the drawn point is not above the sample's position but
+  // displaced: it shows the wall at its own height, so it takes colour and light from there. Otherwise walls would be
+  // striped.
+  p.displaced = abs(drawn_z - sceneZ(height)) > panel.seam.y;
+  if (!kDeviation && p.displaced) p.value = panel.relief.y + drawn_z / panel.relief.z;
   return p;
 }
 
 float contourOf(SurfacePoint p) { return p.value / panel.colouring.z; }
 
-// `facet`: normal of the geometry, looked at where the point is beside its place. `contour`: contourOf, and how much it
-// changes over a ray.
+// `facet`: normal of the geometry, used where the point is displaced. `contour`: contourOf, and its change over one
+// ray.
 vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_width) {
   const ivec2 nearest = p.cell + ivec2(round(p.f));
   vec2 g;
@@ -104,7 +106,7 @@ vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_widt
     g = vec2(slope(nearest, ivec2(step, 0), at), slope(nearest, ivec2(0, step), at)) / float(step);
   }
   vec3 normal = normalize(vec3(-g * panel.relief.z / (panel.placing.zw * float(1 << shade_log2)), 1.0));
-  if (p.beside && facet.z != 0.0) normal = normalize(facet * sign(facet.z));
+  if (p.displaced && facet.z != 0.0) normal = normalize(facet * sign(facet.z));
 
   vec3 c = p.compared ? mapped(p.value) : panel.no_data.rgb;
   if (kMarks) {
@@ -112,11 +114,11 @@ vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_widt
     const vec4 tint = mark == uint(kSuggested) ? panel.suggested_tint : panel.marks_tint;
     if (mark != 0u) c = mix(c, tint.rgb, tint.a);
   }
-  // A level surface shows exactly its colour on the bar; slopes are lighter towards the light, darker away from it.
+  // A level surface has exactly its colour on the bar; slopes are lighter towards the light, darker away from it.
   c *= panel.light.w + (1.0 - panel.light.w) * max(dot(normal, panel.light.xyz), 0.0) / panel.light.z;
   if (kContours && p.compared) {
     const float off = abs(fract(contour - 0.5) - 0.5) / max(contour_width, 1e-12);
-    // Lines closer than four rays would fill the surface: they fade out.
+    // Lines closer than four rays would fill the surface: they are faded out.
     const float ink = (1.0 - smoothstep(0.6, 1.4, off)) * (1.0 - smoothstep(0.15, 0.3, contour_width));
     c = mix(c, vec3(0.01), 0.7 * ink);
   }

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The two eyes' pictures in one.
+// Combines the pictures of the two eyes.
 #include "layout.h"
 
 layout(constant_id = kSpecAnaglyph) const bool kAnaglyph = false;
@@ -10,10 +10,10 @@ layout(set = 0, binding = kBindLeftEye) uniform texture2D left_image;
 layout(set = 0, binding = kBindRightEye) uniform texture2D right_image;
 layout(location = 0) out vec4 colour;
 
-// For red - cyan glasses: the colours that, seen through each of the two filters, come nearest to the eye's own
-// picture, by least squares over what a display and the filters let through (Dubois 2001, "A projection method to
-// generate anaglyph stereo images", ICASSP; matrices of the author's page for red - cyan). Linear light; the columns
-// are what red, green and blue of the eye's picture add.
+// For red - cyan glasses: the colours that, through the two filters, are nearest to the eye's own picture, by least
+// squares over the spectra of display and filters (Dubois 2001, "A projection method to generate anaglyph stereo
+// images", ICASSP; matrices of the author's page for red - cyan). Linear light; the columns are the contributions of
+// red, green and blue of the eye's picture.
 const mat3 kFromLeft = mat3(0.4561, -0.0400822, -0.0152161, 0.500484, -0.0378246, -0.0205971, 0.176381, -0.0157589,
                             -0.00546856);
 const mat3 kFromRight = mat3(-0.0434706, 0.378476, -0.0721527, -0.0879388, 0.73364, -0.112961, -0.00155529, -0.0184503,

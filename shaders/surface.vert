@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The surface without a vertex buffer: an instance is a patch, gl_VertexIndex walks its strips.
+// The surface without a vertex buffer: an instance is a patch, gl_VertexIndex counts along its strips.
 #include "field.glsl"
 
 layout(set = 0, binding = kBindPatches, std430) readonly buffer Patches { Patch patches[]; };

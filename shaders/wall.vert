@@ -1,9 +1,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-// The sides of the block that the surface is the top of. The tops of the walls are the very vertices of the
-// surface's rim, so the two meet without a gap at any stride. place.xy: first sample, place.zw: as for a patch, and
-// the side in the low two bits of the sign-free fourth place: see Side below.
+// The sides of the block below the surface. The top vertices of the walls are the rim vertices of the surface, so the
+// two meet without a gap at any stride. place.xy: first sample, place.zw: as for a patch, and the side in the low two
+// bits of the sign-free fourth component: see Side below.
 #include "field.glsl"
 
 layout(set = 0, binding = kBindPatches, std430) readonly buffer Patches { Patch patches[]; };

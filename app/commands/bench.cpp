@@ -348,8 +348,9 @@ void addBench(Command root, Chosen& chosen) {
   drawing.option("--frames", render_options->frames, "Frames of each row").showDefault();
   drawing.option("--error", render_options->error_px, "Screen error wanted, px").showDefault();
   drawing.option("--vertices", render_options->vertex_budget, "Vertices a frame at most").showDefault();
-  drawing.option("--device-memory", render_options->memory_budget_bytes,
-                 "Bytes that samples may take on the device, the rest comes by need; 0: half of its memory");
+  drawing.option(
+      "--device-memory", render_options->memory_budget_bytes,
+      "Bytes that samples may take on the device, the rest is loaded on demand; 0: half of its memory");
 
   lateness.flag("--busy", *busy, "Keep every core busy by other processes meanwhile");
 }

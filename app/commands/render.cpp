@@ -57,7 +57,7 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
   if (!options.centre.empty()) {
     if (!std::all_of(options.centre.begin(), options.centre.end(),
                      [](double c) { return c >= 0.0 && c <= 1.0; }))
-      return engine::inputError("the middle of the picture lies beside the field", "--centre",
+      return engine::inputError("the middle of the picture lies outside the field", "--centre",
                                 "give fractions from 0 to 1 of the field's width and height, e.g. 0.5,0.5");
     view.centre_x = options.centre[0];
     view.centre_y = options.centre[1];

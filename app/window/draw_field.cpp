@@ -26,7 +26,7 @@ render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, b
   input.stereo.eye_separation = static_cast<double>(display.eye_separation);
   input.theme = display.theme;
   if (display.half_in_motion && !sharp_motion) input.sharpness = sharpness;
-  input.furniture_scale = WindowPicture::kDecorations * parts.window.scale();
+  input.decoration_scale = WindowPicture::kDecorations * parts.window.scale();
   input.decoration = display.decorations ? render::Decoration::kFull : render::Decoration::kNone;
   input.light_azimuth_deg = display.light_azimuth_deg;
   input.light_elevation_deg = display.light_elevation_deg;

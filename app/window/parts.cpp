@@ -45,7 +45,7 @@ void Parts::leavePanels() {
 
 void Parts::dropCoarse() {
   if (!opening.dropCoarse() || document.isOpen()) return;
-  window.forgetPicture();
+  window.clearPicture();
   picture.clear();
   drag.stop();
 }

@@ -49,7 +49,7 @@ std::string Settings::text() const {
               {"marks_opacity", d.marks_opacity},
               {"light_azimuth", d.light_azimuth_deg},
               {"light_elevation", d.light_elevation_deg},
-              {"furniture", d.decorations},
+              {"decorations", d.decorations},
               {"half_in_motion", d.half_in_motion},
               {"vertices", d.vertices},
               {"mouse", kHabits[static_cast<std::size_t>(habits)]},
@@ -78,7 +78,7 @@ Settings Settings::load(const std::string& path) {
   take(file, "marks_opacity", 0.0F, 1.0F, d.marks_opacity);
   take(file, "light_azimuth", 0.0F, 360.0F, d.light_azimuth_deg);
   take(file, "light_elevation", 5.0F, 90.0F, d.light_elevation_deg);
-  take(file, "furniture", d.decorations);
+  take(file, "decorations", d.decorations);
   take(file, "half_in_motion", d.half_in_motion);
   take(file, "vertices", std::int64_t{4096}, std::int64_t{1} << 22, d.vertices);
   take(file, "mouse", kHabits, settings.habits);

@@ -38,10 +38,10 @@ void join(Rectangle& a, const Rectangle& b) {
   a.height = low - a.y;
 }
 
-// Where the surface over some samples is seen.
+// Screen rectangles of the surface over some samples.
 class Screen {
  public:
-  Screen(const PatchQuestion& q, const engine::FieldReader* before, const Rectangle& visible)
+  Screen(const PatchQuery& q, const engine::FieldReader* before, const Rectangle& visible)
       : q_(q), before_(before), visible_(visible), all_{glm::ivec2(0), q.placing.size - 1} {
     holed_ = holed(q.reader) || (before != nullptr && holed(*before));
   }
@@ -95,7 +95,7 @@ class Screen {
  private:
   static bool holed(const engine::FieldReader& reader) { return reader.root().holed_children != 0; }
 
-  const PatchQuestion& q_;
+  const PatchQuery& q_;
   const engine::FieldReader* before_;
   Rectangle visible_;
   Samples all_;
@@ -129,7 +129,7 @@ Samples changedIn(const engine::TileChange& change) {
   return {s.first + tile, s.last + tile};
 }
 
-// Place, level, and whether holes are looked for: a patch drawn by another pipeline may differ in the last
+// Position, level, and whether it may hold holes: a patch drawn by another pipeline may differ in the last
 // bit.
 using Key = std::array<int, 4>;
 
@@ -145,45 +145,45 @@ std::vector<Key> keysOf(const PatchChoice& choice) {
 
 }  // namespace
 
-Rectangle damageOf(const DamageQuestion& question) {
-  if (question.tiles.size() > kManyTiles) return question.visible;
-  const PatchQuestion& q = question.now;
-  const Screen screen(q, &question.before, question.visible);
+Rectangle damageOf(const DamageQuery& query) {
+  if (query.tiles.size() > kManyTiles) return query.visible;
+  const PatchQuery& q = query.now;
+  const Screen screen(q, &query.before, query.visible);
   Rectangle damage{};
   const auto reachOf = [&](int level) { return screen.holed() ? 1 << level : 0; };
 
-  const std::vector<Key> before = keysOf(*question.chosen_before), after = keysOf(*question.chosen_after);
+  const std::vector<Key> before = keysOf(*query.chosen_before), after = keysOf(*query.chosen_after);
   std::vector<Key> differ;
   std::set_symmetric_difference(before.begin(), before.end(), after.begin(), after.end(),
                                 std::back_inserter(differ));
   for (const auto& [x, y, level, holed] : differ)
     join(damage, screen.pixels(screen.square({{x, y, level, level}}), reachOf(level)));
 
-  for (const engine::TileChange& tile : question.tiles) {
+  for (const engine::TileChange& tile : query.tiles) {
     const Samples changed = changedIn(tile);
     if (changed.empty()) continue;
-    for (const gpu::Patch& patch : question.chosen_after->patches) {
+    for (const gpu::Patch& patch : query.chosen_after->patches) {
       const int level = patch.place.z, stride = 1 << level;
-      // A vertex has cells of a stride around it; a hole's vertex looks a stride farther. A colour looks at
-      // its cell and one sample beyond each way, among those that colours come from.
+      // A vertex has cells of a stride around it; the vertex of a hole searches one stride farther. A colour
+      // reads its cell and one sample beyond on each side, among the samples that colours come from.
       const int cells = (screen.holed() ? 2 : 1) * stride;
       const Samples part = changed.grown(std::max(cells, 3 * q.shade_step)).cut(screen.square(patch));
       join(damage, screen.pixels(part, std::max(reachOf(level), stride)));
     }
   }
   if (empty(damage)) return {};
-  // Whole squares of two by two: fragments compare themselves within those, and what lies outside has the
-  // depth of walls and plate in it by now.
+  // Whole squares of two by two: fragments compare themselves within those, and outside of them the depth of
+  // walls and plate is already in the image.
   const int right = damage.x + damage.width, low = damage.y + damage.height;
   damage.x &= ~1;
   damage.y &= ~1;
   damage.width = ((right + 1) & ~1) - damage.x;
   damage.height = ((low + 1) & ~1) - damage.y;
-  return cut(damage, question.visible);
+  return cut(damage, query.visible);
 }
 
-PatchChoice within(const PatchChoice& choice, const PatchQuestion& question, const Rectangle& pixels) {
-  const Screen screen(question, nullptr, pixels);
+PatchChoice within(const PatchChoice& choice, const PatchQuery& query, const Rectangle& pixels) {
+  const Screen screen(query, nullptr, pixels);
   const auto seen = [&](const Samples& s, int reach) { return !empty(screen.pixels(s, reach)); };
   // An edge of a patch, from the sample where it begins.
   const auto edge = [&](const gpu::Patch& p, int level, int side) {

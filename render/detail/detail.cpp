@@ -18,7 +18,7 @@ DetailMeasure::Error larger(DetailMeasure::Error a, DetailMeasure::Error b) {
   return {std::max(a.deviation, b.deviation), std::max(a.excess, b.excess)};
 }
 
-// Raw height of a virtual sample; outside the field as the shaders clamp it.
+// Raw height of a virtual sample; outside the field, clamped as in the shaders.
 float rawHeight(const engine::FieldReader& reader, std::int32_t column, std::int32_t row) noexcept {
   return reader.sign() *
          reader.heightAt(std::clamp(column, 0, reader.width() - 1), std::clamp(row, 0, reader.height() - 1));
@@ -29,8 +29,8 @@ bool withinTile(int level) {
   return DetailMeasure::side(level) <= engine::kTileSide;
 }
 
-// A number that no measure had before. Measures of several threads' pictures take theirs from one counter,
-// and nothing else depends on it.
+// A number that no measure had before. Pictures of several threads share one counter; nothing else depends on
+// it.
 std::uint64_t newState() {
   static std::atomic<std::uint64_t> last{0};
   return last.fetch_add(1, std::memory_order_relaxed) + 1;
@@ -52,7 +52,7 @@ float drawnHeight(const engine::FieldReader& reader, glm::ivec2 s, std::int32_t 
   float h = rawHeight(reader, s.x, s.y);
   if (!std::isnan(h)) return h;
   const std::int32_t step = std::max(stride >> 3, 1), rings = stride / step;
-  // On the last column and row as well, only places of that step are looked at.
+  // On the last column and row as well, only samples of that step are read.
   s -= s & (step - 1);
   for (std::int32_t ring = 1; ring <= rings && std::isnan(h); ++ring)
     for (std::int32_t i = -ring; i < ring && std::isnan(h); ++i) {
@@ -86,9 +86,9 @@ void DetailMeasure::begin(const engine::FieldReader& reader) {
   std::array<Error, kTileLevels + 1> unknown;
   unknown.fill(kUnknown);
   tile_errors_.assign(all, unknown);
-  waits_.assign(all, true);
-  // By squares of the largest patches that are measured tile by tile, so that these are known one by one. The
-  // first are measured last.
+  is_waiting_.assign(all, true);
+  // Ordered by squares of the largest patches that are measured tile by tile, so that these become known one
+  // after the other. Those at the end of the list are measured first.
   waiting_.clear();
   waiting_.reserve(all);
   const int square = side(kTileLevels) / engine::kTileSide;
@@ -114,11 +114,11 @@ std::vector<glm::ivec2> DetailMeasure::above(int level, std::span<const glm::ive
   return patches;
 }
 
-void DetailMeasure::forget(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles) {
+void DetailMeasure::invalidate(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles) {
   if (!tiles.empty()) state_ = newState();
-  // Cells reach into the next tile, and a hole's vertex takes its height from up to a tile away. A tile's
-  // last vertices are the next tile's first samples: where these are holes, the largest stride sees two tiles
-  // far.
+  // Cells reach into the next tile, and the vertex of a hole takes its height from up to one tile away. The
+  // last vertices of a tile are the first samples of the next one: where these are holes, the largest stride
+  // reads two tiles far.
   const auto holed = [&](glm::ivec2 tile) {
     for (int y = tile.y; y <= std::min(tile.y + 1, tiles_.y - 1); ++y)
       for (int x = tile.x; x <= std::min(tile.x + 1, tiles_.x - 1); ++x)
@@ -137,8 +137,8 @@ void DetailMeasure::forget(const engine::FieldReader& reader, std::span<const gl
       }
   unique(around);
   for (const glm::ivec2& t : around) {
-    if (!waits_[indexOf(t)]) waiting_.push_back(t);
-    waits_[indexOf(t)] = true;
+    if (!is_waiting_[indexOf(t)]) waiting_.push_back(t);
+    is_waiting_[indexOf(t)] = true;
     tile_errors_[indexOf(t)].fill(kUnknown);
   }
   for (int k = 1; k <= topLevel(); ++k) {
@@ -169,7 +169,7 @@ std::size_t DetailMeasure::measureSome(const engine::FieldReader& reader, std::s
   } else {
     oneapi::tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { measureTile(reader, now[i]); });
   }
-  for (const glm::ivec2& t : now) waits_[indexOf(t)] = false;
+  for (const glm::ivec2& t : now) is_waiting_[indexOf(t)] = false;
   for (int k = 1; k <= topLevel() && count > 0; ++k) {
     if (withinTile(k)) continue;
     const std::vector<glm::ivec2> dirty = above(k, now);
@@ -192,7 +192,7 @@ void DetailMeasure::measure(const engine::FieldReader& reader) {
 
 void DetailMeasure::refresh(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles) {
   if (levels_.empty()) return measure(reader);
-  forget(reader, tiles);
+  invalidate(reader, tiles);
   (void)measureSome(reader, unknown());
 }
 
@@ -272,7 +272,7 @@ void DetailMeasure::nest(const engine::FieldReader& reader, int level, glm::ivec
           larger(worst, below.errors[static_cast<std::size_t>(y) * static_cast<std::size_t>(below.count.x) +
                                      static_cast<std::size_t>(x)]);
   if (worst.deviation == kInfinity) {
-    // Not known yet, or never: then neither is this one, and its own samples need not be looked at.
+    // Not known (yet): then neither is this one, and its samples need not be read.
     l.errors[static_cast<std::size_t>(patch.y) * static_cast<std::size_t>(l.count.x) +
              static_cast<std::size_t>(patch.x)] = kUnknown;
     return;
@@ -299,8 +299,8 @@ void DetailMeasure::nest(const engine::FieldReader& reader, int level, glm::ivec
         for (int a = 0; a <= 2; ++a) {
           const glm::ivec2 s = glm::min(low + glm::ivec2(a, b) * half, high);
           const float z = at(s, half);
-          // No height even around it: what is drawn there is no surface, or its deviation is infinite
-          // already.
+          // No height on the rings around it either: what is drawn there is no surface, or its deviation is
+          // already infinite.
           if (z == kMissingVertex) continue;
           const float u = static_cast<float>(s.x - low.x) / static_cast<float>(extent.x);
           const float v = static_cast<float>(s.y - low.y) / static_cast<float>(extent.y);

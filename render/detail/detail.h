@@ -13,7 +13,7 @@
 
 namespace fettle::render {
 
-/// How far a coarse surface lies from the fine one, measured.
+/// How far a coarse surface lies from the fine one, as measured.
 ///
 /// The surface at level k has a vertex at every 2^k-th sample (and at the last column and row, where that
 /// cuts a cell short), two triangles a cell, their common edge from the cell's upper left to its lower right
@@ -21,32 +21,30 @@ namespace fettle::render {
 /// cells and covers a square of kPatchCells * 2^k samples; patch (x, y) begins at sample (x, y) * kPatchCells
 /// * 2^k.
 ///
-/// For each patch two numbers are kept [height_unit, sign of the version left out]:
+/// Two numbers per patch [height_unit, without the sign of the version]:
 ///
 ///   deviation  no point of the patch lies higher above or below the surface of level 0 than this. The edges
 ///   of
 ///              a coarse cell and its diagonal are edges of the fine surface too, so the difference of the
-///              two is linear on every fine triangle and largest at a sample: looking at the samples is
+///              two is linear on every fine triangle and largest at a sample: reading the samples is
 ///              enough. In cells cut short by the field's end the diagonals differ; their kink is added.
 ///              Levels 1 .. 6 are measured at every sample; above, the difference between level k and k - 1
 ///              is measured at the vertices of k - 1 and added to the deviation of the four patches below
 ///              (triangle inequality).
-///   excess     how far samples of a cell reach above the highest or below the lowest of its vertices, at
-///   most.
-///              A step between two samples has a large deviation and no excess: every height on it is drawn,
-///              at most a cell beside its place. Infinite where a cell holds a hole.
+///  excess     upper limit of how far samples of a cell lie above the highest or below the lowest of its
+///             vertices. A step between two samples has a large deviation and no excess: every height on it
+///             is drawn, at most one cell away from its position. Infinite where a cell holds a hole.
+/// A hole at a vertex takes the height that shaders/field.glsl gives it, so the drawn surface is what is
+/// measured. Where no such height exists, the deviation is infinite if the cell shows anything. Rounding is
+/// included: four units in the last place of the highest magnitude are added.
 ///
-/// A hole at a vertex takes the height that shaders/field.glsl gives it, so what is measured is what is
-/// drawn. Where that finds none, the deviation is infinite if the cell shows anything. Rounding is accounted
-/// for: four units in the last place of the highest magnitude are added.
+/// Measuring may be spread over many frames: begin() and invalidate() set what is unknown, and measureSome()
+/// measures a part of it. Until a patch is known, both its numbers are infinite, which is a valid bound for
+/// any surface; so are those of every patch above it.
 ///
-/// Measuring may be spread over many frames: begin() and forget() say what is not known (any more), and
-/// measureSome() measures a part of that. Until a patch is known, both its numbers are infinite, which is
-/// true of any surface; so are those of every patch above it.
-///
-/// Memory: about 0.03 bytes a sample. Threading: measuring uses all cores and blocks; reading while it runs
-/// is a race. Determinism: the same bits for any thread count, and in whatever parts and order a field was
-/// measured.
+/// Memory: about 0.03 bytes per sample. Threading: measuring uses all cores and blocks; reading while it runs
+/// is a race. Determinism: the same bits for any thread count and for any order and division of the
+/// measuring.
 class DetailMeasure {
  public:
   struct Error {
@@ -54,30 +52,29 @@ class DetailMeasure {
     float excess = 0.0F;
   };
 
-  /// A field of which nothing is known yet. Cost: 0.03 bytes a sample are written.
+  /// A field of which nothing is known yet. Cost: 0.03 bytes per sample are written.
   void begin(const engine::FieldReader& reader);
-  /// What the samples of these tiles (column, row) bear on is not known any more. Before that, something
-  /// began.
-  void forget(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles);
-  /// Measures up to so many tiles of those that are not known, the latest forgotten ones first. How many it
-  /// were. About 40 us of processor time each.
+  /// What depends on the samples of these tiles (column, row) is unknown from now on. Requires begin().
+  void invalidate(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles);
+  /// Measures up to `most` tiles of those that are unknown, the last invalidated ones first; returns their
+  /// number. About 40 us of processor time each.
   std::size_t measureSome(const engine::FieldReader& reader, std::size_t most);
-  /// Equal numbers where nothing was measured or forgotten in between, of copies as well; never 0 after
+  /// Equal numbers where nothing was measured or invalidated in between, also for copies; never 0 after
   /// begin().
   [[nodiscard]] std::uint64_t state() const noexcept { return state_; }
   /// Tiles that are not known.
   [[nodiscard]] std::size_t unknown() const noexcept { return waiting_.size(); }
 
-  /// Forgets everything and measures all of a field.
+  /// Measures all of a field, whatever was known before.
   void measure(const engine::FieldReader& reader);
-  /// Measures anew what the samples of these tiles (column, row) bear on, and whatever else is not known.
+  /// Measures again what depends on the samples of these tiles (column, row), and whatever else is unknown.
   void refresh(const engine::FieldReader& reader, std::span<const glm::ivec2> tiles);
 
   /// The level at which one patch covers the field.
   [[nodiscard]] int topLevel() const noexcept { return static_cast<int>(levels_.size()) - 1; }
   /// Patches across and up at level k, 0 <= k <= topLevel().
   [[nodiscard]] glm::ivec2 patches(int level) const noexcept;
-  /// Of patch (x, y); nothing at level 0.
+  /// Of patch (x, y); zero at level 0.
   [[nodiscard]] Error error(int level, std::int32_t x, std::int32_t y) const noexcept {
     if (level == 0) return {};
     const Level& l = levels_[static_cast<std::size_t>(level)];
@@ -107,14 +104,14 @@ class DetailMeasure {
   glm::ivec2 size_{2, 2};  // virtual samples: see Placing
   glm::ivec2 tiles_{1, 1};
   std::vector<Level> levels_;
-  // Of levels whose patches are larger than a tile: by tile, kTileLevels apart.
+  // Of levels with patches larger than a tile: per tile, for each level up to kTileLevels.
   std::vector<std::array<Error, kTileLevels + 1>> tile_errors_;
   std::vector<glm::ivec2> waiting_;  // tiles that are not known, each once
-  std::vector<bool> waits_;          // by tile
+  std::vector<bool> is_waiting_;     // by tile
   std::uint64_t state_ = 0;
 };
 
-/// Height of a vertex as shaders/field.glsl finds it (drawnZ): the sample itself, or for a hole the first
+/// Height of a vertex as shaders/field.glsl computes it (drawnZ): the sample itself, or for a hole the first
 /// height on the rings around it. NaN when there is none. `s` within the virtual field.
 [[nodiscard]] float drawnHeight(const engine::FieldReader& reader, glm::ivec2 s,
                                 std::int32_t stride) noexcept;

@@ -11,7 +11,7 @@ void addRows(const float* __restrict z, int rows, const float* v_of, const Coars
   for (int r = 0; r < rows; ++r, z += kTileStride) {
     const float v = v_of[r], w = 1.0F - v;
     for (int c = 0; c < kColumns; ++c) {
-      // Chosen before they are computed with: arithmetic under a condition is not vectorised.
+      // Selected before the arithmetic: arithmetic under a condition is not vectorised.
       const bool lower = u[c] <= w;
       const float base = lower ? low_left[c] : top_right[c];
       const float slope = lower ? left_rise[c] : right_fall[c];
@@ -21,7 +21,7 @@ void addRows(const float* __restrict z, int rows, const float* v_of, const Coars
   }
 }
 
-// Of three rows of samples, at each column; `most` grows to the largest magnitude.
+// Over three rows of samples, at each column; `most` grows to the largest magnitude.
 void extremesOfRows(const float* first, const float* second, const float* third, float* __restrict lowest,
                     float* __restrict highest, float* __restrict hole, float* __restrict most) {
   for (int c = 0; c < kColumns; ++c) {
@@ -39,7 +39,7 @@ void extremesOfRows(const float* first, const float* second, const float* third,
     lowest[c] = low;
     highest[c] = high;
     hole[c] = any;
-    // Of holes alone both are infinite, of opposite signs.
+    // Where all are holes both are infinite, of opposite signs.
     const float up = high >= low && high > most[c] ? high : most[c];
     most[c] = high >= low && -low > up ? -low : up;
   }
@@ -57,7 +57,7 @@ void excessOfRow(const float* __restrict below, const float* __restrict above, c
     const float under = (right_low < left_low ? right_low : left_low) - lowest[i];
     const float over = highest[i] - (right_high > left_high ? right_high : left_high);
     const float most = under > over ? under : over;
-    // Where there are nothing but holes nothing is drawn: both are -infinity.
+    // Where there are only holes nothing is drawn: both are -infinity.
     const float holed = lowest[i] <= highest[i] ? kInfiniteError : most;
     excess[i] = hole[i] > 0.0F ? holed : most;
   }

@@ -14,8 +14,8 @@ namespace {
 constexpr float kInfiniteError = std::numeric_limits<float>::infinity();
 constexpr int kColumns = kTileStride;
 
-// Everything about one row of coarse cells, spread over the columns of samples, so that the loop over a row
-// of samples is the same few operations on every column.
+// The values of one row of coarse cells, spread over the columns of samples, so that the loop over a row of
+// samples does the same few operations at every column.
 struct CoarseRow {
   alignas(64) float low_left[kColumns] = {};    // along the lower edge, at this column
   alignas(64) float left_rise[kColumns] = {};   // upper left minus lower left vertex
@@ -76,7 +76,8 @@ void TileExtremes::ofSamples(const float* heights, glm::ivec2 cells) {
 void TileExtremes::coarsen() {
   const glm::ivec2 fine = count;
   count = (fine + 1) / 2;
-  // In place: a cell is written after the four that it is made of are read, and before them in memory.
+  // In place: a cell is written after the four cells that it is made of were read, and lies before them in
+  // memory.
   for (int j = 0; j < count.y; ++j)
     for (int i = 0; i < count.x; ++i) {
       const int low = 2 * j * kMost, high = std::min(2 * j + 1, fine.y - 1) * kMost;
@@ -111,7 +112,8 @@ void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const f
     if (j == 0 || tall != stride)
       for (int r = 0; r <= tall; ++r) v[r] = static_cast<float>(r) / static_cast<float>(tall);
     kSpread[level](below, above, u, columns, row);
-    // The row of samples between two rows of cells is the next one's first; patches have theirs both.
+    // The row of samples between two rows of cells is the first of the next row; each patch contains both its
+    // edge rows.
     kAddRows(heights + first * kTileStride, ends ? tall + 1 : tall, v, row, u, deviation);
 
     DetailMeasure::Error* line = out + (j / patch_cells) * across;
@@ -121,7 +123,8 @@ void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const f
     for (int p = 0; p < patches; ++p)
       for (int i = p * patch_cells; i < std::min((p + 1) * patch_cells, coarse.x); ++i)
         line[p].excess = std::max(line[p].excess, excess[i]);
-    // The diagonal of a cell cut short is none of the fine surface's: its kink shows between samples.
+    // The diagonal of a cell that is cut short is not an edge of the fine surface: its kink shows between
+    // samples.
     const int whole = tall == stride ? cells.x >> level : 0;
     for (int i = whole; i < coarse.x; ++i) {
       if (extremes.lowest[at + i] > extremes.highest[at + i]) continue;
@@ -142,7 +145,7 @@ void measureTileLevel(const float* heights, glm::ivec2 cells, int level, const f
   const float rounding = 4.0F * std::numeric_limits<float>::epsilon() * extremes.largest;
   for (int p = 0; p < across * ((coarse.y + patch_cells - 1) / patch_cells); ++p) {
     DetailMeasure::Error& error = out[p];
-    // Sums of such magnitudes overflow or are a missing vertex's: no bound is known.
+    // Sums of such magnitudes overflow or contain a missing vertex: no bound is known.
     if (!(error.deviation < 1e28F) || extremes.largest > 1e30F)
       error = {kInfiniteError, kInfiniteError};
     else if (error.deviation > 0.0F)

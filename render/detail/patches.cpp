@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// Room is kept for two seams or walls a patch: fewer than that are there on average, since only the finer
-// side of two patches has the seam, and four finer ones share a coarser one's edges.
-constexpr std::int64_t kVerticesAPatch = gpu::kPatchVertices + 2 * gpu::kSeamVertices;
+// Reserves two seams or walls per patch: fewer exist on average, since only the finer side of two patches has
+// the seam, and four finer patches share the edges of a coarser one.
+constexpr std::int64_t kVerticesPerPatch = gpu::kPatchVertices + 2 * gpu::kSeamVertices;
 
 }  // namespace
 
@@ -74,25 +74,25 @@ bool holeWithin(const engine::FieldReader& reader, glm::ivec2 first, glm::ivec2 
   return holeBelow(reader.root(), {0, 0}, glm::min(first, end), glm::min(last, end));
 }
 
-PatchTree::PatchTree(const PatchQuestion& question) : q_(question) {
+PatchTree::PatchTree(const PatchQuery& query) : q_(query) {
   if (add(q_.measure->topLevel(), 0, 0) >= 0) refine();
 }
 
-PatchTree::PatchTree(const PatchQuestion& question, const PatchTree& chosen)
-    : q_(question), nodes_(chosen.nodes_), within_budget_(chosen.within_budget_) {}
+PatchTree::PatchTree(const PatchQuery& query, const PatchTree& chosen)
+    : q_(query), nodes_(chosen.nodes_), within_budget_(chosen.within_budget_) {}
 
-// `shade_step` has no part in choosing.
-bool PatchTree::answers(const PatchQuestion& question) const {
-  const auto facts = [](const PatchQuestion& q) {
+// `shade_step` does not affect the choice.
+bool PatchTree::matches(const PatchQuery& query) const {
+  const auto facts = [](const PatchQuery& q) {
     return std::tie(q.placing, q.camera, q.other_eye, q.parts, q.mm_per_unit, q.reference, q.lowest,
                     q.highest, q.floor_z, q.error_px, q.vertex_budget);
   };
-  return facts(q_) == facts(question);
+  return facts(q_) == facts(query);
 }
 
 void PatchTree::refine() {
   const auto less = [this](std::int32_t a, std::int32_t b) {
-    // The index makes the order, and with it the picture, one and the same.
+    // Ties are broken by the index, so that the order, and with it the picture, is deterministic.
     const double ea = node(a).error_px, eb = node(b).error_px;
     return ea != eb ? ea < eb : a > b;
   };
@@ -102,7 +102,7 @@ void PatchTree::refine() {
   while (!waiting.empty()) {
     const std::int32_t worst = waiting.top();
     if (!(node(worst).error_px > q_.error_px)) break;
-    if ((leaves + 3) * kVerticesAPatch > q_.vertex_budget) {
+    if ((leaves + 3) * kVerticesPerPatch > q_.vertex_budget) {
       within_budget_ = false;
       break;
     }
@@ -137,10 +137,11 @@ double PatchTree::movesAtMost(const glm::dvec3& step, const Box& box) const noex
 DetailMeasure::Error PatchTree::errorOf(int level, glm::ivec2 patch, glm::ivec2 first, glm::ivec2 last,
                                         const engine::HeightBounds& raw) const {
   const DetailMeasure::Error error = q_.measure->error(level, patch.x, patch.y);
-  if (std::isfinite(error.deviation) || (q_.settled && !q_.settled(first, last)) ||
+  if (std::isfinite(error.deviation) || (q_.up_to_date && !q_.up_to_date(first, last)) ||
       holeWithin(q_.reader, first, last))
     return error;
-  // Both surfaces lie between the lowest and the highest sample, but for the roundings that detail.h counts.
+  // Both surfaces lie between the lowest and the highest sample, apart from the roundings counted in
+  // detail.h.
   const float range =
       raw.max - raw.min +
       4.0F * std::numeric_limits<float>::epsilon() * std::max(std::fabs(raw.min), std::fabs(raw.max));
@@ -161,7 +162,7 @@ std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
   const glm::dvec2 b = q_.placing.first + q_.placing.spacing * glm::dvec2(last);
   const bool rim = x == 0 || y == 0 || last.x == q_.placing.size.x - 1 || last.y == q_.placing.size.y - 1;
   const DetailMeasure::Error error = errorOf(level, {x, y}, first, last, raw);
-  // A hole's vertex may take its height from beside the patch.
+  // The vertex of a hole may take its height from outside the patch.
   const bool holed = !(error.excess < std::numeric_limits<float>::infinity());
   const double drawn_low = holed ? q_.lowest : low, drawn_high = holed ? q_.highest : high;
   Box box{{a.x, a.y, (drawn_low - q_.reference) * q_.mm_per_unit},
@@ -192,7 +193,7 @@ std::int32_t PatchTree::add(int level, std::int32_t x, std::int32_t y) {
   return static_cast<std::int32_t>(nodes_.size() - 1);
 }
 
-// The level of the leaf that holds patch (x, y) of `level`; that level itself when finer ones do, or none.
+// The level of the leaf that contains patch (x, y) of `level`; `level` itself when finer leaves do, or none.
 int PatchTree::levelAt(int level, std::int32_t x, std::int32_t y) const {
   if (x < 0 || y < 0) return level;
   std::int32_t at = 0;
@@ -227,7 +228,7 @@ std::vector<PatchLeaf> PatchTree::parts(int log2_side) const {
   while (DetailMeasure::side(level + 1) <= 1 << log2_side) ++level;
   std::vector<PatchLeaf> all;
   for (const PatchLeaf& leaf : leaves()) {
-    // The surface drawn over a part may be as high as the vertices of the whole patch.
+    // The surface drawn over a part may be as high as any vertex of the whole patch.
     const glm::ivec2 first = leaf.patch * DetailMeasure::side(leaf.level);
     const engine::HeightBounds raw = heightsWithin(
         q_.reader, first, glm::min(first + DetailMeasure::side(leaf.level), q_.placing.size - 1));
@@ -287,7 +288,7 @@ void PatchTree::drop(std::int32_t at) {
   node(at).leaf = false;
 }
 
-// Whether a fragment of the patch may look at a hole. By the measure, that knows of holes from level 1 up.
+// Whether a fragment of the patch may read a hole. From the measure, which knows of holes from level 1 up.
 bool PatchTree::mayShowHole(const Node& n) const {
   const int top = q_.measure->topLevel();
   if (top == 0) return true;
@@ -303,14 +304,15 @@ bool PatchTree::mayShowHole(const Node& n) const {
   return false;
 }
 
-// Which sides of the field turn their wall to the viewer.
+// The sides of the field whose wall faces the viewer.
 std::array<bool, 4> PatchTree::wallsSeen(const Camera& camera) const {
-  // The viewer's place, or the way to it when it is infinitely far. Each side of the field is one plane.
+  // The viewer's position, or the direction to it when it is infinitely far. Each side of the field is one
+  // plane.
   glm::dvec4 eye = glm::inverse(camera.clipFromScene()) * glm::dvec4(0.0, 0.0, 1.0, 0.0);
   eye = std::abs(eye.w) > 1e-12 * glm::length(glm::dvec3(eye)) ? eye / eye.w
                                                                : glm::dvec4(camera.toViewer(), 0.0);
   const glm::dvec2 low = q_.placing.first, high = low + q_.placing.extent();
-  // Through a hole the inner side of a wall may be seen.
+  // The inner side of a wall may be visible through a hole.
   const bool holed = q_.reader.root().holed_children != 0;
   return {holed || eye.y < eye.w * low.y, holed || eye.x > eye.w * high.x, holed || eye.y > eye.w * high.y,
           holed || eye.x < eye.w * low.x};
@@ -364,8 +366,8 @@ std::int64_t PatchChoice::triangles() const noexcept {
          static_cast<std::int64_t>(2 * seams.size() + walls.size()) * 2 * gpu::kPatchCells;
 }
 
-PatchChoice choosePatches(const PatchQuestion& question) {
-  return PatchTree(question).list();
+PatchChoice choosePatches(const PatchQuery& query) {
+  return PatchTree(query).list();
 }
 
 }  // namespace fettle::render

@@ -23,9 +23,9 @@ Corners cornersOf(const engine::FieldReader& reader, std::int32_t column, std::i
 }
 
 // First t in [enter, leave] at which z(t) - height(t) is zero, given the line in cell units from the cell's
-// corner. `above`: that difference where the line left the cell before, 0 when there was none; then where it
-// leaves this one. Rounding may have the line above the edge between two cells as it leaves the one and below
-// it as it enters the other: that is a meeting, too.
+// corner. `above`: in, that difference where the line left the previous cell, 0 if there was none; out, where
+// it leaves this cell. By rounding, the line may leave one cell above the shared edge and enter the next one
+// below it: that counts as a hit, too.
 std::optional<double> meetPatch(const Corners& p, const glm::dvec3& from, const glm::dvec3& dir, double enter,
                                 double leave, double& above) noexcept {
   // Counted from `enter`, so that the coefficients are as small as the cell and lose no digits far along the
@@ -51,7 +51,7 @@ std::optional<double> meetPatch(const Corners& p, const glm::dvec3& from, const 
     offer(q / c2);
     if (q != 0.0) offer(c0 / q);
   }
-  // Signs that differ at the two ends have a zero between them, whatever rounding said.
+  // Signs that differ at the two ends have a zero between them, regardless of rounding.
   if (first == kNoHit && std::signbit(c0) != std::signbit(above))
     first = above == c0 ? 0.0 : run * c0 / (c0 - above);
   if (first == kNoHit) return std::nullopt;
@@ -101,7 +101,8 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
   if (!(t <= end)) return std::nullopt;
 
   const auto cellAt = [](double at, std::int32_t last) {
-    // Clamped as a double: from far away the place along the line may be off by more than an int holds.
+    // Clamped as a double: for a distant start, the position along the line may be off by more than an int
+    // holds.
     return static_cast<std::int32_t>(std::clamp(std::floor(at), 0.0, static_cast<double>(last)));
   };
   std::int32_t c = cellAt(o.x + t * d.x, columns - 1), r = cellAt(o.y + t * d.y, rows - 1);
@@ -110,7 +111,7 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
   };
   double above = 0.0;  // see meetPatch
   while (t <= end) {
-    // The largest square that the line clears: tried from the cell's own block upwards, as long as it does.
+    // The largest square that the line passes above or below: starting at the block of the cell, upwards.
     int shift = 0;
     double leave = end;
     for (int level = 0; level <= reader.topLevel(); ++level) {
@@ -133,7 +134,7 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
       leave = out;
     }
     if (shift != 0) {
-      above = 0.0;  // clear of both: the line is not that near
+      above = 0.0;  // outside of both: the line is not that near
     } else {
       leave = std::min({end, exit(o.x, d.x, c, c + 1), exit(o.y, d.y, r, r + 1)});
       const Corners p = cornersOf(reader, c, r);
@@ -145,7 +146,7 @@ std::optional<SurfaceHit> meetSurface(const engine::FieldReader& reader, const g
         if (at) return SurfaceHit{from + *at * direction, c, r, *at};
       }
     }
-    // Into the next cell; by the side that is crossed, so that rounding cannot hold the walk where it is.
+    // Into the next cell, by the side that is crossed, so that rounding cannot stop the traversal.
     const std::int32_t x0 = (c >> shift) << shift, y0 = (r >> shift) << shift, side = 1 << shift;
     const double ex = exit(o.x, d.x, x0, x0 + side), ey = exit(o.y, d.y, y0, y0 + side);
     if (std::min(ex, ey) >= end) return std::nullopt;

@@ -15,9 +15,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The finest level that stays on the device for good: what kFixedBytes and a quarter of the pool hold if
-// `textures` of them do. The coarsest patch, which is drawn when nothing else can be, has vertices every
-// 2^top samples and looks for heights beside holes at an eighth of that: those are there in any case.
+// The finest level that stays on the device permanently: what kFixedBytes and a quarter of the pool hold if
+// `textures` fields do so. The coarsest patch, which is drawn when nothing else can be, has vertices every
+// 2^top samples and searches for heights around holes at an eighth of that step: these samples are always
+// present.
 int fixedLevel(const engine::Grid& grid, const PagePool& pool, std::size_t textures) {
   int top = 0;
   while ((std::max(grid.width, grid.height) - 2) / DetailMeasure::side(top) > 0) ++top;
@@ -43,7 +44,7 @@ std::uint64_t largestHeap(const vk::raii::PhysicalDevice& device) {
 }
 
 // The signs of all that is shown, the original's last: nothing on the device depends on them, but ranges do.
-// Without repetition, so that one more state of the same sign is no change.
+// Repetitions do not count, so that one more state of the same sign is no change.
 struct Signs {
   float first = 1.0F;
   bool mixed = false;  // some version has another one
@@ -87,14 +88,15 @@ LiveFields::LiveFields(Context& context, Submissions& submissions, StagingRing& 
   if (memory_budget_ == 0) memory_budget_ = largestHeap(context.physical()) / 2;
 }
 
-// All that is pending, however long it takes: of a small field, or of coarse copies.
-void LiveFields::bringAll(LiveTexture& texture) {
+// Uploads all that is pending, however long it takes: a small field, or coarse copies.
+void LiveFields::uploadAll(LiveTexture& texture) {
   std::vector<glm::ivec2> moved;
   while (texture.pending() > 0) {
     if (submissions_.begin() > 0.5) ++uploaded_.stalls;
     staging_.release(submissions_.done());
     UploadStatistics count;
-    texture.pump(staging_, submissions_.next(), submissions_.commands(), kUploadBytesAtOnce, count, moved);
+    texture.uploadPending(staging_, submissions_.next(), submissions_.commands(), kUploadBytesPerSubmission,
+                          count, moved);
     uploaded_.tiles += count.tiles;
     uploaded_.bytes += count.bytes;
     uploaded_.changed_samples += count.changed_samples;
@@ -102,9 +104,9 @@ void LiveFields::bringAll(LiveTexture& texture) {
   }
 }
 
-// Whether what is to be shown comes by need.
-bool LiveFields::wantsPool(const Shown& next) const {
-  // Back from a pool means to bring all of a field at once: not between versions of one.
+// Whether what is to be shown is loaded on demand.
+bool LiveFields::needsPool(const Shown& next) const {
+  // Leaving a pool would upload all of a field at once: not between versions of one field.
   if (pool_ && !shown_.versions.empty() && related(shown_.versions.front(), next.versions.front()))
     return true;
   const std::uint64_t most = std::min(memory_budget_, kWholeBytes);
@@ -119,8 +121,8 @@ bool LiveFields::wantsPool(const Shown& next) const {
   return next.original && !add(*next.original, MarksOverlay::kHide);
 }
 
-// What a pool for `next` may take [bytes]: room for all that is shown, so that a picture of several states of
-// which every page differs comes to the same rest as a picture of one.
+// Bytes that a pool for `next` may take: room for all that is shown, so that a picture of several states of
+// which every page differs reaches the same quality as a picture of one.
 std::uint64_t LiveFields::poolBudget(const Shown& next) const {
   std::uint64_t bytes = 0;
   const auto add = [&](const engine::Version& v) {
@@ -130,66 +132,66 @@ std::uint64_t LiveFields::poolBudget(const Shown& next) const {
   for (const engine::Version& v : next.versions) add(v);
   if (next.original || next.versions.size() == 1) add(next.original.value_or(next.versions.front()));
   const bool marks = next.marks == MarksOverlay::kShow || (pool_ && pool_->hasMarks());
-  // Of whole layers a pool may lose an eighth of its pages (choosePool).
+  // A pool consists of whole layers and may lose an eighth of its pages by that (choosePool).
   return std::min({memory_budget_, kPoolBytes, bytes * (marks ? 5 : 4) / 8 * 9});
 }
 
-// The pool that `next` takes, with nothing in it when it is another one than before.
+// Creates the pool for `next`, or grows it; an empty one where its kind changes.
 void LiveFields::arrangePool(const Shown& next) {
-  const bool wants = wantsPool(next);
+  const bool on_demand = needsPool(next);
   const bool marks = next.marks == MarksOverlay::kShow;
   const bool fits =
       !pool_ || shown_.versions.empty() || sameSize(next.versions.front(), shown_.versions.front());
-  if (wants == (pool_ != nullptr) && (!wants || (fits && (pool_->hasMarks() || !marks)))) {
-    // More states than it was made for. What is there stays, and so does the larger pool when fewer are
+  if (on_demand == (pool_ != nullptr) && (!on_demand || (fits && (pool_->hasMarks() || !marks)))) {
+    // More states than it was made for. Its pages stay, and the larger pool stays when fewer states are
     // shown.
-    if (!wants || poolBudget(next) <= pool_budget_) return;
+    if (!on_demand || poolBudget(next) <= pool_budget_) return;
     pool_budget_ = poolBudget(next);
     pool_->grow(context_, pool_budget_, max_side_, submissions_);
     return;
   }
   submissions_.finish();
-  // The measures are kept: they are of the versions that were wanted as soon as the pending tiles are in
-  // them.
+  // The measures stay valid: they describe the versions to be shown as soon as the pending tiles are applied.
   for (Field& f : fields_) {
-    if (f.texture.pending() > 0) f.measure.forget(f.texture.version().reader(), f.texture.pendingTiles());
+    if (f.texture.pending() > 0) f.measure.invalidate(f.texture.version().reader(), f.texture.pendingTiles());
     f.texture.clear();
   }
   original_.clear();
   pool_.reset();
-  if (!wants) return;
+  if (!on_demand) return;
   pool_budget_ = poolBudget(next);  // after the old pool is gone
   pool_ = std::make_unique<PagePool>(context_, pool_budget_,
-                                     marks ? PagePool::Marks::kBeside : PagePool::Marks::kNone, max_side_);
+                                     marks ? PagePool::Marks::kInclude : PagePool::Marks::kNone, max_side_);
 }
 
-engine::Result<LiveTexture::Freshness> LiveFields::want(LiveTexture& texture, const Shown& next,
-                                                        const engine::Version& version, MarksOverlay marks,
-                                                        const engine::Version& accepted) {
-  // Whatever is let go may be read by frames in flight.
+engine::Result<LiveTexture::Freshness> LiveFields::setVersion(LiveTexture& texture, const Shown& next,
+                                                              const engine::Version& version,
+                                                              MarksOverlay marks,
+                                                              const engine::Version& accepted) {
+  // Frames in flight may still read what is released.
   const auto idle = [this] { submissions_.finish(); };
-  if (!pool_) return texture.want(context_, version, marks, max_side_, idle, accepted);
-  return texture.want(*pool_, fixedLevel(version.grid(), *pool_, next.versions.size() + 1), version, idle,
-                      accepted);
+  if (!pool_) return texture.setVersion(context_, version, marks, max_side_, idle, accepted);
+  return texture.setVersion(*pool_, fixedLevel(version.grid(), *pool_, next.versions.size() + 1), version,
+                            idle, accepted);
 }
 
-// Version `i` of `next`; whether it is another field than before.
-engine::Result<bool> LiveFields::wantField(std::size_t i, const Shown& next) {
+// Sets version `i` of `next`; returns whether it is another field than before.
+engine::Result<bool> LiveFields::setField(std::size_t i, const Shown& next) {
   Field& field = fields_[i];
   const engine::Version& v = next.versions[i];
-  const auto state = want(field.texture, next, v, next.marks,
-                          i == 0 ? next.accepted.value_or(engine::Version()) : engine::Version());
+  const auto state = setVersion(field.texture, next, v, next.marks,
+                                i == 0 ? next.accepted.value_or(engine::Version()) : engine::Version());
   if (!state) return tl::unexpected(state.error());
   if (*state != LiveTexture::Freshness::kFresh) {
     if (!shown_.versions.empty() && field.texture.pending() > 0 && next.marks != shown_.marks) {
       const std::vector<glm::ivec2> tiles = field.texture.pendingTiles();
-      bringAll(field.texture);
-      field.measure.forget(v.reader(), tiles);
+      uploadAll(field.texture);
+      field.measure.invalidate(v.reader(), tiles);
     }
     field.measured = v;
     return false;
   }
-  bringAll(field.texture);
+  uploadAll(field.texture);
   const bool known = related(field.measured, v);
   if (known || (i > 0 && related(next.versions[0], v))) {
     std::vector<glm::ivec2> tiles;
@@ -199,7 +201,7 @@ engine::Result<bool> LiveFields::wantField(std::size_t i, const Shown& next) {
     }
     for (const engine::TileChange& c : engine::changedTiles(known ? field.measured : next.versions[0], v))
       tiles.emplace_back(c.tile_column, c.tile_row);
-    field.measure.forget(v.reader(), tiles);
+    field.measure.invalidate(v.reader(), tiles);
   } else {
     field.measure.begin(v.reader());
   }
@@ -207,7 +209,7 @@ engine::Result<bool> LiveFields::wantField(std::size_t i, const Shown& next) {
   return !known;
 }
 
-engine::Result<LiveFields::Novelty> LiveFields::update(const Shown& next) {
+engine::Result<LiveFields::Change> LiveFields::update(const Shown& next) {
   const auto start = Clock::now();
   if (next.versions.empty() || next.versions.size() > kMostPanels)
     return engine::inputError(fmt::format("{} versions in one picture", next.versions.size()), "picture",
@@ -224,7 +226,7 @@ engine::Result<LiveFields::Novelty> LiveFields::update(const Shown& next) {
   if (next.accepted && !related(*next.accepted, next.versions.front()))
     return engine::inputError("the accepted marks are those of another field", "picture",
                               "show states of one field");
-  // A field that fails halfway is forgotten.
+  // A field that fails halfway is dropped.
   const bool was_broken = broken_;
   broken_ = true;
   if (was_broken) {
@@ -237,15 +239,15 @@ engine::Result<LiveFields::Novelty> LiveFields::update(const Shown& next) {
   if (fields_.size() > next.versions.size()) submissions_.finish();
   fields_.resize(next.versions.size());
   for (std::size_t i = 0; i < fields_.size(); ++i) {
-    const engine::Result<bool> fresh = wantField(i, next);
+    const engine::Result<bool> fresh = setField(i, next);
     if (!fresh) return tl::unexpected(fresh.error());
     another = another || (i == 0 && *fresh);
   }
   if (next.original) {
-    const auto state = want(original_, next, *next.original, MarksOverlay::kHide);
+    const auto state = setVersion(original_, next, *next.original, MarksOverlay::kHide);
     if (!state) return tl::unexpected(state.error());
     if (*state == LiveTexture::Freshness::kFresh) {
-      bringAll(original_);
+      uploadAll(original_);
       another = true;
     }
   } else if (!original_.version().empty()) {
@@ -258,27 +260,27 @@ engine::Result<LiveFields::Novelty> LiveFields::update(const Shown& next) {
   shown_ = next;
   broken_ = false;
   uploaded_.ms += engine::msSince(start);
-  return another ? Novelty::kAnother : inverted ? Novelty::kInverted : Novelty::kChanged;
+  return another ? Change::kAnother : inverted ? Change::kInverted : Change::kChanged;
 }
 
-void LiveFields::pump(UploadStatistics& all) {
+void LiveFields::uploadPending(UploadStatistics& all) {
   const auto start = Clock::now();
   UploadStatistics count;
   std::vector<glm::ivec2> moved;
   for (Field& f : fields_) {
     moved.clear();
-    f.texture.pump(staging_, submissions_.next(), submissions_.commands(), options_.upload_bytes_a_frame,
-                   count, moved);
+    f.texture.uploadPending(staging_, submissions_.next(), submissions_.commands(),
+                            options_.upload_bytes_per_frame, count, moved);
     const engine::FieldReader reader = f.texture.version().reader();
-    if (!moved.empty()) f.measure.forget(reader, moved);
-    count.measured_tiles += static_cast<std::int64_t>(f.measure.measureSome(reader, kMeasuredAFrame));
+    if (!moved.empty()) f.measure.invalidate(reader, moved);
+    count.measured_tiles += static_cast<std::int64_t>(f.measure.measureSome(reader, kMeasuredPerFrame));
     count.unmeasured_tiles += static_cast<std::int64_t>(f.measure.unknown());
   }
   moved.clear();
   if (!original_.version().empty())
-    original_.pump(staging_, submissions_.next(), submissions_.commands(), options_.upload_bytes_a_frame,
-                   count, moved);
-  bytes_left_ = options_.upload_bytes_a_frame - count.bytes;
+    original_.uploadPending(staging_, submissions_.next(), submissions_.commands(),
+                            options_.upload_bytes_per_frame, count, moved);
+  bytes_left_ = options_.upload_bytes_per_frame - count.bytes;
   all = uploaded_;
   all.tiles += count.tiles;
   all.bytes += count.bytes;
@@ -290,21 +292,21 @@ void LiveFields::pump(UploadStatistics& all) {
   uploaded_ = {};
 }
 
-void LiveFields::bringPages(PageDemand& demand, FrameStatistics& stats) {
+void LiveFields::uploadPages(PageDemand& demand, FrameStatistics& stats) {
   UploadStatistics count;
   ResidencyStatistics& r = stats.residency;
   const PageDemand::Outcome outcome =
-      demand.settle(*pool_, staging_, submissions_.next(), submissions_.commands(), bytes_left_, count);
+      demand.upload(*pool_, staging_, submissions_.next(), submissions_.commands(), bytes_left_, count);
   stats.upload.bytes += count.bytes;
   stats.upload.pending_tiles += count.pending_tiles;
-  r.by_need = true;
+  r.on_demand = true;
   r.device_bytes = static_cast<std::int64_t>(pool_->bytes());
   r.pages = pool_->slots().count();
   r.pages_used = pool_->slots().used();
-  r.pages_asked = outcome.asked;
+  r.pages_requested = outcome.requested;
   r.pages_loaded = outcome.loaded;
   r.pages_waiting = outcome.waiting;
-  r.pages_beyond = outcome.beyond;
+  r.pages_over_budget = outcome.over_budget;
 }
 
 }  // namespace fettle::render

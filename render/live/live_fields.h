@@ -16,10 +16,11 @@
 
 namespace fettle::render {
 
-/// Whether two versions are states of one field, so that only what differs needs to be looked at.
+/// Whether two versions are states of one field, so that only their difference needs to be read.
 [[nodiscard]] bool related(const engine::Version& a, const engine::Version& b);
 
-/// What the device holds of the versions that are shown, and how well it is known (render/detail/detail.h).
+/// The versions that are shown, as far as the device holds them, with the measures of their detail
+/// (render/detail/detail.h).
 ///
 /// Threading: as Context. Throws vk::SystemError.
 class LiveFields {
@@ -27,25 +28,25 @@ class LiveFields {
   /// The submissions and the ring outlive this.
   LiveFields(Context& context, Submissions& submissions, StagingRing& staging, const LiveOptions& options);
 
-  enum class Novelty {
+  enum class Change {
     kChanged,   ///< states of the field shown before
-    kInverted,  ///< the same, but every sign is the other one: so are the ends of all ranges
-    kAnother,   ///< another field, an original came or went, or some signs changed and others did not: ranges
-                ///< are not what they were
+    kInverted,  ///< the same, but with every sign inverted: so are the ends of all ranges
+    kAnother,  ///< another field; an original was added or removed; or only some signs changed: ranges are recomputed
   };
   /// As LivePicture::update.
-  [[nodiscard]] engine::Result<Novelty> update(const Shown& next);
+  [[nodiscard]] engine::Result<Change> update(const Shown& next);
 
-  /// Takes the next share of what is pending along with the submission that is being recorded, and measures
-  /// some tiles. Adds what update() moved since the last call.
-  void pump(UploadStatistics& count);
-  /// Brings pages that a frame asks for, within what pump() left of upload_bytes_a_frame; only by need.
-  void bringPages(PageDemand& demand, FrameStatistics& stats);
+  /// Uploads the next share of what is pending in the submission that is being recorded, and measures some
+  /// tiles. Adds what update() uploaded since the last call.
+  void uploadPending(UploadStatistics& count);
+  /// Uploads pages that a frame requests, within what uploadPending() left of upload_bytes_per_frame; only on
+  /// demand.
+  void uploadPages(PageDemand& demand, FrameStatistics& stats);
 
   /// Whether there is something to draw: update() succeeded.
   [[nodiscard]] bool ready() const noexcept { return !shown_.versions.empty() && !broken_; }
   [[nodiscard]] const Shown& shown() const noexcept { return shown_; }
-  [[nodiscard]] bool byNeed() const noexcept { return pool_ != nullptr; }
+  [[nodiscard]] bool onDemand() const noexcept { return pool_ != nullptr; }
   /// Of version `i` of shown().
   [[nodiscard]] LiveTexture& texture(std::size_t i) noexcept { return fields_[i].texture; }
   [[nodiscard]] const DetailMeasure& measure(std::size_t i) const noexcept { return fields_[i].measure; }
@@ -57,17 +58,17 @@ class LiveFields {
   struct Field {
     LiveTexture texture;
     DetailMeasure measure;
-    engine::Version measured;  // what `measure` is of, when no tile of the texture is pending
+    engine::Version measured;  // the version that `measure` describes, when no tile of the texture is pending
   };
-  [[nodiscard]] bool wantsPool(const Shown& next) const;
+  [[nodiscard]] bool needsPool(const Shown& next) const;
   [[nodiscard]] std::uint64_t poolBudget(const Shown& next) const;
   void arrangePool(const Shown& next);
-  void bringAll(LiveTexture& texture);
-  [[nodiscard]] engine::Result<LiveTexture::Freshness> want(LiveTexture& texture, const Shown& next,
-                                                            const engine::Version& version,
-                                                            MarksOverlay marks,
-                                                            const engine::Version& accepted = {});
-  [[nodiscard]] engine::Result<bool> wantField(std::size_t i, const Shown& next);
+  void uploadAll(LiveTexture& texture);
+  [[nodiscard]] engine::Result<LiveTexture::Freshness> setVersion(LiveTexture& texture, const Shown& next,
+                                                                  const engine::Version& version,
+                                                                  MarksOverlay marks,
+                                                                  const engine::Version& accepted = {});
+  [[nodiscard]] engine::Result<bool> setField(std::size_t i, const Shown& next);
 
   Context& context_;
   Submissions& submissions_;
@@ -76,13 +77,13 @@ class LiveFields {
   std::uint32_t max_side_ = 0;
   std::uint64_t memory_budget_ = 0;
   Shown shown_;
-  std::unique_ptr<PagePool> pool_;  // null unless pages are there by need
-  std::uint64_t pool_budget_ = 0;   // what it was made for [bytes]
+  std::unique_ptr<PagePool> pool_;  // null unless fields are loaded on demand
+  std::uint64_t pool_budget_ = 0;   // budget of the pool [bytes]
   std::vector<Field> fields_;
   LiveTexture original_;
   UploadStatistics uploaded_;    // since the last frame
   std::int64_t bytes_left_ = 0;  // of this frame
-  bool broken_ = false;          // an upload was left half done
+  bool broken_ = false;          // an upload was not completed
 };
 
 }  // namespace fettle::render

@@ -33,7 +33,7 @@ const Barriers::Access kColourWritten{ImageLayout::eColorAttachmentOptimal, Stag
 const Barriers::Access kColourUsed{ImageLayout::eColorAttachmentOptimal, Stage::eColorAttachmentOutput,
                                    kColourAccess};
 
-// The same bytes without a curve between them and amounts of light.
+// The same bytes, read as code values and not as amounts of light.
 vk::Format codesOf(vk::Format colour) {
   switch (colour) {
     case vk::Format::eR8G8B8A8Srgb:
@@ -45,7 +45,7 @@ vk::Format codesOf(vk::Format colour) {
   }
 }
 
-// The pixels of a layer that a part of the picture has a share in.
+// The pixels of a layer that a part of the picture touches.
 Rectangle scaled(const Rectangle& r, float scale) {
   if (scale >= 1.0F) {
     const int rays = static_cast<int>(scale);
@@ -67,9 +67,9 @@ vk::RenderingAttachmentInfo attachment(vk::ImageView view, ImageLayout layout, v
 }
 
 Pipelines::Paged pagedOf(const LivePanel& p) {
-  return p.variant.by_need ? Pipelines::Paged::kByNeed
-         : p.variant.paged ? Pipelines::Paged::kYes
-                           : Pipelines::Paged::kNo;
+  return p.variant.on_demand ? Pipelines::Paged::kByNeed
+         : p.variant.paged   ? Pipelines::Paged::kYes
+                             : Pipelines::Paged::kNo;
 }
 Pipelines::Holes holesOf(const LivePanel& p) {
   return p.variant.holes ? Pipelines::Holes::kYes : Pipelines::Holes::kNo;
@@ -79,7 +79,7 @@ const Rectangle& partOf(const LivePanel& p, LiveFrame::Redraw redraw) {
   return redraw == LiveFrame::Redraw::kAll ? p.visible : p.redraw;
 }
 
-// Sets a part of the attachment of the rendering under way back to where nothing is drawn.
+// Clears a part of the attachment of the current rendering.
 void clear(const vk::raii::CommandBuffer& commands, vk::ImageAspectFlags aspect, const vk::ClearValue& value,
            const Rectangle& part) {
   commands.clearAttachments(vk::ClearAttachment{aspect, 0, value}, vk::ClearRect{rectOf(part), 0, 1});
@@ -103,8 +103,8 @@ LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views
   vk::DescriptorPoolCreateInfo info{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, kSets};
   pool_ = vk::raii::DescriptorPool(context.device(), info.setPoolSizes(sizes));
   const auto setOf = [&](vk::DescriptorSetLayout layout) {
-    vk::DescriptorSetAllocateInfo wanted{*pool_};
-    return std::move(vk::raii::DescriptorSets(context.device(), wanted.setSetLayouts(layout)).front());
+    vk::DescriptorSetAllocateInfo allocate{*pool_};
+    return std::move(vk::raii::DescriptorSets(context.device(), allocate.setSetLayouts(layout)).front());
   };
   no_pages_ = Buffer(context, Packing::kAlign, vk::BufferUsageFlagBits::eUniformTexelBuffer);
   no_pages_view_ = vk::raii::BufferView(context.device(),
@@ -117,8 +117,8 @@ LiveFrame::LiveFrame(Context& context, vk::Format colour, Pipelines::Views views
   }
 }
 
-void LiveFrame::bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging,
-                            std::uint64_t submission, const Glyphs& glyphs) {
+void LiveFrame::uploadGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging,
+                             std::uint64_t submission, const Glyphs& glyphs) {
   if (glyph_generation_ == glyphs.generation()) return;
   constexpr std::uint32_t kSide = Glyphs::kSide;
   const bool first = glyph_generation_ == 0;
@@ -127,7 +127,7 @@ void LiveFrame::bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing
                        vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst,
                        vk::ImageAspectFlagBits::eColor);
   const std::optional<vk::DeviceSize> at = staging.take(glyphs.image().size(), submission);
-  // No room: the letters come with a later frame.
+  // No room: the glyphs are uploaded with a later frame.
   if (!at && !first) return;
   if (at) std::memcpy(staging.buffer().data() + *at, glyphs.image().data(), glyphs.image().size());
   change(commands, glyphs_, first ? ImageLayout::eUndefined : ImageLayout::eShaderReadOnlyOptimal,
@@ -169,17 +169,17 @@ void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpn
   if (half) {
     make(half_, small);
     if (!enlarge_)
-      enlarge_ = std::make_unique<Resize>(context_, Resize::Way::kEnlarge, vk::Format::eB8G8R8A8Unorm);
+      enlarge_ = std::make_unique<Resize>(context_, Resize::Direction::kEnlarge, vk::Format::eB8G8R8A8Unorm);
     enlarge_->set(half_.base, whole_.base, layers_);
   }
   if (fine) {
     make(fine_, {4 * small.width, 4 * small.height});
-    if (!reduce_) reduce_ = std::make_unique<Resize>(context_, Resize::Way::kReduce, colour_);
+    if (!reduce_) reduce_ = std::make_unique<Resize>(context_, Resize::Direction::kReduce, colour_);
     reduce_->set(fine_.base, whole_.base, layers_);
   }
 }
 
-void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
                      const Layers& layers) {
   Packing packing;
   struct Blocks {
@@ -191,7 +191,7 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
                       packing.add<gpu::Patch>(p.choice->patches), packing.add<gpu::Patch>(p.choice->seams),
                       packing.add<gpu::Patch>(p.choice->walls), packing.add<gpu::Line>(p.in_scene),
                       packing.add<gpu::Line>(p.on_top), packing.add<std::uint32_t>(p.pages)});
-  const auto quads = packing.add<gpu::Quad>(furniture);
+  const auto quads = packing.add<gpu::Quad>(decorations);
   if (slot.arena.bytes() < packing.bytes())
     slot.arena = Buffer(context_, std::max<vk::DeviceSize>(2 * packing.bytes(), kArenaBytes),
                         vk::BufferUsageFlagBits::eUniformBuffer | vk::BufferUsageFlagBits::eStorageBuffer |
@@ -203,7 +203,7 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const LivePanel& p = panels[i];
     PanelSets& sets = slot.panels[i];
-    if (p.variant.by_need)
+    if (p.variant.on_demand)
       sets.pages = vk::raii::BufferView(
           context_.device(),
           {{}, *slot.arena.handle(), vk::Format::eR32Uint, blocks[i].pages.first, blocks[i].pages.second});
@@ -217,7 +217,7 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
       writes.image(set, gpu::kBindOriginal,
                    (p.original != nullptr ? p.original : p.field)->heights(p.shade_level));
       writes.buffer(set, gpu::kBindPatches, kStorage, slot.arena, list);
-      writes.texels(set, gpu::kBindPages, p.variant.by_need ? *sets.pages : *no_pages_view_);
+      writes.texels(set, gpu::kBindPages, p.variant.on_demand ? *sets.pages : *no_pages_view_);
     }
     writes.image(*sets.surface, gpu::kBindDepth, layers.depth.view(), ImageLayout::eDepthReadOnlyOptimal);
     for (const auto& [set, list] :
@@ -226,7 +226,7 @@ void LiveFrame::fill(Slot& slot, std::span<const LivePanel> panels, const std::v
       writes.buffer(set, gpu::kBindLines, kStorage, slot.arena, list);
     }
   }
-  if (!furniture.empty()) {
+  if (!decorations.empty()) {
     writes.image(*slot.picture, gpu::kBindGlyphs, glyphs_.view());
     writes.buffer(*slot.picture, gpu::kBindQuads, kStorage, slot.arena, quads);
     writes.buffer(*slot.picture, gpu::kBindMap, kUniform, slot.arena, blocks.front().uniforms);
@@ -330,13 +330,13 @@ void LiveFrame::recordBase(const vk::raii::CommandBuffer& commands, const Slot& 
     const Rectangle& part = partOf(p, redraw);
     if (empty(part)) continue;
     beginPanel(commands, p, part, layers.scale);
-    // The plate is seen through holes alone.
+    // The plate is only visible through holes.
     if (p.variant.holes) instances(commands, pipelines_.floor(), *slot.panels[i].surface, 4, 0, 1);
     if (!p.choice->walls.empty())
       instances(commands, pipelines_.wall(pagedOf(p), holesOf(p)), *slot.panels[i].walls, gpu::kWallVertices,
                 0, p.choice->walls.size());
   }
-  // Else they are drawn over the copy, so that they move without the surface being shaded again.
+  // At scale 1 they are drawn over the copy instead, so that they move without shading the surface again.
   if (layers.scale != 1.0F) recordLines(commands, slot, panels, Pipelines::Lines::kInScene, layers.scale);
   commands.endRendering();
 }
@@ -364,10 +364,10 @@ void LiveFrame::recordResized(const vk::raii::CommandBuffer& commands, const Lay
   (&layers == &half_ ? enlarge_ : reduce_)->record(commands);
 }
 
-void LiveFrame::recordFurniture(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                                std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
-                                Redraw redraw) {
-  if (furniture.empty()) return;
+void LiveFrame::recordDecorations(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                                  std::span<const LivePanel> panels,
+                                  const std::vector<gpu::Quad>& decorations, Redraw redraw) {
+  if (decorations.empty()) return;
   Barriers over;
   over.add(whole_.base.image(), kColour, kColourWritten, kColourUsed);
   over.record(commands);
@@ -387,9 +387,9 @@ void LiveFrame::recordFurniture(const vk::raii::CommandBuffer& commands, const S
   const gpu::vec4 size{extent.width, extent.height, 0, 0};
   commands.pushConstants<gpu::vec4>(pipelines_.pictureLayout(), vk::ShaderStageFlagBits::eVertex, 0, size);
   commands.bindDescriptorSets(kGraphics, pipelines_.pictureLayout(), 0, *slot.picture, {});
-  const auto quads = static_cast<std::uint32_t>(furniture.size());
+  const auto quads = static_cast<std::uint32_t>(decorations.size());
   if (redraw == Redraw::kAll) commands.draw(4, quads, 0, 0);
-  // Drawn over what is new alone: over what is there already its soft edges would grow.
+  // Only over what was drawn again: over older pixels the soft edges would be blended twice.
   for (const LivePanel& p : panels)
     if (redraw == Redraw::kParts && !empty(p.redraw)) {
       commands.setScissor(0, rectOf(p.redraw));
@@ -423,7 +423,7 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
          Stage::eCopy, Access::eTransferWrite, Stage::eColorAttachmentOutput, kColourAccess);
   const vk::RenderingAttachmentInfo colour =
       attachment(target.view, ImageLayout::eColorAttachmentOptimal, vk::AttachmentLoadOp::eLoad);
-  // Unless at full sharpness nothing is in it, and lines on top do not look.
+  // Except at full sharpness the depth is empty, and lines on top do not test it.
   const vk::RenderingAttachmentInfo depth =
       attachment(whole_.depth.view(), ImageLayout::eDepthAttachmentOptimal,
                  in_scene ? vk::AttachmentLoadOp::eLoad : vk::AttachmentLoadOp::eDontCare);
@@ -457,27 +457,27 @@ void LiveFrame::recordTarget(const vk::raii::CommandBuffer& commands, const Slot
 }
 
 void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
-                       const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
-                       const LiveTarget& target, Redraw redraw, Sharpness sharpness) {
+                       const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
+                       const Glyphs& glyphs, const LiveTarget& target, Redraw redraw, Sharpness sharpness) {
   const vk::raii::CommandBuffer& commands = submissions.commands();
   Slot& slot = slots_[submissions.next() % Submissions::kInFlight];
-  if (!furniture.empty()) bringGlyphs(commands, staging, submissions.next(), glyphs);
+  if (!decorations.empty()) uploadGlyphs(commands, staging, submissions.next(), glyphs);
   makeLayers(submissions, target.extent, sharpness);
   const Layers& layers = sharpness == Sharpness::kHalf   ? half_
                          : sharpness == Sharpness::kFine ? fine_
                                                          : whole_;
   const bool resized = &layers != &whole_;
-  fill(slot, panels, furniture, layers);
+  fill(slot, panels, decorations, layers);
 
   const bool all = redraw == Redraw::kAll;
-  const bool anew =
+  const bool redraws =
       all || std::any_of(panels.begin(), panels.end(), [](const LivePanel& p) { return !empty(p.redraw); });
   const Barriers::Access copied{ImageLayout::eTransferSrcOptimal, Stage::eCopy, Access::eTransferRead};
   const Barriers::Access read{ImageLayout::eShaderReadOnlyOptimal, Stage::eFragmentShader,
                               Access::eShaderRead};
   Barriers compose;
-  if (anew) {
-    // The frame before may still draw lines against this depth, and copy out of that base.
+  if (redraws) {
+    // The previous frame may still draw lines against this depth and copy from that base.
     Barriers begin;
     begin.add(layers.depth.image(), kDepth,
               {all ? ImageLayout::eUndefined : ImageLayout::eDepthAttachmentOptimal, kDepthStages,
@@ -496,7 +496,7 @@ void LiveFrame::record(Submissions& submissions, StagingRing& staging, std::span
     shade.record(commands);
     recordBase(commands, slot, panels, ground, layers, redraw);
     if (resized) recordResized(commands, layers);
-    recordFurniture(commands, slot, panels, furniture, redraw);
+    recordDecorations(commands, slot, panels, decorations, redraw);
     compose.add(whole_.base.image(), kColour, kColourWritten, copied);
   }
   // The acquired image is waited for at these stages: the change of layout comes after it.

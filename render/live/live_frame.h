@@ -21,31 +21,31 @@ namespace fettle::render {
 struct LivePanel {
   Rectangle plot;     ///< where the camera's picture lies [px]
   Rectangle visible;  ///< the part of it that is drawn
-  Rectangle redraw;   ///< the part of that which is drawn anew; `choice` needs to cover no more
+  Rectangle redraw;   ///< the part of that which is drawn again; `choice` needs to cover only this
   gpu::PanelUniforms uniforms{};
   const PatchChoice* choice = nullptr;
   const LiveTexture* field = nullptr;
   const LiveTexture* original = nullptr;  ///< null for heights
   int shade_level = 0;                    ///< of LiveTexture
   SurfaceVariant variant;
-  std::vector<std::uint32_t> pages;  ///< of pageTable; empty unless by need
+  std::vector<std::uint32_t> pages;  ///< of pageTable; empty unless on demand
   std::vector<gpu::Line> in_scene, on_top;
 };
 
-/// Records a frame in three layers, each of which is left alone while nothing in it changes:
+/// Records a frame in three layers, each of which is reused while nothing in it changes:
 ///
 ///   depth    of the surface, its seams, rim walls and plate: geometry, drawn without a colour
-///   base     the surface shaded from that depth, once a pixel (shaders/shade.frag); then what is shaded
-///            triangle by triangle, plate and walls; then the furniture
-///   target   a copy of base; then overlay lines; then whatever the target wants over it
+///  base    the surface shaded from that depth, once per pixel (shaders/shade.frag); then what is shaded
+///          triangle by triangle, plate and walls; then the decorations
+///  target  a copy of base; then overlay lines; then what LiveTarget::over draws
 ///
-/// At Sharpness::kHalf and kFine depth, shading and the lines hidden by the surface go to layers of half or
-/// twice the size each way; base is those enlarged or reduced, then the decorations as ever.
+/// At Sharpness::kHalf and kFine, depth, shading and the lines hidden by the surface use layers of half or
+/// twice the size in each direction; base is those enlarged or reduced, then the decorations as usual.
 ///
 /// A second eye (stereo) is a second layer of depth and base and a second element of
 /// PanelUniforms::views; the passes are the same, drawn with a view mask.
 ///
-/// What a frame in flight reads is kept until its turn comes round.
+/// Resources that a frame in flight reads are kept until its slot is used again.
 ///
 /// Threading: as Context. Throws vk::SystemError.
 class LiveFrame {
@@ -53,20 +53,19 @@ class LiveFrame {
   /// kBoth: targets have two layers, one for each eye of PanelUniforms::views.
   LiveFrame(Context& context, vk::Format colour, Pipelines::Views views = Pipelines::Views::kOne);
 
-  /// Whether the layers hold a sharp picture of this size, and whether furniture would be drawn with these
-  /// very letters.
+  /// Whether the layers hold a picture of full sharpness in this size, and whether decorations would be drawn
+  /// with the same glyph image.
   [[nodiscard]] bool holds(vk::Extent2D extent) const noexcept { return whole_.extent == extent; }
   [[nodiscard]] bool holds(const Glyphs& glyphs) const noexcept {
     return glyph_generation_ == glyphs.generation();
   }
   enum class Redraw {
-    kAll,    ///< every layer, whatever LivePanel::redraw says
-    kParts,  ///< of depth and base what the panels ask for; the rest stays as it is. kFull alone, after a
-             ///< frame of kFull
+    kAll,  ///< every layer, whatever LivePanel::redraw says
+    kParts,  ///< of depth and base only LivePanel::redraw; the rest stays as it is. Only at kFull, after a frame of kFull
   };
-  /// Records into submissions.commands(). `staging` carries new letters.
+  /// Records into submissions.commands(). `staging` transfers new glyphs.
   void record(Submissions& submissions, StagingRing& staging, std::span<const LivePanel> panels,
-              const std::vector<gpu::Quad>& furniture, const glm::vec3& ground, const Glyphs& glyphs,
+              const std::vector<gpu::Quad>& decorations, const glm::vec3& ground, const Glyphs& glyphs,
               const LiveTarget& target, Redraw redraw, Sharpness sharpness);
 
   [[nodiscard]] const Pipelines& pipelines() const noexcept { return pipelines_; }
@@ -82,16 +81,16 @@ class LiveFrame {
     std::array<PanelSets, kMostPanels> panels;
     vk::raii::DescriptorSet picture = nullptr;
   };
-  // What the surface is drawn to.
+  // The images that the surface is drawn to.
   struct Layers {
-    vk::Extent2D extent;  // of the picture they are for
-    float scale = 1.0F;   // their pixels a pixel of that
+    vk::Extent2D extent;  // of their picture
+    float scale = 1.0F;   // their pixels per pixel of that picture
     GpuImage depth, base;
   };
-  void bringGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging, std::uint64_t submission,
-                   const Glyphs& glyphs);
+  void uploadGlyphs(const vk::raii::CommandBuffer& commands, StagingRing& staging, std::uint64_t submission,
+                    const Glyphs& glyphs);
   void makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpness sharpness);
-  void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
+  void fill(Slot& slot, std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
             const Layers& layers);
   void beginPanel(const vk::raii::CommandBuffer& commands, const LivePanel& panel, const Rectangle& part,
                   float scale = 1.0F);
@@ -104,9 +103,9 @@ class LiveFrame {
                   Redraw redraw);
   void recordLines(const vk::raii::CommandBuffer& commands, const Slot& slot,
                    std::span<const LivePanel> panels, Pipelines::Lines depth, float scale);
-  void recordFurniture(const vk::raii::CommandBuffer& commands, const Slot& slot,
-                       std::span<const LivePanel> panels, const std::vector<gpu::Quad>& furniture,
-                       Redraw redraw);
+  void recordDecorations(const vk::raii::CommandBuffer& commands, const Slot& slot,
+                         std::span<const LivePanel> panels, const std::vector<gpu::Quad>& decorations,
+                         Redraw redraw);
   void recordResized(const vk::raii::CommandBuffer& commands, const Layers& layers);
   void recordTarget(const vk::raii::CommandBuffer& commands, const Slot& slot,
                     std::span<const LivePanel> panels, const LiveTarget& target, Sharpness sharpness);
@@ -118,9 +117,9 @@ class LiveFrame {
   Pipelines pipelines_;
   vk::raii::DescriptorPool pool_ = nullptr;
   std::array<Slot, Submissions::kInFlight> slots_;
-  Buffer no_pages_;  // what is bound where the shader does not look
+  Buffer no_pages_;  // bound where the shader reads no pages
   vk::raii::BufferView no_pages_view_ = nullptr;
-  Layers whole_, half_, fine_;  // the others than whole_ are made when first asked for
+  Layers whole_, half_, fine_;  // half_ and fine_ are created on first use
   std::unique_ptr<Resize> enlarge_, reduce_;
   GpuImage glyphs_;
   std::uint64_t glyph_generation_ = 0;

@@ -10,7 +10,8 @@
 namespace fettle::render {
 namespace {
 
-// Linear light; told apart by eyes of all kinds on viridis, grey and blue - red (Okabe and Ito 2008).
+// Linear light; distinguishable on viridis, grey and blue - red also by colour-blind users (Okabe and Ito
+// 2008).
 constexpr glm::vec3 kEndpoint{0.90F, 0.35F, 0.0F};
 constexpr glm::vec3 kProxy{1.0F, 1.0F, 1.0F};
 constexpr glm::vec3 kTip{0.85F, 0.85F, 0.85F};

@@ -32,8 +32,7 @@ glm::vec3 towardsLight(const FrameInput& input, const Camera& camera) {
 
 }  // namespace
 
-// On an even column of the picture: no square of two by two fragments belongs
-// to both sides.
+// Begins on an even column of the picture, so that no square of two by two fragments belongs to both sides.
 Rectangle sideOf(const Rectangle& plot, double split, bool right) {
   const int wanted = static_cast<int>(std::lround(split * plot.width));
   const int at = std::min(wanted + ((plot.x + wanted) & 1), plot.width);
@@ -43,7 +42,8 @@ Rectangle sideOf(const Rectangle& plot, double split, bool right) {
   return side;
 }
 
-LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields, KeptTrees& kept)
+LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields,
+                       PatchTreeCache& trees)
     : fields_(fields), part_(input.part) {
   const bool split = input.arrangement == Arrangement::kSplit && fields.count() >= 2;
   const std::size_t count = split ? 2 : plan.panels.size();
@@ -55,29 +55,29 @@ LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFie
   for (const Overlays::Ring& ring : input.overlays.rings)
     appendRing(fields.shown().versions.front().reader(), ring, lines);
   trees_.reserve(count);
-  kept.keepOnly(count);
+  trees.keepOnly(count);
   choices_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const PanelPlan& p = plan.panels[i];
     if (stereo) eyes_.push_back(eyesOf(p.camera, input.stereo, window));
-    questions_.push_back(questionOf(i, input, p,
-                                    input.panel_vertices.empty()
-                                        ? input.vertex_budget / static_cast<std::int64_t>(count)
-                                        : input.panel_vertices[i]));
+    queries_.push_back(queryOf(i, input, p,
+                               input.panel_vertices.empty()
+                                   ? input.vertex_budget / static_cast<std::int64_t>(count)
+                                   : input.panel_vertices[i]));
     panels_.push_back(panelOf(i, input, plan, lines));
     panels_.back().visible = drawnOf(split ? sideOf(p.plot, input.split, i > 0) : p.plot);
-    questions_.back().shade_step = 1 << LiveTexture::shift(panels_.back().shade_level);
-    trees_.push_back(empty(panels_.back().visible) ? PatchTree() : kept.tree(i, questions_.back(), p.field));
+    queries_.back().shade_step = 1 << LiveTexture::shift(panels_.back().shade_level);
+    trees_.push_back(empty(panels_.back().visible) ? PatchTree() : trees.tree(i, queries_.back(), p.field));
   }
 }
 
-PatchQuestion LivePanels::questionOf(std::size_t i, const FrameInput& input, const PanelPlan& p,
-                                     std::int64_t vertices) const {
-  PatchQuestion q;
+PatchQuery LivePanels::queryOf(std::size_t i, const FrameInput& input, const PanelPlan& p,
+                               std::int64_t vertices) const {
+  PatchQuery q;
   q.measure = &fields_.measure(i);
   q.reader = p.field.reader();
   if (fields_.texture(i).pending() > 0)
-    q.settled = [&texture = fields_.texture(i)](glm::ivec2 first, glm::ivec2 last) {
+    q.up_to_date = [&texture = fields_.texture(i)](glm::ivec2 first, glm::ivec2 last) {
       return !texture.anyPending(first / engine::kTileSide, last / engine::kTileSide);
     };
   q.placing = p.placing;
@@ -115,13 +115,13 @@ Rectangle LivePanels::drawnOf(const Rectangle& plot) const {
 LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const PicturePlan& plan,
                               const std::vector<OverlayLine>& lines) const {
   const PanelPlan& p = plan.panels[i];
-  const PatchQuestion& q = questions_[i];
+  const PatchQuery& q = queries_[i];
   const LiveTexture& original = fields_.original();
   LivePanel panel;
   const bool fine = input.sharpness == Sharpness::kFine;
   const double rays = raysOf(input.sharpness);
-  // Colours from samples about a ray apart, or a pixel: in perspective the near part is larger than the
-  // middle.
+  // Colours come from samples about one ray or one pixel apart: in perspective the near part is larger than
+  // the middle.
   const glm::dvec2 px = cellPixels(p.placing, p.camera) * (fine ? rays : 1.0);
   const double nearer = input.view.projection == Projection::kPerspective ? 2.0 : 1.0;
   while (panel.shade_level + 1 < LiveTexture::kLevels &&
@@ -135,7 +135,7 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
   gpu::PanelUniforms& u = panel.uniforms;
   if (shift > 0)
     u.shade = glm::ivec4(shift, 0, glm::max((p.placing.true_size - 1) / (1 << shift) + 1, glm::ivec2(2)));
-  // Differences over about the width of a ray: finer ones would be noise that no pixel can show.
+  // Differences over about the width of a ray: finer ones would be noise below the size of a pixel.
   u.paging.w = std::max(
       1, static_cast<int>(std::lround(0.5 / std::max(1e-6, std::ldexp(std::min(px.x, px.y), shift)))));
   u.seam.x = static_cast<float>(kSeamRays / rays);
@@ -152,7 +152,7 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
   u.paging.y = paging.log2_rows;
   u.paging.z = static_cast<int>(paging.across);
   u.light = glm::vec4(towardsLight(input, p.camera), u.light.w);
-  const bool by_need = fields_.byNeed();
+  const bool on_demand = fields_.onDemand();
   panel.variant = {
       paging.paged(),
       fields_.shown().marks == MarksOverlay::kShow,
@@ -161,8 +161,8 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
       std::max(px.x, px.y) > 1.5,
       holed(p.field) || (panel.original != nullptr && holed(original.version())),
       !fine,
-      by_need,
-      !by_need && !paging.paged() && std::min(p.placing.true_size.x, p.placing.true_size.y) > 1 << shift,
+      on_demand,
+      !on_demand && !paging.paged() && std::min(p.placing.true_size.x, p.placing.true_size.y) > 1 << shift,
       input.view.projection == Projection::kPerspective};
   panel.in_scene = linesOf(lines, OverlayLine::Depth::kInScene, p);
   panel.on_top = linesOf(lines, OverlayLine::Depth::kOnTop, p);
@@ -172,15 +172,16 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
 PageDemand LivePanels::demand(std::uint64_t frame) {
   PageDemand demand;
   for (std::size_t i = 0; i < panels_.size(); ++i)
-    demand.want(trees_[i], fields_.texture(i), panels_[i].original != nullptr ? &fields_.original() : nullptr,
-                panels_[i].shade_level, panels_[i].uniforms.paging.w, frame);
+    demand.request(trees_[i], fields_.texture(i),
+                   panels_[i].original != nullptr ? &fields_.original() : nullptr, panels_[i].shade_level,
+                   panels_[i].uniforms.paging.w, frame);
   return demand;
 }
 
-void LivePanels::settle(FrameStatistics& stats) {
+void LivePanels::finishChoice(FrameStatistics& stats) {
   for (std::size_t i = 0; i < panels_.size(); ++i) {
     bool pruned = false;
-    if (fields_.byNeed()) {
+    if (fields_.onDemand()) {
       const PageSet& pages = *fields_.texture(i).pages();
       pruned = trees_[i].prune([&](const PatchLeaf& leaf) { return PageDemand::drawable(leaf, pages); });
       panels_[i].uniforms.pages = pageHead(pages.grid());
@@ -194,9 +195,9 @@ void LivePanels::settle(FrameStatistics& stats) {
     stats.triangles += choices_[i].triangles();
     stats.bound_px = std::max(stats.bound_px, choices_[i].bound_px);
     PanelDetail detail{choices_[i].bound_px, DetailLimit::kNone};
-    if (detail.bound_px > questions_[i].error_px)
+    if (detail.bound_px > queries_[i].error_px)
       detail.limit = !pruned                             ? DetailLimit::kVertices
-                     : stats.residency.pages_waiting > 0 ? DetailLimit::kUnderWay
+                     : stats.residency.pages_waiting > 0 ? DetailLimit::kLoading
                                                          : DetailLimit::kMemory;
     stats.panels.push_back(detail);
     stats.within_budget = stats.within_budget && choices_[i].within_budget;

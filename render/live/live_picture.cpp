@@ -24,7 +24,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 engine::Error errorOf(const std::string& device, const char* what) {
-  return engine::failure(fmt::format("drawing failed ({})", what), device, "start the picture anew").value();
+  return engine::failure(fmt::format("drawing failed ({})", what), device, "create the picture again")
+      .value();
 }
 
 // Off-screen image that a frame is drawn to and copied out of.
@@ -40,8 +41,8 @@ struct Canvas {
   }
 };
 
-// Those quads that a part of the picture shows, in its own pixels.
-void cutTo(const Rectangle& part, std::vector<gpu::Quad>& quads) {
+// Keeps the quads that a part of the picture shows, in the pixels of the part.
+void restrictTo(const Rectangle& part, std::vector<gpu::Quad>& quads) {
   const glm::vec4 first(part.x, part.y, part.x, part.y);
   std::erase_if(quads, [&](const gpu::Quad& q) {
     return q.pixels.z <= first.x || q.pixels.w <= first.y ||
@@ -56,12 +57,12 @@ engine::Status checkPart(const FrameInput& input) {
   const Rectangle& part = *input.part;
   if (empty(part) || !(cut(part, {0, 0, input.view.width, input.view.height}) == part) || part.x % 2 != 0 ||
       part.y % 2 != 0)
-    return engine::inputError("the part lies beside the picture, or begins within a square of 2 x 2 pixels",
+    return engine::inputError("the part lies outside the picture, or begins within a square of 2 x 2 pixels",
                               "picture", "see FrameInput");
   return {};
 }
 
-// Pixels of what is drawn for an input.
+// Size of the image that is drawn for an input [px].
 vk::Extent2D extentOf(const FrameInput& input) {
   if (!input.part)
     return {static_cast<std::uint32_t>(input.view.width), static_cast<std::uint32_t>(input.view.height)};
@@ -70,24 +71,34 @@ vk::Extent2D extentOf(const FrameInput& input) {
           static_cast<std::uint32_t>(input.part->height)};
 }
 
+// Share of the visible plots that is drawn again, 0 .. 1.
+double redrawnShare(const std::vector<LivePanel>& panels) {
+  double plots_px = 0.0, redrawn_px = 0.0;
+  for (const LivePanel& panel : panels) {
+    plots_px += static_cast<double>(panel.visible.width) * panel.visible.height;
+    redrawn_px += static_cast<double>(panel.redraw.width) * panel.redraw.height;
+  }
+  return redrawn_px / std::max(1.0, plots_px);
+}
+
 }  // namespace
 
 struct LivePicture::Impl {
-  std::unique_ptr<Context> own;  // empty when somebody else's is used
+  std::unique_ptr<Context> own;  // empty when the context belongs to the caller
   Context& context;
   Glyphs glyphs;
   Submissions submissions;
   StagingRing staging;
   vk::Format colour_format;
   LiveFrame frame;
-  // For two eyes: made when first asked for.
+  // For two eyes: created on first use.
   std::unique_ptr<StereoCompose> compose;
   std::unique_ptr<LiveFrame> both_eyes;  // in one pass
   std::unique_ptr<LiveFrame> right_eye;  // in a pass of its own; the left one is `frame`
 
   LiveFields fields;
   std::optional<PictureSpans> spans;
-  KeptTrees kept_trees;
+  PatchTreeCache patch_tree_cache;
   Canvas canvas;
   struct Seen {
     PicturePlan plan;
@@ -115,26 +126,32 @@ struct LivePicture::Impl {
   engine::Status update(const Shown& next);
   engine::Result<FrameStatistics> draw(const FrameInput& input, const LiveTarget& target);
   void drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats, PicturePlan plan);
+  void uploadPages(LivePanels& chosen, FrameInput::Pages pages, FrameStatistics& stats);
+  std::vector<gpu::Quad> decorationsOf(const FrameInput& input, const PicturePlan& plan,
+                                       std::vector<std::string>& warnings);
+  DrawnFrame drawnFrameOf(const std::vector<LivePanel>& panels, const PicturePlan& plan,
+                          const std::vector<gpu::Quad>& decorations);
   void recordStereo(const Stereo& stereo, Sharpness sharpness, std::vector<LivePanel>& panels,
-                    const std::vector<gpu::Quad>& furniture, const glm::vec3& ground,
+                    const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
                     const LiveTarget& target);
 };
 
 LivePicture::Impl::~Impl() {
-  // The members below `submissions` go before it, and uploads may still be read from and written to them.
+  // The members declared below `submissions` are destroyed before it, and uploads may still read and write
+  // them.
   try {
     submissions.finish();
   } catch (const vk::SystemError&) {
-    // A lost device has nothing under way.
+    // A lost device has no work in progress.
   }
 }
 
 engine::Status LivePicture::Impl::update(const Shown& next) {
-  const engine::Result<LiveFields::Novelty> novelty = fields.update(next);
-  if (!novelty) return tl::unexpected(novelty.error());
-  if (*novelty == LiveFields::Novelty::kAnother) spans.reset();
-  // Not read again: inverted twice, the picture is what it was, whatever was edited meanwhile.
-  if (*novelty == LiveFields::Novelty::kInverted && spans) spans = negated(*spans);
+  const engine::Result<LiveFields::Change> change = fields.update(next);
+  if (!change) return tl::unexpected(change.error());
+  if (*change == LiveFields::Change::kAnother) spans.reset();
+  // Not computed again: inverted twice, the picture is as before, regardless of edits in between.
+  if (*change == LiveFields::Change::kInverted && spans) spans = negated(*spans);
   return {};
 }
 
@@ -157,15 +174,16 @@ engine::Result<FrameStatistics> LivePicture::Impl::draw(const FrameInput& input,
     if (plot.width < 8 || plot.height < 8)
       return engine::inputError(fmt::format("a picture of {} x {} pixels leaves no room for the surface",
                                             input.view.width, input.view.height),
-                                "picture size", "make it larger, or leave the furniture out");
+                                "picture size", "make it larger, or leave the decorations out");
   FrameStatistics stats;
   drawOn(input, target, stats, *std::move(planned));
   return stats;
 }
 
 void LivePicture::Impl::recordStereo(const Stereo& stereo, Sharpness sharpness,
-                                     std::vector<LivePanel>& panels, const std::vector<gpu::Quad>& furniture,
-                                     const glm::vec3& ground, const LiveTarget& target) {
+                                     std::vector<LivePanel>& panels,
+                                     const std::vector<gpu::Quad>& decorations, const glm::vec3& ground,
+                                     const LiveTarget& target) {
   const bool one_pass = stereo.passes == Stereo::Passes::kBest  ? context.multiviewWorks()
                         : stereo.passes == Stereo::Passes::kOne ? context.multiview()
                                                                 : false;
@@ -174,17 +192,65 @@ void LivePicture::Impl::recordStereo(const Stereo& stereo, Sharpness sharpness,
                  one_pass ? StereoCompose::Layers::kOneImage : StereoCompose::Layers::kTwoImages);
   if (one_pass) {
     if (!both_eyes) both_eyes = std::make_unique<LiveFrame>(context, colour_format, Pipelines::Views::kBoth);
-    both_eyes->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft),
+    both_eyes->record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kLeft),
                       LiveFrame::Redraw::kAll, sharpness);
   } else {
-    frame.record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kLeft),
+    frame.record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kLeft),
                  LiveFrame::Redraw::kAll, sharpness);
     for (LivePanel& panel : panels) panel.uniforms.views[0] = panel.uniforms.views[1];
     if (!right_eye) right_eye = std::make_unique<LiveFrame>(context, colour_format);
-    right_eye->record(submissions, staging, panels, furniture, ground, glyphs, compose->target(Eye::kRight),
+    right_eye->record(submissions, staging, panels, decorations, ground, glyphs, compose->target(Eye::kRight),
                       LiveFrame::Redraw::kAll, sharpness);
   }
   compose->record(submissions.commands(), stereo.mode, target);
+}
+
+// Uploads pages of the chosen patches, all that are missing for Pages::kAll; only on demand.
+void LivePicture::Impl::uploadPages(LivePanels& chosen, FrameInput::Pages pages, FrameStatistics& stats) {
+  if (!fields.onDemand()) return;
+  PageDemand demand = chosen.demand(submissions.next());
+  fields.uploadPages(demand, stats);
+  while (pages == FrameInput::Pages::kAll && stats.residency.pages_waiting > 0) {
+    submissions.submit({});
+    (void)submissions.begin();
+    staging.release(submissions.done());
+    UploadStatistics more;
+    fields.uploadPending(more);
+    demand = chosen.demand(submissions.next());
+    fields.uploadPages(demand, stats);
+  }
+}
+
+std::vector<gpu::Quad> LivePicture::Impl::decorationsOf(const FrameInput& input, const PicturePlan& plan,
+                                                        std::vector<std::string>& warnings) {
+  if (glyphs.used() > Glyphs::kSide / 2) glyphs.clear();
+  std::vector<gpu::Quad> quads =
+      decorationQuads(plan.layout, input.view, plan.decorations, plan.palette, glyphs, warnings);
+  if (input.arrangement == Arrangement::kSplit && plan.panels.size() == 2) {
+    const Rectangle right = sideOf(plan.panels[1].plot, input.split, true);
+    gpu::Quad line{};
+    line.pixels = glm::vec4(right.x - 1, right.y, right.x + 1, right.y + right.height);
+    line.colour = glm::vec4(plan.palette.ink, 1.0F);
+    line.fill = glm::ivec4(gpu::kFillSolid, 0, 0, 0);
+    quads.push_back(line);
+  }
+  if (input.part) restrictTo(*input.part, quads);
+  return quads;
+}
+
+DrawnFrame LivePicture::Impl::drawnFrameOf(const std::vector<LivePanel>& panels, const PicturePlan& plan,
+                                           const std::vector<gpu::Quad>& decorations) {
+  DrawnFrame content;
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const LivePanel& panel = panels[i];
+    content.panels.push_back({fields.texture(i).version(), panel.uniforms, panel.variant, panel.shade_level,
+                              panel.plot, panel.visible, *panel.choice, panel.pages});
+  }
+  content.decorations = decorations;
+  content.ground = plan.palette.ground;
+  content.original = fields.original().version();
+  content.accepted = fields.shown().accepted;
+  return content;
 }
 
 void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats,
@@ -192,94 +258,53 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   stats.wait_ms = submissions.begin();
   const auto start = Clock::now();
   staging.release(submissions.done());
-  // What changed: to the device, and into the measures that patches are chosen by.
-  fields.pump(stats.upload);
-  const double pumped_ms = engine::msSince(start);
+  // Upload what changed, and update the measures by which patches are chosen.
+  fields.uploadPending(stats.upload);
+  const double upload_ms = engine::msSince(start);
 
   const auto select_start = Clock::now();
-  const bool stereo = input.stereo.mode != StereoMode::kOff;
-  const bool kept = !stereo && !input.part && input.sharpness == Sharpness::kFull;
-  LivePanels chosen(input, plan, fields, kept_trees);
-  if (fields.byNeed()) {
-    PageDemand demand = chosen.demand(submissions.next());
-    fields.bringPages(demand, stats);
-    while (input.pages == FrameInput::Pages::kAll && stats.residency.pages_waiting > 0) {
-      submissions.submit({});
-      (void)submissions.begin();
-      staging.release(submissions.done());
-      UploadStatistics more;
-      fields.pump(more);
-      demand = chosen.demand(submissions.next());
-      fields.bringPages(demand, stats);
-    }
-  }
-  chosen.settle(stats);
+  LivePanels chosen(input, plan, fields, patch_tree_cache);
+  uploadPages(chosen, input.pages, stats);
+  chosen.finishChoice(stats);
   std::vector<LivePanel>& panels = chosen.panels();
-  Seen now;
-  now.stereo = input.stereo.mode;
-  now.eye_width = input.view.width;
-  now.eyes = chosen.eyes();
-  for (const LivePanel& panel : panels) now.visible.push_back(panel.visible);
+  const std::vector<gpu::Quad> decorations = decorationsOf(input, plan, stats.warnings);
+  DrawnFrame current = drawnFrameOf(panels, plan, decorations);
 
-  if (glyphs.used() > Glyphs::kSide / 2) glyphs.clear();
-  std::vector<gpu::Quad> furniture =
-      furnish(plan.layout, input.view, plan.furniture, plan.palette, glyphs, stats.warnings);
-  if (input.arrangement == Arrangement::kSplit && panels.size() == 2) {
-    const Rectangle right = sideOf(plan.panels[1].plot, input.split, true);
-    gpu::Quad line{};
-    line.pixels = glm::vec4(right.x - 1, right.y, right.x + 1, right.y + right.height);
-    line.colour = glm::vec4(plan.palette.ink, 1.0F);
-    line.fill = glm::ivec4(gpu::kFillSolid, 0, 0, 0);
-    furniture.push_back(line);
-  }
-  if (input.part) cutTo(*input.part, furniture);
-
-  // Tiles whose detail is not known yet are drawn more finely than need be, but as they are; in the place of
-  // pages under way lie others, which `pages` below says.
-  const bool there =
+  // A frame can be reused by the next one only at full sharpness and when no heights are pending: tiles of
+  // unknown detail are drawn finer than necessary, but correctly; missing pages are part of DrawnFrame.
+  const bool stereo = input.stereo.mode != StereoMode::kOff;
+  const bool reusable =
+      !stereo && !input.part && input.sharpness == Sharpness::kFull &&
       stats.upload.pending_tiles == stats.upload.unmeasured_tiles + stats.residency.pages_waiting;
-  DrawnFrame layers;
-  for (std::size_t i = 0; i < panels.size(); ++i) {
-    const LivePanel& panel = panels[i];
-    layers.panels.push_back({fields.texture(i).version(), panel.uniforms, panel.variant, panel.shade_level,
-                             panel.plot, panel.visible, *panel.choice, panel.pages});
-  }
-  layers.furniture = furniture;
-  layers.ground = plan.palette.ground;
-  layers.original = fields.original().version();
-  layers.accepted = fields.shown().accepted;
-  std::optional<DrawnFrame> before;
-  before.swap(drawn);  // until this frame is handed over, nobody knows what the layers hold
+  std::optional<DrawnFrame> previous;
+  previous.swap(drawn);  // the content of the layers is undefined until this frame is submitted
+  stats.continued = reusable && input.redraw == FrameInput::Redraw::kChanged && previous &&
+                    frame.holds(target.extent) && (decorations.empty() || frame.holds(glyphs)) &&
+                    canContinue(*previous, current);
   std::vector<PatchChoice> parts;
-  const bool some = kept && input.redraw == FrameInput::Redraw::kChanged && before && there &&
-                    frame.holds(target.extent) && (furniture.empty() || frame.holds(glyphs)) &&
-                    goesOn(*before, layers);
-  if (some) parts = cutToDamage(*before, layers, chosen.questions(), panels);
-  double plots_px = 0.0, redrawn_px = 0.0;
-  for (const LivePanel& panel : panels) {
-    plots_px += static_cast<double>(panel.visible.width) * panel.visible.height;
-    redrawn_px += static_cast<double>(panel.redraw.width) * panel.redraw.height;
+  if (stats.continued) {
+    parts = cutToDamage(*previous, current, chosen.queries(), panels);
+    stats.redrawn = redrawnShare(panels);
   }
-  stats.continued = some;
-  if (some) stats.redrawn = redrawn_px / std::max(1.0, plots_px);
   stats.select_ms = engine::msSince(select_start);
 
   if (stereo)
-    recordStereo(input.stereo, input.sharpness, panels, furniture, plan.palette.ground, target);
+    recordStereo(input.stereo, input.sharpness, panels, decorations, plan.palette.ground, target);
   else
-    frame.record(submissions, staging, panels, furniture, plan.palette.ground, glyphs, target,
-                 some ? LiveFrame::Redraw::kParts : LiveFrame::Redraw::kAll, input.sharpness);
+    frame.record(submissions, staging, panels, decorations, plan.palette.ground, glyphs, target,
+                 stats.continued ? LiveFrame::Redraw::kParts : LiveFrame::Redraw::kAll, input.sharpness);
   submissions.submit({target.free,
                       vk::PipelineStageFlagBits2::eCopy | vk::PipelineStageFlagBits2::eColorAttachmentOutput,
                       target.done});
-  if (kept && there) drawn = std::move(layers);
+  if (reusable) drawn = std::move(current);
   stats.device_ms = submissions.lastMs();
   stats.range = plan.range;
   stats.vertical_exaggeration = plan.exaggeration;
   stats.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
-  stats.record_ms = engine::msSince(start) - stats.select_ms - pumped_ms;
-  now.plan = std::move(plan);
-  if (!input.part) seen = std::move(now);
+  stats.record_ms = engine::msSince(start) - stats.select_ms - upload_ms;
+  if (input.part) return;
+  seen = Seen{std::move(plan), {}, chosen.eyes(), input.stereo.mode, input.view.width};
+  for (const LivePanel& panel : panels) seen->visible.push_back(panel.visible);
 }
 
 LivePicture::LivePicture(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -328,7 +353,7 @@ engine::Status LivePicture::update(const engine::Version& version) {
   return update(next);
 }
 
-engine::Result<UploadStatistics> LivePicture::settle(engine::JobControl& job) {
+engine::Result<UploadStatistics> LivePicture::uploadAll(engine::JobControl& job) {
   try {
     UploadStatistics all;
     all.pending_tiles = -1;
@@ -337,7 +362,7 @@ engine::Result<UploadStatistics> LivePicture::settle(engine::JobControl& job) {
       (void)impl_->submissions.begin();
       impl_->staging.release(impl_->submissions.done());
       UploadStatistics count;
-      impl_->fields.pump(count);
+      impl_->fields.uploadPending(count);
       impl_->submissions.submit({});
       if (all.pending_tiles < 0)
         job.begin("uploading", static_cast<std::uint64_t>(count.pending_tiles));
@@ -459,7 +484,7 @@ void LivePicture::finish() {
   try {
     impl_->submissions.finish();
   } catch (const vk::SystemError&) {
-    // Lost: nothing is under way.
+    // A lost device has no work in progress.
   }
 }
 

@@ -21,16 +21,16 @@
 namespace fettle::render {
 
 class Context;
-struct LiveTarget;  // render/vulkan/live_target.h: an image to draw to and who waits for whom
+struct LiveTarget;  // render/vulkan/live_target.h: an image to draw to, and semaphores
 
-/// How several versions share the picture. One camera serves them all.
+/// How several versions share the picture. All of them use one camera.
 enum class Arrangement {
   kSideBySide,  ///< each in a plot of its own: a row of up to three, or two rows
   kSplit,       ///< the first two in one plot, a line between them: the first to the left of it
 };
 
 /// A straight piece of an overlay, in field millimetres (heights times the height unit, without exaggeration,
-/// sign of the version applied). The same point twice is a disc.
+/// sign of the version applied). Two equal points give a disc.
 struct OverlayLine {
   glm::dvec3 from_mm{0.0};
   glm::dvec3 to_mm{0.0};
@@ -38,16 +38,16 @@ struct OverlayLine {
   float opacity = 1.0F;                ///< 0 .. 1
   float width_px = 2.0F;               ///< > 0; ends are round
   enum class Depth {
-    kOnTop,    ///< seen through the surface
-    kInScene,  ///< hidden by what lies before it
+    kOnTop,    ///< visible through the surface
+    kInScene,  ///< hidden by the surface in front of it
   } depth = Depth::kOnTop;
 };
 
 /// What is drawn over every panel.
 struct Overlays {
   std::vector<OverlayLine> lines;
-  /// A circle on the first version's surface: where the brush will work. Follows the heights; parts over
-  /// holes or beside the field are left out.
+  /// A circle on the first version's surface: the area of the brush. Follows the heights; parts over holes or
+  /// outside the field are left out.
   struct Ring {
     double x_mm = 0.0, y_mm = 0.0;  ///< field coordinates
     double radius_mm = 1.0;
@@ -57,8 +57,8 @@ struct Overlays {
   std::vector<Ring> rings;
 };
 
-/// What a haptic device does, as overlay lines: endpoint (disc), proxy (disc), the line between them (tip),
-/// force (arrow from the proxy, `mm_per_newton` long a newton).
+/// State of a haptic device as overlay lines: endpoint (disc), proxy (disc), the line between them (tip),
+/// force (arrow from the proxy, `mm_per_newton` long per newton).
 struct StylusState {
   glm::dvec3 endpoint_mm{0.0};
   glm::dvec3 proxy_mm{0.0};
@@ -68,90 +68,90 @@ struct StylusState {
 };
 void appendStylus(const StylusState& state, double mm_per_newton, std::vector<OverlayLine>& out);
 
-/// What the panels show. A version that grew out of the one shown before costs only what differs.
+/// What the panels show. For a version derived from the one shown before, only the difference is uploaded.
 struct Shown {
-  std::vector<engine::Version> versions;    ///< 1 .. 5, not empty; their grids may differ
-  std::optional<engine::Version> original;  ///< colours show version - original; width and height of all
+  std::vector<engine::Version> versions;  ///< 1 .. 5, not empty; their grids may differ
+  std::optional<engine::Version>
+      original;  ///< colours show version - original; all must have its width and height
   MarksOverlay marks = MarksOverlay::kHide;
-  /// Of the first version's marks those that this state of the same field lacks are only suggested, and drawn
-  /// in a colour of their own.
+  /// Marks of the first version that this state of the same field lacks are suggested ones, and are drawn in
+  /// another colour.
   std::optional<engine::Version> accepted{};
 };
 
-/// How finely the surface is drawn.
+/// Resolution at which the surface is drawn.
 enum class Sharpness {
   kFull,  ///< every pixel
-  kHalf,  ///< every second pixel each way, in between interpolated: while the camera moves. Decorations and
-          ///< overlay lines on top are as sharp as ever, and the next frame of kFull is bit-identical to what
-          ///< it would be without this one
-  kFine,  ///< four rays a pixel, of which it takes the mean light: for pictures that are drawn once.
-          ///< Decorations and overlay lines on top as ever
+  kHalf,  ///< every second pixel in each direction, interpolated in between: while the camera moves. Decorations and overlay lines on top stay at full resolution, and the next frame of kFull is bit-identical to one without this frame before it
+  kFine,  ///< four rays per pixel, averaged in linear light: for pictures that are drawn once. Decorations and overlay lines on top as usual
 };
 
-/// What may change every frame without anything being uploaded.
+/// What may change every frame without an upload.
 struct FrameInput {
-  View view;  ///< width and height are the target's, unless `part` says which part of the picture that is
-  /// Draws this part of the picture alone, of which `view` has the size [px]: the target is as large as the
-  /// part. Of whole squares of 2 x 2 pixels, except where the picture ends: fragments compare themselves with
-  /// their neighbours in those. Such a part equals that of the picture drawn as one but for the rounding of
-  /// single precision about another middle. Side by side in stereo: of either eye's picture, of which `view`
-  /// has the size; the target is twice as wide as the part.
+  View view;  ///< width and height are the target's, unless `part` selects a part of the picture
+  /// Draws only this part of the picture, of which `view` has the size [px]: the target is as large as the
+  /// part. Consists of whole squares of 2 x 2 pixels, except at the end of the picture: fragments compare
+  /// themselves with their neighbours in those. Such a part equals that of the picture drawn as one, except
+  /// for the rounding of single precision about another middle. Side by side in stereo: of each eye's
+  /// picture, of which `view` has the size; the target is twice as wide as the part.
   std::optional<Rectangle> part;
   Arrangement arrangement = Arrangement::kSideBySide;
-  double split = 0.5;  ///< of kSplit: where the line stands, as a fraction of the plot's width, 0 .. 1
+  double split = 0.5;  ///< of kSplit: position of the line, as a fraction of the plot's width, 0 .. 1
   Contours contours = Contours::kHide;
   double marks_opacity = 0.65;
   ColourMap map = ColourMap::kAuto;
   Theme theme = Theme::kDark;
   Decoration decoration = Decoration::kFull;
-  double furniture_scale = 0.0;     ///< of its text and bars, see layOut; 0: by the picture's size
-  std::vector<std::string> titles;  ///< one a version, or none
-  /// Colours' range [height_unit]; empty: robust, worked out when a field or an original is first shown and
-  /// kept until refreshRanges(), so that colours do not swim while a brush works.
+  double decoration_scale = 0.0;    ///< of text and bars, see layOut; 0: by the picture's size
+  std::vector<std::string> titles;  ///< one per version, or none
+  /// Range of the colours [height_unit]; empty: robust, computed when a field or an original is first shown
+  /// and kept until refreshRanges(), so that colours do not change while a brush works.
   std::optional<ValueRange> range;
-  /// Where the light comes from, relative to the picture: azimuth counter-clockwise from the picture's right
+  /// Direction of the light, relative to the picture: azimuth counter-clockwise from the picture's right
   /// [degree], and height above the field [degree, 5 .. 90]. 135, 45 = upper left.
   double light_azimuth_deg = 135.0;
   double light_elevation_deg = 45.0;
   Overlays overlays;
-  /// A picture for each eye. Off: nothing of it is made. Bounds hold for each eye's picture.
+  /// A picture for each eye; no cost when off. Bounds hold for each eye's picture.
   Stereo stereo;
-  /// Screen error wanted [px], > 0. What is reached is in FrameStatistics::bound_px.
+  /// Requested screen error [px], > 0. FrameStatistics::bound_px reports what was reached.
   double error_px = kFrameErrorPx;
   Sharpness sharpness = Sharpness::kFull;
-  /// Whether what cannot have changed since the last frame is left as it is: the picture is the same either
-  /// way, to the bit.
+  /// Whether parts that cannot have changed since the last frame are reused; the picture is bit-identical
+  /// either way.
   enum class Redraw { kChanged, kAll } redraw = Redraw::kChanged;
-  /// Of a field by need: whether the frame is drawn with the pages that are there, or waits for all that it
-  /// asks for and that the memory holds.
-  enum class Pages { kAsTheyCome, kAll } pages = Pages::kAsTheyCome;
-  /// Vertices a frame may cost, all panels together, kFewestFrameVertices .. kMostFrameVertices.
+  /// Of a field on demand: whether the frame is drawn with the pages that are on the device, or waits for all
+  /// requested pages that the memory holds.
+  enum class Pages { kAvailable, kAll } pages = Pages::kAvailable;
+  /// Most vertices of a frame, all panels together, kFewestFrameVertices .. kMostFrameVertices.
   std::int64_t vertex_budget = kFrameVertices;
-  /// Vertices that each panel may take, 1 .. kMostFrameVertices, one number a panel; empty: equal shares of vertex_budget.
+  /// Most vertices of each panel, 1 .. kMostFrameVertices, one number per panel; empty: equal shares of
+  /// vertex_budget.
   std::vector<std::int64_t> panel_vertices;
 };
 
-/// A field of which the finer samples are on the device by need: any of more than a few million samples.
+/// State of a field whose finer samples are loaded on demand: any of more than a few million samples.
 struct ResidencyStatistics {
-  bool by_need = false;            ///< false: all is there, and the rest of this stays zero
-  std::int64_t device_bytes = 0;   ///< of the pool of pages, full or not
-  std::int64_t pages = 0;          ///< that the pool holds
-  std::int64_t pages_used = 0;     ///< with something in them
-  std::int64_t pages_asked = 0;    ///< this frame asked for, of levels that come by need
-  std::int64_t pages_loaded = 0;   ///< brought with this frame
-  std::int64_t pages_waiting = 0;  ///< come with the next ones; drawn coarser meanwhile, as bound_px says
-  std::int64_t pages_beyond = 0;   ///< do not fit while the others are asked for; drawn coarser
+  bool on_demand = false;         ///< false: all samples are on the device, and the rest of this stays zero
+  std::int64_t device_bytes = 0;  ///< of the pool of pages, whether used or not
+  std::int64_t pages = 0;         ///< in the pool
+  std::int64_t pages_used = 0;    ///< with content
+  std::int64_t pages_requested = 0;  ///< requested by this frame, of levels on demand
+  std::int64_t pages_loaded = 0;     ///< uploaded with this frame
+  std::int64_t pages_waiting =
+      0;  ///< will be uploaded with the next frames; drawn coarser until then, as bound_px reports
+  std::int64_t pages_over_budget = 0;  ///< do not fit with the other requested ones; drawn coarser
 };
 
-/// What keeps a panel from being drawn within FrameInput::error_px.
+/// What prevents a panel from being drawn within FrameInput::error_px.
 enum class DetailLimit {
-  kNone,      ///< nothing: it is
-  kUnderWay,  ///< pages that come with the next frames
-  kMemory,    ///< pages that do not fit into the device memory allowed
-  kVertices,  ///< the number of vertices allowed
+  kNone,      ///< nothing: it is within it
+  kLoading,   ///< pages that will be uploaded with the next frames
+  kMemory,    ///< pages that do not fit into the allowed device memory
+  kVertices,  ///< the allowed number of vertices
 };
 
-/// How near the surface drawn in a panel lies to the one at full resolution.
+/// How close the surface drawn in a panel is to the one at full resolution.
 struct PanelDetail {
   double bound_px = 0.0;  ///< as FrameStatistics::bound_px, of this panel
   DetailLimit limit = DetailLimit::kNone;
@@ -160,29 +160,30 @@ struct PanelDetail {
 struct FrameStatistics {
   std::int64_t patches = 0;
   std::int64_t vertices = 0;   ///< surface, skirts, walls
-  std::int64_t triangles = 0;  ///< without the joints of area zero
-  /// On the screen, no point of the surface at full resolution lies farther than this from the surface drawn,
-  /// nor the other way round [px]. At most error_px where the budget allowed it. See render/detail/detail.h.
+  std::int64_t triangles = 0;  ///< without seam triangles of area zero
+  /// Upper limit of the distance on the screen between the surface at full resolution and the drawn one, in
+  /// both directions (Hausdorff) [px]. At most error_px where the budget allowed it. See
+  /// render/detail/detail.h.
   double bound_px = 0.0;
   std::vector<PanelDetail> panels;  ///< of each panel; bound_px is the largest of theirs
-  double redrawn = 1.0;             ///< share of the plots that was drawn anew, 0 .. 1
-  /// Went on from the frame before and drew what differs, which may be everything.
+  double redrawn = 1.0;             ///< share of the plots that was drawn again, 0 .. 1
+  /// Whether the frame reused the one before and drew only what differs, which may be everything.
   bool continued = false;
   bool within_budget =
       true;                 ///< false: refining stopped because of the vertices allowed, bound_px > error_px
   UploadStatistics upload;  ///< since the last frame
   ResidencyStatistics residency;
   double select_ms = 0.0;   ///< choosing the patches
-  double record_ms = 0.0;   ///< everything else on this thread, waiting not counted
+  double record_ms = 0.0;   ///< everything else on this thread, without waiting
   double wait_ms = 0.0;     ///< waiting for the frame before the last one: the device is behind
-  double device_ms = -1.0;  ///< from submission to done, of the last frame known to be done; -1: none yet
+  double device_ms = -1.0;  ///< from submission to completion, of the last completed frame; -1: none yet
   ValueRange range;
   double vertical_exaggeration = 1.0;
   double pixels_per_mm = 1.0;         ///< at the middle of the picture
-  std::vector<std::string> warnings;  ///< e.g. text that had no room
+  std::vector<std::string> warnings;  ///< e.g. text that did not fit
 };
 
-/// A point of the surface under a place of the picture.
+/// A point of the surface under a position in the picture.
 struct Picked {
   int panel = 0;
   glm::dvec3 position_mm{0.0};  ///< field coordinates; z on the bilinear surface, as contact feels it
@@ -193,47 +194,47 @@ struct Picked {
 struct LiveOptions {
   Validation validation = Validation::kOff;
   std::string device;  ///< as DeviceOptions
-  /// Longest side of one image in samples, rounded up to a tile; 0: what the device offers. Fields past it
-  /// are spread over the layers of an image array. For tests of exactly that.
+  /// Longest side of one image in samples, rounded up to a tile; 0: the device's limit. Larger fields are
+  /// spread over the layers of an image array. For tests of that case.
   int max_image_side = 0;
-  /// Bytes moved a frame at most while an edit or a filter result comes over; the rest waits for the next
-  /// one.
-  std::int64_t upload_bytes_a_frame = kUploadBytesAFrame;
+  /// Most bytes uploaded per frame while an edit or a filter result is pending; the rest follows with the
+  /// next frames.
+  std::int64_t upload_bytes_per_frame = kUploadBytesPerFrame;
   /// Device memory that the samples of all versions, of the original and their marks may take [bytes]; 0:
-  /// half of the largest heap of the device's own memory. What takes more than that or than kWholeBytes
-  /// (render/config.h), or is larger than the device's images, is there by need: coarse copies
-  /// always, finer samples in pages where the view asks for them, within upload_bytes_a_frame. Frames after a
-  /// move may be coarser then than error_px; FrameStatistics says so. Once by need, versions of the same
-  /// field stay so.
+  /// half of the largest heap of the device's own memory. Fields that take more than that or than kWholeBytes
+  /// (render/config.h), or are larger than the device's images, are loaded on demand: coarse copies
+  /// permanently, finer samples in pages where the view requests them, within upload_bytes_per_frame. Frames
+  /// after a camera move may then be coarser than error_px, as FrameStatistics reports. Once on demand,
+  /// versions of the same field stay so.
   std::int64_t memory_budget_bytes = 0;
 };
 
-/// A field that changes, drawn many times a second.
+/// A changing field, drawn many times per second.
 ///
-/// Cost follows the screen. Each frame chooses square patches of kPatchCells x kPatchCells cells, each with
-/// its own stride, coarse where that shows less than `error_px`, by measured deviations
+/// Cost depends on the screen. Each frame chooses square patches of kPatchCells x kPatchCells cells, each
+/// with its own stride, coarse where that shows less than `error_px`, by measured deviations
 /// (render/detail/detail.h). Where patches of different strides meet, a seam closes the gap: a strip between
 /// the two edges that overlaps both by a quarter of a pixel on the screen, so that no ray passes between,
-/// straight down included. A coarse cell that stands in for a wall takes colour and light from the height it
-/// is drawn at.
+/// also straight from above. A coarse cell drawn in place of a steep wall takes colour and light from the
+/// height at which it is drawn.
 ///
-/// Uploads go through a persistently mapped ring and wait for nothing: the frames in flight read the image as
-/// it was, the next one as it is. Only the rectangle of each changed tile moves, with copies of every 4th,
-/// 16th and 64th sample (7 % more) that far views are drawn from, so that memory traffic follows the screen
-/// as well.
+/// Uploads use a persistently mapped ring and never wait: frames in flight read the image before the upload,
+/// the next frame reads it after. Only the rectangle of each changed tile is uploaded, with copies of every
+/// 4th, 16th and 64th sample (7 % more) for distant views, so that memory traffic depends on the screen as
+/// well.
 ///
-/// While camera and options stand still, a frame draws anew only the rectangle of each panel that what
-/// changed in the field can be seen in (render/detail/damage.h), and overlays alone move over the shaded
-/// surface for nothing.
+/// While camera and options stay the same, a frame draws only the rectangle of each panel in which the
+/// changes of the field are visible (render/detail/damage.h); overlays move without drawing the surface
+/// again.
 ///
-/// Threading: one thread at a time, the same as whoever presents. Determinism: on one machine with one
+/// Threading: one thread at a time, the same as the presenting one. Determinism: on one machine with one
 /// driver, the same input gives the same bits whatever was drawn before (measured on Mesa lavapipe 22.3.6);
 /// between drivers, pictures differ.
 class LivePicture {
  public:
   /// Off-screen, with a context of its own. Errors (kFailed) as Context::create.
   [[nodiscard]] static engine::Result<std::unique_ptr<LivePicture>> create(const LiveOptions& options = {});
-  /// Draws to images of somebody's own (a window): `colour_format` is a VkFormat, and `context` outlives
+  /// Draws to images of the caller (a window): `colour_format` is a VkFormat, and `context` must outlive
   /// this.
   [[nodiscard]] static engine::Result<std::unique_ptr<LivePicture>> create(Context& context,
                                                                            std::uint32_t colour_format,
@@ -242,45 +243,45 @@ class LivePicture {
   LivePicture(const LivePicture&) = delete;
   LivePicture& operator=(const LivePicture&) = delete;
 
-  /// From now on frames show this. The first time, or when the field is not related to the one before, its
-  /// coarse copies (8 MiB) are moved before this returns, of a small field all of it; else what differs is
-  /// queued and moved with the next frames, within LiveOptions::upload_bytes_a_frame each. Errors: kInput
-  /// when versions do not fit each other; kFailed when the device cannot hold them.
+  /// Sets what the next frames show. The first time, or when the field is not related to the one before, its
+  /// coarse copies (8 MiB) are uploaded before this returns, of a small field all of it; otherwise the
+  /// difference is queued and uploaded with the next frames, within LiveOptions::upload_bytes_per_frame each.
+  /// Errors: kInput when versions do not fit each other; kFailed when the device cannot hold them.
   [[nodiscard]] engine::Status update(const Shown& shown);
   /// One version, no original, marks as before.
   [[nodiscard]] engine::Status update(const engine::Version& version);
 
-  /// Uploads what is pending and measures all tiles, however long it takes; pages come with the frames. `job`
-  /// advances by uploads. Errors: kCancelled; kFailed as draw().
-  [[nodiscard]] engine::Result<UploadStatistics> settle(engine::JobControl& job);
+  /// Uploads what is pending and measures all tiles, however long it takes; pages are uploaded with the
+  /// frames. `job` advances by uploads. Errors: kCancelled; kFailed as draw().
+  [[nodiscard]] engine::Result<UploadStatistics> uploadAll(engine::JobControl& job);
 
   /// Draws the next frame and returns without waiting for it (two may be in flight). Errors: kInput for an
-  /// input out of range; kFailed for a lost device: make a new LivePicture, the field is not touched.
+  /// input out of range; kFailed for a lost device: create another LivePicture, the field is not affected.
   [[nodiscard]] engine::Result<FrameStatistics> draw(const FrameInput& input, LiveTarget& target);
   /// The same to memory: draws, waits and copies out.
   [[nodiscard]] engine::Result<FrameStatistics> draw(const FrameInput& input, Image& out);
-  /// Draws to memory, waits, copies nothing: for measuring.
+  /// Draws to memory, waits, copies nothing: for measurements.
   [[nodiscard]] engine::Result<FrameStatistics> drawAndWait(const FrameInput& input);
 
-  /// What lies under pixel (x, y) of the last frame: (0, 0) is the top left corner of the picture. By walking
-  /// the min/max pyramid along the ray and meeting the bilinear patches exactly, in double precision; works
-  /// on the versions given to update(), not on what is uploaded. Empty: ground, hole, or no frame yet. Side
-  /// by side, each half is its own eye's; in an anaglyph the place is that on the window, as seen from
-  /// between the eyes.
+  /// The surface point under pixel (x, y) of the last frame: (0, 0) is the top left corner of the picture.
+  /// Traverses the min/max pyramid along the ray and intersects the bilinear patches exactly, in double
+  /// precision; uses the versions given to update(), not what is uploaded. Empty: background, hole, or no
+  /// frame yet. Side by side, each half belongs to its own eye; in an anaglyph the position is that on the
+  /// window, seen from between the eyes.
   [[nodiscard]] std::optional<Picked> pick(double x, double y) const;
-  /// Where a point of the field is seen in panel `panel` of the last frame [px]; the inverse of pick but for
-  /// what hides it. Empty: no such panel. In stereo: as the left eye's picture shows it.
+  /// The position of a field point in panel `panel` of the last frame [px]; the inverse of pick except for
+  /// hidden points. Empty: no such panel. In stereo: in the left eye's picture.
   [[nodiscard]] std::optional<std::pair<double, double>> pixelOf(int panel, const glm::dvec3& field_mm,
                                                                  Eye eye = Eye::kLeft) const;
 
-  /// Works out the colours' and the camera's ranges anew at the next frame.
+  /// The next frame computes the ranges of colours and camera again.
   void refreshRanges();
 
-  /// Waits until all frames are done.
+  /// Waits until all frames are completed.
   void finish();
 
   [[nodiscard]] const std::string& device() const noexcept;
-  /// What the validation layers said so far; only with a context of its own.
+  /// The messages of the validation layers so far; only with a context of its own.
   [[nodiscard]] std::vector<std::string> validationMessages() const;
 
  private:

@@ -9,19 +9,19 @@
 namespace fettle::render {
 namespace {
 
-// Where the panels lie: as layOut has them in a row, or two rows of two or three.
+// The panels as layOut places them in a row, or in two rows of two or three.
 render::Layout arranged(const FrameInput& input, int versions) {
   const bool titled =
       std::any_of(input.titles.begin(), input.titles.end(), [](const auto& t) { return !t.empty(); });
   const Titles titles = titled ? Titles::kAbove : Titles::kNone;
   if (input.arrangement == Arrangement::kSplit && versions >= 2) {
-    render::Layout layout = layOut(input.view, input.decoration, 1, titles, input.furniture_scale);
+    render::Layout layout = layOut(input.view, input.decoration, 1, titles, input.decoration_scale);
     layout.plots.push_back(layout.plots.front());
     return layout;
   }
-  if (versions < 4) return layOut(input.view, input.decoration, versions, titles, input.furniture_scale);
+  if (versions < 4) return layOut(input.view, input.decoration, versions, titles, input.decoration_scale);
   render::Layout layout =
-      layOut(input.view, input.decoration, (versions + 1) / 2, titles, input.furniture_scale);
+      layOut(input.view, input.decoration, (versions + 1) / 2, titles, input.decoration_scale);
   const std::vector<Rectangle> columns = layout.plots;
   const int gap = static_cast<int>(std::lround((titled ? 40 : 16) * layout.scale));
   layout.plots.clear();
@@ -56,7 +56,7 @@ double windowAtMiddle(const PanelPlan& p) {
   const auto hit = meetSurface(p.field.reader(), ray.from, ray.along);
   if (!hit) return 1.0;
   glm::dvec3 at = inScene(p, hit->position_mm);
-  // Heights are drawn cut.
+  // Heights are drawn clipped.
   at.z = std::clamp(at.z, p.floor_z, p.cut_z);
   return std::clamp(p.camera.windowOf(at), 0.1, 10.0);
 }
@@ -89,16 +89,16 @@ engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& show
   spec.decoration = input.decoration;
   spec.theme = input.theme;
   engine::Result<PicturePlan> plan =
-      layPicture(spec, shown.versions, spans, arranged(input, static_cast<int>(shown.versions.size())));
+      planPicture(spec, shown.versions, spans, arranged(input, static_cast<int>(shown.versions.size())));
   if (plan) {
-    plan->furniture.titles = input.titles;
+    plan->decorations.titles = input.titles;
     const auto anyMark = [](const engine::Version& v) { return v.reader().root().marked_children != 0; };
-    // The plan takes the suggested ones for marks.
+    // The plan counts suggested marks as marks.
     if (shown.accepted)
-      plan->furniture.marks = shown.marks == MarksOverlay::kShow &&
-                              (anyMark(*shown.accepted) ||
-                               std::any_of(shown.versions.begin() + 1, shown.versions.end(), anyMark));
-    plan->furniture.suggested =
+      plan->decorations.marks = shown.marks == MarksOverlay::kShow &&
+                                (anyMark(*shown.accepted) ||
+                                 std::any_of(shown.versions.begin() + 1, shown.versions.end(), anyMark));
+    plan->decorations.suggested =
         shown.marks == MarksOverlay::kShow && shown.accepted && !(*shown.accepted == shown.versions.front());
   }
   return plan;
@@ -109,7 +109,7 @@ std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLin
   std::vector<gpu::Line> out;
   const double per_mm = panel.mm_per_unit / panel.field.grid().height_unit.mm;
   const double zero_mm = panel.reference * panel.field.grid().height_unit.mm;
-  // A hair towards the viewer, so that a line on the surface is not lost in it.
+  // Slightly towards the viewer, so that a line on the surface is not hidden by it.
   const glm::dvec3 lift = (depth == OverlayLine::Depth::kInScene ? 1.5 / panel.camera.pixelsPerMm() : 0.0) *
                           panel.camera.toViewer();
   const auto scene = [&](const glm::dvec3& p) {

@@ -10,19 +10,19 @@
 
 namespace fettle::render {
 
-/// What a live frame shows and where, from what does not change with the heights.
+/// What a live frame shows and where: everything that does not depend on the heights.
 ///
-/// Errors (kInput): what FrameInput says about ranges. Thread: any.
+/// Errors (kInput): input outside the ranges stated at FrameInput. Thread: any.
 [[nodiscard]] engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& shown,
                                                     const PictureSpans& spans);
 
-/// A line of sight in field coordinates: where it comes from and where it goes, not of unit length.
+/// A ray in field coordinates; its direction is not of unit length.
 [[nodiscard]] Ray inField(const PanelPlan& panel, const Ray& ray);
 /// A point of the field in scene coordinates.
 [[nodiscard]] glm::dvec3 inScene(const PanelPlan& panel, const glm::dvec3& field_mm);
-/// Where the window stands that the surface in the middle of the plot lies on (Stereo::screen_distance).
+/// Position of the window in which the surface in the middle of the plot lies (Stereo::screen_distance).
 [[nodiscard]] double windowAtMiddle(const PanelPlan& panel);
-/// Those lines of one kind, as the shaders take them.
+/// The lines of one kind, in the layout of the shaders.
 [[nodiscard]] std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLine::Depth depth,
                                              const PanelPlan& panel);
 

@@ -10,7 +10,7 @@ namespace fettle::render {
 
 namespace {
 
-// Whether two panels are alike but for samples and patches, so that damageOf finds where they differ.
+// Whether two panels are equal except for samples and patches, so that damageOf finds where they differ.
 bool onlyFieldDiffers(const DrawnFrame::Panel& a, const DrawnFrame::Panel& b) {
   return related(a.field, b.field) && a.variant == b.variant && a.shade_level == b.shade_level &&
          a.pages == b.pages && std::memcmp(&a.uniforms, &b.uniforms, sizeof(a.uniforms)) == 0;
@@ -18,14 +18,14 @@ bool onlyFieldDiffers(const DrawnFrame::Panel& a, const DrawnFrame::Panel& b) {
 
 }  // namespace
 
-bool goesOn(const DrawnFrame& before, const DrawnFrame& now) {
+bool canContinue(const DrawnFrame& before, const DrawnFrame& now) {
   if (before.panels.size() != now.panels.size() || before.ground != now.ground ||
       !(before.original == now.original) || !(before.accepted == now.accepted) ||
-      before.furniture.size() != now.furniture.size())
+      before.decorations.size() != now.decorations.size())
     return false;
-  // Plain numbers without gaps, and equal bits draw equal pictures.
-  if (!now.furniture.empty() && std::memcmp(before.furniture.data(), now.furniture.data(),
-                                            now.furniture.size() * sizeof(gpu::Quad)) != 0)
+  // Plain numbers without padding: equal bits draw equal pictures.
+  if (!now.decorations.empty() && std::memcmp(before.decorations.data(), now.decorations.data(),
+                                              now.decorations.size() * sizeof(gpu::Quad)) != 0)
     return false;
   bool some = now.panels.empty();
   for (std::size_t i = 0; i < now.panels.size(); ++i) {
@@ -37,8 +37,7 @@ bool goesOn(const DrawnFrame& before, const DrawnFrame& now) {
 }
 
 std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame& now,
-                                     std::span<const PatchQuestion> questions,
-                                     std::vector<LivePanel>& panels) {
+                                     std::span<const PatchQuery> queries, std::vector<LivePanel>& panels) {
   std::vector<PatchChoice> parts(panels.size());
   for (std::size_t i = 0; i < panels.size(); ++i) {
     if (!onlyFieldDiffers(before.panels[i], now.panels[i])) {
@@ -47,15 +46,15 @@ std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame&
     }
     const std::vector<engine::TileChange> tiles =
         engine::changedTiles(before.panels[i].field, now.panels[i].field);
-    DamageQuestion q;
-    q.now = questions[i];
+    DamageQuery q;
+    q.now = queries[i];
     q.before = before.panels[i].field.reader();
     q.tiles = tiles;
     q.chosen_before = &before.panels[i].choice;
     q.chosen_after = panels[i].choice;
     q.visible = panels[i].visible;
     panels[i].redraw = damageOf(q);
-    parts[i] = within(*panels[i].choice, questions[i], panels[i].redraw);
+    parts[i] = within(*panels[i].choice, queries[i], panels[i].redraw);
     panels[i].choice = &parts[i];
   }
   return parts;

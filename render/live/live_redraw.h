@@ -13,7 +13,7 @@
 
 namespace fettle::render {
 
-/// What the layers of a LiveFrame show: another frame that differs in some panels, or in the fields alone, is
+/// What the layers of a LiveFrame show: a next frame that differs in some panels, or only in the fields, is
 /// drawn in parts.
 struct DrawnFrame {
   struct Panel {
@@ -23,24 +23,24 @@ struct DrawnFrame {
     int shade_level = 0;
     Rectangle plot, visible;
     PatchChoice choice;
-    std::vector<std::uint32_t> pages;  ///< by need: pages that come and go change what is drawn
+    std::vector<std::uint32_t> pages;  ///< on demand: loaded and evicted pages change what is drawn
   };
   std::vector<Panel> panels;
-  std::vector<gpu::Quad> furniture;
+  std::vector<gpu::Quad> decorations;
   glm::vec3 ground{0.0F};
   engine::Version original;
   std::optional<engine::Version> accepted;
 };
 
-/// Whether a frame can go on from the one before: both lie alike on the picture, and some panel of it shows a
-/// state of the same field in the same way.
-[[nodiscard]] bool goesOn(const DrawnFrame& before, const DrawnFrame& now);
+/// Whether a frame can be drawn over the one before: both have the same layout, and some panel shows a state
+/// of the same field in the same way.
+[[nodiscard]] bool canContinue(const DrawnFrame& before, const DrawnFrame& now);
 
-/// Sets what of each panel is to be drawn anew - where damageOf says that it differs, or all of it where more
-/// changed than samples and patches - and cuts the panels' choices down to that: to those returned, which
-/// have to outlive the panels.
+/// Sets the part of each panel that is drawn again - the difference by damageOf, or the whole panel where
+/// more changed than samples and patches - and clips the panels' choices to it: to the returned ones, which
+/// must outlive the panels.
 [[nodiscard]] std::vector<PatchChoice> cutToDamage(const DrawnFrame& before, const DrawnFrame& now,
-                                                   std::span<const PatchQuestion> questions,
+                                                   std::span<const PatchQuery> queries,
                                                    std::vector<LivePanel>& panels);
 
 }  // namespace fettle::render

@@ -26,7 +26,8 @@ void add(FrameStatistics& all, const FrameStatistics& frame) {
   all.upload.tiles += frame.upload.tiles;
   all.upload.bytes += frame.upload.bytes;
   all.upload.ms += frame.upload.ms;
-  all.residency.pages_beyond = std::max(all.residency.pages_beyond, frame.residency.pages_beyond);
+  all.residency.pages_over_budget =
+      std::max(all.residency.pages_over_budget, frame.residency.pages_over_budget);
   all.device_ms = std::max(0.0, all.device_ms) + frame.device_ms;
   all.range = frame.range;
   all.vertical_exaggeration = frame.vertical_exaggeration;
@@ -42,7 +43,7 @@ FrameInput stillInput(const View& view) {
   input.theme = Theme::kLight;
   input.error_px = kStillErrorPx;
   input.sharpness = Sharpness::kFine;
-  // More than a part has rays: what bounds the vertices is error_px.
+  // More than the rays of a part: error_px is what limits the vertices.
   input.vertex_budget = kMostFrameVertices;
   return input;
 }
@@ -50,11 +51,11 @@ FrameInput stillInput(const View& view) {
 engine::Result<FrameStatistics> drawRows(LivePicture& picture, const FrameInput& input, const RowSink& sink,
                                          engine::JobControl& job, int part_side) {
   assert(part_side >= 2 && part_side % 2 == 0);
-  const auto uploaded = picture.settle(job);
+  const auto uploaded = picture.uploadAll(job);
   if (!uploaded) return tl::unexpected(uploaded.error());
   FrameStatistics all;
   all.upload = *uploaded;
-  // Side by side, each part is drawn for both eyes, and lies once in either half.
+  // Side by side, each part is drawn for both eyes, and appears once in each half.
   const bool halves = input.stereo.mode == StereoMode::kSideBySide;
   FrameInput part = input;
   part.pages = FrameInput::Pages::kAll;

@@ -7,7 +7,8 @@
 
 namespace fettle::render {
 
-Resize::Resize(const Context& context, Way way, vk::Format format) : context_(context), format_(format) {
+Resize::Resize(const Context& context, Direction direction, vk::Format format)
+    : context_(context), format_(format) {
   constexpr auto kClamp = vk::SamplerAddressMode::eClampToEdge;
   sampler_ = vk::raii::Sampler(context.device(), vk::SamplerCreateInfo{}
                                                      .setMagFilter(vk::Filter::eLinear)
@@ -26,17 +27,17 @@ Resize::Resize(const Context& context, Way way, vk::Format format) : context_(co
   vk::DescriptorPoolCreateInfo pool{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 2};
   pool_ = vk::raii::DescriptorPool(context.device(), pool.setPoolSizes(size));
   for (Layer& layer : layers_) {
-    vk::DescriptorSetAllocateInfo wanted{*pool_};
+    vk::DescriptorSetAllocateInfo allocate{*pool_};
     layer.set =
-        std::move(vk::raii::DescriptorSets(context.device(), wanted.setSetLayouts(*set_layout_)).front());
+        std::move(vk::raii::DescriptorSets(context.device(), allocate.setSetLayouts(*set_layout_)).front());
   }
-  pipeline_ = makePipeline(
-      context, {.vertex = resize_vert_spirv,
-                .fragment = way == Way::kEnlarge ? std::span<const std::uint32_t>(enlarge_frag_spirv)
-                                                 : std::span<const std::uint32_t>(reduce_frag_spirv),
-                .topology = vk::PrimitiveTopology::eTriangleStrip,
-                .colour = format,
-                .layout = *layout_});
+  pipeline_ = makePipeline(context, {.vertex = resize_vert_spirv,
+                                     .fragment = direction == Direction::kEnlarge
+                                                     ? std::span<const std::uint32_t>(enlarge_frag_spirv)
+                                                     : std::span<const std::uint32_t>(reduce_frag_spirv),
+                                     .topology = vk::PrimitiveTopology::eTriangleStrip,
+                                     .colour = format,
+                                     .layout = *layout_});
 }
 
 void Resize::set(const GpuImage& from, const GpuImage& to, std::uint32_t layers) {

@@ -6,20 +6,20 @@
 
 namespace fettle::render {
 
-/// Draws a picture from one of half or twice the size each way.
+/// Draws a picture at half or twice the size in each direction.
 ///
 /// Threading: as Context. Throws vk::SystemError.
 class Resize {
  public:
-  enum class Way {
-    kEnlarge,  ///< what lies between pixels is interpolated
+  enum class Direction {
+    kEnlarge,  ///< pixels in between are interpolated
     kReduce,   ///< a pixel is the mean of four
   };
-  /// `format`: what both pictures are read and written as. Enlarging takes code values and not amounts of
-  /// light, which is a third of the work; a mean of rays is one of light.
-  Resize(const Context& context, Way way, vk::Format format);
-  /// Which pictures: one of twice the other's size; one layer or two each. They may no longer be in use by
-  /// the ones set before.
+  /// `format`: of both pictures. Enlarging works on code values and not on amounts of light, which is a third
+  /// of the work; reducing averages light.
+  Resize(const Context& context, Direction direction, vk::Format format);
+  /// Sets the pictures: one of twice the other's size; one layer or two each. Those set before may no longer
+  /// be in use.
   void set(const GpuImage& from, const GpuImage& to, std::uint32_t layers);
   /// `from` is in ShaderReadOnlyOptimal, `to` in ColorAttachmentOptimal. All of it is written.
   void record(const vk::raii::CommandBuffer& commands) const;
@@ -38,7 +38,7 @@ class Resize {
   };
   std::array<Layer, 2> layers_;
   std::uint32_t count_ = 0;
-  vk::Extent2D extent_;  // of what is written
+  vk::Extent2D extent_;  // of the output
 };
 
 }  // namespace fettle::render

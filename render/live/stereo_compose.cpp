@@ -32,8 +32,8 @@ StereoCompose::StereoCompose(Context& context, vk::Format colour) : context_(con
   const vk::DescriptorPoolSize size{vk::DescriptorType::eSampledImage, 2};
   vk::DescriptorPoolCreateInfo pool{vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1};
   pool_ = vk::raii::DescriptorPool(context.device(), pool.setPoolSizes(size));
-  vk::DescriptorSetAllocateInfo wanted{*pool_};
-  set_ = std::move(vk::raii::DescriptorSets(context.device(), wanted.setSetLayouts(*set_layout_)).front());
+  vk::DescriptorSetAllocateInfo allocate{*pool_};
+  set_ = std::move(vk::raii::DescriptorSets(context.device(), allocate.setSetLayouts(*set_layout_)).front());
 }
 
 vk::Extent2D StereoCompose::eyeExtent(StereoMode mode, vk::Extent2D whole) noexcept {

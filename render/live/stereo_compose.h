@@ -11,7 +11,7 @@
 
 namespace fettle::render {
 
-/// The two eyes' pictures, and the pass that puts them into one.
+/// The pictures of the two eyes, and the pass that combines them into one.
 ///
 /// Threading: as Context. Throws vk::SystemError.
 class StereoCompose {
@@ -25,13 +25,12 @@ class StereoCompose {
   };
   /// Pixels of one eye's picture in a picture of `whole`.
   [[nodiscard]] static vk::Extent2D eyeExtent(StereoMode mode, vk::Extent2D whole) noexcept;
-  /// Before the eyes are drawn: makes their images, and lets what comes in this submission wait until the
-  /// last one's were read.
+  /// Before the eyes are drawn: creates their images, and makes this submission wait until those of the last
+  /// one were read.
   void begin(Submissions& submissions, vk::Extent2D eye, Layers layers);
-  /// Where an eye is to be drawn; both of them for kOneImage, as a view of two layers. Left as a source of
-  /// copies.
+  /// The target of an eye; of both eyes for kOneImage, as a view of two layers. Left as a source of copies.
   [[nodiscard]] LiveTarget target(Eye eye) const;
-  /// After the eyes are drawn: both of them in `target`, and what the target wants over them.
+  /// After the eyes are drawn: draws both into `target`, then what LiveTarget::over draws.
   void record(const vk::raii::CommandBuffer& commands, StereoMode mode, const LiveTarget& target);
 
  private:
@@ -45,7 +44,7 @@ class StereoCompose {
   vk::raii::DescriptorSet set_ = nullptr;
   std::map<StereoMode, vk::raii::Pipeline> pipelines_;
   Layers layers_ = Layers::kTwoImages;
-  std::array<GpuImage, 2> images_;                              // the first alone for kOneImage
+  std::array<GpuImage, 2> images_;                              // only the first for kOneImage
   std::array<vk::raii::ImageView, 2> views_{nullptr, nullptr};  // of each eye
 };
 

@@ -15,7 +15,7 @@ namespace {
 // Half the perspective camera's angle up and down.
 const double kTanHalfAngle = std::tan(17.5 * std::numbers::pi / 180.0);
 
-// Exact at the quarter turns, where pictures must be square with the field.
+// Exact at multiples of 90 degrees, where pictures must be aligned with the field.
 double sine(double degrees) {
   const double turn = std::remainder(degrees, 360.0);
   if (turn == 0.0 || std::abs(turn) == 180.0) return 0.0;
@@ -82,10 +82,10 @@ Camera Camera::fit(const View& view, const Box& shown, const Box& drawn, const R
       near = std::max(near, depth);
       far = std::min(far, depth);
     }
-  // A little air, so that nothing lies on the two planes themselves.
-  const double air = 0.01 * (near - far) + 1e-9 * std::max(half_width, half_height);
-  near += air;
-  far -= air;
+  // A small margin, so that nothing lies on the two planes themselves.
+  const double margin = 0.01 * (near - far) + 1e-9 * std::max(half_width, half_height);
+  near += margin;
+  far -= margin;
 
   glm::dmat4 from_view(0.0);  // columns: clip x, y, z, w as functions of view x, y, z, 1
   if (view.projection == Projection::kOrthographic) {
@@ -122,12 +122,12 @@ Camera Camera::fit(const View& view, const Box& shown, const Box& drawn, const R
 Camera Camera::aside(double share, double window) const noexcept {
   Camera eye = *this;
   const double aside = share * distance_, at_window = window * distance_;
-  // How far a point is behind the window, over the window's distance, as a function of x, y, z, 1.
+  // Distance of a point behind the window, over the window's distance, as a function of x, y, z, 1.
   const glm::dvec4 behind =
       glm::dvec4(-to_viewer_, distance_ - at_window + glm::dot(to_viewer_, target_)) / at_window;
-  // From the eye's place all points move by -aside; the frustum is sheared back so that those of the window
-  // stay: clip x grows by across * aside * (w / at_window - 1), w being the distance from the viewer. The
-  // parallel camera's is that shear alone.
+  // From the eye's position all points move by -aside; the frustum is sheared back so that points in the
+  // window stay: clip x grows by across * aside * (w / at_window - 1), w being the distance from the viewer.
+  // The parallel camera uses only that shear.
   for (int i = 0; i < 4; ++i) eye.clip_from_scene_[i][0] += across_ * aside * behind[i];
   eye.scene_from_clip_ = glm::inverse(eye.clip_from_scene_);
   return eye;
@@ -137,7 +137,7 @@ Camera Camera::part(const Rectangle& part) const noexcept {
   Camera c = *this;
   const glm::dvec2 plot(plot_.width, plot_.height), size(part.width, part.height);
   const glm::dvec2 scale = plot / size;
-  // Twice the way from the part's middle to the plot's, in halves of the part.
+  // Twice the vector from the part's middle to the plot's, in halves of the part.
   const glm::dvec2 shift = (2.0 * glm::dvec2(plot_.x - part.x, plot_.y - part.y) + plot - size) / size;
   for (int i = 0; i < 4; ++i) {
     glm::dvec4& clip = c.clip_from_scene_[i];
@@ -179,8 +179,8 @@ double Camera::movesAtMost(const glm::dvec3& step, const Box& box) const noexcep
   double w = std::numeric_limits<double>::infinity();
   for (const glm::dvec3& corner : corners(box))
     w = std::min(w, (clip_from_scene_ * glm::dvec4(corner, 1.0)).w);
-  // (x + dx) / (w + dw) - x / w = (dx - (x / w) dw) / (w + dw), and |x / w| <= 1 for what is seen. The end of
-  // the move is in the box or a step from it, hence the smaller w.
+  // (x + dx) / (w + dw) - x / w = (dx - (x / w) dw) / (w + dw), and |x / w| <= 1 for visible points. The end
+  // of the move is in the box or one step from it, hence the smaller w.
   w = std::max(w - std::abs(move.w), near_w_);
   return std::hypot((std::abs(move.x) + std::abs(move.w)) * 0.5 * plot_.width,
                     (std::abs(move.y) + std::abs(move.w)) * 0.5 * plot_.height) /

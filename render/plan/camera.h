@@ -16,7 +16,7 @@ struct Rectangle {
   friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
 [[nodiscard]] bool empty(const Rectangle& r) noexcept;
-/// What two of them share; of no size where they share nothing.
+/// The common part of two rectangles; of size zero where there is none.
 [[nodiscard]] Rectangle cut(const Rectangle& a, const Rectangle& b) noexcept;
 
 /// A box in scene coordinates [mm], exaggeration in z.
@@ -31,15 +31,15 @@ struct Ray {
   glm::dvec3 along;  ///< unit, away from the viewer
 };
 
-/// Turns scene coordinates into pixels and back, in double precision. Scene coordinates are right-handed: x
-/// and y as in the field, z up. Clip space is Vulkan's: y down, depth 0 (near) .. 1 (far).
+/// Transforms scene coordinates into pixels and back, in double precision. Scene coordinates are
+/// right-handed: x and y as in the field, z up. Clip space is Vulkan's: y down, depth 0 (near) .. 1 (far).
 class Camera {
  public:
   Camera() = default;
 
-  /// The camera of `view` that shows all of `shown` in `plot` at zoom 1, and whose depth range takes in all
-  /// of `drawn` as well. A box without extent is shown as if it were one millimetre wide. view.width and
-  /// view.height play no part.
+  /// The camera of `view` that shows all of `shown` in `plot` at zoom 1, and whose depth range also contains
+  /// all of `drawn`. A box without extent is shown as if it were one millimetre wide. view.width and
+  /// view.height are not used.
   [[nodiscard]] static Camera fit(const View& view, const Box& shown, const Box& drawn,
                                   const Rectangle& plot);
 
@@ -49,40 +49,41 @@ class Camera {
   [[nodiscard]] const glm::dvec3& up() const noexcept { return up_; }
   [[nodiscard]] const glm::dvec3& toViewer() const noexcept { return to_viewer_; }
 
-  /// The camera of an eye next to this one that looks through the same window: a plane square to the view at
-  /// `window` times the distance of the middle of what is shown, whose points both see at the same pixels
-  /// (Bourke 1999, "Calculating stereo pairs"). `share`: how far to the right it stands, as a share of that
-  /// distance. A parallel camera has no place; it is sheared as if it stood where the perspective one does.
+  /// The camera of an eye next to this one that looks through the same window: a plane perpendicular to the
+  /// view at `window` times the distance of the middle of what is shown, whose points both eyes see at the
+  /// same pixels (Bourke 1999, "Calculating stereo pairs"). `share`: how far to the right it is, as a share
+  /// of that distance. A parallel camera has no position; it is sheared as if it were at the perspective
+  /// one's.
   [[nodiscard]] Camera aside(double share, double window) const noexcept;
-  /// Pixels that such an eye's picture of a point far behind the window is moved by, for a share of 1.
+  /// Pixels by which a point far behind the window is moved in such an eye's picture, for a share of 1.
   [[nodiscard]] double asidePixels(double window) const noexcept;
-  /// The `window` that a point lies on; > 0 before the viewer.
+  /// The `window` in which a point lies; > 0 in front of the viewer.
   [[nodiscard]] double windowOf(const glm::dvec3& point) const noexcept;
 
-  /// The camera of a part of the picture alone, which may reach beyond the plot: a point lies at the same
-  /// pixel, rounding apart, and clip space ends where `part` does.
+  /// The camera of only a part of the picture, which may extend beyond the plot: a point has the same pixel,
+  /// except for rounding, and clip space ends where `part` does.
   [[nodiscard]] Camera part(const Rectangle& part) const noexcept;
 
-  /// Pixels that a millimetre parallel to the picture takes, at the middle of what is shown.
+  /// Pixels per millimetre parallel to the picture, at the middle of what is shown.
   [[nodiscard]] double pixelsPerMm() const noexcept { return pixels_per_mm_; }
 
-  /// Where a point of the scene lies in the picture; pixel (i, j) covers [i, i + 1) x [j, j + 1).
+  /// Position of a scene point in the picture; pixel (i, j) covers [i, i + 1) x [j, j + 1).
   [[nodiscard]] glm::dvec2 pixelOf(const glm::dvec3& point) const noexcept;
 
-  /// What lies under a place in the picture.
+  /// The ray under a position in the picture.
   [[nodiscard]] Ray rayAt(const glm::dvec2& pixel) const noexcept;
 
-  /// How far a point of the box can move in the picture when it moves by at most `step` in the scene, as a
-  /// bound [px]; of points and moves whose visible part counts: what lies before the near plane does not.
+  /// Upper limit of how far a point of the box moves in the picture when it moves by at most `step` in the
+  /// scene [px]; of visible points and moves only: what is in front of the near plane does not count.
   [[nodiscard]] double movesAtMost(const glm::dvec3& step, const Box& box) const noexcept;
 
   /// Distance from the viewer, for sorting: grows away from it.
   [[nodiscard]] double depthOf(const glm::dvec3& point) const noexcept;
 
-  /// Whether no part of the box can be in the plot. Conservative: false when in doubt.
+  /// Whether no part of the box can be in the plot. Conservative: false where uncertain.
   [[nodiscard]] bool misses(const Box& box) const noexcept;
 
-  /// Whether both show the same, bit for bit.
+  /// Whether both are bit-identical.
   friend bool operator==(const Camera&, const Camera&) = default;
 
  private:
@@ -91,7 +92,7 @@ class Camera {
   glm::dvec3 right_{1.0, 0.0, 0.0}, up_{0.0, 1.0, 0.0}, to_viewer_{0.0, 0.0, 1.0};
   double pixels_per_mm_ = 1.0;
   double near_w_ = 1.0;    // clip w on the near plane; 1 when orthographic
-  double distance_ = 1.0;  // of the viewer from the target [mm]; imagined when orthographic
+  double distance_ = 1.0;  // of the viewer from the target [mm]; assumed when orthographic
   double across_ = 1.0;    // clip x of a millimetre to the right
   glm::dvec3 target_{0.0};
   bool perspective_ = false;

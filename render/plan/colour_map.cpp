@@ -14,7 +14,7 @@ glm::vec3 linear(const std::array<float, 3>& code) {
   return {linearFromSrgb(code[0]), linearFromSrgb(code[1]), linearFromSrgb(code[2])};
 }
 
-// Tables given with fewer steps are filled up along straight lines of code values.
+// Tables with fewer steps are interpolated linearly in code values.
 ColourTable tableOf(std::span<const std::array<float, 3>> steps) {
   ColourTable table;
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -43,7 +43,7 @@ const ColourTable& colourTable(ColourMap map) {
   static const ColourTable viridis = tableOf(data::kViridis);
   static const ColourTable cividis = tableOf(data::kCividis);
   static const ColourTable diverging = tableOf(data::kDiverging);
-  // From a dark grey up, so that shading has room to darken the lowest heights too.
+  // Begins at dark grey, so that shading can darken the lowest heights too.
   static constexpr std::array<std::array<float, 3>, 2> kGreyEnds{{{0.2F, 0.2F, 0.2F}, {1.0F, 1.0F, 1.0F}}};
   static const ColourTable grey = tableOf(kGreyEnds);
   switch (map) {

@@ -11,19 +11,19 @@ namespace fettle::render {
 /// 256 colours, even steps of the value from low to high, in linear light (sRGB primaries).
 using ColourTable = std::array<glm::vec3, 256>;
 
-/// The table of a map. kAuto is not a map: resolve it first.
+/// The table of a map. kAuto must be resolved first.
 ///
 /// Sources, stated in full in assets/colour_maps: viridis (Smith and van der Walt 2015), cividis (Nunez et
 /// al. 2018), diverging (Brewer, ColorBrewer RdBu, turned round, white middle); grey is even in sRGB code
 /// values, close to even in perceived lightness.
 [[nodiscard]] const ColourTable& colourTable(ColourMap map);
 
-/// What kAuto stands for.
+/// The quantity that kAuto depends on.
 enum class Quantity { kHeight, kDeviation };
 [[nodiscard]] ColourMap resolve(ColourMap map, Quantity quantity) noexcept;
 
-/// The colour of a value between low (first colour) and high (last), straight lines between the table's
-/// colours in linear light, as the shaders do it.
+/// The colour of a value between low (first colour) and high (last), interpolated linearly between the
+/// table's colours in linear light, as in the shaders.
 [[nodiscard]] glm::vec3 mapped(const ColourTable& table, double value, const ValueRange& range) noexcept;
 
 /// IEC 61966-2-1, channel values 0 .. 1.

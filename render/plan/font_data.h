@@ -5,8 +5,8 @@
 
 namespace fettle::render {
 
-/// DejaVu Sans and DejaVu Sans Bold 2.37 (Bitstream Vera licence, free to embed) as TrueType files, taken
-/// from fonts-dejavu-core when the program was built: nothing has to be found at run time.
+/// DejaVu Sans and DejaVu Sans Bold 2.37 (Bitstream Vera licence, free to embed) as TrueType files, embedded
+/// from fonts-dejavu-core at build time: nothing is searched at run time.
 [[nodiscard]] std::span<const std::uint8_t> regularFont() noexcept;
 [[nodiscard]] std::span<const std::uint8_t> boldFont() noexcept;
 

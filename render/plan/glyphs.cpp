@@ -55,7 +55,7 @@ const Glyphs::Glyph& Glyphs::glyph(char32_t character, int size_px, Weight weigh
     const FT_GlyphSlot slot = face->glyph;
     g.advance = static_cast<double>(slot->advance.x) / 64.0;
     const int width = static_cast<int>(slot->bitmap.width), height = static_cast<int>(slot->bitmap.rows);
-    // A texel of air around each glyph keeps neighbours apart.
+    // An empty texel around each glyph separates neighbours.
     if (row_x_ + width + 1 > kSide) {
       row_y_ += row_height_;
       row_x_ = row_height_ = 0;

@@ -11,14 +11,14 @@
 
 namespace fettle::render {
 
-/// Letters of DejaVu Sans (embedded at build time), rasterised by FreeType into one grey image as they are
-/// asked for: light hinting keeps horizontal stems on pixel rows, so that small text is crisp.
+/// Glyphs of DejaVu Sans (embedded at build time), rasterised by FreeType into one grey image on demand:
+/// light hinting keeps horizontal stems on pixel rows, so that small text is crisp.
 ///
 /// Threading: one thread at a time.
 class Glyphs {
  public:
   struct Glyph {
-    int x = 0, y = 0;           ///< place in the image [texels]
+    int x = 0, y = 0;           ///< position in the image [texels]
     int width = 0, height = 0;  ///< size [texels = pixels]
     int left = 0, top = 0;      ///< from the pen to the left edge, from the baseline up to the top edge [px]
     double advance = 0.0;       ///< pen to pen [px]
@@ -32,18 +32,18 @@ class Glyphs {
 
   static constexpr int kSide = kGlyphImageSide;  ///< the image is kSide x kSide, one byte of coverage each
 
-  /// One character at a font size [px]; a box for one the font lacks, empty when the image is full (counted
-  /// by lost()).
+  /// One character at a font size [px]; a box for a character that the font lacks, empty when the image is
+  /// full (counted by lost()).
   [[nodiscard]] const Glyph& glyph(char32_t character, int size_px, Weight weight);
 
-  /// Distance the pen goes [px]. Malformed UTF-8 shows as U+FFFD.
+  /// Advance of the text [px]. Malformed UTF-8 shows as U+FFFD.
   [[nodiscard]] double width(const std::string& text, int size_px, Weight weight);
 
   [[nodiscard]] const std::vector<std::uint8_t>& image() const noexcept { return image_; }
-  /// Grows whenever the image changes.
+  /// Increases whenever the image changes.
   [[nodiscard]] std::uint64_t generation() const noexcept { return generation_; }
   [[nodiscard]] std::int64_t lost() const noexcept { return lost_; }
-  /// Forgets every glyph: sizes no longer in use would fill the image in the end.
+  /// Removes every glyph: sizes no longer in use would eventually fill the image.
   void clear();
   /// Rows of the image in use.
   [[nodiscard]] int used() const noexcept { return row_y_ + row_height_; }
@@ -59,7 +59,7 @@ class Glyphs {
   std::int64_t lost_ = 0;
 };
 
-/// The characters of a UTF-8 text; bytes that are no UTF-8 become U+FFFD, control characters spaces.
+/// The characters of a UTF-8 text; invalid bytes become U+FFFD, control characters spaces.
 [[nodiscard]] std::u32string charactersOf(const std::string& text);
 
 }  // namespace fettle::render

@@ -8,7 +8,7 @@
 namespace fettle::render {
 
 gpu::ViewUniforms viewOf(const Camera& camera, const Placing& placing, const Rectangle& plot) {
-  // Columns: what x, y, depth and 1 give.
+  // Columns: the results of x, y, depth and 1.
   glm::dmat4 clip_from_pixel(1.0);
   clip_from_pixel[0][0] = 2.0 / plot.width;
   clip_from_pixel[1][1] = 2.0 / plot.height;
@@ -20,7 +20,7 @@ gpu::ViewUniforms viewOf(const Camera& camera, const Placing& placing, const Rec
                            1.0};
   glm::dmat4 back = samples_from_scene * glm::inverse(camera.clipFromScene()) * clip_from_pixel;
 
-  // The middle of the plot, half way in: whatever is seen is not far from there, in pixels.
+  // The middle of the plot, halfway in depth: in pixels, everything visible is near it.
   const glm::dvec4 middle =
       back * glm::dvec4(plot.x + 0.5 * plot.width, plot.y + 0.5 * plot.height, 0.5, 1.0);
   const auto nearest = [&](double p, int size) {

@@ -27,7 +27,7 @@ double roundDown125(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   for (const double digit : {5.0, 2.0, 1.0})
     if (digit * power <= value * (1.0 + 1e-12)) return digit * power;
-  return 0.5 * power;  // log10 rounded up past an exact power
+  return 0.5 * power;  // log10 was rounded up past an exact power
 }
 
 ShownUnit shownUnit(const engine::LengthUnit& unit, double size, double smallest, double largest) {
@@ -47,7 +47,7 @@ std::vector<Tick> ticks(double low, double high, int wanted) {
   const double span = high - low;
   if (!(span > 0.0) || !std::isfinite(span)) return out;
   double step = roundDown125(span / std::max(1, wanted - 1));
-  // Rounding down may give up to 2.5 times as many as wanted.
+  // Rounding down may give up to 2.5 times as many as requested.
   while (span / step > wanted + 1.0) step = roundDown125(step * 2.5);
   const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 12);
   const double first = std::ceil(low / step - 1e-6);

@@ -10,19 +10,19 @@ namespace fettle::render {
 /// 1, 2 or 5 times a power of ten, the largest not above `value` (> 0, finite).
 [[nodiscard]] double roundDown125(double value);
 
-/// A length unit to show numbers in: its name in UTF-8 ("µm") and how many of it make one of the field's
+/// A length unit for displayed numbers: its name in UTF-8 ("µm") and how many of it make one of the field's
 /// unit.
 struct ShownUnit {
   std::string name;
   double per_unit = 1.0;
 };
 
-/// The unit in which a length of `size` (in `unit`, > 0) reads well: `unit` itself when the number lies in
-/// [smallest, largest), else the metric unit that brings it into [1, 1000). Units that are not metric stay.
+/// A readable unit for a length of `size` (in `unit`, > 0): `unit` itself when the number lies in [smallest,
+/// largest), otherwise the metric unit for which it lies in [1, 1000). Units that are not metric stay.
 [[nodiscard]] ShownUnit shownUnit(const engine::LengthUnit& unit, double size, double smallest,
                                   double largest);
 
-/// Round numbers within [low, high], about `wanted` of them, with just the decimals they need.
+/// Round numbers within [low, high], about `wanted` of them, with only the decimals they need.
 struct Tick {
   double value = 0.0;
   std::string text;

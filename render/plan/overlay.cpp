@@ -27,7 +27,8 @@ class Pen {
            float opacity = 1.0F) {
     put({left, top, left + width, top + height}, {}, colour, opacity, gpu::kFillSolid);
   }
-  // Left end of the text at x, its baseline at y; on whole pixels, or the light hinting is lost.
+  // Left end of the text at x, its baseline at y; rounded to whole pixels, otherwise the light hinting is
+  // lost.
   void text(double x, double y, const std::string& what, int px, Glyphs::Weight weight,
             const glm::vec3& colour) {
     double pen = std::round(x);
@@ -47,7 +48,7 @@ class Pen {
         {glm::vec4(pixels), glm::vec4(uv), glm::vec4(colour, opacity), glm::ivec4(fill, 1, 0, 0)});
   }
   // The largest font size, `px` at most, in which every line is at most `room` wide; 0 when none is legible.
-  // What has a figure in it is fitted so and never cut: a cut number is another number.
+  // Text with a number is fitted so and never truncated: a truncated number is another number.
   int sizeFor(const std::vector<std::string>& lines, double room, int px, Glyphs::Weight weight) {
     const auto fits = [&](int size) {
       return std::all_of(lines.begin(), lines.end(),
@@ -56,7 +57,7 @@ class Pen {
     while (px >= kSmallestPx && !fits(px)) --px;
     return px >= kSmallestPx ? px : 0;
   }
-  // Words of the user's own or without figures, cut with an ellipsis until at most `room` wide.
+  // User's text, or text without numbers, truncated with an ellipsis to at most `room` wide.
   std::string fitted(const std::string& what, double room, int px, Glyphs::Weight weight) {
     if (glyphs_.width(what, px, weight) <= room) return what;
     std::string cut = what;
@@ -79,13 +80,13 @@ class Pen {
 constexpr auto kRegular = Glyphs::Weight::kRegular;
 constexpr auto kBold = Glyphs::Weight::kBold;
 
-// The lines of the note under the colour bar at the size that shows them whole.
+// The lines of the note under the colour bar, at the size that shows them completely.
 struct NoteLines {
   std::vector<std::string> lines;
   int px = 0;
 };
 
-// First as they are, then smaller, then a word and its figure one below the other; empty: no way.
+// First unchanged, then smaller, then a word and its number one below the other; empty: does not fit.
 NoteLines noteLines(Pen& pen, const std::string& note, double room, int px) {
   NoteLines whole, split;
   for (std::size_t from = 0; from <= note.size();) {
@@ -104,8 +105,8 @@ NoteLines noteLines(Pen& pen, const std::string& note, double room, int px) {
   return {};
 }
 
-void colourBar(Pen& pen, const Layout& layout, const View& view, const Furniture& f, const Palette& palette,
-               std::vector<std::string>& warnings) {
+void colourBar(Pen& pen, const Layout& layout, const View& view, const DecorationContent& f,
+               const Palette& palette, std::vector<std::string>& warnings) {
   const double s = layout.scale;
   const Rectangle& plot = layout.plots.back();
   const double left = std::round(plot.x + plot.width + 16 * s);
@@ -132,7 +133,7 @@ void colourBar(Pen& pen, const Layout& layout, const View& view, const Furniture
   const int small = std::max(9, static_cast<int>(std::lround(layout.text_px * 0.8)));
   NoteLines note;
   const auto bottomAbove = [&] {
-    // Three lines of the usual size fit what is kept for a note; one of more lines gets what they need.
+    // Three lines of the usual size fit the reserved height; a note of more lines gets what it needs.
     const double notes =
         note.lines.empty()
             ? 0.0
@@ -174,9 +175,9 @@ void colourBar(Pen& pen, const Layout& layout, const View& view, const Furniture
   }
 }
 
-// A line of a round length, what it stands for, how heights are stretched, and what the special colours mean.
-void bottomLine(Pen& pen, const Layout& layout, const View& view, const Furniture& f, const Palette& palette,
-                std::vector<std::string>& warnings) {
+// A line of a round length, its label, the vertical exaggeration, and what the special colours mean.
+void bottomLine(Pen& pen, const Layout& layout, const View& view, const DecorationContent& f,
+                const Palette& palette, std::vector<std::string>& warnings) {
   const double s = layout.scale;
   const Rectangle& plot = layout.plots.front();
   // Under the lowest row of panels.
@@ -201,7 +202,7 @@ void bottomLine(Pen& pen, const Layout& layout, const View& view, const Furnitur
   pen.box(x + std::round(bar) - std::max(1.0, std::round(1.5 * s)), middle - cap,
           std::max(1.0, std::round(1.5 * s)), 2 * cap, palette.ink);
   x += std::round(bar) + 10 * s;
-  const auto say = [&](const std::string& what, const glm::vec3& colour) {
+  const auto add = [&](const std::string& what, const glm::vec3& colour) {
     const double width = pen.glyphs().width(what, layout.text_px, kRegular);
     if (x + width > view.width - 4 * s) {
       warnings.emplace_back("no room for \"" + what + "\", make the picture wider");
@@ -211,15 +212,15 @@ void bottomLine(Pen& pen, const Layout& layout, const View& view, const Furnitur
     x += width + 26 * s;
     return true;
   };
-  if (!say(label, palette.ink)) return;
+  if (!add(label, palette.ink)) return;
   if (f.exaggeration != 1.0 && view.elevation_deg < 90.0)
-    if (!say("heights \u00d7 " + fmt::format("{:.4g}", f.exaggeration), palette.faint_ink)) return;
+    if (!add("heights \u00d7 " + fmt::format("{:.4g}", f.exaggeration), palette.faint_ink)) return;
   const auto swatch = [&](const glm::vec3& colour, const std::string& what) {
     const double side = std::round(13 * s);
     if (x + side + pen.glyphs().width(what, layout.text_px, kRegular) > view.width - 8 * s) return;
     pen.box(x, middle - std::floor(side / 2), side, side, colour);
     x += side + 7 * s;
-    (void)say(what, palette.ink);
+    (void)add(what, palette.ink);
   };
   if (f.no_data) swatch(palette.no_data, "no data");
   if (f.marks) swatch(palette.marks, "marked");
@@ -236,9 +237,9 @@ Palette paletteOf(Theme theme, ColourMap map) {
   p.faint_ink = rgb(light ? 0x5A6068 : 0xA3A9B2);
   p.no_data = rgb(light ? 0xA6A8AB : 0x6A6D72);
   p.wall = rgb(light ? 0x8B9099 : 0x565B63);
-  // Vermilion stands off viridis, cividis and grey; on blue-white-red it would be read as a value.
+  // Vermilion is distinct from viridis, cividis and grey; on blue-white-red it would be read as a value.
   p.marks = rgb(map == ColourMap::kDiverging ? 0x12A150 : 0xFF3B1F);
-  // As far from the maps as from the marks, for colour-blind eyes by its lightness.
+  // Distinct from the maps and from the marks, for colour-blind users by its lightness.
   p.suggested = rgb(map == ColourMap::kDiverging ? 0xB8860B : 0xFF9DF5);
   return p;
 }
@@ -252,12 +253,12 @@ Layout layOut(const View& view, Decoration decoration, int panels, Titles titles
   layout.scale = std::clamp(wanted, 0.6, 6.0);
   layout.text_px = std::max(10, static_cast<int>(std::lround(15.0 * layout.scale)));
   const double s = layout.scale;
-  // Below this the furniture would leave nothing for the surface.
-  layout.furniture = decoration == Decoration::kFull && view.width >= 200 && view.height >= 140;
+  // Below this size the decorations would leave no room for the surface.
+  layout.decorated = decoration == Decoration::kFull && view.width >= 200 && view.height >= 140;
   const auto px = [s](double at_full_size) { return static_cast<int>(std::lround(at_full_size * s)); };
-  const int left = layout.furniture ? px(20) : 0,
-            top = layout.furniture ? px(titles == Titles::kAbove ? 48 : 18) : 0;
-  const int right = layout.furniture ? std::max(px(116), 72) : 0, bottom = layout.furniture ? px(46) : 0;
+  const int left = layout.decorated ? px(20) : 0,
+            top = layout.decorated ? px(titles == Titles::kAbove ? 48 : 18) : 0;
+  const int right = layout.decorated ? std::max(px(116), 72) : 0, bottom = layout.decorated ? px(46) : 0;
   const int gap = panels > 1 ? px(16) : 0;
   const int width = (view.width - left - right - gap * (panels - 1)) / panels;
   for (int i = 0; i < panels; ++i)
@@ -265,20 +266,21 @@ Layout layOut(const View& view, Decoration decoration, int panels, Titles titles
   return layout;
 }
 
-std::vector<gpu::Quad> furnish(const Layout& layout, const View& view, const Furniture& furniture,
-                               const Palette& palette, Glyphs& glyphs, std::vector<std::string>& warnings) {
+std::vector<gpu::Quad> decorationQuads(const Layout& layout, const View& view,
+                                       const DecorationContent& decorations, const Palette& palette,
+                                       Glyphs& glyphs, std::vector<std::string>& warnings) {
   std::vector<gpu::Quad> quads;
-  if (!layout.furniture) return quads;
+  if (!layout.decorated) return quads;
   const std::int64_t lost = glyphs.lost();
   Pen pen(quads, glyphs);
-  for (std::size_t i = 0; i < layout.plots.size() && i < furniture.titles.size(); ++i) {
+  for (std::size_t i = 0; i < layout.plots.size() && i < decorations.titles.size(); ++i) {
     const Rectangle& plot = layout.plots[i];
     const int px = static_cast<int>(std::lround(layout.text_px * 1.2));
-    pen.text(plot.x, plot.y - 14 * layout.scale, pen.fitted(furniture.titles[i], plot.width, px, kBold), px,
+    pen.text(plot.x, plot.y - 14 * layout.scale, pen.fitted(decorations.titles[i], plot.width, px, kBold), px,
              kBold, palette.ink);
   }
-  colourBar(pen, layout, view, furniture, palette, warnings);
-  bottomLine(pen, layout, view, furniture, palette, warnings);
+  colourBar(pen, layout, view, decorations, palette, warnings);
+  bottomLine(pen, layout, view, decorations, palette, warnings);
   if (glyphs.lost() != lost) warnings.emplace_back("some letters had no room in the glyph image");
   return quads;
 }

@@ -12,27 +12,27 @@
 
 namespace fettle::render {
 
-/// Colours of everything that is not surface, linear light.
+/// Colours of everything except the surface, linear light.
 struct Palette {
   glm::vec3 ground, ink, faint_ink, no_data, wall, marks, suggested;
 };
 [[nodiscard]] Palette paletteOf(Theme theme, ColourMap map);
 
-/// Where things go in a picture of a given size; pixels.
+/// Positions of the parts in a picture of a given size; pixels.
 struct Layout {
   double scale = 1.0;  ///< 1: text of 15 pixels
   int text_px = 15;
-  std::vector<Rectangle> plots;  ///< one a panel
-  bool furniture = false;        ///< whether there is room for colour bar and scale bar
+  std::vector<Rectangle> plots;  ///< one per panel
+  bool decorated = false;        ///< whether there is room for colour bar and scale bar
 };
 enum class Titles { kNone, kAbove };
-/// `scale`: of text and bars, as the display asks for it; 0: by the size of the picture, 1 at 1280 x 800.
-/// However large, text and bars leave three fifths of width and height to the surface.
+/// `scale`: of text and bars, as set for the display; 0: by the size of the picture, 1 at 1280 x 800. At any
+/// scale, text and bars leave three fifths of width and height to the surface.
 [[nodiscard]] Layout layOut(const View& view, Decoration decoration, int panels, Titles titles,
                             double scale = 0.0);
 
-/// What the furniture says.
-struct Furniture {
+/// The content of the decorations.
+struct DecorationContent {
   ValueRange range;                   ///< of the colours [height_unit]
   bool below = false, above = false;  ///< values outside it exist: the bar gets a pointed end
   std::string quantity;               ///< "height" or "deviation"
@@ -44,12 +44,13 @@ struct Furniture {
   bool approximate_scale = false;  ///< perspective: the scale bar holds at the middle only
   bool marks = false, suggested = false, no_data = false;  ///< legend entries
   float marks_opacity = 1.0F;
-  std::vector<std::string> titles;  ///< one a panel
+  std::vector<std::string> titles;  ///< one per panel
 };
 
-/// Builds the quads of the finished picture in drawing order. `warnings` gets a line for what had no room.
-[[nodiscard]] std::vector<gpu::Quad> furnish(const Layout& layout, const View& view,
-                                             const Furniture& furniture, const Palette& palette,
-                                             Glyphs& glyphs, std::vector<std::string>& warnings);
+/// The quads of the decorations in drawing order. `warnings` gets a line for each text that did not fit.
+[[nodiscard]] std::vector<gpu::Quad> decorationQuads(const Layout& layout, const View& view,
+                                                     const DecorationContent& decorations,
+                                                     const Palette& palette, Glyphs& glyphs,
+                                                     std::vector<std::string>& warnings);
 
 }  // namespace fettle::render

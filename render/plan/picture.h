@@ -9,26 +9,26 @@
 
 namespace fettle::render {
 
-/// How space is laid on the picture.
+/// The projection of space to the picture.
 enum class Projection {
-  kOrthographic,  ///< parallel lines stay parallel; lengths can be read off with the scale bar
+  kOrthographic,  ///< parallel lines stay parallel; lengths can be measured with the scale bar
   kPerspective,   ///< 35 degrees up and down; the scale bar then holds at the middle of the field
 };
 
-/// From where, and how large.
+/// View point and scale.
 struct View {
   int width = 1280;  ///< picture, pixels, kSmallestPicture .. kLargestPicture
   int height = 800;  ///< picture, pixels, kSmallestPicture .. kLargestPicture
-  /// Turn of the camera about the vertical [degree], any finite value. 0 stands at the low-y side and looks
-  /// along +y, so that x runs to the right as on a map; positive turns the camera counter-clockwise seen from
-  /// above (90 stands at the high-x side). 315 stands at the corner x, y lowest.
+  /// Turn of the camera about the vertical [degree], any finite value. 0 is at the low-y side and looks along
+  /// +y, so that x runs to the right as on a map; positive turns the camera counter-clockwise seen from above
+  /// (90 is at the high-x side). 315 is at the corner x, y lowest.
   double azimuth_deg = 315.0;
   /// Height of the camera above the horizon [degree], > 0 .. 90; 90 looks straight down, like a map.
   double elevation_deg = 45.0;
   /// 1 shows the whole field; 2 shows it twice as large, and so on; > 0, finite.
   double zoom = 1.0;
-  /// What the middle of the picture shows, as a fraction of the field's extent from its first column and row:
-  /// 0.5, 0.5 is the middle of the field. Finite.
+  /// Centre of the picture, as a fraction of the field's extent from its first column and row: 0.5, 0.5 is
+  /// the middle of the field. Finite.
   double centre_x = 0.5;
   double centre_y = 0.5;
   Projection projection = Projection::kOrthographic;
@@ -57,7 +57,7 @@ enum class Contours {
   kShow,  ///< lines of equal height at the steps of the colour bar
 };
 
-/// What stands around the surface.
+/// What is drawn around the surface.
 enum class Decoration {
   kNone,  ///< surface on its background, nothing else
   kFull,  ///< titles, colour bar, scale bar, legend
@@ -81,8 +81,9 @@ struct PictureSpec {
   /// Colours show (field - this) instead of the height, symmetric about zero. Must have the width and height
   /// of all fields. A sample that is a hole in either is drawn as no-data.
   std::optional<engine::Version> deviation_from;
-  /// Colours' range. Empty: robust, so that single spikes do not eat the colours (render/plan/value_range.h).
-  /// For a deviation the larger absolute value of the two counts, on both sides.
+  /// Range of the colours. Empty: robust, so that single spikes do not use up the colours
+  /// (render/plan/value_range.h). For a deviation the larger absolute value of the two ends counts, on both
+  /// sides.
   std::optional<ValueRange> range;
   MarksOverlay marks = MarksOverlay::kHide;
   double marks_opacity = 0.65;  ///< 0 .. 1
@@ -92,7 +93,7 @@ struct PictureSpec {
   Theme theme = Theme::kLight;
 };
 
-/// 8 bits a channel, sRGB-encoded, row 0 on top, no padding; 4 * width * height bytes, alpha 255.
+/// 8 bits per channel, sRGB-encoded, row 0 on top, no padding; 4 * width * height bytes, alpha 255.
 struct Image {
   int width = 0;
   int height = 0;
@@ -101,13 +102,13 @@ struct Image {
 
 enum class Validation {
   kOff,
-  kOn,  ///< load VK_LAYER_KHRONOS_validation and collect what it says; an error when it is not installed
+  kOn,  ///< load VK_LAYER_KHRONOS_validation and collect its messages; an error when it is not installed
 };
 
-/// Which Vulkan device to draw with.
+/// Which Vulkan device draws.
 struct DeviceOptions {
   Validation validation = Validation::kOff;
-  /// Use the device whose name holds this text (upper and lower case alike); empty: the best that will do.
+  /// Use the device whose name contains this text (upper and lower case alike); empty: the best suitable one.
   std::string device;
 };
 

@@ -5,8 +5,8 @@
 
 namespace fettle::render {
 
-/// How the samples of a field lie in the scene. A field of one row or column is drawn as if that row or
-/// column stood there twice, half a spacing to both sides, so that it has cells to draw.
+/// Position of the samples of a field in the scene. A field of one row or column is drawn as if that row or
+/// column existed twice, half a spacing to both sides, so that it has cells to draw.
 struct Placing {
   glm::ivec2 true_size{1, 1};
   glm::ivec2 size{2, 2};         ///< virtual: never below 2
@@ -18,7 +18,7 @@ struct Placing {
 /// The field's middle at scene (0, 0).
 [[nodiscard]] Placing placingOf(const engine::Grid& grid);
 
-/// Pixels that one step of one sample in x and in y takes on the picture, at the middle of the field.
+/// Size of one sample step in x and in y in the picture [px], at the middle of the field.
 [[nodiscard]] glm::dvec2 cellPixels(const Placing& placing, const Camera& camera);
 
 }  // namespace fettle::render

@@ -16,7 +16,7 @@ namespace {
 using engine::inputError;
 
 constexpr double kAmbient = 0.30;
-// Colours that mean a deviation are read as numbers: relief may hint at the shape, but not darken them.
+// Colours of a deviation are read as numbers: shading may indicate the shape, but not darken them.
 constexpr double kDeviationAmbient = 0.80;
 // The light stands 45 degrees above the field, over the viewer's left shoulder: lit from the upper left,
 // hills look like hills (Imhof 1965, "Kartographische Gelaendedarstellung").
@@ -47,7 +47,7 @@ engine::Status check(const PictureSpec& spec) {
   return {};
 }
 
-// A range with an inside, for colours: what is flat gets the middle colour.
+// A range that is not empty, for colours: a constant value gets the middle colour.
 ValueRange opened(ValueRange r, double half) {
   if (r.low < r.high) return r;
   half = std::max({half, std::abs(r.low) * 1e-6, 1e-9});
@@ -93,12 +93,12 @@ PictureSpans negated(const PictureSpans& spans) noexcept {
   return {negated(spans.heights), negated(spans.colours)};
 }
 
-engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const engine::Version> fields,
-                                       const PictureSpans& spans, Layout layout) {
+engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const engine::Version> fields,
+                                        const PictureSpans& spans, Layout layout) {
   if (engine::Status ok = check(spec); !ok) return tl::unexpected(ok.error());
   PicturePlan plan;
   plan.layout = std::move(layout);
-  // Geometry. All fields share one reference and one unit of height: the first one's.
+  // Geometry. All fields share the reference and the unit of height of the first one.
   const engine::LengthUnit& unit = fields.front().grid().height_unit;
   const ValueSpan &heights = spans.heights, &colours = spans.colours;
   glm::dvec2 extent{0.0};
@@ -109,7 +109,7 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
                                                             : chooseExaggeration(relief * unit.mm, widest);
   const double mm_per_unit = unit.mm * plan.exaggeration;
   const double reference = 0.5 * (heights.robust.low + heights.robust.high);
-  // A flat field still stands on a plinth, so that it reads as a body.
+  // A flat field still has a base of some height, so that it looks like a body.
   const double relief_mm = relief * mm_per_unit;
   const double plinth = std::max(0.08 * relief_mm, 0.012 * widest);
   const double floor_z = -0.5 * relief_mm - plinth;
@@ -122,7 +122,7 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
   const Quantity quantity = spec.deviation_from ? Quantity::kDeviation : Quantity::kHeight;
   plan.map = resolve(spec.map, quantity);
   plan.palette = paletteOf(spec.theme, plan.map);
-  // Nothing varies: a bar of about the size of the relief, or of a hundredth of the field's width.
+  // Constant values: a bar of about the size of the relief, or of a hundredth of the field's width.
   const double flat_half =
       relief > 0.0 ? roundDown125(0.01 * relief) : roundDown125(0.01 * std::max(widest, 1e-6) / unit.mm);
   plan.range = opened(spec.range ? *spec.range : colours.robust, flat_half);
@@ -141,7 +141,7 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
     if (panel.plot.width < 8 || panel.plot.height < 8)
       return inputError(fmt::format("a picture of {} x {} pixels leaves no room for the surface",
                                     spec.view.width, spec.view.height),
-                        "picture size", "make it larger, or leave the furniture out");
+                        "picture size", "make it larger, or leave the decorations out");
     panel.field = fields[i];
     panel.floor_z = floor_z;
     panel.cut_z = cut_z;
@@ -149,17 +149,18 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
     const glm::dvec2 half = 0.5 * extent;
     const Box shown{{-half.x, -half.y, floor_z}, {half.x, half.y, top_z}};
     const Box drawn{{-half.x, -half.y, floor_z}, {half.x, half.y, cut_z}};
-    // A margin of air around the block inside its plot.
+    // A margin around the block inside its plot.
     Rectangle inner = panel.plot;
-    const int air = plan.layout.furniture ? static_cast<int>(0.012 * std::min(inner.width, inner.height)) : 0;
+    const int margin =
+        plan.layout.decorated ? static_cast<int>(0.012 * std::min(inner.width, inner.height)) : 0;
     View view = spec.view;
-    view.zoom *= static_cast<double>(std::min(inner.width, inner.height) - 2 * air) /
+    view.zoom *= static_cast<double>(std::min(inner.width, inner.height) - 2 * margin) /
                  std::min(inner.width, inner.height);
     panel.camera = Camera::fit(view, shown, drawn, inner);
 
     gpu::PanelUniforms& u = panel.uniforms;
     const double own_unit =
-        panel.field.grid().height_unit.mm / unit.mm;  // first's units a unit of this field
+        panel.field.grid().height_unit.mm / unit.mm;  // units of the first field per unit of this field
     const double share = 1.0 / own_unit;
     panel.reference = reference * share;
     panel.mm_per_unit = mm_per_unit * own_unit;
@@ -175,7 +176,7 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
     u.colouring = glm::vec4(glm::dvec4(plan.range.low * share, own_unit / (plan.range.high - plan.range.low),
                                        contour_step * share, 0.0));
     const glm::dvec3 right = panel.camera.right();
-    const glm::dvec3 away{-right.y, right.x, 0.0};  // level, from the viewer into the picture
+    const glm::dvec3 away{-right.y, right.x, 0.0};  // horizontal, from the viewer into the picture
     const double level = std::sqrt(0.5) * std::sqrt(1.0 - kLightUp * kLightUp);
     u.light = glm::vec4(glm::dvec4(level * (away - right) + glm::dvec3(0.0, 0.0, kLightUp),
                                    spec.deviation_from ? kDeviationAmbient : kAmbient));
@@ -185,8 +186,8 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
     u.wall = vec4Of(plan.palette.wall, 1.0);
     u.size = glm::ivec4(panel.placing.size, panel.placing.true_size);
     u.shade = glm::ivec4(0, 0, panel.placing.size);
-    // A ray up or down the picture; seen from straight above nothing is drawn beside its sample.
-    // In perspective that holds for the middle of the picture alone.
+    // A ray up or down the picture; seen from straight above, a sample is drawn exactly at its position. In
+    // perspective that holds only for the middle of the picture.
     const double least = spec.view.projection == Projection::kPerspective ? 0.3 : 0.0;
     const double upright = std::max(least, std::abs(panel.camera.up().z)) * panel.camera.pixelsPerMm();
     u.seam = glm::vec4(0.0F, static_cast<float>(std::min(1e30, 1.0 / std::max(upright, 1e-30))), 0.0F, 0.0F);
@@ -195,7 +196,7 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
     plan.panels.push_back(std::move(panel));
   }
 
-  Furniture& f = plan.furniture;
+  DecorationContent& f = plan.decorations;
   f.range = plan.range;
   f.below = !colours.empty && colours.extreme.low < plan.range.low;
   f.above = !colours.empty && colours.extreme.high > plan.range.high;
@@ -211,7 +212,7 @@ engine::Result<PicturePlan> layPicture(const PictureSpec& spec, std::span<const 
   }
   f.marks_opacity = static_cast<float>(spec.marks_opacity);
   if (f.below || f.above) {
-    // As the colour bar chooses, whose unit stands over both.
+    // The same unit as the colour bar chooses, whose label is above both.
     const double size = std::max(plan.range.high - plan.range.low,
                                  std::max(std::abs(plan.range.low), std::abs(plan.range.high)) * 1e-3);
     const ShownUnit shown = shownUnit(unit, size, 0.05, 5e4);

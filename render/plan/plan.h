@@ -21,47 +21,47 @@ struct PanelPlan {
   Camera camera;  ///< pixels of the finished picture
   Placing placing;
   double reference = 0.0;       ///< height at scene z 0 [height_unit of the field]
-  double mm_per_unit = 1.0;     ///< scene mm, exaggeration included, a height unit
-  double lowest = 0.0;          ///< heights below are drawn at this one [height_unit]
-  double highest = 0.0;         ///< and those above at this
+  double mm_per_unit = 1.0;     ///< scene mm per height unit, exaggeration included
+  double lowest = 0.0;          ///< lower heights are drawn at this one [height_unit]
+  double highest = 0.0;         ///< and higher ones at this
   double floor_z = 0.0;         ///< of the plate under the surface [scene mm]
   double cut_z = 0.0;           ///< nothing is drawn above [scene mm]
   gpu::PanelUniforms uniforms;  ///< all but `paging`, which follows the field's texture
 };
 
-/// A picture worked out on the CPU: where everything goes and what colour it has, before any device is asked.
+/// A picture planned on the CPU: the position and colour of everything, before any device is used.
 struct PicturePlan {
   std::vector<PanelPlan> panels;
   Layout layout;
-  Furniture furniture;
+  DecorationContent decorations;
   Palette palette;
   ColourMap map = ColourMap::kViridis;
   ValueRange range;
   double exaggeration = 1.0;
 };
 
-/// What the fields of a picture hold: heights of all of them in the first one's unit, and what the colours
-/// show.
+/// The values of the fields of a picture: heights of all of them in the first one's unit, and the values that
+/// colours show.
 struct PictureSpans {
   ValueSpan heights;
   ValueSpan colours;
 };
 /// The spans of the same fields (and original), all of them inverted. O(1).
 [[nodiscard]] PictureSpans negated(const PictureSpans& spans) noexcept;
-/// Reads all fields (and the original): time follows their size.
+/// Reads all fields (and the original): time depends on their size.
 [[nodiscard]] PictureSpans spansOf(std::span<const engine::Version> fields,
                                    const std::optional<engine::Version>& deviation_from);
 
-/// A picture with known spans in a known layout, one field a plot; time does not follow the fields' size.
-/// Heights are drawn as scene z = (height - reference) * height_unit.mm * exaggeration with the reference at
-/// the middle of the robust span of all fields; spikes beyond it are cut half a span above and just over the
-/// floor. Errors (kInput): a spec outside the ranges that PictureSpec and View state.
-[[nodiscard]] engine::Result<PicturePlan> layPicture(const PictureSpec& spec,
-                                                     std::span<const engine::Version> fields,
-                                                     const PictureSpans& spans, Layout layout);
+/// A picture with known spans in a known layout, one field per plot; time does not depend on the fields'
+/// size. Heights are drawn as scene z = (height - reference) * height_unit.mm * exaggeration with the
+/// reference at the middle of the robust span of all fields; spikes beyond it are clipped half a span above
+/// and just over the floor. Errors (kInput): a spec outside the ranges stated at PictureSpec and View.
+[[nodiscard]] engine::Result<PicturePlan> planPicture(const PictureSpec& spec,
+                                                      std::span<const engine::Version> fields,
+                                                      const PictureSpans& spans, Layout layout);
 
-/// The round factor that makes relief readable: 1 when height to width lies between 0.04 and 0.4, else what
-/// brings it near 0.15 as 1, 2 or 5 times a power of ten. Both in millimetres.
+/// The round factor that makes relief readable: 1 when height to width lies between 0.04 and 0.4, otherwise
+/// the factor that makes it about 0.15, as 1, 2 or 5 times a power of ten. Both in millimetres.
 [[nodiscard]] double chooseExaggeration(double relief_mm, double extent_mm);
 
 }  // namespace fettle::render

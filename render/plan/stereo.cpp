@@ -26,8 +26,8 @@ engine::Status check(const Stereo& stereo) {
 std::array<Camera, 2> eyesOf(const Camera& middle, const Stereo& stereo, double screen_distance) {
   double half = 0.5 * stereo.eye_separation;
   if (stereo.eye_separation_mm > 0.0) {
-    // An eye `aside` to the right moves the picture of a point infinitely far behind a window at distance S
-    // by pixels_at(S) * aside to the right, pixels_at being the pixels of a millimetre at that distance.
+    // An eye `aside` to the right moves a point infinitely far behind a window at distance S by pixels_at(S)
+    // * aside to the right, pixels_at being the pixels per millimetre at that distance.
     const double px = 0.5 * stereo.eye_separation_mm / stereo.mm_per_pixel;
     half = px / middle.asidePixels(screen_distance);
   }

@@ -52,12 +52,12 @@ ValueSpan heightSpan(const engine::Version& field) {
   span.empty = false;
   span.extreme = {bounds.min, bounds.max};
   span.robust = span.extreme;
-  if (values.size() < 64) return span;  // too few to speak of percentiles
+  if (values.size() < 64) return span;  // too few for percentiles
   const double low = percentile(values, 0.002), high = percentile(values, 0.998);
-  const double air = 0.1 * (high - low);
-  // All of the middle equal, and something else at the ends: the ends are all there is to see.
+  const double margin = 0.1 * (high - low);
+  // The middle is constant and only the ends differ: the range is that of the ends.
   if (!(high > low)) return span;
-  span.robust = {std::max(span.extreme.low, low - air), std::min(span.extreme.high, high + air)};
+  span.robust = {std::max(span.extreme.low, low - margin), std::min(span.extreme.high, high + margin)};
   return span;
 }
 
@@ -69,7 +69,7 @@ namespace {
 using plain::kLanes;
 const auto kExtremesOf = FETTLE_AT_LEVEL(engine::bestCpuLevel(), extremesOf);
 
-// What a row of tiles says.
+// Result of a row of tiles.
 struct RowSpan {
   ValueRange extreme{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   std::vector<double> changes;

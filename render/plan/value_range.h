@@ -5,11 +5,11 @@
 
 namespace fettle::render {
 
-/// The values of a field (or of a deviation) that a picture is laid out for.
+/// The values of a field (or of a deviation) for which a picture is planned.
 struct ValueSpan {
-  /// Where nearly all values lie. Each end is the true extreme when that is near, else the percentile plus a
-  /// tenth of the span between the percentiles: single spikes do not count. low < high unless all values are
-  /// equal.
+  /// The range of nearly all values. Each end is the true extreme when that is near, otherwise the percentile
+  /// plus a tenth of the span between the percentiles: single spikes do not count. low < high unless all
+  /// values are equal.
   ValueRange robust;
   ValueRange extreme;  ///< the true lowest and highest value
   bool empty = true;   ///< no value at all: all holes. The ranges are 0, 0 then.
@@ -21,12 +21,13 @@ struct ValueSpan {
 
 /// field - original where both have a sample, in double precision; both of one width and height. Exact
 /// extremes; the robust range is symmetric about zero: 99.5th percentile of the absolute value of the
-/// deviations that are not zero (untouched samples say nothing about the size of changes), or the largest
-/// when within 1.25 times that. Tiles that the two share are not read.
+/// deviations that are not zero (unchanged samples do not indicate the size of changes), or the largest when
+/// within 1.25 times that. Tiles that the two share are not read.
 [[nodiscard]] ValueSpan deviationSpan(const engine::Version& field, const engine::Version& original);
 
-/// The span of the same values with their signs changed. Of heights and deviations alike: what heightSpan and
-/// deviationSpan give for inverted fields, but for how a percentile between two samples is rounded.
+/// The span of the same values with their signs changed. For heights and deviations alike: the result of
+/// heightSpan and deviationSpan for inverted fields, except for how a percentile between two samples is
+/// rounded.
 [[nodiscard]] ValueSpan negated(const ValueSpan& span) noexcept;
 
 /// The smallest span that holds both.

@@ -25,7 +25,7 @@ void flush(png_structp /*png*/) {}
 }
 void ignore(png_structp /*png*/, png_const_charp /*message*/) {}
 
-// No object with a destructor lives between setjmp and longjmp: everything that has one comes from outside.
+// No object with a destructor is created between setjmp and longjmp: all of them belong to the caller.
 bool writeHeader(png_structp png, png_infop info, int width, int height) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_user_limits(png, 0x7fffffff, 0x7fffffff);
@@ -51,15 +51,15 @@ bool writeEnd(png_structp png, png_infop info) {
   return true;
 }
 
-// Bytes that are handed to the disk together.
-constexpr std::size_t kBytesAWrite = std::size_t{1} << 20;
+// Bytes that are written to the file together.
+constexpr std::size_t kBytesPerWrite = std::size_t{1} << 20;
 
 }  // namespace
 
 struct PngWriter::Impl {
   engine::AtomicFile file;
   int width, height, row = 0;
-  std::string bytes{};  // encoded, not in the file yet
+  std::string bytes{};  // encoded, not written yet
   char message[128] = "";
   png_structp png = nullptr;
   png_infop info = nullptr;
@@ -105,7 +105,7 @@ engine::Status PngWriter::write(const Image& rows) {
     return engine::inputError("these are not the rows of the picture", w.file.finalPath());
   for (int y = 0; y < rows.height; ++y) {
     if (!writeRow(w.png, rows, y)) return w.refused();
-    if (w.bytes.size() < kBytesAWrite) continue;
+    if (w.bytes.size() < kBytesPerWrite) continue;
     if (engine::Status status = w.flush(); !status) return status;
   }
   w.row += rows.height;

@@ -8,8 +8,8 @@
 
 namespace fettle::render {
 
-/// Writes 8-bit RGBA PNG with an sRGB chunk, some rows at a time: whole or not at all (temporary file, fsync,
-/// rename). Holds a few rows, however large the picture is.
+/// Writes 8-bit RGBA PNG with an sRGB chunk, some rows at a time; the file appears completely or not at all
+/// (temporary file, fsync, rename). Holds a few rows, however large the picture is.
 ///
 /// Threading: one thread at a time.
 class PngWriter {

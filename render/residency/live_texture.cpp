@@ -42,7 +42,7 @@ void LiveTexture::clear() noexcept {
   unprepared_[0] = unprepared_[1] = false;
   pending_.clear();
   order_.clear();
-  hurried_.clear();
+  priority_.clear();
   front_ = 0;
   version_ = accepted_ = {};
   pages_.reset();
@@ -58,13 +58,13 @@ void LiveTexture::add(std::int32_t column, std::int32_t row, TileKind kind, cons
 }
 
 void LiveTexture::addChanges(const engine::Version& next, const engine::Version& accepted) {
-  // Where suggested marks become accepted ones nothing else needs to change.
+  // Where suggested marks become accepted ones, no heights change.
   if (!(accepted_ == version_ && accepted == next))
     for (const engine::TileChange& change : engine::changedTiles(accepted_, accepted)) {
       const TileSpan span = changedMarks(*change.before, *change.after);
       if (!has_marks_ || span.empty()) continue;
       add(change.tile_column, change.tile_row, TileKind::kMarks, span);
-      if (pages_) pages_->forget({change.tile_column, change.tile_row});
+      if (pages_) pages_->invalidate({change.tile_column, change.tile_row});
     }
   const std::vector<engine::TileChange> changes = engine::changedTiles(version_, next);
   for (const engine::TileChange& change : changes) {
@@ -72,8 +72,8 @@ void LiveTexture::addChanges(const engine::Version& next, const engine::Version&
         changedSpan(change, changes.size() >= kManyTiles));
     if (has_marks_)
       add(change.tile_column, change.tile_row, TileKind::kMarks, changedMarks(*change.before, *change.after));
-    // Before the old tile's memory may be given to another one.
-    if (pages_) pages_->forget({change.tile_column, change.tile_row});
+    // Before the memory of the old tile can be reused.
+    if (pages_) pages_->invalidate({change.tile_column, change.tile_row});
   }
 }
 
@@ -111,10 +111,10 @@ std::uint64_t LiveTexture::bytesOfWhole(const Context& context, const engine::Gr
   return bytes;
 }
 
-engine::Result<LiveTexture::Freshness> LiveTexture::want(PagePool& pool, int fixed_from,
-                                                         const engine::Version& version,
-                                                         const std::function<void()>& idle,
-                                                         const engine::Version& accepted) {
+engine::Result<LiveTexture::Freshness> LiveTexture::setVersion(PagePool& pool, int fixed_from,
+                                                               const engine::Version& version,
+                                                               const std::function<void()>& idle,
+                                                               const engine::Version& accepted) {
   const engine::Grid& grid = version.grid();
   const engine::Version& sure = accepted.empty() ? version : accepted;
   const bool related = pages_ && &pages_->pool() == &pool && !version_.empty() &&
@@ -148,10 +148,11 @@ engine::Result<LiveTexture::Freshness> LiveTexture::want(PagePool& pool, int fix
   return Freshness::kFresh;
 }
 
-engine::Result<LiveTexture::Freshness> LiveTexture::want(Context& context, const engine::Version& version,
-                                                         MarksOverlay marks, std::uint32_t max_side,
-                                                         const std::function<void()>& idle,
-                                                         const engine::Version& accepted) {
+engine::Result<LiveTexture::Freshness> LiveTexture::setVersion(Context& context,
+                                                               const engine::Version& version,
+                                                               MarksOverlay marks, std::uint32_t max_side,
+                                                               const std::function<void()>& idle,
+                                                               const engine::Version& accepted) {
   const engine::Grid& grid = version.grid();
   const engine::Version& sure = accepted.empty() ? version : accepted;
   const engine::FieldReader reader = version.reader();
@@ -237,8 +238,8 @@ bool LiveTexture::copy(StagingRing& ring, std::uint64_t submission, glm::ivec2 t
 }
 
 std::optional<std::uint64_t> LiveTexture::nextPending() {
-  while (!hurried_.empty() && !pending_.contains(hurried_.back())) hurried_.pop_back();
-  if (!hurried_.empty()) return hurried_.back();
+  while (!priority_.empty() && !pending_.contains(priority_.back())) priority_.pop_back();
+  if (!priority_.empty()) return priority_.back();
   while (front_ < order_.size() && !pending_.contains(order_[front_])) ++front_;
   if (front_ < order_.size()) return order_[front_];
   order_.clear();
@@ -246,7 +247,7 @@ std::optional<std::uint64_t> LiveTexture::nextPending() {
   return std::nullopt;
 }
 
-bool LiveTexture::settled(int entry) {
+bool LiveTexture::upToDate(int entry) {
   if (pending_.empty()) return true;
   const PageGrid& grid = pages_->grid();
   const PageGrid::Place place = grid.place(entry);
@@ -261,8 +262,8 @@ bool LiveTexture::settled(int entry) {
       const auto found = pending_.find(keyOf(x, y));
       if (found == pending_.end()) continue;
       all = false;
-      if (!found->second.hurried) hurried_.push_back(found->first);
-      found->second.hurried = true;
+      if (!found->second.has_priority) priority_.push_back(found->first);
+      found->second.has_priority = true;
     }
   return all;
 }
@@ -303,8 +304,9 @@ bool LiveTexture::pumpPages(StagingRing& ring, std::uint64_t submission,
   return spent > 0;
 }
 
-bool LiveTexture::pump(StagingRing& ring, std::uint64_t submission, const vk::raii::CommandBuffer& commands,
-                       std::int64_t byte_budget, UploadStatistics& count, std::vector<glm::ivec2>& moved) {
+bool LiveTexture::uploadPending(StagingRing& ring, std::uint64_t submission,
+                                const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
+                                UploadStatistics& count, std::vector<glm::ivec2>& moved) {
   if (pages_) return pumpPages(ring, submission, commands, byte_budget, count, moved);
   const std::int64_t bytes_before = count.bytes;
   std::vector<vk::BufferImageCopy> copies[2][kLevels];

@@ -21,9 +21,9 @@
 namespace fettle::render {
 
 /// A field on the device that follows a version: all samples, and copies with every 4th, 16th and 64th of
-/// them, in images of their own (marks likewise; a coarse mark is one when any sample of its square is
-/// marked). Or by need: in pages of a pool that others share, of which the coarse ones stay for good and the
-/// others come when they are asked for (render/residency/page_demand.h).
+/// them, in images of their own (marks likewise; a coarse mark is set when any sample of its square is
+/// marked). Or on demand: in pages of a shared pool, of which the coarse ones stay permanently and the others
+/// are uploaded when a frame requests them (render/residency/page_demand.h).
 ///
 /// Threading: as Context. Throws vk::SystemError.
 class LiveTexture {
@@ -36,8 +36,8 @@ class LiveTexture {
   LiveTexture(LiveTexture&&) noexcept = default;
   LiveTexture& operator=(LiveTexture&&) noexcept = default;
 
-  /// Device memory that all of a field takes [bytes], before alignment; 0 when the device has no image for
-  /// it.
+  /// Device memory that all of a field takes [bytes], before alignment; 0 when the device supports no image
+  /// of its size.
   [[nodiscard]] static std::uint64_t bytesOfWhole(const Context& context, const engine::Grid& grid,
                                                   MarksOverlay marks, std::uint32_t max_side);
 
@@ -45,39 +45,41 @@ class LiveTexture {
     kRelated,  ///< what differs is pending
     kFresh,    ///< new images, everything is pending
   };
-  /// From now on this version is wanted. Marks that `accepted` lacks, a version of the same field, are
-  /// suggested ones; empty: none is. Errors: a field larger than the device holds (kFailed); the texture is
-  /// empty then. Images are let go at once: nothing that reads them may be under way when a field that is not
-  /// related comes in; `idle` is called before that.
-  [[nodiscard]] engine::Result<Freshness> want(Context& context, const engine::Version& version,
-                                               MarksOverlay marks, std::uint32_t max_side,
-                                               const std::function<void()>& idle,
-                                               const engine::Version& accepted = {});
-  /// The same by need, in a pool that outlives the texture; marks are brought when the pool has them. Pages
-  /// of levels from `fixed_from` up are pending like everything else. Errors (kFailed): the pool holds fewer.
-  [[nodiscard]] engine::Result<Freshness> want(PagePool& pool, int fixed_from, const engine::Version& version,
-                                               const std::function<void()>& idle,
-                                               const engine::Version& accepted = {});
+  /// Sets the version to show. Marks that `accepted` lacks, a version of the same field, are suggested ones;
+  /// empty: none is. Errors: a field larger than the device holds (kFailed); the texture is empty then.
+  /// Images are released immediately: no work that reads them may be in progress when the field is not
+  /// related to the one before; `idle` is called before that.
+  [[nodiscard]] engine::Result<Freshness> setVersion(Context& context, const engine::Version& version,
+                                                     MarksOverlay marks, std::uint32_t max_side,
+                                                     const std::function<void()>& idle,
+                                                     const engine::Version& accepted = {});
+  /// The same on demand, in a pool that outlives the texture; marks are uploaded when the pool has them.
+  /// Pages of levels from `fixed_from` up are pending like everything else. Errors (kFailed): the pool holds
+  /// fewer.
+  [[nodiscard]] engine::Result<Freshness> setVersion(PagePool& pool, int fixed_from,
+                                                     const engine::Version& version,
+                                                     const std::function<void()>& idle,
+                                                     const engine::Version& accepted = {});
 
-  /// Records copies of pending tiles, until `byte_budget` is spent or the ring has no room; whether any were.
-  /// `moved` gets the tiles whose heights are on their way now.
-  bool pump(StagingRing& ring, std::uint64_t submission, const vk::raii::CommandBuffer& commands,
-            std::int64_t byte_budget, UploadStatistics& count, std::vector<glm::ivec2>& moved);
+  /// Records copies of pending tiles, until `byte_budget` is spent or the ring is full; returns whether there
+  /// were any. `moved` gets the tiles whose heights are being uploaded.
+  bool uploadPending(StagingRing& ring, std::uint64_t submission, const vk::raii::CommandBuffer& commands,
+                     std::int64_t byte_budget, UploadStatistics& count, std::vector<glm::ivec2>& moved);
 
-  /// Tiles, and pages that stay for good, that have not moved yet.
+  /// Tiles and permanent pages that are not uploaded yet.
   [[nodiscard]] std::size_t pending() const noexcept { return pending_.size() + fixed_left_; }
   /// Tiles that differ from what is on the device, in no order.
   [[nodiscard]] std::vector<glm::ivec2> pendingTiles() const;
   /// Whether some tile of those from `first` to `last` (column, row; both included) differs from what is on
   /// the device.
   [[nodiscard]] bool anyPending(glm::ivec2 first, glm::ivec2 last) const;
-  /// Whether no tile of a page is pending. Those that are move before others do.
-  [[nodiscard]] bool settled(int entry);
-  /// Null unless by need.
+  /// Whether no tile of a page is pending. Pending ones get priority.
+  [[nodiscard]] bool upToDate(int entry);
+  /// Null unless on demand.
   [[nodiscard]] PageSet* pages() const noexcept { return pages_.get(); }
   [[nodiscard]] const engine::Version& version() const noexcept { return version_; }
   [[nodiscard]] const Paging& paging() const noexcept { return paging_; }
-  /// By need: the pool, of all levels.
+  /// On demand: the pool, of all levels.
   [[nodiscard]] vk::ImageView heights(int level) const {
     if (pages_) return pages_->pool().view(TileKind::kHeights);
     return images_[0][static_cast<std::size_t>(level)].view();
@@ -87,14 +89,14 @@ class LiveTexture {
     if (pages_) return pages_->pool().view(TileKind::kMarks);
     return has_marks_ ? images_[1][static_cast<std::size_t>(level)].view() : heights(level);
   }
-  /// Grows whenever the views change.
+  /// Increases whenever the views change.
   [[nodiscard]] std::uint64_t generation() const noexcept { return generation_; }
   void clear() noexcept;
 
  private:
   struct Pending {
     TileSpan spans[2];  // heights, marks
-    bool hurried = false;
+    bool has_priority = false;
   };
   void add(std::int32_t column, std::int32_t row, TileKind kind, const TileSpan& span);
   void addChanges(const engine::Version& next, const engine::Version& accepted);
@@ -109,20 +111,20 @@ class LiveTexture {
                                const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
                                UploadStatistics& count, std::vector<glm::ivec2>& moved);
 
-  engine::Version version_;   // what is wanted
-  engine::Version accepted_;  // marks beyond this one's are suggested; the same as version_ when none is
+  engine::Version version_;   // the version to show
+  engine::Version accepted_;  // marks that this one lacks are suggested; equal to version_ when none is
   Paging paging_;
   std::array<GpuImage, kLevels> images_[2];  // heights, marks
   bool has_marks_ = false;
   std::unordered_map<std::uint64_t, Pending> pending_;
   std::vector<std::uint64_t>
-      order_;  // keys of pending_, to be taken from the front; some may be gone from there
+      order_;  // keys of pending_, taken from the front; some may have been removed from pending_
   std::size_t front_ = 0;
-  std::vector<std::uint64_t> hurried_;   // keys to be taken first, from the back
+  std::vector<std::uint64_t> priority_;  // keys to be taken first, from the back
   bool unprepared_[2] = {false, false};  // images whose layout is still undefined
   std::uint64_t generation_ = 0;
   std::unique_ptr<PageSet> pages_;
-  std::size_t fixed_left_ = 0;  // pages that stay for good, the last of the table, still to come
+  std::size_t fixed_left_ = 0;  // permanent pages, the last of the table, that are not uploaded yet
 };
 
 }  // namespace fettle::render

@@ -5,58 +5,58 @@
 namespace fettle::render {
 namespace {
 
-// A vertex that is a hole looks around itself. Level 0 keeps no record of holes.
-bool looksAround(const PatchLeaf& leaf) {
+// The vertex of a hole reads its surroundings. Level 0 does not know of holes.
+bool readsSurroundings(const PatchLeaf& leaf) {
   return leaf.holed || leaf.level == 0;
 }
 
 }  // namespace
 
-void PageDemand::ask(LiveTexture& texture, const LevelSpan& span, std::uint64_t frame) {
+void PageDemand::requestSpan(LiveTexture& texture, const LevelSpan& span, std::uint64_t frame) {
   PageSet& pages = *texture.pages();
-  auto asked =
-      std::find_if(asked_.begin(), asked_.end(), [&](const auto& of) { return of.first == &texture; });
-  if (asked == asked_.end()) asked = asked_.insert(asked_.end(), {&texture, 0});
-  // Coarser levels too, for as long as the finer one is under way.
+  auto count = std::find_if(request_counts_.begin(), request_counts_.end(),
+                            [&](const auto& of) { return of.first == &texture; });
+  if (count == request_counts_.end()) count = request_counts_.insert(request_counts_.end(), {&texture, 0});
+  // Coarser levels too, until the finer one is uploaded.
   for (int level = span.level; level < pages.fixedFrom(); ++level) {
     const int shift = dataShift(level - span.level);
     pages.grid().over({level, span.low >> shift, span.high >> shift}, [&](int entry) {
-      if (pages.ask(entry, frame)) wishes_.push_back({&texture, entry, level, asked->second++});
+      if (pages.markRequested(entry, frame)) requests_.push_back({&texture, entry, level, count->second++});
     });
   }
 }
 
-void PageDemand::want(const PatchTree& patches, LiveTexture& field, LiveTexture* original, int shade_level,
-                      int step, std::uint64_t frame) {
+void PageDemand::request(const PatchTree& patches, LiveTexture& field, LiveTexture* original, int shade_level,
+                         int step, std::uint64_t frame) {
   for (const PatchLeaf& leaf : patches.leaves()) {
-    ask(field, geometrySpan(leaf.level, leaf.patch, false), frame);
-    if (looksAround(leaf)) ask(field, geometrySpan(leaf.level, leaf.patch, true), frame);
+    requestSpan(field, geometrySpan(leaf.level, leaf.patch, false), frame);
+    if (readsSurroundings(leaf)) requestSpan(field, geometrySpan(leaf.level, leaf.patch, true), frame);
   }
   const int log2_page = field.pages()->grid().log2Side() + dataShift(shade_level);
   for (const PatchLeaf& part : patches.parts(log2_page)) {
     const LevelSpan shade = shadeSpan(part.level, part.patch, shade_level, step);
-    ask(field, shade, frame);
-    if (original != nullptr) ask(*original, shade, frame);
+    requestSpan(field, shade, frame);
+    if (original != nullptr) requestSpan(*original, shade, frame);
   }
 }
 
 bool PageDemand::drawable(const PatchLeaf& leaf, const PageSet& pages) noexcept {
   return pages.resident(geometrySpan(leaf.level, leaf.patch, false)) &&
-         (!looksAround(leaf) || pages.resident(geometrySpan(leaf.level, leaf.patch, true)));
+         (!readsSurroundings(leaf) || pages.resident(geometrySpan(leaf.level, leaf.patch, true)));
 }
 
-PageDemand::Outcome PageDemand::settle(PagePool& pool, StagingRing& ring, std::uint64_t frame,
+PageDemand::Outcome PageDemand::upload(PagePool& pool, StagingRing& ring, std::uint64_t frame,
                                        const vk::raii::CommandBuffer& commands, std::int64_t byte_budget,
                                        UploadStatistics& count) {
-  std::stable_sort(wishes_.begin(), wishes_.end(), [](const Wish& a, const Wish& b) {
+  std::stable_sort(requests_.begin(), requests_.end(), [](const Request& a, const Request& b) {
     return a.level != b.level ? a.level > b.level : a.number < b.number;
   });
   Outcome outcome;
-  outcome.asked = static_cast<std::int64_t>(wishes_.size());
+  outcome.requested = static_cast<std::int64_t>(requests_.size());
   PageSlots& slots = pool.slots();
   std::int64_t room = std::int64_t{slots.count()} - slots.fixed();
-  std::vector<const Wish*> missing;
-  for (const Wish& w : wishes_) {
+  std::vector<const Request*> missing;
+  for (const Request& w : requests_) {
     PageSet& pages = *w.texture->pages();
     if (!pages.resident(w.entry)) {
       missing.push_back(&w);
@@ -69,17 +69,17 @@ PageDemand::Outcome PageDemand::settle(PagePool& pool, StagingRing& ring, std::u
   }
   std::int64_t spent = 0;
   bool full = false;
-  for (const Wish* w : missing) {
+  for (const Request* w : missing) {
     PageSet& pages = *w->texture->pages();
     const engine::FieldReader reader = w->texture->version().reader();
-    // A page is brought as the version has it, so its tiles must have come to that.
-    if (!w->texture->settled(w->entry)) {
+    // A page is uploaded in the state of the version, so its tiles must be in that state, too.
+    if (!w->texture->upToDate(w->entry)) {
       ++outcome.waiting;
       continue;
     }
     if (pages.share(w->entry, reader, frame)) continue;
     if (full) {
-      ++outcome.beyond;
+      ++outcome.over_budget;
       continue;
     }
     if (spent > 0 && spent + pages.bytes(w->entry) > byte_budget) {
@@ -91,14 +91,14 @@ PageDemand::Outcome PageDemand::settle(PagePool& pool, StagingRing& ring, std::u
     if (load == PageSet::Load::kNoSlot) full = true;
     outcome.loaded += load == PageSet::Load::kDone;
     outcome.waiting += load == PageSet::Load::kNoStaging;
-    outcome.beyond += load == PageSet::Load::kNoSlot;
+    outcome.over_budget += load == PageSet::Load::kNoSlot;
     spent += bytes;
   }
   count.bytes += spent;
   count.pending_tiles += outcome.waiting;
   pool.flush(commands, ring.buffer());
-  wishes_.clear();
-  asked_.clear();
+  requests_.clear();
+  request_counts_.clear();
   return outcome;
 }
 

@@ -24,10 +24,10 @@ PagePool::Store PagePool::make(const Context& context, std::uint64_t budget, Mar
       vk::Format::eR32Uint, vk::ImageType::e2D, vk::ImageTiling::eOptimal, kUsage);
   const std::uint32_t max_layers =
       std::min<std::uint32_t>(context.limits().maxImageArrayLayers, gpu::kEntryLayerMask + 1);
-  const bool beside = marks == Marks::kBeside;
+  const bool has_marks = marks == Marks::kInclude;
   Store store;
-  store.shape = choosePool(budget, beside ? 5 : 4, max_side, max_layers, limit.maxResourceSize, log2_side);
-  // What the device takes for an image may be more than its samples.
+  store.shape = choosePool(budget, has_marks ? 5 : 4, max_side, max_layers, limit.maxResourceSize, log2_side);
+  // An image may take more device memory than its samples.
   for (; store.shape.layers > 0; --store.shape.layers) {
     store.images = {};
     const std::uint32_t side = store.shape.across << store.shape.log2_side;
@@ -36,7 +36,7 @@ PagePool::Store PagePool::make(const Context& context, std::uint64_t budget, Mar
                       vk::ImageAspectFlagBits::eColor);
     };
     store.images[0] = image(vk::Format::eR32Uint);
-    if (beside) store.images[1] = image(vk::Format::eR8Uint);
+    if (has_marks) store.images[1] = image(vk::Format::eR8Uint);
     store.bytes = store.images[0].bytes() + store.images[1].bytes();
     if (store.bytes <= budget) break;
   }

@@ -19,25 +19,25 @@ namespace fettle::render {
 /// Threading: as Context. Throws vk::SystemError.
 class PagePool {
  public:
-  enum class Marks { kNone, kBeside };
-  /// As many pages as fit `budget` bytes, alignment and all. May hold none: see slots().count().
+  enum class Marks { kNone, kInclude };
+  /// As many pages as fit `budget` bytes, alignment included. May hold none: see slots().count().
   PagePool(const Context& context, std::uint64_t budget, Marks marks, std::uint32_t max_side);
-  /// Takes as many pages as fit `budget` bytes, where that is more than there are; pages stay in their slots,
-  /// with what is in them. Waits for all that is under way. Needs room for both sizes while it copies: where
+  /// Grows to as many pages as fit `budget` bytes, if those are more than before; pages stay in their slots
+  /// with their content. Waits for all work in progress. Needs memory for both sizes while it copies: where
   /// the device has none, everything stays as it is. Not between add() and flush().
   void grow(const Context& context, std::uint64_t budget, std::uint32_t max_side, Submissions& submissions);
 
   [[nodiscard]] int log2Side() const noexcept { return store_.shape.log2_side; }
-  [[nodiscard]] bool hasMarks() const noexcept { return marks_ == Marks::kBeside; }
+  [[nodiscard]] bool hasMarks() const noexcept { return marks_ == Marks::kInclude; }
   [[nodiscard]] PageSlots& slots() noexcept { return slots_; }
   [[nodiscard]] const PageSlots& slots() const noexcept { return slots_; }
   [[nodiscard]] vk::ImageView view(TileKind kind) const {
     return store_.images[hasMarks() ? static_cast<std::size_t>(kind) : 0].view();
   }
-  /// Device memory held, whatever is in it.
+  /// Device memory held, whether used or not.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return store_.bytes; }
 
-  /// A slot in an entry of the table that shaders read (shaders/layout.h).
+  /// A slot as an entry of the table that shaders read (shaders/layout.h).
   [[nodiscard]] std::uint32_t word(std::uint32_t slot) const noexcept;
   /// Copies `columns` x `rows` samples, tightly packed at `offset` of the staging buffer, to the place
   /// `column`, `row` of a slot. Recorded by flush().
@@ -45,7 +45,7 @@ class PagePool {
   void flush(const vk::raii::CommandBuffer& commands, const Buffer& staging);
 
  private:
-  // What all pages lie in.
+  // The images that hold all pages.
   struct Store {
     PoolShape shape;
     std::array<GpuImage, 2> images;  // heights, marks

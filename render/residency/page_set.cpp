@@ -17,13 +17,13 @@ PageSet::PageSet(PagePool& pool, std::int32_t width, std::int32_t height, int fi
     : pool_(pool), grid_(width, height, pool.log2Side()), size_(width, height), fixed_from_(fixed_from) {
   const auto entries = static_cast<std::size_t>(grid_.entries());
   slots_.assign(entries, PageSlots::kNone);
-  asked_.assign(entries, 0);
+  requested_frame_.assign(entries, 0);
   loaded_.assign(entries, 0);
 }
 
 PageSet::~PageSet() {
   for (std::uint32_t& slot : slots_) pool_.slots().release(&slot);
-  pool_.slots().giveBack(reserved_);
+  pool_.slots().unreserve(reserved_);
 }
 
 bool PageSet::reserve() noexcept {
@@ -39,10 +39,10 @@ bool PageSet::resident(const LevelSpan& span) const noexcept {
   return all;
 }
 
-bool PageSet::ask(int entry, std::uint64_t frame) noexcept {
-  std::uint64_t& asked = asked_[static_cast<std::size_t>(entry)];
-  if (asked == frame) return false;
-  asked = frame;
+bool PageSet::markRequested(int entry, std::uint64_t frame) noexcept {
+  std::uint64_t& last = requested_frame_[static_cast<std::size_t>(entry)];
+  if (last == frame) return false;
+  last = frame;
   return true;
 }
 
@@ -56,10 +56,10 @@ void PageSet::over(glm::ivec2 tile, const Visit& visit) const {
   if (tile.y == last.y) visit(rim + ((grid_.rimRow() + tile.x * engine::kTileSide) >> shift));
 }
 
-void PageSet::forget(glm::ivec2 tile) {
+void PageSet::invalidate(glm::ivec2 tile) {
   over(tile, [&](int entry) {
     if (!resident(entry) || !pool_.slots().named(at(entry))) return;
-    pool_.slots().forget(at(entry));
+    pool_.slots().clearName(at(entry));
     nameless_.push_back(entry);
   });
 }
@@ -152,7 +152,7 @@ void PageSet::fill(int entry, const engine::FieldReader& reader, vk::DeviceSize 
 
 bool PageSet::write(glm::ivec2 tile, const TileSpan (&spans)[2], const engine::FieldReader& reader,
                     StagingRing& ring, std::uint64_t frame, std::int64_t& bytes) {
-  // What has to move: whole pages in the place of shared ones, and rectangles.
+  // The uploads: whole pages in place of shared ones, and rectangles.
   struct Upload {
     TileKind kind;
     int entry, shift;
@@ -163,7 +163,7 @@ bool PageSet::write(glm::ivec2 tile, const TileSpan (&spans)[2], const engine::F
   std::vector<Upload> rectangles;
   std::vector<int> apart;
   vk::DeviceSize total = 0, whole = 0;
-  const auto wanted = [&](int entry) {
+  const auto affected = [&](int entry) {
     if (!resident(entry) || loaded_[static_cast<std::size_t>(entry)] == frame) return false;
     if (pool_.slots().holders(at(entry)) == 1) return true;
     if (std::find(apart.begin(), apart.end(), entry) == apart.end()) {
@@ -186,13 +186,13 @@ bool PageSet::write(glm::ivec2 tile, const TileSpan (&spans)[2], const engine::F
       if (part.empty()) continue;
       const glm::ivec2 from = tile * (engine::kTileSide >> shift) + glm::ivec2(part.column, part.row);
       const int entry = grid_.entry(level, from >> log2_side);
-      if (wanted(entry)) add(kind, entry, shift, part, from & (side - 1));
+      if (affected(entry)) add(kind, entry, shift, part, from & (side - 1));
     }
     if (kind == TileKind::kMarks) continue;
     const glm::ivec2 last = size_ - 1, end = last / engine::kTileSide, in = last % engine::kTileSide;
     const auto rim = [&](int number, const TilePart& part) {
       const int entry = grid_.first(kDataLevels) + (number >> 2 * log2_side);
-      if (wanted(entry)) add(kind, entry, 0, part, {number & (side - 1), number >> log2_side & (side - 1)});
+      if (affected(entry)) add(kind, entry, 0, part, {number & (side - 1), number >> log2_side & (side - 1)});
     };
     if (tile.x == end.x && span.last_column >= in.x)
       rim(tile.y * engine::kTileSide + span.first_row,
@@ -221,7 +221,7 @@ bool PageSet::write(glm::ivec2 tile, const TileSpan (&spans)[2], const engine::F
   for (const int entry : apart) {
     std::uint32_t* slot = &slots_[static_cast<std::size_t>(entry)];
     pool_.slots().release(slot);
-    // No room for a page of its own: the page is not on the device any more.
+    // No room for a page of its own: the page leaves the device.
     if (!pool_.slots().take(slot, holdOf(entry), frame)) continue;
     fill(entry, reader, offset, ring.buffer().data());
     loaded_[static_cast<std::size_t>(entry)] = frame;

@@ -9,23 +9,23 @@
 
 namespace fettle::render {
 
-/// The pages of one texture that lie in a pool, and how they get there.
+/// The pages of one texture in a pool, and their uploads.
 ///
 /// Threading: as Context. Throws vk::SystemError.
 class PageSet {
  public:
-  /// Levels from `fixed_from` up (0 .. kDataLevels) and the rim stay on the device for good.
+  /// Levels from `fixed_from` up (0 .. kDataLevels) and the rim stay on the device permanently.
   PageSet(PagePool& pool, std::int32_t width, std::int32_t height, int fixed_from);
   ~PageSet();
   PageSet(const PageSet&) = delete;
   PageSet& operator=(const PageSet&) = delete;
 
-  /// Pages of a grid that stay for good.
+  /// Permanent pages of a grid.
   [[nodiscard]] static int fixedPages(const PageGrid& grid, int fixed_from) noexcept {
     return grid.entries() - grid.first(fixed_from);
   }
 
-  /// Makes sure of room for the pages that stay for good. False when the pool has none.
+  /// Reserves slots for the permanent pages. False when the pool has too few.
   [[nodiscard]] bool reserve() noexcept;
 
   [[nodiscard]] const PageGrid& grid() const noexcept { return grid_; }
@@ -36,38 +36,37 @@ class PageSet {
   /// Whether all pages of a span are on the device.
   [[nodiscard]] bool resident(const LevelSpan& span) const noexcept;
 
-  /// Bytes that load() moves.
+  /// Bytes that load() uploads.
   [[nodiscard]] std::int64_t bytes(int entry) const noexcept {
     return static_cast<std::int64_t>(bytesOfPage(entry));
   }
 
-  /// From now on marks that this version lacks are suggested ones; empty: none is. Pages that come while some
-  /// are cannot be told by what they hold, and are shared with nobody.
+  /// Marks that this version lacks are suggested ones; empty: none is. Pages loaded while there are suggested
+  /// marks cannot be identified by their content, and are not shared.
   void setAccepted(const engine::Version& accepted) { accepted_ = accepted; }
 
-  /// Points an entry at the slot of an equal page of somebody's. False when there is none.
+  /// Points an entry at the slot of an equal page of another set. False when there is none.
   [[nodiscard]] bool share(int entry, const engine::FieldReader& reader, std::uint64_t frame);
   enum class Load { kDone, kNoSlot, kNoStaging };
-  /// Brings a page over that is not on the device. `frame`: the submission that is being recorded.
+  /// Uploads a page that is not on the device. `frame`: the submission that is being recorded.
   [[nodiscard]] Load load(int entry, const engine::FieldReader& reader, StagingRing& ring,
                           std::uint64_t frame, std::int64_t& bytes);
-  /// Brings the spans of a changed tile over, to those of its pages that are on the device. A page shared
-  /// with others is first replaced by one of its own. False: nothing was done, for want of staging.
+  /// Uploads the spans of a changed tile to those of its pages that are on the device. A page shared with
+  /// others is first replaced by a page of its own. False: nothing was done, the staging ring is full.
   [[nodiscard]] bool write(glm::ivec2 tile, const TileSpan (&spans)[2], const engine::FieldReader& reader,
                            StagingRing& ring, std::uint64_t frame, std::int64_t& bytes);
-  /// The version goes on to one in which this tile is another one: pages can no longer be told by what they
-  /// held.
-  void forget(glm::ivec2 tile);
-  /// What is on the device is what `reader` reads: pages can be told again.
+  /// The next version has another tile here: its pages can no longer be identified by their content.
+  void invalidate(glm::ivec2 tile);
+  /// The device holds what `reader` reads: pages can be identified again.
   void name(const engine::FieldReader& reader);
 
-  /// Marks an entry as asked for in this frame; false when it was already.
-  [[nodiscard]] bool ask(int entry, std::uint64_t frame) noexcept;
+  /// Marks an entry as requested in this frame; false when it was already.
+  [[nodiscard]] bool markRequested(int entry, std::uint64_t frame) noexcept;
 
  private:
   [[nodiscard]] std::uint32_t at(int entry) const noexcept { return slots_[static_cast<std::size_t>(entry)]; }
   [[nodiscard]] PageSlots::Hold holdOf(int entry) const noexcept {
-    return entry >= grid_.first(fixed_from_) ? PageSlots::Hold::kFixed : PageSlots::Hold::kWhile;
+    return entry >= grid_.first(fixed_from_) ? PageSlots::Hold::kFixed : PageSlots::Hold::kEvictable;
   }
   void fill(int entry, const engine::FieldReader& reader, vk::DeviceSize at, std::byte* staging);
   [[nodiscard]] vk::DeviceSize bytesOfPage(int entry) const noexcept;
@@ -75,7 +74,7 @@ class PageSet {
   [[nodiscard]] const engine::Tile* acceptedTile(glm::ivec2 tile) const {
     return accepted_.empty() ? nullptr : &accepted_.reader().tile(tile.x, tile.y);
   }
-  // The pages that a tile lies on: of each level, and of the rim where it is at the field's end.
+  // The pages that contain a tile: of each level, and of the rim where it is at the field's end.
   template <class Visit>
   void over(glm::ivec2 tile, const Visit& visit) const;
 
@@ -83,9 +82,9 @@ class PageSet {
   PageGrid grid_;
   glm::ivec2 size_;
   int fixed_from_;
-  std::vector<std::uint32_t> slots_;   // of each entry
-  std::vector<std::uint64_t> asked_;   // frame in which an entry was last asked for
-  std::vector<std::uint64_t> loaded_;  // submission that brings or brought the whole page
+  std::vector<std::uint32_t> slots_;            // of each entry
+  std::vector<std::uint64_t> requested_frame_;  // frame in which an entry was last requested
+  std::vector<std::uint64_t> loaded_;           // submission that uploads or uploaded the whole page
   std::vector<int> nameless_;
   engine::Version accepted_;
   std::uint32_t reserved_ = 0;

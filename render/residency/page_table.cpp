@@ -38,7 +38,7 @@ PageGrid::Key PageGrid::key(int entry, const engine::FieldReader& reader) const 
     while (node->level > up + 2)
       node = static_cast<const engine::Node*>(
           node->children[engine::FieldReader::childIndex(tile.x, tile.y, 3 * (node->level - 2))]);
-    // A tree of fewer levels is the page's content as a whole.
+    // A tree of fewer levels is the content of the page.
     key[static_cast<std::size_t>(k)] =
         node->level == up + 2
             ? node->children[engine::FieldReader::childIndex(tile.x, tile.y, 3 * (node->level - 2))]
@@ -57,7 +57,7 @@ LevelSpan geometrySpan(int patch_level, glm::ivec2 patch, bool holed) noexcept {
 
 LevelSpan shadeSpan(int patch_level, glm::ivec2 patch, int level, int step) noexcept {
   const int side = gpu::kPatchCells << patch_level;
-  // A cell's own corners, one sample beside them, and differences to samples `step` beyond a corner.
+  // The corners of a cell, one sample next to them, and differences to samples `step` beyond a corner.
   const int reach = 2 + step;
   const glm::ivec2 first = patch * side;
   return {level, (first >> dataShift(level)) - reach, ((first + side) >> dataShift(level)) + reach};

@@ -56,7 +56,7 @@ class PageGrid {
   /// Where the entries of a level begin; level kDataLevels: those of the rim.
   [[nodiscard]] int first(int level) const noexcept { return first_[static_cast<std::size_t>(level)]; }
   [[nodiscard]] int entries() const noexcept { return entries_; }
-  /// Level (kDataLevels: rim) and page of an entry; the rim's pages stand in a row.
+  /// Level (kDataLevels: rim) and page of an entry; the pages of the rim form one row.
   struct Place {
     int level = 0;
     glm::ivec2 page{0};
@@ -65,7 +65,7 @@ class PageGrid {
   /// Number of the rim's first sample of the last row: a multiple of a tile's side.
   [[nodiscard]] int rimRow() const noexcept { return rim_row_; }
   [[nodiscard]] int rimSamples() const noexcept { return rim_row_ + size_.x; }
-  /// Calls `visit(entry)` for the pages that a span, cut to its level, lies on.
+  /// Calls `visit(entry)` for the pages that contain a part of a span, clipped to its level.
   template <class Visit>
   void over(LevelSpan span, const Visit& visit) const {
     const glm::ivec2 last = samples(span.level) - 1;
@@ -75,9 +75,9 @@ class PageGrid {
       for (int x = low.x; x <= high.x; ++x) visit(entry(span.level, {x, y}));
   }
 
-  /// Tells two pages' content apart without a look at it: the tiles, or nodes of a version's tree, that the
-  /// page consists of. Equal keys mean equal content as long as the versions they came from live. Null
-  /// pointers alone: no key (the rim has none).
+  /// Identifies the content of a page without reading it: the tiles, or nodes of a version's tree, that the
+  /// page consists of. Equal keys mean equal content as long as the versions they came from exist. Only null
+  /// pointers: no key (the rim has none).
   using Key = std::array<const void*, 16>;
   [[nodiscard]] Key key(int entry, const engine::FieldReader& reader) const noexcept;
 
@@ -89,10 +89,11 @@ class PageGrid {
   int rim_row_ = 0;
 };
 
-/// How far patch (x, y) of a level reaches for its vertices. `holed`: some of them may be holes, and take the
-/// height of a finer neighbour (shaders/field.glsl, drawnZ).
+/// The samples that patch (x, y) of a level needs for its vertices. `holed`: some of them may be holes, and
+/// take the height of a finer neighbour (shaders/field.glsl, drawnZ).
 [[nodiscard]] LevelSpan geometrySpan(int patch_level, glm::ivec2 patch, bool holed) noexcept;
-/// How far it reaches for colours at data level `level`, where differences are taken over `step` samples.
+/// The samples that it needs for colours at data level `level`, where differences are taken over `step`
+/// samples.
 [[nodiscard]] LevelSpan shadeSpan(int patch_level, glm::ivec2 patch, int level, int step) noexcept;
 
 }  // namespace fettle::render

@@ -13,7 +13,7 @@ std::uint32_t wholeTiles(std::uint32_t samples) {
   return (samples + kSide - 1) / kSide * kSide;
 }
 
-// Page side along one direction: all of it when that fits, else a power of two.
+// Page side along one direction: all samples when they fit, otherwise a power of two.
 std::uint32_t pageSide(std::uint32_t samples, std::uint32_t max_side) {
   std::uint32_t side = std::bit_floor(max_side);
   while (side > kSide) {
@@ -37,8 +37,7 @@ Paging choosePaging(std::int32_t width, std::int32_t height, std::uint32_t max_s
   }
   p.columns = pageSide(w, max_side);
   p.rows = pageSide(h, max_side);
-  // The short side of a long strip is one page, which may be larger than the strip by less than a tile's
-  // double.
+  // The short side of a long strip is one page, which may be larger than the strip by less than twice a tile.
   if (h <= p.rows) p.rows = std::bit_ceil(wholeTiles(h));
   if (w <= p.columns) p.columns = std::bit_ceil(wholeTiles(w));
   p.across = (w + p.columns - 1) / p.columns;

@@ -8,19 +8,19 @@
 
 namespace fettle::render {
 
-PoolShape choosePool(std::uint64_t budget, std::size_t bytes_a_sample, std::uint32_t max_side,
+PoolShape choosePool(std::uint64_t budget, std::size_t bytes_per_sample, std::uint32_t max_side,
                      std::uint32_t max_layers, std::uint64_t max_bytes, std::optional<int> log2_side) {
   PoolShape shape;
-  const auto pages = [&] { return budget / bytes_a_sample >> (2 * shape.log2_side); };
+  const auto pages = [&] { return budget / bytes_per_sample >> (2 * shape.log2_side); };
   shape.log2_side =
       std::clamp(static_cast<int>(std::bit_width(max_side)) - 1, kSmallestLog2Page, kLargestLog2Page);
   while (shape.log2_side > kSmallestLog2Page && pages() < kFewPages) --shape.log2_side;
   if (log2_side) shape.log2_side = *log2_side;
-  // The limit of an image's size counts its larger part, the heights.
+  // The limit of an image's size applies to the heights, the larger of the two images.
   const std::uint64_t most = std::min(pages(), max_bytes / sizeof(float) >> (2 * shape.log2_side));
   const std::uint64_t widest = std::clamp<std::uint64_t>(max_side >> shape.log2_side, 1, 255);
-  // A layer is an eighth of all at most, so that little is lost by their whole number; larger where there
-  // would be too many.
+  // A layer is at most an eighth of all pages, so that rounding to whole layers loses little; larger where
+  // there would be too many layers.
   while (shape.across < widest && (std::uint64_t{8} * (shape.across + 1) * (shape.across + 1) <= most ||
                                    most / (shape.across * shape.across) > max_layers))
     ++shape.across;
@@ -98,7 +98,7 @@ bool PageSlots::take(std::uint32_t* entry, Hold keep, std::uint64_t frame) {
     ++free_;
     ++evicted_;
   }
-  forget(slot);
+  clearName(slot);
   hold(slot, entry, keep, frame);
   return true;
 }
@@ -132,7 +132,7 @@ void PageSlots::release(std::uint32_t* entry) {
   *entry = kNone;
   if (s.holders.empty()) {
     ++free_;
-    forget(slot);
+    clearName(slot);
     s.frame = 0;
     unlist(slot);
     listAtFront(slot);
@@ -142,15 +142,15 @@ void PageSlots::release(std::uint32_t* entry) {
 }
 
 void PageSlots::name(std::uint32_t slot, int number, const PageGrid::Key& key) {
-  forget(slot);
+  clearName(slot);
   if (std::all_of(key.begin(), key.end(), [](const void* p) { return p == nullptr; })) return;
   Slot& s = slots_[slot];
   s.name = {number, key};
-  // The first of two equal pages is found; the second one stays without a name.
+  // The first of two equal pages is found; the second one stays unnamed.
   s.named = named_.emplace(s.name, slot).second;
 }
 
-void PageSlots::forget(std::uint32_t slot) {
+void PageSlots::clearName(std::uint32_t slot) {
   Slot& s = slots_[slot];
   if (s.named) named_.erase(s.name);
   s.named = false;

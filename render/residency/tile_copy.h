@@ -8,7 +8,7 @@
 
 namespace fettle::render {
 
-/// What of a tile lies on the device twice over: floats, and a byte a mark.
+/// The two kinds of data of a tile on the device: floats, and one byte per mark.
 enum class TileKind { kHeights = 0, kMarks = 1 };
 [[nodiscard]] constexpr std::size_t bytesOf(TileKind kind) noexcept {
   return kind == TileKind::kHeights ? sizeof(float) : 1;
@@ -28,7 +28,7 @@ struct TileSpan {
     return {0, 0, engine::kTileSide - 1, engine::kTileSide - 1};
   }
 };
-/// The rectangle in which two states of a tile differ, bit for bit.
+/// The rectangle in which two states of a tile are not bit-identical.
 [[nodiscard]] TileSpan changedHeights(const engine::Tile& a, const engine::Tile& b) noexcept;
 [[nodiscard]] TileSpan changedMarks(const engine::Tile& a, const engine::Tile& b) noexcept;
 
@@ -40,8 +40,8 @@ struct TilePart {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   }
 };
-/// Of the level of every 2^shift-th sample, those that lie in the span; of marks, those whose square of
-/// samples meets it (a coarse mark is one when any sample of its square is marked). 0 <= shift <= 6.
+/// Of the level of every 2^shift-th sample, those in the span; of marks, those whose square of samples meets
+/// it (a coarse mark is set when any sample of its square is marked). 0 <= shift <= 6.
 [[nodiscard]] TilePart partOf(const TileSpan& span, TileKind kind, int shift) noexcept;
 /// Writes a part to `out`, row by row, `stride` bytes from one row to the next. Of marks: gpu::kMarked, and
 /// gpu::kSuggested for those that `accepted` lacks; null: it lacks none.

@@ -22,7 +22,7 @@ engine::Status draw(render::LivePicture& picture, render::FrameInput& input, con
   input.error_px = choice.error_px;
   input.vertex_budget = choice.vertices;
   input.sharpness = choice.sharpness;
-  // Until all is there that this view asks for, then timed.
+  // Draw until all pages that this view requests are on the device, then measure the time.
   for (int i = 0; i < 200; ++i) {
     if (job.cancelled()) return engine::cancelled();
     const auto warm = picture.drawAndWait(input);

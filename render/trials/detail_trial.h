@@ -18,22 +18,23 @@ struct DetailChoice {
   render::Sharpness sharpness = render::Sharpness::kFull;
 };
 
-/// Every sample, as far as 2^24 vertices go.
+/// Every sample, up to 2^24 vertices.
 [[nodiscard]] const DetailChoice& everySample();
 
 struct DetailFigures {
-  double ms = 0.0, ms_worst = 0.0;                              ///< a frame: median and worst of the views
-  double mean_codes = 0.0, p99_codes = 0.0, worst_codes = 0.0;  ///< of 255, a pixel's most different colour
+  double ms = 0.0, ms_worst = 0.0;  ///< per frame: median and worst of the views
+  double mean_codes = 0.0, p99_codes = 0.0,
+         worst_codes = 0.0;   ///< of 255, largest difference of the channels of a pixel
   double far_off = 0.0;       ///< share of pixels more than 16 codes off, 0 .. 1
-  double bound_px = 0.0;      ///< what the geometry is proved to be within, at worst
-  std::int64_t vertices = 0;  ///< of the dearest view
+  double bound_px = 0.0;      ///< largest proved error of the geometry
+  std::int64_t vertices = 0;  ///< of the view with the most
   std::uint64_t hash = 0;
 };
 
-/// Draws what `picture` shows from `views` sides all round, beginning with that of `input`: by each choice,
-/// and by `reference`, which they are judged against; its figures come last. Whole frames, nothing left as it
-/// was. Progress: one a picture. Errors: kCancelled; those of LivePicture::draw. Threading: that of the
-/// picture. Deterministic but for times where the device is.
+/// Draws what `picture` shows from `views` directions around it, beginning with that of `input`: by each
+/// choice, and by `reference`, which they are compared with; its figures come last. Whole frames, nothing is
+/// reused. Progress: one per picture. Errors: kCancelled; those of LivePicture::draw. Threading: that of the
+/// picture. Deterministic except for times where the device is.
 [[nodiscard]] engine::Result<std::vector<DetailFigures>> measureDetail(render::LivePicture& picture,
                                                                        render::FrameInput input, int views,
                                                                        std::span<const DetailChoice> choices,

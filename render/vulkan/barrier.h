@@ -6,8 +6,8 @@
 
 namespace fettle::render {
 
-/// Several images that change at once: what came before has written them, what comes after may read or write.
-/// One barrier for all, because a device may stop for each (lavapipe does).
+/// Several images whose layout changes together: earlier commands have written them, later ones may read or
+/// write. One barrier for all, because a device may stop for each (lavapipe does).
 class Barriers {
  public:
   struct Access {

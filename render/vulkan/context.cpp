@@ -23,7 +23,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT /*
 vk::DebugUtilsMessengerCreateInfoEXT messengerInfo(DebugMessages* messages) {
   using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
   using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-  // "General" messages are the loader's own: which drivers it found and which would not load.
+  // "General" messages come from the loader: which drivers it found and which could not be loaded.
   return {
       {}, Severity::eWarning | Severity::eError, Type::eValidation | Type::ePerformance, &collect, messages};
 }
@@ -68,8 +68,8 @@ std::string rejection(const vk::raii::PhysicalDevice& device, std::uint32_t& que
   const auto& features = chain.get<vk::PhysicalDeviceVulkan13Features>();
   if (!features.dynamicRendering) return "has no dynamic rendering";
   if (!features.synchronization2) return "has no synchronization2";
-  const auto can = [&](vk::Format format, vk::FormatFeatureFlags wanted) {
-    return (device.getFormatProperties(format).optimalTilingFeatures & wanted) == wanted;
+  const auto can = [&](vk::Format format, vk::FormatFeatureFlags required) {
+    return (device.getFormatProperties(format).optimalTilingFeatures & required) == required;
   };
   using F = vk::FormatFeatureFlagBits;
   if (!can(vk::Format::eR32Uint, F::eSampledImage | F::eTransferDst))
@@ -92,7 +92,7 @@ std::string rejection(const vk::raii::PhysicalDevice& device, std::uint32_t& que
 }
 
 Context::~Context() {
-  // Nothing may be under way when the resources go; a lost device has nothing under way.
+  // No work may be in progress when the resources are destroyed; a lost device has none.
   if (*device_) try {
       device_.waitIdle();
     } catch (const vk::SystemError&) {
@@ -100,7 +100,7 @@ Context::~Context() {
 }
 
 engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& options,
-                                                         const SurfaceWish* wish) try {
+                                                         const SurfaceRequest* request) try {
   std::unique_ptr<Context> context(new Context());
   const bool validate = options.validation == Validation::kOn;
   if (context->loader_.enumerateInstanceVersion() < VK_API_VERSION_1_3)
@@ -116,15 +116,16 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
   if (validate) {
     layers.push_back(kValidationLayer);
     extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
-    instance_info.pNext = &messenger;  // the making and ending of the instance itself
+    instance_info.pNext = &messenger;  // for the creation and destruction of the instance itself
   }
-  if (wish != nullptr)
-    extensions.insert(extensions.end(), wish->instance_extensions.begin(), wish->instance_extensions.end());
+  if (request != nullptr)
+    extensions.insert(extensions.end(), request->instance_extensions.begin(),
+                      request->instance_extensions.end());
   instance_info.setPEnabledLayerNames(layers).setPEnabledExtensionNames(extensions);
   context->instance_ = vk::raii::Instance(context->loader_, instance_info);
   if (validate) context->messenger_ = vk::raii::DebugUtilsMessengerEXT(context->instance_, messenger);
-  if (wish != nullptr)
-    context->surface_ = vk::raii::SurfaceKHR(context->instance_, wish->make(*context->instance_));
+  if (request != nullptr)
+    context->surface_ = vk::raii::SurfaceKHR(context->instance_, request->make(*context->instance_));
 
   vk::raii::PhysicalDevices devices = nullptr;
   try {
@@ -148,7 +149,7 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
     std::uint32_t family = 0;
     std::string reason = rejection(device, family, *context->surface_);
     if (reason.empty() && lower(name).find(lower(options.device)) == std::string::npos)
-      reason = "is not the one asked for";
+      reason = "is not the requested one";
     if (!reason.empty())
       reject(name, reason);
     else
@@ -157,8 +158,8 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.preference > b.preference; });
   std::vector<const char*> needed;
-  if (wish != nullptr) needed.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
-  // A device that hangs is still listed: then the next best draws, more slowly.
+  if (request != nullptr) needed.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+  // A device that fails to start is still listed: then the next best draws, more slowly.
   for (Candidate& candidate : candidates) {
     try {
       context->startDevice(candidate.device, candidate.family, needed);
@@ -232,9 +233,10 @@ void Context::run(const std::function<void(const vk::raii::CommandBuffer&)>& rec
   (void)device_.waitForFences(*done, VK_TRUE, UINT64_MAX);
 }
 
-std::uint32_t Context::memoryType(std::uint32_t allowed_bits, vk::MemoryPropertyFlags wanted) const {
+std::uint32_t Context::memoryType(std::uint32_t allowed_bits, vk::MemoryPropertyFlags required) const {
   for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
-    if ((allowed_bits >> i & 1U) != 0 && (memory_.memoryTypes[i].propertyFlags & wanted) == wanted) return i;
+    if ((allowed_bits >> i & 1U) != 0 && (memory_.memoryTypes[i].propertyFlags & required) == required)
+      return i;
   throw vk::FeatureNotPresentError("no suitable memory type");
 }
 

@@ -7,7 +7,7 @@
 
 namespace fettle::render {
 
-/// Descriptors to be written together. The writes point at infos that must stay put until they are applied,
+/// Descriptors to be written together. The writes point at infos that must not move until they are applied,
 /// hence the deques.
 class DescriptorWrites {
  public:

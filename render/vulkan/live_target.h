@@ -11,14 +11,14 @@ struct LiveTarget {
   vk::Image image;
   vk::ImageView view;  ///< of all of `image`, in the format that LivePicture was created for
   vk::Extent2D extent;
-  /// How the frame leaves the image (ePresentSrcKHR for a swap chain). Its old content is let go.
+  /// Layout of the image after the frame (ePresentSrcKHR for a swap chain). Its old content is discarded.
   vk::ImageLayout leaves_as = vk::ImageLayout::ePresentSrcKHR;
   /// Waited for before the image is written; null when it is free already.
   vk::Semaphore free;
-  /// Signalled when the frame is in the image; null when nobody asks.
+  /// Signalled when the frame is in the image; null when not needed.
   vk::Semaphore done;
-  /// Called while the frame is recorded, inside a rendering of this image alone (colour attachment loaded, no
-  /// depth), after the picture: the place for panels of a user interface. May be empty.
+  /// Called while the frame is recorded, inside a rendering of only this image (colour attachment loaded, no
+  /// depth), after the picture: for panels of a user interface. May be empty.
   std::function<void(vk::CommandBuffer)> over;
 };
 

@@ -8,7 +8,7 @@ using Property = vk::MemoryPropertyFlagBits;
 Buffer::Buffer(const Context& context, vk::DeviceSize bytes, vk::BufferUsageFlags usage) : bytes_(bytes) {
   buffer_ = vk::raii::Buffer(context.device(), {{}, bytes, usage});
   const vk::MemoryRequirements needs = buffer_.getMemoryRequirements();
-  // Coherent: no flush to forget. Every Vulkan device has such a type.
+  // Coherent: needs no flush. Every Vulkan device has such a type.
   const std::uint32_t type =
       context.memoryType(needs.memoryTypeBits, Property::eHostVisible | Property::eHostCoherent);
   memory_ = vk::raii::DeviceMemory(context.device(), {needs.size, type});

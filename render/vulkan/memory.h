@@ -7,7 +7,7 @@
 
 namespace fettle::render {
 
-/// A buffer that the CPU writes or reads directly, mapped for its whole life. Move-only.
+/// A buffer that the CPU writes or reads directly, mapped during its whole lifetime. Move-only.
 class Buffer {
  public:
   Buffer() = default;
@@ -28,15 +28,15 @@ class Buffer {
 class GpuImage {
  public:
   GpuImage() = default;
-  /// One mip level; a 2D image, or an array of `layers` of them when `array` asks for a view as such.
-  /// `viewed_as`: the view's format when it is another of the same size. Throws.
+  /// One mip level; a 2D image, or an array of `layers` of them for kArray. `viewed_as`: the view's format
+  /// when it is another of the same size. Throws.
   enum class Kind { kPlane, kArray };
   GpuImage(const Context& context, vk::Format format, vk::Extent2D extent, std::uint32_t layers, Kind kind,
            vk::ImageUsageFlags usage, vk::ImageAspectFlags aspect, std::optional<vk::Format> viewed_as = {});
   [[nodiscard]] vk::Image image() const noexcept { return *image_; }
   [[nodiscard]] vk::ImageView view() const noexcept { return *view_; }
   [[nodiscard]] vk::Extent2D extent() const noexcept { return extent_; }
-  /// Device memory it takes, alignment and all.
+  /// Device memory it takes, alignment included.
   [[nodiscard]] vk::DeviceSize bytes() const noexcept { return bytes_; }
   [[nodiscard]] vk::ImageSubresourceRange range() const noexcept { return {aspect_, 0, 1, 0, layers_}; }
 

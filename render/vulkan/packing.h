@@ -9,12 +9,12 @@
 
 namespace fettle::render {
 
-/// What one frame's buffer is to hold, before it is known where: lists are added, the buffer is made as large
-/// as they need, then all of them are written at once. What is added must stay put until then.
+/// Content of one frame's buffer, before its addresses are known: lists are added, the buffer is made as
+/// large as they need, then all of them are written at once. Added data must not move until then.
 class Packing {
  public:
-  /// Offset and size [bytes] that a descriptor of the list asks for. An empty list takes the room of one
-  /// item: a buffer of no bytes cannot be bound.
+  /// Offset and size [bytes] for a descriptor of the list. An empty list takes the room of one item: a buffer
+  /// of zero bytes cannot be bound.
   using Block = std::pair<vk::DeviceSize, vk::DeviceSize>;
   template <class T>
   Block add(std::span<const T> items) {
@@ -30,7 +30,7 @@ class Packing {
       if (p.bytes > 0) std::memcpy(out + p.at, p.data, p.bytes);
   }
 
-  /// As large as any device asks offsets into buffers to be multiples of (Vulkan 1.3, limits).
+  /// The largest alignment of buffer offsets that a device may require (Vulkan 1.3, limits).
   static constexpr vk::DeviceSize kAlign = 256;
 
  private:

@@ -151,10 +151,10 @@ namespace {
 std::array<vk::Bool32, gpu::kSpecCount> constantsOf(const SurfaceVariant& v) {
   static_assert(gpu::kSpecPaged == 0 && gpu::kSpecMarks == 1 && gpu::kSpecDeviation == 2 &&
                 gpu::kSpecContours == 3 && gpu::kSpecSmooth == 4 && gpu::kSpecHoles == 5 &&
-                gpu::kSpecCell == 6 && gpu::kSpecByNeed == 7 && gpu::kSpecGather == 8 &&
+                gpu::kSpecCell == 6 && gpu::kSpecOnDemand == 7 && gpu::kSpecGather == 8 &&
                 gpu::kSpecPerspective == 9);
   return {v.paged, v.marks,       v.deviation, v.contours, v.smooth,
-          v.holes, v.cell_slopes, v.by_need,   v.gather,   v.perspective};
+          v.holes, v.cell_slopes, v.on_demand, v.gather,   v.perspective};
 }
 
 }  // namespace
@@ -169,7 +169,7 @@ vk::Pipeline Pipelines::depth(const Geometry& geometry) {
                 .colour = Recipe::Colour::kNone};
   if (geometry.holes == Holes::kYes) recipe.fragment = holes_frag_spirv;
   recipe.constants[gpu::kSpecPaged] = geometry.paged == Paged::kYes;
-  recipe.constants[gpu::kSpecByNeed] = geometry.paged == Paged::kByNeed;
+  recipe.constants[gpu::kSpecOnDemand] = geometry.paged == Paged::kByNeed;
   recipe.constants[gpu::kSpecHoles] = geometry.holes == Holes::kYes;
   return *depths_.emplace(geometry, make(recipe)).first->second;
 }
@@ -204,7 +204,7 @@ vk::Pipeline Pipelines::wall(Paged paged, Holes holes) {
                 .layout = *scene_layout_};
   recipe.constants[gpu::kSpecPaged] = paged == Paged::kYes;
   recipe.constants[gpu::kSpecHoles] = holes == Holes::kYes;
-  recipe.constants[gpu::kSpecByNeed] = paged == Paged::kByNeed;
+  recipe.constants[gpu::kSpecOnDemand] = paged == Paged::kByNeed;
   return *walls_.emplace(std::pair{paged, holes}, make(recipe)).first->second;
 }
 

@@ -10,8 +10,8 @@
 
 namespace fettle::render {
 
-/// What of the surface a picture uses: each combination is a pipeline of its own, so that what is left out is
-/// not in its code (specialisation constants).
+/// The features of the surface that a picture uses: each combination is a pipeline of its own, so that unused
+/// features are not in its code (specialisation constants).
 struct SurfaceVariant {
   bool paged = false;
   bool marks = false;
@@ -20,13 +20,13 @@ struct SurfaceVariant {
   bool smooth = false;
   bool holes = true;
   bool cell_slopes = false;
-  bool by_need = false;      ///< pages on the device by need (render/residency/page_demand.h)
+  bool on_demand = false;    ///< pages on the device on demand (render/residency/page_demand.h)
   bool gather = false;       ///< see shaders/layout.h
-  bool perspective = false;  ///< looked at by shade() alone
+  bool perspective = false;  ///< used by shade() only
   friend auto operator<=>(const SurfaceVariant&, const SurfaceVariant&) = default;
 };
 
-/// The pipelines, made when first asked for and kept. Throws vk::SystemError.
+/// The pipelines, created on first use and kept. Throws vk::SystemError.
 class Pipelines {
  public:
   enum class Views {
@@ -39,7 +39,7 @@ class Pipelines {
   enum class Paged { kNo, kYes, kByNeed };
   enum class Holes { kNo, kYes };  ///< whether some cells are left out
   [[nodiscard]] vk::Pipeline wall(Paged paged, Holes holes = Holes::kYes);
-  /// Depth of the surface alone: of patches, and of the seams between them.
+  /// Depth of the surface only: of patches, and of the seams between them.
   struct Geometry {
     enum class Kind { kPatches, kSeams } kind = Kind::kPatches;
     Paged paged = Paged::kNo;
@@ -47,7 +47,7 @@ class Pipelines {
     friend auto operator<=>(const Geometry&, const Geometry&) = default;
   };
   [[nodiscard]] vk::Pipeline depth(const Geometry& geometry);
-  /// Shades a plot from that depth, once a pixel: colour alone.
+  /// Shades a plot from that depth, once per pixel: colour only.
   [[nodiscard]] vk::Pipeline shade(const SurfaceVariant& variant);
   [[nodiscard]] vk::Pipeline floor();
   enum class Lines { kOnTop, kInScene };
@@ -59,7 +59,7 @@ class Pipelines {
   [[nodiscard]] vk::DescriptorSetLayout sceneSet() const noexcept { return *scene_set_; }
   [[nodiscard]] vk::PipelineLayout pictureLayout() const noexcept { return *picture_layout_; }
   [[nodiscard]] vk::DescriptorSetLayout pictureSet() const noexcept { return *picture_set_; }
-  /// How many pipelines exist: pictures that leave an option out make none for it.
+  /// Number of pipelines: pictures without an option create none for it.
   [[nodiscard]] std::size_t made() const noexcept { return made_; }
 
  private:

@@ -20,7 +20,7 @@ Submissions::~Submissions() {
   try {
     finish();
   } catch (const vk::SystemError&) {
-    // A lost device has nothing under way.
+    // A lost device has no work in progress.
   }
 }
 
@@ -79,8 +79,8 @@ std::optional<vk::DeviceSize> StagingRing::take(vk::DeviceSize bytes, std::uint6
   if (held_.empty()) head_ = tail_ = 0;
   vk::DeviceSize at = head_;
   if (held_.empty() || head_ > tail_) {
-    // Free: from head to the end, and from the start to tail. One byte short of tail, or full would look
-    // empty.
+    // Free: from head to the end, and from the start to tail. One byte less than tail, otherwise full would
+    // equal empty.
     if (at + bytes > size) {
       at = 0;
       if (held_.empty() || bytes >= tail_) return std::nullopt;

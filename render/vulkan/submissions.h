@@ -10,8 +10,8 @@
 
 namespace fettle::render {
 
-/// Command buffers that go to the queue one after the other while earlier ones are still at work: two at a
-/// time. Each has a number, from 1 up; they are done in that order.
+/// Command buffers submitted to one queue, two in flight at a time. Each has a number, from 1 up; they
+/// complete in that order.
 ///
 /// Threading: as Context. Throws vk::SystemError.
 class Submissions {
@@ -21,7 +21,8 @@ class Submissions {
   explicit Submissions(Context& context);
   ~Submissions();
 
-  /// Starts recording submission next(), waiting first for the one kInFlight before it; milliseconds of that.
+  /// Starts recording submission next(), after waiting for the one kInFlight before it; returns the
+  /// milliseconds of that wait.
   double begin();
   [[nodiscard]] const vk::raii::CommandBuffer& commands() const noexcept { return slot(next_).commands; }
   struct Gate {
@@ -29,16 +30,16 @@ class Submissions {
     vk::PipelineStageFlags2 wait_at = vk::PipelineStageFlagBits2::eAllCommands;  ///< what has to wait for it
     vk::Semaphore signal;                                                        ///< null: none
   };
-  /// Ends recording and hands over.
+  /// Ends recording and submits.
   void submit(const Gate& gate);
 
   /// Number of the submission being recorded, or to be recorded next.
   [[nodiscard]] std::uint64_t next() const noexcept { return next_; }
-  /// Number of the latest submission known to be done; asks the device, waits for nothing.
+  /// Number of the latest submission known to be completed; asks the device, does not wait.
   std::uint64_t done();
-  /// From submission to when it was found done, of the last one [ms]; negative before the first.
+  /// From submission to when its completion was detected, of the last one [ms]; negative before the first.
   [[nodiscard]] double lastMs() const noexcept { return last_ms_; }
-  /// Waits until all are done.
+  /// Waits until all are completed.
   void finish();
 
  private:
@@ -59,17 +60,17 @@ class Submissions {
   double last_ms_ = -1.0;
 };
 
-/// Memory the CPU writes and the device copies from, mapped for good and used round and round: what a
-/// submission took is free again when it is done.
+/// A permanently mapped ring buffer that the CPU writes and the device copies from: what a submission took is
+/// free again when it is completed.
 class StagingRing {
  public:
   StagingRing(const Context& context, vk::DeviceSize bytes)
       : buffer_(context, bytes, vk::BufferUsageFlagBits::eTransferSrc) {}
 
-  /// Where `bytes` (at most half the ring) may be written for submission `number`; empty when earlier ones
-  /// still hold the room. Offsets are multiples of 16.
+  /// Offset at which `bytes` (at most half the ring) may be written for submission `number`; empty when
+  /// earlier ones still hold the room. Offsets are multiples of 16.
   [[nodiscard]] std::optional<vk::DeviceSize> take(vk::DeviceSize bytes, std::uint64_t number);
-  /// Submissions up to this one are done.
+  /// Submissions up to this one are completed.
   void release(std::uint64_t number);
 
   [[nodiscard]] const Buffer& buffer() const noexcept { return buffer_; }
@@ -77,7 +78,7 @@ class StagingRing {
  private:
   struct Held {
     std::uint64_t number;
-    vk::DeviceSize end;  // of what it took
+    vk::DeviceSize end;  // of its range
   };
   Buffer buffer_;
   std::deque<Held> held_;    // oldest first

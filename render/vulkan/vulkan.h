@@ -1,5 +1,5 @@
 #pragma once
 
-// The one place that says how this room uses Vulkan's C++ face.
+// The options for Vulkan's C++ headers in this room.
 #define VULKAN_HPP_NO_SPACESHIP_OPERATOR
 #include <vulkan/vulkan_raii.hpp>

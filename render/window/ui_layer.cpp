@@ -23,12 +23,12 @@ using Access = vk::AccessFlagBits2;
 
 constexpr float kText_px = 15.0F;
 
-// ImGui's back end reports through a function without a place for context; the room's rule is to throw.
+// ImGui's back end reports errors through a function without a context argument; this room throws.
 void check(VkResult result) {
   if (result < 0) throw vk::SystemError(vk::make_error_code(static_cast<vk::Result>(result)), "ImGui");
 }
 
-// One pass over the image that already holds the picture.
+// One pass over the image that already contains the picture.
 vk::raii::RenderPass makePass(const vk::raii::Device& device) {
   vk::AttachmentDescription colour;
   colour.setFormat(UiLayer::kFormat)
@@ -57,11 +57,11 @@ UiLayer::UiLayer(GLFWwindow* window, double scale, const std::string& layout_fil
   makeStyle(scale);
   ImFontConfig font;
   font.FontDataOwnedByAtlas = false;
-  // Latin, Greek, arrows, and the few signs that figures need.
+  // Latin, Greek, arrows, and the few signs that numbers need.
   static constexpr std::array<ImWchar, 9> kLetters{0x20,   0x17F,  0x370,  0x3FF, 0x2010,
                                                    0x2122, 0x2190, 0x22FF, 0};
   const std::span<const std::uint8_t> regular = regularFont();
-  // ImGui wants a pointer it may write to, and writes nothing to data it does not own.
+  // ImGui takes a non-const pointer but does not write to data it does not own.
   io.Fonts->AddFontFromMemoryTTF(const_cast<std::uint8_t*>(regular.data()), static_cast<int>(regular.size()),
                                  std::round(kText_px * static_cast<float>(scale)), &font, kLetters.data());
   ImGui_ImplGlfw_InitForVulkan(window, true);
@@ -90,7 +90,7 @@ void UiLayer::enter(Context& context) {
   init.ImageCount = 2;
   init.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
   init.CheckVkResultFn = &check;
-  context_ = &context;  // from here on there is something to let go of, whatever of it succeeds
+  context_ = &context;  // from here on leave() has something to release, whatever of it succeeds
   ImGui_ImplVulkan_Init(&init, *pass_);
   context.run(
       [](const vk::raii::CommandBuffer& commands) { ImGui_ImplVulkan_CreateFontsTexture(*commands); });
@@ -102,7 +102,7 @@ void UiLayer::leave() noexcept {
   try {
     context_->device().waitIdle();
   } catch (const vk::SystemError&) {
-    // A lost device has nothing under way.
+    // A lost device has no work in progress.
   }
   ImGui_ImplVulkan_Shutdown();
   framebuffer_ = nullptr;
@@ -119,7 +119,7 @@ void UiLayer::makeStyle(double scale) const {
   style.FrameRounding = 3.0F;
   style.GrabRounding = 3.0F;
   style.WindowBorderSize = 0.0F;
-  // What lies behind a question goes dark; ImGui's own light grey takes the colours from the picture.
+  // The background of a dialog is darkened; ImGui's own light grey would remove the colours of the picture.
   style.Colors[ImGuiCol_ModalWindowDimBg] = ImVec4(0.0F, 0.0F, 0.0F, 0.45F);
   style.ScaleAllSizes(static_cast<float>(scale));
 }
@@ -142,7 +142,8 @@ void UiLayer::fit(vk::Extent2D extent) {
   framebuffer_ = vk::raii::Framebuffer(context_->device(), info);
 }
 
-// As held at this frame's beginning: what was held at any time since the last one. Keys to be let go again.
+// Sets all keys pressed since the last frame as held at this frame's beginning; returns those to be released
+// afterwards.
 std::vector<int> UiLayer::holdShortPresses() {
   ImGuiIO& io = ImGui::GetIO();
   std::vector<int> brief;
@@ -156,7 +157,7 @@ std::vector<int> UiLayer::holdShortPresses() {
     io.KeyCtrl = io.KeyCtrl || (modifiers & GLFW_MOD_CONTROL) != 0;
     io.KeyShift = io.KeyShift || (modifiers & GLFW_MOD_SHIFT) != 0;
     io.KeyAlt = io.KeyAlt || (modifiers & GLFW_MOD_ALT) != 0;
-    // One that is held yet may have lost its modifiers already.
+    // A key that is still held may have lost its modifiers already.
     if (key < 0 || key >= IM_ARRAYSIZE(io.KeysDown) || io.KeysDown[key]) continue;
     io.KeysDown[key] = true;
     brief.push_back(key);
@@ -165,8 +166,8 @@ std::vector<int> UiLayer::holdShortPresses() {
 }
 
 void UiLayer::beginFrame() {
-  // In dialogs and menus the arrows go from field to field; elsewhere they turn the view, and must not fold
-  // and press what they happen to stand on in the panels.
+  // In dialogs and menus the arrow keys move between fields; elsewhere they turn the view, and must not
+  // navigate in the panels.
   ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsMouseClicked(0) && !io.WantCaptureMouse) leavePanels();
   if (entered_ || ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel))
@@ -206,7 +207,7 @@ void UiLayer::clear(const vk::raii::CommandBuffer& commands) const {
   commands.clearColorImage(image_.image(), ImageLayout::eTransferDstOptimal,
                            vk::ClearColorValue(std::array<float, 4>{0.09F, 0.09F, 0.10F, 1.0F}),
                            image_.range());
-  // Two writes by transfers in a row want their order said.
+  // Two transfer writes in a row need a barrier.
   change(commands, image_, ImageLayout::eTransferDstOptimal, ImageLayout::eTransferDstOptimal,
          Stage::eAllTransfer, Access::eTransferWrite, Stage::eAllTransfer, Access::eTransferWrite);
 }

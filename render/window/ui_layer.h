@@ -9,44 +9,45 @@ struct GLFWwindow;
 
 namespace fettle::render {
 
-/// Dear ImGui on this room's devices: fonts, the render pass that its back end asks for, and the image in
-/// which pictures and panels come together. The image holds sRGB code values without saying so (UNORM), since
-/// that is what ImGui's colours are and how it blends them.
+/// Dear ImGui on Vulkan: fonts, the render pass that its back end needs, and the image in which pictures and
+/// panels are combined. The image holds sRGB code values in a UNORM format, since ImGui's colours are such
+/// values and are blended as such.
 ///
 /// Threading: main thread. Throws vk::SystemError.
 class UiLayer {
  public:
   static constexpr vk::Format kFormat = vk::Format::eR8G8B8A8Unorm;
 
-  /// `scale`: of the display. `layout_file`: where ImGui keeps the panels' places; empty: nowhere. What the
-  /// panels hold (places, text being typed) lives as long as this, whatever becomes of devices.
+  /// `scale`: of the display. `layout_file`: where ImGui stores the positions of the panels; empty: nowhere.
+  /// The state of the panels (positions, text being typed) lives as long as this, independent of devices.
   UiLayer(GLFWwindow* window, double scale, const std::string& layout_file);
   ~UiLayer();
   UiLayer(const UiLayer&) = delete;
   UiLayer& operator=(const UiLayer&) = delete;
 
-  /// From now on the panels are drawn with this context; one at a time.
+  /// Panels are drawn with this context from now on; one at a time.
   void enter(Context& context);
-  /// Lets go of all that belongs to it, lost or not. Between leave() and enter() nothing below may be called.
+  /// Releases all that belongs to the context, lost or not. Between leave() and enter() nothing below may be
+  /// called.
   void leave() noexcept;
 
   void fit(vk::Extent2D extent);
-  /// A key went down (GLFW's numbers). ImGui looks at what is held when a frame begins: with this it sees
-  /// keys that were let go by then, too, for one frame.
+  /// A key went down (GLFW's numbers). ImGui reads the held keys when a frame begins: with this call it also
+  /// gets keys that were released by then, for one frame.
   void notePress(int key, int modifiers) { pressed_.push_back({key, modifiers}); }
   void beginFrame();
-  /// Whether the panels have the keyboard beyond text fields, dialogs and menus; and from when to when.
+  /// Whether the panels have the keyboard focus beyond text fields, dialogs and menus; and how it begins and
+  /// ends.
   [[nodiscard]] bool entered() const noexcept { return entered_; }
   void enterPanels() noexcept { entered_ = true; }
   void leavePanels() noexcept;
-  /// Whether a panel, or a menu that waits for a click outside it, has the mouse at this place of the window
-  /// (GLFW's coordinates): where the cursor is now, not where it was when the last frame began.
+  /// Whether a panel, or a menu that waits for a click outside it, has the mouse at this position of the
+  /// window (GLFW's coordinates): at the current cursor, not at that of the last frame's beginning.
   [[nodiscard]] bool panelsHaveMouse(double x, double y) const noexcept;
-  /// Ends the frame's panels and keeps what they draw.
+  /// Ends the frame's panels and stores their draw lists.
   void endFrame();
 
-  /// The image is the target of transfers first (bring()), then of the panels (draw()), then ready to be
-  /// copied from.
+  /// The image is first the target of transfers, then of the panels (draw()), then ready to be copied from.
   void clear(const vk::raii::CommandBuffer& commands) const;
   void draw(const vk::raii::CommandBuffer& commands) const;
   [[nodiscard]] const GpuImage& image() const noexcept { return image_; }

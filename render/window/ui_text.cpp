@@ -45,7 +45,7 @@ void append(std::string& text, unsigned int code) {
   }
 }
 
-// Letters one after the other become pieces of text.
+// Joins consecutive letters to pieces of text.
 class Reader {
  public:
   explicit Reader(std::vector<PanelText>& texts) : texts_(texts) {}
@@ -57,7 +57,7 @@ class Reader {
     const float space = font.FindGlyph(' ')->AdvanceX;
     const float gap = x - pen_;
     const bool follows = open_ && std::abs(y - line_) < 0.5F && gap > -1.0F && gap < space + 1.5F;
-    // Letters wholly outside are sent to the device and never seen.
+    // Letters completely outside are submitted but not visible.
     const bool hidden =
         corner.pos.x >= clip.z || right <= clip.x || y + font.FontSize <= clip.y || y >= clip.w;
     if (!follows) {
@@ -68,7 +68,7 @@ class Reader {
       append(text_.text, ' ');
     }
     pen_ = x + g.AdvanceX;
-    // ImGui cuts some letters itself before the device does.
+    // ImGui clips some letters itself before the device does.
     if (corner.pos.x < clip.x - 1.0F || std::min(drawn_to, clip.z) < right - 1.0F) text_.cut = true;
     if (hidden) return;
     if (text_.width <= 0.0F) {
@@ -115,7 +115,7 @@ std::vector<PanelText> textsOf(const ImDrawData& drawn) {
           const ImDrawVert& opposite = list.VtxBuffer[static_cast<int>(a + 2 + command.VtxOffset)];
           reader.letter(found->second, corner, opposite.pos.x, command.ClipRect);
         } else {
-          reader.end();  // a frame, a tick, a line
+          reader.end();  // not a letter: a border or a line
         }
         i += square ? 6 : 3;
       }

@@ -23,7 +23,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-// GLFW's own, by a pointer that names no type of Xlib (GLFW/glfw3native.h would bring all of it in).
+// GLFW's own function, declared without a type of Xlib (GLFW/glfw3native.h would include all of Xlib).
 extern "C" void* glfwGetX11Display();
 
 namespace fettle::render {
@@ -33,7 +33,7 @@ using ImageLayout = vk::ImageLayout;
 using Stage = vk::PipelineStageFlagBits2;
 using Access = vk::AccessFlagBits2;
 
-// GLFW tells what went wrong only through a function.
+// GLFW reports errors only through a callback.
 std::string& lastGlfwError() {
   static std::string text;
   return text;
@@ -93,12 +93,12 @@ Key specialKey(int key) {
   return Key::kNone;
 }
 
-// What is written on the key in the user's layout.
+// The label of the key in the user's layout.
 Key keyOf(int key, int scancode) {
   if (const Key special = specialKey(key); special != Key::kNone) return special;
   const char* name = glfwGetKeyName(key, scancode);
   char c = name != nullptr && name[0] != '\0' && name[1] == '\0' ? name[0] : '\0';
-  // A layout without Latin letters: what GLFW calls the key, which is its place on a US keyboard.
+  // A layout without Latin letters: GLFW's name of the key, which is its position on a US keyboard.
   if (c == '\0' && key >= 32 && key < 127) c = static_cast<char>(key);
   if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
   return static_cast<Key>(static_cast<unsigned char>(c));
@@ -108,13 +108,13 @@ Modifiers modifiersOf(int bits) {
   return {(bits & GLFW_MOD_CONTROL) != 0, (bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_ALT) != 0};
 }
 
-// Set by Xlib's handler, read by the window: both on the main thread, but a signal's care costs nothing.
+// Set by Xlib's handler, read by the window: both on the main thread; atomic as for a signal, at no cost.
 std::atomic<bool> display_lost{false};
 
-// Xlib ends the program when its server goes away, unless it is told not to; from then on its calls do
-// nothing. GLFW loads the library by itself, so it is asked for here the same way. (XSetIOErrorExitHandler:
-// libX11 1.7, 2020. With an older one the program ends here, by quick_exit: the device's and the loop's
-// threads still work on what exit() would destroy.)
+// By default Xlib ends the program when its server is lost; with this handler its calls do nothing
+// afterwards. GLFW loads the library by itself, so it is loaded here in the same way.
+// (XSetIOErrorExitHandler: libX11 1.7, 2020. With an older one the program ends here, by quick_exit: the
+// threads of device and loop still use what exit() would destroy.)
 int onDisplayLost(void* display) {
   display_lost.store(true);
   if (display != nullptr) return 0;
@@ -154,7 +154,7 @@ engine::Error lost(const std::string& device, const char* what) {
 }  // namespace
 
 struct Window::Impl {
-  // In the order in which they must be made; destroyed in reverse.
+  // In the order of creation; destroyed in reverse.
   struct Glfw {
     bool started = false;
     GLFWwindow* window = nullptr;
@@ -170,17 +170,17 @@ struct Window::Impl {
     glfwGetWindowContentScale(glfw.window, &x, &y);
     return std::clamp(static_cast<double>(x), 0.5, 4.0);
   }
-  SurfaceWish wish;
+  SurfaceRequest request;
   DeviceOptions device;
   std::string device_name;            // outlives the context
-  std::vector<std::string> messages;  // of the contexts before this one
+  std::vector<std::string> messages;  // of the previous contexts
   std::unique_ptr<UiLayer> ui;        // outlives contexts: it holds the panels
   std::unique_ptr<Context> context;
   std::unique_ptr<Swapchain> swapchain;
   GpuImage picture;
   LiveTarget target;
   bool drawn = false;   // something was drawn to `picture`
-  bool usable = false;  // as far as the last present() can tell
+  bool usable = false;  // according to the last present()
   bool seen = false;    // the window is on the screen
   Rectangle area{0, 0, 16, 16};
   std::vector<InputEvent> input;
@@ -214,13 +214,13 @@ struct Window::Impl {
     return {held(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL),
             held(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT), held(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT)};
   }
-  void bringPicture(const vk::raii::CommandBuffer& commands) const;
+  void copyPicture(const vk::raii::CommandBuffer& commands) const;
   engine::Status enterDevice();
   void leaveDevice() noexcept;
 };
 
 engine::Status Window::Impl::enterDevice() {
-  auto made = Context::create(device, &wish);
+  auto made = Context::create(device, &request);
   if (!made) return tl::unexpected(made.error());
   context = *std::move(made);
   device_name = context->name();
@@ -241,7 +241,7 @@ void Window::Impl::leaveDevice() noexcept {
   try {
     context->device().waitIdle();
   } catch (const vk::SystemError&) {
-    // A lost device has nothing under way.
+    // A lost device has no work in progress.
   }
   usable = drawn = false;
   ui->leave();
@@ -253,7 +253,7 @@ void Window::Impl::leaveDevice() noexcept {
   context.reset();
 }
 
-// Set before ImGui's own callbacks, which call these in turn.
+// Installed before ImGui's own callbacks, which call these in turn.
 void Window::Impl::listen() {
   glfwSetWindowUserPointer(glfw.window, this);
   glfwSetKeyCallback(glfw.window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
@@ -266,7 +266,7 @@ void Window::Impl::listen() {
     event.repeat = action == GLFW_REPEAT;
     if (event.key == Key::kNone) return;
     of(w).note(event);
-    // Before the frame that ImGui sees it in.
+    // Before the frame in which ImGui gets it.
     if (event.key == Key::kEscape) of(w).ui->leavePanels();
   });
   glfwSetMouseButtonCallback(glfw.window, [](GLFWwindow* w, int button, int action, int mods) {
@@ -283,7 +283,7 @@ void Window::Impl::listen() {
     InputEvent event;
     event.kind = InputKind::kMove;
     event.modifiers = of(w).modifiersNow();
-    // Ten thousand places between two frames say no more than the last of each run.
+    // Of a run of cursor positions between two frames only the last one counts.
     of(w).note(event);
   });
   glfwSetScrollCallback(glfw.window, [](GLFWwindow* w, double, double steps) {
@@ -323,7 +323,7 @@ engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& opti
                            "on Debian: apt install libvulkan1 mesa-vulkan-drivers");
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-  // It appears with its first frame: until then it would show whatever lay there before.
+  // It appears with its first frame: before that it would show undefined content.
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
   glfwWindowHintString(GLFW_X11_CLASS_NAME, "fettle");
   glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "fettle");
@@ -337,8 +337,8 @@ engine::Result<std::unique_ptr<Window>> Window::create(const WindowOptions& opti
 
   std::uint32_t count = 0;
   const char** extensions = glfwGetRequiredInstanceExtensions(&count);
-  impl->wish.instance_extensions.assign(extensions, extensions + count);
-  impl->wish.make = [window = impl->glfw.window](VkInstance instance) {
+  impl->request.instance_extensions.assign(extensions, extensions + count);
+  impl->request.make = [window = impl->glfw.window](VkInstance instance) {
     VkSurfaceKHR surface = VK_NULL_HANDLE;
     const VkResult result = glfwCreateWindowSurface(instance, window, nullptr, &surface);
     if (result != VK_SUCCESS)
@@ -468,24 +468,24 @@ engine::Result<LiveTarget*> Window::pictureTarget() try {
   w.drawn = true;
   return &w.target;
 } catch (const std::exception& error) {
-  // The old image may be gone and no new one there.
+  // The old image may be destroyed without a new one in its place.
   impl_->picture = {};
   impl_->drawn = false;
   return tl::unexpected(lost(impl_->device_name, error.what()));
 }
 
-void Window::forgetPicture() noexcept {
+void Window::clearPicture() noexcept {
   impl_->drawn = false;
 }
 
-void Window::Impl::bringPicture(const vk::raii::CommandBuffer& commands) const {
-  // Drawn by an earlier submission of this queue; its last barrier knows nothing of this copy.
+void Window::Impl::copyPicture(const vk::raii::CommandBuffer& commands) const {
+  // Drawn by an earlier submission of this queue; its last barrier does not include this copy.
   change(commands, picture, ImageLayout::eTransferSrcOptimal, ImageLayout::eTransferSrcOptimal,
          Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllTransfer, Access::eTransferRead);
   const vk::Extent2D frame = ui->image().extent(), size = picture.extent();
   const int left = std::max(area.x, 0), top = std::max(area.y, 0);
   if (left >= static_cast<int>(frame.width) || top >= static_cast<int>(frame.height)) return;
-  // A copy of code values: sRGB without a word about it becomes UNORM without a change.
+  // A copy of code values: sRGB is reinterpreted as UNORM without a change.
   vk::ImageCopy copy;
   copy.setSrcSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
       .setDstSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
@@ -503,9 +503,9 @@ engine::Result<PresentReport> Window::present() {
   try {
     if (display_lost.load()) return tl::unexpected(lost(w.device_name, ""));
     if (minimised()) return report;
-    const auto meanwhile = [&w] {
+    const auto while_waiting = [&w] {
       if (w.while_waiting) w.while_waiting();
-      // A dead display gives no image back, and not every driver says so.
+      // A lost display returns no image, and not every driver reports that.
       if (display_lost.load()) throw vk::SurfaceLostKHRError("display");
     };
     // A window that changes its size while it is shown needs another try.
@@ -517,10 +517,10 @@ engine::Result<PresentReport> Window::present() {
           w.ui->image().image(),
           [&](const vk::raii::CommandBuffer& commands) {
             w.ui->clear(commands);
-            if (w.drawn) w.bringPicture(commands);
+            if (w.drawn) w.copyPicture(commands);
             w.ui->draw(commands);
           },
-          meanwhile,
+          while_waiting,
           [&w] {
             if (!std::exchange(w.seen, true)) glfwShowWindow(w.glfw.window);
           });

@@ -15,8 +15,8 @@ namespace fettle::render {
 class Context;
 struct LiveTarget;
 
-/// Keys by what is written on them: letters as 'A' .. 'Z' and digits as '0' .. '9' in the user's own layout,
-/// so that Ctrl+Z is where a German or French keyboard has its Z; signs as their ASCII code.
+/// Keys by their labels: letters as 'A' .. 'Z' and digits as '0' .. '9' in the user's own layout, so that
+/// Ctrl+Z is where a German or French keyboard has its Z; signs as their ASCII code.
 enum class Key : std::uint16_t {
   kNone = 0,
   kSpace = ' ',
@@ -62,7 +62,7 @@ struct Modifiers {
 enum class InputKind : std::uint8_t { kKeyDown, kButtonDown, kButtonUp, kMove, kWheel, kLeave };
 enum class MouseButton : std::uint8_t { kLeft, kRight, kMiddle, kOther };
 
-/// One thing a hand did, in order: a press and a release between two frames are both there.
+/// One input event, in order: a press and a release between two frames are both reported.
 struct InputEvent {
   InputKind kind = InputKind::kMove;
   Key key = Key::kNone;
@@ -84,45 +84,45 @@ struct WindowOptions {
   Validation validation = Validation::kOff;
   std::string device;  ///< as DeviceOptions::device
   double scale = 0.0;  ///< factor on sizes of text and panels, 0.5 .. 4; 0: the display's
-  /// Where the layout of the panels is remembered; empty: nowhere.
+  /// Where the layout of the panels is stored; empty: nowhere.
   std::string layout_file;
 };
 
-/// What showing a frame took.
+/// Times of showing a frame.
 struct PresentReport {
-  double draw_ms = 0.0;       ///< panels and copies, until the device has done them
-  std::int64_t shown_ns = 0;  ///< steady_clock when the frame was handed to the window system, drawn
+  double draw_ms = 0.0;       ///< panels and copies, until the device has completed them
+  std::int64_t shown_ns = 0;  ///< steady_clock when the drawn frame was submitted to the window system
 };
 
-/// A piece of text on the panels, as a person reads it.
+/// A piece of text on the panels, as displayed.
 struct PanelText {
-  std::string text;          ///< UTF-8, what is visible of it
+  std::string text;          ///< UTF-8, its visible part
   float x = 0.0F, y = 0.0F;  ///< its left upper corner in the frame [pixels]
   float width = 0.0F, height = 0.0F;
   bool cut = false;  ///< its beginning or its end lies outside of its panel
 };
 
-/// A window with panels over pictures. The pictures are drawn by the code that draws off-screen, into targets
-/// of the same kind; the window copies them in, puts the panels (Dear ImGui) over them and shows it all.
+/// A window with panels over pictures. Pictures are drawn by the same code as off-screen, into targets of the
+/// same kind; the window copies them, draws the panels (Dear ImGui) over them and shows the result.
 ///
-/// Threading: the process's main thread alone; one at a time in a process.
+/// Threading: only the process's main thread; one window at a time per process.
 class Window {
  public:
-  /// Errors (kFailed): no display (the line says so), no Vulkan device that can show pictures on it, as
-  /// Context::create otherwise.
+  /// Errors (kFailed): no display (the message says so), no Vulkan device that can present on it; otherwise
+  /// as Context::create.
   [[nodiscard]] static engine::Result<std::unique_ptr<Window>> create(const WindowOptions& options);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Takes what happened since; waits up to `wait_s` for something to happen when nothing has.
+  /// Collects the events since the last call; waits up to `wait_s` for one when there is none.
   void poll(double wait_s);
-  /// Called again and again, every millisecond or two, while present() waits for the device: the place to
-  /// poll and to hand on what cannot wait for a frame. May not draw.
+  /// Called repeatedly, every millisecond or two, while present() waits for the device: for polling and for
+  /// work that cannot wait for a frame. Must not draw.
   void setWhileWaiting(std::function<void()> work);
-  /// What hands did, oldest first; gone afterwards.
+  /// The input since the last call, oldest first.
   [[nodiscard]] std::vector<InputEvent> takeInput();
-  /// Paths dropped on the window since.
+  /// Paths dropped on the window since the last call.
   [[nodiscard]] std::vector<std::string> takeDrops();
 
   [[nodiscard]] bool closeAsked() const;
@@ -130,25 +130,25 @@ class Window {
   [[nodiscard]] bool minimised() const;
   [[nodiscard]] int width() const;  ///< of the frame [pixels]
   [[nodiscard]] int height() const;
-  /// Factor on sizes of text and panels: the display's, 1 on ordinary ones.
+  /// Factor on sizes of text and panels: the display's, 1 on standard ones.
   [[nodiscard]] double scale() const;
   void setTitle(const std::string& title);
 
-  /// Gives the keyboard to the panels until Esc or a click beside them: arrows then go from field to field.
+  /// Gives the keyboard to the panels until Esc or a click outside them: arrow keys then move between fields.
   /// Otherwise only dialogs, menus and text fields take keys.
   void enterPanels();
-  /// Takes it from them, before Esc or a click does; closes menus and dialogs that are open.
+  /// Ends that before Esc or a click does; closes menus and dialogs that are open.
   void leavePanels();
   /// Starts the panels of a frame; ImGui may be called until present().
   void beginFrame();
-  /// Where in the frame the picture is [pixels]; the panels have the rest, and may lie over it.
+  /// Position of the picture in the frame [pixels]; the panels have the rest, and may overlap it.
   void setPictureArea(const Rectangle& area);
   [[nodiscard]] const Rectangle& pictureArea() const;
-  /// What to draw the picture to, of the size of its area (LivePicture::draw). Keeps its content from frame
-  /// to frame. Never null. Errors (kFailed): no memory for it, or the device was lost.
+  /// The target of the picture, of the size of its area (LivePicture::draw). Its content is kept between
+  /// frames. Never null. Errors (kFailed): no memory for it, or the device was lost.
   [[nodiscard]] engine::Result<LiveTarget*> pictureTarget();
-  /// Shows nothing there until the next pictureTarget().
-  void forgetPicture() noexcept;
+  /// Shows no picture until the next pictureTarget().
+  void clearPicture() noexcept;
   /// The VkFormat of the picture's target.
   [[nodiscard]] static std::uint32_t pictureFormat();
 
@@ -156,25 +156,26 @@ class Window {
   /// The window itself appears with its first frame. Errors (kFailed): the device, the surface or the display
   /// was lost, or memory ran out; see usable() and renew().
   [[nodiscard]] engine::Result<PresentReport> present();
-  /// What is written on the panels of the last frame, from back to front.
+  /// The text of the panels of the last frame, from back to front.
   [[nodiscard]] std::vector<PanelText> texts() const;
 
-  /// Whether the device still works and the window can be shown on. False from a present() that lost one of
-  /// them on, or when asking the device says so: then renew(), and draw nothing before.
+  /// Whether the device works and the window can be presented on. False after a present() that lost one of
+  /// them, or when the device reports its loss: then call renew(), and draw nothing before.
   [[nodiscard]] bool usable();
-  /// Makes everything of the device anew on the same window: driver instance, device, surface, panels' fonts.
-  /// Takes the device asked for, or another one when that does not start. What others made with context()
-  /// must be gone before, and context() is another one afterwards. Errors as create(): the window stays
-  /// without a device, and renew() may be tried again; beginFrame() and all that draws may not be called.
+  /// Creates everything of the device again on the same window: driver instance, device, surface, fonts of
+  /// the panels. Uses the requested device, or another one when that does not start. Objects created with
+  /// context() must be destroyed before, and context() is another one afterwards. Errors as create(): the
+  /// window stays without a device, and renew() may be tried again; beginFrame() and all that draws may not
+  /// be called.
   [[nodiscard]] engine::Status renew();
-  /// The display ended, or the connection to it: for good. Input has stopped, present() fails. The process
-  /// goes on, so that work can be kept.
+  /// The display or the connection to it was lost permanently. Input has stopped, present() fails. The
+  /// process continues, so that work can be saved.
   [[nodiscard]] bool displayLost() const;
 
   /// The last frame as shown. Errors as present.
   [[nodiscard]] engine::Result<Image> capture();
 
-  /// What everything drawn for this window is drawn with.
+  /// The context of everything drawn for this window.
   [[nodiscard]] Context& context();
   [[nodiscard]] const std::string& device() const;
   [[nodiscard]] std::vector<std::string> validationMessages() const;

@@ -38,7 +38,7 @@ Swapchain::Swapchain(Context& context) : context_(context) {
 bool Swapchain::fit(vk::Extent2D wanted) {
   const vk::SurfaceCapabilitiesKHR can = context_.physical().getSurfaceCapabilitiesKHR(context_.surface());
   vk::Extent2D extent = can.currentExtent;
-  if (extent.width == UINT32_MAX) {  // the window system leaves it to us
+  if (extent.width == UINT32_MAX) {  // the window system leaves it to the program
     extent.width = std::clamp(wanted.width, can.minImageExtent.width, can.maxImageExtent.width);
     extent.height = std::clamp(wanted.height, can.minImageExtent.height, can.maxImageExtent.height);
   }
@@ -71,7 +71,7 @@ bool Swapchain::fit(vk::Extent2D wanted) {
   drawn_.clear();
   for (std::size_t i = 0; i < images_.size(); ++i)
     drawn_.emplace_back(context_.device(), vk::SemaphoreCreateInfo{});
-  // An image acquired but never shown may have left its signal.
+  // An image acquired but never presented may have left its semaphore signalled.
   acquired_ = vk::raii::Semaphore(context_.device(), vk::SemaphoreCreateInfo{});
   extent_ = extent;
   return true;
@@ -83,7 +83,7 @@ bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::
   std::uint32_t index = 0;
   bool right_size = true;
   try {
-    // FIFO: with every image still waiting for the display this takes as long as the display does.
+    // FIFO: while all images wait for the display this takes as long as the display does.
     std::pair<vk::Result, std::uint32_t> next;
     do {
       next = swapchain_.acquireNextImage(while_waiting ? kLook_ns : kForever, *acquired_);
@@ -107,7 +107,7 @@ bool Swapchain::show(vk::Image source, const std::function<void(const vk::raii::
       .setDstSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
       .setSrcOffsets(all)
       .setDstOffsets(all);
-  // A blit, not a copy: it also turns red, green, blue into the order that the display wants.
+  // A blit, not a copy: it also converts to the channel order of the display.
   commands_.blitImage(source, ImageLayout::eTransferSrcOptimal, images_[index],
                       ImageLayout::eTransferDstOptimal, blit, vk::Filter::eNearest);
   change(commands_, images_[index], ImageLayout::eTransferDstOptimal, ImageLayout::ePresentSrcKHR,

@@ -7,26 +7,26 @@
 
 namespace fettle::render {
 
-/// The images that a window shows in turn. Made anew when the window's size changes.
+/// The images that a window shows in turn. Created again when the window's size changes.
 ///
-/// Promises 8 bits a channel, not sRGB-decoded on a copy (UNORM), and FIFO order: no tearing, never faster
-/// than the display. Leaves out: wide gamut, several frames in flight - a frame is done before it is shown,
-/// so that what is measured is what is seen.
+/// Guarantees 8 bits per channel, not sRGB-decoded on a copy (UNORM), and FIFO order: no tearing, never
+/// faster than the display. Does not support: wide gamut, several frames in flight - a frame is completed
+/// before it is shown, so that measured times are those of visible frames.
 ///
 /// Threading: as Context. Throws vk::SystemError; vk::OutOfDateKHRError never.
 class Swapchain {
  public:
   explicit Swapchain(Context& context);
 
-  /// Fits the images to a frame of this size, the surface's own where the window system dictates one. False
-  /// while there is nothing to show on (minimised).
+  /// Fits the images to a frame of this size, or to the surface's own size where the window system dictates
+  /// one. False while there is nothing to show on (minimised).
   [[nodiscard]] bool fit(vk::Extent2D wanted);
   [[nodiscard]] vk::Extent2D extent() const noexcept { return extent_; }
 
-  /// Copies `source` (colour, in eTransferSrcOptimal, of extent()) to the next image and shows it. `record`
-  /// comes before the copy in the same submission; returns when the device has done it all, calling
+  /// Copies `source` (colour, in eTransferSrcOptimal, of extent()) to the next image and presents it.
+  /// `record` comes before the copy in the same submission; returns when the device has completed it, calling
   /// `while_waiting`, if any, about every millisecond until then, and `before_showing`, if any, when the
-  /// image is ready. False: the size is no longer right, fit() again.
+  /// image is ready. False: the size is no longer right, call fit() again.
   [[nodiscard]] bool show(vk::Image source, const std::function<void(const vk::raii::CommandBuffer&)>& record,
                           const std::function<void()>& while_waiting,
                           const std::function<void()>& before_showing);
@@ -38,7 +38,7 @@ class Swapchain {
   vk::raii::SwapchainKHR swapchain_ = nullptr;
   std::vector<vk::Image> images_;
   vk::raii::Semaphore acquired_ = nullptr;
-  std::vector<vk::raii::Semaphore> drawn_;  // one an image: presentation may hold on to the last one
+  std::vector<vk::raii::Semaphore> drawn_;  // one per image: presentation may hold the last one
   vk::raii::CommandPool pool_ = nullptr;
   vk::raii::CommandBuffer commands_ = nullptr;
   vk::raii::Fence done_ = nullptr;

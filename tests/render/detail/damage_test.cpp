@@ -58,7 +58,7 @@ class Twins {
     const double drawn = first ? first->redrawn : -1.0;
     while (first && first->residency.pages_loaded + first->residency.pages_waiting > 0)
       first = picture_->draw(input, parts);
-    if (first) by_need_ = first->residency.by_need;
+    if (first) by_need_ = first->residency.on_demand;
     input.redraw = FrameInput::Redraw::kAll;
     const auto second = picture_->draw(input, whole);
     if (!first || !second) {
@@ -72,7 +72,7 @@ class Twins {
     for (const std::string& message : picture_->validationMessages()) ADD_FAILURE() << message;
     return drawn;
   }
-  [[nodiscard]] bool byNeed() const noexcept { return by_need_; }
+  [[nodiscard]] bool onDemand() const noexcept { return by_need_; }
 
  private:
   bool by_need_ = false;
@@ -148,7 +148,7 @@ TEST_P(DamageOverEdits, FramesInPartsEqualWholeOnes) {
   }
   // A brush of 40 samples is a fifteenth of the field's width; zoomed in it fills the picture.
   EXPECT_LT(drawn / parts, 0.6);
-  EXPECT_EQ(twins.byNeed(), device_bytes != kWhole);
+  EXPECT_EQ(twins.onDemand(), device_bytes != kWhole);
 }
 INSTANTIATE_TEST_SUITE_P(, DamageOverEdits,
                          testing::Combine(testing::Values(Holes::kNone, Holes::kSome),
@@ -236,7 +236,7 @@ TEST(Damage, APanelThatIsRefinedOrLitFromPagesOfItsOwnIsDrawnAloneAndTheOthersSt
     for (std::size_t i = 0; i < 4; ++i) {
       input.panel_vertices[i] = 1 << 20;
       const double share = twins.shoot(input);
-      EXPECT_EQ(twins.byNeed(), device_bytes != kWhole);
+      EXPECT_EQ(twins.onDemand(), device_bytes != kWhole);
       EXPECT_GT(share, 0.1) << i;
       EXPECT_LE(share, 0.25) << i;
     }

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/live_field.h"
-#include "render/detail/kept_trees.h"
+#include "render/detail/patch_tree_cache.h"
 #include "tests/render/support/drawn_surface.h"
 #include "tests/render/support/fields.h"
 
@@ -91,8 +91,8 @@ TEST(Detail, AfterAnEditTheMeasureEqualsAFreshOneBitForBit) {
     return std::hypot(c - 320, r - 128) < 20 || (c * 31 + r * 17) % 997 == 0 ? kNan : rough(c, r);
   });
   engine::LiveField live(start, engine::Growth::kAllowed);
-  DetailMeasure kept;
-  kept.measure(start.reader());
+  DetailMeasure cached;
+  cached.measure(start.reader());
   for (int edit = 0; edit < 25; ++edit) {
     const int c = static_cast<int>(random() % 690), r = static_cast<int>(random() % 290);
     const std::vector<float> bump(100, edit % 5 == 0 ? kNan : static_cast<float>(edit));
@@ -100,15 +100,15 @@ TEST(Detail, AfterAnEditTheMeasureEqualsAFreshOneBitForBit) {
     std::vector<glm::ivec2> tiles;
     for (int tr = r / 64; tr <= (r + 9) / 64; ++tr)
       for (int tc = c / 64; tc <= (c + 9) / 64; ++tc) tiles.emplace_back(tc, tr);
-    kept.refresh(live.reader(), tiles);
+    cached.refresh(live.reader(), tiles);
     DetailMeasure fresh;
     fresh.measure(live.reader());
     for (int level = 1; level <= fresh.topLevel(); ++level)
       for (int y = 0; y < fresh.patches(level).y; ++y)
         for (int x = 0; x < fresh.patches(level).x; ++x) {
-          ASSERT_EQ(kept.error(level, x, y).deviation, fresh.error(level, x, y).deviation)
+          ASSERT_EQ(cached.error(level, x, y).deviation, fresh.error(level, x, y).deviation)
               << "edit " << edit << " level " << level << ' ' << x << ' ' << y;
-          ASSERT_EQ(kept.error(level, x, y).excess, fresh.error(level, x, y).excess);
+          ASSERT_EQ(cached.error(level, x, y).excess, fresh.error(level, x, y).excess);
         }
   }
 }
@@ -161,7 +161,7 @@ TEST(Detail, MeasuredInPartsItIsInfiniteUntilItIsTheSameBitForBit) {
     tiles.emplace_back(c / 64, r / 64);
   }
   all.measure(live.reader());
-  parts.forget(live.reader(), tiles);
+  parts.invalidate(live.reader(), tiles);
   expectSafe(parts, all, known);
   while (parts.unknown() > 0) (void)parts.measureSome(live.reader(), 64);
   int whole = 0;
@@ -185,12 +185,12 @@ std::vector<int> numbersOf(const PatchTree& tree) {
   return numbers;
 }
 
-TEST(KeptTrees, AreWhatChoosingAgainGivesAfterEveryChange) {
+TEST(PatchTreeCache, AreWhatChoosingAgainGivesAfterEveryChange) {
   const engine::Version field = fieldOf(gridOf(400, 300, 0.1, 0.1), rough);
   engine::LiveField live(field, engine::Growth::kAllowed);
   DetailMeasure measure;
   measure.begin(field.reader());
-  PatchQuestion q;
+  PatchQuery q;
   q.measure = &measure;
   q.placing = placingOf(field.grid());
   q.lowest = -1.0, q.highest = 1.0, q.floor_z = -1.2, q.error_px = 0.5;
@@ -198,7 +198,7 @@ TEST(KeptTrees, AreWhatChoosingAgainGivesAfterEveryChange) {
   const Box box{{-half.x, -half.y, -1.2}, {half.x, half.y, 1.0}};
   View view;
   q.camera = Camera::fit(view, box, box, {0, 0, 900, 600});
-  KeptTrees kept;
+  PatchTreeCache cached;
   engine::Version shown = field;
   std::vector<int> last;
   int changes = 0;
@@ -207,9 +207,9 @@ TEST(KeptTrees, AreWhatChoosingAgainGivesAfterEveryChange) {
     q.reader = shown.reader();
     const std::vector<int> wanted = numbersOf(PatchTree(q));
     for (int i = 0; i < 2; ++i) {
-      PatchTree tree = kept.tree(1, q, shown);
+      PatchTree tree = cached.tree(1, q, shown);
       EXPECT_EQ(numbersOf(tree), wanted);
-      // What a frame makes of its own is not kept.
+      // What a frame makes of its own is not cached.
       (void)tree.prune([](const PatchLeaf& leaf) { return leaf.level > 3; });
     }
     changes += wanted != last;
@@ -235,9 +235,9 @@ TEST(KeptTrees, AreWhatChoosingAgainGivesAfterEveryChange) {
   expectChosen("another view");
   q.mm_per_unit = 5.0;
   expectChosen("exaggerated");
-  q.settled = [](glm::ivec2, glm::ivec2) { return false; };
+  q.up_to_date = [](glm::ivec2, glm::ivec2) { return false; };
   expectChosen("samples on their way");
-  q.settled = {};
+  q.up_to_date = {};
   shown = field;
   measure.refresh(shown.reader(), std::span(&tile, 1));
   expectChosen("undone");

@@ -83,7 +83,7 @@ TEST(Live, NoFrameMeasuresMoreTilesThanItMayAndEachBoundHolds) {
   auto picture = makePicture();
   ASSERT_TRUE(picture);
   const engine::Version before = partField(2100, 1000);
-  constexpr std::int64_t kTiles = 33 * 16, kMost = kMeasuredAFrame;
+  constexpr std::int64_t kTiles = 33 * 16, kMost = kMeasuredPerFrame;
   ASSERT_GT(kTiles, 2 * kMost);
   FrameInput input = bare();
   input.range = ValueRange{-3, 9};
@@ -129,7 +129,7 @@ TEST(Live, NoFrameMeasuresMoreTilesThanItMayAndEachBoundHolds) {
   const Shot last = shoot(*picture, input);
   auto fresh = makePicture();
   ASSERT_TRUE(fresh->update(after));
-  const Shot other = settle(*fresh, input);
+  const Shot other = drawComplete(*fresh, input);
   EXPECT_EQ(at_rest.stats.patches, last.stats.patches);
   EXPECT_EQ(last.stats.patches, other.stats.patches);
   EXPECT_EQ(last.image.rgba, other.image.rgba);
@@ -160,7 +160,7 @@ TEST(Live, VerticesStayWithinTheBudgetWhateverTheFieldAndTheBoundIsSaid) {
   // A plane costs next to nothing at any size.
   ASSERT_TRUE(picture->update(
       fieldOf(gridOf(2048, 2048, 0.1, 0.1), [](int c, int r) { return 0.25 * c + 0.5 * r; })));
-  const Shot plane = settle(*picture, bare());
+  const Shot plane = drawComplete(*picture, bare());
   EXPECT_LT(plane.stats.vertices, 4096);
   EXPECT_LE(plane.stats.bound_px, 1.0);
 }
@@ -172,7 +172,7 @@ TEST(Live, ASpikeOfASingleSampleIsDrawnFromAnyDistance) {
   FrameInput input = bare();
   input.view.vertical_exaggeration = 1.0;
   input.view.elevation_deg = 20;
-  const Shot frame = settle(*picture, input);
+  const Shot frame = drawComplete(*picture, input);
   EXPECT_LE(frame.stats.bound_px, 1.0);
   // The finest patch is there: a spike is not stepped over.
   EXPECT_GT(frame.stats.patches, 8);

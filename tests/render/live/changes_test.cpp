@@ -88,12 +88,12 @@ TEST(Live, AFieldTurnedUpsideDownIsSeenLikeOneThatCameSoAndBackAgain) {
     const auto seen = [&](const Shown& shown, const char* what) {
       SCOPED_TRACE(what);
       EXPECT_TRUE(picture.update(shown));
-      const Shot frame = settle(picture, input);
+      const Shot frame = drawComplete(picture, input);
       EXPECT_TRUE(other->update(another));
       EXPECT_TRUE(other->update(shown));
-      const Shot expected = settle(*other, input);
-      EXPECT_EQ(frame.stats.residency.by_need, device_bytes > 0);
-      EXPECT_EQ(frame.stats.residency.pages_beyond, 0);
+      const Shot expected = drawComplete(*other, input);
+      EXPECT_EQ(frame.stats.residency.on_demand, device_bytes > 0);
+      EXPECT_EQ(frame.stats.residency.pages_over_budget, 0);
       EXPECT_EQ(frame.stats.range, expected.stats.range);
       EXPECT_TRUE(frame.image.rgba == expected.image.rgba);
       return frame;
@@ -157,7 +157,7 @@ TEST(Live, ColoursDoNotSwimUnderABrushAndInvertingTwiceLeavesThemAsTheyWere) {
 TEST(Live, AFilterResultComesOverInSharesAndEndsAsAFreshPicture) {
   LiveOptions options;
   options.validation = Validation::kOn;
-  options.upload_bytes_a_frame = 200000;
+  options.upload_bytes_per_frame = 200000;
   auto created = LivePicture::create(options);
   ASSERT_TRUE(created);
   LivePicture& picture = **created;

@@ -70,7 +70,7 @@ TEST(Live, HalfAsSharpIsTheSamePictureWithoutItsFinestDetail) {
   }
 }
 
-TEST(Live, HalfAsSharpLeavesFurnitureSharpAndNoTraceInTheFramesAfterIt) {
+TEST(Live, HalfAsSharpLeavesDecorationsSharpAndNoTraceInTheFramesAfterIt) {
   auto picture = makePicture();
   ASSERT_TRUE(picture);
   ASSERT_TRUE(picture->update(partField()));

@@ -109,7 +109,7 @@ TEST(Parts, DecorationsAreBitIdentical) {
   EXPECT_EQ(whole.rgba, parts.rgba);
 }
 
-// Pages that come by need are those of each part.
+// Pages that come on demand are those of each part.
 TEST(Parts, OfAFieldThatTheDeviceHoldsAPartOfAreTheSame) {
   LiveOptions options;
   options.validation = Validation::kOn;
@@ -122,7 +122,7 @@ TEST(Parts, OfAFieldThatTheDeviceHoldsAPartOfAreTheSame) {
   still.input.view.zoom = 2.0;
   const Image whole = shoot(*sharedPicture(), still).image;
   const Shot parts = shoot(**small, still, 64);
-  EXPECT_EQ(parts.stats.residency.pages_beyond, 0);
+  EXPECT_EQ(parts.stats.residency.pages_over_budget, 0);
   int off = 0;
   for (std::size_t i = 0; i < whole.rgba.size(); ++i)
     off += std::abs(whole.rgba[i] - parts.image.rgba[i]) > kCodes;

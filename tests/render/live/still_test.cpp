@@ -216,9 +216,8 @@ Cancelled drawCancelled(LivePicture& picture, const Still& still, engine::JobCon
 // A window that is closed right after a scan was opened, or a program that ends after a refused picture.
 TEST(Still, APictureMayEndWhileItsUploadsAreUnderWay) {
   Shown shown;
-  shown.versions = {
-      fieldOf(gridOf(700, 500), [](int c, int r) { return c % 7 + r % 5; },
-              [](int c, int r) { return c == r; })};
+  shown.versions = {fieldOf(
+      gridOf(700, 500), [](int c, int r) { return c % 7 + r % 5; }, [](int c, int r) { return c == r; })};
   shown.marks = MarksOverlay::kShow;
   for (int i = 0; i < 20; ++i) {
     const auto picture = LivePicture::create();
@@ -292,7 +291,7 @@ TEST(Still, ADeviceThatIsNotThereIsRefusedWithTheReason) {
   const auto picture = LivePicture::create(options);
   ASSERT_FALSE(picture);
   EXPECT_EQ(picture.error().kind, engine::ErrorKind::kFailed);
-  EXPECT_NE(picture.error().what.find("is not the one asked for"), std::string::npos)
+  EXPECT_NE(picture.error().what.find("is not the requested one"), std::string::npos)
       << picture.error().line();
 }
 

@@ -108,7 +108,7 @@ TEST(Live, OverlaysAreSeenWhereTheyAreAndHiddenByWhatLiesBefore) {
   EXPECT_GT(magenta, 200);
 }
 
-TEST(Live, FurnitureThemesLightAndMapsAreDrawnAndRefusedWhenOutOfRange) {
+TEST(Live, DecorationsThemesLightAndMapsAreDrawnAndRefusedWhenOutOfRange) {
   auto picture = makePicture();
   FrameInput input;
   input.view.width = 960;

@@ -70,8 +70,8 @@ TEST(Plan, RefusesWhatIsOutsideTheStatedRanges) {
   PictureSpec good;
   good.view.width = good.view.height = 100;
   const auto plan = [&](const PictureSpec& spec) {
-    return layPicture(spec, fields, spansOf(fields, spec.deviation_from),
-                      layOut(spec.view, spec.decoration, 1, Titles::kNone));
+    return planPicture(spec, fields, spansOf(fields, spec.deviation_from),
+                       layOut(spec.view, spec.decoration, 1, Titles::kNone));
   };
   ASSERT_TRUE(plan(good));
   const auto refused = [&](auto change) {
@@ -111,7 +111,7 @@ TEST(NumberText, UnitsChangeOnlyWhenNumbersReadBadly) {
   EXPECT_DOUBLE_EQ(roundDown125(0.0021), 0.002);
 }
 
-// What the furniture of a picture says, letter by letter in drawing order; spaces draw nothing.
+// What the decorations of a picture says, letter by letter in drawing order; spaces draw nothing.
 std::u32string saying(const std::vector<gpu::Quad>& quads, Glyphs& glyphs) {
   std::map<std::pair<int, int>, char32_t> letters;
   for (const char32_t c :
@@ -130,7 +130,7 @@ std::u32string saying(const std::vector<gpu::Quad>& quads, Glyphs& glyphs) {
   return out;
 }
 
-TEST(Furniture, AFigureIsShownWholeOrLeftOutWithAWarningButNeverCut) {
+TEST(Decorations, AFigureIsShownWholeOrLeftOutWithAWarningButNeverCut) {
   struct Case {
     ValueRange range;
     std::string note;
@@ -154,7 +154,7 @@ TEST(Furniture, AFigureIsShownWholeOrLeftOutWithAWarningButNeverCut) {
         view.width = w;
         view.height = h;
         const Layout layout = layOut(view, Decoration::kFull, panels, Titles::kNone);
-        Furniture f;
+        DecorationContent f;
         f.range = c.range;
         f.above = f.below = true;
         f.quantity = "deviation";
@@ -165,8 +165,8 @@ TEST(Furniture, AFigureIsShownWholeOrLeftOutWithAWarningButNeverCut) {
         engine::Result<Glyphs> glyphs = Glyphs::create();
         ASSERT_TRUE(glyphs);
         std::vector<std::string> warnings;
-        const std::vector<gpu::Quad> quads =
-            furnish(layout, view, f, paletteOf(Theme::kLight, ColourMap::kViridis), *glyphs, warnings);
+        const std::vector<gpu::Quad> quads = decorationQuads(
+            layout, view, f, paletteOf(Theme::kLight, ColourMap::kViridis), *glyphs, warnings);
         const std::u32string said = saying(quads, *glyphs);
         ASSERT_FALSE(said.empty());
         EXPECT_EQ(said.find(U'\u2026'), said.npos) << w << " x " << h << ' ' << c.note;

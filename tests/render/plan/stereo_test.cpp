@@ -191,7 +191,7 @@ FrameInput frameOf(StereoMode mode, int width = 640, int height = 240) {
 
 Image shoot(LivePicture& picture, const FrameInput& input, FrameStatistics* out = nullptr) {
   Image image;
-  // Until all pages are there, where they come by need.
+  // Until all pages are there, where they come on demand.
   for (int i = 0; i < 50; ++i) {
     const auto stats = picture.draw(input, image);
     if (!stats) {
@@ -227,15 +227,15 @@ Image half(const Image& whole, int which) {
 }
 
 TEST(StereoPicture, OnePassForBothEyesDrawsWhatTwoPassesDoBitForBit) {
-  for (const bool by_need : {false, true}) {
+  for (const bool on_demand : {false, true}) {
     // By need: 0.8 MB of heights and 0.2 MB of marks for each of three states do not fit.
-    auto picture = makePicture(by_need ? 1300000 : 0);
+    auto picture = makePicture(on_demand ? 1300000 : 0);
     ASSERT_TRUE(picture);
     Shown shown;
     shown.versions = {part(true)};
     shown.marks = MarksOverlay::kShow;
     for (const int what : {0, 1, 2}) {
-      SCOPED_TRACE(testing::Message() << (by_need ? "by need " : "whole ") << what);
+      SCOPED_TRACE(testing::Message() << (on_demand ? "on demand " : "whole ") << what);
       if (what == 1) shown.versions = {part(true), part(false)};
       if (what == 2) shown.original = part(false);
       ASSERT_TRUE(picture->update(shown));

@@ -15,21 +15,21 @@ namespace {
 TEST(PageSlots, TheLongestUnusedPageGoesAndOneOfThisFrameNever) {
   PageSlots slots(3);
   std::vector<std::uint32_t> e(6, PageSlots::kNone);
-  for (std::size_t i = 0; i < 3; ++i) ASSERT_TRUE(slots.take(&e[i], PageSlots::Hold::kWhile, i + 1));
+  for (std::size_t i = 0; i < 3; ++i) ASSERT_TRUE(slots.take(&e[i], PageSlots::Hold::kEvictable, i + 1));
   slots.use(e[0], 4);
-  ASSERT_TRUE(slots.take(&e[3], PageSlots::Hold::kWhile, 4));
+  ASSERT_TRUE(slots.take(&e[3], PageSlots::Hold::kEvictable, 4));
   EXPECT_EQ(e[1], PageSlots::kNone);
   EXPECT_NE(e[0], PageSlots::kNone);
   slots.use(e[2], 4);
-  EXPECT_FALSE(slots.take(&e[4], PageSlots::Hold::kWhile, 4));
+  EXPECT_FALSE(slots.take(&e[4], PageSlots::Hold::kEvictable, 4));
   EXPECT_EQ(slots.used(), 3U);
   EXPECT_EQ(slots.evicted(), 1);
   // A released slot is the first to be taken; one held for good never goes.
   slots.release(&e[3]);
   ASSERT_TRUE(slots.take(&e[4], PageSlots::Hold::kFixed, 4));
   EXPECT_EQ(slots.fixed(), 1U);
-  ASSERT_TRUE(slots.take(&e[5], PageSlots::Hold::kWhile, 5));
-  ASSERT_TRUE(slots.take(&e[1], PageSlots::Hold::kWhile, 6));
+  ASSERT_TRUE(slots.take(&e[5], PageSlots::Hold::kEvictable, 5));
+  ASSERT_TRUE(slots.take(&e[1], PageSlots::Hold::kEvictable, 6));
   EXPECT_NE(e[4], PageSlots::kNone);
   slots.release(&e[4]);
   EXPECT_EQ(slots.fixed(), 0U);
@@ -38,17 +38,17 @@ TEST(PageSlots, TheLongestUnusedPageGoesAndOneOfThisFrameNever) {
 TEST(PageSlots, MoreSlotsAreTakenBeforeAPageGoes) {
   PageSlots slots(2);
   std::vector<std::uint32_t> e(5, PageSlots::kNone);
-  ASSERT_TRUE(slots.take(&e[0], PageSlots::Hold::kWhile, 1));
+  ASSERT_TRUE(slots.take(&e[0], PageSlots::Hold::kEvictable, 1));
   ASSERT_TRUE(slots.take(&e[1], PageSlots::Hold::kFixed, 1));
   slots.grow(2);
   EXPECT_EQ(slots.count(), 4U);
   EXPECT_EQ(slots.used(), 2U);
-  ASSERT_TRUE(slots.take(&e[2], PageSlots::Hold::kWhile, 2));
-  ASSERT_TRUE(slots.take(&e[3], PageSlots::Hold::kWhile, 2));
+  ASSERT_TRUE(slots.take(&e[2], PageSlots::Hold::kEvictable, 2));
+  ASSERT_TRUE(slots.take(&e[3], PageSlots::Hold::kEvictable, 2));
   EXPECT_EQ(slots.evicted(), 0);
   EXPECT_EQ(e[0], 0U);
   EXPECT_EQ(e[1], 1U);
-  ASSERT_TRUE(slots.take(&e[4], PageSlots::Hold::kWhile, 3));
+  ASSERT_TRUE(slots.take(&e[4], PageSlots::Hold::kEvictable, 3));
   EXPECT_EQ(e[0], PageSlots::kNone);
   EXPECT_EQ(slots.evicted(), 1);
 }
@@ -58,23 +58,23 @@ TEST(PageSlots, EqualPagesShareASlotUntilItIsForgottenOrGoes) {
   std::vector<std::uint32_t> e(4, PageSlots::kNone);
   int tile = 0, other = 0;
   const PageGrid::Key key{&tile}, none{};
-  ASSERT_TRUE(slots.take(&e[0], PageSlots::Hold::kWhile, 1));
+  ASSERT_TRUE(slots.take(&e[0], PageSlots::Hold::kEvictable, 1));
   slots.name(e[0], 7, key);
-  ASSERT_TRUE(slots.share(&e[1], PageSlots::Hold::kWhile, 7, key, 1));
+  ASSERT_TRUE(slots.share(&e[1], PageSlots::Hold::kEvictable, 7, key, 1));
   EXPECT_EQ(e[0], e[1]);
   EXPECT_EQ(slots.holders(e[0]), 2U);
-  EXPECT_FALSE(slots.share(&e[2], PageSlots::Hold::kWhile, 8, key, 1));
-  EXPECT_FALSE(slots.share(&e[2], PageSlots::Hold::kWhile, 7, {&other}, 1));
-  slots.forget(e[0]);
-  EXPECT_FALSE(slots.share(&e[2], PageSlots::Hold::kWhile, 7, key, 1));
+  EXPECT_FALSE(slots.share(&e[2], PageSlots::Hold::kEvictable, 8, key, 1));
+  EXPECT_FALSE(slots.share(&e[2], PageSlots::Hold::kEvictable, 7, {&other}, 1));
+  slots.clearName(e[0]);
+  EXPECT_FALSE(slots.share(&e[2], PageSlots::Hold::kEvictable, 7, key, 1));
   slots.name(e[0], 7, none);
   EXPECT_FALSE(slots.named(e[0]));
   slots.name(e[0], 7, key);
-  ASSERT_TRUE(slots.take(&e[2], PageSlots::Hold::kWhile, 2));
-  ASSERT_TRUE(slots.take(&e[3], PageSlots::Hold::kWhile, 2));
+  ASSERT_TRUE(slots.take(&e[2], PageSlots::Hold::kEvictable, 2));
+  ASSERT_TRUE(slots.take(&e[3], PageSlots::Hold::kEvictable, 2));
   EXPECT_EQ(e[0], PageSlots::kNone);
   EXPECT_EQ(e[1], PageSlots::kNone);
-  EXPECT_FALSE(slots.share(&e[0], PageSlots::Hold::kWhile, 7, key, 3));
+  EXPECT_FALSE(slots.share(&e[0], PageSlots::Hold::kEvictable, 7, key, 3));
 }
 
 TEST(PageGrid, EveryEntryHasOnePlaceAndKeysFollowWhatChanged) {

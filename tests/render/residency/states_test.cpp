@@ -30,8 +30,8 @@ TEST(Residency, PreviewsAndTheOriginalShareEqualPagesAndShowWhatTheyShould) {
     SCOPED_TRACE(what);
     EXPECT_TRUE(tight->update(shown));
     EXPECT_TRUE(whole->update(shown));
-    const Shot a = settle(*tight, input), b = settle(*whole, input);
-    EXPECT_EQ(a.stats.residency.pages_beyond, 0);
+    const Shot a = drawComplete(*tight, input), b = drawComplete(*whole, input);
+    EXPECT_EQ(a.stats.residency.pages_over_budget, 0);
     EXPECT_EQ(differing(a.image, b.image), 0U);
     return a.stats.residency;
   };
@@ -42,7 +42,7 @@ TEST(Residency, PreviewsAndTheOriginalShareEqualPagesAndShowWhatTheyShould) {
   // Three states are looked at, but where they are alike there is one page. (What an earlier view asked for
   // is still there as well.)
   const ResidencyStatistics shared = compare("a preview and the deviation from the original");
-  EXPECT_LT(shared.pages_used, shared.pages_asked * 3 / 4);
+  EXPECT_LT(shared.pages_used, shared.pages_requested * 3 / 4);
   // Both go on, apart from each other: what one of them changes is not the other's.
   ASSERT_TRUE(live.writeHeights(690, 530, 60, 60, z.data(), 60));
   shown.versions = {live.snapshot(), edited};
@@ -73,7 +73,7 @@ std::vector<engine::Version> statesOf(const engine::Version& field, std::size_t 
 }
 
 TEST(Residency, FourStatesSideBySideComeAsNearAsASinglePicture) {
-  // Of a million samples, marks shown, three such states are there as a whole and four by need.
+  // Of a million samples, marks shown, three such states are there as a whole and four on demand.
   const engine::Version field =
       fieldOf(gridOf(1000, 850, 0.05, 0.05), kLargePart, [](int c, int r) { return (c + 2 * r) % 190 < 5; });
   auto picture = makePicture();
@@ -87,7 +87,7 @@ TEST(Residency, FourStatesSideBySideComeAsNearAsASinglePicture) {
   input.view.height = 760;
   constexpr std::int64_t kRest = std::int64_t{1} << 20;
   input.panel_vertices = {kRest};
-  const Shot one = settle(*picture, input);
+  const Shot one = drawComplete(*picture, input);
   ASSERT_EQ(one.stats.panels.size(), 1U);
   EXPECT_LE(one.stats.panels[0].bound_px, 1.0);
   const std::vector<engine::Version> states = statesOf(field, 5);
@@ -98,9 +98,9 @@ TEST(Residency, FourStatesSideBySideComeAsNearAsASinglePicture) {
     if (count == states.size()) shown.original = field;
     ASSERT_TRUE(picture->update(shown));
     input.panel_vertices.assign(count, kRest);
-    const Shot rest = settle(*picture, input);
-    EXPECT_TRUE(rest.stats.residency.by_need);
-    EXPECT_EQ(rest.stats.residency.pages_beyond, 0);
+    const Shot rest = drawComplete(*picture, input);
+    EXPECT_TRUE(rest.stats.residency.on_demand);
+    EXPECT_EQ(rest.stats.residency.pages_over_budget, 0);
     ASSERT_EQ(rest.stats.panels.size(), count);
     for (const PanelDetail& panel : rest.stats.panels) {
       EXPECT_LE(panel.bound_px, 1.0);
@@ -111,7 +111,7 @@ TEST(Residency, FourStatesSideBySideComeAsNearAsASinglePicture) {
   auto other = makePicture();
   ASSERT_TRUE(other->update(shown));
   picture->refreshRanges();
-  EXPECT_EQ(differing(settle(*picture, input).image, settle(*other, input).image), 0U);
+  EXPECT_EQ(differing(drawComplete(*picture, input).image, drawComplete(*other, input).image), 0U);
 }
 
 TEST(Residency, WhatDoesNotFitIsSharedOutAmongThePanelsAndTheLimitSaid) {
@@ -125,9 +125,9 @@ TEST(Residency, WhatDoesNotFitIsSharedOutAmongThePanelsAndTheLimitSaid) {
   input.view.height = 400;
   input.error_px = 0.1;
   input.panel_vertices.assign(4, std::int64_t{1} << 20);
-  const Shot rest = settle(*tight, input);
+  const Shot rest = drawComplete(*tight, input);
   EXPECT_LE(rest.stats.residency.device_bytes, 2'400'000);
-  EXPECT_GT(rest.stats.residency.pages_beyond, 0);
+  EXPECT_GT(rest.stats.residency.pages_over_budget, 0);
   double best = 1e9, worst = 0.0;
   for (const PanelDetail& panel : rest.stats.panels) {
     EXPECT_EQ(panel.limit, DetailLimit::kMemory);
@@ -141,7 +141,7 @@ TEST(Residency, WhatDoesNotFitIsSharedOutAmongThePanelsAndTheLimitSaid) {
   auto whole = makePicture();
   ASSERT_TRUE(whole->update(shown.versions.front()));
   input.panel_vertices.assign(1, 4096);
-  const Shot few = settle(*whole, input);
+  const Shot few = drawComplete(*whole, input);
   EXPECT_EQ(few.stats.panels.front().limit, DetailLimit::kVertices);
   // One number a panel, or none.
   Image image;
@@ -165,7 +165,8 @@ TEST(Residency, SuggestedMarksHaveAColourOfTheirOwnAndLoseItWhenAccepted) {
       SCOPED_TRACE(what);
       auto fresh = makePicture();
       for (auto* picture : {&tight, &whole, &fresh}) EXPECT_TRUE((*picture)->update(shown));
-      const Shot a = settle(*tight, input), b = settle(*whole, input), c = settle(*fresh, input);
+      const Shot a = drawComplete(*tight, input), b = drawComplete(*whole, input),
+                 c = drawComplete(*fresh, input);
       EXPECT_EQ(differing(a.image, b.image), 0U);
       EXPECT_EQ(differing(b.image, c.image), 0U);
       return b.image;
@@ -208,24 +209,24 @@ TEST(Residency, MoreVersionsMayTurnAWholeFieldIntoOneByNeedAndMarksMayComeLater)
   shown.versions = {field};
   ASSERT_TRUE(picture->update(shown));
   FrameInput input = bareAt(8);
-  EXPECT_FALSE(settle(*picture, input).stats.residency.by_need);
+  EXPECT_FALSE(drawComplete(*picture, input).stats.residency.on_demand);
   shown.versions = {live.snapshot(), field};
   ASSERT_TRUE(picture->update(shown));
   ASSERT_TRUE(whole->update(shown));
-  const Shot two = settle(*picture, input);
-  EXPECT_TRUE(two.stats.residency.by_need);
-  EXPECT_EQ(differing(two.image, settle(*whole, input).image), 0U);
+  const Shot two = drawComplete(*picture, input);
+  EXPECT_TRUE(two.stats.residency.on_demand);
+  EXPECT_EQ(differing(two.image, drawComplete(*whole, input).image), 0U);
   shown.versions = {field};
   shown.marks = MarksOverlay::kShow;
   ASSERT_TRUE(picture->update(shown));
   ASSERT_TRUE(whole->update(shown));
-  const Shot one = settle(*picture, input);
-  EXPECT_TRUE(one.stats.residency.by_need);
+  const Shot one = drawComplete(*picture, input);
+  EXPECT_TRUE(one.stats.residency.on_demand);
   EXPECT_LE(one.stats.residency.device_bytes, 10000000);
-  EXPECT_EQ(differing(one.image, settle(*whole, input).image), 0U);
+  EXPECT_EQ(differing(one.image, drawComplete(*whole, input).image), 0U);
   // A field of its own is looked at afresh.
   ASSERT_TRUE(picture->update(fieldOf(gridOf(300, 300, 0.05, 0.05), kLargePart)));
-  EXPECT_FALSE(settle(*picture, input).stats.residency.by_need);
+  EXPECT_FALSE(drawComplete(*picture, input).stats.residency.on_demand);
 }
 
 // What looking pages up costs, for the record; time is not judged here.
@@ -237,8 +238,8 @@ TEST(Residency, ALargePictureFromPagesIsTheSameAndItsTimeIsTold) {
   FrameInput input = bareAt(4);
   input.view.width = 1280;
   input.view.height = 800;
-  const Shot a = settle(*tight, input), b = settle(*whole, input);
-  EXPECT_EQ(a.stats.residency.pages_beyond, 0);
+  const Shot a = drawComplete(*tight, input), b = drawComplete(*whole, input);
+  EXPECT_EQ(a.stats.residency.pages_over_budget, 0);
   EXPECT_EQ(differing(a.image, b.image), 0U);
   const auto median = [](std::vector<double> ms) {
     std::nth_element(ms.begin(), ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2), ms.end());
@@ -256,7 +257,7 @@ TEST(Residency, ALargePictureFromPagesIsTheSameAndItsTimeIsTold) {
     }
   }
   std::printf(
-      "1280 x 800, medians of 9: whole %.1f ms drawing, %.2f ms on the host; by need %.1f ms, %.2f ms\n",
+      "1280 x 800, medians of 9: whole %.1f ms drawing, %.2f ms on the host; on demand %.1f ms, %.2f ms\n",
       median(device[0]), median(host[0]), median(device[1]), median(host[1]));
 }
 
@@ -267,7 +268,7 @@ TEST(Residency, ABudgetThatHoldsNotEvenTheCoarseCopiesIsRefused) {
   EXPECT_EQ(refused.error().kind, engine::ErrorKind::kFailed);
   // The picture goes on with what does fit.
   ASSERT_TRUE(tight->update(fieldOf(gridOf(64, 64, 1, 1), kLargePart)));
-  EXPECT_FALSE(shoot(*tight, bareAt(1)).stats.residency.by_need);
+  EXPECT_FALSE(shoot(*tight, bareAt(1)).stats.residency.on_demand);
 }
 
 }  // namespace

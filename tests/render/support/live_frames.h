@@ -65,14 +65,14 @@ inline engine::Version wideField(double lift) {
 /// 0: as LiveOptions has it.
 struct Limits {
   std::int64_t budget = 0;
-  std::int64_t bytes_a_frame = kUploadBytesAFrame;
+  std::int64_t bytes_per_frame = kUploadBytesPerFrame;
   int max_side = 0;
 };
 inline std::unique_ptr<LivePicture> makePicture(const Limits& limits = {}) {
   LiveOptions options;
   options.validation = Validation::kOn;
   options.memory_budget_bytes = limits.budget;
-  options.upload_bytes_a_frame = limits.bytes_a_frame;
+  options.upload_bytes_per_frame = limits.bytes_per_frame;
   options.max_image_side = limits.max_side;
   auto picture = LivePicture::create(options);
   if (!picture) ADD_FAILURE() << picture.error().line();
@@ -131,7 +131,7 @@ inline Shot shoot(LivePicture& picture, const FrameInput& input) {
   return frame;
 }
 /// Frames until nothing is left to be moved or measured and no page is on its way; the last of them.
-inline Shot settle(LivePicture& picture, const FrameInput& input, int* frames = nullptr) {
+inline Shot drawComplete(LivePicture& picture, const FrameInput& input, int* frames = nullptr) {
   for (int n = 1; n < 1000; ++n) {
     Shot frame = shoot(picture, input);
     if (frames != nullptr) *frames = n;

@@ -15,14 +15,14 @@ namespace {
 TEST(Residency, AFieldThatFitsIsThereAsAWhole) {
   auto picture = makePicture();
   ASSERT_TRUE(picture->update(largeField()));
-  EXPECT_FALSE(shoot(*picture, bareAt(1)).stats.residency.by_need);
+  EXPECT_FALSE(shoot(*picture, bareAt(1)).stats.residency.on_demand);
 }
 
 TEST(Residency, TheFirstPictureOfALargeFieldWaitsForACoarseCopyAlone) {
   auto picture = makePicture();
   ASSERT_TRUE(picture->update(wideField(0.0)));
   const Shot first = shoot(*picture, bareAt(1));
-  EXPECT_TRUE(first.stats.residency.by_need);
+  EXPECT_TRUE(first.stats.residency.on_demand);
   // 20.8 MB of samples; every 4th each way before the first picture, and then what it asks for.
   EXPECT_LT(first.stats.upload.bytes, (std::int64_t{8} << 20) + (std::int64_t{6} << 20));
   EXPECT_LT(first.stats.residency.device_bytes, std::int64_t{64} << 20);
@@ -48,12 +48,12 @@ TEST(Residency, AResultThatChangesEveryTileComesOverWithoutLookingForRectangles)
     SCOPED_TRACE(zoom);
     const FrameInput input = bareAt(zoom, 0.4, 0.3);
     ASSERT_TRUE(stays->update(before));
-    const Shot old = settle(*stays, input);
+    const Shot old = drawComplete(*stays, input);
     ASSERT_TRUE(stays->update(after));
     ASSERT_TRUE(fresh->update(after));
     stays->refreshRanges();
-    const Shot a = settle(*stays, input), b = settle(*fresh, input);
-    EXPECT_TRUE(a.stats.residency.by_need);
+    const Shot a = drawComplete(*stays, input), b = drawComplete(*fresh, input);
+    EXPECT_TRUE(a.stats.residency.on_demand);
     EXPECT_EQ(differing(a.image, b.image), 0U);
     EXPECT_GT(differing(a.image, old.image), 5000U);
   }
@@ -68,7 +68,7 @@ TEST(Residency, ATightBudgetEndsInTheSamePictureBitForBitOverViewsAndEdits) {
     SCOPED_TRACE(holed ? "with holes" : "without holes");
     // All of it would take 7 MB of heights, 1.8 MB of marks.
     const std::int64_t budget = 2900000;
-    auto tight = makePicture({.budget = budget, .bytes_a_frame = 300000}), whole = makePicture();
+    auto tight = makePicture({.budget = budget, .bytes_per_frame = 300000}), whole = makePicture();
     Shown shown;
     const engine::Version first = holed ? holedField() : largeField();
     shown.versions = {first};
@@ -103,7 +103,7 @@ TEST(Residency, ATightBudgetEndsInTheSamePictureBitForBitOverViewsAndEdits) {
       do {
         frame = shoot(*tight, input);
         const ResidencyStatistics& r = frame.stats.residency;
-        ASSERT_TRUE(r.by_need);
+        ASSERT_TRUE(r.on_demand);
         ASSERT_LE(r.device_bytes, budget);
         ASSERT_LE(r.pages_used, r.pages);
         // Never more than is allowed, or one tile (and its pages) or page where that is larger.
@@ -111,9 +111,9 @@ TEST(Residency, ATightBudgetEndsInTheSamePictureBitForBitOverViewsAndEdits) {
         loaded += r.pages_loaded;
         gone_coarse += frame.stats.bound_px > 1.0;
       } while (frame.stats.residency.pages_loaded > 0 || frame.stats.upload.pending_tiles > 0);
-      ASSERT_EQ(frame.stats.residency.pages_beyond, 0) << frame.stats.residency.pages_asked;
-      const Shot expected = settle(*whole, input);
-      EXPECT_FALSE(expected.stats.residency.by_need);
+      ASSERT_EQ(frame.stats.residency.pages_over_budget, 0) << frame.stats.residency.pages_requested;
+      const Shot expected = drawComplete(*whole, input);
+      EXPECT_FALSE(expected.stats.residency.on_demand);
       EXPECT_EQ(frame.stats.bound_px, expected.stats.bound_px);
       EXPECT_EQ(frame.stats.vertices, expected.stats.vertices);
       EXPECT_EQ(differing(frame.image, expected.image), 0U);
@@ -130,7 +130,7 @@ TEST(Residency, TheBoundHoldsWhilePagesAreMissingAndShrinksAsTheyCome) {
     return 0.03 * x + 2.0 * std::sin(0.35 * x) * std::cos(0.3 * y) + (y > 8 && y < 12 ? -3.0 : 0.0);
   });
   // Two pages a frame.
-  auto tight = makePicture({.budget = 2900000, .bytes_a_frame = 2 * 16384}), whole = makePicture();
+  auto tight = makePicture({.budget = 2900000, .bytes_per_frame = 2 * 16384}), whole = makePicture();
   ASSERT_TRUE(tight->update(field));
   ASSERT_TRUE(whole->update(field));
   int with_missing = 0;
@@ -143,7 +143,7 @@ TEST(Residency, TheBoundHoldsWhilePagesAreMissingAndShrinksAsTheyCome) {
     FrameInput full = input;
     full.error_px = 1e-9;
     full.vertex_budget = 1 << 24;
-    const Shot fine = settle(*whole, full);
+    const Shot fine = drawComplete(*whole, full);
     ASSERT_LE(fine.stats.bound_px, 1e-9);
     double least = 1e9;
     for (int frame = 0; frame < 60; ++frame) {
@@ -164,8 +164,8 @@ TEST(Residency, TheBoundHoldsWhilePagesAreMissingAndShrinksAsTheyCome) {
       EXPECT_LE(unmatched(coarse.image, fine.image, radius, 10), pixels / 500) << coarse.stats.bound_px;
       EXPECT_LE(unmatched(fine.image, coarse.image, radius, 10), pixels / 500) << coarse.stats.bound_px;
     }
-    const Shot done = settle(*tight, input);
-    EXPECT_EQ(done.stats.bound_px, settle(*whole, input).stats.bound_px);
+    const Shot done = drawComplete(*tight, input);
+    EXPECT_EQ(done.stats.bound_px, drawComplete(*whole, input).stats.bound_px);
     EXPECT_LE(done.stats.bound_px, least);
   }
   EXPECT_GT(with_missing, 5);
@@ -176,8 +176,8 @@ TEST(Residency, AViewOfMoreThanTheBudgetComesToRestAndSaysWhatItShows) {
   ASSERT_TRUE(tight->update(largeField()));
   FrameInput input = bareAt(1);
   input.view.elevation_deg = 60;
-  Shot rest = settle(*tight, input);
-  EXPECT_GT(rest.stats.residency.pages_beyond, 0);
+  Shot rest = drawComplete(*tight, input);
+  EXPECT_GT(rest.stats.residency.pages_over_budget, 0);
   EXPECT_LE(rest.stats.residency.device_bytes, 450000);
   EXPECT_GT(rest.stats.bound_px, 1.0);
   // At rest: nothing is brought any more, and the picture stays as it is.
@@ -197,9 +197,9 @@ TEST(Residency, AFieldLargerThanTheDevicesImagesIsDrawnFromPages) {
   ASSERT_TRUE(whole->update(field));
   for (const double x : {0.0, 0.31, 0.77, 1.0}) {
     FrameInput input = bareAt(12, x, 0.5);
-    const Shot a = settle(*tight, input), b = settle(*whole, input);
-    EXPECT_TRUE(a.stats.residency.by_need);
-    EXPECT_EQ(a.stats.residency.pages_beyond, 0);
+    const Shot a = drawComplete(*tight, input), b = drawComplete(*whole, input);
+    EXPECT_TRUE(a.stats.residency.on_demand);
+    EXPECT_EQ(a.stats.residency.pages_over_budget, 0);
     EXPECT_EQ(differing(a.image, b.image), 0U) << x;
   }
 }
@@ -209,13 +209,13 @@ TEST(Residency, AnEditBesideTheViewCostsItsCoarseCopiesAlone) {
   const engine::Version before = largeField();
   ASSERT_TRUE(tight->update(before));
   const FrameInput input = bareAt(12, 0.2, 0.2);
-  (void)settle(*tight, input);
+  (void)drawComplete(*tight, input);
   engine::LiveField live(before, engine::Growth::kAllowed);
   const std::vector<float> z(64 * 64, 7.0F);
   ASSERT_TRUE(live.writeHeights(1280, 960, 64, 64, z.data(), 64));
   ASSERT_TRUE(tight->update(live.snapshot()));
   const Shot far = shoot(*tight, input);
-  // Every 16th and 64th sample stay on the device; every 4th comes by need.
+  // Every 16th and 64th sample stay on the device; every 4th comes on demand.
   EXPECT_EQ(far.stats.upload.bytes, (16 + 1) * 4);
   EXPECT_EQ(far.stats.upload.pending_tiles, 0);
   const std::vector<float> near(10 * 10, 7.0F);

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/field/version.h"
+#include "render/detail/patches.h"
+
+namespace fettle::render {
+
+/// Cache of the last patch tree of each panel, reused while none of its inputs changed. With several panels
+/// of a million vertices each and a camera at rest, an edit chooses the patches of its own panel only.
+///
+/// Threading: one thread at a time.
+class PatchTreeCache {
+ public:
+  /// The tree of a panel for `query`, which is about `version`: as PatchTree(query).
+  [[nodiscard]] PatchTree tree(std::size_t panel, const PatchQuery& query, const engine::Version& version);
+  /// Drops the trees from this panel on, so that no version is held longer than it is shown.
+  void keepOnly(std::size_t panels) {
+    if (cached_.size() > panels) cached_.resize(panels);
+  }
+
+ private:
+  struct Cached {
+    engine::Version version;     // empty: nothing is cached
+    std::uint64_t measured = 0;  // DetailMeasure::state() then
+    PatchTree tree;
+  };
+  std::vector<Cached> cached_;  // by panel
+};
+
+}  // namespace fettle::render
