@@ -15,13 +15,13 @@
 
 namespace fettle::engine {
 
-// Each at the end of its source: engine/io/*/*_import.cpp, session_format.cpp.
+// Each is defined at the end of its source: engine/io/*/*_import.cpp, session_format.cpp.
 FormatRow tiffFormat, pngFormat, plyFormat, pcdFormat, lasFormat, surFormat, x3pFormat, exrFormat, stlFormat,
     asciiGridFormat, sessionFormat, xyzFormat;
 
 namespace {
 
-// Signatures first; text that is nothing else is tried as points.
+// Formats with a signature first; other text is tried as points.
 constexpr FormatRow* kTable[] = {tiffFormat, pngFormat, plyFormat, pcdFormat,       lasFormat,     surFormat,
                                  x3pFormat,  exrFormat, stlFormat, asciiGridFormat, sessionFormat, xyzFormat};
 
@@ -36,45 +36,45 @@ Status checkOptions(const ImportOptions& options) {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0.0; };
   if (options.spacing && !(positive(options.spacing->first) && positive(options.spacing->second)))
     return inputError(
-        fmt::format("a spacing of {} x {} cannot be", options.spacing->first, options.spacing->second),
+        fmt::format("a spacing of {} x {} is not valid", options.spacing->first, options.spacing->second),
         "--spacing", "give two positive lengths");
   if (options.z_scale && (!std::isfinite(*options.z_scale) || *options.z_scale == 0.0))
-    return inputError(fmt::format("a height scale of {} cannot be", *options.z_scale), "--z-scale",
+    return inputError(fmt::format("a height scale of {} is not valid", *options.z_scale), "--z-scale",
                       "give a number other than 0");
   if (options.unit && !positive(options.unit->mm))
-    return inputError(fmt::format("a unit of {} mm cannot be", options.unit->mm), "--unit");
+    return inputError(fmt::format("a unit of {} mm is not valid", options.unit->mm), "--unit");
   if (options.depth_camera) {
     const DepthCamera& camera = *options.depth_camera;
     if (!positive(camera.fx) || !positive(camera.fy) || !std::isfinite(camera.cx) ||
         !std::isfinite(camera.cy))
-      return inputError("the camera cannot be", "--depth-camera", "give fx,fy,cx,cy in pixels");
+      return inputError("the camera is not valid", "--depth-camera", "give fx,fy,cx,cy in pixels");
     if (options.spacing)
       return inputError("a depth camera has no spacing of its own", "--spacing",
                         "give either --spacing or --depth-camera");
   }
   if (options.cell_size && !positive(*options.cell_size))
-    return inputError(fmt::format("a cell size of {} cannot be", *options.cell_size), "--cell-size",
+    return inputError(fmt::format("a cell size of {} is not valid", *options.cell_size), "--cell-size",
                       "give a positive length");
   return {};
 }
 
-// Depth images are read as any picture of numbers, and then given the grid of their camera.
+// Depth images are read like any raster, and then get the grid of their camera.
 Result<Imported> readDepthImage(const Format& format, const InputFile& file, ImportOptions options,
                                 JobControl& job) {
   if (!format.picture)
-    return inputError(fmt::format("{} is no picture of distances", format.info.description), file.path(),
+    return inputError(fmt::format("{} is not a depth image", format.info.description), file.path(),
                       "--depth-camera is for PNG and TIFF");
   const bool assumed = !options.no_data;
   if (assumed) options.no_data = 0.0;
-  options.spacing = std::pair{1.0, 1.0};  // no guess is to be warned of
+  options.spacing = std::pair{1.0, 1.0};  // no guess that needs a warning
   Result<Imported> image = format.read(file, options, job);
   if (!image) return image;
-  if (assumed) image->warnings.emplace_back("0 taken for no distance: --no-data says otherwise");
+  if (assumed) image->warnings.emplace_back("0 is read as no distance: change it with --no-data");
   placeInPerspective(*image, *options.depth_camera);
   return image;
 }
 
-// Null where no format knows the file.
+// Null where no format recognises the file.
 Result<const Format*> recognised(const InputFile& file) {
   std::string head(Format::kHeadBytes, '\0');
   const Result<std::size_t> got = file.read(0, head.data(), head.size());
@@ -92,11 +92,11 @@ Result<Imported> import(const std::string& path, const ImportOptions& options, J
   const Result<const Format*> format = recognised(*file);
   if (!format) return tl::unexpected(format.error());
   if (*format == nullptr)
-    return inputError("the file is in no format that is known", path,
-                      "known are " + extensionsOf(&FormatInfo::reads));
+    return inputError("the format of the file is not known", path,
+                      "known formats: " + extensionsOf(&FormatInfo::reads));
   Result<Imported> imported = options.depth_camera ? readDepthImage(**format, *file, options, job)
                                                    : (*format)->read(*file, options, job);
-  if (imported && !(*format)->units_settled) doubtUnits(*imported, options);
+  if (imported && !(*format)->units_certain) doubtUnits(*imported, options);
   return imported;
 }
 
@@ -139,9 +139,9 @@ Result<Exported> exportField(const Version& field, const std::string& path, cons
                              JobControl& job) {
   if (options.height_per_count &&
       !(std::isfinite(*options.height_per_count) && *options.height_per_count > 0.0))
-    return inputError(fmt::format("{} cannot be the height of a count", *options.height_per_count), path);
+    return inputError(fmt::format("{} is not a valid height per count", *options.height_per_count), path);
   if (options.max_error && !(std::isfinite(*options.max_error) && *options.max_error >= 0.0))
-    return inputError(fmt::format("{} cannot be the error of a mesh", *options.max_error), path);
+    return inputError(fmt::format("{} is not a valid error of a mesh", *options.max_error), path);
   const std::string extension = extensionOf(path);
   const Format* format = nullptr;
   for (FormatRow* row : kTable)
@@ -149,19 +149,18 @@ Result<Exported> exportField(const Version& field, const std::string& path, cons
         std::ranges::find(row().info.extensions, extension) != row().info.extensions.end())
       format = &row();
   if ((options.mesh || options.max_error) && !(format != nullptr && format->mesh))
-    return inputError("only .ply and .stl hold a mesh", path, "write one of these or leave --mesh out");
+    return inputError("only .ply and .stl store a mesh", path, "write one of these or omit --mesh");
   if (options.cloud_optimised && !(format != nullptr && format->tiff))
-    return inputError("only .tif can be cloud-optimised", path, "write that or leave the option out");
+    return inputError("only .tif can be cloud-optimised", path, "write that or omit the option");
   if (options.tiff_compression && !(format != nullptr && format->tiff))
-    return inputError("only .tif is compressed in the way that is asked for", path,
-                      "write that or leave --compress out");
+    return inputError("only .tif supports the requested compression", path, "write that or omit --compress");
   try {
     if (format != nullptr) return format->write(field, path, options, job);
   } catch (const std::bad_alloc&) {
-    return failure("memory for writing could not be had", path);
+    return failure("there is not enough memory for writing", path);
   }
   return inputError(extension.empty() ? "the output has no extension that names a format"
-                                      : fmt::format("{} is no format that can be written", extension),
+                                      : fmt::format("{} is not a format that can be written", extension),
                     path, "use one of " + extensionsOf(&FormatInfo::writes));
 }
 

@@ -19,55 +19,54 @@ namespace fettle::engine {
 ///
 /// Rows of top-down formats are flipped so that row 0 has the lowest y; Grid::origin is the centre of the
 /// lower-left sample. Lateral unit: that of the coordinate system; degrees are approximated by the length of
-/// a degree of longitude and latitude at the field's middle (warned about, with the error); none = mm (warned
-/// about). Height unit: that of the band or of the vertical coordinate system, else the lateral one. Rows
-/// that run upwards and columns that run leftwards in the file are warned about too.
+/// a degree of longitude and latitude at the field's middle (with a warning that states the error); none = mm
+/// (with a warning). Height unit: that of the band or of the vertical coordinate system, otherwise the
+/// lateral one. Rows from bottom to top and columns from right to left in the file give a warning too.
 ///
 /// Errors (all ErrorKind::kInput, one line): a path that cannot be read, an unknown or damaged file, one that
-/// holds no valid height, more samples than memory can hold (told from the header, before anything is
+/// holds no valid height, more samples than memory can hold (determined from the header, before anything is
 /// allocated); kCancelled. Memory: the field plus at most 256 MB plus the size of the file; clouds take
-/// 40 bytes a point and 8 a cell more while they are gridded.
+/// another 40 bytes per point and 8 per cell while they are gridded.
 ///
-/// Thread: any, several at once; a long job: reports progress and looks at cancel() in `job`.
+/// Thread: any, several at once; a long job: reports progress and checks cancel() in `job`.
 [[nodiscard]] Result<Imported> importField(const std::string& path, const ImportOptions& options,
                                            JobControl& job);
 
-/// Reads a coarse picture of at most `max_samples` samples (>= 4), when the file is so large that this is of
-/// use - over four times as many - and it can be had for a small share of the whole: a TIFF that is not
-/// packed, that has overviews, or whose packed blocks need not all be unpacked. Nothing otherwise: other
-/// formats, depth images, a field without a valid height at the samples looked at.
+/// Reads a coarse picture of at most `max_samples` samples (>= 4), when the file has over four times as many
+/// and the picture takes a small share of the time of a full import: a TIFF that is not compressed, that has
+/// overviews, or whose compressed blocks need not all be decompressed. Nothing otherwise: other formats,
+/// depth images, a field without a valid height at the samples read.
 ///
-/// Cost: at most 24 million samples unpacked, or the rows looked at read. Rows lie farther apart than columns
-/// where packed blocks would cost more: their first rows are looked at alone.
+/// Cost: at most 24 million samples decompressed, or the requested rows read. Rows are farther apart than
+/// columns where compressed blocks would cost more: only their first rows are read.
 ///
-/// What is left unsaid are the warnings; who reads the whole gets them. Errors: as importField, as far as the
-/// file is looked at. Thread: any; reports progress and looks at cancel() in `job`.
+/// Gives no warnings; the full import does. Errors: as importField, for the parts that are read. Thread: any;
+/// reports progress and checks cancel() in `job`.
 [[nodiscard]] Result<std::optional<Preview>> importPreview(const std::string& path,
                                                            const ImportOptions& options,
                                                            std::int64_t max_samples, JobControl& job);
 
 /// Writes a field, its sign applied, in the format that the extension of `path` names (any case):
 ///
-///   .tif .tiff  GeoTIFF, float32, compressed without loss if asked, geo-reference, CRS, units, holes = NaN,
-///               declared
-///   .asc        ESRI ASCII grid, every float with enough digits to come back bit for bit, holes = declared
-///               number (ESRI readers know no NaN); anisotropic spacing as dx, dy; a coordinate system goes
-///               into a .prj file beside it, which is there before the grid is
-///   .xyz        text, one "x y z" a sample that is no hole, world coordinates, shortest exact digits; raster
-///   and
-///               units in comments
+///   .tif .tiff  GeoTIFF, float32, compressed without loss if requested, geo-reference, CRS, units, holes =
+///               NaN, declared
+///   .asc        ESRI ASCII grid, every float with enough digits to be read back bit-identical, holes = a
+///               declared number (ESRI readers do not support NaN); anisotropic spacing as dx, dy; a
+///               coordinate system goes into a .prj file next to it, which is written before the grid
+///   .xyz        text, one "x y z" per sample that is not a hole, world coordinates, shortest exact digits;
+///               raster and units in comments
 ///   .ply        binary little-endian points, double x and y, float z, world coordinates; raster and units in
 ///               comments; with ExportOptions::mesh the surface: cells without a hole as triangles
 ///   .stl        the surface as triangles, binary; x and y from the field's corner, float32, lateral unit
-///   .png        16-bit grey, 0 = hole, quantised: the warning says count and largest error
-///   .x3p        ISO 25178-72, metres: float32 where the field is in metres, else float64, and every digit of
-///               units, spacing and origin in an entry of its own, so that each float comes back
+///   .png        16-bit grey, 0 = hole, quantised: a warning states count and largest error
+///   .x3p        ISO 25178-72, metres: float32 where the field is in metres, otherwise float64, and every
+///               digit of units, spacing and origin in an entry of its own, so that each float is restored
 ///   .exr        OpenEXR, channel Y, float32, holes = NaN; units, spacing, origin: an attribute of its own
 ///   .fettle     a session (engine/session) that begins with this field, or with ExportOptions::original,
-///               marks and sign included, bit for bit
+///               marks and sign included, bit-identical
 ///
-/// Other formats take no marks: these go to their own file (marks.h). The file appears whole or not at all
-/// (atomic_file.h). Errors: kInput for an unknown extension, a path that cannot be written; kFailed for a
+/// Other formats store no marks: these have their own file (marks.h). The file appears completely or not at
+/// all (atomic_file.h). Errors: kInput for an unknown extension, a path that cannot be written; kFailed for a
 /// full disk; kCancelled. Thread: any; a long job.
 [[nodiscard]] Result<Exported> exportField(const Version& field, const std::string& path,
                                            const ExportOptions& options, JobControl& job);

@@ -1,4 +1,4 @@
-// Sessions as a format of scans: the current field of the session is read, marks included.
+// Sessions as a format of scans: reads the current field of the session, marks included.
 
 #include <tuple>
 
@@ -16,7 +16,7 @@ namespace fettle::engine {
 namespace {
 
 bool looksLikeSession(std::string_view head, std::string_view extension) {
-  // Another database is only recognised, and refused, if its name is that of a session.
+  // Another SQLite database is recognised, and refused, only if its name is that of a session.
   constexpr std::string_view kSqlite("SQLite format 3\0", 16);
   if (extension == ".fettle") return true;
   if (!head.starts_with(kSqlite) || head.size() < 72) return false;
@@ -28,7 +28,7 @@ bool looksLikeSession(std::string_view head, std::string_view extension) {
 Result<Imported> readSession(const InputFile& file, const ImportOptions& options, JobControl& job) {
   if (options.no_data || options.z_scale)
     return inputError("a session stores heights and holes unchanged",
-                      options.no_data ? "--no-data" : "--z-scale", "leave the option out");
+                      options.no_data ? "--no-data" : "--z-scale", "omit the option");
   SessionOpenOptions reading;
   reading.history_bytes = 0;
   reading.journal = JournalReading::kLeave;
@@ -42,11 +42,11 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
   Grid grid = imported.field.grid();
   if (options.spacing && *options.spacing != std::pair(grid.spacing_x, grid.spacing_y)) {
     imported.warnings.push_back(
-        fmt::format("the session's spacing {} x {} was overruled", grid.spacing_x, grid.spacing_y));
+        fmt::format("the session's spacing {} x {} was replaced", grid.spacing_x, grid.spacing_y));
     std::tie(grid.spacing_x, grid.spacing_y) = *options.spacing;
   }
   if (options.unit && (*options.unit != grid.lateral_unit || *options.unit != grid.height_unit)) {
-    imported.warnings.push_back(fmt::format("the session's units {} and {} were overruled",
+    imported.warnings.push_back(fmt::format("the session's units {} and {} were replaced",
                                             grid.lateral_unit.name, grid.height_unit.name));
     grid.lateral_unit = grid.height_unit = *options.unit;
   }
@@ -59,7 +59,7 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
 
 Result<Exported> writeSession(const Version& field, const std::string& path, const ExportOptions& options,
                               JobControl& job) {
-  // A session's original is upright; an inverted field is one step away from it.
+  // The original of a session is upright; an inverted field is one step from it.
   const bool inverted = field.reader().sign() < 0;
   Session session;
   session.original = upright(options.original.value_or(field));
@@ -80,7 +80,7 @@ const Format& sessionFormat() {
       .recognises = looksLikeSession,
       .read = readSession,
       .write = writeSession,
-      .units_settled = true,
+      .units_certain = true,
   };
   return kFormat;
 }

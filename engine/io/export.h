@@ -12,33 +12,32 @@
 
 namespace fettle::engine {
 
-/// How the samples of a TIFF are packed. Who reads which is in docs/formats.md.
+/// Compression of the samples of a TIFF. docs/formats.md lists which programs read which.
 enum class TiffCompression : std::uint8_t {
-  kNone,     ///< strips of plain floats, which every program reads; the default
-  kLzw,      ///< strips, no predictor: what older programs unpack; no smaller where heights are noisy
+  kNone,     ///< strips of uncompressed floats, which every program reads; the default
+  kLzw,      ///< strips, no predictor: for older programs; no smaller where heights are noisy
   kDeflate,  ///< tiles, floating-point predictor
-  kZstd,     ///< the same, packed and unpacked faster, read by fewer programs
+  kZstd,     ///< the same, faster in both directions, read by fewer programs
 };
 
 /// "none", "lzw", "deflate", "zstd"; nothing for others.
 [[nodiscard]] std::optional<TiffCompression> tiffCompressionFromName(std::string_view name);
 
 struct ExportOptions {
-  /// 16-bit PNG: height of one count [height_unit], finite and > 0. Without it Grid::height_per_count, and
-  /// where that is 0 or the heights do not fit it, the range of the field spread over 1 .. 65535.
+  /// 16-bit PNG: height per count [height_unit], finite and > 0. Without it Grid::height_per_count, and where
+  /// that is 0 or the heights do not fit it, the range of the field spread over 1 .. 65535.
   std::optional<double> height_per_count;
   /// PLY: the surface as triangles instead of points. STL is always triangles.
   bool mesh = false;
-  /// Mesh: as few triangles as keep every sample within this of the surface [height_unit], finite, >= 0;
-  /// without it two a cell. Implies mesh.
+  /// Mesh: as few triangles as possible with every sample within this distance of the surface [height_unit],
+  /// finite, >= 0; without it two per cell. Implies mesh.
   std::optional<double> max_error;
   /// TIFF: laid out for reading parts over a network, with overviews (means of 2 x 2, 4 x 4 ... samples).
   bool cloud_optimised = false;
-  /// Session: the scan that the field was made from, grid and way up as the field's. The session begins with
-  /// it, and where the two differ the field is a step from there. Without it the session begins with the
-  /// field.
+  /// Session: the scan that the field was made from, with the same grid and sign. The session begins with it,
+  /// and where the two differ the field is a step from there. Without it the session begins with the field.
   std::optional<Version> original;
-  /// TIFF: not said, kNone, and kDeflate where cloud-optimised.
+  /// TIFF: without a value kNone, and kDeflate where cloud-optimised.
   std::optional<TiffCompression> tiff_compression;
 };
 

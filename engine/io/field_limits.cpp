@@ -13,7 +13,7 @@ Status checkFieldSize(std::uint64_t width, std::uint64_t height, std::uint64_t e
                       const std::string& path) {
   constexpr std::uint64_t kMaxSide = Grid::kMaxSide;
   if (width == 0 || height == 0)
-    return inputError(fmt::format("the header promises {} x {} samples", width, height), path,
+    return inputError(fmt::format("the header states {} x {} samples", width, height), path,
                       "the file is damaged or empty");
   if (width > kMaxSide || height > kMaxSide)
     return inputError(fmt::format("{} x {} samples are too many", width, height), path,
@@ -28,7 +28,7 @@ Status checkPromise(std::uint64_t raw_bytes, std::uint64_t stored_bytes, double 
   constexpr double kBenefitOfDoubt = 64 << 20;
   if (static_cast<double>(raw_bytes) <= kBenefitOfDoubt + ratio * static_cast<double>(stored_bytes))
     return {};
-  return inputError(fmt::format("the header promises {} MB of samples, the file holds {} bytes of them",
+  return inputError(fmt::format("the header states {} MB of samples, the file holds {} bytes of them",
                                 raw_bytes >> 20, stored_bytes),
                     path, "the file is cut short or damaged");
 }
@@ -38,14 +38,14 @@ Status checkPacking(std::uint64_t raw_bytes, std::uint64_t stored_bytes, const s
   constexpr std::uint64_t kMostPacked = 200;
   if (raw_bytes <= kTrusted || raw_bytes / kMostPacked <= stored_bytes) return {};
   return inputError(
-      fmt::format("the file promises {} MB of heights out of {} bytes", raw_bytes >> 20, stored_bytes), path,
+      fmt::format("the file states {} MB of heights in {} bytes", raw_bytes >> 20, stored_bytes), path,
       "the file is damaged or made to fill memory");
 }
 
 void describeTally(const HeightTally& tally, const std::string& unit, std::vector<std::string>& warnings) {
   if (tally.infinite > 0)
-    warnings.push_back(
-        fmt::format("{} heights are infinite or past the range of a float, taken as holes", tally.infinite));
+    warnings.push_back(fmt::format("{} heights are infinite or outside the range of a float, read as holes",
+                                   tally.infinite));
   if (tally.rounding > 0.0)
     warnings.push_back(
         fmt::format("heights have more digits than a float holds, the largest rounding is {:.2g} {}",

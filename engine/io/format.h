@@ -23,7 +23,7 @@ using FormatReader = Result<Imported>(const InputFile& file, const ImportOptions
 using FormatPreviewer = Result<std::optional<Preview>>(const InputFile& file, const ImportOptions& options,
                                                        std::int64_t max_samples, JobControl& job);
 
-/// Writes the file whole or not at all (AtomicFile). May throw std::bad_alloc. Contract: exportField.
+/// Writes the file completely or not at all (AtomicFile). May throw std::bad_alloc. Contract: exportField.
 using FormatWriter = Result<Exported>(const Version& field, const std::string& path,
                                       const ExportOptions& options, JobControl& job);
 
@@ -33,16 +33,16 @@ struct Format {
   FormatRecogniser* recognises = nullptr;  ///< null for formats that are only written
   FormatReader* read = nullptr;
   FormatWriter* write = nullptr;
-  FormatPreviewer* preview = nullptr;  ///< null where a preview would cost as much as the whole
+  FormatPreviewer* preview = nullptr;  ///< null where a preview would cost as much as the full import
   bool picture = false;                ///< samples may be distances: ImportOptions::depth_camera
   bool mesh = false;                   ///< ExportOptions::mesh and max_error
   bool tiff = false;                   ///< ExportOptions::cloud_optimised and tiff_compression
-  bool units_settled = false;          ///< no doubt about units: they were settled at an import before
+  bool units_certain = false;          ///< units are certain: they were determined at an earlier import
 
   static constexpr std::size_t kHeadBytes = 4096;
 };
 
-/// What a format's source defines, to be declared by its name where it is listed.
+/// Function that a format's source defines, to be declared by name where formats are listed.
 using FormatRow = const Format&();
 
 }  // namespace fettle::engine

@@ -44,7 +44,7 @@ constexpr std::size_t kMostNotes = 4096;  // bytes
 }  // namespace
 
 std::string gridNotes(const Grid& grid) {
-  // A unit's name and a coordinate system may come from anywhere: one line each.
+  // The name of a unit and a coordinate system may contain any text: one line each.
   const auto line = [](std::string text) {
     std::replace_if(
         text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');

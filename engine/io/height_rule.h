@@ -13,10 +13,10 @@
 
 namespace fettle::engine {
 
-/// What was met while numbers became heights; tallies of strips are merged, in any order.
+/// Counts from converting numbers to heights; tallies of strips are merged, in any order.
 struct HeightTally {
   std::int64_t holes = 0;     ///< by no-data value or NaN
-  std::int64_t infinite = 0;  ///< infinities, also those that only the float made so
+  std::int64_t infinite = 0;  ///< infinities, also those caused only by rounding to float
   double rounding = 0.0;      ///< largest |float height - double height|
 
   void merge(const HeightTally& other) noexcept {
@@ -26,7 +26,7 @@ struct HeightTally {
   }
 };
 
-/// From the numbers of a file to heights: height = number * scale + offset in double, rounded once.
+/// Converts the numbers of a file to heights: height = number * scale + offset in double, rounded once.
 struct HeightRule {
   double scale = 1.0;
   double offset = 0.0;
@@ -55,13 +55,13 @@ struct HeightRule {
   }
 
  private:
-  // Floats that stay as they are: runs in which nothing can be a hole are copied, the loop has no branch and
-  // so takes vector instructions.
+  // Floats that are not changed: runs without a possible hole are copied, the loop has no branch and so uses
+  // vector instructions.
   void convertPlain(const float* numbers, float* heights, std::size_t count,
                     HeightTally& tally) const noexcept {
     constexpr std::size_t kRun = 1024;
     constexpr float kHuge = 3.4028e38F;  // see same()
-    // NaN equals nothing, as it should: NaN samples are found by the comparison with kHuge.
+    // NaN equals nothing, as intended: NaN samples are found by the comparison with kHuge.
     const auto mark = [](const std::optional<double>& value) {
       return value ? toFloat(*value) : std::numeric_limits<float>::quiet_NaN();
     };
@@ -92,7 +92,7 @@ struct HeightRule {
       }
       double height = static_cast<double>(numbers[i]);
       if (scale != 1.0) height *= scale;
-      if (offset != 0.0) height += offset;  // nothing is added to -0, or it would lose its sign
+      if (offset != 0.0) height += offset;  // nothing is added to -0, otherwise it would lose its sign
       const float rounded = toFloat(height);
       if (std::isfinite(rounded)) {
         if constexpr (sizeof(T) > 2 && !std::is_same_v<T, float>)
@@ -121,8 +121,8 @@ struct HeightRule {
   [[nodiscard]] static bool same(T number, double value) noexcept {
     if constexpr (std::is_floating_point_v<T>) {
       if (static_cast<double>(number) == value) return true;
-      // Writers print the lowest float as -3.402823e+38, which is 2 ulp off it as a float: whatever lies that
-      // far out, with the same sign, is the mark and no height.
+      // Writers print the lowest float as -3.402823e+38, which differs from it by 2 ulp as a float: any
+      // number that large, with the same sign, is the mark and not a height.
       constexpr double kHuge = 3.4028e38;
       if (std::abs(value) >= kHuge && std::abs(static_cast<double>(number)) >= kHuge)
         return std::signbit(value) == std::signbit(static_cast<double>(number));
@@ -135,7 +135,7 @@ struct HeightRule {
   }
 };
 
-/// The warnings a tally gives. `unit` is the height unit's name.
+/// The warnings of a tally. `unit` is the height unit's name.
 void describeTally(const HeightTally& tally, const std::string& unit, std::vector<std::string>& warnings);
 
 }  // namespace fettle::engine

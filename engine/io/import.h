@@ -15,21 +15,20 @@
 
 namespace fettle::engine {
 
-/// Which height a cell takes when several points of a cloud fall into it.
+/// Height of a cell that contains several points of a cloud.
 enum class CellRule {
   kMedian,   ///< of an even number of points: the mean of the two middle ones
   kMean,     ///< sum in double, rounded once
-  kHighest,  ///< as a laser from above would see it
+  kHighest,  ///< as seen by a laser from above
 };
 
-/// A pinhole camera: pixel (column u, row v from the top) at distance Z along its axis sees what lies
-/// (u - cx) * Z / fx to the right of the axis and (cy - v) * Z / fy above it. All in pixels; fx, fy > 0.
+/// A pinhole camera: pixel (column u, row v from the top) at distance Z along its axis is the point (u - cx)
+/// * Z / fx to the right of the axis and (cy - v) * Z / fy above it. All in pixels; fx, fy > 0.
 struct DepthCamera {
   double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
 };
 
-/// What the user says about a file that the file itself cannot. Whatever is given wins over the file, and a
-/// warning says so where the two differ.
+/// What the user states about a file. It has priority over the file, with a warning where the two differ.
 struct ImportOptions {
   /// One more value that means "hole", in the numbers as stored (before z_scale), compared after both were
   /// rounded to float32 when the samples are floats, exactly when they are integers. NaN is always a hole.
@@ -39,47 +38,47 @@ struct ImportOptions {
   /// height = stored number * z_scale, in double, rounded once to float; finite, not 0. For integer samples
   /// it becomes Grid::height_per_count.
   std::optional<double> z_scale;
-  /// Lateral and height unit. Without it: what the file says, else millimetres. Spacing that a file states in
-  /// a unit of its own (resolution tags: pixels a centimetre) is converted into this one.
+  /// Lateral and height unit. Without it: as stated in the file, else millimetres. Spacing that a file states
+  /// in a unit of its own (resolution tags: pixels per centimetre) is converted into this one.
   std::optional<LengthUnit> unit;
-  /// Point clouds: side of a cell in the file's unit, finite and > 0; without it the lattice the points lie
-  /// on, else estimated from their density. Given, no lattice is looked for.
+  /// Point clouds: side of a cell in the file's unit, finite and > 0. Without it the lattice on which the
+  /// points lie, otherwise estimated from their density. With it no lattice is searched.
   std::optional<double> cell_size;
   CellRule cell_rule = CellRule::kMedian;
   /// PNG and TIFF: the samples are distances from this camera. They stay pixels in its perspective and stay
-  /// distances; spacing and origin come from the camera (a warning says which). 0 is a hole unless no_data
-  /// says otherwise. Not together with spacing; fx, fy positive, all finite.
+  /// distances; spacing and origin come from the camera (stated in a warning). 0 is a hole unless no_data is
+  /// given. Not together with spacing; fx, fy positive, all finite.
   std::optional<DepthCamera> depth_camera;
 };
 
-/// How a cloud of points became a field.
+/// How a field was made from a cloud of points.
 struct GriddingReport {
-  std::int64_t points = 0;          ///< points with three finite coordinates; others are in a warning
+  std::int64_t points = 0;          ///< points with three finite coordinates; a warning counts the others
   std::int64_t cells = 0;           ///< width * height
   std::int64_t empty_cells = 0;     ///< cells without a point: holes
-  std::int64_t multiple_cells = 0;  ///< cells with more than one point, where CellRule decided
-  bool lattice = false;             ///< the points lay on a raster (with gaps), whose spacing was taken
+  std::int64_t multiple_cells = 0;  ///< cells with more than one point, where CellRule applied
+  bool lattice = false;             ///< the points lay on a raster (with gaps), whose spacing was used
 };
 
 struct Imported {
   Version field;
-  /// Of a session: the scan that its work began with, grid and way up as those of `field`.
+  /// Of a session: the scan that it began with, with the grid and sign of `field`.
   std::optional<Version> original;
   std::string format;                 ///< FormatInfo::name of the reader, e.g. "GTiff", "XYZ"
   std::vector<std::string> warnings;  ///< what was guessed, converted or lost; one line each, no full stop
   std::optional<GriddingReport> gridding;  ///< point clouds only
-  /// Heights that look like holes which the file does not declare (lone_value.h); `warnings` name each.
+  /// Heights that look like undeclared holes (lone_value.h); `warnings` name each.
   std::vector<float> lone_values;
 };
 
 /// "mm", "m", "um", "µm", "nm", "cm", "km", "ft", "ftUS", "in" and their English names, any case; nothing for
-/// others. "deg" is no length and not accepted.
+/// others. "deg" is not a length and not accepted.
 [[nodiscard]] std::optional<LengthUnit> lengthUnitFromName(std::string_view name);
 
 /// One row of the table of formats.
 struct FormatInfo {
   std::string_view name;                         ///< stable, e.g. "GTiff"; goes into Imported::format
-  std::string_view description;                  ///< for a person, e.g. "GeoTIFF and TIFF"
+  std::string_view description;                  ///< for the user, e.g. "GeoTIFF and TIFF"
   std::span<const std::string_view> extensions;  ///< with the dot, lower case; the first is the usual one
   bool reads = false;
   bool writes = false;

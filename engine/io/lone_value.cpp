@@ -14,29 +14,29 @@ namespace {
 
 constexpr double kLeastShare = 0.01;         // of the samples that are no holes
 constexpr std::int64_t kFewestSamples = 16;  // samples with the value; other heights
-constexpr double kFlat = 0.04;               // of the samples: another height that so many have
-constexpr double kFlatBeside = 0.25;         // of those with the value, likewise
-constexpr double kScattered = 0.1;           // of a frequent height's samples: those of one beside it
+constexpr double kFlat = 0.04;               // of the samples: share that another height may have
+constexpr double kFlatNeighbour = 0.25;      // of those with the value, likewise
+constexpr double kScattered = 0.1;           // of a frequent height's samples: those of a neighbouring height
 constexpr double kMostEqual = 0.6;           // of neighbouring samples in coarse counts with noise
-constexpr double kNoHeight = 1e20;           // no surface is so high in any unit
+constexpr double kNoHeight = 1e20;           // no surface is that high in any unit
 constexpr std::size_t kMostLoneValues = 2;
-constexpr std::size_t kMostNumbers = 4;  // written for holes, at either end
+constexpr std::size_t kMostNumbers = 4;  // that stand for holes, at either end
 constexpr int kMostPasses = 4;
 constexpr std::int32_t kSketchSide = 256;
 
-// Least distances, in ranges of the rest.
+// Least distances, in multiples of the range of the rest.
 constexpr double kFromNoise = 0.1;
 constexpr double kWrittenForHoles = 1.0;
 constexpr double kFromCounts = 1.0;
 constexpr double kFarBeyond = 100.0;
 
-// A height and how many samples of the lattice have it.
+// A height and the number of lattice samples that have it.
 struct Level {
   float value = 0.0F;
   std::ptrdiff_t samples = 0;
 };
 
-// What a lattice over the field shows.
+// Statistics of a lattice over the field.
 struct Sketch {
   std::vector<Level> levels;  // ascending
   std::ptrdiff_t samples = 0;
@@ -56,10 +56,10 @@ Sketch sketchOf(const Version& field) {
       const float z = reader.heightAt(c, r);
       if (std::isnan(z)) continue;
       heights.push_back(z);
-      const float beside = c + 1 < grid.width ? reader.heightAt(c + 1, r) : z;
-      if (c + 1 >= grid.width || std::isnan(beside)) continue;
+      const float neighbour = c + 1 < grid.width ? reader.heightAt(c + 1, r) : z;
+      if (c + 1 >= grid.width || std::isnan(neighbour)) continue;
       ++sketch.pairs;
-      sketch.equal += static_cast<std::ptrdiff_t>(beside == z);
+      sketch.equal += static_cast<std::ptrdiff_t>(neighbour == z);
     }
   std::sort(heights.begin(), heights.end());
   sketch.samples = std::ssize(heights);
@@ -71,12 +71,12 @@ Sketch sketchOf(const Version& field) {
   return sketch;
 }
 
-// The file's number for a height, as a float, so that a scale leaves no digits of its rounding behind.
+// The file's number for a height, as a float, to remove rounding digits of a scale.
 float storedNumber(float height, const HeightRule& rule) {
   return HeightRule::toFloat((double{height} - rule.offset) / rule.scale);
 }
 
-// Whether programs write a number where there is no height.
+// Whether programs write this number for holes.
 bool writtenForHoles(float stored) {
   constexpr std::array kHoleNumbers{-32768.0F,     32767.0F,      -32767.0F, 65535.0F, -2147483648.0F,
                                     2147483648.0F, 4294967296.0F, 999.0F,    9999.0F,  99999.0F,
@@ -96,7 +96,7 @@ struct Rest {
     highest = std::max(highest, z);
   }
   [[nodiscard]] double range() const { return double{highest} - double{lowest}; }
-  // From outside; negative within.
+  // From outside the range; negative inside.
   [[nodiscard]] double distance(float z) const {
     return std::max(double{lowest} - double{z}, double{z} - double{highest});
   }
@@ -116,13 +116,13 @@ Rest restOf(const std::vector<Level>& levels, const std::vector<float>& without)
   return rest;
 }
 
-// Whether a number that is written for holes stands where it must be one.
-bool besideSurface(float value, const Rest& rest, const HeightRule& rule) {
+// Whether a number that is written for holes is too far from the surface to be a height.
+bool isFarFromSurface(float value, const Rest& rest, const HeightRule& rule) {
   const bool levels = rest.lowest < rest.highest || std::abs(storedNumber(value, rule)) >= kNoHeight;
   return levels && rest.distance(value) >= kWrittenForHoles * rest.range() && rest.distance(value) > 0.0;
 }
 
-// Of the numbers that are written for holes, those that lie far from all the rest.
+// Of the numbers that are written for holes, those that are far from all the rest.
 std::vector<float> holeNumbers(const std::vector<Level>& levels, const HeightRule& rule) {
   std::vector<float> found;
   const auto take = [&](auto first, auto last) {
@@ -134,34 +134,34 @@ std::vector<float> holeNumbers(const std::vector<Level>& levels, const HeightRul
   // They lie outside of the rest.
   take(levels.begin(), levels.end());
   take(levels.rbegin(), levels.rend());
-  // One that may be a height belongs to the rest; the nearest first, for others may be far from it.
+  // A number that may be a height belongs to the rest; the nearest first, since others may be far from it.
   while (!found.empty()) {
     const Rest rest = restOf(levels, found);
     if (rest.heights == 0) return {};
     const auto nearest = std::min_element(
         found.begin(), found.end(), [&](float a, float b) { return rest.distance(a) < rest.distance(b); });
-    if (besideSurface(*nearest, rest, rule)) break;
+    if (isFarFromSurface(*nearest, rest, rule)) break;
     found.erase(nearest);
   }
   return found;
 }
 
-// How far a height must be from the others, in their range, to be lone among their noise; nothing where they
-// are not those of a noisy surface.
+// Least distance of a height from the others, in multiples of their range, to be lone among their noise;
+// nothing where they are not those of a noisy surface.
 std::optional<double> leastFromNoise(const Sketch& sketch, std::size_t lone) {
   std::vector<Level> others = sketch.levels;
   others.erase(others.begin() + static_cast<std::ptrdiff_t>(lone));
   if (std::ssize(others) < kFewestSamples) return std::nullopt;
   const auto flat = std::max(kFlat * static_cast<double>(sketch.samples),
-                             kFlatBeside * static_cast<double>(sketch.levels[lone].samples));
+                             kFlatNeighbour * static_cast<double>(sketch.levels[lone].samples));
   bool any = false;
   for (std::size_t i = 0; i < others.size(); ++i) {
     const auto most = static_cast<double>(others[i].samples);
     if (most <= flat) continue;
     any = true;
-    const auto beside = std::max(i > 0 ? others[i - 1].samples : 0,
-                                 i + 1 < others.size() ? others[i + 1].samples : std::ptrdiff_t{0});
-    if (static_cast<double>(beside) < kScattered * most) return std::nullopt;
+    const auto neighbour = std::max(i > 0 ? others[i - 1].samples : 0,
+                                    i + 1 < others.size() ? others[i + 1].samples : std::ptrdiff_t{0});
+    if (static_cast<double>(neighbour) < kScattered * most) return std::nullopt;
   }
   if (!any) return kFromNoise;
   // Steps or a slope in coarse counts but without noise: neighbours are equal.
@@ -169,7 +169,7 @@ std::optional<double> leastFromNoise(const Sketch& sketch, std::size_t lone) {
   return kFromCounts;
 }
 
-// A value that may stand for holes, and what the whole field says of it.
+// A value that may stand for holes, with counts from the whole field.
 struct Suspect {
   float value = 0.0F;
   double least_ranges = 0.0;    // from the rest
@@ -184,7 +184,7 @@ struct Suspect {
   }
 };
 
-// Heights as frequent as a lone value: half its share is on the lattice at least.
+// Limit for heights as frequent as a lone value: at least half of its share is on the lattice.
 std::ptrdiff_t fewestOnLattice(const Sketch& sketch) {
   return std::max<std::ptrdiff_t>(
       kFewestSamples / 4,
@@ -209,7 +209,7 @@ std::vector<Suspect> amongNoise(const Sketch& sketch) {
   return found.size() > kMostLoneValues ? std::vector<Suspect>() : found;
 }
 
-// The outermost heights, as many as are far beyond all others.
+// The outermost heights that are far beyond all others.
 std::vector<Suspect> farBeyond(const Sketch& sketch, double least_distance) {
   const std::vector<Level>& levels = sketch.levels;
   for (std::size_t count = kMostLoneValues; count > 0; --count)
@@ -232,10 +232,10 @@ std::vector<Suspect> farBeyond(const Sketch& sketch, double least_distance) {
   return {};
 }
 
-// What every sample of the field says of the suspects.
+// Counts over all samples of the field for the suspects.
 struct Tally {
   Rest rest;
-  std::int64_t all = 0;  // samples that are no holes
+  std::int64_t all = 0;  // samples that are not holes
 };
 
 Tally tallyOf(const Version& field, std::vector<Suspect>& suspects) {
@@ -269,7 +269,7 @@ Tally tallyOf(const Version& field, std::vector<Suspect>& suspects) {
 bool isLone(const Suspect& one, const Tally& tally, const HeightRule& rule) {
   if (one.hole_number) {
     const std::int64_t fewest = std::abs(storedNumber(one.value, rule)) >= kNoHeight ? 1 : kFewestSamples;
-    return one.samples >= fewest && besideSurface(one.value, tally.rest, rule);
+    return one.samples >= fewest && isFarFromSurface(one.value, tally.rest, rule);
   }
   return one.samples >= kFewestSamples &&
          static_cast<double>(one.samples) > kLeastShare * static_cast<double>(tally.all) &&
@@ -313,7 +313,7 @@ std::vector<float> doubtLoneValues(const Version& field, const HeightRule& rule,
   Tally tally;
   for (int pass = 0; pass < kMostPasses; ++pass) {
     tally = tallyOf(field, suspects);
-    // Behind a rare number there may be another, which the lattice missed as well.
+    // Beyond a rare number there may be another, which the lattice missed as well.
     const std::size_t known = suspects.size();
     for (const float end : {tally.rest.lowest, tally.rest.highest})
       if (std::isfinite(end) && writtenForHoles(storedNumber(end, rule)) && tally.rest.range() > 0.0)
@@ -331,7 +331,7 @@ std::vector<float> doubtLoneValues(const Version& field, const HeightRule& rule,
         lone.empty()
             ? fmt::format(", give --no-data {}", stored)
             : fmt::format(" too, convert with the other number and read the result with --no-data {}, "
-                          "which takes one at a time",
+                          "which accepts one at a time",
                           stored)));
     lone.push_back(one.value);
   }

@@ -8,14 +8,14 @@
 
 namespace fettle::engine {
 
-/// Values that look like holes of which the file says nothing: each is one height, exactly the same over many
-/// samples, far from every other. A warning for each is appended, which names --no-data. The values are
-/// returned, so that nothing else is concluded from them. All distances are from the rest: the heights
-/// without any of these values. There are three ways to be one:
+/// Finds values that look like undeclared holes: each is one height, exactly equal over many samples, far
+/// from every other. Appends a warning for each, which names --no-data, and returns the values, so that
+/// nothing else is concluded from them. All distances are from the rest: the heights without any of these
+/// values. There are three criteria:
 ///
 ///   a number that programs write for holes   the lowest or highest of an integer type, 999, 9999, 99999 and
 ///                                            so on, their negatives, anything from 1e20 on: no nearer than
-///                                            the range of the rest, whatever the rest looks like
+///                                            the range of the rest, for any kind of surface
 ///   one height among noise                   over more than 1 % of the samples, and farther than a tenth of
 ///                                            the range of the rest, which must be noisy: no height in it
 ///                                            has more than 4 % of the samples and a quarter as many. Where
@@ -25,13 +25,14 @@ namespace fettle::engine {
 ///                                            away and farther than the field is long
 ///
 /// So the flats of a part without noise, two steps, and a deep bore or a floor below a flat plate are none.
-/// Fewer than 16 samples with the value (but one is enough from 1e20 on) prove nothing; nor do, but for the
-/// first, fewer than 16 other heights, or more than two such values: the field is one of few levels.
+/// Fewer than 16 samples with the value (but one is enough from 1e20 on) are no evidence; nor are, except for
+/// the first criterion, fewer than 16 other heights, or more than two such values: the field is one of few
+/// levels.
 ///
-/// `rule` is the one by which the file's numbers became heights: the warning names the number as --no-data
-/// takes it. Where the user named a number, only the first way is looked for. Cost: a lattice of at most
-/// 256 x 256 samples, and passes over the field when that finds something, mostly one. The same for the same
-/// field. Thread: any.
+/// `rule` is the one by which the file's numbers became heights: the warning gives the number in the form of
+/// --no-data. Where the user gave a number, only the first criterion is checked. Cost: a lattice of at most
+/// 256 x 256 samples, and passes over the field when that finds something, mostly one. Deterministic. Thread:
+/// any.
 std::vector<float> doubtLoneValues(const Version& field, const HeightRule& rule,
                                    std::vector<std::string>& warnings);
 

@@ -45,8 +45,7 @@ double spanMm(const Imported& imported) {
 }
 
 // Median of |rise| over distance between neighbours of a row and of a column, on a lattice over the field;
-// NaN where fewer than kFewest pairs
-// of valid samples are neighbours: they prove nothing.
+// NaN where fewer than kFewest pairs of valid samples are neighbours: too few for a conclusion.
 double medianSlope(const Imported& imported) {
   constexpr std::int32_t kLatticeUnits = 256;
   constexpr std::size_t kFewest = 16;
@@ -73,16 +72,16 @@ double medianSlope(const Imported& imported) {
 }
 
 // The largest unit in which the surface is no steeper than 45 degrees in the middle; nothing when none is.
-std::string unitFor(double slope, const LengthUnit& said) {
+std::string unitFor(double slope, const LengthUnit& stated) {
   for (const char* name : {"m", "cm", "mm", "um", "nm"}) {
     const auto unit = lengthUnitFromName(name);
-    if (unit->mm < said.mm && slope * unit->mm / said.mm <= 1.0) return name;
+    if (unit->mm < stated.mm && slope * unit->mm / stated.mm <= 1.0) return name;
   }
   return {};
 }
 
-// Whether coordinates may be degrees although nothing says so: they would lie on the globe, and not about a
-// corner or middle of the field's own, or the spacing is a whole part or number of arc seconds.
+// Whether coordinates may be degrees although the file does not state it: they would lie on the globe, and
+// not around a corner or middle of the field, or the spacing is a whole part or number of arc seconds.
 bool mayBeDegrees(const Grid& grid) {
   const double extent_x = grid.width * grid.spacing_x, extent_y = grid.height * grid.spacing_y;
   const double middle_x = grid.origin_x + 0.5 * extent_x, middle_y = grid.origin_y + 0.5 * extent_y;
@@ -93,15 +92,15 @@ bool mayBeDegrees(const Grid& grid) {
   const bool whole_globe = extent_x > 350.0 && extent_y > 110.0;
   const auto arcSeconds = [](double spacing) {
     const double seconds = 3600.0 * spacing, whole = seconds < 1.0 ? 1.0 / seconds : seconds;
-    const double thousandths = 1000.0 * spacing;  // 0.25 is as well a decimal number
+    const double thousandths = 1000.0 * spacing;  // 0.25 is a decimal number as well
     return std::abs(whole - std::nearbyint(whole)) < 1e-5 * whole &&
            std::abs(thousandths - std::nearbyint(thousandths)) > 1e-6 * thousandths;
   };
   return elsewhere || whole_globe || (arcSeconds(grid.spacing_x) && arcSeconds(grid.spacing_y));
 }
 
-// Whether nothing rules degrees out: a length is only assumed, numbers of that size occur on the globe, and
-// the spacing is none of whole samples.
+// Whether degrees are possible: a length is only assumed, numbers of that size occur on the globe, and the
+// spacing is not one of whole samples.
 bool canBeDegrees(const Grid& grid, const ImportOptions& options) {
   if (options.unit || grid.lateral_unit != LengthUnit{}) return false;
   const double right = grid.origin_x + grid.width * grid.spacing_x;
@@ -113,17 +112,17 @@ bool canBeDegrees(const Grid& grid, const ImportOptions& options) {
 void doubtSlopes(Imported& imported, const ImportOptions& options) {
   std::vector<std::string>& warnings = imported.warnings;
   const Grid& grid = imported.field.grid();
-  const LengthUnit& said = grid.height_unit;
-  if (isNoLength(said.name)) return;
+  const LengthUnit& stated = grid.height_unit;
+  if (isNoLength(stated.name)) return;
   const double slope = medianSlope(imported);
   if (!(slope > kTooSteep)) return;
   const std::string found = fmt::format("Half of all neighbours rise by more than {:.0f} to 1", slope);
-  // What a scale of heights mends is known only where both axes are lengths.
+  // The effect of a scale of heights is known only where both axes are lengths.
   if (grid.lateral_unit.name == "deg") {
     warnings.push_back(
         fmt::format("heights that are not in {}, or coordinates that are no degrees? {}, over columns {:.3g} "
-                    "degrees apart: look at the file's coordinate system and at the unit of its heights",
-                    said.name, found, grid.spacing_x));
+                    "degrees apart: check the file's coordinate system and the unit of its heights",
+                    stated.name, found, grid.spacing_x));
     return;
   }
   const std::string lies =
@@ -132,7 +131,7 @@ void doubtSlopes(Imported& imported, const ImportOptions& options) {
                   grid.origin_y + (grid.height - 1) * grid.spacing_y, grid.spacing_x, found);
   if (grid.crs_wkt.empty() && mayBeDegrees(grid)) {
     warnings.push_back(
-        fmt::format("coordinates in degrees where {} is said or assumed? {}: reproject degrees to metres, "
+        fmt::format("coordinates in degrees where {} is stated or assumed? {}: reproject degrees to metres, "
                     "e.g. with gdalwarp; for lengths give --spacing",
                     grid.lateral_unit.name, lies));
     return;
@@ -147,23 +146,24 @@ void doubtSlopes(Imported& imported, const ImportOptions& options) {
   }
   if (grid.height_per_count == 1.0) {
     warnings.push_back(
-        fmt::format("counts or brightness where heights in {} are said or assumed? They come from whole "
+        fmt::format("counts or brightness where heights in {} are stated or assumed? They come from whole "
                     "numbers. {}: if they "
-                    "are heights, give the height of a count with --z-scale",
-                    said.name, found));
+                    "are heights, give the height per count with --z-scale",
+                    stated.name, found));
     return;
   }
-  const std::string likely = unitFor(slope, said);
+  const std::string likely = unitFor(slope, stated);
   if (likely.empty())
     warnings.push_back(
-        fmt::format("heights that are no lengths in {}? {}: give the height of a count with --z-scale",
-                    said.name, found));
+        fmt::format("heights that are no lengths in {}? {}: give the height per count with --z-scale",
+                    stated.name, found));
   else
     warnings.push_back(fmt::format(
-        "heights in {} where {} is said or assumed, or a spacing that is not in {}? {}: give --z-scale {:g} "
+        "heights in {} where {} is stated or assumed, or a spacing that is not in {}? {}: give --z-scale "
+        "{:g} "
         "or "
         "--spacing",
-        likely, said.name, grid.lateral_unit.name, found, lengthUnitFromName(likely)->mm / said.mm));
+        likely, stated.name, grid.lateral_unit.name, found, lengthUnitFromName(likely)->mm / stated.mm));
 }
 
 }  // namespace

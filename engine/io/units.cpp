@@ -52,20 +52,22 @@ std::string lowerCase(std::string_view text) {
   return lower;
 }
 
-// What neither the file nor the user says. Heights share the lateral unit unless the file says otherwise;
-// resolution tags state lengths without a unit.
+// Defaults for what neither the file nor the user states. Heights share the lateral unit unless the file
+// states another; resolution tags state lengths without a unit.
 void warnOfGuesses(const StatedUnits& file, const ImportOptions& options, bool spacing_known,
                    const std::string& taken, std::vector<std::string>& warnings) {
   const bool no_unit = !options.unit && !file.lateral;
   const char* missing = file.height ? "lateral unit" : file.spacing_mm ? "height unit" : "unit";
   if (no_unit && !spacing_known)
     warnings.push_back(fmt::format(
-        "the file states no {} and no spacing, {} and 1 {} taken: give them with --unit and --spacing",
+        "the file states no {} and no spacing, {} and 1 {} are assumed: give them with --unit and --spacing",
         missing, taken, taken));
   else if (no_unit && !(file.height && file.spacing_mm))
-    warnings.push_back(fmt::format("the file states no {}, {} taken: give it with --unit", missing, taken));
+    warnings.push_back(
+        fmt::format("the file states no {}, {} is assumed: give it with --unit", missing, taken));
   else if (!spacing_known)
-    warnings.push_back(fmt::format("the file states no spacing, 1 {} taken: give it with --spacing", taken));
+    warnings.push_back(
+        fmt::format("the file states no spacing, 1 {} is assumed: give it with --spacing", taken));
 }
 
 }  // namespace
@@ -97,7 +99,7 @@ std::optional<LengthUnit> heightUnitNamed(std::string_view name, const ImportOpt
   if (isNoLength(name)) {
     if (!options.unit)
       warnings.push_back(
-          fmt::format("the file's samples are in \"{}\", which is no length: are these heights?", name));
+          fmt::format("the file's samples are in \"{}\", which is not a length: are these heights?", name));
     return LengthUnit{std::string(name), 1.0};
   }
   if (!options.unit)
@@ -119,8 +121,8 @@ std::optional<LengthUnit> lengthUnitFromComment(std::string_view comment) {
   return std::nullopt;
 }
 
-void settleUnits(Grid& grid, const StatedUnits& file, const ImportOptions& options,
-                 std::vector<std::string>& warnings) {
+void determineUnits(Grid& grid, const StatedUnits& file, const ImportOptions& options,
+                    std::vector<std::string>& warnings) {
   grid.lateral_unit = options.unit ? *options.unit : file.lateral.value_or(LengthUnit{});
   if (options.unit)
     grid.height_unit = *options.unit;
@@ -130,7 +132,7 @@ void settleUnits(Grid& grid, const StatedUnits& file, const ImportOptions& optio
     grid.height_unit = grid.lateral_unit.name == "deg" ? LengthUnit{"m", 1000.0} : grid.lateral_unit;
   if (options.unit &&
       ((file.lateral && *file.lateral != *options.unit) || (file.height && *file.height != *options.unit)))
-    warnings.push_back(fmt::format("the file says {}, taken as {} as asked",
+    warnings.push_back(fmt::format("the file states {}, read as {} as requested",
                                    (file.lateral ? file.lateral : file.height)->name, options.unit->name));
 
   bool known = file.spacing || file.spacing_mm;
@@ -141,7 +143,7 @@ void settleUnits(Grid& grid, const StatedUnits& file, const ImportOptions& optio
     spacing = {file.spacing_mm->first / grid.lateral_unit.mm, file.spacing_mm->second / grid.lateral_unit.mm};
   if (options.spacing) {
     if (known && spacing != *options.spacing)
-      warnings.push_back(fmt::format("the file says spacing {} x {}, taken as {} x {} as asked",
+      warnings.push_back(fmt::format("the file states spacing {} x {}, read as {} x {} as requested",
                                      spacing.first, spacing.second, options.spacing->first,
                                      options.spacing->second));
     spacing = *options.spacing;

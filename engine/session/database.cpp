@@ -11,7 +11,7 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr const char* kElsewhere = "make room on the disk or save the session elsewhere";
+constexpr const char* kElsewhere = "free space on the disk or save the session elsewhere";
 constexpr const char* kDamage = "open a copy of it, or the scan itself";
 
 // Percent signs, question marks and hashes have a meaning in a file name given as URI.

@@ -19,11 +19,9 @@ struct DamageQuery {
 
 /// The part of `visible` outside which the two frames are bit-identical; of size zero when all of it is. It
 /// contains, as the camera sees them,
-///  - patches that only one of the two frames has or checks for holes: where refining
-///    chose differently;
-///  - of the other patches, the cells whose vertices, replacement heights of holes, or colours may depend on
-/// a
-///    sample that changed;
+///   - patches that only one of the two frames has or checks for holes: where refining chose differently;
+///   - of the other patches, the cells whose vertices, replacement heights of holes, or colours may depend on
+///     a sample that changed;
 /// with their heights in both states, and a margin of three pixels for the overlap of seams and for fragments
 /// that compare themselves with a neighbour.
 [[nodiscard]] Rectangle damageOf(const DamageQuery& query);

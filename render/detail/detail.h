@@ -16,7 +16,7 @@ namespace fettle::render {
 /// How far a coarse surface lies from the fine one, as measured.
 ///
 /// The surface at level k has a vertex at every 2^k-th sample (and at the last column and row, where that
-/// cuts a cell short), two triangles a cell, their common edge from the cell's upper left to its lower right
+/// cuts a cell short), two triangles per cell, their common edge from the cell's upper left to its lower right
 /// corner. Level 0 is the surface at full resolution. A patch of level k has kPatchCells x kPatchCells such
 /// cells and covers a square of kPatchCells * 2^k samples; patch (x, y) begins at sample (x, y) * kPatchCells
 /// * 2^k.
@@ -24,16 +24,16 @@ namespace fettle::render {
 /// Two numbers per patch [height_unit, without the sign of the version]:
 ///
 ///   deviation  no point of the patch lies higher above or below the surface of level 0 than this. The edges
-///   of
-///              a coarse cell and its diagonal are edges of the fine surface too, so the difference of the
+///              of a coarse cell and its diagonal are edges of the fine surface too, so the difference of the
 ///              two is linear on every fine triangle and largest at a sample: reading the samples is
 ///              enough. In cells cut short by the field's end the diagonals differ; their kink is added.
 ///              Levels 1 .. 6 are measured at every sample; above, the difference between level k and k - 1
 ///              is measured at the vertices of k - 1 and added to the deviation of the four patches below
 ///              (triangle inequality).
-///  excess     upper limit of how far samples of a cell lie above the highest or below the lowest of its
-///             vertices. A step between two samples has a large deviation and no excess: every height on it
-///             is drawn, at most one cell away from its position. Infinite where a cell holds a hole.
+///   excess     upper limit of how far samples of a cell lie above the highest or below the lowest of its
+///              vertices. A step between two samples has a large deviation and no excess: every height on it
+///              is drawn, at most one cell away from its position. Infinite where a cell holds a hole.
+///
 /// A hole at a vertex takes the height that shaders/field.glsl gives it, so the drawn surface is what is
 /// measured. Where no such height exists, the deviation is infinite if the cell shows anything. Rounding is
 /// included: four units in the last place of the highest magnitude are added.

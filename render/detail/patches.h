@@ -64,7 +64,7 @@ struct PatchLeaf {
 ///
 /// Screen error of a patch: the smaller of two bounds, each valid for every point of the fine surface over it
 /// and for every point drawn:
-///  - straight up or down: the deviation (detail.h), at the largest scale anywhere in the patch's box;
+///   - straight up or down: the deviation (detail.h), at the largest scale anywhere in the patch's box;
 ///   - sideways within its cell to a drawn point of the same height, and up or down by the excess.
 /// Where the deviation is not known (yet) and no hole is near, the range of the patch's heights in the
 /// min/max pyramid is an upper limit, since all vertices are samples: the same holds for the excess.

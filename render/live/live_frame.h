@@ -34,10 +34,10 @@ struct LivePanel {
 
 /// Records a frame in three layers, each of which is reused while nothing in it changes:
 ///
-///   depth    of the surface, its seams, rim walls and plate: geometry, drawn without a colour
-///  base    the surface shaded from that depth, once per pixel (shaders/shade.frag); then what is shaded
-///          triangle by triangle, plate and walls; then the decorations
-///  target  a copy of base; then overlay lines; then what LiveTarget::over draws
+///   depth   of the surface, its seams, rim walls and plate: geometry, drawn without a colour
+///   base    the surface shaded from that depth, once per pixel (shaders/shade.frag); then what is shaded
+///           triangle by triangle, plate and walls; then the decorations
+///   target  a copy of base; then overlay lines; then what LiveTarget::over draws
 ///
 /// At Sharpness::kHalf and kFine, depth, shading and the lines hidden by the surface use layers of half or
 /// twice the size in each direction; base is those enlarged or reduced, then the decorations as usual.

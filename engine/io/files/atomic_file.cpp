@@ -22,16 +22,16 @@ std::string remedyFor(int error) {
     case EACCES:
     case EPERM:
     case EROFS:
-      return "choose a folder you may write to";
+      return "choose a folder with write permission";
     case ENOENT:
     case ENOTDIR:
-      return "make the folder first";
+      return "create the folder first";
     default:
       return {};
   }
 }
 
-// The error number that appending to a file gives; 0 when it takes more.
+// The error number of appending to the file; 0 when that succeeds.
 int refusalOf(int descriptor) {
   // More than a library is likely to have left free when its own write failed.
   constexpr std::size_t kMost = std::size_t{1} << 20;
@@ -46,7 +46,7 @@ int refusalOf(int descriptor) {
   return fsync(descriptor) != 0 ? errno : 0;
 }
 
-// Follows symbolic links by hand, so that a link to a file yet to be made is followed too.
+// Follows symbolic links step by step, so that a link to a file that does not exist yet is followed too.
 Result<std::string> followLinks(const std::string& path) {
   std::filesystem::path target = path;
   for (int links = 0; links < 40; ++links) {
@@ -66,7 +66,7 @@ bool isDiskError(int error) noexcept {
 }
 
 tl::unexpected<Error> writeError(const std::string& path, int error) {
-  constexpr const char* kRoom = "make room on the disk or choose another folder";
+  constexpr const char* kRoom = "free space on the disk or choose another folder";
   switch (error) {
     case ENOSPC:
       return failure("the disk is full, the file was not written", path, kRoom);
@@ -122,8 +122,8 @@ Result<AtomicFile> AtomicFile::create(const std::string& final_path) {
     if (S_ISDIR(existing.st_mode))
       return inputError("the output is a folder", final_path, "name a file in it");
     if (!S_ISREG(existing.st_mode))
-      return inputError("the output is no ordinary file", final_path, "name a file");
-    // A rename would replace even a file that its owner has locked against writing.
+      return inputError("the output is not a regular file", final_path, "name a file");
+    // A rename would replace even a file that its owner has write-protected.
     if (access(target->c_str(), W_OK) != 0) return writeError(final_path, errno);
   } else if (errno != ENOENT) {
     return writeError(final_path, errno);
@@ -155,7 +155,7 @@ Status AtomicFile::write(std::string_view bytes) {
 
 Error AtomicFile::explained(Error error) const {
   if (error.kind == ErrorKind::kCancelled) return error;
-  // By its name: a library may have put a file of its own there, and limits on sizes are those of a file.
+  // By its name: a library may have replaced the file, and size limits apply to files.
   const int named = open(temporary_.c_str(), O_WRONLY | O_CLOEXEC);
   const int refusal = refusalOf(named >= 0 ? named : descriptor_);
   if (named >= 0) close(named);
@@ -167,7 +167,7 @@ Status AtomicFile::commit() {
     discard();
     return writeError(final_, error);
   };
-  // Opened anew: a library may have removed the empty file and made its own of that name.
+  // Opened again: a library may have replaced the empty file by its own of that name.
   const int descriptor = open(temporary_.c_str(), O_RDWR | O_CLOEXEC);
   if (descriptor < 0) return refuse(errno);
   struct stat existing {};
@@ -182,8 +182,8 @@ Status AtomicFile::commit() {
   temporary_.clear();
   if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));
 
-  // The name itself must reach the disk, or a power cut takes the file away again. Some file systems cannot
-  // flush a folder (EINVAL); there the rename is as safe as it gets.
+  // The directory entry must be flushed too, otherwise a power failure may remove the file. Some file systems
+  // cannot flush a folder (EINVAL); there nothing safer is possible.
   const std::filesystem::path parent = std::filesystem::path(target_).parent_path();
   const int folder = open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder >= 0) {

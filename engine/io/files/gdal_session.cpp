@@ -16,16 +16,16 @@ namespace fettle::engine {
 namespace {
 
 void setUp() {
-  // One driver by its own entry: GDALAllRegister would load plugins and open the door to 200 formats, some of
-  // which read whatever path or address a file names.
-  CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");  // no .aux.xml beside the user's file, read or written
+  // Each driver by its own registration: GDALAllRegister would load plugins and enable 200 formats, some of
+  // which read any path or address that a file names.
+  CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");  // no .aux.xml next to the user's file, read or written
   CPLSetConfigOption("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE");
   CPLSetConfigOption("GTIFF_IGNORE_READ_ERRORS", "NO");
   CPLSetConfigOption("CPL_DEBUG", "OFF");
   GDALSetCacheMax64(GIntBig{64} << 20);
   GDALRegister_GTiff();
-  GDALRegister_COG();  // written only: importers name their driver
-  // Threads of GDAL's own have no session on their stack; what they hit comes back as a failed call.
+  GDALRegister_COG();  // only for writing: importers name their driver
+  // Threads of GDAL's own have no session on their stack; their errors are reported as a failed call.
   CPLSetErrorHandler(CPLQuietErrorHandler);
 }
 
@@ -44,7 +44,7 @@ GdalSession::~GdalSession() {
 }
 
 void GdalSession::hear(CPLErr severity, CPLErrorNum, const char* message) {
-  const int system = errno;  // GDAL reports right after the call that failed
+  const int system = errno;  // GDAL reports directly after the call that failed
   auto* session = static_cast<GdalSession*>(CPLGetErrorHandlerUserData());
   if (session == nullptr || message == nullptr) return;
   if (severity >= CE_Failure) {
@@ -59,7 +59,8 @@ void GdalSession::hear(CPLErr severity, CPLErrorNum, const char* message) {
 
 std::string GdalSession::reason(const std::string& otherwise) const {
   std::string text = first_.empty() ? otherwise : first_;
-  // "path: Function:what" and "path, band 1: what" say the path that our own line says already.
+  // "path: Function:what" and "path, band 1: what" repeat the path, which the caller's message contains
+  // already.
   for (std::size_t colon; (colon = text.find(':')) != std::string::npos && colon + 1 < text.size();) {
     const std::string before = text.substr(0, colon);
     const bool path = before.find('/') != std::string::npos || before.find(".fettle-") != std::string::npos;

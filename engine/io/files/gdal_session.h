@@ -8,9 +8,9 @@
 
 namespace fettle::engine {
 
-/// While one lives, what GDAL says on this thread is kept here instead of going to stderr. Creating the first
-/// one sets GDAL up: only the drivers Fettle needs, no plugins, no .aux.xml files, a bounded block cache.
-/// Threading: one thread; scopes nest.
+/// During its lifetime, GDAL's messages on this thread are collected here instead of going to stderr.
+/// Creating the first one initialises GDAL: only the drivers that Fettle needs, no plugins, no .aux.xml
+/// files, a bounded block cache. Threading: one thread; scopes nest.
 class GdalSession {
  public:
   GdalSession();
@@ -21,10 +21,10 @@ class GdalSession {
   /// Whether GDAL reported a failure since the last clear().
   [[nodiscard]] bool failed() const noexcept { return failed_; }
   void clear() noexcept { failed_ = false; }
-  /// GDAL's first failure (later ones are its consequences) in words for a person: no paths, no full stop;
+  /// GDAL's first failure (later ones are its consequences) as plain text: no paths, no full stop;
   /// `otherwise` if there was none.
   [[nodiscard]] std::string reason(const std::string& otherwise) const;
-  /// The system's error number behind the first failure where the disk took no more (isDiskError), else 0.
+  /// The system's error number of the first failure caused by the disk (isDiskError), else 0.
   [[nodiscard]] int diskError() const noexcept { return disk_error_; }
   /// Warnings so far, each once.
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }

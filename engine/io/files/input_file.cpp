@@ -31,12 +31,12 @@ InputFile::~InputFile() {
 }
 
 Result<InputFile> InputFile::open(const std::string& path) {
-  // Non-blocking, or a pipe without a writer would hang here; no effect on ordinary files.
+  // Non-blocking, otherwise a pipe without a writer would block here; no effect on regular files.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor < 0) {
     const int error = errno;
     return inputError(fmt::format("the file cannot be read: {}", std::generic_category().message(error)),
-                      path, error == ENOENT ? "check the path" : "check who may read it");
+                      path, error == ENOENT ? "check the path" : "check its permissions");
   }
   struct stat status {};
   const bool known = fstat(descriptor, &status) == 0;
@@ -44,7 +44,7 @@ Result<InputFile> InputFile::open(const std::string& path) {
   if (known && S_ISDIR(status.st_mode))
     return inputError("this is a folder, not a file", path, "name a file in it");
   if (!known || !S_ISREG(status.st_mode))
-    return inputError("this is no ordinary file", path, "copy the data to a file first");
+    return inputError("this is not a regular file", path, "copy the data to a file first");
   if (status.st_size == 0) return inputError("the file is empty", path, "give a scan with samples in it");
   return file;
 }

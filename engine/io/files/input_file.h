@@ -8,8 +8,8 @@
 
 namespace fettle::engine {
 
-/// An ordinary file open for reading. Read by pread, not mapped: a file that another program cuts short
-/// meanwhile gives an Error instead of killing the process.
+/// A regular file open for reading. Read by pread, not mapped: a file that another program truncates during
+/// reading gives an Error instead of ending the process.
 /// Threading: read() may be called from several threads at once.
 class InputFile {
  public:
@@ -24,7 +24,7 @@ class InputFile {
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }  ///< bytes, > 0
   /// With the dot, lower case; empty if there is none.
   [[nodiscard]] std::string extension() const;
-  /// The same file under a name that GDAL takes for no virtual file system, whatever the path looks like.
+  /// The same file under a name that GDAL never interprets as a virtual file system.
   [[nodiscard]] std::string pathForGdal() const;
 
   /// Reads `bytes` bytes from `offset` on, fewer only at the end of the file.

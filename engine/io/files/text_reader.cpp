@@ -44,7 +44,7 @@ bool TextReader::line(std::string_view& text) {
       return false;
     }
     if (found != nullptr || (searched = stop - begin_, !refill())) {
-      // Without a line end what is left is the last line.
+      // Without a line end the rest is the last line.
       const std::size_t last = found != nullptr ? stop : end_;
       if (!status_ || (found == nullptr && begin_ == end_)) return false;
       text = {buffer_.data() + begin_, last - begin_};
@@ -105,7 +105,7 @@ bool parseNumber(const char*& begin, const char* end, Float& number) noexcept {
   const auto [stop, error] = std::from_chars(at, end, number);
   if (error == std::errc::invalid_argument) return false;
   if (error == std::errc::result_out_of_range) {
-    // Too far for the type: past its ends, or so near 0 that nothing is left. Only the exponent tells.
+    // Outside the range of the type: too large, or so near 0 that it rounds to 0. The exponent decides.
     const std::string_view text(at, static_cast<std::size_t>(stop - at));
     double wide = 0.0;
     if (sizeof(Float) < sizeof(double) && std::from_chars(at, end, wide).ec == std::errc{}) {
@@ -119,7 +119,7 @@ bool parseNumber(const char*& begin, const char* end, Float& number) noexcept {
     }
     if (text.starts_with('-')) number = -number;
   }
-  // "1.#QNAN", "-1.#IND00", "1.#INF": how older Windows libraries write what is no number.
+  // "1.#QNAN", "-1.#IND00", "1.#INF": older Windows libraries write numbers that are not finite in this form.
   if (stop < end && *stop == '#') {
     const std::string_view rest(stop, static_cast<std::size_t>(end - stop));
     const bool infinite = rest.starts_with("#INF");

@@ -6,14 +6,14 @@
 
 namespace fettle::engine {
 
-/// Gathers text for an AtomicFile and hands it over in large pieces. The caller appends to text and calls
-/// settle() now and then (each row), finish() at the end.
+/// Collects text for an AtomicFile and writes it in large pieces. The caller appends to text, calls
+/// flushIfLarge() regularly (each row), and flush() at the end.
 struct TextWriter {
   AtomicFile& file;
   std::string text{};
 
-  [[nodiscard]] Status settle() { return text.size() < kPiece ? Status{} : finish(); }
-  [[nodiscard]] Status finish() {
+  [[nodiscard]] Status flushIfLarge() { return text.size() < kPiece ? Status{} : flush(); }
+  [[nodiscard]] Status flush() {
     Status status = file.write(text);
     text.clear();
     return status;

@@ -47,14 +47,15 @@ void ZipWriter::Free::operator()(archive* a) const noexcept {
 ZipReader::ZipReader(const InputFile& file)
     : file_(file), source_(new Source{file}), archive_(archive_read_new()) {
   archive* a = archive_.get();
-  // By the directory at the end alone: an archive without one is cut short, and guessing at its entries
-  // would make heights of whatever is left.
+  // Only by the directory at the end: an archive without one is cut short, and guessed entries would give
+  // wrong heights.
   archive_read_support_format_zip_seekable(a);
   archive_read_set_read_callback(a, &Source::read);
   archive_read_set_seek_callback(a, &Source::seek);
   archive_read_set_callback_data(a, source_.get());
   if (archive_read_open1(a) != ARCHIVE_OK)
-    status_ = inputError("this is no whole zip archive", file.path(), "the file is cut short or damaged");
+    status_ =
+        inputError("this is not a complete zip archive", file.path(), "the file is cut short or damaged");
 }
 
 tl::unexpected<Error> ZipReader::refuse(const std::string& otherwise) const {
@@ -75,7 +76,7 @@ bool ZipReader::next() {
   const char* name = archive_entry_pathname(entry);
   if (name == nullptr) name = archive_entry_pathname_utf8(entry);
   name_ = name != nullptr ? name : "";
-  std::replace(name_.begin(), name_.end(), '\\', '/');  // as some programs on Windows write
+  std::replace(name_.begin(), name_.end(), '\\', '/');  // as written by some programs on Windows
   return true;
 }
 
@@ -105,8 +106,8 @@ ZipWriter::ZipWriter(AtomicFile& file) : sink_(new Sink{&file, {}}), archive_(ar
       a, sink_.get(), nullptr,
       [](archive*, void* self, const void* bytes, std::size_t count) -> la_ssize_t {
         auto* sink = static_cast<Sink*>(self);
-        // After an error nothing more is written, but the library is not told: an archive that has failed
-        // does not free the compressor of the entry it was in (libarchive 3.6.2).
+        // After an error nothing more is written, but the library does not get that error: an archive that
+        // has failed does not free the compressor of its current entry (libarchive 3.6.2).
         if (sink->status) sink->status = sink->file->write({static_cast<const char*>(bytes), count});
         return static_cast<la_ssize_t>(count);
       },

@@ -15,24 +15,24 @@ struct archive_entry;
 
 namespace fettle::engine {
 
-/// Reads a zip file entry by entry. Nothing is ever unpacked to the disk, and a name is only compared with
-/// names: ".." leads nowhere. Threading: one thread.
+/// Reads a zip file entry by entry. Nothing is written to the disk, and names are only compared: ".." has no
+/// effect. Threading: one thread.
 class ZipReader {
  public:
   /// `file` must outlive the reader.
   explicit ZipReader(const InputFile& file);
 
-  /// Moves to the next entry; false at the end or after an error, which status() tells. Costs what the
-  /// directory of the archive costs, not what the entry before would unpack to.
+  /// Moves to the next entry; false at the end or after an error, see status(). Costs reading the archive's
+  /// directory, not decompressing the previous entry.
   [[nodiscard]] bool next();
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] const Status& status() const noexcept { return status_; }
 
-  /// Moves to the entry of that name, further on than the present one; false if there is none.
+  /// Moves to the entry of that name after the current one; false if there is none.
   [[nodiscard]] bool find(std::string_view name);
 
-  /// The next bytes of the entry, unpacked; 0 at its end. An error when the packing is damaged, encrypted or
-  /// of a kind that is not known.
+  /// The next bytes of the entry, decompressed; 0 at its end. An error when the compression is damaged,
+  /// encrypted or of an unknown kind.
   [[nodiscard]] Result<std::size_t> read(char* out, std::size_t bytes);
 
  private:
@@ -52,14 +52,14 @@ class ZipReader {
   Status status_;
 };
 
-/// Writes a zip into an AtomicFile, entry after entry, Deflate. No times of day: the same content gives the
-/// same bytes. Threading: one thread.
+/// Writes a zip into an AtomicFile, entry after entry, Deflate. No times: the same content gives the same
+/// bytes. Threading: one thread.
 class ZipWriter {
  public:
   /// `file` must outlive the writer; it is committed by the caller after finish().
   explicit ZipWriter(AtomicFile& file);
 
-  /// Begins an entry of exactly `bytes` bytes, which write() then gives in pieces of any size.
+  /// Begins an entry of exactly `bytes` bytes, which write() then gets in pieces of any size.
   [[nodiscard]] Status begin(const std::string& name, std::uint64_t bytes);
   [[nodiscard]] Status write(const char* bytes, std::size_t count);
   [[nodiscard]] Status finish();

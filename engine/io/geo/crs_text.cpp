@@ -23,7 +23,7 @@ std::string crsAs(OGRSpatialReferenceH crs, const char* form) {
   return out;
 }
 
-// The registry's system that is this one by all its parameters; null where there is none, or more than one.
+// The registry's system that equals this one in all parameters; null where there is none, or more than one.
 CrsPtr registered(OGRSpatialReferenceH crs) {
   constexpr int kSameParameters = 90;  // GDAL: equivalent, the names may differ
   int count = 0;
@@ -56,7 +56,7 @@ std::string wktOfPrj(const std::string& text) {
 std::string prjOf(const std::string& wkt) {
   const CrsPtr crs(OSRNewSpatialReference(wkt.c_str()));
   if (!crs) return {};
-  // PROJ writes units as small as a micrometre in digits that no reader takes: "1E-06.0".
+  // PROJ writes units as small as a micrometre with digits that no reader accepts: "1E-06.0".
   for (const char* form : {"FORMAT=WKT1_ESRI", "FORMAT=WKT1_GDAL"}) {
     std::string text = crsAs(crs.get(), form);
     if (!text.empty() && !wktOfPrj(text).empty()) return text;

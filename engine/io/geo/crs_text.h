@@ -6,16 +6,16 @@
 
 namespace fettle::engine {
 
-/// A coordinate system as WKT 2, the form that Grid::crs_wkt holds; empty where GDAL cannot express it.
+/// A coordinate system as WKT 2, the form of Grid::crs_wkt; empty where GDAL cannot express it.
 [[nodiscard]] std::string wktOf(OGRSpatialReferenceH crs);
 
-/// The system that the text of a .prj file describes, Esri's WKT or its older key words, as WKT 2; where it
-/// is one of the EPSG registry by all its parameters, under the registry's name. Empty where it is not
-/// understood. Call with a GdalSession alive.
+/// The system described by the text of a .prj file, Esri's WKT or its older key words, as WKT 2; under the
+/// name of the EPSG registry where it equals a registered system in all parameters. Empty where it cannot be
+/// parsed. Call during the lifetime of a GdalSession.
 [[nodiscard]] std::string wktOfPrj(const std::string& text);
 
-/// A system as the text of a .prj file: Esri's WKT, or plain WKT 1 where Esri's does not read back; empty
-/// where neither does. Call with a GdalSession alive.
+/// A system as the text of a .prj file: Esri's WKT, or plain WKT 1 where Esri's is not read back correctly;
+/// empty where neither is. Call during the lifetime of a GdalSession.
 [[nodiscard]] std::string prjOf(const std::string& wkt);
 
 }  // namespace fettle::engine

@@ -1,4 +1,4 @@
-// GDAL reads keys from TIFFs alone: they are put into one of a single pixel, in memory.
+// GDAL reads keys only from TIFFs: they are put into one of a single pixel, in memory.
 #include "engine/io/geo/geo_keys.h"
 
 #include <atomic>
@@ -24,7 +24,7 @@ constexpr std::uint16_t kDirectory = 34735;
 constexpr std::uint16_t kNumbers = 34736;
 constexpr std::uint16_t kText = 34737;
 
-// Whether every key lies in the directory, and its value in the tag that it names.
+// Whether every key is inside the directory, and its value inside the tag that it names.
 bool keysAreSound(const GeoKeys& keys) {
   const std::size_t shorts = keys.directory.size() / 2;
   const auto number = [&](std::size_t i) { return little<std::uint16_t>(keys.directory.data() + 2 * i); };
@@ -71,7 +71,7 @@ std::string tiffOf(const GeoKeys& keys) {
     entries.push_back({kText, kTypeAscii, static_cast<std::uint32_t>(keys.text.size() + 1), keys.text});
     entries.back().value += '\0';
   }
-  // Header, the pixel and a byte to make the directory's place even, the directory, the long values.
+  // Header, the pixel and a byte to align the directory, the directory, the long values.
   constexpr std::uint32_t kFirst = 10;
   std::string bytes("II*\0", 4), values;
   appendNumber(bytes, kFirst);
@@ -95,7 +95,7 @@ std::string tiffOf(const GeoKeys& keys) {
   return bytes + values;
 }
 
-// For its lifetime, bytes as a file that GDAL can open.
+// During its lifetime, bytes as a file that GDAL can open.
 class MemoryFile {
  public:
   explicit MemoryFile(std::string bytes) : bytes_(std::move(bytes)) {
@@ -119,7 +119,7 @@ class MemoryFile {
 std::string wktOfGeoKeys(const GeoKeys& keys) {
   if (!keysAreSound(keys)) return {};
   const MemoryFile file(tiffOf(keys));
-  // GDAL leaves vertical systems out of keys of version 1.0, which are those of LAS 1.2.
+  // GDAL ignores vertical systems in keys of version 1.0, which are those of LAS 1.2.
   CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
   const char* const drivers[] = {"GTiff", nullptr};
   const DatasetPtr dataset(

@@ -11,9 +11,9 @@ struct GeoKeys {
   std::string text;       ///< 34737
 };
 
-/// The projected or geographic coordinate system that the keys name, with the vertical one where they name
-/// that too, as WKT 2; empty where they name none that is known. Call with a GdalSession alive.
-/// Errors: none, keys that are damaged name no system. Thread: any.
+/// The projected or geographic coordinate system that the keys name, with the vertical one if named, as WKT
+/// 2; empty where they name no known system. Call during the lifetime of a GdalSession. Errors: none, damaged
+/// keys name no system. Thread: any.
 [[nodiscard]] std::string wktOfGeoKeys(const GeoKeys& keys);
 
 }  // namespace fettle::engine

@@ -79,19 +79,19 @@ GeoTransform geoTransformOf(const Grid& grid) {
 void unitsOfCrs(const std::string& wkt, double y, StatedUnits& units, std::vector<std::string>& warnings) {
   const std::unique_ptr<void, DestroyCrs> crs(OSRNewSpatialReference(wkt.c_str()));
   if (!crs) return;
-  char* name = nullptr;  // owned by the reference system
+  char* name = nullptr;  // owned by the coordinate system
   if (OSRIsGeographic(crs.get()) != 0) {
     if (std::abs(y) > 90.0) {
       warnings.push_back(fmt::format(
           "coordinates that are no degrees? The coordinate system has degrees, and the field would "
-          "lie at latitude {:.8g}: metres taken, look at the coordinate system, or give --unit",
+          "lie at latitude {:.8g}: metres are assumed, check the coordinate system, or give --unit",
           y));
       units.lateral = LengthUnit{"m", 1000.0};
       return;
     }
     const double latitude = std::fmin(std::abs(y), 89.0);
     const auto [north, east] = degreeLengths(latitude);
-    // One unit for both axes: the geometric mean keeps areas.
+    // One unit for both axes: the geometric mean preserves areas.
     const double mean = std::sqrt(north * east);
     units.lateral = LengthUnit{"deg", mean * 1000.0};
     warnings.push_back(fmt::format(

@@ -11,9 +11,9 @@
 
 namespace fettle::engine {
 
-/// Where rows and columns of a stored raster lie, from GDAL's affine transform of pixel CORNERS
+/// Position of rows and columns of a stored raster, from GDAL's affine transform of pixel CORNERS
 ///   x = gt[0] + column * gt[1] + row * gt[2],  y = gt[3] + column * gt[4] + row * gt[5],
-/// and back. A Grid counts sample centres from the lower left.
+/// and back. A Grid is based on sample centres, from the lower left.
 using GeoTransform = std::array<double, 6>;
 
 struct RasterPlacement {
@@ -29,18 +29,18 @@ struct RasterPlacement {
 [[nodiscard]] Result<RasterPlacement> placementOf(const GeoTransform& gt, std::int32_t width,
                                                   std::int32_t height, const std::string& path);
 
-/// The transform of the field as a top-down raster. placementOf() of it gives the grid's origin back bit for
-/// bit; among the numbers that do, the one with the fewest digits is taken, which is the original one unless
-/// half a pixel's shift has cost it digits.
+/// The transform of the field as a top-down raster. placementOf() of it returns the grid's origin
+/// bit-identical; among the numbers that do, the one with the fewest digits is chosen, which is the original
+/// one unless the shift by half a pixel lost digits.
 [[nodiscard]] GeoTransform geoTransformOf(const Grid& grid);
 
 /// The number c with c + shift == centre in doubles that has the fewest decimal digits; nothing if no double
-/// has it.
+/// has that property.
 [[nodiscard]] std::optional<double> cornerOf(double centre, double shift);
 
 /// Lateral and height units of a coordinate system given as WKT; `y` is a world y near the field's middle,
-/// for the length of a degree. Appends to `warnings` for a geographic system.
-/// One whose latitude `y` would lie beyond a pole has no degrees: metres are taken.
+/// for the length of a degree. Appends to `warnings` for a geographic system. If `y` as a latitude lies
+/// beyond a pole, metres are assumed.
 void unitsOfCrs(const std::string& wkt, double y, StatedUnits& units, std::vector<std::string>& warnings);
 
 }  // namespace fettle::engine

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint64_t kLargest = std::uint64_t{1} << 20;  // bytes of a sidecar; statistics may be long
 
-// The whole of a small file; nothing where there is none.
+// Content of a small file; nothing where there is none.
 std::optional<std::string> contentOf(const std::string& path) {
   const Result<InputFile> file = InputFile::open(path);
   if (!file || file->size() > kLargest) return std::nullopt;
@@ -54,16 +54,16 @@ std::string wktOfText(const char* text) {
 }  // namespace
 
 Sidecar readAuxXml(const std::string& path, std::vector<std::string>& warnings) {
-  const std::string beside = path + ".aux.xml";
+  const std::string sidecar = path + ".aux.xml";
   Sidecar out;
-  const auto text = contentOf(beside);
+  const auto text = contentOf(sidecar);
   if (!text) return out;
   const GdalSession quiet;
   pugi::xml_document document;
   const pugi::xml_node root =
       document.load_buffer(text->data(), text->size()) ? document.child("PAMDataset") : pugi::xml_node();
   if (!root) {
-    warnings.push_back(fmt::format("{} beside the file is not understood and was left out", nameOf(beside)));
+    warnings.push_back(fmt::format("{} next to the file cannot be parsed and was ignored", nameOf(sidecar)));
     return out;
   }
   out.crs_wkt = wktOfText(root.child_value("SRS"));
@@ -73,12 +73,12 @@ Sidecar readAuxXml(const std::string& path, std::vector<std::string>& warnings) 
   const double scale = band.child("Scale").text().as_double(1.0);
   const double offset = band.child("Offset").text().as_double(0.0);
   if (scale != 1.0 || offset != 0.0)
-    warnings.push_back(fmt::format("{} beside the file says height = number * {} + {}, which was left out",
-                                   nameOf(beside), scale, offset));
+    warnings.push_back(fmt::format("{} next to the file states height = number * {} + {}, which was ignored",
+                                   nameOf(sidecar), scale, offset));
   return out;
 }
 
-std::string prjBeside(const std::string& path) {
+std::string prjPathOf(const std::string& path) {
   const std::filesystem::path usual = std::filesystem::path(path).replace_extension(".prj");
   std::error_code error;
   for (const char* extension : {".prj", ".PRJ", ".Prj", ".pRJ", ".prJ", ".pRj", ".PRj", ".PrJ"})
@@ -88,25 +88,24 @@ std::string prjBeside(const std::string& path) {
 }
 
 std::string readPrj(const std::string& path, std::vector<std::string>& warnings) {
-  const std::string beside = prjBeside(path);
-  const auto text = contentOf(beside);
+  const std::string sidecar = prjPathOf(path);
+  const auto text = contentOf(sidecar);
   if (!text) return {};
   const GdalSession quiet;
   std::string wkt = wktOfPrj(*text);
   if (wkt.empty())
-    warnings.push_back(
-        fmt::format("{} beside the file names no coordinate system that is known", nameOf(beside)));
+    warnings.push_back(fmt::format("{} next to the file names no known coordinate system", nameOf(sidecar)));
   return wkt;
 }
 
-std::optional<double> settledNoData(std::optional<double> own, const Sidecar& beside,
-                                    std::vector<std::string>& warnings) {
-  if (!beside.no_data) return own;
-  const bool same = own && (*own == *beside.no_data || (std::isnan(*own) && std::isnan(*beside.no_data)));
+std::optional<double> chooseNoData(std::optional<double> own, const Sidecar& sidecar,
+                                   std::vector<std::string>& warnings) {
+  if (!sidecar.no_data) return own;
+  const bool same = own && (*own == *sidecar.no_data || (std::isnan(*own) && std::isnan(*sidecar.no_data)));
   if (own && !same)
-    warnings.push_back(fmt::format("the file says no-data {}, the .aux.xml beside it {}, which was taken",
-                                   *own, *beside.no_data));
-  return beside.no_data;
+    warnings.push_back(fmt::format("the file states no-data {}, the .aux.xml next to it {}, which was used",
+                                   *own, *sidecar.no_data));
+  return sidecar.no_data;
 }
 
 }  // namespace fettle::engine

@@ -29,7 +29,7 @@ void append(Number number, std::string& text) {
   text.append(raw.data(), raw.size());
 }
 
-// What the triangles say and leave out, in words.
+// Warnings about what the triangles leave out.
 std::vector<std::string> describe(const SurfaceMesh& mesh, const Version& field, const ExportOptions& options,
                                   std::uint64_t triangles) {
   const Grid& grid = field.grid();
@@ -38,9 +38,9 @@ std::vector<std::string> describe(const SurfaceMesh& mesh, const Version& field,
     warnings.push_back(fmt::format("decimated to {} triangles of {}: no sample is off by more than {:.3g} {}",
                                    triangles, 2 * std::int64_t{grid.width - 1} * (grid.height - 1),
                                    mesh.error(), grid.height_unit.name));
-  if (!grid.crs_wkt.empty()) warnings.emplace_back("a mesh keeps no coordinate system");
+  if (!grid.crs_wkt.empty()) warnings.emplace_back("a mesh stores no coordinate system");
   if (field.reader().root().holed_children != 0)
-    warnings.emplace_back("cells beside a hole are no surface and were left out");
+    warnings.emplace_back("cells next to a hole have no surface and were left out");
   return warnings;
 }
 
@@ -58,12 +58,12 @@ Result<Counted> count(const SurfaceMesh& mesh, const Grid& grid, const std::stri
   if (all.triangles == 0)
     return inputError("the field has no cell without a hole, so no surface", path, "write it as points");
   if (all.triangles > std::numeric_limits<std::uint32_t>::max())
-    return inputError(fmt::format("{} triangles are more than the format counts", all.triangles), path,
+    return inputError(fmt::format("{} triangles are more than the format can count", all.triangles), path,
                       "decimate with --max-error or cut the scan into parts");
   return all;
 }
 
-// Triangles from a callback into a file, piece by piece; after an error the rest is passed over.
+// Writes triangles from a callback into a file, piece by piece; after an error the rest is ignored.
 template <class Append>
 Status writeTriangles(const SurfaceMesh& mesh, TextWriter& out, std::uint64_t triangles, JobControl& job,
                       Append&& append_one) {
@@ -76,9 +76,9 @@ Status writeTriangles(const SurfaceMesh& mesh, TextWriter& out, std::uint64_t tr
     append_one(t, out.text);
     if (++done % kLook != 0) return;
     job.advance(kLook);
-    status = job.cancelled() ? Status(cancelled()) : out.settle();
+    status = job.cancelled() ? Status(cancelled()) : out.flushIfLarge();
   });
-  return status ? out.finish() : status;
+  return status ? out.flush() : status;
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ Result<Exported> writeStl(const Version& field, const std::string& path, const E
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   TextWriter out{*file};
-  // The header must not begin with "solid", or it is taken for text.
+  // The header must not begin with "solid", otherwise readers take the file for text.
   out.text = fmt::format("surface of a height field, units {}", grid.lateral_unit.name);
   out.text.resize(80, ' ');
   append(static_cast<std::uint32_t>(all->triangles), out.text);
@@ -125,7 +125,7 @@ Result<Exported> writeStl(const Version& field, const std::string& path, const E
   warnings.push_back(fmt::format("STL has no units, all lengths are in {}", grid.lateral_unit.name));
   if (grid.origin_x != 0.0 || grid.origin_y != 0.0)
     warnings.push_back(
-        fmt::format("STL has few digits: x and y count from the field's corner, not from {}, {}",
+        fmt::format("STL has few digits: x and y are relative to the field's corner, not to {}, {}",
                     grid.origin_x, grid.origin_y));
   return Exported{"STL", std::move(warnings)};
 }
@@ -156,7 +156,7 @@ Result<Exported> writePlyMesh(const Version& field, const std::string& path, con
     append(grid.origin_x + static_cast<double>(i % width) * grid.spacing_x, out.text);
     append(grid.origin_y + static_cast<double>(i / width) * grid.spacing_y, out.text);
     append(mesh->height(i), out.text);
-    if (Status status = out.settle(); !status) return tl::unexpected(status.error());
+    if (Status status = out.flushIfLarge(); !status) return tl::unexpected(status.error());
   }
   const Status status =
       writeTriangles(*mesh, out, all->triangles, job, [&](const SurfaceMesh::Triangle& t, std::string& text) {
@@ -167,7 +167,7 @@ Result<Exported> writePlyMesh(const Version& field, const std::string& path, con
   if (Status done = file->commit(); !done) return tl::unexpected(done.error());
   std::vector<std::string> warnings = describe(*mesh, field, options, all->triangles);
   if (grid.lateral_unit != grid.height_unit)
-    warnings.push_back(fmt::format("x and y are in {}, z in {}: the file says so in a comment only",
+    warnings.push_back(fmt::format("x and y are in {}, z in {}: only a comment in the file states this",
                                    grid.lateral_unit.name, grid.height_unit.name));
   return Exported{"PLY", std::move(warnings)};
 }

@@ -16,12 +16,12 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr double kMostCellsACorner = 400.0;  // a mesh of few triangles has few corners on its raster
+constexpr double kMostCellsPerCorner = 400.0;  // a mesh of few triangles has few corners on its raster
 constexpr double kSmallGrid = 1e6;
-// How often each sample may be covered, in the mean: every layer of a part does so twice.
+// Mean number of triangles over a sample: every layer of a part counts twice.
 constexpr double kMostLayers = 200.0;
 constexpr double kBenefitOfDoubt = 1e7;
-constexpr double kOnSide = 1e-9;  // share of a triangle by which a sample on its side may miss it
+constexpr double kOnSide = 1e-9;  // relative distance by which a sample on a side may miss the triangle
 
 struct Extent {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -33,7 +33,7 @@ struct Extent {
 
 struct Axes {
   AxisLattice x, y;
-  bool raster = false;  // every corner is one of its points but for the rounding of its coordinates
+  bool raster = false;  // every corner is one of its points, except for the rounding of its coordinates
   bool stated = false;  // by the file
 };
 
@@ -66,13 +66,13 @@ Result<Axes> chooseAxes(const PointCloud& corners, const ImportOptions& options,
     return Axes{cellsOver(ex, options.cell_size ? *options.cell_size : options.spacing->first),
                 cellsOver(ey, options.cell_size ? *options.cell_size : options.spacing->second)};
   if (const auto stated = statedCells(corners);
-      stated && stated->count() <= std::max(kMostStatedCells, kMostCellsACorner * count))
+      stated && stated->count() <= std::max(kMostStatedCells, kMostCellsPerCorner * count))
     return Axes{stated->x, stated->y, true, true};
   const auto x = findAxisLattice(finiteOnes(corners.x));
   const auto y = x ? findAxisLattice(finiteOnes(corners.y)) : std::nullopt;
   if (x && y && x->count > 1 && y->count > 1 &&
       static_cast<double>(x->count) * static_cast<double>(y->count) <=
-          std::max(kSmallGrid, kMostCellsACorner * count))
+          std::max(kSmallGrid, kMostCellsPerCorner * count))
     return Axes{*x, *y, true};
   const double size = twoDigits(std::sqrt(width / count) * std::sqrt(height));
   warnings.push_back(fmt::format(
@@ -92,7 +92,7 @@ class Sampler {
         height_(height),
         heights_(static_cast<std::size_t>(width * height), -std::numeric_limits<double>::infinity()) {}
 
-  // Rows and samples that drawing looks at, but for a few a row.
+  // Rows and samples visited when drawing, except for a few per row.
   [[nodiscard]] double costOf(const Corner& a, const Corner& b, const Corner& c) const {
     const auto within = [](double v, std::int64_t count) {
       return std::clamp(v, 0.0, static_cast<double>(count - 1));
@@ -105,7 +105,7 @@ class Sampler {
 
   void draw(const Corner& a, const Corner& b, const Corner& c) {
     const double area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
-    if (area == 0.0) return;  // upright: its sides belong to neighbours, its corners are set by themselves
+    if (area == 0.0) return;  // vertical: its sides belong to neighbours, its corners are set separately
     const std::int64_t low = first(std::min({a.y, b.y, c.y}));
     const std::int64_t high = last(std::max({a.y, b.y, c.y}), height_);
     for (std::int64_t row = low; row <= high; ++row) {
@@ -114,11 +114,11 @@ class Sampler {
       addCrossing(a, b, py, span);
       addCrossing(b, c, py, span);
       addCrossing(c, a, py, span);
-      // A sample to each side: the test below decides.
+      // One sample more on each side: the test below decides.
       const std::int64_t right = last(span.high + 1.0, width_);
       for (std::int64_t column = first(span.low - 1.0); column <= right; ++column) {
         const double px = static_cast<double>(column);
-        // Its own corners are set without rounding, once all is drawn.
+        // Its own corners are set without rounding, after all triangles are drawn.
         const auto here = [&](const Corner& corner) { return corner.x == px && corner.y == py; };
         if (here(a) || here(b) || here(c)) continue;
         const double wb = ((px - a.x) * (c.y - a.y) - (c.x - a.x) * (py - a.y)) / area;
@@ -129,14 +129,14 @@ class Sampler {
     }
   }
 
-  // A corner that lies on a sample is its height, to the last bit.
+  // A corner that lies on a sample gives exactly its height.
   void set(const Corner& a) {
     const double column = std::nearbyint(a.x), row = std::nearbyint(a.y);
     if (std::abs(a.x - column) > 1e-6 || std::abs(a.y - row) > 1e-6 || column < 0.0 || row < 0.0 ||
         column >= static_cast<double>(width_) || row >= static_cast<double>(height_))
       return;
     double& z = at(static_cast<std::int64_t>(column), static_cast<std::int64_t>(row));
-    // What interpolation left there is the corner but for rounding, or another surface above it.
+    // The interpolated height is the corner's except for rounding, or another surface above it.
     if (a.z >= z || z - a.z <= 1e-9 * std::max(std::abs(z), std::abs(a.z))) z = a.z;
   }
 
@@ -145,19 +145,20 @@ class Sampler {
   }
 
  private:
-  static constexpr double kBeside = 1e-6;  // samples by which a row may miss a corner and still touch it
+  static constexpr double kRowTolerance =
+      1e-6;  // samples by which a row may miss a corner and still touch it
 
   static std::int64_t first(double v) {
-    return static_cast<std::int64_t>(std::ceil(std::max(v, 0.0) - kBeside));
+    return static_cast<std::int64_t>(std::ceil(std::max(v, 0.0) - kRowTolerance));
   }
   static std::int64_t last(double v, std::int64_t count) {
-    return static_cast<std::int64_t>(std::floor(std::min(v, static_cast<double>(count - 1)) + kBeside));
+    return static_cast<std::int64_t>(std::floor(std::min(v, static_cast<double>(count - 1)) + kRowTolerance));
   }
 
-  // Where the row meets the side from p to q; all of it when it lies along the row.
+  // Intersection of the row with the side from p to q; all of it when it lies along the row.
   static void addCrossing(const Corner& p, const Corner& q, double py, Extent& span) {
-    if (py < std::min(p.y, q.y) - kBeside || py > std::max(p.y, q.y) + kBeside) return;
-    if (std::abs(q.y - p.y) <= 2.0 * kBeside) {
+    if (py < std::min(p.y, q.y) - kRowTolerance || py > std::max(p.y, q.y) + kRowTolerance) return;
+    if (std::abs(q.y - p.y) <= 2.0 * kRowTolerance) {
       span.add(p.x);
       span.add(q.x);
     } else {
@@ -198,10 +199,10 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
   StatedUnits units;
   units.lateral = corners.unit;
   units.height = corners.height_unit;
-  units.spacing = std::pair{1.0, 1.0};  // settled below, from the corners themselves
+  units.spacing = std::pair{1.0, 1.0};  // determined below, from the corners
   ImportOptions unit_only;
   unit_only.unit = options.unit;
-  settleUnits(grid, units, unit_only, warnings);
+  determineUnits(grid, units, unit_only, warnings);
   const Result<Axes> axes = chooseAxes(corners, options, grid.lateral_unit.name, warnings, path);
   if (!axes) return tl::unexpected(axes.error());
   const auto width = static_cast<std::uint64_t>(axes->x.count),
@@ -234,9 +235,9 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
   const double most = kMostLayers * static_cast<double>(grid.samples() + grid.width + grid.height) +
                       static_cast<double>(mesh.triangles.size()) + kBenefitOfDoubt;
   if (!(cost <= most))
-    return inputError(fmt::format("the triangles lie {:.0f} deep over each sample, {:.0f} are taken",
+    return inputError(fmt::format("the triangles lie {:.0f} deep over each sample, {:.0f} are allowed",
                                   cost / static_cast<double>(grid.samples()), kMostLayers),
-                      path, "is this a height field? Cut what lies underneath away");
+                      path, "is this a height field? Remove the surfaces underneath");
   constexpr std::size_t kLook = 1024;
   job.begin("sampling", mesh.triangles.size() / kLook + 1);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -269,7 +270,7 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
   tally.rounding = 0.0;  // interpolated heights have no digits of their own
   if (job.cancelled()) return cancelled();
   warnings.push_back(fmt::format(
-      "a mesh of {} triangles, sampled from above: what lies underneath is left out", mesh.triangles.size()));
+      "a mesh of {} triangles, sampled from above: surfaces underneath are left out", mesh.triangles.size()));
   return finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings), path);
 }
 

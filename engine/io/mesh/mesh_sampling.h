@@ -9,19 +9,19 @@
 
 namespace fettle::engine {
 
-/// A mesh as a file gives it. Corners that are not finite stay in their place as NaN (PointCloud::organized)
-/// and take their triangles with them.
+/// A mesh as stored in a file. Corners that are not finite are kept as NaN (PointCloud::organized); their
+/// triangles are left out.
 struct TriangleMesh {
   PointCloud corners;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into corners
 };
 
-/// Makes a field of a mesh: at each sample the highest of the surfaces above it, as a laser from above would
-/// see it; a hole where there is none. Samples lie on the raster that the file states (PointCloud::raster) or
-/// that the corners lie on, else on cells of ImportOptions::cell_size, else of a size that makes as many as
-/// there are corners (warned about).
-/// Errors (kInput): no triangle with finite corners, an index past the corners, a grid past memory,
-/// triangles that lie over 200 deep on each sample in the mean (each layer of a part is two).
+/// Makes a field of a mesh: at each sample the highest of the surfaces above it, as seen by a laser from
+/// above; a hole where there is none. Samples lie on the raster that the file states (PointCloud::raster) or
+/// on which the corners lie, otherwise on cells of ImportOptions::cell_size, otherwise of a size that gives
+/// as many samples as there are corners (with a warning).
+/// Errors (kInput): no triangle with finite corners, an index past the corners, a grid past memory, more than
+/// 200 triangles over each sample in the mean (each layer of a part counts twice).
 [[nodiscard]] Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options,
                                           std::string format, const std::string& path, JobControl& job);
 

@@ -52,14 +52,14 @@ T load(const char* bytes, bool swap) noexcept {
   return std::bit_cast<T>(raw);
 }
 
-// "obj_info num_cols 512": what programs of one's own may say. Lines that are not of this kind mean nothing.
+// "obj_info num_cols 512": texts of specific programs. Other lines are ignored.
 void takeObjectInfo(const std::vector<std::string_view>& words, PlyHeader& header) {
   if (words.size() != 3) return;
   if (words[1] == "num_cols" && !wholeNumber(words[2], header.range_columns)) header.range_columns = 0;
   if (words[1] == "num_rows" && !wholeNumber(words[2], header.range_rows)) header.range_rows = 0;
 }
 
-// One line of the header into `header`; false if it is wrong.
+// Parses one line into `header`; false if it is invalid.
 bool takeLine(const std::vector<std::string_view>& words, PlyHeader& header, bool& format_seen) {
   if (words[0] == "format" && words.size() >= 2) {
     format_seen = true;
@@ -173,11 +173,11 @@ Result<PlyHeader> readPlyHeader(const InputFile& file) {
       return header;
     }
     if (!takeLine(words, header, format_seen))
-      return inputError(fmt::format("line {} of the header is no line of a PLY header", number), file.path(),
-                        "the file is damaged");
+      return inputError(fmt::format("line {} of the header is not a line of a PLY header", number),
+                        file.path(), "the file is damaged");
   }
   if (!text.status()) return tl::unexpected(text.status().error());
-  return inputError("the PLY header never ends or names no format", file.path(),
+  return inputError("the PLY header has no end or names no format", file.path(),
                     "the file is cut short or damaged");
 }
 

@@ -47,11 +47,11 @@ struct PlyHeader {
   std::uint64_t body = 0;  ///< offset of the first byte behind the header
 };
 
-/// The lines of a header that state a field's raster and units, for readPlyHeader; other programs pass them
-/// over. Each with its end.
+/// The lines of a header that state a field's raster and units, for readPlyHeader; other programs ignore
+/// them. Each with its line end.
 [[nodiscard]] std::string plyRasterComments(const Grid& grid);
 
-/// Errors (kInput): not a PLY header, one that never ends, unknown types, a count that no file holds.
+/// Errors (kInput): not a PLY header, one without an end, unknown types, a count that no file can hold.
 [[nodiscard]] Result<PlyHeader> readPlyHeader(const InputFile& file);
 
 }  // namespace fettle::engine

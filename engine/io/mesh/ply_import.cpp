@@ -19,12 +19,13 @@ class PlyBody {
   PlyBody(const InputFile& file, const PlyHeader& header, JobControl& job)
       : file_(file), header_(header), text_(file, header.body), job_(job) {}
 
-  // Points, and the places of a range grid or the triangles of faces where there are such. Elements behind
-  // the last of the two are not looked at.
+  // Reads points, and the places of a range grid or the triangles of faces where present. Elements after the
+  // last of the two are not read.
   Status read(TriangleMesh& mesh, RangeGrid& range) {
     const PlyElement* const places = rangeElement(header_);
     const PlyElement* const faces = places == nullptr ? listElement(header_, "face") : nullptr;
-    mesh.corners.organized = places != nullptr || faces != nullptr;  // they count them
+    mesh.corners.organized =
+        places != nullptr || faces != nullptr;  // places and faces refer to them by number
     bool vertices_read = false, lists_read = places == nullptr && faces == nullptr;
     for (const PlyElement& element : header_.elements) {
       Status status;
@@ -51,7 +52,7 @@ class PlyBody {
   }
 
  private:
-  // The element of a name that lists vertices, null if there is none or it is empty.
+  // The element of a name with a list of vertices, null if there is none or it is empty.
   static const PlyElement* listElement(const PlyHeader& header, std::string_view name) {
     for (const PlyElement& element : header.elements)
       if (element.name == name && element.count > 0 && cornerList(element) < element.properties.size())
@@ -59,7 +60,7 @@ class PlyBody {
     return nullptr;
   }
 
-  // Without the sides of the grid its places mean nothing, and the file is one of points.
+  // Without the sides of the grid its places are undefined, and the file is read as points.
   static const PlyElement* rangeElement(const PlyHeader& header) {
     return header.range_columns > 0 && header.range_rows > 0 ? listElement(header, "range_grid") : nullptr;
   }
@@ -69,11 +70,11 @@ class PlyBody {
 
   Status endsEarly() const {
     if (!text_.status()) return text_.status();
-    return inputError("the file ends before all that its header promises", file_.path(),
+    return inputError("the file ends before all that its header states", file_.path(),
                       "the file is cut short");
   }
 
-  // Least bytes an item takes in the file, to tell a lying count before memory is taken for it.
+  // Least size of an item in the file, to detect a false count before memory is allocated for it.
   [[nodiscard]] std::uint64_t leastBytes(const PlyElement& element) const {
     std::uint64_t bytes = 0;
     for (const PlyProperty& p : element.properties)
@@ -82,7 +83,7 @@ class PlyBody {
   }
   [[nodiscard]] bool promisesTooMuch(const PlyElement& element) const {
     const std::uint64_t least = leastBytes(element);
-    // The last line of a text needs no end; an item without properties takes nothing.
+    // The last line of a text needs no end; an item without properties has no bytes.
     return least != 0 && element.count > (left() + 1) / least;
   }
 
@@ -96,11 +97,11 @@ class PlyBody {
     return i;
   }
 
-  // A polygon as a fan of triangles round its first corner, corner by corner.
+  // A polygon as a fan of triangles around its first corner, corner by corner.
   class Fan {
    public:
     explicit Fan(TriangleMesh& mesh) : mesh_(mesh) {}
-    // False for what cannot be the number of a corner.
+    // False for an invalid number of a corner.
     bool add(double index) {
       if (!(index >= 0.0 && index < 4294967295.0)) return false;
       const auto corner = static_cast<std::uint32_t>(index);
@@ -143,14 +144,14 @@ class PlyBody {
     return readLists<Place>(element, range, "place");
   }
 
-  // Lists of vertices, each into a Sink of its own on `target`: what is made when a list begins and takes the
-  // numbers in it, false for what cannot be one.
+  // Lists of vertices, each into a Sink on `target`, which is created when a list begins and gets its
+  // numbers; it returns false for an invalid one.
   template <class Sink, class Target>
   Status readLists(const PlyElement& element, Target& target, const char* what) {
     if (promisesTooMuch(element)) return endsEarly();
     const std::size_t list = cornerList(element);
     const auto damaged = [&](std::uint64_t i) {
-      return inputError(fmt::format("{} {} does not hold the numbers that the header says", what, i + 1),
+      return inputError(fmt::format("{} {} does not hold the numbers that the header states", what, i + 1),
                         file_.path(), "the file is damaged or cut short");
     };
     std::string_view line;
@@ -245,7 +246,7 @@ class PlyBody {
     return true;
   }
 
-  // Lines of a text body; empty ones are no items.
+  // Lines of a text body; empty ones are not items.
   bool nextLine(std::string_view& line) {
     while (text_.line(line))
       if (line.find_first_not_of(" \t") != std::string_view::npos) return true;
@@ -278,7 +279,7 @@ class PlyBody {
       type[k] = element.properties[axes[k]].type;
     }
     if (stride > TextReader::kLongest)
-      return inputError(fmt::format("a vertex of {} bytes cannot be", stride), file_.path());
+      return inputError(fmt::format("a vertex of {} bytes is not valid", stride), file_.path());
     const PlyEncoding e = header_.encoding;
     for (std::uint64_t i = 0; i < element.count; ++i) {
       const char* item = text_.bytes(stride);
@@ -319,7 +320,7 @@ class PlyBody {
     for (std::uint64_t i = 0; i < element.count; ++i) {
       if (!nextLine(line)) return endsEarly();
       if (!readAsciiVertex(line, element, axes, point))
-        return inputError(fmt::format("vertex {} does not hold the numbers that the header says", i + 1),
+        return inputError(fmt::format("vertex {} does not hold the numbers that the header states", i + 1),
                           file_.path(), "the file is damaged");
       cloud.add(point[0], point[1], point[2]);
       if (Status s = step(i); !s) return s;

@@ -1,4 +1,4 @@
-// A field as points, XYZ text and PLY: every sample that is no hole, row by row from the lowest y.
+// A field as points, XYZ text and PLY: every sample that is not a hole, row by row from the lowest y.
 
 #include <algorithm>
 #include <array>
@@ -25,15 +25,15 @@ std::vector<std::string> whatIsLost(const Version& field) {
   const Grid& grid = field.grid();
   std::vector<std::string> warnings;
   if (field.reader().root().holed_children != 0)
-    warnings.emplace_back("holes are no points and were left out");
-  if (!grid.crs_wkt.empty()) warnings.emplace_back("points keep no coordinate system");
+    warnings.emplace_back("holes have no points and were left out");
+  if (!grid.crs_wkt.empty()) warnings.emplace_back("points store no coordinate system");
   if (grid.lateral_unit != grid.height_unit)
-    warnings.push_back(fmt::format("x and y are in {}, z in {}: the file says so in a comment only",
+    warnings.push_back(fmt::format("x and y are in {}, z in {}: only a comment in the file states this",
                                    grid.lateral_unit.name, grid.height_unit.name));
   return warnings;
 }
 
-// Calls append(x, y, z, text) for each point and hands the text on.
+// Calls append(x, y, z, text) for each point and writes the text.
 template <class Append>
 Status writePoints(const Version& field, TextWriter& out, JobControl& job, Append&& append) {
   const FieldReader reader = field.reader();
@@ -46,11 +46,11 @@ Status writePoints(const Version& field, TextWriter& out, JobControl& job, Appen
     for (std::int32_t c = 0; c < grid.width; ++c)
       if (!std::isnan(heights[static_cast<std::size_t>(c)]))
         append(grid.origin_x + c * grid.spacing_x, y, heights[static_cast<std::size_t>(c)], out.text);
-    if (Status status = out.settle(); !status) return status;
+    if (Status status = out.flushIfLarge(); !status) return status;
     if (job.cancelled()) return cancelled();
     job.advance();
   }
-  return out.finish();
+  return out.flush();
 }
 
 template <class Number>
@@ -71,8 +71,8 @@ Result<Exported> writeXyz(const Version& field, const std::string& path, const E
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   TextWriter out{*file};
-  // CloudCompare takes names of columns from a first line that begins with //, GDAL passes all lines that
-  // begin with a slash over, and neither takes names or comments anywhere else.
+  // CloudCompare reads names of columns from a first line that begins with //, GDAL ignores all lines that
+  // begin with a slash, and neither accepts names or comments anywhere else.
   out.text = "//X Y Z\n";
   for (const std::string& line : rasterNotes(field.grid())) out.text += "// " + line + '\n';
   const Status status = writePoints(field, out, job, [](double x, double y, float z, std::string& text) {

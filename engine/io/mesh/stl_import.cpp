@@ -36,7 +36,7 @@ Status readBytes(const InputFile& file, std::uint64_t count, TriangleMesh& mesh,
       return body.status()
                  ? inputError("the file ends inside a triangle", file.path(), "the file is cut short")
                  : body.status();
-    // Past the normal, which follows from the corners.
+    // Skip the normal, which follows from the corners.
     for (std::size_t k = 12; k < 48; k += 12)
       mesh.corners.add(static_cast<double>(little<float>(triangle + k)),
                        static_cast<double>(little<float>(triangle + k + 4)),
@@ -50,8 +50,8 @@ Status readBytes(const InputFile& file, std::uint64_t count, TriangleMesh& mesh,
   return {};
 }
 
-// "vertex x y z" three times a facet; of the words that frame them only the last one counts, which tells a
-// whole file from the beginning of one.
+// "vertex x y z" three times per facet; of the words around them only the last one counts, which
+// distinguishes a complete file from the beginning of one.
 Status readText(const InputFile& file, TriangleMesh& mesh, JobControl& job) {
   TextReader text(file);
   job.begin("reading", file.size());
@@ -94,7 +94,7 @@ Result<Imported> readStl(const InputFile& file, const ImportOptions& options, Jo
   std::array<char, kStlHeader> head{};
   const Result<std::size_t> got = file.read(0, head.data(), head.size());
   if (!got) return tl::unexpected(got.error());
-  // Files of bytes may begin with "solid" too: their size tells.
+  // Binary files may begin with "solid" too: their size decides.
   const auto count = static_cast<std::uint64_t>(little<std::uint32_t>(&head[80]));
   const bool whole = *got == kStlHeader && file.size() - kStlHeader >= count * kTriangle;
   const bool text = std::string_view(head.data(), 5) == "solid" && looksLikeText({head.data(), *got});
@@ -103,7 +103,7 @@ Result<Imported> readStl(const InputFile& file, const ImportOptions& options, Jo
     status = readText(file, mesh, job);
   else if (!whole)
     status = inputError(fmt::format("the file is too short for {} triangles", count), file.path(),
-                        "the file is cut short or no STL");
+                        "the file is cut short or not an STL");
   else
     status = readBytes(file, count, mesh, job);
   if (!status) return tl::unexpected(status.error());

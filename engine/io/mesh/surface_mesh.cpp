@@ -9,7 +9,7 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr std::int64_t kBlock = 256;  // cells a side, a power of two
+constexpr std::int64_t kBlock = 256;  // cells per side, a power of two
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 }  // namespace
@@ -44,7 +44,7 @@ float SurfaceMesh::deviation(Point a, Point b, Point apex) const {
   const double slope_y =
       ((zc - za) * static_cast<double>(b.x - a.x) - (zb - za) * static_cast<double>(apex.x - a.x)) /
       determinant;
-  // Rows between the lowest and the highest corner; each side bounds the columns.
+  // Rows between the lowest and the highest corner; each side limits the columns.
   const std::int64_t low = std::min({a.y, b.y, apex.y}), high = std::max({a.y, b.y, apex.y});
   double worst = 0.0;
   for (std::int64_t y = low; y <= high; ++y) {
@@ -52,7 +52,7 @@ float SurfaceMesh::deviation(Point a, Point b, Point apex) const {
     const std::array<std::pair<Point, Point>, 3> sides{{{a, b}, {b, apex}, {apex, a}}};
     for (const auto& [p, q] : sides) {
       if (y < std::min(p.y, q.y) || y > std::max(p.y, q.y)) continue;
-      // Sides are horizontal, vertical or diagonal: columns come out whole.
+      // Sides are horizontal, vertical or diagonal: columns are whole numbers.
       const std::int64_t from = p.y == q.y ? std::min(p.x, q.x) : p.x + (q.x - p.x) * (y - p.y) / (q.y - p.y);
       const std::int64_t to = p.y == q.y ? std::max(p.x, q.x) : from;
       left = std::min(left, from);
@@ -77,7 +77,7 @@ void SurfaceMesh::measure(Point m, std::int64_t dx, std::int64_t dy, std::int64_
   float worst = 0.0F;
   for (const int side : {-1, 1}) {
     const Point apex{m.x - side * dy, m.y + side * dx};
-    // On the field's border the triangle beyond lies outside as a whole: nothing to be true to.
+    // On the field's border the triangle beyond is completely outside: no samples to compare with.
     const bool beyond = (dx == 0 && (apex.x < 0 || apex.x >= width_) && (m.x == 0 || m.x == width_ - 1)) ||
                         (dy == 0 && (apex.y < 0 || apex.y >= height_) && (m.y == 0 || m.y == height_ - 1));
     if (beyond && inside(a) && inside(b)) continue;
@@ -102,8 +102,8 @@ Status SurfaceMesh::measureAll(JobControl& job) {
   errors_.assign(heights_.size(), 0.0F);
   job.begin("decimating", 16);
   for (std::int64_t s = 1; s < kBlock; s *= 2) {
-    // Longest side along an axis: (odd, even) and (even, odd) in steps of s. Its legs' middles are half a
-    // step off, none at s = 1.
+    // Longest side along an axis: (odd, even) and (even, odd) in steps of s. The middles of its legs are half
+    // a step away, none at s = 1.
     for (std::int64_t y = 0; y < height_; y += s) {
       const bool along_x = y / s % 2 == 0;
       for (std::int64_t x = along_x ? s : 0; x < width_; x += 2 * s)
@@ -128,11 +128,12 @@ void SurfaceMesh::split(Point a, Point b, Point apex, const std::function<void(c
   const Point m{(a.x + b.x) / 2, (a.y + b.y) / 2};
   const bool smallest = std::abs(a.x - b.x) + std::abs(a.y - b.y) == 2 && a.x != b.x && a.y != b.y;
   if (!smallest) {
-    // A triangle that lies outside, or across the border, is cut on; its middle has no error of its own.
+    // A triangle outside the field or across the border is divided further; its middle has no error of its
+    // own.
     const float error = inside(m) ? errors_[at(m)] : kNever;
     const bool all = inside(a) && inside(b) && inside(apex);
     if (!all || !(error <= *max_error_)) {
-      // What lies outside as a whole is left out.
+      // Triangles completely outside are left out.
       if (std::min({a.x, b.x, apex.x}) >= width_ - 1 || std::min({a.y, b.y, apex.y}) >= height_ - 1) return;
       split(apex, a, m, use, largest);
       split(b, apex, m, use, largest);

@@ -13,20 +13,20 @@
 namespace fettle::engine {
 
 /// The surface of a field as triangles whose corners are samples: all cells in halves, or fewer and larger
-/// triangles off which no sample lies by more than a stated height.
+/// triangles with no sample farther away than a stated height.
 ///
 /// The fewer ones are a right-triangulated irregular network (W. Evans, D. Kirkpatrick, G. Townsend,
 /// "Right-Triangulated Irregular Networks", Algorithmica 30, 2001) over blocks of 256 x 256 cells, without
-/// cracks. Departure: a triangle's error is measured at every sample that it covers, not at the middle of its
-/// longest side alone, so that the stated error is one, not an estimate.
+/// cracks. Difference: a triangle's error is measured at every sample that it covers, not only at the middle
+/// of its longest side, so that the stated error is a bound, not an estimate.
 ///
-/// Cells with a hole at a corner are no surface. Threading: const methods from any thread.
+/// Cells with a hole at a corner have no surface. Threading: const methods from any thread.
 class SurfaceMesh {
  public:
   /// Corner: row * width + column.
   using Triangle = std::array<std::uint64_t, 3>;
 
-  /// `max_error` [height_unit], finite, >= 0; none: every cell. Errors: kCancelled. Takes 8 bytes a sample.
+  /// `max_error` [height_unit], finite, >= 0; none: every cell. Errors: kCancelled. Takes 8 bytes per sample.
   [[nodiscard]] static Result<SurfaceMesh> create(const Version& field, std::optional<double> max_error,
                                                   JobControl& job);
 
@@ -35,7 +35,7 @@ class SurfaceMesh {
 
   /// Height of a corner [height_unit], the sign applied.
   [[nodiscard]] float height(std::uint64_t corner) const { return heights_[corner]; }
-  /// No sample is off its triangle by more than this [height_unit].
+  /// No sample is farther from its triangle than this [height_unit].
   [[nodiscard]] double error() const noexcept { return error_; }
 
  private:

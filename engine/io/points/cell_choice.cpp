@@ -12,12 +12,12 @@ namespace fettle::engine {
 
 namespace {
 
-// Below, in all and around the points, the "lattice" may be the rounding of irregular coordinates.
+// With a smaller share of taken cells, the "lattice" may be the rounding of irregular coordinates.
 constexpr double kLeastLatticeFill = 0.15;
-constexpr double kMostPointsACell = 4.0;  // of a lattice, on average
-constexpr double kMostCellsAPoint = 100.0;
-constexpr double kMostStatedCellsAPoint = 1000.0;
-constexpr double kGrantedCells = 1e6;  // cells that are always granted
+constexpr double kMostPointsPerCell = 4.0;  // of a lattice, on average
+constexpr double kMostCellsPerPoint = 100.0;
+constexpr double kMostStatedCellsPerPoint = 1000.0;
+constexpr double kGrantedCells = 1e6;  // cells that are always allowed
 constexpr double kOffRaster = 0.1;     // of the spacing
 
 struct Spread {
@@ -37,7 +37,7 @@ AxisLattice cellsCentredOver(const Spread& extent, double size) {
   return {extent.low, size, steps < 1e15 ? static_cast<std::int64_t>(steps) + 1 : std::int64_t{1} << 52};
 }
 
-// How the points lie in the cells of two axes that fit.
+// Statistics of the points in the cells of two axes that fit.
 struct Occupancy {
   double taken = 0.0;  // cells
   double pairs = 0.0;  // of neighbours in a row or column that are both taken
@@ -64,17 +64,17 @@ Occupancy occupancyOf(const PointCloud& cloud, const AxisLattice& x, const AxisL
 }
 
 // Few points on many cells: a raster with many holes, or measured points whose coordinates were rounded to
-// few digits, which lie on a lattice as well. Rounded points lie anywhere: thrown at random, some fall into
-// one cell, N^2 / (2 cells) of N; and points that keep a distance from each other have fewer neighbours than
-// random ones. Samples of a raster have a cell each.
+// few digits, which lie on a lattice as well. Rounded points are distributed at random: some share a cell,
+// N^2 / (2 cells) of N; and points that keep a distance from each other have fewer neighbours than random
+// ones. Samples of a raster have a cell each.
 bool isSparseRaster(const Occupancy& found, double points, double cells, const AxisLattice& x,
                     const AxisLattice& y) {
   constexpr std::int64_t kFewestTaken = 8;  // of either axis: fewer values lie on some lattice by chance
   constexpr double kShared = 0.1, kNeighbours = 0.5;  // of what random points have
-  constexpr double kFewestPairs = 20.0;               // of random points, for their lack to prove anything
+  constexpr double kFewestPairs = 20.0;               // of random points, so that their absence is evidence
   const double fill = points / cells;
   const auto few = [&](const AxisLattice& axis) { return axis.taken < std::min(kFewestTaken, axis.count); };
-  if (fill * kMostCellsAPoint < 1.0 || few(x) || few(y)) return false;
+  if (fill * kMostCellsPerPoint < 1.0 || few(x) || few(y)) return false;
   if (points - found.taken > kShared * 0.5 * points * fill) return false;
   const double random_pairs = 2.0 * points * fill;
   return random_pairs < kFewestPairs || found.pairs >= kNeighbours * random_pairs;
@@ -82,17 +82,17 @@ bool isSparseRaster(const Occupancy& found, double points, double cells, const A
 
 enum class Raster { kNone, kSparse, kFull };
 
-// Whether two axes that fit make a raster of the points: without a heap of different points in one cell, and
-// filled well enough. A dense cloud with one stray point far away "lies" on two positions an axis.
+// Whether two axes that fit make a raster of the points: no cell with many different points, and filled well
+// enough. A dense cloud with one stray point far away "lies" on two positions per axis.
 Raster rasterOf(const PointCloud& cloud, const AxisLattice& x, const AxisLattice& y) {
   const auto points = static_cast<double>(cloud.x.size());
   const double cells = static_cast<double>(x.count) * static_cast<double>(y.count);
-  if (cells > std::max(kGrantedCells, kMostCellsAPoint * points)) return Raster::kNone;
+  if (cells > std::max(kGrantedCells, kMostCellsPerPoint * points)) return Raster::kNone;
   const bool full = cells * kLeastLatticeFill <= points;
-  // Points of one cell are the same point.
+  // Points of one cell are equal.
   if (full && x.one_value_each && y.one_value_each) return Raster::kFull;
   const Occupancy found = occupancyOf(cloud, x, y);
-  if (found.taken * kMostPointsACell < points) return Raster::kNone;
+  if (found.taken * kMostPointsPerCell < points) return Raster::kNone;
   if (full || found.pairs >= kLeastLatticeFill * 2.0 * found.taken) return Raster::kFull;
   return isSparseRaster(found, points, cells, x, y) ? Raster::kSparse : Raster::kNone;
 }
@@ -104,7 +104,7 @@ struct FoundRaster {
 
 // The widest lattices that make a raster of the points.
 FoundRaster findRaster(const PointCloud& cloud) {
-  constexpr std::size_t kMostFits = 3;  // of an axis; the first one nearly always does
+  constexpr std::size_t kMostFits = 3;  // of an axis; the first one is nearly always right
   AxisLatticeSearch along_x(cloud.x);
   std::vector<AxisLattice> xs, ys;
   if (auto x = along_x.next()) xs.push_back(*x);
@@ -128,7 +128,7 @@ FoundRaster findRaster(const PointCloud& cloud) {
   return {};
 }
 
-// How many cells of a size hold a point.
+// Number of cells of a size that contain a point.
 double occupiedCells(const PointCloud& cloud, const Spread& ex, const Spread& ey, double size) {
   std::vector<std::uint64_t> keys(cloud.x.size());
   for (std::size_t i = 0; i < keys.size(); ++i)
@@ -138,17 +138,17 @@ double occupiedCells(const PointCloud& cloud, const Spread& ex, const Spread& ey
   return static_cast<double>(std::unique(keys.begin(), keys.end()) - keys.begin());
 }
 
-// Side of a cell for one point a cell over the area the points cover. The covered area is counted in cells of
-// the last estimate, from the bounding box down: each round lets go of area that no point is near.
+// Side of a cell for one point per cell over the area that the points cover. The covered area is counted in
+// cells of the last estimate, beginning with the bounding box: each iteration removes area without points.
 double estimatedCellSize(const PointCloud& cloud, const Spread& ex, const Spread& ey) {
   const auto points = static_cast<double>(cloud.x.size());
   const double longest = std::max(ex.range(), ey.range());
   if (longest == 0.0) return 1.0;
-  // Along a line the length takes the place of the area.
+  // Along a line the length replaces the area.
   double size = std::max(std::sqrt(ex.range() / points) * std::sqrt(ey.range()), longest / points);
   for (int round = 0; round < 8; ++round) {
-    if (longest / size > 4e9) break;  // keys take 32 bits a side; far past what a field can hold anyway
-    // Points at random, one a cell on average, leave 1/e of the cells empty (Poisson).
+    if (longest / size > 4e9) break;  // keys have 32 bits per side; far above what a field can hold
+    // Points at random, one per cell on average, leave 1/e of the cells empty (Poisson).
     const double covered = occupiedCells(cloud, ex, ey, size) / (1.0 - std::exp(-1.0));
     const double next = size * std::sqrt(std::min(1.0, covered / points));
     if (next > 0.9 * size) break;
@@ -167,23 +167,24 @@ bool liesOn(const std::vector<double>& values, const AxisLattice& axis) {
   });
 }
 
-// The positions of an axis from the first to the last that a value lies on.
+// The positions of an axis from the first to the last one with a value.
 AxisLattice cropped(const AxisLattice& axis, const Spread& extent) {
   const std::int64_t first = axis.indexOf(extent.low), last = axis.indexOf(extent.high);
   return {axis.origin + static_cast<double>(first) * axis.spacing, axis.spacing, last - first + 1};
 }
 
-// The stated raster, without the border that no point lies on where it is too large for so few points.
+// The stated raster, without the border without points where it is too large for so few points.
 std::optional<Cells> statedFor(const PointCloud& cloud, const Spread& ex, const Spread& ey,
                                std::vector<std::string>& warnings) {
   if (!cloud.raster) return std::nullopt;
   std::optional<Cells> cells = statedCells(cloud);
   if (!cells) {
-    warnings.emplace_back("the points do not lie on the raster that the file states, another is looked for");
+    warnings.emplace_back(
+        "the points do not lie on the raster that the file states, another one is searched");
     return std::nullopt;
   }
   const double most =
-      std::max(kMostStatedCells, kMostStatedCellsAPoint * static_cast<double>(cloud.x.size()));
+      std::max(kMostStatedCells, kMostStatedCellsPerPoint * static_cast<double>(cloud.x.size()));
   if (cells->count() <= most) return cells;
   cells->x = cropped(cells->x, ex);
   cells->y = cropped(cells->y, ey);
@@ -229,7 +230,7 @@ Result<Cells> chooseCells(const PointCloud& cloud, const ImportOptions& options,
     cells.y = cellsCentredOver(ey, options.cell_size ? *options.cell_size : options.spacing->second);
     if (cloud.raster &&
         (cells.x.spacing != cloud.raster->spacing_x || cells.y.spacing != cloud.raster->spacing_y))
-      warnings.push_back(fmt::format("the file says spacing {} x {}, taken as {} x {} as asked",
+      warnings.push_back(fmt::format("the file states spacing {} x {}, read as {} x {} as requested",
                                      cloud.raster->spacing_x, cloud.raster->spacing_y, cells.x.spacing,
                                      cells.y.spacing));
     return cells;
@@ -237,11 +238,11 @@ Result<Cells> chooseCells(const PointCloud& cloud, const ImportOptions& options,
   if (const auto stated = statedFor(cloud, ex, ey, warnings)) return *stated;
   if (FoundRaster raster = findRaster(cloud); raster.kind != Raster::kNone) {
     AxisLattice &x = raster.x, &y = raster.y;
-    // A single row or column has no spacing across: that along it serves, so that its cells are square.
+    // A single row or column has no spacing across: the one along it is used, so that its cells are square.
     if (x.spacing == 0.0) x.spacing = y.spacing;
     if (y.spacing == 0.0) y.spacing = x.spacing;
     if (x.spacing == 0.0) {
-      warnings.push_back(fmt::format("all points lie above each other, one cell of 1 {} taken", unit));
+      warnings.push_back(fmt::format("all points lie above each other, one cell of 1 {} is assumed", unit));
       x.spacing = y.spacing = 1.0;
     }
     cells = Cells{x, y, true};
@@ -255,7 +256,7 @@ Result<Cells> chooseCells(const PointCloud& cloud, const ImportOptions& options,
   const double size = estimatedCellSize(cloud, ex, ey);
   cells.x = cellsCentredOver(ex, size);
   cells.y = cellsCentredOver(ey, size);
-  if (cells.count() > std::max(kGrantedCells, kMostCellsAPoint * points))
+  if (cells.count() > std::max(kGrantedCells, kMostCellsPerPoint * points))
     return inputError(fmt::format("{} points spread over {:.6g} x {:.6g} {}, too thin for cells of {} {}",
                                   cloud.x.size(), ex.range(), ey.range(), unit, size, unit),
                       path, thinOutRemedy(unit));

@@ -92,10 +92,10 @@ Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options, st
   grid.crs_wkt = std::move(cloud.crs_wkt);
   units.lateral = cloud.unit;
   units.height = cloud.height_unit;
-  units.spacing = std::pair{1.0, 1.0};  // settled below, from the points or what is stated of them
+  units.spacing = std::pair{1.0, 1.0};  // determined below, from the points or the stated raster
   ImportOptions unit_only;
   unit_only.unit = options.unit;
-  settleUnits(grid, units, unit_only, warnings);
+  determineUnits(grid, units, unit_only, warnings);
 
   job.begin("gridding", 2);
   const Result<Cells> cells = chooseCells(cloud, options, grid.lateral_unit.name, warnings, path);
@@ -119,7 +119,7 @@ Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options, st
   if (cells->stated)
     grid.height_per_count = cloud.raster->height_per_count * std::abs(options.z_scale.value_or(1.0));
 
-  // Points gathered by cell (a counting sort, stable): start[k] .. start[k + 1] are those of cell k.
+  // Points sorted by cell (a counting sort, stable): start[k] .. start[k + 1] are those of cell k.
   std::vector<std::uint64_t> cell_of(cloud.x.size());
   std::vector<std::uint64_t> start(width * height + 1, 0);
   for (std::size_t i = 0; i < cell_of.size(); ++i) {
@@ -139,7 +139,7 @@ Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options, st
   }
   std::vector<double> sorted(cell_of.size());
   for (std::size_t i = 0; i < cell_of.size(); ++i) sorted[start[cell_of[i]]++] = cloud.z[i];
-  // Each start has moved to the next cell's: begin of cell k is now start[k - 1].
+  // Each start has moved to the next cell's: the begin of cell k is now start[k - 1].
   if (job.cancelled()) return cancelled();
 
   Result<FieldBuilder> builder = FieldBuilder::create(grid, path);
@@ -160,10 +160,10 @@ Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options, st
     rule.convert(row.data(), heights.data(), width, tally);
     builder->writeHeights(0, r, grid.width, 1, heights.data(), grid.width);
   }
-  tally.rounding = 0.0;  // decimal numbers, or floats to begin with
+  tally.rounding = 0.0;  // decimal numbers, or floats originally
   job.advance();
   if (job.cancelled()) return cancelled();
-  rule.user_no_data = options.no_data;  // taken out already, before a cell could mix it in
+  rule.user_no_data = options.no_data;  // applied already, before a cell could mix it with heights
   Result<Imported> imported =
       finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings), path);
   if (imported) imported->gridding = report;

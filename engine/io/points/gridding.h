@@ -11,26 +11,26 @@
 
 namespace fettle::engine {
 
-/// Points as a file gives them: three arrays of one length.
+/// Points as stored in a file: three arrays of one length.
 struct PointCloud {
   std::vector<double> x, y, z;
-  std::int64_t not_finite = 0;  ///< points left out because a coordinate is no finite number
-  bool organized = false;  ///< points that are not finite stay in their place, as NaN, and are not counted
+  std::int64_t not_finite = 0;            ///< points left out because a coordinate is not finite
+  bool organized = false;                 ///< points that are not finite are kept as NaN, and are not counted
   std::optional<LengthUnit> unit;         ///< of x, y and, unless height_unit says otherwise, z
   std::optional<LengthUnit> height_unit;  ///< of z
   std::string crs_wkt;                    ///< coordinate system of x and y; empty if none
-  std::optional<Grid> raster;             ///< the raster that the file says its points are samples of
+  std::optional<Grid> raster;  ///< the raster of which the points are samples, as stated in the file
   std::vector<std::string> warnings;
 
-  /// Takes a point, or counts it as not finite.
+  /// Adds a point, or counts it as not finite.
   void add(double px, double py, double pz);
-  /// Leaves out the points that are not finite.
+  /// Removes the points that are not finite.
   void dropHoles();
-  /// Takes what a file states of its raster, units and all; nothing changes where it states none.
+  /// Applies the raster that a file states, units included; no effect where it states none.
   void takeRaster(const std::optional<Grid>& stated);
 };
 
-/// Makes a field of a cloud on the cells of chooseCells, each cell taking the median, mean or highest of its
+/// Makes a field of a cloud on the cells of chooseCells: each cell gets the median, mean or highest of its
 /// points. Sample (c, r) is the centre of its cell.
 /// Errors (kInput): no finite point; as chooseCells; a grid past Grid::kMaxSide or memory.
 [[nodiscard]] Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options,

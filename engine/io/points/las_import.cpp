@@ -1,6 +1,6 @@
 // LAS 1.0 to 1.4: points of airborne and terrestrial laser scanners (ASPRS, "LAS Specification 1.4 - R15",
-// 2019). Coordinates are 32-bit integers times a scale plus an offset; what else a point carries is not
-// heights. LAZ, the packed form, is refused by name: no library of Debian 12 unpacks it.
+// 2019). Coordinates are 32-bit integers times a scale plus an offset; other data of points are not read.
+// LAZ, the compressed form, is refused with a message: no library of Debian 12 decompresses it.
 
 #include <algorithm>
 #include <array>
@@ -31,7 +31,7 @@ constexpr std::uint16_t kGeoKeys = 34735;
 constexpr std::uint16_t kGeoNumbers = 34736;
 constexpr std::uint16_t kGeoText = 34737;
 constexpr std::uint16_t kWkt = 2112;
-// Bytes of each point format at least, 0 .. 10.
+// Least bytes of each point format, 0 .. 10.
 constexpr std::array<std::uint16_t, 11> kPointBytes = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
 struct LasHeader {
@@ -64,7 +64,7 @@ Result<LasHeader> readHeader(const InputFile& file) {
   out.points_at = little<std::uint32_t>(&h[96]);
   out.records = little<std::uint32_t>(&h[100]);
   const auto format = static_cast<unsigned char>(h[104]);
-  // LASzip marks its files in the two highest bits, which LAS leaves free.
+  // LASzip marks its files in the two highest bits, which LAS does not use.
   if ((format & 0xC0U) != 0)
     return inputError(
         "the points are packed (LAZ), which Fettle does not read", file.path(),
@@ -81,23 +81,23 @@ Result<LasHeader> readHeader(const InputFile& file) {
     out.scale[k] = little<double>(&h[131 + 8 * k]);
     out.offset[k] = little<double>(&h[155 + 8 * k]);
     if (!std::isfinite(out.scale[k]) || out.scale[k] == 0.0 || !std::isfinite(out.offset[k]))
-      return inputError("the header's scales are no numbers", file.path(), "the file is damaged");
+      return inputError("the header's scales are not numbers", file.path(), "the file is damaged");
   }
   out.high_y = little<double>(&h[195]);
   out.low_y = little<double>(&h[203]);
   const auto damaged = [&](const char* what) { return inputError(what, file.path(), "the file is damaged"); };
   if (out.header_bytes < kSmallestHeader || out.points_at < out.header_bytes || out.points_at > file.size())
-    return damaged("the header's offsets lead out of the file");
+    return damaged("the header's offsets point outside the file");
   if (out.stride < kPointBytes[static_cast<std::size_t>(out.format)])
     return damaged("a point takes fewer bytes than its format needs");
   if (out.points == 0) return inputError("the file holds no points", file.path(), "give a file with points");
   if (out.points > (file.size() - out.points_at) / out.stride)
-    return inputError("the file ends before all that its header promises", file.path(),
+    return inputError("the file ends before all that its header states", file.path(),
                       "the file is cut short");
   return out;
 }
 
-// The length units that GeoTIFF keys name (OGC 19-008, 7.1 and 7.3), for files that spell no system out.
+// The length units named by GeoTIFF keys (OGC 19-008, 7.1 and 7.3), for files without a complete system.
 LengthUnit unitOfCode(std::uint16_t code) {
   return *lengthUnitFromName(code == 9002 ? "ft" : code == 9003 ? "ftUS" : "m");
 }
@@ -114,7 +114,7 @@ void takeGeoKeys(std::string_view keys, PointCloud& cloud) {
   }
 }
 
-// Takes the system that a WKT names, and its units; false where it is not understood.
+// Sets the system that a WKT names, and its units; false where it cannot be parsed.
 [[nodiscard]] bool takeSystem(std::string wkt, const LasHeader& header, PointCloud& cloud) {
   if (wkt.empty()) return false;
   StatedUnits units;
@@ -127,7 +127,7 @@ void takeGeoKeys(std::string_view keys, PointCloud& cloud) {
   return true;
 }
 
-// Whether two texts name one place on the Earth: vertical systems, which one of them may leave out, aside.
+// Whether two texts name the same system, ignoring vertical systems, which one of them may lack.
 bool sameSystem(const std::string& a, const std::string& b) {
   const auto horizontal = [](const std::string& wkt) {
     OGRSpatialReferenceH crs = OSRNewSpatialReference(wkt.c_str());
@@ -149,7 +149,7 @@ std::string shownSystem(const std::string& wkt) {
 }
 
 // Coordinate system and units from the records between header and points: keys, or WKT where the header's bit
-// for it is set (LAS 1.4 - R15, "global encoding"); the other where that one is missing or not understood.
+// for it is set (LAS 1.4 - R15, "global encoding"); the other one where that is missing or cannot be parsed.
 void readSystem(const InputFile& file, const LasHeader& header, PointCloud& cloud) {
   std::uint64_t at = header.header_bytes;
   std::array<char, kRecordHeader> h{};
@@ -181,16 +181,16 @@ void readSystem(const InputFile& file, const LasHeader& header, PointCloud& clou
     (void)takeSystem(second, header, cloud);
   } else if (!second.empty() && !sameSystem(first, second)) {
     cloud.warnings.push_back(
-        fmt::format("the file names two coordinate systems, {} in {} and {} in {}: the first was taken, as "
+        fmt::format("the file names two coordinate systems, {} in {} and {} in {}: the first was used, as "
                     "its header's bit "
-                    "for WKT says",
+                    "for WKT states",
                     shownSystem(first), header.wkt_holds ? "WKT" : "GeoTIFF keys", shownSystem(second),
                     header.wkt_holds ? "GeoTIFF keys" : "WKT"));
   }
   takeGeoKeys(keys.directory, cloud);
   if (named && cloud.crs_wkt.empty() && cloud.warnings.empty())
-    cloud.warnings.push_back(fmt::format("the file's coordinate system is not understood{}",
-                                         cloud.unit ? ", of it only the unit is kept" : ""));
+    cloud.warnings.push_back(fmt::format("the file's coordinate system cannot be parsed{}",
+                                         cloud.unit ? ", only its unit is used" : ""));
 }
 
 bool looksLikeLas(std::string_view head, std::string_view) {
@@ -210,7 +210,7 @@ Result<Imported> readLas(const InputFile& file, const ImportOptions& options, Jo
     const char* point = body.bytes(header->stride);
     if (point == nullptr) {
       if (!body.status()) return tl::unexpected(body.status().error());
-      return inputError("the file ends before all that its header promises", file.path(),
+      return inputError("the file ends before all that its header states", file.path(),
                         "the file is cut short");
     }
     std::array<double, 3> at{};

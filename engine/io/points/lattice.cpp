@@ -22,17 +22,17 @@ constexpr std::size_t kMostDistinct = std::size_t{1} << 20;
 constexpr double kLargestResidual = 0.1;  // of the spacing
 constexpr double kLeastTaken = 0.25;      // of the positions
 constexpr double kLeastSteps = 0.5;       // of the differences between neighbours, that are one step
-constexpr double kFarGap = 8.0;           // times the middle one
+constexpr double kFarGap = 8.0;           // times the median
 
-// Set of doubles by open addressing. Clouds on a lattice name few distinct values very often: the last value
-// seen answers most questions, a table that stays in the cache the rest.
+// Set of doubles by open addressing. Clouds on a lattice have few distinct values: most look-ups find the
+// last value, the others a table that stays in the cache.
 class DistinctValues {
  public:
   DistinctValues() : table_(1024, kFree) {}
 
   // False once there are too many.
   [[nodiscard]] bool add(double value) {
-    const std::uint64_t bits = std::bit_cast<std::uint64_t>(value + 0.0);  // + 0.0: -0 and 0 are one
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(value + 0.0);  // + 0.0: -0 equals 0
     if (bits == last_) return true;
     last_ = bits;
     if (!insert(bits)) return true;
@@ -94,23 +94,24 @@ std::vector<double> gapsOf(const std::vector<double>& values) {
   return gaps;
 }
 
-// Guesses at the spacing. Rounding splits one position into several values close together; their small gaps
-// are left out at ever higher thresholds.
+// Estimates of the spacing. Rounding splits one position into several values close together; their small gaps
+// are excluded at increasing thresholds.
 std::vector<double> spacingGuesses(const std::vector<double>& gaps) {
   std::vector<double> guesses;
   for (const double threshold : {0.0, 1e-6, 1e-4, 1e-3, 1e-2, 0.05, 0.2, 0.5}) {
     const auto first = std::lower_bound(gaps.begin(), gaps.end(), threshold * gaps.back());
     const double median = first[(gaps.end() - first) / 2];
-    // Gaps of two and three steps only: the step itself is a half or a third of the common one.
+    // Only gaps of two and three steps: the step itself is a half or a third of the common one.
     for (const double guess : {median, *first, median / 2, median / 3})
       if (std::find(guesses.begin(), guesses.end(), guess) == guesses.end()) guesses.push_back(guess);
   }
-  std::sort(guesses.begin(), guesses.end(), std::greater<>());  // the widest lattice that fits is the one
+  std::sort(guesses.begin(), guesses.end(),
+            std::greater<>());  // the widest lattice that fits is the right one
   return guesses;
 }
 
-// A guess made better gap by gap, the short ones first: each gives the step so well that the steps of the
-// next longer one can be counted.
+// Improves an estimate gap by gap, the short ones first: each makes the step accurate enough to count the
+// steps of the next longer one.
 double refined(const std::vector<double>& gaps, double guess) {
   double length = 0.0, steps = 0.0;
   for (auto gap = std::lower_bound(gaps.begin(), gaps.end(), 0.5 * guess); gap != gaps.end(); ++gap) {
@@ -123,7 +124,7 @@ double refined(const std::vector<double>& gaps, double guess) {
 std::optional<AxisLattice> fit(const std::vector<double>& values, double guess) {
   const double range = values.back() - values.front();
   if (!(guess > 0.0) || range / guess > Grid::kMaxSide) return std::nullopt;
-  // Positions step by step, so that an error of the guess does not add up along the axis.
+  // Positions step by step, so that an error of the estimate does not add up along the axis.
   std::vector<double> index(values.size(), 0.0);
   for (std::size_t i = 1; i < values.size(); ++i)
     index[i] = index[i - 1] + std::nearbyint((values[i] - values[i - 1]) / guess);
@@ -166,11 +167,11 @@ std::optional<AxisLattice> fit(const std::vector<double>& values, double guess) 
       static_cast<double>(single) < kLeastSteps * static_cast<double>(taken - 1))
     return std::nullopt;
 
-  // Standard errors of slope and intercept (of the intercept at k = 0), and the least a double can tell.
+  // Standard errors of slope and intercept (of the intercept at k = 0), and the resolution of a double.
   const double scatter = static_cast<double>(std::sqrt(squares / std::max(1.0L, n - 2.0L)));
   const double ulp = std::max(std::abs(values.front()), std::abs(values.back())) * 0x1p-52;
-  // Floats were most likely computed from a spacing that was a float itself: off by half of its ulp at most,
-  // in proportion all along the axis, where no fit can see it.
+  // Floats were most likely computed from a spacing that was a float itself: its error is at most half an
+  // ulp, in proportion along the axis, which no fit can detect.
   const bool floats =
       std::ranges::all_of(values, [](double v) { return static_cast<double>(HeightRule::toFloat(v)) == v; });
   const double slope_error = 3.0 * scatter / static_cast<double>(std::sqrt(kk)) + 2.0 * ulp / last +
@@ -208,10 +209,10 @@ std::optional<AxisLattice> AxisLatticeSearch::next() {
   const bool far = !gaps_.empty() && gaps_.back() > kFarGap * gaps_[gaps_.size() / 2];
   while (at_ < guesses_.size()) {
     const double guess = guesses_[at_++];
-    // A guess that is a little off miscounts the steps of a long gap; split positions mislead the better one.
+    // An inaccurate estimate miscounts the steps of a long gap; split positions make the improved one worse.
     auto lattice = far ? fit(values_, refined(gaps_, guess)) : std::nullopt;
     if (!lattice) lattice = fit(values_, guess);
-    // A narrower one that no more positions are taken of is the same with gaps.
+    // A narrower one without more taken positions is the same lattice with gaps.
     if (!lattice || lattice->count > Grid::kMaxSide || lattice->taken <= last_taken_) continue;
     last_taken_ = lattice->taken;
     return lattice;

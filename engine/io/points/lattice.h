@@ -9,33 +9,33 @@ namespace fettle::engine {
 /// Evenly spaced positions along one axis: origin + k * spacing, 0 <= k < count.
 struct AxisLattice {
   double origin = 0.0;
-  double spacing = 0.0;  ///< 0 when all values are one
+  double spacing = 0.0;  ///< 0 when all values are equal
   std::int64_t count = 0;
-  bool one_value_each = true;  ///< no position is hit by two different values
-  std::int64_t taken = 0;      ///< positions that a value lies on, where the lattice was found
+  bool one_value_each = true;  ///< no position has two different values
+  std::int64_t taken = 0;      ///< positions with a value, where the lattice was detected
 
   /// Index of the position nearest to a value within the lattice.
   [[nodiscard]] std::int64_t indexOf(double value) const noexcept;
 };
 
-/// Finds the positions that `values` (finite, any order, any number of times each, at least one) lie on,
-/// missing ones allowed. Each value may be off its position by a tenth of the spacing - files round to few
-/// digits - and at least a quarter of the positions must be taken, or half of the differences between
-/// neighbouring values be one step, however far apart what else there is lies; else nothing.
+/// Finds the evenly spaced positions of `values` (finite, any order, repetitions allowed, at least one),
+/// where positions may be missing. Each value may differ from its position by a tenth of the spacing - files
+/// round to few digits - and at least a quarter of the positions must be taken, or half of the differences
+/// between neighbouring values be one step, at any distance of the others; otherwise nothing.
 ///
 /// Spacing and origin are fitted by least squares to all distinct values, then rounded to the fewest decimal
 /// digits within three standard errors of the fit (and, for values that are floats, half an ulp of a float):
-/// 0.024 written with three digits comes out as 0.024.
+/// 0.024 written with three digits gives 0.024.
 ///
-/// O(n) for a lattice; at most 2^20 distinct values are looked at, more are no lattice that a field can hold.
+/// O(n) for a lattice; at most 2^20 distinct values are read, more are not a lattice that a field can hold.
 [[nodiscard]] std::optional<AxisLattice> findAxisLattice(const std::vector<double>& values);
 
-/// The same, and after the widest lattice that fits narrower ones: patches of points that lie far apart fit a
-/// lattice of one position a patch as well.
+/// The same, and after the widest lattice that fits, narrower ones: patches of points at large distances also
+/// fit a lattice of one position per patch.
 class AxisLatticeSearch {
  public:
   explicit AxisLatticeSearch(const std::vector<double>& values);
-  /// The next narrower lattice that fits and of which more positions are taken; nothing after the last.
+  /// The next narrower lattice that fits with more taken positions; nothing after the last.
   [[nodiscard]] std::optional<AxisLattice> next();
 
  private:

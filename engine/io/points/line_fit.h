@@ -6,7 +6,7 @@
 
 namespace fettle::engine {
 
-/// A straight line index = scale * value + offset, and how far the indices are off it.
+/// A straight line index = scale * value + offset, and the deviation of the indices from it.
 struct IndexLine {
   double scale = 0.0, offset = 0.0;
   double rms = std::numeric_limits<double>::infinity();  ///< [indices]
@@ -24,7 +24,7 @@ class IndexLineFit {
     ii_ += di * (index - mean_i_);
     vi_ += dv * (index - mean_i_);
   }
-  /// A line of infinite rms where there are fewer points than `fewest` (>= 2) or all values are one.
+  /// A line of infinite rms where there are fewer points than `fewest` (>= 2) or all values are equal.
   [[nodiscard]] IndexLine line(double fewest) const {
     if (!(vv_ > 0.0) || n_ < fewest) return {};
     const double scale = vi_ / vv_;

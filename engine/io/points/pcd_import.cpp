@@ -1,5 +1,5 @@
 // PCD 0.7 and before (Point Cloud Library): fields of any kind in any order, as text, as records, or field by
-// field and packed with LZF. Only x, y and z are read.
+// field and compressed with LZF. Only x, y and z are read.
 
 #include <array>
 #include <cmath>
@@ -85,7 +85,7 @@ class PcdHeaderReader {
             fmt::format("{} has {} values for {} fields", key, all.size() - 1, header_.fields.size()));
       for (std::size_t i = 0; i < header_.fields.size(); ++i)
         if (!set(header_.fields[i], all[i + 1]))
-          return damaged(fmt::format("{} {} cannot be", key, all[i + 1]));
+          return damaged(fmt::format("{} {} is not valid", key, all[i + 1]));
       return {};
     };
     const auto number = [&](std::uint64_t& out) -> Status {
@@ -128,7 +128,7 @@ class PcdHeaderReader {
       else
         return inputError(fmt::format("data as {} is not known", all[1]), file_.path());
     }
-    return {};  // VERSION, VIEWPOINT and what later versions bring
+    return {};  // VERSION, VIEWPOINT and words of later versions
   }
 
   Result<PcdHeader> finish() {
@@ -154,13 +154,14 @@ class PcdHeaderReader {
       header_.points = header_.width * header_.height;
     if (header_.points == 0)
       return inputError("the file holds no points", file_.path(), "give a file with points");
-    if (header_.points > kMostPoints) return damaged(fmt::format("{} points cannot be", header_.points));
+    if (header_.points > kMostPoints)
+      return damaged(fmt::format("{} points are not possible", header_.points));
     header_.body = text_.offset();
     const std::uint64_t left = file_.size() - header_.body;
     // The last line of a text needs no end.
     const std::uint64_t least = header_.data == PcdData::kAscii ? 2 * header_.columns : header_.record;
     if (header_.data != PcdData::kPacked && header_.points > (left + 1) / least)
-      return inputError("the file ends before all that its header promises", file_.path(),
+      return inputError("the file ends before all that its header states", file_.path(),
                         "the file is cut short");
     return std::move(header_);
   }
@@ -212,7 +213,7 @@ class PcdBody {
 
   Status cutShort() const {
     if (!text_.status()) return text_.status();
-    return inputError("the file ends before all that its header promises", file_.path(),
+    return inputError("the file ends before all that its header states", file_.path(),
                       "the file is cut short");
   }
 
@@ -233,7 +234,7 @@ class PcdBody {
         while (at < end && (*at == ' ' || *at == '\t' || *at == '\r')) ++at;
         double value = 0.0;
         if (!parseNumber(at, end, value))
-          return inputError(fmt::format("point {} does not hold the numbers that the header says", i + 1),
+          return inputError(fmt::format("point {} does not hold the numbers that the header states", i + 1),
                             file_.path(), "the file is damaged");
         for (std::size_t k = 0; k < 3; ++k)
           if (axis(k).column == c) point[k] = value;
@@ -258,7 +259,7 @@ class PcdBody {
     return {};
   }
 
-  // Two sizes, then all values of the first field, all of the second and so on, packed as one piece.
+  // Two sizes, then all values of the first field, all of the second and so on, compressed as one block.
   Status readPacked(PointCloud& cloud) {
     std::array<char, 8> sizes{};
     const Result<std::size_t> got = file_.read(header_.body, sizes.data(), sizes.size());
@@ -266,10 +267,10 @@ class PcdBody {
     const std::uint64_t packed = little<std::uint32_t>(sizes.data());
     const std::uint64_t bytes = little<std::uint32_t>(sizes.data() + 4);
     if (header_.points > bytes / header_.record || bytes != header_.points * header_.record)
-      return inputError(fmt::format("{} bytes are promised for {} points", bytes, header_.points),
-                        file_.path(), "the file is damaged");
+      return inputError(fmt::format("{} bytes are stated for {} points", bytes, header_.points), file_.path(),
+                        "the file is damaged");
     if (packed > file_.size() - header_.body - sizes.size()) return cutShort();
-    // LZF makes at most 264 bytes of three.
+    // LZF decompresses 3 bytes to at most 264.
     if (Status fits = checkPromise(bytes, packed, 88.0, file_.path()); !fits) return fits;
     if (bytes + packed > availableMemory()) throw std::bad_alloc();
     std::string in(packed, '\0'), out(bytes, '\0');
@@ -304,7 +305,7 @@ Result<Imported> readPcd(const InputFile& file, const ImportOptions& options, Jo
   const Result<PcdHeader> header = PcdHeaderReader(file).read();
   if (!header) return tl::unexpected(header.error());
   PointCloud cloud;
-  // Sides come from the file: their product is looked at only where it cannot overflow.
+  // Sides come from the file: their product is used only where it cannot overflow.
   cloud.organized = header->width > 1 && header->height > 1 && header->width <= header->points &&
                     header->height <= header->points / header->width &&
                     header->width * header->height == header->points;

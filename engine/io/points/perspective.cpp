@@ -15,8 +15,8 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr double kPixelOff = 0.5;      // more, and it is no camera [pixels]
-constexpr double kPositionOff = 0.05;  // less, and the points lie on a raster [spacings]
+constexpr double kPixelOff = 0.5;      // above this, the points are not those of a camera [pixels]
+constexpr double kPositionOff = 0.05;  // below this, the points lie on a raster [spacings]
 
 struct CloudFit {
   IndexLine column_by_x, row_by_y;          // a raster seen from above
@@ -40,14 +40,14 @@ CloudFit fitCloud(const PointCloud& cloud, std::uint64_t width) {
 
 double medianHeight(const Version& field) {
   const Grid& grid = field.grid();
-  // Every n-th row is enough for a median and keeps the memory small.
+  // Every n-th row is enough for a median and needs little memory.
   const std::int32_t step = static_cast<std::int32_t>(1 + grid.samples() / 4000000);
   std::vector<float> row(static_cast<std::size_t>(grid.width)), heights;
   for (std::int32_t r = 0; r < grid.height; r += step) {
     field.reader().readHeights(0, r, grid.width, 1, row.data(), grid.width);
     std::copy_if(row.begin(), row.end(), std::back_inserter(heights), [](float z) { return !std::isnan(z); });
   }
-  if (heights.empty()) return summarize(field).mean;  // the rows that were left out hold all
+  if (heights.empty()) return summarize(field).mean;  // only the skipped rows hold heights
   const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
   std::nth_element(heights.begin(), middle, heights.end());
   return *middle;
@@ -60,7 +60,7 @@ void placeInPerspective(Imported& image, const DepthCamera& camera) {
   Grid grid = image.field.grid();
   const std::string lateral = grid.lateral_unit.name, height = grid.height_unit.name;
   if (!(distance > 0.0)) {
-    image.warnings.emplace_back("the median distance is 0, no pitch of pixels can be told from it");
+    image.warnings.emplace_back("the median distance is 0, the pitch of the pixels cannot be determined");
     return;
   }
   const double in_lateral = distance * grid.height_unit.mm / grid.lateral_unit.mm;
@@ -93,8 +93,8 @@ Result<Imported> gridOrganized(PointCloud&& cloud, std::uint64_t width, std::uin
   StatedUnits units;
   units.lateral = cloud.unit;
   units.height = cloud.height_unit;
-  units.spacing = std::pair{1.0, 1.0};  // settled by placeInPerspective
-  settleUnits(grid, units, options, warnings);
+  units.spacing = std::pair{1.0, 1.0};  // determined by placeInPerspective
+  determineUnits(grid, units, options, warnings);
   Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), path);
   if (!builder) return tl::unexpected(builder.error());
   HeightRule rule;
@@ -107,7 +107,7 @@ Result<Imported> gridOrganized(PointCloud&& cloud, std::uint64_t width, std::uin
     builder->writeHeights(0, static_cast<std::int32_t>(height - 1 - r), static_cast<std::int32_t>(width), 1,
                           heights.data(), static_cast<std::ptrdiff_t>(width));
   }
-  tally.rounding = 0.0;  // floats to begin with, or doubles of a sensor that measures far less
+  tally.rounding = 0.0;  // floats originally, or doubles of a sensor of much lower resolution
   Result<Imported> imported =
       finishImport(std::move(*builder), rule, tally, std::move(format), std::move(warnings), path);
   if (imported) {

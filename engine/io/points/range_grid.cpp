@@ -19,8 +19,8 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr double kOnRaster = 0.05;  // points that are less off their places are on them [spacings]
-constexpr double kCameraOff = 0.5;  // more, and it is no camera [pixels]
+constexpr double kOnRaster = 0.05;  // points that differ less from their places are on them [spacings]
+constexpr double kCameraOff = 0.5;  // above this, it is not a camera [pixels]
 constexpr double kFewestOfLine = 2.0;
 constexpr double kFewestOfCamera = 8.0;
 
@@ -51,8 +51,8 @@ RangeFit fitRange(const PointCloud& cloud, const RangeGrid& grid) {
           y_slope.line(kFewestOfCamera)};
 }
 
-// Where index 0 lies, seen from the lowest coordinate, and how far index 1 is from it. A spacing of 0: one
-// coordinate for all.
+// Position of index 0, relative to the lowest coordinate, and distance of index 1 from it. A spacing of 0:
+// one coordinate for all.
 struct RangeAxis {
   double origin = 0.0, spacing = 0.0;
 };
@@ -66,7 +66,7 @@ RangeAxis rangeAxisOf(const IndexLine& line, const std::vector<double>& values, 
   const double lowest = line.scale > 0.0 ? 0.0 : static_cast<double>(count - 1);
   const double origin = (lowest - line.offset) / line.scale;
   if (line.rms >= kOnRaster) return {origin, spacing};
-  // The numbers with the fewest digits that say the same.
+  // The numbers with the fewest digits within the accuracy of the fit.
   std::vector<double> known;
   std::copy_if(values.begin(), values.end(), std::back_inserter(known),
                [](double v) { return !std::isnan(v); });
@@ -77,7 +77,7 @@ RangeAxis rangeAxisOf(const IndexLine& line, const std::vector<double>& values, 
           lattice->spacing};
 }
 
-// Rows that fall and columns that fall are turned round.
+// Descending rows and columns are reversed.
 Status writePlaces(const PointCloud& cloud, const RangeGrid& grid, const RangeFit& fit,
                    const HeightRule& rule, FieldBuilder& builder, HeightTally& tally, JobControl& job) {
   std::vector<double> row(grid.columns);
@@ -96,7 +96,7 @@ Status writePlaces(const PointCloud& cloud, const RangeGrid& grid, const RangeFi
     if (job.cancelled()) return cancelled();
     job.advance();
   }
-  tally.rounding = 0.0;  // floats to begin with, or doubles of a sensor that measures far less
+  tally.rounding = 0.0;  // floats originally, or doubles of a sensor of much lower resolution
   return {};
 }
 
@@ -131,11 +131,11 @@ Result<Imported> gridRange(PointCloud&& cloud, const RangeGrid& range, const Imp
   StatedUnits units;
   units.lateral = cloud.unit;
   units.height = cloud.height_unit;
-  units.spacing = std::pair{1.0, 1.0};  // settled below
-  settleUnits(grid, units, options, warnings);
+  units.spacing = std::pair{1.0, 1.0};  // determined below
+  determineUnits(grid, units, options, warnings);
   const RangeAxis x = rangeAxisOf(fit.column, cloud.x, range.columns),
                   y = rangeAxisOf(fit.row, cloud.y, range.rows);
-  // A single row or column has no spacing across: that along it serves.
+  // A single row or column has no spacing across: the one along it is used.
   grid.spacing_x = x.spacing > 0.0 ? x.spacing : y.spacing > 0.0 ? y.spacing : 1.0;
   grid.spacing_y = y.spacing > 0.0 ? y.spacing : grid.spacing_x;
   grid.origin_x = x.origin;

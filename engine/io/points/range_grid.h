@@ -16,12 +16,12 @@ struct RangeGrid {
   std::vector<std::uint32_t> points;  ///< columns * rows numbers of points, kNone where none was measured
 };
 
-/// Makes a field of a range scan: samples are the scanner's places, heights the points' z, every bit kept;
-/// the rows are turned so that y rises, the columns so that x does. Spacing and origin are those of the line
-/// that fits the points' positions best, or the camera's where the points are those of a camera
-/// (perspective.h); a warning says by how much points are off. With ImportOptions::cell_size or spacing:
-/// gridPoints. `cloud` is organised (PointCloud::organized). Errors (kInput): a number past the points, a
-/// grid past memory, no point at all.
+/// Makes a field of a range scan: samples are the scanner's places, heights the points' z, bit-identical;
+/// rows are ordered so that y rises, columns so that x does. Spacing and origin are those of the line that
+/// fits the points' positions best, or the camera's where the points are those of a camera (perspective.h); a
+/// warning states the deviation of the points. With ImportOptions::cell_size or spacing: gridPoints. `cloud`
+/// is organised (PointCloud::organized). Errors (kInput): a number past the points, a grid past memory, no
+/// point at all.
 [[nodiscard]] Result<Imported> gridRange(PointCloud&& cloud, const RangeGrid& grid,
                                          const ImportOptions& options, std::string format,
                                          const std::string& path, JobControl& job);

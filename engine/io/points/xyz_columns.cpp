@@ -18,14 +18,14 @@ using namespace std::string_view_literals;
 
 constexpr std::array kSeparators{';', ',', '\t', '\0'};
 constexpr std::size_t kMostHeader = 4096;  // bytes of a line that may be names
-constexpr std::size_t kMostSaid = 100;     // bytes of names in an error
+constexpr std::size_t kMostShown = 100;    // bytes of names in an error
 
 // The fields of a line one by one.
 class Fields {
  public:
   Fields(std::string_view line, char separator) : separator_(separator), left_(trimmed(line)) {}
 
-  // The next field without blanks and quotes around it; nothing behind the last one.
+  // The next field without blanks and quotes around it; nothing after the last one.
   std::optional<std::string_view> next() {
     if (left_.empty() && !separated_) return std::nullopt;
     separated_ = false;
@@ -36,7 +36,7 @@ class Fields {
       field = left_.substr(1, end - 1);
       end = std::min(end + 1, left_.size());
     } else {
-      // Where commas part the fields, a blank is part of one: "X coordinate,Y coordinate".
+      // Where commas separate the fields, a blank is part of one: "X coordinate,Y coordinate".
       while (end < left_.size() && !(separator_ == 0 ? isBlank(left_[end]) : left_[end] == separator_)) ++end;
       field = trimmed(left_.substr(0, end));
     }
@@ -58,7 +58,7 @@ class Fields {
 
   char separator_;
   std::string_view left_;
-  bool separated_ = false;  // a separator came last: another field follows, be it empty
+  bool separated_ = false;  // a separator came last: another field follows, possibly empty
 };
 
 std::vector<std::string_view> fieldsOf(std::string_view line, char separator) {
@@ -72,7 +72,7 @@ bool mayPart(char separator, std::string_view line) {
   return separator == 0 || line.find(separator) != std::string_view::npos;
 }
 
-// The names in a header above lines with a separator; where the header has none of these, whatever it has.
+// The names in a header above lines with a separator; where the header has none of these, with any separator.
 std::vector<std::string_view> namesIn(std::string_view header, char separator) {
   if (separator != 0 && mayPart(separator, header)) return fieldsOf(header, separator);
   for (const char other : kSeparators)
@@ -92,8 +92,8 @@ std::string_view withoutBlanks(std::string_view text) {
   return text;
 }
 
-// A name without its unit, case and marks: "POINT_X" and "point x" are one; "X [mm]", "x(mm)" and "x_mm" are
-// x in mm.
+// A name without its unit, case and punctuation: "POINT_X" and "point x" are equal; "X [mm]", "x(mm)" and
+// "x_mm" are x in mm.
 struct ColumnName {
   std::string word;
   std::optional<LengthUnit> unit;
@@ -117,7 +117,7 @@ ColumnName columnNameOf(std::string_view text) {
   return name;
 }
 
-// What the columns are called, the plainest names first: of several that a header has, the first counts.
+// The names of columns, the plainest first: of several that a header has, the first counts.
 constexpr std::array kNames{
     std::array{"x"sv, "xcoord"sv, "xcoordinate"sv, "coordx"sv, "pointx"sv, "posx"sv, "xpos"sv, "positionx"sv,
                "easting"sv, "east"sv, "longitude"sv, "lon"sv, "e"sv},
@@ -126,7 +126,8 @@ constexpr std::array kNames{
     std::array{"z"sv, "zcoord"sv, "zcoordinate"sv, "coordz"sv, "pointz"sv, "posz"sv, "zpos"sv, "positionz"sv,
                "height"sv, "elevation"sv, "elev"sv, "altitude"sv, "h"sv}};
 
-// Where names say x, y and z. `known`: how many of the three they name; two columns of one name name none.
+// Columns of x, y and z by names. `known`: how many of the three are named; a name of two columns counts for
+// none.
 struct Named {
   XyzColumns columns;
   std::size_t known = 0;
@@ -151,17 +152,17 @@ Named namedBy(const std::vector<std::string_view>& names) {
 }
 
 // "mm" or "[mm]" by itself.
-std::optional<LengthUnit> unitAlone(std::string_view field) {
+std::optional<LengthUnit> unitOnly(std::string_view field) {
   if (auto unit = lengthUnitFromName(field)) return unit;
   ColumnName name = columnNameOf(field);
   return name.word.empty() ? name.unit : std::nullopt;
 }
 
-// Units of the three columns from a line of nothing but units.
+// Units of the three columns from a line of only units.
 void takeUnits(std::string_view units, char separator, XyzColumns& columns) {
   const std::vector<std::string_view> all = namesIn(units, separator);
   const auto unitAt = [&](std::size_t axis) {
-    return columns.at[axis] < all.size() ? unitAlone(all[columns.at[axis]]) : std::nullopt;
+    return columns.at[axis] < all.size() ? unitOnly(all[columns.at[axis]]) : std::nullopt;
   };
   if (!columns.lateral) columns.lateral = unitAt(0);
   if (!columns.height) columns.height = unitAt(2);
@@ -172,7 +173,7 @@ bool namesAll(const std::string& header) {
                      [&](char separator) { return namedBy(namesIn(header, separator)).known == 3; });
 }
 
-// The first three numbers of a line; blanks may stand beside the separator or instead of it.
+// The first three numbers of a line; blanks may be next to the separator or replace it.
 bool readFirstThree(std::string_view line, char separator, std::array<double, 3>& point) {
   const char* at = line.data();
   const char* const end = at + line.size();
@@ -200,9 +201,9 @@ bool readFirstThree(std::string_view line, char separator, std::array<double, 3>
   return true;
 }
 
-// Names for an error: one line, not too long, whatever the file holds.
-std::string said(const std::vector<std::string_view>& names) {
-  std::string text = fmt::format("{}", fmt::join(names, ", ")).substr(0, kMostSaid);
+// Names for an error message: one line, of limited length.
+std::string shownNames(const std::vector<std::string_view>& names) {
+  std::string text = fmt::format("{}", fmt::join(names, ", ")).substr(0, kMostShown);
   std::replace_if(
       text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '?');
   return text;
@@ -240,12 +241,12 @@ void XyzHeader::takeLine(std::string_view line) {
   const std::vector<std::string_view> fields = namesIn(line, ';');
   const auto isWord = [](std::string_view field) { return !field.empty() && !isNumber(field); };
   if (std::none_of(fields.begin(), fields.end(), isWord)) return;  // a number of points, or their extent
-  const auto isUnit = [](std::string_view field) { return field.empty() || unitAlone(field).has_value(); };
+  const auto isUnit = [](std::string_view field) { return field.empty() || unitOnly(field).has_value(); };
   if (!names_.empty() && std::all_of(fields.begin(), fields.end(), isUnit)) {
     units_ = line;
     return;
   }
-  // A title below the names does not take their place.
+  // A title below the names does not replace them.
   if (names_.empty() || !namesAll(names_)) names_ = line;
 }
 
@@ -271,18 +272,19 @@ std::optional<XyzColumns> XyzHeader::columnsOf(std::string_view line, char& sepa
   return std::nullopt;
 }
 
-Result<XyzColumns> XyzHeader::columnsBeside(std::string_view line, char separator,
-                                            const std::string& path) const {
+Result<XyzColumns> XyzHeader::columnsWithNumbers(std::string_view line, char separator,
+                                                 const std::string& path) const {
   const std::size_t fields = fieldsOf(line, separator).size();
   if (!names_.empty()) {
     const std::vector<std::string_view> names = namesIn(names_, separator);
     const std::size_t known = namedBy(names).known;
-    // As many words as columns, or two that are names of some: names, and no title.
+    // As many words as columns, or two that are names of some: names, not a title.
     if (names.size() == fields || known >= 2)
-      return inputError(fmt::format("the header \"{}\" {}", said(names),
+      return inputError(fmt::format("the header \"{}\" {}", shownNames(names),
                                     known == 3 ? "names other columns than the points have"
-                                               : "does not say which columns are x, y and z"),
-                        path, "name one column each x, y and z, or put // before a line that is no header");
+                                               : "does not state which columns are x, y and z"),
+                        path,
+                        "name one column each x, y and z, or put // before a line that is not a header");
   }
   if (!comment_.empty()) {
     const std::vector<std::string_view> names = namesIn(comment_, separator);

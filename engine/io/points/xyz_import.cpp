@@ -1,5 +1,5 @@
-// Text with "x y z" a line: space, tab, comma or semicolon between; other columns where a header names them,
-// further ones ignored.
+// Text with one "x y z" per line: separated by space, tab, comma or semicolon; other columns where a header
+// names them, further ones ignored.
 
 #include <algorithm>
 #include <array>
@@ -44,8 +44,8 @@ bool isDigit(char c) {
 
 enum class Comma : std::uint8_t { kNone, kDecimal, kOther };
 
-// What the comma of a word is, if it has one: "3", "1,5", "-1.234,5e3" against "1,", "1,2,3", "1.5,2.5".
-// Words that are no numbers have another.
+// The meaning of a word's comma, if it has one: "3", "1,5", "-1.234,5e3" against "1,", "1,2,3", "1.5,2.5".
+// Words that are not numbers are a case of their own.
 Comma commaOf(std::string_view word) {
   if (word.ends_with(',')) word.remove_suffix(1);  // "1,5, 2,5, 3,5"
   const std::size_t comma = word.find(',');
@@ -53,7 +53,7 @@ Comma commaOf(std::string_view word) {
   if (comma != std::string_view::npos) {
     const std::size_t first = word.find_first_of("0123456789");
     if (first > comma || comma + 1 >= word.size() || !isDigit(word[comma + 1])) return Comma::kOther;
-    // Points before it part thousands, three digits after each.
+    // Points before it separate thousands, three digits after each.
     for (std::size_t point = word.find('.'); point != std::string_view::npos;
          point = word.find('.', point + 1)) {
       const std::size_t next = std::min(word.find('.', point + 1), comma);
@@ -69,8 +69,8 @@ Comma commaOf(std::string_view word) {
   return comma == std::string_view::npos ? Comma::kNone : Comma::kDecimal;
 }
 
-// "1,5 2,5 3,5", "0 0 1,5" or "1,5;2,5;3,5": three numbers of which one at least has a comma inside, so that
-// commas do not stand between them.
+// "1,5 2,5 3,5", "0 0 1,5" or "1,5;2,5;3,5": three numbers of which at least one has a comma inside, so that
+// commas do not separate them.
 bool hasDecimalComma(std::string_view line) {
   int words = 0, commas = 0;
   for (std::size_t i = 0; i < line.size() && words < 3;) {
@@ -96,7 +96,7 @@ std::optional<char> separatorOf(std::string_view line) {
   return std::nullopt;
 }
 
-// 1, 2, 3 ... or 0, 1, 2 ...: numbers of rows, where x is asked for.
+// 1, 2, 3 ... or 0, 1, 2 ...: row numbers in place of x.
 bool countsRows(const std::vector<double>& values) {
   if (values.size() < 3 || (values[0] != 0.0 && values[0] != 1.0)) return false;
   return std::adjacent_find(values.begin(), values.end(), [](double a, double b) { return b != a + 1.0; }) ==
@@ -118,7 +118,7 @@ bool looksLikeXyz(std::string_view head, std::string_view extension) {
   if (!looksLikeText(head)) return false;
   for (const std::string_view known : {".xyz", ".txt", ".csv", ".pts", ".dat", ".asc"})
     if (extension == known) return true;
-  // Under another name, some line of the beginning must hold three numbers (the last may be cut).
+  // With another extension, some line of the beginning must hold three numbers (the last may be cut).
   while (!head.empty()) {
     const std::size_t end = head.find('\n');
     if (separatorOf(trimmed(head.substr(0, std::min(end, head.size()))))) return true;
@@ -171,7 +171,7 @@ Result<Imported> readXyz(const InputFile& file, const ImportOptions& options, Jo
       separator = named;
       columns = *found;
     } else if ((separator = separatorOf(line))) {
-      const Result<XyzColumns> chosen = header.columnsBeside(line, *separator, path);
+      const Result<XyzColumns> chosen = header.columnsWithNumbers(line, *separator, path);
       if (!chosen) return tl::unexpected(chosen.error());
       columns = *chosen;
     }
@@ -205,7 +205,7 @@ FormatWriter writeXyz;  // engine/io/mesh/points_export.cpp
 const Format& xyzFormat() {
   static constexpr std::string_view kExtensions[] = {".xyz", ".txt", ".csv", ".pts", ".dat"};
   static constexpr Format kFormat{
-      .info = {"XYZ", "text with x y z a line", kExtensions, true, true},
+      .info = {"XYZ", "text with x y z per line", kExtensions, true, true},
       .recognises = looksLikeXyz,
       .read = readXyz,
       .write = writeXyz,

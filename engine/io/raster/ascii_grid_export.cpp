@@ -20,8 +20,8 @@ namespace fettle::engine {
 
 namespace {
 
-// A number that stands for "no data" and is no height of the field: -9999 where it can be, else below or
-// above all; for a field that fills the range of the float, NaN, which not every reader takes.
+// A number for "no data" that is not a height of the field: -9999 if possible, otherwise below or above all
+// heights; for a field that fills the range of the float, NaN, which not every reader accepts.
 float freeNoData(const FieldReader& reader) {
   const HeightBounds bounds = reader.bounds();
   if (bounds.empty() || bounds.min > -9999.0F || bounds.max < -9999.0F) return -9999.0F;
@@ -30,7 +30,7 @@ float freeNoData(const FieldReader& reader) {
   return bounds.max < 3.4e38F ? 3.4e38F : std::numeric_limits<float>::quiet_NaN();
 }
 
-// xllcorner, which every reader knows; where no corner gives the origin back bit for bit, xllcenter.
+// xllcorner, which every reader supports; where no corner gives the origin bit-identical, xllcenter.
 std::string originLines(const Grid& grid) {
   std::string lines;
   const auto add = [&](char axis, double centre, double spacing) {
@@ -44,8 +44,8 @@ std::string originLines(const Grid& grid) {
   return lines;
 }
 
-// Puts the grid in place, and before it the .prj that belongs to it. A .prj that is there and belongs to the
-// grid no more would be read with it: it is warned of, and not removed, for it may be another file's as well.
+// Commits the grid, and before it its .prj. An existing .prj that does not belong to the grid would be read
+// with it: a warning is given, and it is not removed, since it may belong to another file as well.
 Status commitBoth(AtomicFile& grid, const std::string& prj_path, const std::string& prj,
                   std::vector<std::string>& warnings) {
   std::error_code error;
@@ -54,7 +54,7 @@ Status commitBoth(AtomicFile& grid, const std::string& prj_path, const std::stri
     if (there)
       warnings.push_back(
           fmt::format("{} is there and names a coordinate system that the grid does not have: "
-                      "remove it if it is not another file's",
+                      "remove it if it does not belong to another file",
                       prj_path));
     return grid.commit();
   }
@@ -64,23 +64,23 @@ Status commitBoth(AtomicFile& grid, const std::string& prj_path, const std::stri
   return status;
 }
 
-// What the file and the .prj beside it do not say.
+// What the file and the .prj next to it do not state.
 std::vector<std::string> lostByAsciiGrid(const Grid& grid, bool system_kept) {
   std::vector<std::string> warnings;
   if (!grid.crs_wkt.empty() && !system_kept)
     warnings.emplace_back("a .prj file cannot express the coordinate system, it was left out");
-  StatedUnits said;
+  StatedUnits stated;
   std::vector<std::string> ignored;
-  if (system_kept) unitsOfCrs(grid.crs_wkt, grid.origin_y, said, ignored);
-  const LengthUnit lateral = said.lateral.value_or(LengthUnit{});
+  if (system_kept) unitsOfCrs(grid.crs_wkt, grid.origin_y, stated, ignored);
+  const LengthUnit lateral = stated.lateral.value_or(LengthUnit{});
   const bool degrees = lateral.name == "deg";
-  const LengthUnit height = said.height.value_or(degrees ? LengthUnit{"m", 1000.0} : lateral);
+  const LengthUnit height = stated.height.value_or(degrees ? LengthUnit{"m", 1000.0} : lateral);
   const bool lateral_kept = degrees ? grid.lateral_unit.name == "deg" : lateral == grid.lateral_unit;
   if (lateral_kept && height == grid.height_unit) return warnings;
   warnings.push_back(
       grid.lateral_unit == grid.height_unit
-          ? fmt::format("an ASCII grid keeps no unit, read it with --unit {}", grid.lateral_unit.name)
-          : fmt::format("an ASCII grid keeps no units ({} across, {} up)", grid.lateral_unit.name,
+          ? fmt::format("an ASCII grid stores no unit, read it with --unit {}", grid.lateral_unit.name)
+          : fmt::format("an ASCII grid stores no units ({} across, {} up)", grid.lateral_unit.name,
                         grid.height_unit.name));
   return warnings;
 }
@@ -110,13 +110,13 @@ Result<Exported> writeAsciiGrid(const Version& field, const std::string& path, c
     for (const float height : heights)
       fmt::format_to(std::back_inserter(out.text), "{} ", std::isnan(height) ? no_data : height);
     out.text.back() = '\n';
-    if (Status status = out.settle(); !status) return tl::unexpected(status.error());
+    if (Status status = out.flushIfLarge(); !status) return tl::unexpected(status.error());
     if (job.cancelled()) return cancelled();
     job.advance();
   }
-  if (Status status = out.finish(); !status) return tl::unexpected(status.error());
+  if (Status status = out.flush(); !status) return tl::unexpected(status.error());
   std::vector<std::string> warnings = lostByAsciiGrid(grid, !prj.empty());
-  if (Status status = commitBoth(*file, prjBeside(path), prj, warnings); !status)
+  if (Status status = commitBoth(*file, prjPathOf(path), prj, warnings); !status)
     return tl::unexpected(status.error());
   return Exported{"AAIGrid", std::move(warnings)};
 }

@@ -1,5 +1,5 @@
-// ESRI ASCII grid (Esri, "ASCII raster format"): a header of keys, then the rows from the top. Our own
-// parser: GDAL 3.6 refuses grids that contain `nan` and rounds through a table of its own.
+// ESRI ASCII grid (Esri, "ASCII raster format"): a header of keys, then the rows from the top. Not by GDAL:
+// version 3.6 refuses grids that contain `nan` and rounds through a table of its own.
 
 #include <cmath>
 #include <cstring>
@@ -21,7 +21,7 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr double kEsriNoData = -9999.0;  // what the format means when the key is missing
+constexpr double kEsriNoData = -9999.0;  // meaning of the format when the key is missing
 
 std::string lowerCase(std::string_view text) {
   std::string lower(text);
@@ -59,10 +59,10 @@ tl::unexpected<Error> badWord(std::string_view word, const std::string& where, c
   if (word.find(',') != std::string_view::npos)
     return inputError(fmt::format("\"{}\" {} has a decimal comma", shown, where), path,
                       "write decimal points");
-  return inputError(fmt::format("\"{}\" {} is no number", shown, where), path, "the file is damaged");
+  return inputError(fmt::format("\"{}\" {} is not a number", shown, where), path, "the file is damaged");
 }
 
-// Reads keys until the first word that is a number; that word is handed on in `first`.
+// Reads keys until the first word that is a number; `first` returns that word.
 Result<Header> readHeader(TextReader& text, std::string& first, const std::string& path) {
   Header header;
   std::string_view word;
@@ -85,22 +85,22 @@ Result<Header> readHeader(TextReader& text, std::string& first, const std::strin
 
 Result<Grid> gridOf(const Header& h, std::uint64_t file_size, StatedUnits& units, const std::string& path) {
   if (!h.columns || !h.rows)
-    return inputError("the header says no ncols or nrows", path, "the file is damaged");
+    return inputError("the header states no ncols or nrows", path, "the file is damaged");
   if (!(*h.columns >= 1 && *h.columns < 1e18 && *h.rows >= 1 && *h.rows < 1e18) ||
       *h.columns != std::floor(*h.columns) || *h.rows != std::floor(*h.rows))
-    return inputError(fmt::format("the header promises {} x {} samples", *h.columns, *h.rows), path,
+    return inputError(fmt::format("the header states {} x {} samples", *h.columns, *h.rows), path,
                       "the file is damaged");
   const auto columns = static_cast<std::uint64_t>(*h.columns);
   const auto rows = static_cast<std::uint64_t>(*h.rows);
   if (Status s = checkFieldSize(columns, rows, 0, path); !s) return tl::unexpected(s.error());
-  // Every number takes a digit and, but for the last, a space.
+  // Every number takes a digit and, except for the last, a space.
   if (columns * rows * 2 - 1 > file_size)
     return inputError(fmt::format("the file is too short for {} x {} numbers", columns, rows), path,
                       "the file is cut short");
   const double dx = h.dx ? *h.dx : h.cell.value_or(0.0);
   const double dy = h.dy ? *h.dy : h.cell.value_or(0.0);
   if (!(std::isfinite(dx) && std::isfinite(dy) && dx > 0.0 && dy > 0.0))
-    return inputError("the header says no cellsize, or none that is positive", path, "the file is damaged");
+    return inputError("the header states no positive cellsize", path, "the file is damaged");
   for (const auto& corner : {h.x_corner, h.x_centre, h.y_corner, h.y_centre})
     if (corner && !std::isfinite(*corner))
       return inputError("the header's lower left corner is not finite", path, "the file is damaged");
@@ -113,8 +113,8 @@ Result<Grid> gridOf(const Header& h, std::uint64_t file_size, StatedUnits& units
   return grid;
 }
 
-// The rows, parsed as Float: straight to float where nothing is computed with them, so that they are rounded
-// once; to double where they are scaled.
+// The rows, parsed as Float: directly to float where they are not scaled, so that they are rounded once;
+// otherwise to double.
 template <class Float>
 Status readRows(TextReader& text, const std::string& first, const HeightRule& rule, FieldBuilder& builder,
                 HeightTally& tally, const std::string& path, JobControl& job) {
@@ -164,18 +164,18 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
   Result<Grid> grid = gridOf(*header, file.size(), units, path);
   if (!grid) return tl::unexpected(grid.error());
   std::vector<std::string> warnings;
-  const Sidecar beside = readAuxXml(path, warnings);
+  const Sidecar sidecar = readAuxXml(path, warnings);
   grid->crs_wkt = readPrj(path, warnings);
-  if (grid->crs_wkt.empty()) grid->crs_wkt = beside.crs_wkt;
-  units.height = heightUnitNamed(beside.height_unit, options, warnings);
+  if (grid->crs_wkt.empty()) grid->crs_wkt = sidecar.crs_wkt;
+  units.height = heightUnitNamed(sidecar.height_unit, options, warnings);
   if (!grid->crs_wkt.empty()) {
     const GdalSession quiet;
     unitsOfCrs(grid->crs_wkt, grid->origin_y + 0.5 * grid->height * units.spacing->second, units, warnings);
   }
-  settleUnits(*grid, units, options, warnings);
+  determineUnits(*grid, units, options, warnings);
   HeightRule rule;
   rule.scale = options.z_scale.value_or(1.0);
-  const std::optional<double> declared = settledNoData(header->no_data, beside, warnings);
+  const std::optional<double> declared = chooseNoData(header->no_data, sidecar, warnings);
   rule.declared_no_data = declared.value_or(kEsriNoData);
   rule.user_no_data = options.no_data;
   Result<FieldBuilder> builder = FieldBuilder::create(std::move(*grid), path);
@@ -185,12 +185,12 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
   const Status status = rule.scale == 1.0 ? readRows<float>(text, first, rule, *builder, tally, path, job)
                                           : readRows<double>(text, first, rule, *builder, tally, path, job);
   if (!status) return tl::unexpected(status.error());
-  tally.rounding = 0.0;  // decimal numbers are no floats to begin with
+  tally.rounding = 0.0;  // decimal numbers are not floats originally
   if (!declared && tally.holes > 0)
-    warnings.push_back("the header says no NODATA_VALUE, -9999 taken as the format has it");
+    warnings.push_back("the header states no NODATA_VALUE, -9999 is used as defined by the format");
   if (text.lastLineIsOpen()) warnings.emplace_back(kOpenLastLine);
   if (std::string_view rest; text.word(rest))
-    warnings.push_back("there are more numbers than the header promises, the rest was left out");
+    warnings.push_back("there are more numbers than the header states, the rest was left out");
   return finishImport(std::move(*builder), rule, tally, "AAIGrid", std::move(warnings), path);
 }
 

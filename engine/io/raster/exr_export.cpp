@@ -34,7 +34,7 @@ Status writePicture(const Version& field, const std::string& path, JobControl& j
   job.begin("writing", static_cast<std::uint64_t>(grid.height));
   for (std::int32_t top = 0; top < grid.height; top += kTileSide) {
     const std::int32_t count = std::min(kTileSide, grid.height - top);
-    // Read upside down: the first row of the file is the highest one of the field.
+    // Read in reverse order: the first row of the file is the highest one of the field.
     reader.readHeights(0, grid.height - top - count, grid.width, count,
                        rows.data() + static_cast<std::ptrdiff_t>(count - 1) * grid.width, -grid.width);
     Imf::FrameBuffer frame;
@@ -63,12 +63,12 @@ Result<Exported> writeExr(const Version& field, const std::string& path, const E
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    // Its words name the temporary file.
+    // Its message names the temporary file.
     const bool named = std::string_view(error.what()).find(file->temporaryPath()) != std::string_view::npos;
     return tl::unexpected(
         file->explained(failure(named ? "the file cannot be written"
                                       : fmt::format("the file cannot be written: {}", error.what()),
-                                path, "look at the disk or choose another folder")
+                                path, "check the disk or choose another folder")
                             .value()));
   }
   if (Status done = file->commit(); !done) return tl::unexpected(done.error());

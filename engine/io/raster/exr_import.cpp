@@ -49,7 +49,7 @@ class ExrSource : public Imf::IStream {
   std::uint64_t at_ = 0;
 };
 
-// Sizes of the header's attributes, before the library takes memory for them: it believes any up to 2 GB.
+// Sizes of the header's attributes, before the library allocates memory for them: it accepts any up to 2 GB.
 // Layout: "OpenEXR File Layout", https://openexr.com/en/latest/OpenEXRFileLayout.html
 class HeaderCheck {
  public:
@@ -71,7 +71,7 @@ class HeaderCheck {
           return false;
       }
       if (!text_.status() || broken_) return false;
-      if (empty || !parts) return true;  // an empty header ends those of parts
+      if (empty || !parts) return true;  // an empty header ends the list of parts
     }
     return false;
   }
@@ -90,8 +90,8 @@ class HeaderCheck {
     broken_ = true;
     return false;
   }
-  // Bytes of the types whose values the library reads without a look at the size that is said: a size that is
-  // another would have it read what comes next from the wrong place. 0: any.
+  // Bytes of the types whose values the library reads without checking the stated size: with another size it
+  // would read the following data from a wrong offset. 0: any.
   static std::uint32_t fixedSize(std::string_view type) {
     static constexpr std::pair<std::string_view, std::uint32_t> kSizes[] = {{"box2f", 16},
                                                                             {"box2i", 16},
@@ -130,7 +130,7 @@ class HeaderCheck {
     }
     return value.size() == 1;
   }
-  // Values that hold sizes of their own.
+  // Values that contain sizes themselves.
   bool inside(const std::string& type, std::uint32_t bytes) {
     if (const std::uint32_t size = fixedSize(type); size != 0 && bytes != size) return false;
     const char* value = bytes == 0 ? nullptr : text_.bytes(bytes);
@@ -154,7 +154,7 @@ class HeaderCheck {
   bool broken_ = false;
 };
 
-// The library's words: one line, no path (its own prefix names the stream).
+// The library's message: one line, no path (its own prefix names the stream).
 std::string reasonOf(const std::exception& error) {
   std::string text = error.what();
   if (const std::size_t own = text.find("\"scan\". "); own != std::string::npos) text.erase(0, own + 8);
@@ -163,7 +163,7 @@ std::string reasonOf(const std::exception& error) {
   return text;
 }
 
-// The channel that holds heights: under one of the names that programs give it, or the only one.
+// The channel with the heights: by one of the names in use, or the only one.
 const char* heightChannel(const Imf::ChannelList& channels) {
   for (const char* name : {"Y", "Z", "height", "Height", "elevation", "depth", "R"})
     if (channels.findChannel(name) != nullptr) return name;
@@ -193,7 +193,7 @@ struct Plan {
 Result<Plan> planOf(const Imf::Header& header, const InputFile& file, std::vector<std::string>& warnings) {
   const std::string& path = file.path();
   const Imath::Box2i& window = header.dataWindow();
-  // Within int by the library's check of the header; the difference is not.
+  // Within int by the library's check of the header; the difference may not be.
   const auto width = static_cast<std::int64_t>(window.max.x) - window.min.x + 1;
   const auto height = static_cast<std::int64_t>(window.max.y) - window.min.y + 1;
   if (width <= 0 || height <= 0) return inputError("the picture has no samples", path, "the file is damaged");
@@ -210,10 +210,10 @@ Result<Plan> planOf(const Imf::Header& header, const InputFile& file, std::vecto
         path, "name the one with heights Y or Z");
   const Imf::Channel& channel = header.channels()[name];
   if (channel.xSampling != 1 || channel.ySampling != 1)
-    return inputError(fmt::format("channel {} has not every sample", name), path, "export it in full");
+    return inputError(fmt::format("channel {} does not have every sample", name), path, "export it in full");
   if (isNoLength(name))
     warnings.push_back(
-        fmt::format("the only channel is \"{}\", which is no length: are these heights?", name));
+        fmt::format("the only channel is \"{}\", which is not a length: are these heights?", name));
   Plan plan{name, false, window.min.x, window.min.y, static_cast<int>(width), static_cast<int>(height)};
   const Imf::Channel* const alpha = header.channels().findChannel("A");
   plan.alpha = alpha != nullptr && alpha->xSampling == 1 && alpha->ySampling == 1;
@@ -229,12 +229,12 @@ Result<Plan> planOf(const Imf::Header& header, const InputFile& file, std::vecto
 Status readRows(Imf::InputPart& part, const Plan& plan, const HeightRule& rule, FieldBuilder& builder,
                 HeightTally& tally, JobControl& job) {
   const auto width = static_cast<std::size_t>(plan.width);
-  // As many rows as a tile of the field has: files with tiles or blocks of lines unpack them once for these.
+  // As many rows as a tile of the field: files with tiles or blocks of lines decompress them once for these.
   std::vector<float> numbers(width * kTileSide), alpha(plan.alpha ? numbers.size() : 0), heights(width);
   std::int64_t transparent = 0;
   for (int from = 0; from < plan.height; from += kTileSide) {
     const int rows = std::min<int>(kTileSide, plan.height - from);
-    // Addresses are those of the picture's corner 0, 0, wherever its window lies.
+    // Addresses are relative to the picture's corner 0, 0, at any position of its window.
     const auto slice = [&](std::vector<float>& into) {
       const std::ptrdiff_t origin = static_cast<std::ptrdiff_t>(plan.top + from) * plan.width + plan.left;
       return Imf::Slice(Imf::FLOAT,
@@ -268,10 +268,10 @@ Result<Imported> readPicture(const InputFile& file, const ImportOptions& options
   Imf::Header::setMaxImageSize(Grid::kMaxSide, Grid::kMaxSide);
   Imf::Header::setMaxTileSize(kLargestTile, kLargestTile);
   if (!HeaderCheck(file).sound(file.size()))
-    return inputError("the header's attributes lead out of the file", path,
+    return inputError("the header's attributes point outside the file", path,
                       "the file is cut short or damaged");
   ExrSource source(file);
-  // A table of lines that a crash of the writer left empty is not mended by guessing.
+  // A table of lines that a crash of the writer left empty is not reconstructed.
   Imf::MultiPartInputFile picture(source, 0, false);
   int index = 0;
   const auto flat = [&](int i) {
@@ -279,7 +279,7 @@ Result<Imported> readPicture(const InputFile& file, const ImportOptions& options
   };
   while (index < picture.parts() && !flat(index)) ++index;
   if (index == picture.parts())
-    return inputError("the picture is deep: many samples a pixel", path, "flatten it first");
+    return inputError("the picture is deep: many samples per pixel", path, "flatten it first");
   const Imf::Header& header = picture.header(index);
   std::vector<std::string> warnings;
   if (picture.parts() > 1) warnings.push_back(fmt::format("of {} pictures one was read", picture.parts()));
@@ -299,7 +299,7 @@ Result<Imported> readPicture(const InputFile& file, const ImportOptions& options
     }
   grid.width = plan->width;
   grid.height = plan->height;
-  settleUnits(grid, units, options, warnings);
+  determineUnits(grid, units, options, warnings);
   HeightRule rule;
   rule.scale = options.z_scale.value_or(1.0);
   rule.user_no_data = options.no_data;

@@ -24,7 +24,7 @@ FormatRow pngFormat, tiffFormat;  // png_import.cpp, tiff_import.cpp
 
 namespace {
 
-// Sets the marks of a field one tile row at a time, from rows that come from the top of the picture down.
+// Sets the marks of a field one tile row at a time, from the rows of a picture from top to bottom.
 class MarkSetter {
  public:
   explicit MarkSetter(const Version& field)
@@ -32,16 +32,16 @@ class MarkSetter {
     strip_.resize(static_cast<std::size_t>(width_) * kTileSide);
   }
 
-  // `row` counts from the bottom, and falls from call to call. False when memory ran out.
+  // `row` counts from the bottom, and decreases from call to call. False when memory ran out.
   [[nodiscard]] bool take(std::int32_t row, const unsigned char* pixels) {
     std::memcpy(strip_.data() + static_cast<std::size_t>(row % kTileSide) * width_, pixels,
                 static_cast<std::size_t>(width_));
-    return row % kTileSide != 0 || settle(row / kTileSide);
+    return row % kTileSide != 0 || applyTileRow(row / kTileSide);
   }
   [[nodiscard]] Version result() { return live_.snapshot(); }
 
  private:
-  [[nodiscard]] bool settle(std::int32_t tr) {
+  [[nodiscard]] bool applyTileRow(std::int32_t tr) {
     const std::int32_t rows = std::min(kTileSide, height_ - tr * kTileSide);
     for (std::int32_t tc = 0; tc * kTileSide < width_; ++tc) {
       const std::int32_t columns = std::min(kTileSide, width_ - tc * kTileSide);
@@ -77,7 +77,7 @@ Status checkSize(const Version& field, std::int64_t width, std::int64_t height, 
 }
 
 Result<Version> noMemory(const std::string& path) {
-  return failure("memory for the marks could not be had", path);
+  return failure("there is not enough memory for the marks", path);
 }
 
 Result<Version> fromPng(const Version& field, const InputFile& file) {
@@ -158,7 +158,7 @@ Status toTiff(const Version& field, const AtomicFile& file) {
   const auto full = [&] {
     return tl::unexpected(
         file.explained(failure("the file cannot be written: " + gdal.reason("the library gives no reason"),
-                               file.finalPath(), "look at the disk or choose another folder")
+                               file.finalPath(), "check the disk or choose another folder")
                            .value()));
   };
   const std::array<const char*, 3> options{"COMPRESS=DEFLATE", "BIGTIFF=IF_SAFER", nullptr};
@@ -207,7 +207,7 @@ Status exportMarks(const Version& field, const std::string& path) {
     if (Status status = extension == ".png" ? toPng(field, *file) : toTiff(field, *file); !status)
       return status;
   } catch (const std::bad_alloc&) {
-    return failure("memory for the marks could not be had", path);
+    return failure("there is not enough memory for the marks", path);
   }
   return file->commit();
 }

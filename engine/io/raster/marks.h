@@ -7,16 +7,15 @@
 
 namespace fettle::engine {
 
-/// The keep mask as a picture: 8-bit grey PNG or TIFF, one pixel a sample, non-zero = marked (keep), the top
-/// row of the picture = the HIGHEST row of the field.
+/// The keep mask as a picture: 8-bit grey PNG or TIFF, one pixel per sample, non-zero = marked (keep), the
+/// top row of the picture = the HIGHEST row of the field.
 
-/// The same heights, sign and grid with exactly the marks of the picture; marks that `field` had are gone.
-/// Tiles whose marks do not change stay shared with `field`. Errors (kInput): not such a picture, another
-/// size than the field.
-/// Thread: any.
+/// The same heights, sign and grid with exactly the marks of the picture; previous marks of `field` are
+/// removed. Tiles whose marks do not change stay shared with `field`. Errors (kInput): not such a picture,
+/// another size than the field. Thread: any.
 [[nodiscard]] Result<Version> importMarks(const Version& field, const std::string& path);
 
-/// Writes the marks as 0 and 255; PNG or TIFF by extension (.png, .tif, .tiff). Whole or not at all.
+/// Writes the marks as 0 and 255; PNG or TIFF by extension (.png, .tif, .tiff). Completely or not at all.
 /// Errors: kInput. Thread: any.
 [[nodiscard]] Status exportMarks(const Version& field, const std::string& path);
 

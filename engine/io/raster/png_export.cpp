@@ -1,4 +1,4 @@
-// 16-bit grey PNG: height = offset + count * step, 0 = hole. The picture says the rule in its Description.
+// 16-bit grey PNG: height = offset + count * step, 0 = hole. The picture's Description states the rule.
 
 #include <cmath>
 #include <cstdint>
@@ -18,14 +18,14 @@ namespace {
 struct Quantisation {
   double offset = 0.0;
   double step = 1.0;
-  bool counts_given_back = true;  // the offset is 0, so that --z-scale alone reads it back
+  bool counts_given_back = true;  // the offset is 0, so that --z-scale alone restores the heights
 };
 
 bool hasHoles(const FieldReader& reader) {
   return reader.root().holed_children != 0;
 }
 
-// 0 stands for a hole, so a height of 0 fits only where there is none.
+// 0 stands for a hole, so a height of 0 fits only without holes.
 bool fits(const HeightBounds& bounds, bool holes, double step) {
   return std::nearbyint(bounds.min / step) >= (holes ? 1.0 : 0.0) &&
          std::nearbyint(bounds.max / step) <= 65535.0;
@@ -38,15 +38,15 @@ Result<Quantisation> chooseSteps(const Version& field, const ExportOptions& opti
   const std::string& unit = field.grid().height_unit.name;
   if (options.height_per_count) {
     if (!fits(bounds, holes, *options.height_per_count))
-      return inputError(fmt::format("heights {} to {} {} do not fit 16 bits at {} a count", bounds.min,
+      return inputError(fmt::format("heights {} to {} {} do not fit 16 bits at {} per count", bounds.min,
                                     bounds.max, unit, *options.height_per_count),
-                        path, "leave the height of a count out or write a .tif");
+                        path, "omit the height per count or write a .tif");
     return Quantisation{0.0, *options.height_per_count, true};
   }
   const double own = field.grid().height_per_count;
   if (own > 0.0 && fits(bounds, holes, own)) return Quantisation{0.0, own, true};
   if (own > 0.0)
-    warnings.push_back(fmt::format("heights do not fit 16 bits at {} {} a count any more", own, unit));
+    warnings.push_back(fmt::format("heights no longer fit 16 bits at {} {} per count", own, unit));
   const double range = static_cast<double>(bounds.max) - static_cast<double>(bounds.min);
   const double step = range > 0.0 ? range / 65534.0 : 1.0;
   return Quantisation{static_cast<double>(bounds.min) - step, step, false};
@@ -96,7 +96,7 @@ Result<Exported> writePng(const Version& field, const std::string& path, const E
       }
       const double height = heights[c];
       const double count = std::nearbyint((height - q.offset) / q.step);
-      // What a reader computes: rounded to float like every height.
+      // The value computed by a reader: rounded to float like every height.
       worst = std::fmax(
           worst, std::abs(static_cast<double>(static_cast<float>(q.offset + count * q.step)) - height));
       counts[c] = static_cast<std::uint16_t>(count);
@@ -110,7 +110,7 @@ Result<Exported> writePng(const Version& field, const std::string& path, const E
   if (Status status = file->commit(); !status) return tl::unexpected(status.error());
   exported.warnings.push_back(fmt::format("{}; largest error {:.3g} {}", rule, worst, unit));
   exported.warnings.push_back(
-      fmt::format("PNG keeps no spacing ({} x {} {}), units, origin or coordinate system: they are "
+      fmt::format("PNG stores no spacing ({} x {} {}), units, origin or coordinate system: they are "
                   "in the picture's description only",
                   grid.spacing_x, grid.spacing_y, grid.lateral_unit.name));
   return exported;

@@ -20,15 +20,15 @@ namespace fettle::engine {
 
 namespace {
 
-// Pixels per metre that stand for 72, 96, 150, 300 and 600 an inch, rounded either way.
+// Pixels per metre of 72, 96, 150, 300 and 600 per inch, rounded either way.
 bool isPrintResolution(std::uint32_t per_metre) {
   for (const double inch : {72.0, 96.0, 150.0, 300.0, 600.0})
     if (std::abs(per_metre - inch / 0.0254) < 1.0) return true;
   return false;
 }
 
-// What a PNG of ours says of its counts (png_export.cpp): "height = -2 + count * 0.005 mm, 0 = no data; ...".
-// Counts stay counts, as in any PNG, but its holes are holes and the way to heights is pointed out.
+// The rule for counts in a PNG written by Fettle (png_export.cpp): "height = -2 + count * 0.005 mm, 0 = no
+// data; ...". Counts stay counts, as in any PNG, but holes are read, and a warning states how to get heights.
 struct CountRule {
   std::string height;  // the right-hand side
   bool zero_is_hole = false;
@@ -79,14 +79,14 @@ Result<Imported> readPng(const InputFile& file, const ImportOptions& options, Jo
     const auto [across, down] = *header.per_metre;
     if (isPrintResolution(across) && isPrintResolution(down))
       warnings.push_back(
-          fmt::format("the file says {} samples a metre, a print resolution: not believed", across));
+          fmt::format("the file states {} samples per metre, a print resolution, which was ignored", across));
     else
       units.spacing_mm = std::pair{1000.0 / across, 1000.0 / down};
   }
   Grid grid;
   grid.width = header.width;
   grid.height = header.height;
-  settleUnits(grid, units, options, warnings);
+  determineUnits(grid, units, options, warnings);
   HeightRule rule;
   rule.scale = options.z_scale.value_or(1.0);
   rule.user_no_data = options.no_data;
@@ -94,11 +94,12 @@ Result<Imported> readPng(const InputFile& file, const ImportOptions& options, Jo
   if (const auto stated = countRuleOf(header.description)) {
     if (stated->zero_is_hole) rule.declared_no_data = 0.0;
     if (!options.z_scale)
-      warnings.push_back(fmt::format(
-          "the file says height = {}: counts were read, --z-scale makes heights of them", stated->height));
+      warnings.push_back(
+          fmt::format("the file states height = {}: counts were read, --z-scale converts them to heights",
+                      stated->height));
   }
-  const Sidecar beside = readAuxXml(file.path(), warnings);
-  rule.declared_no_data = settledNoData(rule.declared_no_data, beside, warnings);
+  const Sidecar sidecar = readAuxXml(file.path(), warnings);
+  rule.declared_no_data = chooseNoData(rule.declared_no_data, sidecar, warnings);
   grid.height_per_count = std::abs(rule.scale);
 
   Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), file.path());

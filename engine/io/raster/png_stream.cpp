@@ -12,8 +12,8 @@
 #include "engine/field/grid.h"
 #include "engine/io/field_limits.h"
 
-// libpng reports errors by longjmp. Every function that calls setjmp here keeps only trivial locals, and
-// every callback has destroyed its objects before it calls png_error.
+// libpng reports errors by longjmp. Every function here that calls setjmp has only trivial locals, and every
+// callback has destroyed its objects before it calls png_error.
 
 namespace fettle::engine {
 
@@ -46,8 +46,8 @@ struct PngReader::State {
     if (!pull(static_cast<State*>(png_get_io_ptr(png)), out, bytes))
       png_error(png, "the file ends too early");
   }
-  // A chunk that says it is longer than libpng's own limit is only warned of, and its buffer asked for all
-  // the same. Rows take 4 bytes a sample at most, and nothing else that is read is held whole.
+  // libpng only warns of a chunk longer than its limit, and still allocates its buffer. Rows take at most 4
+  // bytes per sample, and nothing else that is read is held completely.
   static constexpr png_alloc_size_t kMostBytes = 16U << 20;
   static_assert(kMostBytes > 4ULL * Grid::kMaxSide + 4096);
   static png_voidp allocate(png_structp, png_alloc_size_t bytes) {
@@ -58,7 +58,7 @@ struct PngReader::State {
     return inputError("the PNG cannot be read: " + message, file->path(), "the file is cut short or damaged");
   }
 
-  // What stands before the samples. Texts behind them come too late for reading these.
+  // Texts before the samples only: later ones come too late for reading these.
   [[nodiscard]] std::string description() const {
     png_textp texts = nullptr;
     int count = 0;
@@ -118,7 +118,7 @@ Result<PngReader> PngReader::open(const InputFile& file) {
   state->png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, state.get(), State::fail, keepQuiet, nullptr,
                                         State::allocate, State::release);
   if (state->png != nullptr) state->info = png_create_info_struct(state->png);
-  if (state->info == nullptr) return failure("memory for reading the PNG could not be had", file.path());
+  if (state->info == nullptr) return failure("there is not enough memory to read the PNG", file.path());
   png_set_read_fn(state->png, state.get(), State::read);
   PngReader reader(std::move(state));
   if (Status status = reader.readHeader(); !status) return tl::unexpected(status.error());
@@ -249,7 +249,7 @@ Result<PngWriter> PngWriter::create(AtomicFile& file, const PngHeader& header, c
   state->file = &file;
   state->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, state.get(), State::fail, keepQuiet);
   if (state->png != nullptr) state->info = png_create_info_struct(state->png);
-  if (state->info == nullptr) return failure("memory for writing the PNG could not be had", file.finalPath());
+  if (state->info == nullptr) return failure("there is not enough memory to write the PNG", file.finalPath());
   png_set_write_fn(state->png, state.get(), State::write, State::flushNothing);
   std::string key = "Description";
   std::string value = text;

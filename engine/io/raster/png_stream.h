@@ -20,10 +20,10 @@ namespace fettle::engine {
 struct PngHeader {
   std::int32_t width = 0;
   std::int32_t height = 0;
-  int bits = 8;             ///< 1, 2, 4, 8 or 16; below 8 a sample still takes a byte in the rows
+  int bits = 8;             ///< 1, 2, 4, 8 or 16; below 8 a sample still takes one byte in the rows
   bool alpha = false;       ///< a second channel, left out of the rows
   bool interlaced = false;  ///< the whole picture is held while it is read
-  std::optional<std::uint16_t> transparent;  ///< the one value that the file calls transparent
+  std::optional<std::uint16_t> transparent;  ///< the one value that the file declares transparent
   std::optional<std::pair<std::uint32_t, std::uint32_t>> per_metre;  ///< pixels across, down
   std::string description;  ///< of a file that is read: its text "Description", empty if none; one line
 };
@@ -42,7 +42,7 @@ class PngReader {
 
   /// The next row from the top: header().width samples of 2 bytes (native order) at 16 bits, else of 1 byte.
   [[nodiscard]] Status readRow(unsigned char* row);
-  /// After the last row: checks that the file ends as it should.
+  /// After the last row: checks that the end of the file is valid.
   [[nodiscard]] Status finish();
 
  private:
@@ -60,8 +60,8 @@ class PngReader {
 /// Writes a grey PNG of 8 or 16 bits into an AtomicFile, which it does not commit.
 class PngWriter {
  public:
-  /// `text`: a comment kept under the keyword "Description", empty for none; header.description is not looked
-  /// at. per_metre: see PngHeader.
+  /// `text`: a comment under the keyword "Description", empty for none; header.description is not used.
+  /// per_metre: see PngHeader.
   [[nodiscard]] static Result<PngWriter> create(AtomicFile& file, const PngHeader& header,
                                                 const std::string& text);
   PngWriter(PngWriter&&) noexcept;

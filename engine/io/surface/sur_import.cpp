@@ -1,7 +1,7 @@
-// Digital Surf .sur: one topography of a surface, as MountainsMap and many instruments write it. A header of
-// 512 bytes, a comment, private bytes, then integers of 16 or 32 bits, line by line; "DSCOMPRESSED" packs
-// them into zlib streams. Layout: Digital Surf, "Surface data file format", as described by the readers of
-// Gwyddion and HyperSpy.
+// Digital Surf .sur: one topography of a surface, as written by MountainsMap and many instruments. A header
+// of 512 bytes, a comment, private bytes, then integers of 16 or 32 bits, line by line; "DSCOMPRESSED"
+// compresses them into zlib streams. Layout: Digital Surf, "Surface data file format", as implemented by the
+// readers of Gwyddion and HyperSpy.
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ namespace fettle::engine {
 namespace {
 
 constexpr std::size_t kSurHeader = 512;
-constexpr double kZlibRatio = 1032.0;  // the most that Deflate packs
+constexpr double kZlibRatio = 1032.0;  // the largest ratio of Deflate
 
 struct SurHeader {
   bool compressed = false;
@@ -38,7 +38,7 @@ struct SurHeader {
   std::uint64_t data = 0;  // offset of the first sample or stream
 };
 
-// A text of fixed length: up to a NUL, without spaces at its end. Mountains writes micro as Latin-1.
+// A text of fixed length: up to a NUL, without trailing spaces. Mountains writes micro as Latin-1.
 std::string textAt(const char* bytes, std::size_t length) {
   std::string text(bytes, length);
   text.resize(std::min(text.find('\0'), text.size()));
@@ -63,10 +63,10 @@ Result<SurHeader> readHeader(const InputFile& file) {
                       "export it again as a PC file");
   if (at16(14) > 1)  // series and layers
     return inputError(fmt::format("the file holds {} surfaces", at16(14)), file.path(),
-                      "export the one that is wanted alone");
+                      "export only one of them");
   if (at16(18) != 2)  // 2 = surface; 1 profile, 10 picture, 12 colours ...
-    return inputError(fmt::format("the file holds no surface but something of type {}", at16(18)),
-                      file.path(), "export a topography");
+    return inputError(fmt::format("the file holds no surface but data of type {}", at16(18)), file.path(),
+                      "export a topography");
   out.bits = at16(98);
   if (out.bits != 16 && out.bits != 32)
     return inputError(fmt::format("samples of {} bits", out.bits), file.path(), "the file is damaged");
@@ -87,15 +87,15 @@ Result<SurHeader> readHeader(const InputFile& file) {
   out.data = kSurHeader + static_cast<std::uint16_t>(at16(334)) + static_cast<std::uint16_t>(at16(336));
   if (out.width <= 0 || out.height <= 0 || out.points != out.width * out.height)
     return inputError(
-        fmt::format("the header says {} x {} samples and {} in all", out.width, out.height, out.points),
+        fmt::format("the header states {} x {} samples and {} in total", out.width, out.height, out.points),
         file.path(), "the file is damaged");
   const auto usable = [](float v) { return std::isfinite(v) && v > 0.0F; };
   if (!usable(out.dx) || !usable(out.dy) || !std::isfinite(out.dz) || out.dz == 0.0F)
-    return inputError("the header's spacings are no lengths", file.path(), "give --spacing and --z-scale");
+    return inputError("the header's spacings are not lengths", file.path(), "give --spacing and --z-scale");
   return out;
 }
 
-// Unpacks the streams one after another; gives the bytes out in pieces of any size.
+// Decompresses the streams one after another; returns the bytes in pieces of any size.
 class SurBytes {
  public:
   SurBytes(const InputFile& file, const SurHeader& header)
@@ -154,7 +154,7 @@ class SurBytes {
       }
       const int done = inflate(&stream_, Z_NO_FLUSH);
       if (done == Z_STREAM_END) {
-        at_ += left_;  // what an ill-made stream has behind its end
+        at_ += left_;  // bytes of a malformed stream after its end
         inflateEnd(&stream_);
         open_ = false;
       } else if (done != Z_OK) {
@@ -195,7 +195,7 @@ Status readRows(SurBytes& bytes, const HeightRule& rule, FieldBuilder& builder, 
   const std::int32_t width = builder.grid().width;
   std::vector<T> numbers(static_cast<std::size_t>(width));
   std::vector<float> heights(static_cast<std::size_t>(width));
-  // Lines are shown from the top down.
+  // Lines are stored from the top down.
   for (std::int32_t row = builder.grid().height - 1; row >= 0; --row) {
     if (job.cancelled()) return cancelled();
     if (Status status = bytes.read(reinterpret_cast<char*>(numbers.data()), numbers.size() * sizeof(T));
@@ -231,18 +231,18 @@ Result<Imported> readSur(const InputFile& file, const ImportOptions& options, Jo
   if (header->unit_x != header->unit_y)
     return inputError(fmt::format("x is in {}, y in {}", header->unit_x, header->unit_y), file.path(),
                       "export it with one unit");
-  // The float's decimal digits are what was meant: 0.003484, not 0.0034839999862015247.
-  const auto meant = [](float v) { return std::strtod(fmt::format("{}", v).c_str(), nullptr); };
-  units.spacing = std::pair{meant(header->dx), meant(header->dy)};
+  // The decimal digits of the float are the intended ones: 0.003484, not 0.0034839999862015247.
+  const auto decimalOf = [](float v) { return std::strtod(fmt::format("{}", v).c_str(), nullptr); };
+  units.spacing = std::pair{decimalOf(header->dx), decimalOf(header->dy)};
   Grid grid;
   grid.width = static_cast<std::int32_t>(header->width);
   grid.height = static_cast<std::int32_t>(header->height);
-  grid.origin_x = std::isfinite(header->x0) ? meant(header->x0) : 0.0;
-  grid.origin_y = std::isfinite(header->y0) ? meant(header->y0) : 0.0;
-  settleUnits(grid, units, options, warnings);
+  grid.origin_x = std::isfinite(header->x0) ? decimalOf(header->x0) : 0.0;
+  grid.origin_y = std::isfinite(header->y0) ? decimalOf(header->y0) : 0.0;
+  determineUnits(grid, units, options, warnings);
   HeightRule rule;
-  rule.scale = options.z_scale.value_or(meant(header->dz));
-  if (!options.z_scale && std::isfinite(header->z0)) rule.offset = meant(header->z0);
+  rule.scale = options.z_scale.value_or(decimalOf(header->dz));
+  if (!options.z_scale && std::isfinite(header->z0)) rule.offset = decimalOf(header->z0);
   rule.user_no_data = options.no_data;
   if (header->holes) rule.declared_no_data = static_cast<double>(header->lowest) - 2.0;
   grid.height_per_count = std::abs(rule.scale);
@@ -256,7 +256,7 @@ Result<Imported> readSur(const InputFile& file, const ImportOptions& options, Jo
   const Status status = header->bits == 16 ? readRows<std::int16_t>(bytes, rule, *builder, tally, job)
                                            : readRows<std::int32_t>(bytes, rule, *builder, tally, job);
   if (!status) return tl::unexpected(status.error());
-  // As long as each count can be told from the next, its float stands for it and nothing is lost.
+  // As long as counts stay distinct, the float of each represents it and nothing is lost.
   if (tally.rounding < 0.5 * std::abs(rule.scale)) tally.rounding = 0.0;
   return finishImport(std::move(*builder), rule, tally, "SUR", std::move(warnings), file.path());
 }

@@ -46,7 +46,7 @@ std::string mainXml(const Grid& grid, char type, const std::string& checksum) {
 
 static_assert(std::endian::native == std::endian::little, "x3p wants its numbers little-endian");
 
-// Rows from the top, as other programs show them, each number as Number in metres.
+// Rows from the top, as in other programs, each number as Number in metres.
 template <class Number>
 Status writeHeights(const Version& field, ZipWriter& zip, Md5& md5, JobControl& job) {
   const Grid& grid = field.grid();
@@ -79,8 +79,8 @@ Status writeHeights(const Version& field, ZipWriter& zip, Md5& md5, JobControl& 
 
 Status writeAll(const Version& field, ZipWriter& zip, JobControl& job) {
   const Grid& grid = field.grid();
-  // Metres are metres: the floats go in as they are. Of another unit the product takes the digits of a
-  // double; divided again it rounds to the very float.
+  // Metres are stored unchanged as floats. For another unit the product takes the digits of a double; divided
+  // again it rounds to exactly the original float.
   const bool metres = grid.height_unit.mm == 1000.0;
   Md5 md5;
   if (Status status =

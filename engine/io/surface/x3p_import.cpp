@@ -1,8 +1,8 @@
-// x3p (ISO 5436-2:2012, ISO 25178-72:2017), surfaces: a zip with main.xml, which holds the heights as text or
-// names the entry that holds them as bytes. Everything is in metres.
+// x3p (ISO 5436-2:2012, ISO 25178-72:2017), surfaces: a zip with main.xml, which contains the heights as text
+// or names the entry with them as bytes. Everything is in metres.
 //
-// The standard counts rows along y without saying which way a screen shows them; MountainsMap, Gwyddion and
-// x3ptools show the first one at the top, and so does this.
+// The standard counts rows along y without a display direction; MountainsMap, Gwyddion and x3ptools show the
+// first one at the top, and so does this importer.
 
 #include <algorithm>
 #include <cmath>
@@ -44,8 +44,8 @@ std::string lowerCase(std::string text) {
   return text;
 }
 
-// Folder of main.xml, with its slash: archives are made of the files or of a folder that holds them. The
-// shallowest one counts, and none that a Mac put there for itself.
+// Folder of main.xml, with its slash: archives contain the files or a folder with them. The shallowest one
+// counts, except folders added by macOS.
 Result<std::string> folderOf(const InputFile& file) {
   ZipReader zip(file);
   std::optional<std::string> folder;
@@ -64,7 +64,7 @@ Result<std::string> folderOf(const InputFile& file) {
   return *folder;
 }
 
-// Goes to an entry whatever its case, as it is written on systems that know none.
+// Moves to an entry, ignoring case, for archives written on systems that ignore it.
 bool findEntry(ZipReader& zip, const std::string& name) {
   const std::string wanted = lowerCase(name);
   while (zip.next())
@@ -72,7 +72,7 @@ bool findEntry(ZipReader& zip, const std::string& name) {
   return false;
 }
 
-// A small entry as a whole; empty if there is none or it is too long.
+// Content of a small entry; empty if there is none or it is too long.
 std::string smallEntry(const InputFile& file, const std::string& name) {
   ZipReader zip(file);
   if (!findEntry(zip, name)) return {};
@@ -83,13 +83,13 @@ std::string smallEntry(const InputFile& file, const std::string& name) {
   return text;
 }
 
-// main.xml as a stream: the beginning goes to the XML parser; a matrix of text, which may be as long as it
-// likes, is taken number by number.
+// main.xml as a stream: the beginning goes to the XML parser; a matrix of text, which may be arbitrarily
+// long, is read number by number.
 class XmlStream {
  public:
   XmlStream(const InputFile& file, const std::string& name) : zip_(file), found_(findEntry(zip_, name)) {}
 
-  // All up to the tag that opens the matrix, which is left out, or to the end.
+  // All up to the tag that opens the matrix, without it, or to the end.
   Result<std::string> head(const InputFile& file) {
     if (!found_) return damaged("the archive holds no main.xml", file);
     std::string text;
@@ -119,7 +119,7 @@ class XmlStream {
   }
   [[nodiscard]] bool hasMatrix() const noexcept { return has_matrix_; }
 
-  // The text of the next Datum, empty for one without; false at the end of the matrix.
+  // The text of the next Datum, empty for one without text; false at the end of the matrix.
   bool datum(std::string& text) {
     std::string tag;
     gap_ = 0;
@@ -137,7 +137,7 @@ class XmlStream {
   }
   [[nodiscard]] const Status& status() const noexcept { return status_; }
 
-  // MD5 of the whole entry; reads what is left of it. Nothing if that is no mere end of a document.
+  // MD5 of the whole entry; reads the rest of it. Nothing if the rest is more than the end of a document.
   std::optional<std::string> checksum() {
     for (std::size_t read = 0; fill(); read += end_ - std::exchange(begin_, end_))
       if (read > kLongestXml) return std::nullopt;
@@ -155,7 +155,7 @@ class XmlStream {
     md5_.add({buffer_.data(), end_});
     return true;
   }
-  // Everything up to a character, which is taken too unless `keep`; false at the end or when it is too long.
+  // Reads up to a character, which is consumed too unless `keep`; false at the end or when it is too long.
   bool until(char wanted, std::string* text, bool keep = false) {
     if (text != nullptr) text->clear();
     while (fill()) {
@@ -186,7 +186,7 @@ class XmlStream {
   Status status_;
 };
 
-// A child by its name, whatever the name space is called.
+// A child by its name, in any name space.
 pugi::xml_node child(pugi::xml_node node, std::string_view name) {
   for (const pugi::xml_node one : node.children()) {
     std::string_view own = one.name();
@@ -204,7 +204,7 @@ std::string textOf(pugi::xml_node node) {
   return text.substr(from, text.find_last_not_of(" \t\r\n") - from + 1);
 }
 
-// A number that may be left out; an error when it is there and no finite number.
+// An optional number; an error when it is present and not finite.
 Result<std::optional<double>> numberOf(pugi::xml_node node, const InputFile& file) {
   const std::string text = textOf(node);
   if (text.empty()) return std::optional<double>{};
@@ -214,7 +214,7 @@ Result<std::optional<double>> numberOf(pugi::xml_node node, const InputFile& fil
       !std::isfinite(value)) {
     if (text.find(',') != std::string::npos)
       return damaged(fmt::format("\"{}\" in {} has a decimal comma", text.substr(0, 40), node.name()), file);
-    return damaged(fmt::format("\"{}\" in {} is no number", text.substr(0, 40), node.name()), file);
+    return damaged(fmt::format("\"{}\" in {} is not a number", text.substr(0, 40), node.name()), file);
   }
   return std::optional(value);
 }
@@ -231,7 +231,7 @@ struct Surface {
   std::uint64_t width = 0, height = 0;
   std::string data, data_md5, valid;  // names within the archive, without folder
   std::string checksum_file;
-  bool other_parts = false;  // a mask picture or other things that are not taken
+  bool other_parts = false;  // a mask picture or other parts that are not read
 };
 
 Result<Axis> readAxis(pugi::xml_node node, const InputFile& file) {
@@ -311,7 +311,7 @@ std::size_t bytesOf(char type) {
   return type == 'I' ? 2 : type == 'D' ? 8 : 4;
 }
 
-// One bit a point, the lowest first; a set one is measured.
+// One bit per point, the lowest first; a set one is measured.
 Result<std::string> readValidity(const Surface& surface, const std::string& folder, const InputFile& file) {
   ZipReader zip(file);
   if (!findEntry(zip, folder + surface.valid))
@@ -373,8 +373,8 @@ class Rows {
     while (at < end && std::strchr(" \t\r\n", *at) != nullptr) ++at;
     while (at < end && std::strchr(" \t\r\n", end[-1]) != nullptr) --end;
     if (at == end || (parseNumber(at, end, out) && at == end)) return {};  // an empty one was not measured
-    return damaged(fmt::format("\"{}\" in row {}, column {} is no number", datum.substr(0, 40), r + 1, c + 1),
-                   file_);
+    return damaged(
+        fmt::format("\"{}\" in row {}, column {} is not a number", datum.substr(0, 40), r + 1, c + 1), file_);
   }
 
   template <class T>
@@ -401,7 +401,7 @@ class Rows {
   std::vector<float> heights_;
 };
 
-// The grid of a field that this program wrote, if main.xml still says the same.
+// The grid of a field that this program wrote, if main.xml still agrees with it.
 std::optional<Grid> ownGrid(const Surface& surface, const std::string& folder, const InputFile& file) {
   auto grid = gridOfNotes(smallEntry(file, folder + "fettle.txt"));
   if (!grid || !surface.x.increment || !surface.y.increment) return std::nullopt;
@@ -420,7 +420,7 @@ void checkMainXml(XmlStream& xml, const Surface& surface, const std::string& fol
   const std::string stated =
       surface.checksum_file.empty() ? std::string() : smallEntry(file, folder + surface.checksum_file);
   if (stated.size() >= 32 && lowerCase(stated.substr(0, 32)) != xml.checksum())
-    warnings.emplace_back("main.xml is not what its checksum says: it was changed after it was written");
+    warnings.emplace_back("main.xml does not match its checksum: it was changed after it was written");
 }
 
 bool looksLikeX3p(std::string_view head, std::string_view) {
@@ -434,12 +434,12 @@ Result<Imported> readX3p(const InputFile& file, const ImportOptions& options, Jo
   Result<std::string> head = xml.head(file);
   if (!head) return tl::unexpected(head.error());
   pugi::xml_document document;
-  // No entity is ever expanded but the five of XML. Cut off before the matrix, the document has no end: what
-  // was read so far is all that is needed.
+  // No entity is expanded except the five of XML. Cut off before the matrix, the document has no end: what
+  // was read so far is sufficient.
   const pugi::xml_parse_result parsed = document.load_buffer_inplace(
       head->data(), head->size(), pugi::parse_minimal | pugi::parse_escapes, pugi::encoding_auto);
   if (!parsed && !(xml.hasMatrix() && parsed.status == pugi::status_end_element_mismatch))
-    return damaged(fmt::format("main.xml is no XML: {}", parsed.description()), file);
+    return damaged(fmt::format("main.xml is not XML: {}", parsed.description()), file);
   const Result<Surface> surface = readSurface(document, file);
   if (!surface) return tl::unexpected(surface.error());
   if (!xml.hasMatrix() && surface->data.empty()) return damaged("main.xml names no heights", file);
@@ -481,9 +481,9 @@ Result<Imported> readX3p(const InputFile& file, const ImportOptions& options, Jo
   rule.user_no_data = options.no_data;
   grid.width = static_cast<std::int32_t>(surface->width);
   grid.height = static_cast<std::int32_t>(surface->height);
-  settleUnits(grid, units, options, warnings);
+  determineUnits(grid, units, options, warnings);
   if (surface->other_parts)
-    warnings.emplace_back("the annotations of the file's mask picture are not taken over");
+    warnings.emplace_back("the annotations of the file's mask picture are not imported");
 
   Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), file.path());
   if (!builder) return tl::unexpected(builder.error());
@@ -516,13 +516,13 @@ Result<Imported> readX3p(const InputFile& file, const ImportOptions& options, Jo
       default:
         status = rows.readBytes<double>(zip, valid, md5);
     }
-    // The archive's own checksums guard against accidents; this one is often written wrongly.
+    // The archive's own checksums detect accidents; this one is often written wrongly.
     if (status && surface->data_md5.size() == 32 && surface->data_md5 != md5)
-      warnings.emplace_back("the heights are not what their checksum says: they were changed since");
+      warnings.emplace_back("the heights do not match their checksum: they were changed since");
   }
   if (!status) return tl::unexpected(status.error());
   checkMainXml(xml, *surface, *folder, file, warnings);
-  if (own && !options.z_scale) tally.rounding = 0.0;  // rounds to the very float that was written
+  if (own && !options.z_scale) tally.rounding = 0.0;  // rounds to exactly the float that was written
   if (surface->z.type == 'L' && tally.rounding < 0.5 * std::abs(rule.scale)) tally.rounding = 0.0;
   Result<Imported> imported =
       finishImport(std::move(*builder), rule, tally, "X3P", std::move(warnings), file.path());

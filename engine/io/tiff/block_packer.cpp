@@ -14,7 +14,7 @@ namespace {
 constexpr int kLevel = 2;
 constexpr int kZstdLevel = 1;
 
-// `scratch` and `out`: 4 bytes a column. Two passes without a branch, so that both take vector instructions.
+// `scratch` and `out`: 4 bytes per column. Two passes without a branch, so that both use vector instructions.
 void predictRow(const float* samples, std::size_t columns, std::uint8_t* scratch, std::uint8_t* out) {
   for (std::size_t plane = 0; plane < 4; ++plane) {
     const std::size_t shift = 24 - 8 * plane;
@@ -61,7 +61,7 @@ std::span<const std::uint8_t> BlockPacker::pack(std::span<const float> samples, 
 }
 
 bool BlockPacker::deflate() {
-  // What does not pack is stored, with a few bytes for every 64 KB.
+  // Incompressible data is stored, with a few bytes for every 64 KB.
   packed_.resize(differences_.size() + differences_.size() / 8 + 4096);
   isal_zstream& z = state_->zlib;
   isal_deflate_init(&z);

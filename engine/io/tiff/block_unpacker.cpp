@@ -9,7 +9,7 @@ namespace fettle::engine {
 
 namespace {
 
-// Read at first, in case few rows are wanted, and then at a time.
+// Read first, for the case that few rows are requested; then per step.
 constexpr std::uint64_t kFirst = std::uint64_t{32} << 10;
 constexpr std::uint64_t kNext = std::uint64_t{256} << 10;
 
@@ -24,8 +24,8 @@ void addUp(char* row, std::size_t columns) {
   }
 }
 
-// The bytes of a row lie by their rank, the highest first, each as its difference to the one before.
-// `scratch`: as many bytes.
+// The bytes of a row are stored by their significance, the highest first, each as its difference to the one
+// before. `scratch`: as many bytes.
 template <std::size_t kBytes>
 void addUpFloats(char* row, std::size_t columns, char* scratch) {
   std::uint8_t sum = 0;
@@ -57,7 +57,7 @@ bool BlockUnpacker::unpack(const InputFile& file, const PackedBlock& block, std:
   isal_inflate_init(&z);
   z.crc_flag = ISAL_ZLIB;
   z.next_out = reinterpret_cast<std::uint8_t*>(out.data());
-  // One more, so that a block that ends where it should comes to its checksum.
+  // One more, so that a block that ends correctly reaches its checksum.
   z.avail_out = static_cast<std::uint32_t>(bytes + 1);
   for (std::uint64_t at = 0; z.avail_out > 0 && z.block_state != ISAL_BLOCK_FINISH;) {
     const auto wanted = static_cast<std::size_t>(std::min(at == 0 ? kFirst : kNext, block.bytes - at));

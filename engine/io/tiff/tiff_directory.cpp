@@ -36,7 +36,7 @@ struct Entry {
   std::uint64_t at = 0;  // offset of its values in the file
 };
 
-// Bytes of one value of a type; 0 for types the specifications do not know, which readers must skip.
+// Bytes of one value of a type; 0 for types outside the specifications, which readers must skip.
 std::size_t bytesOf(std::uint64_t type) {
   switch (type) {
     case 1:  // BYTE
@@ -82,7 +82,7 @@ class Reader {
     return decode(raw.data(), bytes);
   }
 
-  // Values of SHORT, LONG, LONG8 or BYTE entries, in pieces so that a lying count takes no memory.
+  // Values of SHORT, LONG, LONG8 or BYTE entries, in pieces so that a false count allocates no memory.
   template <class Visit>
   bool visit(const Entry& entry, Visit&& each) const {
     if (!isUnsignedInteger(entry.type) || reachesPastTheEnd(entry)) return false;
@@ -156,12 +156,12 @@ double TiffDirectory::largestRatio() const noexcept {
     case 1:
       return 1.0;
     case 5:
-      return 2731.0;  // LZW: 12 bits stand for at most 4096 bytes
+      return 2731.0;  // LZW: 12 bits represent at most 4096 bytes
     case 8:
     case 32946:
-      return 1032.0;  // Deflate: 2 bits stand for at most 258 bytes
+      return 1032.0;  // Deflate: 2 bits represent at most 258 bytes
     case 32773:
-      return 64.0;  // PackBits: 2 bytes stand for at most 128
+      return 64.0;  // PackBits: 2 bytes represent at most 128
     default:
       return 1e5;  // Zstandard, LZMA, LERC: long runs
   }
@@ -195,7 +195,7 @@ Result<TiffDirectory> readTiffDirectory(const InputFile& file) {
   for (std::uint64_t i = 0; i < *count; ++i) {
     const auto entry = reader.entry(first + i * entry_bytes);
     if (!entry) return damaged();
-    // The library reads on without such a tag, be it the value of holes or the coordinate system.
+    // The library would continue without such a tag, even without the no-data value or the coordinate system.
     if (reader.reachesPastTheEnd(*entry))
       return inputError(fmt::format("the values of tag {} reach past the end of the file", entry->tag),
                         file.path(), "the file is cut short");
@@ -247,7 +247,7 @@ Result<TiffDirectory> readTiffDirectory(const InputFile& file) {
         break;
     }
   }
-  // The next directory may hold the mask of the samples; 0 says that there is none.
+  // The next directory may hold the mask of the samples; 0: there is none.
   const auto next = reader.number(first + *count * entry_bytes, big_tiff ? 8 : 4);
   if (!next || *next >= file.size())
     return inputError("the next directory lies past the end of the file", file.path(),
@@ -264,7 +264,7 @@ Result<TiffDirectory> readTiffDirectory(const InputFile& file) {
     });
     if (!read) return damaged();
   } else if (offsets) {
-    directory.stored_bytes = file.size();  // some writers leave the sizes of uncompressed strips out
+    directory.stored_bytes = file.size();  // some writers omit the sizes of uncompressed strips
   }
   return directory;
 }

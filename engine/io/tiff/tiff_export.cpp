@@ -1,10 +1,10 @@
-// GeoTIFF float32, plain or packed without loss (ExportOptions::tiff_compression).
+// GeoTIFF float32, uncompressed or compressed without loss (ExportOptions::tiff_compression).
 //
-// GDAL writes the header, libtiff puts in the blocks, which BlockPacker packs on all cores. Deflate by GDAL
-// alone, whose libtiff packs with libdeflate: 1,074 million samples took 38.5 s at level 6, and take 9.9 s
-// now, two cores; a plain copy of the file, flushed, 10.9 s. In memory, so without the disk, it was 29 and 58
-// million samples a second at levels 6 and 1, and is 180. The price is the size of the file: 1 % on a noisy
-// part, 4 % once it was smoothed, 5 % on a clean one, 9 % on a simulated scan.
+// GDAL writes the header, libtiff stores the blocks, which BlockPacker compresses on all cores. Deflate by
+// GDAL only, whose libtiff compresses with libdeflate: 1,074 million samples took 38.5 s at level 6, and take
+// 9.9 s now, two cores; a plain copy of the file, flushed, 10.9 s. In memory, without the disk, it was 29 and
+// 58 million samples per second at levels 6 and 1, and is 180. The cost is the size of the file: 1 % on a
+// noisy part, 4 % once it was smoothed, 5 % on a clean one, 9 % on a simulated scan.
 
 #include <algorithm>
 #include <array>
@@ -38,9 +38,9 @@ namespace fettle::engine {
 namespace {
 
 constexpr std::int32_t kTiffBlock = 256;
-constexpr std::int32_t kPlainStripBytes = 1 << 20;  // of a plain strip, or one row
+constexpr std::int32_t kPlainStripBytes = 1 << 20;  // of an uncompressed strip, or one row
 
-// What of a compression the header says and the blocks obey.
+// The properties of a compression in the header and in the blocks.
 struct Coding {
   std::string_view name;
   const char* gdal;       // COMPRESS of its driver
@@ -48,7 +48,7 @@ struct Coding {
   bool tiles;             // where the field is larger than one
 };
 
-// By TiffCompression. Programs that unpack little, Gwyddion 2.62 among them, take neither tiles nor
+// By TiffCompression. Programs with few decoders, Gwyddion 2.62 among them, support neither tiles nor
 // predictors.
 constexpr std::array<Coding, 4> kCodings{{{"none", "NONE", nullptr, false},
                                           {"lzw", "LZW", nullptr, false},
@@ -66,7 +66,7 @@ struct CloseTiff {
   void operator()(TIFF* file) const noexcept { TIFFClose(file); }
 };
 
-// How the samples of a file are cut. Fields smaller than a tile lie in strips as wide as they are.
+// Division of the samples of a file. Fields smaller than a tile use strips of their own width.
 struct Blocks {
   Blocks(const Grid& grid, TiffCompression compression)
       : tiled(codingOf(compression).tiles && grid.width > kTiffBlock && grid.height > kTiffBlock),
@@ -78,11 +78,11 @@ struct Blocks {
         down((grid.height + rows - 1) / rows) {}
 
   bool tiled;
-  std::int32_t columns, rows;  // of a block; the last strip has the rows that are left
+  std::int32_t columns, rows;  // of a block; the last strip has the remaining rows
   std::int32_t across, down;   // blocks
 };
 
-// Whether the file will say the lateral unit by itself.
+// Whether the coordinate system states the lateral unit.
 bool crsStatesUnit(const Grid& grid) {
   if (grid.crs_wkt.empty()) return false;
   StatedUnits units;
@@ -95,7 +95,7 @@ bool crsStatesUnit(const Grid& grid) {
 tl::unexpected<Error> cannotWrite(const GdalSession& gdal, const std::string& path) {
   if (gdal.diskError() != 0) return writeError(path, gdal.diskError());
   return failure("the file cannot be written: " + gdal.reason("the library gives no reason"), path,
-                 "look at the disk or choose another folder");
+                 "check the disk or choose another folder");
 }
 
 Status describe(GDALDatasetH dataset, const Grid& grid, const GdalSession& gdal, const std::string& path) {
@@ -117,8 +117,8 @@ Status describe(GDALDatasetH dataset, const Grid& grid, const GdalSession& gdal,
   return {};
 }
 
-// Packs the blocks of a file, on all cores, and writes them in their order, so that the bytes do not depend
-// on the number of threads.
+// Compresses the blocks of a file, on all cores, and writes them in their order, so that the bytes do not
+// depend on the number of threads.
 class BlockWriter {
  public:
   BlockWriter(const Version& field, TiffCompression compression, const std::string& path, JobControl& job)
@@ -132,7 +132,7 @@ class BlockWriter {
   Status write(TIFF* file) {
     const std::size_t blocks =
         static_cast<std::size_t>(blocks_.across) * static_cast<std::size_t>(blocks_.down);
-    // One being written, one being packed by each core, one ready for each: each takes 1 MB.
+    // One being written, one being compressed by each core, one ready for each: each takes 1 MB.
     const auto threads = static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
     const auto stream =
         compression_ == TiffCompression::kZstd ? BlockPacker::Stream::kZstd : BlockPacker::Stream::kDeflate;
@@ -141,7 +141,7 @@ class BlockWriter {
     job_.begin("writing", static_cast<std::uint64_t>(height_));
     std::size_t next = 0;
     Status status;
-    // Those between the first filter and the last follow each other: as many slots keep them apart.
+    // Blocks between the first filter and the last are consecutive: as many slots separate them.
     tbb::parallel_pipeline(
         slots_.size(),
         tbb::make_filter<void, std::size_t>(tbb::filter_mode::serial_in_order,
@@ -172,7 +172,7 @@ class BlockWriter {
   struct Slot {
     std::vector<float> heights;
     BlockPacker packer;
-    std::span<const std::uint8_t> bytes;  // as they go into the file, or what libtiff is to pack
+    std::span<const std::uint8_t> bytes;  // as they go into the file, or the input of libtiff's compression
   };
 
   [[nodiscard]] std::int32_t top(std::size_t block) const {
@@ -187,12 +187,12 @@ class BlockWriter {
 
   void pack(std::size_t block) {
     Slot& slot = slots_[block % slots_.size()];
-    // Tiles are whole at the borders too, strips end with the field. Samples outside come out as holes.
+    // Tiles are complete at the borders too, strips end with the field. Samples outside are written as holes.
     const std::int32_t columns = blocks_.columns;
     const std::int32_t now = blocks_.tiled ? blocks_.rows : rows(block);
     slot.heights.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(now));
     const auto left = static_cast<std::int32_t>(block % static_cast<std::size_t>(blocks_.across)) * columns;
-    // Read upside down: the first row of the file is the highest one of the field.
+    // Read in reverse order: the first row of the file is the highest one of the field.
     reader_.readHeights(left, height_ - top(block) - now, columns, now,
                         slot.heights.data() + static_cast<std::ptrdiff_t>(now - 1) * columns, -columns);
     slot.bytes = packs() ? slot.packer.pack(slot.heights, static_cast<std::size_t>(columns))
@@ -203,7 +203,7 @@ class BlockWriter {
   Status put(TIFF* file, std::size_t block) {
     const std::span<const std::uint8_t> from = slots_[block % slots_.size()].bytes;
     if (from.empty()) return failure("a block could not be packed", path_);
-    const GdalSession said;  // GDAL hears for libtiff too
+    const GdalSession messages;  // collects the messages of libtiff too
     const auto size = static_cast<tmsize_t>(from.size());
     auto* bytes = const_cast<std::uint8_t*>(from.data());
     const auto number = static_cast<std::uint32_t>(block);
@@ -212,8 +212,8 @@ class BlockWriter {
                                ? TIFFWriteEncodedStrip(file, number, bytes, size)
                            : blocks_.tiled ? TIFFWriteRawTile(file, number, bytes, size)
                                            : TIFFWriteRawStrip(file, number, bytes, size);
-    if (wrote != size) return cannotWrite(said, path_);
-    // The disk begins now, not only when the whole is flushed at the end. A wish: its failing means nothing.
+    if (wrote != size) return cannotWrite(messages, path_);
+    // Starts writing to the disk now, not only at the final flush. A hint: its failure has no effect.
     unflushed_ += wrote;
     if (unflushed_ >= kFlush) {
       (void)sync_file_range(TIFFFileno(file), 0, 0, SYNC_FILE_RANGE_WRITE);
@@ -269,12 +269,13 @@ Status writePlain(const Version& field, TiffCompression compression, const std::
   const std::unique_ptr<TIFF, CloseTiff> file(TIFFOpen(temporary.c_str(), "r+"));
   if (!file) return cannotWrite(gdal, path);
   if (Status status = BlockWriter(field, compression, path, job).write(file.get()); !status) return status;
-  if (TIFFFlush(file.get()) != 1 || gdal.failed()) return cannotWrite(gdal, path);  // where the blocks lie
+  if (TIFFFlush(file.get()) != 1 || gdal.failed())
+    return cannotWrite(gdal, path);  // the positions of the blocks
   return {};
 }
 
-// The same samples in the order in which they are wanted over a network, with overviews. Means: what lies
-// between two samples of an overview is in it.
+// The same samples in the order that suits a network, with overviews. Means: what lies between two samples of
+// an overview contributes to it.
 Status writeCloudOptimised(const std::string& from, const std::string& to, TiffCompression compression,
                            const GdalSession& gdal, const std::string& path, JobControl& job) {
   const std::array<const char*, 2> drivers{"GTiff", nullptr};
@@ -324,7 +325,7 @@ Result<Exported> writeTiff(const Version& field, const std::string& path, const 
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
   if (options.cloud_optimised) {
-    // An ordinary file first, beside the final one and never committed: gone at the end of this scope.
+    // First a standard file next to the final one, never committed: removed at the end of this scope.
     Result<AtomicFile> plain = AtomicFile::create(path);
     if (!plain) return tl::unexpected(plain.error());
     const TiffCompression compression = options.tiff_compression.value_or(TiffCompression::kDeflate);

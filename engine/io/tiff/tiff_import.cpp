@@ -16,7 +16,7 @@ namespace fettle::engine {
 
 namespace {
 
-// Turns a piece into heights where it belongs, tile by tile, so that each is whole while it lies in the
+// Writes a piece as heights to its position, tile by tile, so that each is completed while it is in the
 // cache.
 template <class T>
 void placeTiles(const TiffScan& scan, const TiffPiece& piece, FieldBuilder& builder, HeightTally& tally) {
@@ -43,7 +43,7 @@ void placeTiles(const TiffScan& scan, const TiffPiece& piece, FieldBuilder& buil
   }
 }
 
-// The same where the file has a mask or runs leftwards. `row` holds a row of the piece.
+// The same where the file has a mask or columns from right to left. `row` holds a row of the piece.
 template <class T>
 void placeRows(const TiffScan& scan, const TiffPiece& piece, FieldBuilder& builder, std::vector<float>& row,
                HeightTally& tally) {

@@ -19,7 +19,7 @@ constexpr const char* kHeightUnitItem = "FETTLE_HEIGHT_UNIT";
 constexpr const char* kPerCount = "FETTLE_HEIGHT_PER_COUNT";
 constexpr const char* kOrigin = "FETTLE_ORIGIN";
 
-// The rounding of a corner and of its way back to the sample, a few ulp of whichever is larger.
+// The rounding of a corner and of its conversion back to the sample, a few ulp of the larger one.
 double roundingOf(double origin, double extent) {
   return 0x1p-49 * std::fmax(std::abs(origin), extent);
 }

@@ -15,9 +15,9 @@ namespace fettle::engine {
 namespace {
 
 constexpr std::int64_t kMostUnpacked = std::int64_t{24} << 20;  // samples
-constexpr std::int32_t kFewestRows = 16;                        // fewer show nothing
+constexpr std::int32_t kFewestRows = 16;                        // fewer are of no use
 
-// Where the samples of the picture lie among those of the file.
+// Position of the picture's samples among those of the file.
 struct Lattice {
   std::int32_t columns = 0, rows = 0;            // of the picture
   std::int32_t step_columns = 1, step_rows = 1;  // of the file
@@ -39,7 +39,7 @@ Grid gridOf(const TiffScan& scan, const Lattice& lattice) {
   return grid;
 }
 
-// One row of the file's numbers, of which every step-th is taken, to where it belongs.
+// One row of the file's numbers, of which every step-th is copied to its position.
 template <class T>
 void place(const TiffScan& scan, const Lattice& lattice, const TiffPiece& piece, FieldBuilder& builder) {
   const TiffWindow& w = piece.window;
@@ -58,7 +58,7 @@ void place(const TiffScan& scan, const Lattice& lattice, const TiffPiece& piece,
   }
 }
 
-// The largest overview within `max_samples`, read whole.
+// The largest overview within `max_samples`, read completely.
 struct Overview {
   GDALRasterBandH band = nullptr;
   Lattice lattice;
@@ -109,7 +109,7 @@ Status readOverview(const TiffScan& scan, const Overview& overview, FieldBuilder
   return {};
 }
 
-// Rows as far apart as columns where that costs little; else fewer.
+// Rows as far apart as columns where that costs little; otherwise fewer.
 std::optional<Lattice> latticeOf(const TiffScan& scan, const TiffSamples& samples, std::int64_t max_samples) {
   const double all = static_cast<double>(scan.grid.samples());
   const auto step = static_cast<std::int32_t>(std::ceil(std::sqrt(all / static_cast<double>(max_samples))));
@@ -142,7 +142,7 @@ Result<std::optional<Preview>> previewTiff(const InputFile& file, const ImportOp
   if (!lattice) return std::nullopt;
   Grid grid = gridOf(*scan, *lattice);
   if (overview) {
-    // An overview covers the field whole, whatever its sides.
+    // An overview covers the whole field, with any sides.
     grid.spacing_x = scan->grid.spacing_x * scan->grid.width / lattice->columns;
     grid.spacing_y = scan->grid.spacing_y * scan->grid.height / lattice->rows;
     grid.origin_x = scan->grid.origin_x + 0.5 * (grid.spacing_x - scan->grid.spacing_x);
@@ -159,7 +159,7 @@ Result<std::optional<Preview>> previewTiff(const InputFile& file, const ImportOp
       status = samples.readEvery(lattice->step_rows, job,
                                  [&](const TiffPiece& piece) { place<T>(*scan, *lattice, piece, *builder); });
   });
-  if (!known) return std::nullopt;  // the whole will be refused in words
+  if (!known) return std::nullopt;  // the full import refuses it with a message
   if (!status) return tl::unexpected(status.error());
   Preview preview;
   preview.field = std::move(*builder).build();

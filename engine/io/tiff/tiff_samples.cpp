@@ -19,12 +19,12 @@ namespace fettle::engine {
 
 namespace {
 
-// What a core works on at a time.
+// Amount that a core processes per step.
 constexpr std::uint64_t kWindowBytes = std::uint64_t{8} << 20;
 constexpr int kMostThreads = 16;
-// Opening the file again costs more than such a field takes to read [samples].
+// Opening the file again costs more than reading such a field [samples].
 constexpr std::int64_t kSmall = std::int64_t{1} << 18;
-// Rows of a window that is no block.
+// Rows of a window that is not a block.
 constexpr std::int32_t kRows = kTileSide;
 
 Status unreadable(const GdalSession& gdal, const std::string& path) {
@@ -52,7 +52,7 @@ DatasetPtr openTiffForReading(const InputFile& file, bool threads) {
                                options.data(), nullptr));
 }
 
-// What one thread reads with.
+// State of one reading thread.
 struct TiffSamples::Worker {
   DatasetPtr own;  // null: the scan's
   GDALRasterBandH band = nullptr;
@@ -75,10 +75,11 @@ TiffSamples::TiffSamples(const InputFile& file, const TiffScan& scan)
                                     static_cast<std::uint64_t>(block_rows_) * number_bytes_ *
                                     scan.directory.samples_per_pixel;
   if (findPlainBlocks()) {
-    way_ = Way::kPlain;
+    strategy_ = ReadStrategy::kPlain;
   } else if (block_rows_ > 1 && block_bytes <= kWindowBytes) {
-    // Of one row, a block may be part of a strip that GDAL unpacks row by row, each after the one before.
-    way_ = Way::kBlocks;
+    // Of one row, a block may be part of a strip that GDAL decompresses row by row, each after the one
+    // before.
+    strategy_ = ReadStrategy::kBlocks;
     findPackedBlocks();
   }
 }
@@ -89,7 +90,7 @@ std::uint64_t TiffSamples::extraBytes(const TiffDirectory& directory) noexcept {
   return std::min(directory.rawBytes(), threads * kWindowBytes);
 }
 
-// Where each block lies; false when GDAL does not say so of every one, or one lies outside the file.
+// Finds the position of each block; false when GDAL does not report one, or one lies outside the file.
 bool TiffSamples::findBlocks(bool plain) {
   const bool strips = block_columns_ == width_;
   offsets_.clear();
@@ -101,7 +102,7 @@ bool TiffSamples::findBlocks(bool plain) {
       const int rows = strips ? std::min(block_rows_, height_ - r * block_rows_) : block_rows_;
       const std::uint64_t raw =
           static_cast<std::uint64_t>(block_columns_) * static_cast<std::uint64_t>(rows) * number_bytes_;
-      // A larger plain one is a strip of which GDAL makes blocks of its own.
+      // A larger uncompressed one is a strip of which GDAL makes blocks of its own.
       const bool known = offset && bytes && *offset > 0 && *bytes > 0 && (!plain || *bytes == raw);
       if (!known || *offset > file_.size() || *bytes > file_.size() - *offset) {
         offsets_.clear();
@@ -114,7 +115,7 @@ bool TiffSamples::findBlocks(bool plain) {
   return true;
 }
 
-// Whether every block is in the file as it lies in memory.
+// Whether every block is stored in the file as in memory.
 bool TiffSamples::findPlainBlocks() {
   const TiffDirectory& d = scan_.directory;
   return d.little_endian && d.compression == 1 && d.samples_per_pixel == 1 && d.bits == 8 * number_bytes_ &&
@@ -138,18 +139,18 @@ std::size_t TiffSamples::blockOf(const TiffWindow& window) const noexcept {
 
 std::vector<TiffWindow> TiffSamples::windows() const {
   const bool tiles = block_columns_ < width_;
-  const bool blocks = way_ == Way::kBlocks || (way_ == Way::kPlain && tiles);
+  const bool blocks = strategy_ == ReadStrategy::kBlocks || (strategy_ == ReadStrategy::kPlain && tiles);
   const std::int32_t columns = blocks ? block_columns_ : width_;
   std::int32_t rows = blocks ? block_rows_ : kRows;
-  while (way_ != Way::kBlocks && rows > 1 &&
+  while (strategy_ != ReadStrategy::kBlocks && rows > 1 &&
          static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows) * number_bytes_ >
              kWindowBytes)
     rows = (rows + 1) / 2;
   std::vector<TiffWindow> all;
   for (std::int32_t row = 0; row < height_;) {
-    // Parts of a block end where the block does, plain ones so that the field's tiles are whole.
+    // Parts of a block end with the block; uncompressed ones so that the field's tiles are complete.
     const std::int32_t limit = blocks ? (row / block_rows_ + 1) * block_rows_
-                               : way_ == Way::kPlain && scan_.top_down
+                               : strategy_ == ReadStrategy::kPlain && scan_.top_down
                                    ? height_ - (height_ - row - 1) / rows * rows
                                    : height_;
     const std::int32_t end = std::min({row + rows, limit, height_});
@@ -160,7 +161,7 @@ std::vector<TiffWindow> TiffSamples::windows() const {
   return all;
 }
 
-// Into rows of whole blocks.
+// Reads rows of whole blocks.
 Status TiffSamples::readPlain(const TiffWindow& window, Worker& worker) const {
   const std::size_t row_bytes = static_cast<std::size_t>(block_columns_) * number_bytes_;
   worker.numbers.resize(row_bytes * static_cast<std::size_t>(window.rows));
@@ -170,7 +171,7 @@ Status TiffSamples::readPlain(const TiffWindow& window, Worker& worker) const {
   };
   const std::int32_t end = window.row + window.rows;
   for (std::int32_t row = window.row; row < end;) {
-    // As many as follow each other in the file.
+    // As many as are consecutive in the file.
     const std::uint64_t from = offsetOf(row);
     std::int32_t next = row + 1;
     while (next < end && offsetOf(next) == from + row_bytes * static_cast<std::size_t>(next - row)) ++next;
@@ -227,7 +228,7 @@ Status TiffSamples::readRows(const TiffWindow& window, Worker& worker) const {
   return {};
 }
 
-// Reads windows on all cores where the way allows it; the first failure ends all.
+// Reads windows on all cores where the strategy allows it; the first failure ends all.
 Status TiffSamples::run(const std::vector<TiffWindow>& windows, JobControl& job, const Read& read) {
   job.begin("reading", windows.size());
   std::atomic<bool> stop{false};
@@ -244,7 +245,7 @@ Status TiffSamples::run(const std::vector<TiffWindow>& windows, JobControl& job,
     if (!done) fail(std::move(done));
     job.advance();
   };
-  if (way_ == Way::kRows || std::int64_t{width_} * height_ <= kSmall) {
+  if (strategy_ == ReadStrategy::kRows || std::int64_t{width_} * height_ <= kSmall) {
     Worker worker;
     worker.band = scan_.band;
     worker.band_mask = scan_.mask;
@@ -256,7 +257,7 @@ Status TiffSamples::run(const std::vector<TiffWindow>& windows, JobControl& job,
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, windows.size(), [&](std::size_t i) {
       Worker& worker = workers.local();
-      if (way_ == Way::kBlocks && offsets_.empty() && worker.band == nullptr) {
+      if (strategy_ == ReadStrategy::kBlocks && offsets_.empty() && worker.band == nullptr) {
         const GdalSession gdal;
         worker.own = openTiffForReading(file_, false);
         if (!worker.own) {
@@ -274,20 +275,20 @@ Status TiffSamples::run(const std::vector<TiffWindow>& windows, JobControl& job,
 
 Status TiffSamples::readAll(JobControl& job, const Take& take) {
   return run(windows(), job, [&](const TiffWindow& window, Worker& worker) -> Status {
-    Status read = way_ == Way::kPlain    ? readPlain(window, worker)
-                  : way_ == Way::kBlocks ? readBlock(window, worker)
-                                         : readRows(window, worker);
+    Status read = strategy_ == ReadStrategy::kPlain    ? readPlain(window, worker)
+                  : strategy_ == ReadStrategy::kBlocks ? readBlock(window, worker)
+                                                       : readRows(window, worker);
     if (!read) return read;
-    take({window, worker.numbers.data(), way_ == Way::kRows ? window.columns : block_columns_,
+    take({window, worker.numbers.data(), strategy_ == ReadStrategy::kRows ? window.columns : block_columns_,
           worker.band_mask != nullptr ? worker.mask.data() : nullptr});
     return {};
   });
 }
 
 std::int64_t TiffSamples::costOfEvery(std::int32_t step) const noexcept {
-  if (way_ == Way::kPlain || scan_.directory.compression == 1)
+  if (strategy_ == ReadStrategy::kPlain || scan_.directory.compression == 1)
     return std::int64_t{width_} * ((height_ - 1) / step + 1);
-  if (way_ == Way::kRows) return std::int64_t{width_} * height_;
+  if (strategy_ == ReadStrategy::kRows) return std::int64_t{width_} * height_;
   std::int64_t rows = 0;
   for (std::int32_t b = 0; b < down_; ++b) {
     const std::int32_t end = std::min(height_, (b + 1) * block_rows_);
@@ -299,13 +300,15 @@ std::int64_t TiffSamples::costOfEvery(std::int32_t step) const noexcept {
 
 Status TiffSamples::readEvery(std::int32_t step, JobControl& job, const Take& take) {
   std::vector<TiffWindow> all;
-  if (way_ != Way::kBlocks) {
-    const std::int32_t columns = way_ == Way::kPlain ? block_columns_ : width_;
+  if (strategy_ != ReadStrategy::kBlocks) {
+    const std::int32_t columns = strategy_ == ReadStrategy::kPlain ? block_columns_ : width_;
     for (std::int32_t row = 0; row < height_; row += step)
       for (std::int32_t column = 0; column < width_; column += columns)
         all.push_back({column, row, std::min(columns, width_ - column), 1});
     return run(all, job, [&](const TiffWindow& window, Worker& worker) -> Status {
-      if (Status read = way_ == Way::kPlain ? readPlain(window, worker) : readRows(window, worker); !read)
+      if (Status read =
+              strategy_ == ReadStrategy::kPlain ? readPlain(window, worker) : readRows(window, worker);
+          !read)
         return read;
       take({window, worker.numbers.data(), 0, worker.band_mask != nullptr ? worker.mask.data() : nullptr});
       return {};

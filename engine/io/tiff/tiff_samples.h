@@ -17,27 +17,27 @@ struct TiffWindow {
   std::int32_t column = 0, row = 0, columns = 0, rows = 0;
 };
 
-/// The samples of such a rectangle, there as long as the call they are given to.
+/// The samples of such a rectangle, valid during the call that gets them.
 struct TiffPiece {
   TiffWindow window;
   const void* numbers = nullptr;       ///< of the band's type, row-major
   std::int32_t stride = 0;             ///< numbers from one row to the next
-  const std::uint8_t* mask = nullptr;  ///< window.columns a row, 0: hole; null: the file has no mask
+  const std::uint8_t* mask = nullptr;  ///< window.columns per row, 0: hole; null: the file has no mask
 };
 
-/// Brings the samples of a band in, each block of the file unpacked once, on all cores.
+/// Reads the samples of a band, each block of the file decompressed once, on all cores.
 ///
-/// Blocks that hold the numbers as this machine does are read past GDAL, straight from the file into place:
-/// GDAL hands them through its cache, which costs more than all the rest. Blocks packed as Fettle packs them,
-/// and most other Deflate, go past it too (block_unpacker.h). Other packed blocks are unpacked by GDAL, each
-/// core with a handle of its own, because one handle that unpacks on many threads still copies on one.
-/// Blocks that must be read in order, or are very large, go through one handle by rows.
+/// Blocks in the number format of this machine are read without GDAL, directly from the file: GDAL copies
+/// them through its cache, which costs more than everything else. Blocks compressed as Fettle does, and most
+/// other Deflate, are read without it too (block_unpacker.h). Other compressed blocks are decompressed by
+/// GDAL, each core with a handle of its own, because one handle that decompresses on many threads still
+/// copies on one. Blocks that must be read in order, or are very large, are read by rows through one handle.
 class TiffSamples {
  public:
-  /// How blocks come in; chosen by the file.
-  enum class Way : std::uint8_t {
-    kPlain,   ///< past GDAL
-    kBlocks,  ///< unpacked, whole blocks in any order
+  /// How blocks are read; depends on the file.
+  enum class ReadStrategy : std::uint8_t {
+    kPlain,   ///< without GDAL
+    kBlocks,  ///< decompressed, whole blocks in any order
     kRows,    ///< by GDAL, strips of rows in order
   };
   /// Called by several threads at once, each with another window.
@@ -46,17 +46,17 @@ class TiffSamples {
   /// `file` and `scan` outlive this.
   TiffSamples(const InputFile& file, const TiffScan& scan);
 
-  /// Hands every sample of the band over. Errors (kInput): the samples cannot be read; kCancelled. Counts
-  /// windows in `job`. Memory: at most 8 MB a core for 16 cores, and GDAL's 64 MB.
+  /// Passes every sample of the band to `take`. Errors (kInput): the samples cannot be read; kCancelled.
+  /// Counts windows in `job`. Memory: at most 8 MB per core for 16 cores, and GDAL's 64 MB.
   [[nodiscard]] Status readAll(JobControl& job, const Take& take);
-  /// Hands every `step`-th row over, from the first on, in pieces of one row. Else as readAll.
+  /// Passes every `step`-th row to `take`, from the first on, in pieces of one row. Otherwise as readAll.
   [[nodiscard]] Status readEvery(std::int32_t step, JobControl& job, const Take& take);
-  /// How many samples readEvery unpacks; of plain ones it reads those of its rows.
+  /// How many samples readEvery decompresses; of uncompressed ones it reads those of its rows.
   [[nodiscard]] std::int64_t costOfEvery(std::int32_t step) const noexcept;
 
-  [[nodiscard]] Way way() const noexcept { return way_; }
+  [[nodiscard]] ReadStrategy strategy() const noexcept { return strategy_; }
   [[nodiscard]] std::int32_t blockRows() const noexcept { return block_rows_; }
-  /// About the memory that reading takes beside the field [bytes], as far as the header tells.
+  /// Estimate of the memory that reading takes in addition to the field [bytes], from the header.
   [[nodiscard]] static std::uint64_t extraBytes(const TiffDirectory& directory) noexcept;
 
  private:
@@ -79,12 +79,12 @@ class TiffSamples {
   int block_columns_ = 0, block_rows_ = 0;
   std::int32_t across_ = 0, down_ = 0;  // blocks
   std::size_t number_bytes_ = 0;
-  Way way_ = Way::kRows;
-  // Of each block, row-major: of plain ones, and of those that are unpacked past GDAL; else none.
+  ReadStrategy strategy_ = ReadStrategy::kRows;
+  // Of each block, row-major: of uncompressed ones, and of those decompressed without GDAL; else empty.
   std::vector<std::uint64_t> offsets_, sizes_;
 };
 
-/// The drivers and options that TIFFs are opened with. `threads`: GDAL unpacks on threads of its own.
+/// The drivers and options for opening TIFFs. `threads`: GDAL decompresses on threads of its own.
 [[nodiscard]] DatasetPtr openTiffForReading(const InputFile& file, bool threads);
 
 }  // namespace fettle::engine

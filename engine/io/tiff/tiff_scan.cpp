@@ -1,4 +1,4 @@
-// What a TIFF says of itself, through GDAL: geo-reference, units, no-data.
+// The properties of a TIFF through GDAL: geo-reference, units, no-data.
 #include "engine/io/tiff/tiff_scan.h"
 
 #include <cmath>
@@ -35,7 +35,7 @@ std::optional<double> declaredNoData(GDALRasterBandH band, GDALDataType type) {
   return has != 0 ? std::optional(value) : std::nullopt;
 }
 
-// The one band that holds heights; anything that is a picture rather than heights is refused.
+// The one band with heights; pictures that are not heights are refused.
 Result<GDALRasterBandH> heightBand(GDALDatasetH dataset, const TiffDirectory& directory,
                                    const ImportOptions& options, const std::string& path,
                                    std::vector<std::string>& warnings) {
@@ -45,10 +45,10 @@ Result<GDALRasterBandH> heightBand(GDALDatasetH dataset, const TiffDirectory& di
   const bool alpha =
       bands == 2 && GDALGetRasterColorInterpretation(GDALGetRasterBand(dataset, 2)) == GCI_AlphaBand;
   if (bands > 1 && !alpha)
-    return inputError(fmt::format("the file holds {} bands, heights are one", bands), path,
-                      "take one out, e.g. with gdal_translate -b 1");
+    return inputError(fmt::format("the file holds {} bands, heights have one", bands), path,
+                      "extract one, e.g. with gdal_translate -b 1");
   if (alpha) warnings.emplace_back("the second band is transparency and was left out");
-  // GDAL makes a palette for these, of integers only: what is white says nothing of floats.
+  // GDAL makes a palette for these, only of integers: for floats the order of white is not defined.
   const bool white_is_0 = directory.photometric == 0 && isInteger(GDALGetRasterDataType(band));
   if (white_is_0 && !options.z_scale)
     return inputError("0 is white in this TIFF (MINISWHITE), so that its numbers may be heights or depths",
@@ -73,11 +73,11 @@ void readGeoReference(GDALDatasetH dataset, const TiffDirectory& directory,
     units.spacing_mm = std::pair{10.0 / per_unit[0], 10.0 / per_unit[1]};
     return;
   }
-  // Programs that know nothing of the spacing write the resolution of a printer or a screen.
+  // Programs without knowledge of the spacing write the resolution of a printer or a screen.
   for (const double print : {72.0, 96.0, 150.0, 300.0, 600.0})
     if (per_unit[0] == print && per_unit[1] == print) {
       warnings.push_back(
-          fmt::format("the file says {} samples an inch, a print resolution: not believed", print));
+          fmt::format("the file states {} samples per inch, a print resolution, which was ignored", print));
       return;
     }
   units.spacing_mm = std::pair{25.4 / per_unit[0], 25.4 / per_unit[1]};
@@ -104,7 +104,7 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
   DatasetPtr dataset = openTiffForReading(file, true);
   if (!dataset)
     return inputError("the TIFF cannot be opened: " + gdal.reason("damaged header"), path,
-                      "the file is damaged or of a kind that the library does not know");
+                      "the file is damaged or of a kind that the library does not support");
   const Result<GDALRasterBandH> band = heightBand(dataset.get(), *directory, options, path, warnings);
   if (!band) return tl::unexpected(band.error());
   const int width = GDALGetRasterXSize(dataset.get());
@@ -137,21 +137,21 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
     scan.right_to_left = placement->right_to_left;
     if (!scan.top_down)
       warnings.emplace_back(
-          "the file's rows run upwards: rows are counted from the highest y here, in marks too");
+          "the file's rows go upwards: rows are counted from the highest y here, in marks too");
     if (scan.right_to_left)
       warnings.emplace_back(
-          "the file's columns run leftwards: columns are counted from the lowest x here, in marks too");
+          "the file's columns go leftwards: columns are counted from the lowest x here, in marks too");
   }
-  const Sidecar beside = readAuxXml(path, warnings);
-  if (grid.crs_wkt.empty()) grid.crs_wkt = beside.crs_wkt;
+  const Sidecar sidecar = readAuxXml(path, warnings);
+  if (grid.crs_wkt.empty()) grid.crs_wkt = sidecar.crs_wkt;
   const char* const unit = GDALGetRasterUnitType(*band);
   units.height =
-      heightUnitNamed(unit != nullptr && *unit != '\0' ? unit : beside.height_unit, options, warnings);
+      heightUnitNamed(unit != nullptr && *unit != '\0' ? unit : sidecar.height_unit, options, warnings);
   if (!grid.crs_wkt.empty())
     unitsOfCrs(grid.crs_wkt, grid.origin_y + 0.5 * height * (units.spacing ? units.spacing->second : 0.0),
                units, warnings);
   readOwnMetadata(dataset.get(), units, grid, units.spacing.value_or(std::pair{1.0, 1.0}));
-  settleUnits(grid, units, options, warnings);
+  determineUnits(grid, units, options, warnings);
 
   int has = 0;
   scan.rule.scale = GDALGetRasterScale(*band, &has);
@@ -160,13 +160,14 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
   if (has == 0) scan.rule.offset = 0.0;
   if (options.z_scale) {
     if (scan.rule.scale != 1.0 || scan.rule.offset != 0.0)
-      warnings.push_back(fmt::format("the file says height = number * {} + {}, taken as number * {} as asked",
-                                     scan.rule.scale, scan.rule.offset, *options.z_scale));
+      warnings.push_back(
+          fmt::format("the file states height = number * {} + {}, read as number * {} as requested",
+                      scan.rule.scale, scan.rule.offset, *options.z_scale));
     scan.rule.scale = *options.z_scale;
     scan.rule.offset = 0.0;
   }
   if (isInteger(type)) grid.height_per_count = scan.rule.offset == 0.0 ? std::abs(scan.rule.scale) : 0.0;
-  scan.rule.declared_no_data = settledNoData(declaredNoData(*band, type), beside, warnings);
+  scan.rule.declared_no_data = chooseNoData(declaredNoData(*band, type), sidecar, warnings);
   scan.rule.user_no_data = options.no_data;
   const int mask_flags = GDALGetMaskFlags(*band);
   if ((mask_flags & GMF_PER_DATASET) != 0 && (mask_flags & GMF_ALPHA) == 0)

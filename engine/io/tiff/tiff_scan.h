@@ -15,27 +15,27 @@
 
 namespace fettle::engine {
 
-/// A TIFF whose header was read: all that is known before its samples are.
+/// A TIFF whose header was read: everything known before its samples.
 struct TiffScan {
   TiffDirectory directory;
   DatasetPtr dataset;
   GDALRasterBandH band = nullptr;  ///< the one with the heights
-  GDALRasterBandH mask = nullptr;  ///< of a mask of its own, else null
+  GDALRasterBandH mask = nullptr;  ///< of a separate mask, else null
   GDALDataType type = GDT_Unknown;
   bool signed_byte = false;    ///< GDAL 3.6 has no type of its own for these
-  Grid grid;                   ///< as importField promises
+  Grid grid;                   ///< as described at importField
   bool top_down = true;        ///< the file's first row is the highest
   bool right_to_left = false;  ///< the file's first column is the highest
   HeightRule rule;
   std::vector<std::string> warnings;
 };
 
-/// Opens a TIFF and refuses what is no height field, before memory is taken for it. Errors: as importField.
-/// `gdal` lives as long as the scan is used.
+/// Opens a TIFF and refuses what is not a height field, before memory is allocated for it. Errors: as
+/// importField. `gdal` must exist as long as the scan is used.
 [[nodiscard]] Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& options,
                                             GdalSession& gdal);
 
-/// Calls `use` with a zero of the type of the scan's samples; false for types that are no heights.
+/// Calls `use` with a zero of the type of the scan's samples; false for types that are not heights.
 template <class Use>
 bool withSampleType(const TiffScan& scan, Use&& use) {
   switch (scan.type) {

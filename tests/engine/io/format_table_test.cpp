@@ -169,7 +169,7 @@ void checkHoles(const Row& row, const Written& how) {
   const Version field = fieldOf(asked);
   const Trip trip = roundTrip(field, how);
   ASSERT_TRUE(trip.whole);
-  const bool beside = row.holes == "cells beside one";
+  const bool beside = row.holes == "cells next to one";
   if (row.holes == "left out" || beside) {
     EXPECT_TRUE(warned(trip.warnings, "left out")) << "nothing says that holes are left out";
   } else if (row.holes != "yes") {
@@ -200,10 +200,10 @@ void checkPlace(const Row& row, const Written& how) {
     EXPECT_NEAR(to.spacing_y, from.spacing_y, 1e-7 * from.spacing_y);
     EXPECT_EQ(to.origin_x, 0.0);
     EXPECT_EQ(to.origin_y, 0.0);
-    EXPECT_TRUE(warned(trip.warnings, "from the field's corner"));
+    EXPECT_TRUE(warned(trip.warnings, "to the field's corner"));
   } else if (row.place == "no") {
     EXPECT_EQ(to.spacing_x, 1.0);
-    EXPECT_TRUE(warned(trip.warnings, "keeps no spacing"));
+    EXPECT_TRUE(warned(trip.warnings, "stores no spacing"));
   } else {
     ADD_FAILURE() << "this test does not know what spacing, origin '" << row.place << "' are";
   }
@@ -219,7 +219,8 @@ void checkUnits(const Row& row, const Written& how) {
   const Grid& to = trip.back.field.grid();
   if (row.units == "yes" || row.units == "yes, in comments") {
     if (row.units == "yes, in comments") {
-      EXPECT_TRUE(warned(trip.warnings, "x and y are in um, z in nm: the file says so in a comment only"));
+      EXPECT_TRUE(
+          warned(trip.warnings, "x and y are in um, z in nm: only a comment in the file states this"));
     }
     EXPECT_EQ(to.lateral_unit, field.grid().lateral_unit);
     EXPECT_EQ(to.height_unit, field.grid().height_unit);

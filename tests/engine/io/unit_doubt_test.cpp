@@ -40,7 +40,7 @@ TEST(UnitDoubt, HeightsAThousandTimesTooLargeForTheirSpacingName) {
   EXPECT_TRUE(doubts(rough(grid, 0.5)).empty());
   const auto told = doubts(rough(grid, 500.0));
   ASSERT_EQ(told.size(), 1U);
-  EXPECT_TRUE(told[0].starts_with("heights in mm where m is said or assumed, or a spacing that is not in m?"))
+  EXPECT_TRUE(told[0].starts_with("heights in mm where m is stated or assumed, or a spacing that is not in m?"))
       << told[0];
   EXPECT_TRUE(told[0].ends_with("give --z-scale 0.001 or --spacing")) << told[0];
   // Doing so ends it; so does a spacing, which says that both were thought of.
@@ -88,7 +88,7 @@ TEST(UnitDoubt, DegreesAreNamedAndNeverGivenAScale) {
     for (const char* name : {"f.asc", "f.tif"}) {
       const auto told = doubts(rough(grid, 60.0), {}, name);
       ASSERT_EQ(told.size(), 1U) << name;
-      EXPECT_TRUE(told[0].starts_with("coordinates in degrees where mm is said or assumed?")) << told[0];
+      EXPECT_TRUE(told[0].starts_with("coordinates in degrees where mm is stated or assumed?")) << told[0];
       EXPECT_NE(told[0].find("0.000833 apart"), std::string::npos) << told[0];
       expectNoScale(told);
     }
@@ -144,7 +144,7 @@ TEST(UnitDoubt, WholeNumbersMayBeCountsOrBrightness) {
   grid.height_per_count = 1.0;  // as of any picture
   const auto told = doubts(rough(grid, 250.0));
   ASSERT_EQ(told.size(), 1U);
-  EXPECT_TRUE(told[0].starts_with("counts or brightness where heights in mm are said or assumed?"))
+  EXPECT_TRUE(told[0].starts_with("counts or brightness where heights in mm are stated or assumed?"))
       << told[0];
   EXPECT_EQ(told[0].find("in um"), std::string::npos) << told[0];
   EXPECT_EQ(told[0].find("--z-scale 0"), std::string::npos) << told[0];
@@ -152,7 +152,7 @@ TEST(UnitDoubt, WholeNumbersMayBeCountsOrBrightness) {
   grid.height_per_count = 0.0;
   grid.height_unit = {"intensity", 1.0};
   for (const std::string& truthError : doubts(rough(grid, 250.0)))
-    EXPECT_NE(truthError.find("no length"), std::string::npos) << truthError;
+    EXPECT_NE(truthError.find("not a length"), std::string::npos) << truthError;
 }
 
 TEST(UnitDoubt, WhatIsSmallerThanAtomsOrLargerThanPlanets) {

@@ -223,7 +223,7 @@ TEST(FullDisk, OfATmpfsKeepsTheWorkUntilThereIsRoomOrAnotherPlace) {
     const SessionStatus status = (*writer)->status();
     ASSERT_TRUE(status.error) << "the disk never ran full";
     EXPECT_EQ(status.error->line(), "the session cannot be written: the disk is full, " + path +
-                                        ", make room on the disk or save the session elsewhere");
+                                        ", free space on the disk or save the session elsewhere");
     for (int a = 0; a < 5; ++a) play.act(writer->get());
     EXPECT_GT(settled(**writer).waiting, 1U);
     // In its own folder there is no room for another one either: nothing is left of the try.

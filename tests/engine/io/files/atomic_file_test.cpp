@@ -130,7 +130,7 @@ TEST(Writers, AFullDiskIsOneClearLineAndNoFile) {
   for (const char* size : {"size=8k", "size=64k", "size=200k"}) {
     if (mount("tmpfs", folder.path().c_str(), "tmpfs", 0, size) != 0)
       GTEST_SKIP() << "mounting is not permitted";
-    expectEveryWriterRefuses(roughField(400), folder.path(), "make room on the disk");
+    expectEveryWriterRefuses(roughField(400), folder.path(), "free space on the disk");
     const Status marks_tiff = exportMarks(roughField(2000), folder.file("m.tif"));
     const Status marks_png = exportMarks(roughField(2000), folder.file("m.png"));
     for (const Status& marks : {marks_tiff, marks_png}) {

@@ -138,7 +138,7 @@ TEST(Mesh, AWholeMeshBringsEverySampleBack) {
 
   const auto stl = save(field, folder.file("a.stl"));
   ASSERT_TRUE(stl) << stl.error().line();
-  EXPECT_TRUE(warned(stl->warnings, "count from the field's corner"));
+  EXPECT_TRUE(warned(stl->warnings, "are relative to the field's corner"));
   FETTLE_LOAD(from_stl, folder.file("a.stl"));
   EXPECT_EQ(from_stl.format, "STL");
   EXPECT_EQ(contentHash(from_stl.field), contentHash(field));

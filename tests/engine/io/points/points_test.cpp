@@ -56,7 +56,7 @@ TEST(Xyz, TheUnitOfACommentIsTaken) {
 }
 
 TEST(Xyz, PointsWithoutAUnitSayWhatWasTaken) {
-  const std::string line = "the file states no unit, mm taken: give it with --unit";
+  const std::string line = "the file states no unit, mm is assumed: give it with --unit";
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n";
   const std::string points = "0 0 1\n1 0 2\n";

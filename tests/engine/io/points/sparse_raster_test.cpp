@@ -214,8 +214,8 @@ TEST(SparseRaster, TheUserWinsOverWhatTheFileStates) {
   EXPECT_EQ(scan.field.grid().spacing_x, 5.0);
   EXPECT_EQ(scan.field.grid().lateral_unit.name, "mm");
   EXPECT_EQ(scan.field.grid().height_unit.name, "mm");
-  EXPECT_TRUE(warned(scan.warnings, "the file says spacing 0.215326741 x 0.5, taken as 5 x 5 as asked"));
-  EXPECT_TRUE(warned(scan.warnings, "the file says um, taken as mm as asked"));
+  EXPECT_TRUE(warned(scan.warnings, "the file states spacing 0.215326741 x 0.5, read as 5 x 5 as requested"));
+  EXPECT_TRUE(warned(scan.warnings, "the file states um, read as mm as requested"));
 }
 
 }  // namespace

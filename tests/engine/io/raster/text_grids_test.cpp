@@ -47,7 +47,7 @@ TEST(AsciiGrid, TheUnitTakenIsSaidUnlessItIsGiven) {
   writeBytes(folder.file("a.asc"), "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n2 3\n");
   FETTLE_LOAD(scan, folder.file("a.asc"));
   EXPECT_EQ(scan.warnings,
-            std::vector<std::string>{"the file states no unit, mm taken: give it with --unit"});
+            std::vector<std::string>{"the file states no unit, mm is assumed: give it with --unit"});
   ImportOptions options;
   options.unit = lengthUnitFromName("m");
   FETTLE_LOAD(metres, folder.file("a.asc"), options);

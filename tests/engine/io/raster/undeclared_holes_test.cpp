@@ -35,7 +35,7 @@ TEST(UndeclaredHoles, ThoseOfAPngThatFettleWroteAreHolesWhenItIsReadBack) {
     FETTLE_LOAD(again, folder.file("holes.png"));
     EXPECT_EQ(summarize(again.field).no_data, 500);
     EXPECT_GE(summarize(again.field).min, 1.0);
-    EXPECT_TRUE(warned(again.warnings, "the file says height = ")) << "the way to heights is not said";
+    EXPECT_TRUE(warned(again.warnings, "the file states height = ")) << "the way to heights is not said";
     EXPECT_FALSE(warned(again.warnings, "--no-data"));
     // So that a filter leaves them alone, and no neighbour takes one for a height.
     FilterSpec spec;

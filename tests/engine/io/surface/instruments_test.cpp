@@ -90,7 +90,7 @@ TEST(Sur, HeightsThatAreNoLengthsAreNamed) {
   bytes.replace(212, 4, std::string("V\0\0\0", 4));
   FETTLE_LOAD_BYTES(volts, "a.sur", bytes);
   EXPECT_EQ(volts.field.grid().height_unit.name, "V");
-  EXPECT_TRUE(warned(volts.warnings, "\"V\", which is no length"));
+  EXPECT_TRUE(warned(volts.warnings, "\"V\", which is not a length"));
 }
 
 const std::vector<LasPoint> kFourPoints{{0, 0, 1000}, {1, 0, -2000}, {0, 1, 3000}, {1, 1, 4001}};
@@ -168,7 +168,7 @@ TEST(Las, KeysAloneNameTheCoordinateSystem) {
   FETTLE_LOAD_BYTES(unit, "e.las", keyed({{1024, 0, 1, 1}, {3076, 0, 1, 9003}}));
   EXPECT_EQ(unit.field.grid().lateral_unit.name, "ftUS");
   EXPECT_EQ(unit.field.grid().crs_wkt, "");
-  EXPECT_TRUE(warned(unit.warnings, "only the unit is kept"));
+  EXPECT_TRUE(warned(unit.warnings, "only its unit is used"));
   FETTLE_LOAD_BYTES(lying, "f.las", keyed({{1024, 0, 1, 1}, {3072, 0, 1, 32767}, {3080, 34736, 9, 60000}}));
   EXPECT_EQ(lying.field.grid().crs_wkt, "");
 }

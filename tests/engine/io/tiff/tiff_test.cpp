@@ -128,7 +128,7 @@ TEST(Tiff, LostBitsOfLargeNumbersAreStated) {
   makeTiff(folder.file("t.tif"), GDT_Float64, 2, 1, {0.1, 1e300});
   FETTLE_LOAD(doubles, folder.file("t.tif"));
   EXPECT_TRUE(warned(doubles.warnings, "largest rounding is 1.5e-09 mm")) << doubles.warnings.back();
-  EXPECT_TRUE(warned(doubles.warnings, "1 heights are infinite or past the range"));
+  EXPECT_TRUE(warned(doubles.warnings, "1 heights are infinite or outside the range"));
   EXPECT_TRUE(std::isnan(stored(doubles.field, 0, 1)));
 }
 
@@ -183,7 +183,7 @@ TEST(Tiff, BandScaleAndOffsetAreAppliedAndZScaleOverrulesThem) {
   FETTLE_LOAD(overruled, folder.file("t.tif"), options);
   EXPECT_EQ(stored(overruled.field, 0, 0), 50.0F);
   EXPECT_EQ(overruled.field.grid().height_per_count, 0.5);
-  EXPECT_TRUE(warned(overruled.warnings, "as asked"));
+  EXPECT_TRUE(warned(overruled.warnings, "as requested"));
 }
 
 TEST(Tiff, BottomUpAndRightToLeftRastersLieWhereTheyShould) {
@@ -206,13 +206,13 @@ TEST(Tiff, BottomUpAndRightToLeftRastersLieWhereTheyShould) {
   EXPECT_EQ(heightsOf(up.field), (std::vector<float>{1, 2, 3, 4, 5, 6}));
   EXPECT_EQ(up.field.grid().origin_y, 202.0);
   EXPECT_EQ(up.field.grid().spacing_y, 4.0);
-  EXPECT_TRUE(warned(up.warnings, "rows run upwards: rows are counted from the highest y"));
+  EXPECT_TRUE(warned(up.warnings, "rows go upwards: rows are counted from the highest y"));
   EXPECT_FALSE(warned(up.warnings, "run leftwards"));
   makeTiff(folder.file("t.tif"), GDT_Byte, 3, 2, {1, 2, 3, 4, 5, 6}, {}, place(-2, -4));
   FETTLE_LOAD(left, folder.file("t.tif"));
   EXPECT_EQ(heightsOf(left.field), (std::vector<float>{6, 5, 4, 3, 2, 1}));
   EXPECT_EQ(left.field.grid().origin_x, 100.0 - 2.5 * 2);
-  EXPECT_TRUE(warned(left.warnings, "columns run leftwards: columns are counted from the lowest x"));
+  EXPECT_TRUE(warned(left.warnings, "columns go leftwards: columns are counted from the lowest x"));
   EXPECT_FALSE(warned(left.warnings, "run upwards"));
 }
 
@@ -276,7 +276,7 @@ TEST(Tiff, SamplesThatAreNoLengthsAreNamedAndGivenNoUnit) {
            [](GDALDatasetH d) { GDALSetRasterUnitType(GDALGetRasterBand(d, 1), "Intensity"); });
   FETTLE_LOAD(scan, folder.file("t.tif"));
   EXPECT_EQ(scan.field.grid().height_unit.name, "Intensity");
-  EXPECT_TRUE(warned(scan.warnings, "\"Intensity\", which is no length"));
+  EXPECT_TRUE(warned(scan.warnings, "\"Intensity\", which is not a length"));
   EXPECT_FALSE(warned(scan.warnings, "not known"));
 }
 
@@ -386,15 +386,15 @@ TEST(Tiff, UnitsThatNobodyStatesAreWarnedAbout) {
     return scan ? scan->warnings : std::vector<std::string>{scan.error().line()};
   };
   using Lines = std::vector<std::string>;
-  EXPECT_EQ(warnings(true, nullptr), Lines{"the file states no unit, mm taken: give it with --unit"});
-  EXPECT_EQ(warnings(true, "m"), Lines{"the file states no lateral unit, mm taken: give it with --unit"});
-  EXPECT_EQ(warnings(false, nullptr), Lines{"the file states no unit and no spacing, mm and 1 mm taken: give "
+  EXPECT_EQ(warnings(true, nullptr), Lines{"the file states no unit, mm is assumed: give it with --unit"});
+  EXPECT_EQ(warnings(true, "m"), Lines{"the file states no lateral unit, mm is assumed: give it with --unit"});
+  EXPECT_EQ(warnings(false, nullptr), Lines{"the file states no unit and no spacing, mm and 1 mm are assumed: give "
                                             "them with --unit and --spacing"});
   ImportOptions metres;
   metres.unit = lengthUnitFromName("m");
   EXPECT_EQ(warnings(true, nullptr, metres), Lines{});
   EXPECT_EQ(warnings(false, nullptr, metres),
-            Lines{"the file states no spacing, 1 m taken: give it with --spacing"});
+            Lines{"the file states no spacing, 1 m is assumed: give it with --spacing"});
 }
 
 // What is counted as done has been compressed and written but for a strip or two, so cancelling late ends soon.
