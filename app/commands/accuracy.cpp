@@ -57,8 +57,8 @@ engine::Result<Report> accuracy(const AccuracyArguments& options, engine::JobCon
   const std::filesystem::path folder(options.folder);
   const bool made = std::filesystem::create_directories(folder, error);
   if (error)
-    return engine::inputError("the folder cannot be made: " + error.message(), options.folder,
-                              "name a folder that you may write to");
+    return engine::inputError("the folder cannot be created: " + error.message(), options.folder,
+                              "name a folder with write permission");
   const auto ended = [&](engine::Error problem) {
     std::error_code ignored;
     if (made && std::filesystem::is_empty(folder, ignored)) std::filesystem::remove(folder, ignored);
@@ -132,13 +132,13 @@ void addAccuracy(Command root, Chosen& chosen) {
   Command command = addCommand(
       root, chosen, "accuracy", "What accuracy costs in time: a page of plots, tables and answers",
       [options](engine::JobControl& job) { return accuracy(*options, job); }, printAccuracy);
-  command.option("FOLDER", options->folder, "Where accuracy.html, accuracy.csv and the plots go")
+  command.option("FOLDER", options->folder, "Folder for accuracy.html, accuracy.csv and the plots")
       .check(folderName())
       .required();
-  command.option("SCAN", options->scan, "A scan to study beside the made fields");
+  command.option("SCAN", options->scan, "A scan to study in addition to the generated fields");
   command.option("--only", options->only, "Studies to make: " + studyNames() + "; none: all");
   command
-      .option("--effort", options->effort, "Share of the full work, 0.01 to 1; less is quicker and coarser")
+      .option("--effort", options->effort, "Share of the full work, 0.01 to 1; less is faster and less exact")
       .check(within(0.01, 1.0))
       .showDefault();
   addScanOptions(command, options->scan_options);

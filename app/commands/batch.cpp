@@ -34,8 +34,8 @@ std::string outputOf(const std::string& in, const BatchOptions& options) {
   return (std::filesystem::path(options.out_dir) / name).string();
 }
 
-// For its lifetime, the folders that a batch writes to; those it made are removed at the end if they are
-// empty.
+// During its lifetime, the folders that a batch writes to; those it created are removed at the end if they
+// are empty.
 class Folders {
  public:
   engine::Status make(const std::string& file) {
@@ -48,8 +48,8 @@ class Folders {
       if (std::filesystem::create_directory(*at, error)) made_.push_back(*at);
       if (error && engine::isDiskError(error.value())) return engine::writeError(at->string(), error.value());
       if (error)
-        return engine::inputError(fmt::format("the folder cannot be made: {}", error.message()), at->string(),
-                                  "name another or change the rights of the one above it");
+        return engine::inputError(fmt::format("the folder cannot be created: {}", error.message()),
+                                  at->string(), "name another or change the permissions of the one above it");
     }
     return {};
   }
@@ -80,13 +80,12 @@ void addBatchOptions(Command command, BatchOptions& options) {
       .required();
   command
       .option("--out-dir", options.out_dir,
-              "Folder for what is written, each under its scan's name, made when it is not there; goes on "
+              "Folder for the output files, each under its scan's name, created if missing; continues "
               "where a scan fails")
       .check(folderName());
-  command.option(
-      "--to", options.extension,
-      "With --out-dir, or - for OUT: format of what is written, as extension; without it in a folder "
-      "the scan's own, or tif where that cannot be written");
+  command.option("--to", options.extension,
+                 "With --out-dir, or - for OUT: format of the output, as extension; without it in a folder "
+                 "the scan's own, or tif where that cannot be written");
   addForceOption(command, options.replacing);
 }
 
@@ -110,13 +109,14 @@ engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
     std::map<std::string, std::string> taken;
     for (const std::string& in : options.files) {
       if (isStream(in))
-        return engine::inputError("standard input has no name to be written under", in,
-                                  "give it alone, with a file to write");
+        return engine::inputError("standard input has no name for an output file", in,
+                                  "give only it, with a file to write");
       tasks.push_back({in, outputOf(in, options), {}});
       const auto [earlier, fresh] = taken.emplace(tasks.back().out, in);
       if (!fresh)
-        return engine::inputError(fmt::format("{} and {} would be written to one file", earlier->second, in),
-                                  tasks.back().out, "give them to two runs with two folders, or rename one");
+        return engine::inputError(
+            fmt::format("{} and {} would be written to the same file", earlier->second, in), tasks.back().out,
+            "use two runs with two folders, or rename one");
     }
   }
   std::vector<Output> outputs;
@@ -164,7 +164,7 @@ engine::Result<Report> runBatch(
         files.push_back({{"in", task.in}, {"error", result.error().line()}});
         addKeptWarnings(files.back());
         failures.push_back(std::move(result).error());
-        // Whoever reads the summary must know the scan; errors of the output name that alone.
+        // The summary must name the scan; errors of the output name only the output.
         if (failures.back().where != task.in) failures.back().what = task.in + ": " + failures.back().what;
       }
       state.done.fetch_add(1, std::memory_order_relaxed);
@@ -177,7 +177,7 @@ engine::Result<Report> runBatch(
                       fmt::format("cancelled after {} of {}", done, counted(tasks.size(), "scan")), "",
                       tasks.front().out.empty() ? ""
                       : done == 0               ? "nothing was written"
-                                                : "what was written is whole"});
+                                                : "the written files are complete"});
   return Report{{"done", done}, {"failed", failures.size()}, {"files", std::move(files)}};
 }
 

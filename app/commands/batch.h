@@ -9,43 +9,42 @@
 
 namespace fettle::app {
 
-/// The files of a command that writes a scan for each that it reads, as typed: IN OUT, or any number of IN
-/// with a folder for what is written.
+/// The files of a command that writes one scan for each that it reads, as typed: IN OUT, or any number of IN
+/// with a folder for the output.
 struct BatchOptions {
   std::vector<std::string> files;
-  std::string out_dir;  ///< empty: one scan, IN OUT
-  std::string
-      extension;  ///< of what is written to out_dir or to "-", with or without a dot; empty: batchTasks
+  std::string out_dir;    ///< empty: one scan, IN OUT
+  std::string extension;  ///< of files written to out_dir or to "-", with or without a dot; empty: batchTasks
   Replacing replacing = Replacing::kNoWork;
 
   [[nodiscard]] bool many() const noexcept { return !out_dir.empty(); }
 };
 void addBatchOptions(Command command, BatchOptions& options);
 
-/// One scan to read and where it goes.
+/// One scan to read and its output.
 struct BatchTask {
   std::string in;
   std::string out;  ///< empty: nothing is written
   std::string to;   ///< format of an `out` that is "-", as extension
 };
 
-/// What is to be done, in the order typed. In out_dir a scan keeps its name; its extension is that of
-/// `options`, else its own where that format can be written, else .tif. Refuses before anything is read
-/// (kInput): not exactly IN and OUT without out_dir, an extension without out_dir or "-", two scans that
-/// would go to one file (naming both), and whatever checkOutputs refuses. `others` are further inputs that no
+/// The tasks, in the order typed. In out_dir a scan keeps its name; its extension is that of `options`,
+/// otherwise its own where that format can be written, otherwise .tif. Refuses before anything is read
+/// (kInput): not exactly IN and OUT without out_dir, an extension without out_dir or "-", two scans with the
+/// same output file (naming both), and whatever checkOutputs refuses. `others` are further inputs that no
 /// output may replace.
 [[nodiscard]] engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,
                                                                 const std::vector<std::string>& others,
                                                                 engine::JobControl& job);
 
-/// Does one task after another with one progress line for all, and goes on where one fails. Failures are
-/// errors on stderr at the end, one line each. The report holds `done`, `failed` and `files`: one object a
-/// task, with `in`, `out` (where there is one) and what `one` reported, or `in` and `error`. batchStatus
-/// makes the exit status.
+/// Runs the tasks one after another with one progress line for all, and continues where one fails. Failures
+/// are errors on stderr at the end, one line each. The report holds `done`, `failed` and `files`: one object
+/// per task, with `in`, `out` (where there is one) and the report of `one`, or `in` and `error`. batchStatus
+/// gives the exit status.
 ///
-/// A folder to write to that is not there is made, and removed again when nothing was written.
-/// Cancelling ends the task at work, which leaves nothing, and starts no other: kCancelled, saying how many
-/// files are there and whole.
+/// A missing output folder is created, and removed again when nothing was written. Cancelling ends the
+/// current task, which leaves no file, and starts no other: kCancelled, stating how many files were
+/// completed.
 [[nodiscard]] engine::Result<Report> runBatch(
     const std::vector<BatchTask>& tasks, engine::JobControl& job,
     const std::function<engine::Result<Report>(const BatchTask&, engine::JobControl&)>& one);
@@ -53,7 +52,7 @@ struct BatchTask {
 /// 0, or 1 when a task of the batch failed; 0 for reports of a single scan.
 [[nodiscard]] int batchStatus(const Report& report);
 
-/// A line a task for a batch, printReport for a single scan.
+/// One line per task for a batch, printReport for a single scan.
 void printBatch(const Report& report);
 
 }  // namespace fettle::app

@@ -90,11 +90,11 @@ engine::Result<Report> effects(const bench::EffectsBenchOptions& options, engine
 }
 
 void printEffects(const Report& report) {
-  fmt::print("{}\n{} x {} samples, {} ticks, median of {} runs, round the rows; instructions: {}\n\n",
+  fmt::print("{}\n{} x {} samples, {} ticks, median of {} runs, along the rows; instructions: {}\n\n",
              report["machine"].get<std::string>(), report["side"].get<int>(), report["side"].get<int>(),
              report["ticks"].get<std::int64_t>(), report["repeats"].get<int>(),
              report["instructions_counted_by"].get<std::string>());
-  fmt::print("{:<22}{:>11}{:>11}{:>11}{:>15}{:>12}{:>11}  hash\n", "", "ns a tick", "fastest", "worst",
+  fmt::print("{:<22}{:>11}{:>11}{:>11}{:>15}{:>12}{:>11}  hash\n", "", "ns/tick", "fastest", "worst",
              "instructions", "bytes", "contact");
   for (const Report& row : report["rows"]) {
     const Report& instructions = row["instructions_per_tick"];
@@ -131,9 +131,9 @@ Report rowOf(const haptic::LoopBenchRow& row) {
 engine::Result<Report> loop(const haptic::LoopBenchOptions& options, engine::JobControl& job) {
   const auto measured = haptic::benchLoop(options, job);
   if (!measured) return tl::unexpected(measured.error());
-  const bool beside_cyclictest = measured->no_cyclictest.empty();
+  const bool has_cyclictest = measured->no_cyclictest.empty();
   Report reference = rowOf(measured->reference);
-  if (beside_cyclictest) reference["missed"] = nullptr;  // it does not count them
+  if (has_cyclictest) reference["missed"] = nullptr;  // it does not count them
   return Report{{"machine", measured->machine},
                 {"seconds", measured->seconds},
                 {"rate_hz", measured->rate_hz},
@@ -142,8 +142,8 @@ engine::Result<Report> loop(const haptic::LoopBenchOptions& options, engine::Job
                 {"p99_ratio", measured->p99_ratio},
                 {"p999_ratio", measured->p999_ratio},
                 {"refused_edits", measured->refused_edits},
-                {"cyclictest", beside_cyclictest ? reference : Report()},
-                {"no_cyclictest", beside_cyclictest ? Report() : Report(measured->no_cyclictest)},
+                {"cyclictest", has_cyclictest ? reference : Report()},
+                {"no_cyclictest", has_cyclictest ? Report() : Report(measured->no_cyclictest)},
                 {"rows", {rowOf(measured->loop), reference}}};
 }
 
@@ -164,7 +164,7 @@ void printLoop(const Report& report) {
       fmt::print("{}: {}\n", row["name"].get<std::string>(), missing.get<std::string>());
   for (const Report& row : report["rows"])
     fmt::print("{}: processor {} (/dev/cpu_dma_latency)\n", row["name"].get<std::string>(),
-               row["latency_held"].get<bool>() ? "kept out of deep sleep" : "free to sleep deeply");
+               row["latency_held"].get<bool>() ? "kept from deep sleep" : "free to sleep deeply");
   if (!report["no_cyclictest"].is_null()) fmt::print("{}\n", report["no_cyclictest"].get<std::string>());
   fmt::print("\nhaptic loop over {}: p99 {:.2f}, p99.9 {:.2f}; target 1.20\n",
              report["reference"].get<std::string>(), report["p99_ratio"].get<double>(),
@@ -186,7 +186,7 @@ engine::Result<Report> stability(const bench::StiffnessSweepOptions& options, en
 }
 
 void printStability(const Report& report) {
-  fmt::print("largest stiffness [N/mm] that does not buzz: {} kg pressed with {} N\n\n",
+  fmt::print("largest stiffness [N/mm] that is stable: {} kg pressed with {} N\n\n",
              report["mass_kg"].get<double>(), report["press_n"].get<double>());
   fmt::print("{:>8}{:>12}{:>12}{:>12}{:>12}{:>18}\n", "Hz", "b, N s/mm", "2 b / T", "simulated", "measured",
              "measured/theory");
@@ -227,11 +227,11 @@ engine::Result<Report> picture(const bench::RenderBenchOptions& options, engine:
                               {"stalls", row.stalls},
                               {"hash", fmt::format("{:016x}", row.hash)}});
   if (result->loop.ran)
-    report["beside_loop"] = {{"frame_p50_ms", result->loop.frame_p50_ms},
-                             {"frame_p99_ms", result->loop.frame_p99_ms},
-                             {"late_p50_us", result->loop.late_p50_us},
-                             {"late_p99_us", result->loop.late_p99_us},
-                             {"late_p999_us", result->loop.late_p999_us}};
+    report["with_loop"] = {{"frame_p50_ms", result->loop.frame_p50_ms},
+                           {"frame_p99_ms", result->loop.frame_p99_ms},
+                           {"late_p50_us", result->loop.late_p50_us},
+                           {"late_p99_us", result->loop.late_p99_us},
+                           {"late_p999_us", result->loop.late_p999_us}};
   report["targets"] = Report::array();
   for (const bench::RenderTarget& t : result->targets)
     report["targets"].push_back(
@@ -267,10 +267,10 @@ void printPicture(const Report& report) {
           row["name"].get<std::string>(), row["samples"].get<double>() / 1e6, row["off_mean"].get<double>(),
           row["off_max"].get<double>(), 1e2 * row["off_share"].get<double>());
   fmt::print("\n");
-  if (report.contains("beside_loop")) {
-    const Report& loop = report["beside_loop"];
+  if (report.contains("with_loop")) {
+    const Report& loop = report["with_loop"];
     fmt::print(
-        "\nbeside a loop at 1 kHz: frames p50 {:.2f} ms, p99 {:.2f} ms; the loop late p50 {:.0f} us, p99 "
+        "\nwith a loop at 1 kHz: frames p50 {:.2f} ms, p99 {:.2f} ms; the loop late p50 {:.0f} us, p99 "
         "{:.0f} us, p99.9 {:.0f} us\n",
         loop["frame_p50_ms"].get<double>(), loop["frame_p99_ms"].get<double>(),
         loop["late_p50_us"].get<double>(), loop["late_p99_us"].get<double>(),
@@ -290,7 +290,7 @@ void addBench(Command root, Chosen& chosen) {
 
   auto haptic_options = std::make_shared<bench::HapticBenchOptions>();
   Command ticks = addCommand(
-      bench, chosen, "haptic", "Ticks a second of contact, force and local smoothing",
+      bench, chosen, "haptic", "Ticks per second of contact, force and local smoothing",
       [haptic_options](engine::JobControl& job) { return haptic(*haptic_options, job); }, printHaptic);
   ticks.option("--side", haptic_options->side, "Samples along each side of the field").showDefault();
   ticks.option("--ticks", haptic_options->ticks, "Ticks of each run").showDefault();
@@ -301,7 +301,7 @@ void addBench(Command root, Chosen& chosen) {
 
   auto effects_options = std::make_shared<bench::EffectsBenchOptions>();
   Command prices = addCommand(
-      bench, chosen, "effects", "What each effect of a scene costs a tick, and what it holds",
+      bench, chosen, "effects", "What each effect of a scene costs per tick, and the memory that it takes",
       [effects_options](engine::JobControl& job) { return effects(*effects_options, job); }, printEffects);
   prices.option("--side", effects_options->side, "Samples along each side of the field").showDefault();
   prices.option("--ticks", effects_options->ticks, "Ticks of each run").showDefault();
@@ -310,23 +310,23 @@ void addBench(Command root, Chosen& chosen) {
   auto loop_options = std::make_shared<haptic::LoopBenchOptions>();
   auto busy = std::make_shared<bool>(false);
   Command lateness = addCommand(
-      bench, chosen, "loop", "Lateness of the live loop beside cyclictest in the same run",
+      bench, chosen, "loop", "Lateness of the live loop and of cyclictest in the same run",
       [loop_options, busy](engine::JobControl& job) {
         haptic::LoopBenchOptions options = *loop_options;
         options.load = *busy ? haptic::BenchLoad::kBusy : haptic::BenchLoad::kIdle;
         return loop(options, job);
       },
       printLoop);
-  lateness.option("--seconds", loop_options->seconds, "How long to measure").showDefault();
-  lateness.option("--rate", loop_options->rate_hz, "Ticks a second").showDefault();
+  lateness.option("--seconds", loop_options->seconds, "Seconds of measuring").showDefault();
+  lateness.option("--rate", loop_options->rate_hz, "Ticks per second").showDefault();
   auto sweep_options = std::make_shared<bench::StiffnessSweepOptions>();
   Command sweep = addCommand(
-      bench, chosen, "stability", "Stiffness at which a felt wall starts to buzz, against b > K T / 2",
+      bench, chosen, "stability", "Stiffness at which a wall becomes unstable, against b > K T / 2",
       [sweep_options](engine::JobControl& job) { return stability(*sweep_options, job); }, printStability);
   sweep.option("--damping", sweep_options->damping_n_s_per_mm, "Damping of the device, N s/mm").showDefault();
   sweep.option("--mass", sweep_options->mass_kg, "Moving mass, kg").showDefault();
   sweep.option("--press", sweep_options->press_n, "Constant press, N").showDefault();
-  sweep.option("--rates", sweep_options->rates_hz, "Ticks a second, one row each");
+  sweep.option("--rates", sweep_options->rates_hz, "Ticks per second, one row each");
 
   addBenchGrowth(bench, chosen);
   addBenchLarge(bench, chosen);
@@ -339,20 +339,20 @@ void addBench(Command root, Chosen& chosen) {
       [render_options](engine::JobControl& job) { return picture(*render_options, job); }, printPicture);
   drawing.option("--side", render_options->sides,
                  "Samples along each side, one field each (10240: 100M, 31623: 1G)");
-  drawing.option("--loop", render_options->loop_seconds, "Seconds of drawing beside a haptic loop; 0: none")
+  drawing.option("--loop", render_options->loop_seconds, "Seconds of drawing with a haptic loop; 0: none")
       .showDefault();
   drawing.option("--scene", render_options->scenes, "Rows to measure, by name; none: all");
   drawing.onFlag(
       "--sharp", [render_options] { render_options->in_motion = render::Sharpness::kFull; },
       "Draw every pixel while the camera moves, too");
   drawing.option("--frames", render_options->frames, "Frames of each row").showDefault();
-  drawing.option("--error", render_options->error_px, "Screen error wanted, px").showDefault();
-  drawing.option("--vertices", render_options->vertex_budget, "Vertices a frame at most").showDefault();
+  drawing.option("--error", render_options->error_px, "Requested screen error, px").showDefault();
+  drawing.option("--vertices", render_options->vertex_budget, "Most vertices per frame").showDefault();
   drawing.option(
       "--device-memory", render_options->memory_budget_bytes,
       "Bytes that samples may take on the device, the rest is loaded on demand; 0: half of its memory");
 
-  lateness.flag("--busy", *busy, "Keep every core busy by other processes meanwhile");
+  lateness.flag("--busy", *busy, "Keep every core busy with other processes");
 }
 
 }  // namespace fettle::app

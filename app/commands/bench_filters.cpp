@@ -41,8 +41,8 @@ engine::Result<Report> measure(const bench::FiltersBenchOptions& options, engine
   return report;
 }
 
-// "value target", with a star where the target is met; nothing where the row has no such value.
-std::string beside(double value, double target, int digits) {
+// "value target", with a star where the target is met; empty where the row has no such value.
+std::string valueAndTarget(double value, double target, int digits) {
   if (value == 0.0) return {};
   if (target == 0.0) return fmt::format("{:.{}f}{:>8}", value, digits, "");
   return fmt::format("{:.{}f} {:>6}{}", value, digits, fmt::format("{:g}", target),
@@ -68,8 +68,8 @@ void printBenchFilters(const Report& report) {
         row["kind"].get<std::string>(), row["window"].get<int>(), row["ground"].get<std::string>(),
         row["threads"].get<int>(), row["side"].get<int>(), number("samples_per_second") * 1e-6,
         number("slowest") * 1e-6, number("fastest") * 1e-6, number("copy_samples_per_second") * 1e-6,
-        beside(number("share_of_copy"), number("share_target"), 4),
-        beside(several ? number("over_one_thread") : 0.0, number("over_one_thread_target"), 2),
+        valueAndTarget(number("share_of_copy"), number("share_target"), 4),
+        valueAndTarget(several ? number("over_one_thread") : 0.0, number("over_one_thread_target"), 2),
         number("samples_per_cpu_second") * 1e-6, number("share_of_copy_cpu"), row["hash"].get<std::string>());
   }
 }
@@ -80,7 +80,7 @@ void addBenchFilters(Command bench, Chosen& chosen) {
   auto options = std::make_shared<bench::FiltersBenchOptions>();
   Command command = addCommand(
       bench, chosen, "filters",
-      "Samples a second of the global filters, beside plain copying in the same run",
+      "Samples per second of the global filters, and of plain copying in the same run",
       [options](engine::JobControl& job) { return measure(*options, job); }, printBenchFilters);
   std::map<std::string, engine::FilterKind> kinds;
   for (const engine::Filter& filter : engine::filters()) kinds[std::string(filter.word)] = filter.kind;

@@ -37,7 +37,7 @@ std::string scriptOf(const bench::Growth& growth) {
         "rgb '{2}' lw 1.5 pt 7 ps 0.7 title {3}",
         i == 0 ? "plot " : ", ", i, colour, quoted(fmt::format("{}: {:.2f}", series.name, series.slope)));
   }
-  // Costs that do not grow are not to look as if they did.
+  // Costs that do not grow must not look as if they did.
   return script +
          "set autoscale yfixmin\nset yrange [*:*] extend\nset key title 'slope' left\nset offsets graph 0, "
          "0, "
@@ -54,8 +54,8 @@ engine::Result<Report> measure(const BenchGrowthArguments& options, engine::JobC
                 {"copy_bytes_per_second", measured->copy_bytes_per_s},
                 {"growths", Report::array()}};
   for (const bench::Growth& growth : measured->growths) {
-    Report entry{{"id", growth.id},     {"title", growth.title},     {"work", growth.work},
-                 {"cost", growth.cost}, {"wanted", growth.expected}, {"series", Report::array()}};
+    Report entry{{"id", growth.id},     {"title", growth.title},       {"work", growth.work},
+                 {"cost", growth.cost}, {"expected", growth.expected}, {"series", Report::array()}};
     for (const bench::GrowthSeries& series : growth.series) {
       Report points = Report::array();
       for (const bench::GrowthPoint& p : series.points)
@@ -71,8 +71,8 @@ engine::Result<Report> measure(const BenchGrowthArguments& options, engine::JobC
       std::error_code error;
       std::filesystem::create_directories(options.folder, error);
       if (error)
-        return engine::inputError("the folder cannot be made: " + error.message(), options.folder,
-                                  "name a folder that you may write to");
+        return engine::inputError("the folder cannot be created: " + error.message(), options.folder,
+                                  "name a folder with write permission");
       const std::string path =
           (std::filesystem::path(options.folder) / ("growth_" + growth.id + ".svg")).string();
       if (auto ok = engine::writeFileAtomically(path, *svg); !ok) return tl::unexpected(ok.error());
@@ -87,8 +87,8 @@ void printBenchGrowth(const Report& report) {
   fmt::print("{}\none thread copies {:.1f} GB/s\n", report["machine"].get<std::string>(),
              report["copy_bytes_per_second"].get<double>() * 1e-9);
   for (const Report& growth : report["growths"]) {
-    fmt::print("\n{}: {}; slope wanted {}\n", growth["title"].get<std::string>(),
-               growth["cost"].get<std::string>(), growth["wanted"].get<std::string>());
+    fmt::print("\n{}: {}; expected slope {}\n", growth["title"].get<std::string>(),
+               growth["cost"].get<std::string>(), growth["expected"].get<std::string>());
     fmt::print("{:<20}{:>7}{:>8}  at {}: median (worst)\n", "", "slope", "target",
                growth["work"].get<std::string>());
     for (const Report& series : growth["series"]) {
@@ -116,7 +116,7 @@ void addBenchGrowth(Command bench, Chosen& chosen) {
   command.option("--plots", options->folder, "Folder for a picture of each").check(folderName());
   command.onFlag(
       "--no-picture", [options] { options->bench.picture = false; },
-      "Leave out uploads: no Vulkan device is needed");
+      "Omit uploads: no Vulkan device is needed");
 }
 
 }  // namespace fettle::app

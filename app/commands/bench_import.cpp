@@ -34,7 +34,7 @@ engine::Result<Report> measure(const bench::ImportBenchOptions& options, engine:
 
 void printBenchImport(const Report& report) {
   fmt::print(
-      "{}\nmedian of {} imports; plain: the same file read into a buffer; GDAL: its samples brought into a "
+      "{}\nmedian of {} imports; plain: the same file read into a buffer; GDAL: its samples read into a "
       "buffer\nby GDAL alone, the faster of two ways; both in the same run\n\n",
       report["machine"].get<std::string>(), report["repeats"].get<int>());
   fmt::print("{:<26}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>12}  hash\n", "", "MB", "MB/s", "slowest",
@@ -57,7 +57,7 @@ void printBenchImport(const Report& report) {
 void addBenchImport(Command bench, Chosen& chosen) {
   auto options = std::make_shared<bench::ImportBenchOptions>();
   Command command = addCommand(
-      bench, chosen, "import", "How fast each format becomes a field, beside plain reading of the same file",
+      bench, chosen, "import", "Import time of each format, and of plain reading of the same file",
       [options](engine::JobControl& job) { return measure(*options, job); }, printBenchImport);
   command.option("SCANS", options->files, "Files to read; none: one field written in every format");
   command.option("--side", options->side, "Samples along each side of that field; above 2048: GeoTIFF alone")

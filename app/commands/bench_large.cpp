@@ -87,7 +87,7 @@ void printBenchLarge(const Report& report) {
                s["plain"].is_null() || s["note"].get<std::string>().empty() ? "" : "; ",
                s["note"].get<std::string>());
   }
-  fmt::print("\n{:<20}{:>10}{:>12}{:>14}{:>8}{:>12}{:>12}{:>10}\n", "", "ticks", "ns a tick", "on 1024^2",
+  fmt::print("\n{:<20}{:>10}{:>12}{:>14}{:>8}{:>12}{:>12}{:>10}\n", "", "ticks", "ns/tick", "on 1024^2",
              "ratio", "p99.9 ns", "worst us", "waited");
   for (const Report& t : report["ticks"])
     fmt::print("{:<20}{:>10}{:>12.1f}{:>14.1f}{:>8.2f}{:>12.0f}{:>12.1f}{:>10}\n",
@@ -96,8 +96,8 @@ void printBenchLarge(const Report& report) {
                1e-3 * t["tick_worst_ns"].get<double>(), t["ticks_that_waited"].get<std::int64_t>());
   const Report& loop = report["live_loop"];
   fmt::print(
-      "\nlive loop at 1 kHz: {} ticks, {} in contact, {} that felt nothing because samples were on the disk; "
-      "waited for the disk {} times; {} tiles brought, {} not locked; compute p50 {:.1f} us, p99.9 {:.1f} "
+      "\nlive loop at 1 kHz: {} ticks, {} in contact, {} without contact because samples were on the disk;  "
+      "waited for the disk {} times; {} tiles read, {} not locked; compute p50 {:.1f} us, p99.9 {:.1f} "
       "us, "
       "worst {:.1f} us\n",
       loop["ticks"].get<std::uint64_t>(), loop["contact_ticks"].get<std::uint64_t>(),
@@ -115,7 +115,8 @@ void printBenchLarge(const Report& report) {
 void addBenchLarge(Command bench, Chosen& chosen) {
   auto options = std::make_shared<bench::LargeOptions>();
   Command command = addCommand(
-      bench, chosen, "large", "A very large scan the whole way: open, feel, edit, filter, undo, draw, save",
+      bench, chosen, "large",
+      "The whole work on a very large scan: open, feel, edit, filter, undo, draw, save",
       [options](engine::JobControl& job) -> engine::Result<Report> {
         const auto measured = bench::benchLarge(*options, job);
         if (!measured) return tl::unexpected(measured.error());
@@ -123,12 +124,11 @@ void addBenchLarge(Command bench, Chosen& chosen) {
       },
       printBenchLarge);
   command.option("--side", options->side, "Samples along each side of the scan").showDefault();
-  command.option("--folder", options->folder, "Where the files lie meanwhile; else the temporary folder")
+  command.option("--folder", options->folder, "Folder for its files; otherwise the temporary folder")
       .check(folderName());
   command.option("--effort", options->effort, "Share of the ticks, 0.01 to 1").showDefault();
   command.onFlag(
-      "--no-picture", [options] { options->picture = false; },
-      "Leave out drawing: no Vulkan device is needed");
+      "--no-picture", [options] { options->picture = false; }, "Omit drawing: no Vulkan device is needed");
   addStoreOption(command);
 }
 

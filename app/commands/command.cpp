@@ -65,7 +65,7 @@ void addKeptWarnings(Report& report) {
 }
 
 void printReport(const Report& report) {
-  // Each was said on stderr when it was found.
+  // Warnings were printed on stderr when they occurred.
   Report shown = report;
   shown.erase("warnings");
   printIndented(shown, 0);
@@ -73,7 +73,7 @@ void printReport(const Report& report) {
 
 Check within(double lowest, double highest) {
   return {[lowest, highest](const std::string& typed) {
-            // As options of this type are read; NaN fails both comparisons.
+            // Parsed like options of this type; NaN fails both comparisons.
             char* end = nullptr;
             const auto value = static_cast<double>(std::strtold(typed.c_str(), &end));
             if (!typed.empty() && end == typed.c_str() + typed.size() && value >= lowest && value <= highest)
@@ -87,7 +87,7 @@ Check oneOf(const std::vector<std::string>& words) {
   return {[words](const std::string& typed) {
             if (std::find(words.begin(), words.end(), typed) != words.end()) return std::string();
             const std::string meant = didYouMean(typed, words);
-            return fmt::format("{} is none of {}{}{}", typed, fmt::join(words, ", "),
+            return fmt::format("{} is not one of {}{}{}", typed, fmt::join(words, ", "),
                                meant.empty() ? "" : "; ", meant);
           },
           fmt::format("{{{}}}", fmt::join(words, ","))};
@@ -114,7 +114,7 @@ Check folderName() {
 void addOutputFlags(Command app, Chosen& chosen) {
   app.flag("--json", chosen.json,
            "Print one JSON object on stdout instead of text, an error as one on stderr");
-  app.flag("-q,--quiet", chosen.quiet, "Say nothing but errors: no report, warnings or progress");
+  app.flag("-q,--quiet", chosen.quiet, "Print only errors: no report, warnings or progress");
 }
 
 Command addCommand(Command root, Chosen& chosen, const std::string& name, const std::string& description,

@@ -13,32 +13,32 @@
 
 namespace fettle::app {
 
-/// Who shows how far a command is.
+/// Who shows the progress of a command.
 enum class Progress : std::uint8_t {
   kLine,  ///< the progress line that all commands share
   kOwn,   ///< the command itself
 };
 
-/// The command that the command line chose, ready to run. `run` does the work and returns what --json prints;
-/// `print` shows the same to a person on stdout (printReport by default).
+/// The command that the command line chose, ready to run. `run` does the work and returns the output of
+/// --json; `print` prints it as text on stdout (printReport by default).
 struct Chosen {
   std::function<engine::Result<Report>(engine::JobControl&)> run;
   std::function<void(const Report&)> print;
   std::function<int(const Report&)> status;  ///< exit status of what `run` reported; empty: 0
   Progress progress = Progress::kLine;
   bool json = false;
-  bool quiet = false;  ///< nothing is said but errors
+  bool quiet = false;  ///< prints only errors
 };
 
-/// Puts the warnings that --json kept back (takeWarnings) into the report's list `warnings`, but for those
-/// that it holds already, with or without the file's name before them. Without any the report stays as it is.
+/// Adds the warnings that --json collected (takeWarnings) to the report's list `warnings`, except those that
+/// it contains already, with or without the file's name before them. Without any the report stays unchanged.
 void addKeptWarnings(Report& report);
 
-/// "key  value" lines; nested objects are indented, null prints as "-". Not its `warnings`: they were said on
-/// stderr.
+/// "key value" lines; nested objects are indented, null prints as "-". Without its `warnings`: they were
+/// printed on stderr.
 void printReport(const Report& report);
 
-/// Adds --json and --quiet, which a command takes before and behind its name.
+/// Adds --json and --quiet, which a command takes before and after its name.
 void addOutputFlags(Command app, Chosen& chosen);
 
 /// Adds a subcommand with --json and --quiet. `run` is stored in `chosen` when the command line names it.
@@ -50,13 +50,13 @@ Command addCommand(Command root, Chosen& chosen, const std::string& name, const 
 /// For Option::check: a number from `lowest` to `highest`, and not NaN.
 [[nodiscard]] Check within(double lowest, double highest);
 
-/// For Option::check: one of these words. Another is refused with what it may stand for.
+/// For Option::check: one of these words. Others are refused with a suggestion.
 [[nodiscard]] Check oneOf(const std::vector<std::string>& words);
 
-/// For Option::check of a file: not "-", which is no standard input or output there.
+/// For Option::check of a file: not "-", which does not mean standard input or output there.
 [[nodiscard]] Check fileName();
 
-/// For Option::check of a folder: not "-". A folder of that name would stand in the way of every command that
+/// For Option::check of a folder: not "-". A folder of that name would conflict with every command that
 /// writes to standard output.
 [[nodiscard]] Check folderName();
 

@@ -155,8 +155,8 @@ tl::expected<std::string, Misread> CommandLine::parse(const std::vector<std::str
     app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - (arguments.empty() ? 0 : 1)));
     return std::string();
   } catch (const CLI::ParseError& error) {
-    // "fitler --help" asks for the help of a command that is not there, not for that of the program.
-    // So does "bench hapitc --help".
+    // "fitler --help" and "bench hapitc --help" request the help of a command that does not exist, not that
+    // of the program.
     const CLI::App* used = app_.get();
     while (!used->get_subcommands().empty()) used = used->get_subcommands().front();
     const bool takes_command = !used->get_subcommands([](const CLI::App*) { return true; }).empty();

@@ -27,24 +27,23 @@ struct CompareArguments {
   ScanOptions reading;
 };
 
-// Fields are compared sample by sample; whoever compares two that lie elsewhere or mean something else is
-// told.
+// Fields are compared sample by sample; a warning states if their position or spacing differs.
 void warnOfDifferentGrids(const CompareArguments& options, const engine::Grid& a, const engine::Grid& b) {
   const std::string both = shownInput(options.a) + " and " + shownInput(options.b);
   if (a.spacingXMm() != b.spacingXMm() || a.spacingYMm() != b.spacingYMm())
     warn(both + " have different spacings and are compared sample by sample");
   if (a.origin_x * a.lateral_unit.mm != b.origin_x * b.lateral_unit.mm ||
       a.origin_y * a.lateral_unit.mm != b.origin_y * b.lateral_unit.mm)
-    warn(both + " lie at different places and are compared sample by sample");
+    warn(both + " are at different positions and are compared sample by sample");
   if (!(a.height_unit == b.height_unit))
-    warn(
-        fmt::format("heights are in {} and {}: the second are converted, say --unit where a file states none",
-                    a.height_unit.name, b.height_unit.name));
+    warn(fmt::format(
+        "heights are in {} and {}: the second are converted, give --unit where a file states none",
+        a.height_unit.name, b.height_unit.name));
 }
 
 engine::Result<Report> compare(const CompareArguments& options, engine::JobControl& job) {
   if (!options.edges.empty() && options.truth.empty())
-    return engine::inputError("edges say nothing without a truth", "--edges", "give --truth too");
+    return engine::inputError("edges need a truth", "--edges", "give --truth too");
   if (auto status =
           checkOutputs({{options.deviation, OutputKind::kField, options.to}},
                        {options.a, options.b, options.truth, options.edges}, options.replacing, job);
@@ -100,16 +99,16 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
 
 void addCompare(Command root, Chosen& chosen) {
   auto options = std::make_shared<CompareArguments>();
-  Command command =
-      addCommand(root, chosen, "compare", "How B deviates from A; against a truth, how wrong B is and where",
-                 [options](engine::JobControl& job) { return compare(*options, job); });
+  Command command = addCommand(root, chosen, "compare",
+                               "How B deviates from A; against a truth, the errors of B and where they are",
+                               [options](engine::JobControl& job) { return compare(*options, job); });
   command.option("A", options->a, "The scan to compare with; A or B may be -, standard input").required();
-  command.option("B", options->b, "The scan to judge").required();
+  command.option("B", options->b, "The scan to compare").required();
   command.option("--truth", options->truth, "The true surface: adds RMSE overall, on flats and near edges");
   command.option("--edges", options->edges, "Picture of the true edges, non-zero = edge: adds the edge width")
       .check(fileName());
   command.option("--deviation", options->deviation,
-                 "Also write B - A as a scan of its own, in A's height unit, format by extension");
+                 "Also write B - A as a separate scan, in A's height unit, format by extension");
   addForceOption(command, options->replacing);
   command.option("--to", options->to, "With --deviation -, standard output: its format, as extension");
   addScanOptions(command, options->reading);

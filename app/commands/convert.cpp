@@ -39,7 +39,7 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
   });
   if (!done) return tl::unexpected(done.error());
   if (imported->field.reader().root().marked_children != 0 && written->format != "Fettle")
-    written->warnings.push_back("the marks of the session are not kept, the format has none");
+    written->warnings.push_back("the marks of the session are not stored, the format has none");
   for (const std::string& warning : written->warnings) warn(shownOutput(task.out) + ": " + warning);
   return Report{{"format", written->format}, {"from", imported->format}, {"warnings", written->warnings}};
 }
@@ -67,7 +67,7 @@ void addConvert(Command root, Chosen& chosen) {
   command.flag("--mesh", options->writing.mesh, "PLY: triangles instead of points (STL always)").group(group);
   command
       .option("--max-error", options->max_error,
-              "Mesh: as few triangles as keep every sample within this height, e.g. 0.5 or 20um")
+              "Mesh: as few triangles as possible with every sample within this height, e.g. 0.5 or 20um")
       .group(group);
   command
       .flag("--cloud-optimised", options->writing.cloud_optimised,

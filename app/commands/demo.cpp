@@ -29,14 +29,15 @@ const engine::TruthFigures& figures(const DemoRun& run, const std::string& name)
   return run.results.front().figures;
 }
 
-// What a run that ends early leaves: files that are whole, which it says, or no folder that was not there.
+// The state after an early end: complete files, as stated in the error, or no folder that did not exist
+// before.
 engine::Error ended(engine::Error error, const DemoOptions& options, bool made) {
   std::error_code ignored;
   const bool empty = std::filesystem::is_empty(options.folder, ignored);
   if (empty && made) std::filesystem::remove(options.folder, ignored);
   if (error.kind == engine::ErrorKind::kCancelled && !empty) {
     error.where = options.folder;
-    error.remedy = "each file in it is whole, the rest is missing: run it again";
+    error.remedy = "each file in it is complete, the others are missing: run it again";
   }
   return error;
 }
@@ -46,13 +47,13 @@ engine::Result<Report> demo(const DemoOptions& options, engine::JobControl& job)
     return tl::unexpected(status.error());
   for (const double at : options.look_at)
     if (!(at >= 0.0 && at <= 1.0))
-      return engine::inputError(fmt::format("{} is no place in the field", at), "--look-at",
+      return engine::inputError(fmt::format("{} is not a position in the field", at), "--look-at",
                                 "give fractions from 0 to 1");
   std::error_code error;
   const bool made = std::filesystem::create_directories(options.folder, error);
   if (error)
-    return engine::inputError(fmt::format("the folder cannot be made: {}", error.message()), options.folder,
-                              "name a folder that you may write to");
+    return engine::inputError(fmt::format("the folder cannot be created: {}", error.message()),
+                              options.folder, "name a folder with write permission");
   ScanGuard guard;
   for (std::filesystem::directory_iterator it(options.folder, error), end; !error && it != end;
        it.increment(error))
@@ -110,17 +111,17 @@ void addDemo(Command root, Chosen& chosen) {
   Command command = addCommand(
       root, chosen, "demo", "The whole process on a simulated scan: pictures, table, session",
       [options](engine::JobControl& job) { return demo(*options, job); }, printDemo);
-  command.option("DIR", options->folder, "Folder for everything it writes; made if need be")
+  command.option("DIR", options->folder, "Folder for its output, created if missing")
       .check(folderName())
       .required();
   command.option("--part", options->part, "The part to scan; see fettle synth --help").showDefault();
   command.option("--side", options->side, "Samples along each side").check(inRange(64, 16384)).showDefault();
   command.option("--noise", options->noise, "Scale of the scanner's noise").showDefault();
-  command.option("--outliers", options->outliers, "Share of mixed pixels beside steps").showDefault();
+  command.option("--outliers", options->outliers, "Share of mixed pixels next to steps").showDefault();
   command.option("--dropouts", options->dropouts, "Scale of lost samples").showDefault();
   command.option("--window", options->window, "Window of the global filters").showDefault();
   command.option("--passes", options->passes, "Passes of the global filters").showDefault();
-  command.option("--look-at", options->look_at, "Where the close-ups look, as fractions X,Y of the field")
+  command.option("--look-at", options->look_at, "Centre of the close-ups, as fractions X,Y of the field")
       .delimiter(',')
       .expected(2);
   command.option("--seed", options->seed, "Same seed, same bits").check({seedProblem}).showDefault();

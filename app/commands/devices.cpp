@@ -11,7 +11,7 @@ using haptic::DeviceInfo;
 using haptic::DeviceKind;
 using haptic::DeviceProfile;
 
-// What every entry says, in the same keys. Limits are null where the device has none of the kind.
+// Every entry has the same keys. Limits are null where the device has none of the kind.
 Report entry(const std::string& id, const std::string& name, std::string_view kind, const std::string& state,
              const std::string& remedy, const DeviceProfile& profile) {
   const auto forceOnly = [&](double value) { return profile.gives_force ? Report(value) : Report(); };
@@ -43,7 +43,7 @@ Report pluggedIn(const DeviceInfo& d) {
   if (!usable)
     for (const char* key : {"workspace_radius_mm", "max_force_n", "max_stiffness_n_per_mm",
                             "max_damping_n_s_per_mm", "resolution_mm", "rate_hz"})
-      row[key] = nullptr;  // nothing is known of it
+      row[key] = nullptr;  // not known
   row["serial"] = d.serial;
   row["usb_id"] = d.vendor == 0 ? Report() : Report(fmt::format("{:04x}:{:04x}", d.vendor, d.product));
   row["form"] = d.form.empty() ? Report() : Report(std::string(d.form));
@@ -62,10 +62,10 @@ Report builtIn(const std::string& id, const std::string& name, const std::string
 engine::Result<Report> devices() {
   Report rows = Report::array();
   for (const DeviceInfo& d : haptic::listDevices()) rows.push_back(pluggedIn(d));
-  // What can be plugged in needs no path: the first one found is taken.
+  // A connected device needs no path: the first one found is used.
   for (const haptic::KnownDriver& driver : haptic::knownDrivers()) {
     if (driver.kind != DeviceKind::kOther) continue;
-    DeviceProfile profile;  // without strokes a replay is nowhere
+    DeviceProfile profile;  // without strokes a replay has no position
     profile.space = haptic::DeviceSpace::kField;
     if (const auto device = driver.open("", 1000.0)) profile = (*device)->profile();
     rows.push_back(builtIn(
@@ -97,16 +97,17 @@ void printDevices(const Report& report) {
       fmt::print("  workspace of {} radius, resolution {}\n", known(d["workspace_radius_mm"], 1.0, "mm"),
                  known(d["resolution_mm"], 1.0, "mm"));
     if (!d["remedy"].is_null()) fmt::print("  {}\n", d["remedy"].get<std::string>());
-    if (d["kind"] != "built in") fmt::print("  not tested on hardware: proved against a fake device\n");
+    if (d["kind"] != "built in") fmt::print("  not tested on hardware, only with a simulated device\n");
   }
-  if (!any) fmt::print("\nNo force device or 3D mouse is plugged in.\n");
+  if (!any) fmt::print("\nNo force device or 3D mouse is connected.\n");
 }
 
 }  // namespace
 
 void addDevices(Command root, Chosen& chosen) {
   addCommand(
-      root, chosen, "devices", "What is plugged in and what it can do; use an id with fettle record --device",
+      root, chosen, "devices",
+      "Connected devices and their properties; use an id with fettle record --device",
       [](engine::JobControl&) { return devices(); }, printDevices);
 }
 

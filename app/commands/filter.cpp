@@ -82,7 +82,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
     const auto range = parseHeight(options.range_sigma, field.grid(), "--range-sigma");
     if (!range) return tl::unexpected(range.error());
     spec.range_sigma = *range;
-    // 0 would ask for the noise's.
+    // 0 would select the noise's.
     if (auto status = engine::validate(spec); !status) return tl::unexpected(status.error());
   }
   const auto ready = engine::withMeasuredRange(spec, field, job);
@@ -112,7 +112,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
                 {"hash", fmt::format("{:016x}", engine::contentHash(filtered->field))}};
 }
 
-// The file and how it is read, as a shell takes them.
+// The file and its options, quoted for a shell.
 std::string shellWord(const std::string& text) {
   const auto plain = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
@@ -128,7 +128,7 @@ std::string shellWord(const std::string& text) {
   return out + "'";
 }
 
-// What is to be typed to have a candidate carried out.
+// The command line that runs a candidate.
 std::vector<std::string> commandsFor(const FilterArguments& options, const engine::FilterCandidate& c) {
   if (c.spec.window == 1) return {};
   const std::string in = shellWord(options.files.files[0]);
@@ -152,7 +152,7 @@ std::vector<std::string> commandsFor(const FilterArguments& options, const engin
 }
 
 std::string methodOf(const engine::FilterCandidate& c) {
-  if (c.spec.window == 1) return "the scan as it is";
+  if (c.spec.window == 1) return "the unchanged scan";
   return fmt::format("{} {}{}{}", engine::name(c.spec.kind), c.spec.window,
                      c.spec.passes > 1 ? fmt::format(", {} passes", c.spec.passes) : "",
                      c.around_edges ? " around suggested edges" : "");
@@ -167,7 +167,7 @@ std::string leftBy(const engine::FilterCandidate& c, const std::string& unit) {
   return flat.empty() || edge.empty() ? flat + edge : flat + " and " + edge;
 }
 
-// Why this one, from the figures.
+// The reason for the choice, from the figures.
 std::string whyOf(const engine::FilterSuggestion& found, const engine::SuggestionRequest& asked,
                   const std::string& unit) {
   const engine::FilterCandidate& pick = found.picked();
@@ -182,21 +182,21 @@ std::string whyOf(const engine::FilterSuggestion& found, const engine::Suggestio
   }
   std::string why = fmt::format("The noise is {:.3g} {}. ", found.sigma, unit);
   if (pick.spec.window == 1 && found.met())
-    return why + fmt::format("The scan as it is stays within {:.3g} {}: no filter is needed.",
+    return why + fmt::format("The unchanged scan stays within {:.3g} {}: no filter is needed.",
                              asked.tolerance, unit);
   if (found.met()) {
     why += fmt::format(
-        "{} leaves {}, in about {:.2g} s; of all tried that stay within {:.3g} {}, none is faster.",
+        "{} leaves {}, in about {:.2g} s; of all tested filters that stay within {:.3g} {}, none is faster.",
         methodOf(pick), leftBy(pick, unit), pick.seconds, asked.tolerance, unit);
   } else {
     why +=
-        fmt::format("Nothing tried stays within {:.3g} {}{}. Nearest is {} with {}, in about {:.2g} s.",
+        fmt::format("No tested filter stays within {:.3g} {}{}. Nearest is {} with {}, in about {:.2g} s.",
                     asked.tolerance, unit, asked.budget_s ? fmt::format(" in {:g} s", *asked.budget_s) : "",
                     methodOf(pick), leftBy(pick, unit), pick.seconds);
     if (flattest != nullptr && flattest->error_flat <= asked.tolerance)
       why += fmt::format(
-          " Flats alone: {} leaves {}; edges that must be nearer than that have to be "
-          "smoothed by hand (fettle view) or scanned again.",
+          " Only flats: {} leaves {}; edges that need a smaller error must be "
+          "smoothed with the stylus (fettle view) or scanned again.",
           methodOf(*flattest), leftBy(*flattest, unit));
     else
       why += " A scan with less noise is needed, or the mean of several.";
@@ -205,8 +205,9 @@ std::string whyOf(const engine::FilterSuggestion& found, const engine::Suggestio
     why += fmt::format(" Marking edges first leaves {} ({}): marked samples keep their noise.",
                        leftBy(*marked, unit), methodOf(*marked));
   if (found.outlier_share > 1e-4)
-    why += fmt::format(" {:.2g} % of the samples stand out alone: of these a median takes most, {} none.",
-                       100.0 * found.outlier_share, engine::filterWords(engine::keepsEdges));
+    why +=
+        fmt::format(" {:.2g} % of the samples are single outliers: a median removes most of these, {} none.",
+                    100.0 * found.outlier_share, engine::filterWords(engine::keepsEdges));
   return why;
 }
 
@@ -226,16 +227,16 @@ Report reportOf(const engine::FilterCandidate& c) {
 
 engine::Result<Report> suggest(const FilterArguments& options, engine::JobControl& job) {
   const auto refused = [](const char* option, const char* why) {
-    return engine::inputError(fmt::format("--suggest goes without {}", option), option, why);
+    return engine::inputError(fmt::format("--suggest cannot be used with {}", option), option, why);
   };
   if (options.files.many() || options.files.files.size() > 2)
-    return refused("several scans", "give one scan, and OUT if you like: it is only named");
-  if (!options.filter.empty()) return refused("--filter", "it is what is suggested");
+    return refused("several scans", "give one scan, and optionally OUT, which is only named");
+  if (!options.filter.empty()) return refused("--filter", "the filter is what is suggested");
   if (!options.only.empty()) return refused("--only", "give --keep, or nothing");
-  if (!options.original.empty()) return refused("--original", "nothing limits what it tries");
+  if (!options.original.empty()) return refused("--original", "its filters have no limit of change");
   if (options.tolerance.empty())
     return engine::inputError("no tolerance is given", "--tolerance",
-                              "give the error that may be left, as 0.01 in the scan's unit or 10um");
+                              "give the allowed error, as 0.01 in the scan's unit or 10um");
   const ProgressLine progress(job);
   auto imported = loadScan(options.files.files[0], options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
@@ -286,8 +287,7 @@ void printSuggestion(const Report& report) {
 engine::Result<Report> filter(const FilterArguments& options, engine::JobControl& job) {
   if (options.suggest) return suggest(options, job);
   if (options.filter.empty())
-    return engine::inputError("no filter is named", "--filter",
-                              "give one, or let one be suggested: --suggest");
+    return engine::inputError("no filter is named", "--filter", "give one, or use --suggest");
   if (!options.tolerance.empty() || options.budget)
     return engine::inputError("tolerance and budget are for --suggest",
                               options.tolerance.empty() ? "--budget" : "--tolerance", "add --suggest");
@@ -319,7 +319,7 @@ void printFilter(const Report& report) {
 void addFilter(Command root, Chosen& chosen) {
   auto options = std::make_shared<FilterArguments>();
   Command command = addCommand(
-      root, chosen, "filter", "Filter whole scans, around what is marked",
+      root, chosen, "filter", "Filter whole scans, except marked samples",
       [options](engine::JobControl& job) { return filter(*options, job); }, printFilter, Progress::kOwn,
       batchStatus);
   addBatchOptions(command, options->files);
@@ -345,25 +345,26 @@ void addFilter(Command root, Chosen& chosen) {
       fmt::format("How large a difference is noise, as 20um; without it, in standard deviations of "
                   "the scan's noise, {}",
                   fmt::join(ranges, ", ")));
-  command.option("--passes", options->passes, "How often the filter is applied").showDefault();
+  command.option("--passes", options->passes, "Number of passes").showDefault();
   const Option keep =
-      command.option("--keep", options->keep, "Picture of marks: these samples keep their bits")
+      command.option("--keep", options->keep, "Picture of marks: these samples are not changed")
           .check(fileName());
   command.option("--only", options->only, "Picture of marks: only these samples are filtered")
       .check(fileName())
       .excludes(keep);
   command.option("--max-change", options->max_change,
-                 "No sample ends further than this from the original: that of a session, else "
+                 "Largest change of a sample from the original: that of a session, else "
                  "--original, else IN; in the scan's height unit, or as 20um, 0.5mm");
   addOriginalOption(command, options->original);
-  command.option("--threads", options->threads, "Threads to use; 0 = one a core").showDefault();
-  command.flag("--suggest", options->suggest,
-               "Filter nothing: try filters on pieces of IN, say which to take for --tolerance, why, and "
-               "what to type");
+  command.option("--threads", options->threads, "Threads to use; 0 = one per core").showDefault();
+  command.flag(
+      "--suggest", options->suggest,
+      "Filter nothing: test filters on pieces of IN, print which one to use for --tolerance, why, and "
+      "the command for it");
   command.option("--tolerance", options->tolerance,
-                 "With --suggest: root mean square error that may be left on flats and near edges, each "
-                 "by itself; in the scan's height unit, or as 20um");
-  command.option("--budget", options->budget, "With --suggest: seconds that filtering the scan may take");
+                 "With --suggest: allowed root mean square error on flats and near edges, each "
+                 "separately; in the scan's height unit, or as 20um");
+  command.option("--budget", options->budget, "With --suggest: most seconds for filtering the scan");
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
 }

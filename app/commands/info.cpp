@@ -32,13 +32,13 @@ struct InfoArguments {
   int bins = 20;
 };
 
-// The shortest decimal that reads back to the same float: 9.792, where its exact value is 9.79199981689453.
+// The shortest decimal that is read back as the same float: 9.792, where its exact value is 9.79199981689453.
 double shortest(double height) {
   const auto stored = static_cast<float>(height);
   return std::isnan(height) ? height : std::stod(fmt::format("{}", stored));
 }
 
-// One bar a bin, the longest kLongest wide; a bin that is not empty shows at least a dot.
+// One bar per bin, the longest kLongest wide; a bin that is not empty shows at least a dot.
 void printHistogram(const Report& histogram, const std::string& unit) {
   constexpr double kLongest = 50.0;
   const auto counts = histogram["counts"].get<std::vector<std::int64_t>>();
@@ -55,7 +55,7 @@ void printHistogram(const Report& histogram, const std::string& unit) {
   }
 }
 
-// A coordinate system's text runs to pages; people want its name.
+// The text of a coordinate system takes pages; only its name is shown.
 void printOne(Report report) {
   const Report histogram = report["histogram"];
   report.erase("histogram");
@@ -80,7 +80,7 @@ void printInfo(const Report& report) {
   fmt::print("{} read, {} failed\n", report["done"].get<std::size_t>(), report["failed"].get<std::size_t>());
 }
 
-// Where a cell is, as the file counts: rows from the top.
+// Position of a cell, counted as in the file: rows from the top.
 engine::Result<Report> steepest(const engine::Version& field, engine::JobControl& job) {
   const auto cell = engine::findSteepest(field, job);
   if (!cell) return tl::unexpected(cell.error());
@@ -94,7 +94,7 @@ engine::Result<Report> steepest(const engine::Version& field, engine::JobControl
                 {"y", grid.origin_y + (cell->row + 0.5) * grid.spacing_y}};
 }
 
-// A thumbnail: the surface and its colours alone.
+// A thumbnail: only the surface and its colours.
 engine::Status draw(const engine::Version& field, const std::string& path, engine::JobControl& job) {
   render::View view;
   view.width = 320;
@@ -197,8 +197,7 @@ engine::Result<Report> info(const InfoArguments& options, engine::JobControl& jo
     return infoOf(options, options.scans.front(), job);
   }
   if (!options.picture.empty())
-    return engine::inputError("one picture cannot be that of several scans", "--picture",
-                              "give one scan with it");
+    return engine::inputError("one picture cannot show several scans", "--picture", "give one scan with it");
   std::vector<BatchTask> tasks;
   for (const std::string& scan : options.scans) tasks.push_back({scan, {}, {}});
   return runBatch(tasks, job,
@@ -210,7 +209,8 @@ engine::Result<Report> info(const InfoArguments& options, engine::JobControl& jo
 void addInfo(Command root, Chosen& chosen) {
   auto options = std::make_shared<InfoArguments>();
   Command command = addCommand(
-      root, chosen, "info", "What a scan holds: size, spacing, units, heights, holes, noise, steepest cell",
+      root, chosen, "info",
+      "Properties of a scan: size, spacing, units, heights, holes, noise, steepest cell",
       [options](engine::JobControl& job) { return info(*options, job); }, printInfo, Progress::kOwn,
       batchStatus);
   command.footer(
@@ -219,7 +219,7 @@ void addInfo(Command root, Chosen& chosen) {
       "rows\n"
       "  or columns, single spikes and holes do not count. Right for noise that differs from sample to "
       "sample;\n"
-      "  noise that neighbours share is not seen, a rough surface is taken for noise.\n"
+      "  noise that neighbours share is not detected, a rough surface counts as noise.\n"
       "steepest: the cell that rises most, height over distance; ROW,COLUMN of its upper left sample, and "
       "its\n"
       "  middle in the file's coordinates.");

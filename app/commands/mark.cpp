@@ -27,7 +27,7 @@ struct MarkArguments {
 
 engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& job) {
   if (!options.edges && !options.invert)
-    return engine::inputError("nothing is said of what to mark", "mark", "give --edges or --invert");
+    return engine::inputError("it is not stated what to mark", "mark", "give --edges or --invert");
   if (auto status = checkOutputs({{options.out, OutputKind::kMarks, ".png"}}, {options.in, options.add},
                                  Replacing::kNoWork, job);
       !status)
@@ -74,7 +74,7 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
 
 void addMark(Command root, Chosen& chosen) {
   auto options = std::make_shared<MarkArguments>();
-  Command command = addCommand(root, chosen, "mark", "Mark what filters must not change",
+  Command command = addCommand(root, chosen, "mark", "Mark samples that filters must not change",
                                [options](engine::JobControl& job) { return mark(*options, job); });
   command.option("SCAN", options->in, "The scan to read; - for standard input").required();
   command
@@ -87,12 +87,12 @@ void addMark(Command root, Chosen& chosen) {
       .showDefault();
   command
       .option("--sensitivity", options->choice.sensitivity,
-              "Edges: 0 takes the strongest alone, 1 all that stand out of the noise")
+              "Edges: 0 takes only the strongest, 1 all above the noise")
       .showDefault();
   command.option("--thickness", options->choice.thickness, "Edges: marked to this distance, in samples")
       .showDefault();
   command.option("--add", options->add, "Picture of marks to begin with").check(fileName());
-  command.flag("--invert", options->invert, "Afterwards, mark what is not marked and the other way round");
+  command.flag("--invert", options->invert, "Afterwards, invert the marks");
   addScanOptions(command, options->reading);
 }
 

@@ -12,24 +12,25 @@ namespace fettle::app {
 
 void addOriginalOption(Command command, std::string& original) {
   command.option("--original", original,
-                 "The scan that the work began with: changes are limited against it; without it against "
-                 "what is read, or against the original that a session has");
+                 "The original scan: changes are limited relative to it; without it relative to "
+                 "what is read, or to the original of a session");
 }
 
 namespace {
 
-// Whether files of a format say where samples lie.
+// Whether files of a format store the position of samples.
 bool keepsPlace(const engine::Imported& scan) {
   return scan.format != "PNG" && scan.format != "STL";
 }
 
-// How far two numbers are apart. A format that loses the unit keeps the number: then that is what must agree.
+// Difference of two numbers. A format that loses the unit keeps the number: then the numbers must agree.
 double apart(double a, double b, const engine::Grid& of_a, const engine::Grid& of_b) {
   return std::min(std::abs(a - b),
                   std::abs(a * of_a.lateral_unit.mm - b * of_b.lateral_unit.mm) / of_b.lateral_unit.mm);
 }
 
-// Whether two grids of the same sides put each sample in the same place, but for the rounding of a format.
+// Whether two grids of the same sides have every sample at the same position, except for the rounding of a
+// format.
 engine::Status checkSamePlace(const engine::Grid& original, const engine::Grid& scan,
                               const std::string& where) {
   constexpr double kPartOfSample = 0.05;
@@ -41,7 +42,7 @@ engine::Status checkSamePlace(const engine::Grid& original, const engine::Grid& 
             ax, ay, original.lateral_unit.name, bx, by, scan.lateral_unit.name),
         where, kRemedy);
   };
-  // At the far side, where a wrong spacing adds up.
+  // At the far side, where an error of the spacing is largest.
   if (apart(original.spacing_x, scan.spacing_x, original, scan) * scan.width >
           kPartOfSample * scan.spacing_x ||
       apart(original.spacing_y, scan.spacing_y, original, scan) * scan.height >
@@ -59,7 +60,7 @@ engine::Result<engine::Version> originalOf(const engine::Imported& imported, con
                                            const ScanOptions& reading, engine::JobControl& job) {
   if (given.empty()) return imported.original.value_or(imported.field);
   if (imported.original)
-    return engine::inputError("a session has its own original", given, "leave --original out");
+    return engine::inputError("a session has its own original", given, "omit --original");
   const auto other = loadScan(given, reading, job);
   if (!other) return tl::unexpected(other.error());
   const engine::Version& original = other->original.value_or(other->field);
@@ -71,7 +72,7 @@ engine::Result<engine::Version> originalOf(const engine::Imported& imported, con
   if (!(is.height_unit == wanted.height_unit))
     return engine::inputError(fmt::format("heights of the original are in {} and those of the scan in {}",
                                           is.height_unit.name, wanted.height_unit.name),
-                              given, "convert one of them, or say --unit where a file states none");
+                              given, "convert one of them, or give --unit where a file states none");
   if (keepsPlace(*other) && keepsPlace(imported))
     if (auto same = checkSamePlace(is, wanted, given); !same) return tl::unexpected(same.error());
   return original.withGrid(wanted);
@@ -79,8 +80,8 @@ engine::Result<engine::Version> originalOf(const engine::Imported& imported, con
 
 engine::Status checkOriginal(const std::string& given, bool limited, const std::string& out) {
   if (given.empty() || limited || isSessionPath(out)) return {};
-  return engine::inputError("the original is what changes are limited against, and nothing limits them",
-                            "--original", "give --max-change, or a scene with max_change, or leave it out");
+  return engine::inputError("the original is the reference of a limit of change, and there is no limit",
+                            "--original", "give --max-change, or a scene with max_change, or omit it");
 }
 
 }  // namespace fettle::app

@@ -12,19 +12,19 @@
 
 namespace fettle::app {
 
-/// --original SCAN: what a limit of change is measured against, for files; a session has its own.
+/// --original SCAN: the reference of a limit of change, for files; a session has its own.
 void addOriginalOption(Command command, std::string& original);
 
-/// What the work on `imported` began with: `given` (--original) read as `reading` says, else the session's
-/// own original, else the field itself. Grid and way up are the field's. A session given as --original stands
-/// for the scan that it began with. Errors (kInput): --original for a session, another size or height unit;
-/// those of loadScan.
+/// The original of `imported`: `given` (--original) read with the options `reading`, otherwise the session's
+/// own original, otherwise the field itself. Grid and sign are the field's. A session given as --original
+/// represents the scan that it began with. Errors (kInput): --original for a session, another size or height
+/// unit; those of loadScan.
 [[nodiscard]] engine::Result<engine::Version> originalOf(const engine::Imported& imported,
                                                          const std::string& given, const ScanOptions& reading,
                                                          engine::JobControl& job);
 
-/// Refuses --original where nothing would look at it: changes are not limited, and `out` is no session, which
-/// would keep it.
+/// Refuses --original where it would have no effect: changes are not limited, and `out` is not a session,
+/// which would store it.
 [[nodiscard]] engine::Status checkOriginal(const std::string& given, bool limited, const std::string& out);
 
 /// Export options with which a session begins with `original` (engine::ExportOptions::original).

@@ -31,7 +31,7 @@ int reportUnwritten(const char* remedy) {
   return report({ErrorKind::kFailed, "the report could not be written", "standard output", remedy});
 }
 
-// A report that did not reach standard output is a failure, whatever else went well.
+// A report that did not reach standard output is a failure, regardless of other results.
 int finish(int status) {
   const bool flushed = std::fflush(stdout) == 0;
   const int error = errno;
@@ -49,10 +49,10 @@ int runChosen(const Chosen& chosen) {
     return chosen.run(job);
   }();
   if (!result) return report(result.error());
-  // Printing throws when standard output is full or closed; the work is done then, and says so by its files.
+  // Printing throws when standard output is full or closed; the work is done then, as its files show.
   if (chosen.json) {
     addKeptWarnings(*result);
-    // A path may hold bytes that are not UTF-8: they are replaced in the report, never in the file system.
+    // A path may contain bytes that are not UTF-8: they are replaced in the report, never in the file system.
     fmt::print("{}\n", result->dump(2, ' ', false, Report::error_handler_t::replace));
   } else if (!chosen.quiet) {
     chosen.print(*result);
@@ -60,8 +60,8 @@ int runChosen(const Chosen& chosen) {
   return finish(chosen.status ? chosen.status(*result) : 0);
 }
 
-// `--keep "$MARKS"` with MARKS unset would mean "no marks": the protection that was asked for, silently gone.
-// Only a title may be empty.
+// `--keep "$MARKS"` with MARKS unset would mean "no marks": the requested protection would be lost without a
+// message. Only a title may be empty.
 std::optional<Error> emptyArgument(const std::vector<std::string>& arguments) {
   for (std::size_t i = 1; i < arguments.size(); ++i)
     if (arguments[i].empty() && !arguments[i - 1].ends_with("title"))
@@ -70,8 +70,8 @@ std::optional<Error> emptyArgument(const std::vector<std::string>& arguments) {
   return std::nullopt;
 }
 
-// "help filter" is "filter --help", and "help" alone "--help"; with --json and --quiet as well, which change
-// nothing of it.
+// "help filter" is "filter --help", and "help" is "--help"; also with --json and --quiet, which do not change
+// it.
 void takeHelpForOption(std::vector<std::string>& arguments) {
   if (arguments.empty()) return;
   const auto help = std::find_if(arguments.begin() + 1, arguments.end(),
@@ -82,7 +82,7 @@ void takeHelpForOption(std::vector<std::string>& arguments) {
   arguments.emplace_back("--help");
 }
 
-// The error of a command line that could not be parsed: the word that is wrong, and what it may stand for.
+// The error of a command line that could not be parsed: the wrong word, and a suggestion.
 Error usageError(const Misread& misread) {
   const std::string help = fmt::format("see fettle {}--help", misread.command);
   const auto refused = [&](std::string what, const std::string& meant) {
@@ -90,20 +90,20 @@ Error usageError(const Misread& misread) {
                  meant.empty() ? help : fmt::format("{} {}", meant, help)};
   };
   const std::vector<std::string>& rest = misread.rest;
-  // A word that stands in the place of a command comes first: all behind it belongs to it.
+  // A word in the place of a command comes first: everything after it belongs to it.
   const auto word = std::find_if(rest.begin(), rest.end(), [](const auto& w) { return !w.starts_with("-"); });
   if (!misread.known_commands.empty() && word != rest.end())
     return refused(fmt::format("there is no command {}{}", misread.command, *word),
                    didYouMean(*word, misread.known_commands));
-  // Then options: one that is misspelt leaves the value of another missing, or its own value over.
+  // Then options: a misspelt one leaves the value of another missing, or its own value unused.
   for (const std::string& option : rest) {
     if (!option.starts_with("-") || option == "-") continue;
     const std::string name = option.substr(0, option.find('='));
-    // It is right, but before the word of the command.
+    // It is a valid option, but before the command.
     if (!misread.command.empty() &&
         std::ranges::find(misread.known_options, name) != misread.known_options.end())
-      return Error{ErrorKind::kInput, fmt::format("{} stands before the command that takes it", name), "",
-                   fmt::format("put it behind: fettle {}{}", misread.command, name)};
+      return Error{ErrorKind::kInput, fmt::format("{} is before the command that takes it", name), "",
+                   fmt::format("put it after: fettle {}{}", misread.command, name)};
     return refused(fmt::format("there is no option {}", name),
                    didYouMean(name.starts_with("--") ? name : "-" + name, misread.known_options));
   }
@@ -113,12 +113,12 @@ Error usageError(const Misread& misread) {
 }  // namespace
 
 int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)>& add_commands) {
-  // A limit on file sizes then fails the write, as a full disk does, instead of ending the program between a
+  // A limit on file sizes then fails the write, like a full disk, instead of ending the program between a
   // temporary file and its removal.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   std::vector<std::string> arguments(argv, argv + argc);
-  // Errors of the command line itself have the form that is asked for, too.
+  // Errors of the command line itself have the requested form, too.
   Voice voice;
   voice.json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
   setVoice(voice);
@@ -131,7 +131,7 @@ int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)
   Chosen chosen;
   addOutputFlags(root, chosen);
   add_commands(root, chosen);
-  // Replaced by takeHelpForOption() before it could be chosen.
+  // Replaced by takeHelpForOption() before it can be chosen.
   root.subcommand("help", "The help of a command, as its --help: fettle help filter");
 
   const auto text = line.parse(arguments);

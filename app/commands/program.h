@@ -7,8 +7,8 @@
 
 namespace fettle::app {
 
-/// The whole of main(): signals, command line, the chosen command, its report, the exit status.
-/// `add_commands` says which commands there are.
+/// All of main(): signals, command line, the chosen command, its report, the exit status. `add_commands` adds
+/// the commands.
 int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)>& add_commands);
 
 }  // namespace fettle::app

@@ -48,21 +48,21 @@ struct RecordArguments {
   ScanOptions reading;
 };
 
-// What the word --device stands for, and what follows from it.
+// The device selected by --device, and its consequences.
 struct ChosenDevice {
   std::unique_ptr<haptic::Device> device;
   std::string file;    // strokes that it plays
-  bool plays = false;  // simulated: ends with its strokes, and no hand is in it
+  bool plays = false;  // simulated: ends with its strokes, and no hand holds it
   double plays_s = 0.0;
 };
 
 engine::Result<ChosenDevice> choose(const RecordArguments& options, const haptic::Scene& scene) {
   ChosenDevice chosen;
   if (options.device == "mouse")
-    return engine::inputError("the mouse needs a window to point at", "--device mouse",
-                              "take another device; fettle devices lists them");
+    return engine::inputError("the mouse needs a window", "--device mouse",
+                              "use another device; fettle devices lists them");
   if (options.device == "hand")
-    return engine::inputError("the simulated hand needs a way to go", "--device hand",
+    return engine::inputError("the simulated hand needs a path", "--device hand",
                               "name a strokes file: --device hand:STROKES");
   for (const std::string_view head : {"hand:", "replay:"})
     if (options.device.starts_with(head)) {
@@ -74,8 +74,7 @@ engine::Result<ChosenDevice> choose(const RecordArguments& options, const haptic
     if (!strokes) return tl::unexpected(strokes.error());
     const auto path = haptic::handPath(*strokes);
     if (path.empty())
-      return engine::inputError("the strokes hold no position to go to", chosen.file,
-                                "give a recorded session");
+      return engine::inputError("the strokes contain no position", chosen.file, "give a recorded session");
     chosen.plays_s = path.back().t;
   }
   const bool holds_up = std::find(scene.effects.begin(), scene.effects.end(), haptic::EffectKind::kGravity) !=
@@ -91,7 +90,7 @@ engine::Result<ChosenDevice> choose(const RecordArguments& options, const haptic
   return chosen;
 }
 
-// The middle of the field, on its surface where there is one.
+// The middle of the field, on its surface if there is one.
 glm::dvec3 middleOf(const engine::Version& field) {
   const engine::Grid& grid = field.grid();
   const engine::FieldReader reader = field.reader();
@@ -104,13 +103,14 @@ glm::dvec3 middleOf(const engine::Version& field) {
           height * grid.height_unit.mm};
 }
 
-// Where the device lies in the field: --scale, or the whole field within reach unless that felt too stiff.
+// Placement of the device in the field: --scale, or the whole field within reach unless the device cannot
+// hold that.
 engine::Result<haptic::Workspace> place(const RecordArguments& options, const engine::Version& felt,
                                         const haptic::DeviceProfile& profile, const haptic::Scene& scene) {
   if (profile.space == haptic::DeviceSpace::kField) {
     if (options.scale != 0.0)
       return engine::inputError(fmt::format("{} moves in millimetres of the field already", profile.name),
-                                "--scale", "leave it out");
+                                "--scale", "omit it");
     return haptic::Workspace{};
   }
   const double scale =
@@ -118,8 +118,8 @@ engine::Result<haptic::Workspace> place(const RecordArguments& options, const en
   return haptic::Workspace(scale, middleOf(felt));
 }
 
-// What the device does not hold is refused where force goes to a hand, a simulated one as well, and said
-// where none does.
+// A scene that the device cannot hold is refused where force acts on a hand, also a simulated one; otherwise
+// a warning is given.
 engine::Status checkStability(const RecordArguments& options, const engine::Version& felt,
                               const haptic::DeviceProfile& profile, const haptic::Scene& scene,
                               double scale) {
@@ -131,7 +131,7 @@ engine::Status checkStability(const RecordArguments& options, const engine::Vers
   }
   const auto problem = haptic::stabilityProblem(scene, profile, options.rate_hz, scale);
   if (!problem) return {};
-  // The scale that was asked for may be all that is wrong.
+  // Only the requested scale may be wrong.
   const double largest = haptic::largestStableScale(scene, profile, options.rate_hz);
   if (options.scale > 0.0 && largest > 0.0)
     return engine::inputError(
@@ -141,13 +141,13 @@ engine::Status checkStability(const RecordArguments& options, const engine::Vers
   return engine::inputError(problem->what, where, problem->remedy);
 }
 
-// A device without a hand in it arms itself; one that pushes a hand waits for the person.
+// A device that no hand holds arms itself; a force device waits for the user.
 engine::Result<ArmPolicy> armPolicy(const RecordArguments& options, const ChosenDevice& chosen) {
-  const bool pushes_a_hand = chosen.device->profile().gives_force && !chosen.plays;
-  if (options.arm == "auto" && pushes_a_hand)
+  const bool acts_on_hand = chosen.device->profile().gives_force && !chosen.plays;
+  if (options.arm == "auto" && acts_on_hand)
     return engine::inputError("a device that gives force is armed by the person who holds it", "--arm auto",
-                              "leave it out and press a when the stylus is clear of the surface");
-  if (options.arm.empty()) return pushes_a_hand ? ArmPolicy::kByKey : ArmPolicy::kAuto;
+                              "omit it and press a when the stylus is clear of the surface");
+  if (options.arm.empty()) return acts_on_hand ? ArmPolicy::kByKey : ArmPolicy::kAuto;
   return options.arm == "auto" ? ArmPolicy::kAuto : ArmPolicy::kByKey;
 }
 
@@ -161,7 +161,7 @@ engine::Result<LiveSettings> settingsFor(const RecordArguments& options, const C
   if (!arm) return tl::unexpected(arm.error());
   settings.arm = *arm;
   haptic::DeviceProfile limited = profile;
-  // Down only: what the device can bear is not for the command line to say.
+  // Only downwards: the limits of the device cannot be raised from the command line.
   if (options.max_force_n) limited.max_force_n = std::min(limited.max_force_n, *options.max_force_n);
   if (auto status = checkStability(options, felt, limited, scene, workspace->scale()); !status)
     return tl::unexpected(status.error());
@@ -172,13 +172,13 @@ engine::Result<LiveSettings> settingsFor(const RecordArguments& options, const C
   loop.tool_switch =
       options.tool_switch == "always" ? haptic::ToolSwitch::kAlways : haptic::ToolSwitch::kButton;
   loop.edit_rule = profile.gives_force ? haptic::EditRule::kWhileForceIsGiven : haptic::EditRule::kAnytime;
-  // Eight seconds of ticks: what a disk that hangs may take.
+  // Eight seconds of ticks: the longest wait for a slow disk.
   loop.record_capacity = std::bit_ceil(static_cast<std::size_t>(8.0 * options.rate_hz));
   settings.loop.rate_hz = options.rate_hz;
   settings.keys = options.keys ? KeySource::kAnyInput : KeySource::kTerminal;
   settings.seconds = options.seconds;
   if (chosen.plays) {
-    // The simulated hand's time goes on by ticks, a replay's by the clock.
+    // The time of the simulated hand is counted in ticks, that of a replay by the clock.
     const auto ticks = static_cast<std::uint64_t>(std::ceil(chosen.plays_s * options.rate_hz)) + 1;
     if (profile.gives_force)
       settings.most_ticks = ticks;
@@ -242,8 +242,8 @@ Report eventsOf(const std::vector<SessionEvent>& events) {
 }
 
 struct Field {
-  engine::Version original;  // what max_change is measured against
-  engine::Version start;     // as imported, with the marks to start from
+  engine::Version original;  // reference of max_change
+  engine::Version start;     // as imported, with the initial marks
 };
 
 engine::Result<Field> load(const RecordArguments& options, engine::JobControl& job) {
@@ -260,7 +260,7 @@ engine::Result<Field> load(const RecordArguments& options, engine::JobControl& j
   return field;
 }
 
-// What was recorded is kept whatever else goes wrong, so it comes first; and nobody can cancel it.
+// The recording is stored first, regardless of other errors, and cannot be cancelled.
 engine::Status save(const RecordArguments& options, const engine::Version& field,
                     const engine::Version& original, haptic::StrokesWriter& strokes) {
   engine::JobControl job;
@@ -310,7 +310,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
   if (auto status = save(options, outcome->field, field->original, *strokes); !status)
     return tl::unexpected(status.error());
 
-  // The proof that the recording is the session: the file, read back and replayed, makes the same field.
+  // Verifies that the recording is complete: the file, read back and replayed, gives the same field.
   engine::JobControl unhurried;
   const auto rows = haptic::readStrokes(options.strokes);
   if (!rows) return tl::unexpected(rows.error());
@@ -319,14 +319,15 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
   const std::string hash = hashOf(outcome->field);
   const std::string replayed = hashOf(again->field);
   if (hash != replayed)
-    warn(fmt::format("{}: a replay gives another field than the session{}", options.strokes,
-                     outcome->last.lost_records + outcome->last.refused_edits > 0
-                         ? ": ticks were lost on the way to the disk, or memory for edits came too late"
-                         : ", please report it"));
+    warn(fmt::format(
+        "{}: a replay gives another field than the session{}", options.strokes,
+        outcome->last.lost_records + outcome->last.refused_edits > 0
+            ? ": ticks were lost on the way to the disk, or memory for edits was not ready in time"
+            : ", please report it"));
 
   if (device.profile().gives_force && again->report.contact_ticks > 0 && !(log.given().peak_n > 0.0))
     warn(
-        "no force was given and nothing edited: armed inside the surface, the stylus must first come out of "
+        "there was no force and no edit: armed inside the surface, the stylus must first come out of "
         "it");
 
   const haptic::Workspace& workspace = settings->loop.options.workspace;
@@ -360,13 +361,13 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
 }
 
 constexpr const char* kRecordFooter =
-    R"(Safety: a device that gives force gives none until the person who holds it presses a, and again after every fault
-(50 ms without input, the device unplugged, the program held up): the force then rises in half a second. Editing
-tools act only while force is given. Zero force is sent on every way out. A scene that asks for more stiffness or
-damping than the device holds is refused, with the largest that it does hold. Keys while it runs:
+    R"(Safety: a force device gives no force until the user presses a, and likewise after every fault (50 ms without
+input, the device unplugged, the program delayed): the force then rises within half a second. Editing tools act
+only while there is force. Zero force is sent at every exit of the program. A scene with more stiffness or damping
+than the device can hold is refused, with the largest possible value. Keys during the session:
   a arm   d disarm   c calibrate: the stylus is held in its home pose   f feel   s smooth   m mark   u unmark   q end
-Ctrl-C ends the session and keeps it. A program that is killed leaves what was recorded up to the last second in
-a temporary file beside STROKES. The same bits: fettle replay SCAN STROKES OUT, with the same --scene and --marks.)";
+Ctrl-C ends and stores the session. A killed program leaves the recording, except for its last second, in
+a temporary file next to STROKES. Bit-identical: fettle replay SCAN STROKES OUT, with the same --scene and --marks.)";
 
 }  // namespace
 
@@ -376,7 +377,7 @@ void addRecord(Command root, Chosen& chosen) {
       root, chosen, "record", "Touch a scan live with a device, and record the session for replay",
       [options](engine::JobControl& job) { return record(*options, job); }, printReport, Progress::kOwn);
   command.option("SCAN", options->scan, "The scan to touch").required();
-  command.option("STROKES", options->strokes, "Where the session goes: CSV t,x,y,z,tool, one row a tick")
+  command.option("STROKES", options->strokes, "Output of the session: CSV t,x,y,z,tool, one row per tick")
       .check(fileName())
       .required();
   command.option("OUT", options->out, "The field after it, format by extension").check(fileName());
@@ -397,23 +398,23 @@ void addRecord(Command root, Chosen& chosen) {
               "When the tool acts: button, or always in contact for a device without one (W8 boards)")
       .check(oneOf({"button", "always"}))
       .showDefault();
-  command.option("--rate", options->rate_hz, "Ticks a second, 1000 to 10000")
+  command.option("--rate", options->rate_hz, "Ticks per second, 1000 to 10000")
       .check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
       .showDefault();
-  command.option("--seconds", options->seconds, "End after so long; otherwise by q or Ctrl-C")
+  command.option("--seconds", options->seconds, "End after this time; otherwise by q or Ctrl-C")
       .check(within(1e-3, 86400.0));
   command
       .option("--scale", options->scale,
-              "Millimetres of the field a millimetre of the hand; fitted to the scan without it")
+              "Millimetres of the field per millimetre of the hand; without it fitted to the scan")
       .check(within(1e-6, 1e6));
   command.option("--max-force", options->max_force_n, "Newtons, below what the device's profile allows")
       .check(within(0.0, 1000.0));
   command
       .option("--arm", options->arm,
-              "ask: by the key a; auto: by itself, for devices without force and simulated ones, whose "
+              "ask: by the key a; auto: automatically, for devices without force and simulated ones, whose "
               "default it is")
       .check(oneOf({"ask", "auto"}));
-  command.flag("--keys", options->keys, "Take keys from standard input though it is no terminal");
+  command.flag("--keys", options->keys, "Read keys from standard input that is not a terminal");
   addOriginalOption(command, options->original);
   addForceOption(command, options->replacing);
   addScanOptions(command, options->reading);

@@ -190,13 +190,14 @@ void addRender(Command root, Chosen& chosen) {
       .showDefault();
   command
       .option("--screen-distance", options->eyes.screen_distance,
-              "Where both eyes see the same, as a share of that distance; 0: at the middle of the picture")
+              "Distance of the plane without parallax, as a share of that distance; 0: at the middle of the "
+              "picture")
       .showDefault();
   command.flag("--contours", options->contours, "Contour lines at the steps of the colour bar");
-  command.flag("--dark", options->dark, "Light text on a dark ground");
-  command.flag("--bare", options->bare, "The surface alone: no titles, bars or legend");
+  command.flag("--dark", options->dark, "Light text on a dark background");
+  command.flag("--bare", options->bare, "Only the surface: no titles, bars or legend");
   command.flag("--invert", options->invert, "Draw the field upside down");
-  command.flag("--validate", options->validate, "Load the Vulkan validation layers and show what they say");
+  command.flag("--validate", options->validate, "Load the Vulkan validation layers and print their messages");
   addScanOptions(command, options->reading);
 }
 

@@ -48,7 +48,7 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
   if (!options.scene.empty() || !options.marks.empty() || !options.forces.empty() || options.certify ||
       !options.original.empty())
     return engine::inputError("a session has its own original, scenes and marks, and its journal no forces",
-                              options.scan, "leave --original, --scene, --marks, --forces and --certify out");
+                              options.scan, "omit --original, --scene, --marks, --forces and --certify");
   if (auto status = checkOutputs(
           {{options.out, OutputKind::kField, options.to}, {options.marks_out, OutputKind::kMarks}},
           {options.scan}, options.replacing, job);
@@ -75,9 +75,9 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
   const std::uint64_t stored = engine::contentHash(session->history.current());
   if (made != stored)
     return engine::failure(
-        fmt::format("the journal came to another field ({:016x}) than the session holds ({:016x})", made,
+        fmt::format("the journal gives another field ({:016x}) than that of the session ({:016x})", made,
                     stored),
-        options.scan, "the session's state is whole: convert or export it instead");
+        options.scan, "the session's state is intact: convert or export it instead");
   if (auto status = saveField(played->field, options.out, job, beginningWith(session->original), options.to);
       !status)
     return tl::unexpected(status.error());
@@ -90,7 +90,7 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
                 {"seconds", took.count()},    {"hash", fmt::format("{:016x}", made)}};
 }
 
-// Whether a file begins as a strokes file does.
+// Whether a file begins like a strokes file.
 bool holdsStrokes(const std::string& path) {
   constexpr std::string_view kHead = "t,x,y,z,tool";
   std::string head(kHead.size(), '\0');
@@ -98,15 +98,14 @@ bool holdsStrokes(const std::string& path) {
   return head == kHead;
 }
 
-// SCAN STROKES OUT, or SESSION OUT: the first of two names decides. Anything less is refused
-// with what is missing.
+// SCAN STROKES OUT, or SESSION OUT: the first name decides. Missing names are refused with a message.
 engine::Status settleNames(ReplayArguments& options) {
   constexpr const char* kUsage = "give SCAN STROKES OUT, or SESSION OUT for a session's own journal";
   if (!options.out.empty()) return {};
   if (!isSessionPath(options.scan)) {
     if (!options.strokes.empty() && !holdsStrokes(options.strokes))
-      return engine::inputError("a scan needs strokes to be replayed, and a file for what comes of it",
-                                options.scan, kUsage);
+      return engine::inputError("a scan needs strokes to be replayed, and an output file", options.scan,
+                                kUsage);
     return engine::inputError(
         options.strokes.empty() ? "no strokes are named, and no file to write" : "no file to write is named",
         "OUT", kUsage);
@@ -162,8 +161,8 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   haptic::ReplayOptions replay_options;
   if (!options.forces.empty()) replay_options.record_forces = haptic::RecordForces::kYes;
   if (options.certify) replay_options.measure = haptic::MeasureContact::kYes;
-  // No device, no force: nothing can buzz, and the bits do not depend on it. Who takes the scene to a device
-  // is refused there, and reads it here first.
+  // Without a device or force nothing can be unstable, and the bits do not depend on it. On a device the
+  // scene would be refused, so a warning is given here first.
   if (!options.scene.empty())
     if (const auto problem =
             problemOnEveryDevice(scene, field.grid(), haptic::HapticLoop::Settings{}.rate_hz))
@@ -182,7 +181,7 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
 
   const haptic::ReplayReport& r = result->report;
   if (r.counters.bad_input > 0)
-    warn(fmt::format("{}: {} rows hold no usable position and were felt as no input", options.strokes,
+    warn(fmt::format("{}: {} rows have no usable position and count as no input", options.strokes,
                      r.counters.bad_input));
   Report report{{"ticks", r.ticks},
                 {"contact_ticks", r.contact_ticks},
@@ -206,12 +205,12 @@ void addReplay(Command root, Chosen& chosen) {
   auto options = std::make_shared<ReplayArguments>();
   Command command = addCommand(
       root, chosen, "replay",
-      "Apply recorded strokes to a scan, or make a session again from its journal: the same bits every time",
+      "Apply recorded strokes to a scan, or recompute a session from its journal: always bit-identical",
       [options](engine::JobControl& job) { return replay(*options, job); });
   command.option("SCAN", options->scan, "The scan to touch, or a session: NAME.fettle").required();
   command.option(
       "STROKES", options->strokes,
-      "What to do: CSV with header t,x,y,z,tool, one row a tick; left out for a session's own journal");
+      "Strokes: CSV with header t,x,y,z,tool, one row per tick; omitted for a session's own journal");
   command.option("OUT", options->out, "The field after it, format by extension; - for standard output");
   addStreamFormat(command, options->to);
   command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)")

@@ -10,13 +10,12 @@
 
 namespace fettle::app {
 
-/// Imports a scan, "-" from standard input; what the importer warns of goes to stderr, each line naming the
-/// file.
+/// Imports a scan, "-" from standard input; warnings of the importer go to stderr, each line naming the file.
 [[nodiscard]] engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
                                                         engine::JobControl& job);
 
-/// Writes a field, to "-" in the format of the extension `to`; what the format could not keep goes to stderr.
-/// With `writing.original` a session begins with that.
+/// Writes a field, to "-" in the format of the extension `to`; warnings about what the format could not store
+/// go to stderr. With `writing.original` a session begins with that.
 [[nodiscard]] engine::Status saveField(const engine::Version& field, const std::string& path,
                                        engine::JobControl& job, const engine::ExportOptions& writing = {},
                                        const std::string& to = {});

@@ -26,7 +26,7 @@ void addStoreOption(Command command) {
             policy.always = true;
             engine::setStorePolicy(policy);
           },
-          "Folder on a disk for the samples, so that they may be more than memory holds")
+          "Folder on a disk for samples, for fields larger than memory")
       .check(folderName())
       .group(kReading);
 }
@@ -34,13 +34,15 @@ void addStoreOption(Command command) {
 void addScanOptions(Command command, ScanOptions& options) {
   const std::string group = kReading;
   addStoreOption(command);
-  command.option("--no-data", options.no_data, "Height that means a hole, besides what the file declares")
+  command
+      .option("--no-data", options.no_data,
+              "Height that means a hole, in addition to the one that the file declares")
       .group(group);
   command
       .option("--spacing", options.spacing,
               "Sample spacing X[,Y] in the scan's unit, where the file has none")
       .delimiter(',')
-      .oneValueEach()  // "--spacing 0.5 SCAN": what follows is the scan
+      .oneValueEach()  // "--spacing 0.5 SCAN": the next word is the scan
       .group(group);
   command.option("--z-scale", options.z_scale, "Height of one count of the file").group(group);
   command
@@ -59,12 +61,13 @@ void addScanOptions(Command command, ScanOptions& options) {
       .group(group);
   command
       .option("--from", options.from,
-              "Format of standard input (-), as extension, where its content leaves doubt")
+              "Format of standard input (-), as extension, where its content is ambiguous")
       .check({[](const std::string& typed) {
         const auto known = extensionsOf(&engine::FormatInfo::reads);
         if (std::find(known.begin(), known.end(), withDot(typed)) != known.end()) return std::string();
         const std::string meant = didYouMean(withDot(typed), known);
-        return fmt::format("{} is no format that can be read{}{}", typed, meant.empty() ? "" : "; ", meant);
+        return fmt::format("{} is not a format that can be read{}{}", typed, meant.empty() ? "" : "; ",
+                           meant);
       }})
       .group(group);
 }

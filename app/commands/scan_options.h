@@ -8,7 +8,7 @@ namespace fettle::app {
 /// The options of ScanOptions.
 void addScanOptions(Command command, ScanOptions& options);
 
-/// --store FOLDER: every field of this process lies there (engine/field/tile_store.h). Part of
+/// --store FOLDER: every field of this process is stored there (engine/field/tile_store.h). Part of
 /// addScanOptions.
 void addStoreOption(Command command);
 

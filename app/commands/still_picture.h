@@ -8,8 +8,8 @@
 
 namespace fettle::app {
 
-/// Draws what `shown` holds into a PNG, row by row: whole or not at all, of any size. What had no room in it
-/// goes to stderr, each line begun with `name` unless that is empty.
+/// Draws `shown` into a PNG of any size, row by row, completely or not at all. Texts that did not fit are
+/// reported on stderr, each line begun with `name` unless that is empty.
 ///
 /// Errors: those of LivePicture::update, drawRows and PngWriter.
 [[nodiscard]] engine::Result<render::FrameStatistics> drawPicture(

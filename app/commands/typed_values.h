@@ -9,12 +9,12 @@
 
 namespace fettle::app {
 
-/// A length as the user types it, in height units of the field: "0.5" is in the field's own height unit,
-/// "0.5mm", "20um" in the unit that is named. Errors: not a number, unknown unit, negative, not finite.
+/// A length as typed by the user, in height units of the field: "0.5" is in the field's own height unit,
+/// "0.5mm", "20um" in the named unit. Errors: not a number, unknown unit, negative, not finite.
 [[nodiscard]] engine::Result<double> parseHeight(const std::string& text, const engine::Grid& grid,
                                                  const std::string& option);
 
-/// Sides that a size may have, both ends included.
+/// Allowed sides of a size, both ends included.
 struct SideRange {
   int smallest;
   int largest;
@@ -27,7 +27,7 @@ inline constexpr SideRange kPictureSides{render::kSmallestPicture, render::kLarg
 [[nodiscard]] engine::Result<std::pair<int, int>> parseSize(const std::string& text,
                                                             const std::string& option, SideRange sides);
 
-/// What is wrong with a seed as typed; empty when nothing is. For Option::check.
+/// The error of a seed as typed; empty when it is valid. For Option::check.
 [[nodiscard]] std::string seedProblem(const std::string& text);
 
 }  // namespace fettle::app

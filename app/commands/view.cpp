@@ -50,7 +50,7 @@ constexpr const char* kViewFooter =
 void addView(Command root, Chosen& chosen) {
   auto options = std::make_shared<ViewArguments>();
   Command command = addCommand(
-      root, chosen, "view", "The window: see, feel and clean a scan",
+      root, chosen, "view", "The window: view, touch and clean a scan",
       [options](engine::JobControl& job) { return view(*options, job); }, printReport, Progress::kOwn);
   command.option("SCAN", options->view.scan, "The scan to open; without it, drop one on the window");
   command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
@@ -58,24 +58,23 @@ void addView(Command root, Chosen& chosen) {
       .option("--device", options->view.touch.device,
               "An id of fettle devices or one of " + haptic::driverWords())
       .showDefault();
-  command.option("--rate", options->view.touch.rate_hz, "Ticks of the loop a second, 1000 to 10000")
+  command.option("--rate", options->view.touch.rate_hz, "Ticks of the loop per second, 1000 to 10000")
       .check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
       .showDefault();
   command.option("--size", options->size, "Pixels of the window, WIDTHxHEIGHT").showDefault();
   command
       .option("--ui-scale", options->view.window.scale,
-              "Factor on the size of text and panels, 0.5 to 4; without it, what the display says")
+              "Factor on the size of text and panels, 0.5 to 4; without it, the display's")
       .check(within(0.5, 4.0));
   command.flag("--sharp-motion", options->view.sharp_motion,
-               "Draw every pixel while the view moves, too; without it, every second one each way");
-  command.option("--seconds", options->view.seconds, "End after so long").check(within(1e-3, 86400.0));
+               "Draw every pixel also while the view moves; without it, every second one in each direction");
+  command.option("--seconds", options->view.seconds, "End after this time").check(within(1e-3, 86400.0));
   command
       .option("--events", options->view.events,
-              "Tell there what the window shows and was told to do: a JSON object a line, for scripts")
+              "Write the state of the window and its actions to it: one JSON object per line, for scripts")
       .typeName("FILE");
-  command.option("--gpu", options->view.window.device, "Use the Vulkan device whose name holds this");
-  command.flag("--validate", options->validate,
-               "Let the Vulkan validation layers watch; they must be installed");
+  command.option("--gpu", options->view.window.device, "Use the Vulkan device whose name contains this");
+  command.flag("--validate", options->validate, "Load the Vulkan validation layers; they must be installed");
   addScanOptions(command, options->view.reading);
   command.footer(kViewFooter);
 }

@@ -9,7 +9,7 @@ void addCompressOption(Command command, engine::ExportOptions& writing) {
           [&writing](const std::string& name) {
             writing.tiff_compression = engine::tiffCompressionFromName(name);
           },
-          "TIFF: none (every program reads it; the default), lzw, deflate or zstd; who reads which is in "
+          "TIFF: none (every program reads it; the default), lzw, deflate or zstd; support by programs is in "
           "docs/formats.md")
       .check(memberOf({"none", "lzw", "deflate", "zstd"}))
       .group("Writing");
@@ -20,8 +20,8 @@ engine::Status checkCompress(const engine::ExportOptions& writing, const std::ve
   for (const BatchTask& task : tasks)
     if (const std::string extension = engine::extensionOf(task.out);
         !extension.empty() && extension != ".tif" && extension != ".tiff")
-      return engine::inputError("only .tif is compressed in the way that is asked for", task.out,
-                                "write that or leave --compress out");
+      return engine::inputError("only .tif supports the requested compression", task.out,
+                                "write that or omit --compress");
   return {};
 }
 

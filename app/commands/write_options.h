@@ -9,10 +9,10 @@
 
 namespace fettle::app {
 
-/// --compress: how TIFFs that a command writes are packed.
+/// --compress: compression of the TIFFs that a command writes.
 void addCompressOption(Command command, engine::ExportOptions& writing);
 
-/// Refuses, before anything is read or computed, --compress for an output that is no TIFF.
+/// Refuses, before anything is read or computed, --compress for an output that is not a TIFF.
 [[nodiscard]] engine::Status checkCompress(const engine::ExportOptions& writing,
                                            const std::vector<BatchTask>& tasks);
 

@@ -11,7 +11,7 @@ namespace fettle::app {
 /// Source of single keys.
 enum class KeySource : std::uint8_t {
   kTerminal,  ///< standard input if it is a terminal, otherwise none
-  kAnyInput,  ///< standard input, whatever it is: one byte, one key; for scripts and other input aids
+  kAnyInput,  ///< any standard input: one byte, one key; for scripts and other input aids
 };
 
 /// Single keys from standard input, without waiting and without echo. The state of a terminal is restored by

@@ -46,7 +46,8 @@ struct LiveOutcome {
 };
 
 /// A live session without a window: the loop on its thread, records to `log`, keys, status and events, until
-/// time, strokes, a key or a signal (job.cancelled()) ends it; then the force fades before the loop stops.
+/// time, strokes, a key or a signal (job.cancelled()) ends it; then the force is faded out before the loop
+/// stops.
 ///
 ///   a arm   d disarm   c calibrate (stylus held in its home pose)
 ///   f feel   s smooth   m mark   u unmark   q end

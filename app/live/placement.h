@@ -11,8 +11,8 @@
 
 namespace fettle::app {
 
-/// The scale [mm of the field per mm of the hand] that brings the smaller side of the field within the
-/// device's reach, or for a device that gives force the largest at which it holds the scene
+/// The scale [mm of the field per mm of the hand] at which the smaller side of the field is within the
+/// device's reach, or for a device that gives force the largest at which the scene is stable
 /// (haptic::stability.h) if that is less; 1 for a field of one row or column. Also 1 for a device on which
 /// the scene is not stable at any scale: see its stabilityProblem.
 [[nodiscard]] double fittedScale(const haptic::DeviceProfile& profile, const engine::Grid& grid,
@@ -25,7 +25,7 @@ namespace fettle::app {
 [[nodiscard]] std::optional<haptic::StabilityProblem> problemOnEveryDevice(const haptic::Scene& scene,
                                                                            const engine::Grid& grid,
                                                                            double rate_hz);
-/// The same as one line to warn with.
+/// The same as one line for a warning.
 [[nodiscard]] std::string withoutForceText(const haptic::StabilityProblem& problem);
 
 /// Limits of a session on this device: zero force for a device that gives none.

@@ -10,13 +10,13 @@
 #include "app/window/scene_edits.h"
 #include "engine/marks/change_marks.h"
 
-/// What each action does, and how it stands in the menu: for the table in actions.cpp alone. Of those that
-/// need a document or a picture it is there.
+/// What each action does, and its state in the menu: only for the table in actions.cpp. The document or
+/// picture that an action needs exists when it is called.
 namespace fettle::app::steps {
 
 using haptic::Tool;
 
-inline constexpr double kKey_px = 40.0;    ///< what an arrow key moves the view by
+inline constexpr double kKey_px = 40.0;    ///< by which an arrow key moves the view
 inline constexpr double kBrushStep = 1.0;  ///< [ and ] [samples]
 
 inline LoopClient& touchOf(Parts& p) {
@@ -44,7 +44,7 @@ inline void quit(Parts& p) {
   else if (p.settings.ask_before_quitting)
     p.feedback.questions.ask({.kind = Question::Kind::kUnsaved, .afterwards = {Afterwards::What::kQuit, ""}});
   else
-    p.quit = Quit::kKeepWork;  // nothing is lost: it is there when the scan is opened again
+    p.quit = Quit::kKeepWork;  // nothing is lost: it is restored when the scan is opened again
 }
 
 inline void openScan(Parts& p) {
@@ -76,7 +76,7 @@ inline bool canRedo(const Parts& p) {
 
 template <Tool tool>
 void choose(Parts& p) {
-  // To paint over a suggestion is to take it first.
+  // Painting over a suggestion accepts it first.
   if (isMarkTool(tool)) (void)p.marking.edges.accept(touchOf(p));
   p.chooseTool(tool);
 }
@@ -85,7 +85,7 @@ bool chosen(const Parts& p) {
   return p.stylus.on() && p.document.isOpen() && p.document.touch()->tool() == tool;
 }
 
-// What was begun last ends first.
+// The last one begun ends first.
 inline void navigate(Parts& p) {
   if (p.marking.edit.busy())
     p.marking.edit.cancel();

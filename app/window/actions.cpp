@@ -19,7 +19,7 @@ constexpr Modifiers kShift{false, true, false};
 constexpr Modifiers kAlt{false, false, true};
 constexpr Modifiers kControlShift{true, true, false};
 constexpr Key kNoKey = Key::kNone;
-// Groups of the menu that the section names, but for one.
+// Groups of the section's own menu, except for one.
 constexpr MenuPlace kNoMenu{}, kFirst{1}, kSecond{2}, kThird{3}, kMarksMenu{3, "Marks"};
 
 constexpr ActionRow kRows[] = {
@@ -88,7 +88,7 @@ constexpr ActionRow kRows[] = {
               nextFilter},
     ActionRow{Action::kFilterPreview, "Filter", "Preview", letter('P'), kPlain, kNoKey, kSecond, kField,
               preview<FilterPreview::Keep::kReplace>},
-    ActionRow{Action::kFilterBeside, "Filter", "Preview beside the others", letter('V'), kPlain, kNoKey,
+    ActionRow{Action::kFilterBeside, "Filter", "Preview next to the others", letter('V'), kPlain, kNoKey,
               kSecond, kField, preview<FilterPreview::Keep::kAdd>},
     ActionRow{Action::kFilterDrop, "Filter", "Drop the newest preview", letter('V'), kShift, Key::kDelete,
               kSecond, kField, dropPreview, nullptr, hasPreview},

@@ -12,8 +12,8 @@ namespace fettle::app {
 
 struct Parts;
 
-/// Everything a person can ask for without pointing at something, in the order of the table in actions.cpp:
-/// another one is an entry here, a row there, and what it does.
+/// All commands of the user that need no pointing, in the order of the table in actions.cpp: a new one needs
+/// an entry here, a row there, and its function.
 enum class Action : std::uint8_t {
   kOpen,
   kSave,
@@ -97,14 +97,13 @@ enum class Action : std::uint8_t {
   kCount
 };
 
-/// Where an action stands in the menus: items of a menu follow each other by group, then in the order of the
-/// table.
+/// Position of an action in the menus: items of a menu are ordered by group, then by the table.
 struct MenuPlace {
   int group = 0;               ///< 1, 2, ...; 0: in no menu
   std::string_view menu = "";  ///< empty: that of its section
 };
 
-/// What must be there before an action can be carried out.
+/// What must exist before an action can be executed.
 enum class Needs : std::uint8_t {
   kNothing,
   kPicture,  ///< a document, or a coarse picture of one
@@ -121,8 +120,8 @@ struct ActionRow {
   MenuPlace menu;
   Needs needs;
   void (*carry_out)(Parts& parts);
-  bool (*ticked)(const Parts& parts) = nullptr;   ///< in the menu; null: never
-  bool (*enabled)(const Parts& parts) = nullptr;  ///< in the menu; null: when what it needs is there
+  bool (*ticked)(const Parts& parts) = nullptr;   ///< shown in the menu; null: never
+  bool (*enabled)(const Parts& parts) = nullptr;  ///< in the menu; null: when what it needs exists
 
   [[nodiscard]] std::string_view menuTitle() const noexcept {
     return menu.menu.empty() ? section : menu.menu;
@@ -132,15 +131,15 @@ struct ActionRow {
 /// In the order of the list of keys.
 [[nodiscard]] std::span<const ActionRow> actions();
 [[nodiscard]] const ActionRow& rowOf(Action action);
-/// Whether what it needs is there.
+/// Whether what it needs exists.
 [[nodiscard]] bool ready(const ActionRow& row, const Parts& parts);
-/// Carries it out, if it can be.
+/// Executes it, if possible.
 void carryOut(Action action, Parts& parts);
 
-/// What a key stands for; nothing for keys without a meaning.
+/// The action of a key; nothing for keys without one.
 [[nodiscard]] std::optional<Action> actionOf(render::Key key, render::Modifiers modifiers);
-/// Whether a key takes the force back, which no dialog and no tool may keep it from: that of Action::kDisarm,
-/// unless it is a letter being typed into a field, and Pause always.
+/// Whether a key disarms, which no dialog and no tool may prevent: that of Action::kDisarm, unless it is a
+/// letter being typed into a field, and Pause always.
 enum class Typing : std::uint8_t { kNo, kYes };
 [[nodiscard]] bool disarms(render::Key key, render::Modifiers modifiers, Typing typing);
 [[nodiscard]] constexpr render::Key keypadKey(int digit) noexcept {

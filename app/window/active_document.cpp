@@ -16,20 +16,20 @@ namespace fs = std::filesystem;
 
 constexpr auto kNoteEvery = std::chrono::seconds(1);
 
-// What a scan or session is felt with at first.
+// The first scene for a scan or session.
 haptic::Scene firstScene(const Document& document, const std::optional<haptic::Scene>& given,
                          LoopClientOptions& options) {
   options.fit_spring = !given.has_value();
   if (given) return *given;
   haptic::Scene scene = haptic::defaultScene();
   if (const auto noted = document.notes.find("scene"); noted == document.notes.end()) {
-    // Wider than the default's one sample: what a person sees under a brush.
+    // Wider than the default of one sample: as wide as the displayed brush.
     scene.brush_radius_samples = 6.0;
     scene.mark_radius_samples = 3.0;
   } else if (const auto kept = haptic::parseScene(noted->second, "the session's scene")) {
     scene = *kept;
     options.fit_spring = false;
-    // It may have been worked on with another device, and opens with this one all the same.
+    // The session may come from another device, and must open with this one too.
     options.lower_scene = true;
   }
   return scene;
@@ -47,17 +47,17 @@ engine::Status ActiveDocument::open(Document& document, const std::optional<hapt
     keeper_.reset();
     return tl::unexpected(touch.error());
   }
-  touch_ = std::move(*touch);
+  loop_ = std::move(*touch);
   path_ = document.path;
-  // What was recovered is still to be saved.
+  // Recovered work is not saved yet.
   saved_ = document.recovered ? document.original : history.current();
   return {};
 }
 
 engine::Status ActiveDocument::close(SessionKeeper::Afterwards afterwards) {
-  touch_->finish();
+  loop_->finish();
   engine::Status closed = keeper_->close(afterwards);
-  touch_.reset();
+  loop_.reset();
   keeper_.reset();
   return closed;
 }
@@ -65,15 +65,14 @@ engine::Status ActiveDocument::close(SessionKeeper::Afterwards afterwards) {
 std::string ActiveDocument::rescue() {
   const bool had_unsaved = unsaved();
   const std::string session = keeper_->named() ? keeper_->path() : std::string();
-  touch_->finish();
-  const engine::Version field = touch_->upright();
+  loop_->finish();
+  const engine::Version field = loop_->upright();
   const engine::Status closed = close(SessionKeeper::Afterwards::kKeep);
-  if (closed && !session.empty()) return fmt::format("everything is kept in {}; ", session);
+  if (closed && !session.empty()) return fmt::format("everything is stored in {}; ", session);
   if (closed)
-    return had_unsaved ? fmt::format("what was not saved is kept for when {} is opened again; ", path_) : "";
+    return had_unsaved ? fmt::format("unsaved work is stored, and offered when {} is opened again; ", path_) : "";
 
-  // The session cannot be written where it is: the field, at least, goes next to the scan or to where programs
-  // may write.
+  // The session cannot be written: save at least the field, next to the scan or in a writable folder.
   const std::string why = closed.error().line();
   for (const fs::path& folder :
        {fs::path(path_).parent_path(), fs::path(settingsFolder()), fs::path("/tmp")}) {
@@ -83,9 +82,9 @@ std::string ActiveDocument::rescue() {
     for (int n = 2; fs::exists(path, error); ++n) path = fmt::format("{}_{}.fettle", stem, n);
     engine::JobControl job;
     if (engine::exportField(field, path, {}, job))
-      return fmt::format("{}; the field with its marks is kept in {}; ", why, path);
+      return fmt::format("{}; the field with its marks is stored in {}; ", why, path);
   }
-  return fmt::format("{}; what was not saved is gone; ", why);
+  return fmt::format("{}; unsaved work is lost; ", why);
 }
 
 std::string ActiveDocument::fileName() const {
@@ -98,11 +97,11 @@ std::string ActiveDocument::suggestedPath(const char* ending) const {
 }
 
 void ActiveDocument::poll(const render::View& view, Feedback& feedback) {
-  touch_->poll();
+  loop_->poll();
   if (auto older = keeper_->older()) {
     if (*older) {
-      touch_->prepend(**older);
-      touch_->undo();
+      loop_->prepend(**older);
+      loop_->undo();
     } else {
       feedback.note(older->error());
     }
@@ -113,36 +112,37 @@ void ActiveDocument::poll(const render::View& view, Feedback& feedback) {
 void ActiveDocument::updateSession(const render::View& view, Feedback& feedback) {
   const auto error = keeper_->error();
   if (error && !keeping_fails_)
-    feedback.message(fmt::format("The work cannot be kept: {}", error->line()),
-                     "Nothing is lost while the program runs, and it tries again by itself. Save somewhere "
-                     "else: Ctrl+Shift+S.");
+    feedback.message(
+        fmt::format("The work cannot be stored: {}", error->line()),
+        "Nothing is lost while the program runs, and it tries again automatically. Save somewhere "
+        "else: Ctrl+Shift+S.");
   keeping_fails_ = error.has_value();
   const auto now = std::chrono::steady_clock::now();
   if (now - noted_ < kNoteEvery) return;
   noted_ = now;
   keeper_->setNote("camera", viewText(view));
-  keeper_->setNote("scene", haptic::sceneText(touch_->scene()));
+  keeper_->setNote("scene", haptic::sceneText(loop_->scene()));
 }
 
 void ActiveDocument::undo() {
-  const engine::History& history = touch_->history();
-  if (touch_->canUndo() || history.first() == 0) {
-    touch_->undo();
+  const engine::History& history = loop_->history();
+  if (loop_->canUndo() || history.first() == 0) {
+    loop_->undo();
   } else if (!keeper_->readingOlder()) {
     keeper_->readOlder(history);
   }
 }
 
 bool ActiveDocument::unsaved() const {
-  if (!touch_) return false;
-  // A session of the user's holds everything, unless it cannot be written.
+  if (!loop_) return false;
+  // A session of the user stores everything, unless it cannot be written.
   if (keeper_->named()) return keeper_->error().has_value();
-  return !(touch_->upright() == saved_);
+  return !(loop_->upright() == saved_);
 }
 
 std::string ActiveDocument::keptText() const {
   if (const auto error = keeper_->error())
-    return fmt::format("not kept: {}; the work is in memory, save it elsewhere", error->what);
+    return fmt::format("not stored: {}; the work is in memory, save it elsewhere", error->what);
   const std::size_t waiting = keeper_->waiting();
   const std::string session = keeper_->path();
   if (keeper_->named())

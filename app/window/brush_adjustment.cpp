@@ -11,8 +11,8 @@ namespace {
 using render::InputKind;
 using render::Key;
 
-constexpr double kRadius_px = 8.0;  // of the cursor's way for one sample of radius
-constexpr double kDepth_px = 20.0;  // ... for a tenth of the deepest press
+constexpr double kRadius_px = 8.0;  // of cursor movement for one sample of radius
+constexpr double kDepth_px = 20.0;  // ... for a tenth of the largest depth
 
 }  // namespace
 
@@ -40,7 +40,7 @@ void BrushAdjustment::leave(LoopClient& touch, std::vector<Notice>& notices) {
   end();
 }
 
-// Whether the key is one of a number's.
+// Whether the key belongs to a number.
 bool BrushAdjustment::typeKey(Key key) {
   const int code = static_cast<int>(key), keypad0 = static_cast<int>(Key::kKeypad0);
   if (code >= '0' && code <= '9')

@@ -9,22 +9,22 @@
 
 namespace fettle::app {
 
-/// F and Shift+F: the brush's radius or the depth it presses is moved or typed, confirmed with the left
-/// button or Enter, left with the right one or Esc. Threading: main.
+/// F and Shift+F: sets the brush's radius or press depth by moving or typing; the left button or Enter
+/// confirms, the right one or Esc cancels. Threading: main.
 class BrushAdjustment {
  public:
   enum class Of : std::uint8_t { kNothing, kRadius, kDepth };
 
-  /// kDepth needs a mouse; nothing begins without.
+  /// kDepth needs a mouse; without one nothing begins.
   void begin(Of of, LoopClient& touch, double cursor_x);
-  /// Whether the event was its own.
+  /// Whether the event was used.
   bool handle(const render::InputEvent& event, LoopClient& touch, std::vector<Notice>& notices);
-  /// Ends it, as it was before.
+  /// Cancels: restores the previous value.
   void leave(LoopClient& touch, std::vector<Notice>& notices);
 
   [[nodiscard]] Of of() const noexcept { return of_; }
   [[nodiscard]] bool active() const noexcept { return of_ != Of::kNothing; }
-  /// Digits so far; empty: it is moved.
+  /// Digits so far; empty: set by moving.
   [[nodiscard]] const std::string& typed() const noexcept { return typed_; }
 
  private:

@@ -7,15 +7,15 @@
 
 namespace fettle::app {
 
-/// When the picture is drawn half as sharp: while the view moves, so that it follows the hand. The sharp one
-/// comes as soon as the view rests: after two frames of a 60 Hz display, or, while a button still holds it
-/// and the hand may go on, after a tenth of a second.
+/// When the picture is drawn at half resolution: while the view moves, to keep the frame rate. The full
+/// resolution follows when the view is at rest: after two frames of a 60 Hz display, or, while a button is
+/// still held and the movement may continue, after a tenth of a second.
 class CameraMotion {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kRest{33}, kRestHeld{100};
 
-  /// What a frame of this view, drawn now, is to be. The first one is sharp.
+  /// The resolution of a frame of this view, drawn now. The first one is sharp.
   [[nodiscard]] render::Sharpness see(const render::View& view, bool held, Clock::time_point now) {
     if (seen_ && !(*seen_ == view)) {
       moved_ = now;
@@ -26,7 +26,7 @@ class CameraMotion {
     seen_ = view;
     return sharp_pending_ ? render::Sharpness::kHalf : render::Sharpness::kFull;
   }
-  /// Whether the last frame seen was not sharp: another one is to come even if nothing else happens.
+  /// Whether the last frame was not sharp: another frame must follow in any case.
   [[nodiscard]] bool sharpPending() const noexcept { return sharp_pending_; }
 
  private:

@@ -7,10 +7,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Before each try: a driver that restarts takes a second or two.
+// Before each attempt: a driver that restarts takes a second or two.
 constexpr std::array<std::chrono::milliseconds, 6> kPauses{0ms, 100ms, 300ms, 800ms, 1500ms, 2500ms};
-constexpr std::uint64_t kLasts =
-    3;  // frames shown after a loss: the device is back, the next loss is another
+constexpr std::uint64_t kLasts = 3;  // frames shown after a loss until a new loss counts as another one
 
 }  // namespace
 

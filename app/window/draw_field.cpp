@@ -9,7 +9,7 @@ namespace {
 
 using Draws = WindowPicture::Draws;
 
-// What the user chose.
+// The settings of the user.
 render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, bool sharp_motion) {
   const Display& display = parts.settings.display;
   render::FrameInput input;
@@ -38,8 +38,8 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
   const Display& display = parts.settings.display;
   render::Shown shown;
   shown.versions.push_back(parts.marking.edges.over(touch.field()));
-  // All of one sign: the loop inverts the field some ticks after the scene was changed, and a preview may
-  // have been computed before that.
+  // All with the same sign: the loop inverts the field some ticks after the scene was changed, and a preview
+  // may have been computed before that.
   const float sign = shown.versions.front().reader().sign();
   const auto likeField = [sign](const engine::Version& v) {
     return v.reader().sign() == sign ? v : v.inverted();
@@ -53,11 +53,11 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
 
 void addTitles(const std::vector<FilterPreview::Picture>& previews, render::FrameInput& input) {
   if (previews.empty()) return;
-  input.titles.emplace_back("as it is");
+  input.titles.emplace_back("unchanged");
   for (const FilterPreview::Picture& preview : previews) input.titles.push_back(preview.title);
-  // One plot has room for one title.
+  // One plot has room for only one title.
   if (input.arrangement == render::Arrangement::kSplit)
-    input.titles = {fmt::format("left: as it is, right: {}", input.titles[1]), ""};
+    input.titles = {fmt::format("left: unchanged, right: {}", input.titles[1]), ""};
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ engine::Result<EventLog> EventLog::open(const std::string& path) {
 }
 
 void EventLog::writeLine(const Report& line) {
-  // A path may hold bytes that are not UTF-8.
+  // A path may contain bytes that are not UTF-8.
   const std::string text = line.dump(-1, ' ', false, Report::error_handler_t::replace) + "\n";
   if (std::fputs(text.c_str(), file_.get()) < 0 || std::fflush(file_.get()) != 0) file_.reset();
 }

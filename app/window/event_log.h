@@ -9,20 +9,20 @@
 
 namespace fettle::app {
 
-/// What the window reports to whoever drives it (`fettle view --events FILE`): one JSON object a line, each
-/// written when it differs from the line before. A line is written after the frame that shows what it says.
+/// Reports of the window for a script (`fettle view --events FILE`): one JSON object per line, each written
+/// when it differs from the line before, after the frame that shows it.
 ///
-/// Threading: one thread. A reader that is slow delays the window, one that has gone ends the log.
+/// Threading: one thread. A slow reader delays the window, a closed one ends the log.
 class EventLog {
  public:
-  /// Writes nowhere.
+  /// Writes nothing.
   EventLog() = default;
   /// Writes to a file, a named pipe or /dev/fd/N. Errors (kInput): it cannot be written to.
   [[nodiscard]] static engine::Result<EventLog> open(const std::string& path);
 
   [[nodiscard]] bool listens() const noexcept { return file_ != nullptr; }
-  /// Writes `state`, with `aside` after it, unless `state` is the same as last time. `aside` is made only
-  /// when needed: what changes all the time, or costs something to find out.
+  /// Writes `state`, followed by `aside`, unless `state` is the same as last time. `aside` is created only
+  /// when needed: for values that change all the time, or are expensive to compute.
   template <class Aside>
   void write(Report state, const Aside& aside) {
     if (!listens() || state == last_) return;

@@ -8,8 +8,8 @@
 
 namespace fettle::app {
 
-/// What a person reads and answers: the notices over the panels, the line of the status bar, the dialogs. The
-/// parts of the window report here. Threading: main.
+/// Messages and dialogs for the user: the notices over the panels, the line of the status bar, the dialogs.
+/// The parts of the window report here. Threading: main.
 struct Feedback {
   static constexpr std::size_t kMostNotices = 6;
 
@@ -18,7 +18,7 @@ struct Feedback {
   Questions questions;
 
   void note(const engine::Error& error) { notices.push_back({error.what, error.remedy}); }
-  /// A dialog that says so.
+  /// Shows a message dialog.
   void message(std::string what, std::string remedy) {
     questions.ask({.kind = Question::Kind::kMessage, .said = {std::move(what), std::move(remedy)}});
   }

@@ -11,7 +11,7 @@ using render::InputEvent;
 using render::InputKind;
 using render::Key;
 
-// What cannot wait for the next frame: the mouse as stylus.
+// Input that cannot wait for the next frame: the mouse as stylus.
 void toStylus(const InputEvent& event, Parts& parts) {
   LoopClient* const touch = parts.document.touch();
   if (touch == nullptr || parts.marking.lasso().active()) return;
@@ -37,7 +37,7 @@ Input::Request handleKey(const InputEvent& event, Parts& parts) {
   return {actionOf(event.key, event.modifiers), std::nullopt};
 }
 
-// The wheel sets how deep the stylus presses.
+// The wheel sets the press depth of the stylus.
 bool pressesDeeper(const InputEvent& event, const Parts& parts) {
   LoopClient* const touch = parts.document.touch();
   return event.kind == InputKind::kWheel && touch != nullptr && touch->mouse() != nullptr &&
@@ -46,14 +46,14 @@ bool pressesDeeper(const InputEvent& event, const Parts& parts) {
 
 }  // namespace
 
-// Before the event waits for the frame under way, for a dialog or for a tool.
+// Before the event waits for the current frame, for a dialog or for a tool.
 void Input::disarmAtOnce(const InputEvent& event, Parts& parts) {
   if (!parts.document.isOpen() || event.kind != InputKind::kKeyDown) return;
   const Questions& questions = parts.feedback.questions;
   const bool typing = ImGui::GetIO().WantTextInput && (questions.pending() || !questions.justClosed());
   if (!disarms(event.key, event.modifiers, typing ? Typing::kYes : Typing::kNo)) return;
   parts.document.touch()->disarm();
-  // What was pressed before and is not done yet must not arm after it.
+  // Keys pressed earlier but not processed yet must not arm after it.
   for (Pending& before : queue_)
     if (actionOf(before.event.key, before.event.modifiers) == Action::kArm) before.event.key = Key::kNone;
 }

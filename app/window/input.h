@@ -10,29 +10,29 @@
 
 namespace fettle::app {
 
-/// What hands did since the last frame, in order, and who has it: a dialog, the brush that is being set, the
-/// lasso, an action's key, the camera. The stylus has its events before the frame comes to the others, unless
-/// a key waits that may choose another tool: then it waits behind it. Threading: main.
+/// The input since the last frame, in order, and its receiver: a dialog, the brush being set, the lasso, an
+/// action's key, the camera. The stylus gets its events before the frame processes the others, unless a key
+/// that may choose another tool is waiting: then the stylus waits behind it. Threading: main.
 class Input {
  public:
   /// Events taken from the queue so far, and files dropped on the window.
   struct Counts {
     std::uint64_t keys = 0, buttons = 0, wheels = 0, drops = 0;
   };
-  /// What a key asks for.
+  /// The effect of a key on the whole window.
   struct Request {
     std::optional<Action> action;
     std::optional<std::string> open;  ///< a recent file
   };
 
-  /// As it comes, also while the device draws.
+  /// Called immediately, also while the device draws.
   void add(const render::InputEvent& event, Parts& parts);
-  /// What is under a cursor at rest sinks while it is smoothed: the stylus goes with it.
+  /// Smoothing lowers the surface under a cursor at rest: the stylus follows it.
   void followSurface(Parts& parts) const;
-  /// The next event that can be handled: none while an answer to a dialog waits for the frame that carries it
-  /// out, since what comes after it is about what that leads to.
+  /// The next event that can be handled: none while the answer to a dialog waits for the frame that executes
+  /// it, since later events refer to its result.
   [[nodiscard]] std::optional<render::InputEvent> next(Parts& parts);
-  /// Hands it to whom it is for. Parts::cursor is where it was before.
+  /// Passes it to its receiver. Parts::cursor is the previous position.
   [[nodiscard]] static Request handle(const render::InputEvent& event, Parts& parts);
 
   void countDrop() noexcept { ++counts_.drops; }

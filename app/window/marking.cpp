@@ -15,7 +15,7 @@ using render::InputKind;
 using render::Key;
 using render::MouseButton;
 
-constexpr double kCross_px = 16.0;  // what an arrow key moves the cross by; Shift: one eighth
+constexpr double kCross_px = 16.0;  // by which an arrow key moves the cross; Shift: one eighth
 
 engine::MarkChange changeOf(const render::InputEvent& event) {
   return event.modifiers.control ? engine::MarkChange::kUnmark : engine::MarkChange::kMark;

@@ -9,10 +9,10 @@
 
 namespace fettle::app {
 
-/// Marks set at once: by a lasso, by a box, by suggested edges, all of them. Threading: main.
+/// Marks set in one step: by a lasso, by a box, by suggested edges, or all of them. Threading: main.
 class Marking {
  public:
-  /// Where the lasso is drawn.
+  /// The environment of the lasso.
   struct Scope {
     const LoopClient& touch;
     const WindowPicture& picture;
@@ -20,26 +20,26 @@ class Marking {
     Display& display;
     bool dragging;  ///< the view moves with the cursor
   };
-  /// A lasso or a box from the cursor on, or from the middle of the picture where the cursor is elsewhere.
+  /// Begins a lasso or a box at the cursor, or at the middle of the picture where the cursor is elsewhere.
   void beginLasso(Lasso::Shape shape, const glm::dvec2& cursor, const render::Rectangle& area,
                   const WindowPicture& picture);
-  /// Whether the event was the lasso's; others, such as the wheel, go on to the view.
+  /// Whether the lasso used the event; others, such as the wheel, are passed to the view.
   bool handle(const render::InputEvent& event, const Scope& scope);
   void leaveLasso();
-  /// The button is not held any more.
+  /// The button was released.
   void release() noexcept { held_ = false; }
   [[nodiscard]] const Lasso& lasso() const noexcept { return lasso_; }
-  /// The line is being drawn.
+  /// Whether the line is being drawn.
   [[nodiscard]] bool held() const noexcept { return held_ && lasso_.active(); }
 
-  /// Turns a number of the edges' choice, within its range, and follows it.
+  /// Changes a number of the edges' choice, within its range, and follows the result.
   void turnChoice(double engine::EdgeChoice::*number, double by, double high, const LoopClient& touch);
-  /// Another scale: looks again when edges are looked for.
+  /// Changes the scale: searches again if edges are being searched.
   void scaleEdges(double factor, const LoopClient& touch);
 
-  /// Takes in what was worked out. True when something to be seen changed.
+  /// Takes results. True when something visible changed.
   [[nodiscard]] bool poll(LoopClient& touch, std::vector<Notice>& notices);
-  /// Another field.
+  /// Another field was opened.
   void reset();
   [[nodiscard]] bool busy() const noexcept { return edit.busy() || edges.busy(); }
 
@@ -51,7 +51,7 @@ class Marking {
   void finish(engine::MarkChange change, const Scope& scope);
 
   Lasso lasso_;
-  bool drawn_ = false;  // by hand, since the button went down
+  bool drawn_ = false;  // drawn with the mouse, since the button went down
   bool held_ = false;
 };
 

@@ -7,7 +7,7 @@
 namespace fettle::app {
 namespace {
 
-constexpr double kZoomAStep = 1.15;
+constexpr double kZoomPerStep = 1.15;
 
 double extentX(const engine::Grid& grid) {
   return std::max(grid.width - 1, 1) * grid.spacingXMm();
@@ -34,7 +34,7 @@ void Navigation::pan(render::View& view, const engine::Grid& grid, double dx_px,
   if (!(pixels_per_mm > 0.0)) return;
   const double a = view.azimuth_deg * std::numbers::pi / 180.0;
   const double e = view.elevation_deg * std::numbers::pi / 180.0;
-  // Away from the viewer the field is foreshortened; near the horizon a pixel would be endlessly far.
+  // Farther from the viewer the field is foreshortened; near the horizon a pixel would be infinitely far.
   const double right = -dx_px / pixels_per_mm;
   const double away = dy_px / (pixels_per_mm * std::max(std::sin(e), 0.1));
   view.centre_x += (right * std::cos(a) - away * std::sin(a)) / extentX(grid);
@@ -46,8 +46,8 @@ void Navigation::pan(render::View& view, const engine::Grid& grid, double dx_px,
 void Navigation::zoom(render::View& view, const engine::Grid& grid, double steps, double dx_px, double dy_px,
                       double pixels_per_mm) noexcept {
   const double before = view.zoom;
-  view.zoom = std::clamp(before * std::pow(kZoomAStep, steps), kSmallestZoom, kLargestZoom);
-  // What lay under the cursor moves away from the middle by the factor: bring it back.
+  view.zoom = std::clamp(before * std::pow(kZoomPerStep, steps), kSmallestZoom, kLargestZoom);
+  // The point under the cursor moves away from the middle by the factor: compensate.
   const double grown = view.zoom / before;
   pan(view, grid, dx_px * (1.0 - grown), dy_px * (1.0 - grown), pixels_per_mm * grown);
 }

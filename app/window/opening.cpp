@@ -12,11 +12,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Memory that undo may take; older steps are read back from the session on demand.
+// Memory of undo; older steps are read from the session on demand.
 constexpr std::size_t kHistoryBytes = std::size_t{1} << 30;
 constexpr std::int64_t kCoarseSamples = std::int64_t{1} << 20;
-// Reading the rest takes all cores and, page by page, the lock under which the driver takes its memory: the
-// picture that is there already would wait for it. Longer than this it is not waited for in turn.
+// Reading the rest uses all cores and, page by page, the lock under which the driver allocates memory:
+// drawing the coarse picture would wait for it. So reading waits for that picture, at most this long.
 constexpr std::chrono::milliseconds kShownFirst{500};
 
 }  // namespace
@@ -31,7 +31,7 @@ Background<Document>::Work Opening::work(const std::string& path, Recovery recov
   return [path, recovery, coarse_first, slot = std::move(slot), reading](engine::JobControl& job) {
     const auto import = importOptions(reading);
     if (coarse_first && import) {
-      // What is wrong with the file, reading the whole of it says.
+      // Errors in the file are reported by the full import.
       auto coarse = engine::importPreview(path, *import, kCoarseSamples, job);
       if (coarse && *coarse) {
         slot->put(**std::move(coarse));

@@ -11,25 +11,25 @@
 
 namespace fettle::app {
 
-/// From asking for the newest scan on [ms]: it was read, it could be touched, it was seen, and all of it lay
-/// on the device; 0: not yet.
+/// Times since opening the newest scan was requested [ms]: it was read, it could be touched, it was visible,
+/// and all of it was on the device; 0: not yet.
 struct OpeningTimes {
   std::chrono::steady_clock::time_point asked{};
-  double coarse_ms = 0.0;  ///< a coarse picture was seen; 0: there was none
+  double coarse_ms = 0.0;  ///< a coarse picture was visible; 0: there was none
   double read_ms = 0.0, touched_ms = 0.0, seen_ms = 0.0, whole_ms = 0.0;
   [[nodiscard]] double sinceAsked() const;
 };
 
-/// A scan or session on its way into the window: read in the background, and seen coarsely meanwhile where
-/// nothing else is open. The coarse picture can be looked at from all sides and nothing else: it is no
-/// document, no loop runs, nothing is touched, changed or saved. Threading: main.
+/// A scan or session that is being opened: read in the background, with a coarse picture shown until then if
+/// nothing else is open. The coarse picture can be viewed from all sides, nothing else: it is not a document,
+/// no loop runs, nothing can be touched, changed or saved. Threading: main.
 class Opening {
  public:
-  /// Reads it; what was being read is cancelled. `instead`: a document is open and stays until this one is
-  /// there. The coarse picture of the one before is dropped first (dropCoarse).
+  /// Begins to read; cancels a reading in progress. `instead`: a document is open and stays until this one is
+  /// read. Requires dropCoarse() for the previous coarse picture.
   void start(const std::string& path, Recovery recovery, const ScanOptions& reading, bool instead);
   void cancel() { loading_.cancel(); }
-  /// What was read, once.
+  /// The result of reading, once.
   [[nodiscard]] std::optional<engine::Result<Document>> take() { return loading_.take(); }
   [[nodiscard]] bool busy() const noexcept { return loading_.busy(); }
   [[nodiscard]] double progress() const noexcept { return loading_.progress(); }
@@ -37,7 +37,7 @@ class Opening {
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::string fileName() const;
 
-  /// Takes in a coarse picture, unless a document is `open`. True when there is one now that was not.
+  /// Takes a coarse picture, unless a document is `open`. True when a new one was taken.
   [[nodiscard]] bool takeCoarse(bool open);
   [[nodiscard]] const engine::Preview* coarse() const noexcept { return coarse_ ? &*coarse_ : nullptr; }
   [[nodiscard]] std::string coarseText() const;
@@ -48,10 +48,10 @@ class Opening {
   /// The newest scan was read; `instead` of a document.
   void noteRead(bool instead);
   void noteTouched() { times_.touched_ms = times_.sinceAsked(); }
-  /// The first picture is being made, as a frame before it says.
+  /// The first picture is being drawn, as announced by the frame before it.
   void noteAnnounced() noexcept { announced_ = true; }
   [[nodiscard]] bool announced() const noexcept { return announced_; }
-  /// A frame was shown: of the coarse picture; of the document; and all of that is on the device.
+  /// A frame was shown: of the coarse picture; of the document; of the document completely on the device.
   enum class Frame : std::uint8_t { kNothing, kCoarse, kDocument, kWhole };
   void noteFrame(Frame frame);
 
@@ -62,7 +62,7 @@ class Opening {
 
   std::string path_;
   std::chrono::steady_clock::time_point asked_{};
-  std::shared_ptr<CoarseSlot> slot_;  // of the newest loading
+  std::shared_ptr<CoarseSlot> slot_;  // of the newest reading
   std::optional<engine::Preview> coarse_;
   OpeningTimes times_;
   bool announced_ = false;

@@ -60,7 +60,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   costs.reset();
   saving.dropWaiting();
   if (const auto closed = document.close(afterwards); !closed)
-    warn(fmt::format("{}: what was not written is gone", closed.error().line()));
+    warn(fmt::format("{}: what was not written is lost", closed.error().line()));
 }
 
 }  // namespace fettle::app

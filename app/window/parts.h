@@ -23,11 +23,11 @@
 
 namespace fettle::app {
 
-/// Whether the window is to end: with all saved that was to be saved, or with unsaved work to be kept.
+/// Whether the window is to end: with everything saved as requested, or with unsaved work to be stored.
 enum class Quit : std::uint8_t { kNo, kDone, kKeepWork };
 
-/// The parts of the window, each with one duty: what actions change, panels show and the events report. None
-/// knows of this struct; what concerns several of them is done here or by who owns it. Threading: main.
+/// The parts of the window, each with one duty: actions change them, panels show them and events report them.
+/// No part uses this struct; what concerns several of them is done here or by their owner. Threading: main.
 struct Parts {
   Parts(render::Window& on, const Settings& remembered)
       : window(on), settings(remembered), recent(recentFile()), picture(on) {}
@@ -56,27 +56,27 @@ struct Parts {
   ChoiceCosts costs;
   double last_limit = 0.05;  ///< [height unit], for limits that are switched on again
 
-  bool enter_panels = false;  ///< the keyboard goes to the panels with the next frame
+  bool enter_panels = false;  ///< the panels get the keyboard focus with the next frame
   Quit quit = Quit::kNo;
 
-  /// Of what can be turned and zoomed, a document or a coarse picture; null when there is none.
+  /// Of the document or coarse picture that is shown; null when there is none.
   [[nodiscard]] const engine::Grid* seenGrid() const;
-  /// The coarse picture is on the screen.
+  /// Whether the coarse picture is shown.
   [[nodiscard]] bool coarseIsShown() const;
-  /// The first picture of a large field takes the main thread some seconds: a frame before it says so.
+  /// The first picture of a large field takes the main thread some seconds: the frame before announces it.
   [[nodiscard]] bool announcesPicture() const;
-  /// A hand holds the stylus, the lasso or the view.
+  /// Whether the mouse holds the stylus, the lasso or the view.
   [[nodiscard]] bool held() const;
 
-  /// Turns a tool on, or all off.
+  /// Switches a tool on, or all off.
   void chooseTool(std::optional<haptic::Tool> tool);
-  /// What is held is released, what was not confirmed is as before.
+  /// Releases what is held and cancels what was not confirmed.
   void releaseHands();
-  /// A dialog has the keyboard to itself: ImGui closes it when the panels take it.
+  /// Only dialogs have the keyboard: ImGui closes a dialog when the panels take it.
   void leavePanels();
-  /// Ends the coarse picture: it must not stay where the scan could not be read.
+  /// Removes the coarse picture: it must not stay where the scan could not be read.
   void dropCoarse();
-  /// Closes the document, if one is open, with all that is about it.
+  /// Closes the document, if one is open, with everything about it.
   void closeDocument(SessionKeeper::Afterwards afterwards);
 };
 

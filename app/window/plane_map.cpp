@@ -9,7 +9,7 @@
 namespace fettle::app {
 namespace {
 
-// Takes the base vectors to the first three points and (1, 1, 1) to the fourth, up to a factor.
+// Maps the base vectors to the first three points and (1, 1, 1) to the fourth, up to a factor.
 std::optional<glm::dmat3> fromBase(const std::array<glm::dvec2, 4>& p) {
   const glm::dmat3 corners{glm::dvec3(p[0], 1.0), glm::dvec3(p[1], 1.0), glm::dvec3(p[2], 1.0)};
   const double area = glm::determinant(corners);
@@ -28,7 +28,7 @@ std::optional<PlaneMap> PlaneMap::through(const std::array<Pair, 4>& pairs) {
   const auto field = fromBase({pairs[0].field_mm, pairs[1].field_mm, pairs[2].field_mm, pairs[3].field_mm});
   if (!pixels || !field) return std::nullopt;
   const glm::dmat3 map = *field * glm::inverse(*pixels);
-  // All four are before the viewer, so all have the same sign.
+  // All four are in front of the viewer, so all have the same sign.
   const double front = (map * glm::dvec3(pairs[0].pixel, 1.0)).z;
   for (const Pair& pair : pairs)
     if (!(front * (map * glm::dvec3(pair.pixel, 1.0)).z > 0.0)) return std::nullopt;
@@ -37,7 +37,7 @@ std::optional<PlaneMap> PlaneMap::through(const std::array<Pair, 4>& pairs) {
 
 std::optional<glm::dvec2> PlaneMap::fieldAt(const glm::dvec2& pixel) const {
   const glm::dvec3 p = field_from_pixel_ * glm::dvec3(pixel, 1.0);
-  // Far beyond what is seen a pixel stands for kilometres.
+  // Far outside the visible part a pixel covers kilometres.
   if (!(p.z * front_ > 1e-9 * front_ * front_)) return std::nullopt;
   return glm::dvec2(p) / p.z;
 }

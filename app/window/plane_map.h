@@ -8,16 +8,16 @@
 
 namespace fettle::app {
 
-/// Takes places of the picture to the field's plane, where there is no surface to point at: next to the field,
-/// over a hole. A picture of a plane is a homography, whatever the projection; four points that lie on no
-/// common line, three by three, say which.
+/// Maps positions of the picture to the field's plane, where there is no surface under the cursor: outside
+/// the field, over a hole. The picture of a plane is a homography in any projection; it is determined by four
+/// points of which no three are on a line.
 class PlaneMap {
  public:
   struct Pair {
     glm::dvec2 pixel;
     glm::dvec2 field_mm;
   };
-  /// Empty when the points do not say: three on a line, or numbers that are not finite.
+  /// Empty when the points do not determine it: three on a line, or numbers that are not finite.
   [[nodiscard]] static std::optional<PlaneMap> through(const std::array<Pair, 4>& pairs);
 
   /// Empty at or above the horizon.
@@ -27,7 +27,7 @@ class PlaneMap {
   PlaneMap(const glm::dmat3& field_from_pixel, double front)
       : field_from_pixel_(field_from_pixel), front_(front) {}
   glm::dmat3 field_from_pixel_;
-  double front_;  // sign of the third coordinate before the viewer
+  double front_;  // sign of the third coordinate in front of the viewer
 };
 
 }  // namespace fettle::app

@@ -18,9 +18,10 @@ struct KindInfo {
   Kind kind;
   const char* name;
   const char* title;
-  std::string_view letters;  // that answer it, besides Esc and (where there is something to confirm) Enter
+  std::string_view
+      letters;  // that answer it, in addition to Esc and (where there is something to confirm) Enter
   bool enter;
-  bool of_field;  // about the field that is open
+  bool of_field;  // about the open field
   ImGuiWindowFlags flags;
 };
 
@@ -76,7 +77,7 @@ void Questions::dropOfField() {
   if (shown_ && of_field(*shown_)) drop();
 }
 
-// From outside of its popup.
+// Called outside of its popup.
 void Questions::drop() {
   const ImVector<ImGuiPopupData>& popups = ImGui::GetCurrentContext()->OpenPopupStack;
   for (int level = 0; level < popups.Size; ++level)
@@ -125,7 +126,7 @@ bool Questions::begin() {
   const ImVec2 middle(0.5F * ImGui::GetIO().DisplaySize.x, 0.5F * ImGui::GetIO().DisplaySize.y);
   ImGui::SetNextWindowPos(middle, ImGuiCond_Appearing, ImVec2(0.5F, 0.5F));
   if (!ImGui::BeginPopupModal(info.title, nullptr, info.flags)) {
-    key_ = Key::kNone;  // there is no room for it on the screen, and input does not wait for that
+    key_ = Key::kNone;  // there is no room for it on the screen, and input must not wait for that
     return false;
   }
   ++frames_;

@@ -8,36 +8,36 @@
 
 namespace fettle::app {
 
-/// How many vertices each panel of the picture may take: together those the user chose while the picture
-/// changes as a whole, and each as many as the screen error asks for once it has not for a while.
+/// How many vertices each panel of the picture may use: together the user's number while the picture changes
+/// as a whole, and each as many as the screen error requires after it has not changed for a while.
 ///
 ///   chosen --- nothing changed for kQuiet --> begins: panel 1, panel 2, ... --> fine
 ///      ^---------------- the picture changes as a whole ------------------------'
 ///
-/// A panel a frame: a slow frame costs as much as that of a single picture, and input is taken between two of
-/// them. After that only what a hand changes is drawn again. Panels that cannot be drawn one without the
-/// other (a picture for two eyes) follow in one frame.
+/// One panel per frame: so a slow frame costs only as much as that of a single picture, and input is
+/// processed between two of them. After that only edited parts are drawn again. Panels that cannot be drawn
+/// independently (a picture for two eyes) are refined in one frame.
 class Refinement {
  public:
   using Clock = std::chrono::steady_clock;
   static constexpr std::chrono::milliseconds kQuiet{250};
   static constexpr std::int64_t kMost = std::int64_t{1} << 20;  ///< of a panel
 
-  /// Whether a frame of the fine picture is due now: it has to be drawn, whatever else happens.
+  /// Whether a frame of the refined picture is due now: it must be drawn in any case.
   [[nodiscard]] bool due(Clock::time_point now) const noexcept {
     return state_ == State::kBegins || (state_ == State::kChosen && now - whole_ >= kQuiet);
   }
-  /// Whether some of it is still to come.
+  /// Whether some refinement is left.
   [[nodiscard]] bool pending() const noexcept { return state_ != State::kFine; }
 
-  /// The next frame changes the picture as a whole, as is known before it is drawn.
+  /// The next frame changes the picture as a whole, as known before it is drawn.
   void restart(Clock::time_point now) noexcept {
     state_ = State::kChosen;
     fine_ = 0;
     whole_ = now;
   }
 
-  /// What each of `panels` panels may take in the next frame. `chosen`: vertices, all panels together.
+  /// Vertices of each of `panels` panels in the next frame. `chosen`: vertices, all panels together.
   [[nodiscard]] std::vector<std::int64_t> vertices(std::int64_t chosen, std::size_t panels,
                                                    Clock::time_point now) {
     if (panels != panels_ && state_ != State::kChosen) restart(now);
@@ -52,12 +52,12 @@ class Refinement {
     return each;
   }
 
-  /// What a frame of these vertices was.
+  /// The result of a frame with these vertices.
   struct Drawn {
     bool whole = false;         ///< all of the picture was drawn
-    bool continued = true;      ///< it went on from the frame before
-    bool tiles_coming = false;  ///< samples that changed are still on their way
-    bool pages_coming = false;  ///< finer samples, which this frame asked for, are
+    bool continued = true;      ///< it reused the frame before
+    bool tiles_coming = false;  ///< changed samples are not uploaded yet
+    bool pages_coming = false;  ///< finer samples that this frame requested are not uploaded yet
   };
   void drawn(const Drawn& frame, Clock::time_point now) noexcept {
     const bool coming = frame.tiles_coming || (frame.pages_coming && state_ == State::kChosen);

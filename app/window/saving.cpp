@@ -17,14 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A scan up to so many samples goes into the session whole unless the user says otherwise.
+// A scan of up to so many samples is stored in the session unless the user chooses otherwise.
 constexpr std::int64_t kEmbedded = std::int64_t{16} << 20;
 
 bool anyMark(const engine::Version& version) {
   return version.reader().root().marked_children != 0;
 }
 
-// The marks lie next to the field: NAME_marks.png.
+// The marks are stored next to the field: NAME_marks.png.
 std::string marksPath(const std::string& path) {
   const fs::path p(path);
   return (p.parent_path() / (p.stem().string() + "_marks.png")).string();
@@ -34,7 +34,7 @@ std::string marksPath(const std::string& path) {
 std::vector<std::string> outputsOf(const std::string& path, Saving::Keeping keeping,
                                    const ActiveDocument& document) {
   if (isSessionPath(path)) {
-    // Onto itself a session loses nothing.
+    // Writing a session to itself loses nothing.
     std::error_code none;
     const bool itself =
         keeping == Saving::Keeping::kWorkThere && fs::equivalent(path, document.keeper()->path(), none);
@@ -72,7 +72,8 @@ void Saving::save(ActiveDocument& document, Feedback& feedback, Afterwards after
   if (keeper.named()) {
     start(keeper.path(), Keeping::kWorkThere, std::move(afterwards), document, feedback);
   } else if (!path_.empty()) {
-    // Written there before; but marks, when there were none then, may come upon a file of another's.
+    // These files were written before; but marks, if there were none then, may replace a file of other
+    // content.
     std::vector<std::string> outputs = outputsOf(path_, Keeping::kWorkThere, document);
     std::erase_if(outputs, [&](const std::string& path) { return std::ranges::count(written_, path) > 0; });
     if (replacedFiles(outputs, {}).texts.empty())
@@ -81,7 +82,7 @@ void Saving::save(ActiveDocument& document, Feedback& feedback, Afterwards after
       askToWrite({.kind = Question::Kind::kSaveAs, .path = path_, .afterwards = std::move(afterwards)},
                  Typed::kNo, document, feedback);
   } else {
-    // Never over the scan itself without being asked to.
+    // Never over the scan itself without a question.
     feedback.questions.ask({.kind = Question::Kind::kSaveAs,
                             .path = document.suggestedPath(".fettle"),
                             .afterwards = std::move(afterwards)});
@@ -93,9 +94,8 @@ void Saving::askToWrite(Question from, Typed typed, ActiveDocument& document, Fe
   const Keeping keeping = keepingOf(from.kind);
   std::error_code none;
   if (keeping == Keeping::kCopy && fs::equivalent(from.path, keeper.path(), none)) {
-    feedback.message(
-        fmt::format("{} is the session that is worked on: everything is kept there as it is done", from.path),
-        "name another file for a copy");
+    feedback.message(fmt::format("{} is the open session: everything is stored there immediately", from.path),
+                     "name another file for a copy");
     return;
   }
   ReplacedFiles files = replacedFiles(outputsOf(from.path, keeping, document), keeper.scanPath());
@@ -120,7 +120,7 @@ void Saving::start(const std::string& path, Keeping keeping, Afterwards afterwar
   target_ = path;
   keeping_ = keeping;
   afterwards_ = std::move(afterwards);
-  // A session that refers to the scan could not be opened again with another file in the scan's place.
+  // A session that refers to the scan could not be opened if another file replaced the scan.
   SessionKeeper& keeper = *document.keeper();
   waits_for_scan_ = replacedFiles(outputsOf(path, keeping, document), keeper.scanPath()).scan;
   if (waits_for_scan_)
@@ -180,7 +180,7 @@ std::optional<Saving::Saved> Saving::poll(ActiveDocument& document, Feedback& fe
     return Saved{std::move(afterwards), moved};
   }
   if (ended->error().kind != engine::ErrorKind::kCancelled)
-    feedback.message(ended->error().line(), "the work is kept here; save it elsewhere");
+    feedback.message(ended->error().line(), "the work is stored here; save it elsewhere");
   return std::nullopt;
 }
 

@@ -7,21 +7,21 @@
 
 namespace fettle::app {
 
-/// Changes of the scene and of the brush as panels, keys and mouse make them. What cannot be, or what the
-/// device does not hold, is said in a notice and not done. Threading: main.
+/// Changes of the scene and of the brush by panels, keys and mouse. An invalid change, or one that the device
+/// cannot hold, is refused with a notice. Threading: main.
 void applyScene(LoopClient& touch, const haptic::Scene& scene, std::vector<Notice>& notices);
-/// A notice when no known device would hold the scene; where one is connected, its own refusal counts.
+/// A notice when no known device would hold the scene; a connected device refuses for itself.
 void noteWithoutForce(const LoopClient& touch, std::vector<Notice>& notices);
 
-/// Whether the tool sets or clears marks: those have a brush of their own.
+/// Whether the tool sets or clears marks: these tools have their own brush.
 [[nodiscard]] bool isMarkTool(haptic::Tool tool) noexcept;
-/// Of the tool that is on [samples].
+/// Of the active tool [samples].
 [[nodiscard]] double brushRadius(const LoopClient& touch);
 void setBrushRadius(LoopClient& touch, double samples, std::vector<Notice>& notices);
-/// How deep the mouse presses [mm]; nothing happens without a mouse.
+/// Press depth of the mouse [mm]; no effect without a mouse.
 void setPressDepth(LoopClient& touch, double depth_mm);
 
-/// A largest change [height unit] on or off; `last` is what it is when it is on again.
+/// Switches a largest change [height unit] on or off; `last` is its value when it is switched on again.
 void toggleLimit(std::optional<double>& limit, double& last);
 
 }  // namespace fettle::app

@@ -10,7 +10,7 @@
 
 namespace fettle::app {
 
-/// How the field is shown: what a person chooses and finds again the next time.
+/// Display settings, stored for the next start.
 struct Display {
   bool marks = true;
   bool deviation = false;
@@ -23,27 +23,27 @@ struct Display {
   float light_azimuth_deg = 135.0F;
   float light_elevation_deg = 45.0F;
   bool decorations = true;
-  std::int64_t vertices = 65536;  ///< a frame may cost, 4096 .. 2^22
+  std::int64_t vertices = 65536;  ///< most vertices of a frame, 4096 .. 2^22
   bool half_in_motion = true;     ///< the picture is half as sharp while the view moves (CameraMotion)
-  // Not remembered: whoever comes next may have no glasses on.
+  // Not stored: the next user may have no glasses.
   render::StereoMode stereo = render::StereoMode::kOff;
   float eye_separation = 1.0F / 30.0F;
 };
 
-/// What the window remembers about its user besides the files: a JSON file in the settings folder.
+/// Settings of the user: a JSON file in the settings folder.
 struct Settings {
   Display display;
   Habits habits = Habits::kBlender;
   bool side_panel = true;
-  float side_width = 0.0F;             ///< [pixels at scale 1]; 0: as the program thinks
-  std::map<std::string, bool> panels;  ///< which ones stand open, by their names
-  bool ask_before_quitting = true;     ///< with work that is not saved; it is kept either way
+  float side_width = 0.0F;             ///< [pixels at scale 1]; 0: default
+  std::map<std::string, bool> panels;  ///< which ones are open, by their names
+  bool ask_before_quitting = true;     ///< with work that is not saved; it is stored either way
 
-  /// Reads a file that save() wrote. What it lacks, what is of a wrong type or out of range stays as it is by
-  /// itself; a file that cannot be read says nothing.
+  /// Reads a file written by save(). A value that is missing, of a wrong type or out of range keeps its
+  /// default; a file that cannot be read gives the defaults.
   [[nodiscard]] static Settings load(const std::string& path);
-  /// Writes all of it, whole or not at all; an empty path is none. A failure is not reported: the next
-  /// start is as the one before.
+  /// Writes all settings, completely or not at all; no effect for an empty path. A failure is not reported:
+  /// the next start uses the old settings.
   void save(const std::string& path) const;
 
   friend bool operator==(const Settings& a, const Settings& b) { return a.text() == b.text(); }

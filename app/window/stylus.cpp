@@ -9,7 +9,7 @@ using haptic::Tool;
 using render::InputKind;
 using render::MouseButton;
 
-// What Ctrl turns a tool into for one stroke.
+// The tool that Ctrl selects for one stroke.
 Tool opposite(Tool tool) {
   switch (tool) {
     case Tool::kFeel:

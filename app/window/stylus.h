@@ -9,26 +9,26 @@
 
 namespace fettle::app {
 
-/// The left button as the stylus: which tool is on, and what the cursor does to the mouse's stylus. With
-/// another device only the choice of the tool is of use. Threading: main.
+/// The left button as the stylus: the active tool, and the effect of the cursor on the mouse's stylus. With
+/// another device only the choice of the tool is used. Threading: main.
 class Stylus {
  public:
-  /// Turns a tool on, or all off: the mouse moves the view then. The tool is there at once, where the cursor
-  /// is.
+  /// Switches a tool on, or all off: then the mouse moves the view. The tool is applied immediately at the
+  /// cursor.
   void choose(std::optional<haptic::Tool> tool, LoopClient& touch, const WindowPicture& picture,
               const glm::dvec2& cursor);
   [[nodiscard]] bool on() const noexcept { return on_; }
 
-  /// `kNone`: a dialog has the hands; `kOther`: they turn the view or set the brush.
+  /// `kNone`: a dialog has the input; `kOther`: it turns the view or sets the brush.
   enum class Hands : std::uint8_t { kFree, kOther, kNone };
-  /// What cannot wait for the next frame.
+  /// Handles input that cannot wait for the next frame.
   void handle(const render::InputEvent& event, LoopClient& touch, const WindowPicture& picture, Hands hands);
-  /// Lifts it off the surface; a tool that Ctrl had turned is what it was. `touch`: null where none is open.
+  /// Lifts the stylus off the surface and undoes a change of tool by Ctrl. `touch`: null where none is open.
   void release(LoopClient* touch);
 
-  /// It presses.
+  /// Whether it presses.
   [[nodiscard]] bool held() const noexcept { return held_; }
-  /// The surface under the cursor, as last looked at with a tool on.
+  /// The surface under the cursor, as of the last pick with a tool on.
   [[nodiscard]] const std::optional<render::Picked>& underCursor() const noexcept { return under_cursor_; }
 
  private:
@@ -39,7 +39,7 @@ class Stylus {
   bool on_ = false;
   bool held_ = false;
   std::optional<render::Picked> under_cursor_;
-  std::optional<haptic::Tool> turned_;  // chosen, while Ctrl turned it into its opposite
+  std::optional<haptic::Tool> turned_;  // the chosen tool, while Ctrl replaces it by its opposite
 };
 
 }  // namespace fettle::app

@@ -7,16 +7,16 @@
 
 namespace fettle::app {
 
-/// The stylus as the picture shows it: tip, force, and the ring where the brush works; and the force of the
-/// last frames. Threading: main.
+/// The stylus in the picture: tip, force, and the ring of the brush; and the force of the last frames.
+/// Threading: main.
 class StylusOverlay {
  public:
-  /// Whether the picture shows it elsewhere than it is, by more than a pixel.
+  /// Whether the drawn position differs from the actual one by more than a pixel.
   [[nodiscard]] bool moved(const haptic::LoopState& state, double mm_per_pixel) const;
   /// Adds it to the overlays of the next frame.
   static void append(const LoopClient& touch, const haptic::LoopState& state, double mm_per_pixel,
                      render::Overlays& overlays);
-  /// A frame shows this state from now on, and `drawn`: it was drawn.
+  /// The next frame shows this state, and `drawn`: it was drawn.
   void begin(const haptic::LoopState& state) { state_ = state; }
   void drawn();
 

@@ -75,7 +75,7 @@ void ViewDrag::handle(const render::InputEvent& event, const glm::dvec2& from, b
       if (!on_picture) return;
       Navigation::zoom(view, scope.grid, event.wheel, event.x - (scope.area.x + 0.5 * scope.area.width),
                        event.y - (scope.area.y + 0.5 * scope.area.height), pixels_per_mm);
-      // Several steps between two frames each start from what the one before made.
+      // Each of several steps between two frames starts from the result of the one before.
       scope.picture.zoomed(std::pow(1.15, event.wheel));
       break;
     default:

@@ -4,13 +4,13 @@
 
 namespace fettle::app {
 
-/// The mouse at the camera: buttons turn, move and zoom the view, the wheel zooms, and a grip moves the line
-/// between two versions. Threading: main.
+/// The mouse at the camera: buttons turn, move and zoom the view, the wheel zooms, and a handle moves the
+/// line between two versions. Threading: main.
 class ViewDrag {
  public:
-  /// What it works on.
+  /// The environment of the drag.
   struct Scope {
-    const engine::Grid& grid;  ///< of what is seen
+    const engine::Grid& grid;  ///< of the shown field
     const render::Rectangle& area;
     WindowPicture& picture;
     render::View& view;
@@ -19,7 +19,7 @@ class ViewDrag {
   /// `from`: the cursor before the event; `tool_on`: the left button is the stylus.
   void handle(const render::InputEvent& event, const glm::dvec2& from, bool tool_on, const Scope& scope);
   void stop() noexcept;
-  /// A button turns, moves or zooms.
+  /// Whether a button turns, moves or zooms.
   [[nodiscard]] bool active() const noexcept { return drag_ != Drag::kNone; }
 
  private:

@@ -6,10 +6,10 @@
 
 namespace fettle::app {
 
-/// Where the camera stands at the start.
+/// The view at the start.
 [[nodiscard]] render::View startView();
 
-/// A camera as a note of a session, and back; the start's where the note does not say.
+/// A camera as a note of a session, and back; the start's where the note has none.
 [[nodiscard]] std::string viewText(const render::View& view);
 [[nodiscard]] render::View viewOf(const std::string& text);
 

@@ -11,7 +11,8 @@
 namespace fettle::app {
 namespace {
 
-constexpr int kPicks = 12;  // places of the picture looked at for what is seen, each way
+constexpr int kPicks =
+    12;  // positions of the picture, in each direction, at which the visible part is sampled
 
 bool same(const render::Shown& a, const render::Shown& b) {
   return a.versions == b.versions && a.original == b.original && a.marks == b.marks &&
@@ -72,7 +73,7 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
         refinement_.vertices(input.vertex_budget, shown_.versions.size(), Refinement::Clock::now());
   const auto start = std::chrono::steady_clock::now();
   const auto target = window_.pictureTarget();
-  if (!target) return false;  // present() says why
+  if (!target) return false;  // present() reports the reason
   const auto figures = live_->draw(input, **target);
   if (!figures) {
     if (window_.usable()) status = figures.error().line();

@@ -18,7 +18,7 @@
 
 namespace fettle::app {
 
-/// What drawing took so far.
+/// Statistics of drawing.
 struct DrawFigures {
   double last_ms = 0.0;  ///< of the main thread
   haptic::TimingHistogram times;
@@ -27,9 +27,9 @@ struct DrawFigures {
 };
 
 /// The picture of the field in the window: what it shows, whether and how finely the next frame draws it, and
-/// what lies under a place of it. It goes with a graphics device that is lost and is made again.
+/// what is under a position of it. It is lost with a graphics device and created again.
 ///
-/// Places are pixels of the window's frame. Threading: main.
+/// Positions are pixels of the window's frame. Threading: main.
 class WindowPicture {
  public:
   /// Text of the decorations over that of a picture [render::layOut], at scale 1 of the display: 13 pixels, a
@@ -38,34 +38,35 @@ class WindowPicture {
 
   explicit WindowPicture(render::Window& window) : window_(window) {}
 
-  /// Makes it with the window's device; whatever was shown is uploaded again. Errors: LivePicture::create.
+  /// Creates it with the window's device; its content is uploaded again. Errors: LivePicture::create.
   [[nodiscard]] engine::Status make();
   void lose() { live_.reset(); }
   [[nodiscard]] bool made() const noexcept { return live_ != nullptr; }
-  /// Another field follows: nothing is shown.
+  /// Another field follows: shows nothing.
   void clear();
 
   void requestRedraw() noexcept { needs_redraw_ = true; }
   void skipRedraw() noexcept { needs_redraw_ = false; }
-  /// Something is to be drawn without waiting.
+  /// Whether something must be drawn without waiting.
   [[nodiscard]] bool active() const noexcept {
     return needs_redraw_ || motion_.sharpPending() || figures_.upload.pending_tiles > 0;
   }
   [[nodiscard]] bool refining() const noexcept { return refinement_.pending(); }
 
-  /// The view is as large as the place it is drawn to.
+  /// Sets the view's size to that of the picture's area.
   void fit(render::View& view);
-  /// From now on shows this. Errors: LivePicture::update; it shows what it showed.
+  /// Shows this from now on. Errors: LivePicture::update; the content stays as it was.
   [[nodiscard]] engine::Status show(render::Shown shown);
-  /// How sharp a frame of this view is, drawn now; `held`: by a hand that may go on.
+  /// The resolution of a frame of this view, drawn now; `held`: by a button, so that the movement may
+  /// continue.
   [[nodiscard]] render::Sharpness sharpness(const render::View& view, bool held);
   enum class Draws : std::uint8_t { kCoarse, kRefined };
-  /// Whether a frame is due; if so, it is to be drawn now.
+  /// Whether a frame is due; if so, it must be drawn now.
   [[nodiscard]] bool takeDue(Draws draws);
-  /// Draws the next frame, with the vertices that are due when it is refined. Whether it was drawn; `status`:
-  /// why not, where the window does not say so itself.
+  /// Draws the next frame, with the vertices that are due when it is refined. Returns whether it was drawn;
+  /// `status`: the reason if not, unless the window reports it.
   [[nodiscard]] bool draw(render::FrameInput input, Draws draws, std::string& status);
-  /// Works out the ranges of colours again.
+  /// Computes the ranges of colours again.
   void refreshRanges();
 
   [[nodiscard]] const render::Shown& shown() const noexcept { return shown_; }
@@ -76,22 +77,22 @@ class WindowPicture {
   [[nodiscard]] double mmPerPixel() const noexcept {
     return figures_.pixels_per_mm > 0.0 ? 1.0 / figures_.pixels_per_mm : 0.0;
   }
-  /// The view came nearer by a factor, without a frame yet: the next move starts from there.
+  /// The view was zoomed by a factor without a frame yet: the next move starts from there.
   void zoomed(double factor) noexcept { figures_.pixels_per_mm *= factor; }
 
-  /// Whether the picture is there and panels are not.
+  /// Whether the position is in the picture and not on a panel.
   [[nodiscard]] bool inside(double x, double y) const;
-  /// The surface there; nothing while the device is lost.
+  /// The surface at that position; nothing while the device is lost.
   [[nodiscard]] std::optional<render::Picked> pick(double x, double y) const;
   /// The same; where there is no surface, the plane at half the height of `field` [mm].
   [[nodiscard]] std::optional<glm::dvec2> fieldAt(const glm::dvec2& pixel, const engine::Version& field,
                                                   const render::View& view) const;
-  /// The part of the field that work should begin with, since it is seen.
+  /// The visible part of the field, with which processing should begin.
   [[nodiscard]] std::vector<engine::TileRange> seenPart(const engine::Grid& grid,
                                                         const render::View& view) const;
-  /// Where the first plot is, in the window's frame.
+  /// Position of the first plot in the window's frame.
   [[nodiscard]] render::Rectangle plot(const render::View& view, const Display& display) const;
-  /// Whether two versions share it, with a line between them.
+  /// Whether two versions share one plot, with a line between them.
   [[nodiscard]] bool hasSplitLine(const Display& display) const;
 
  private:

@@ -10,7 +10,7 @@
 namespace fettle::app {
 namespace {
 
-// Enough digits to keep two states apart, few enough that rounding does not make two of one.
+// Enough digits to distinguish states, few enough to ignore rounding.
 double rounded(double value) {
   return std::round(value * 1e6) / 1e6;
 }
@@ -130,7 +130,7 @@ void addDevice(const Parts& p, Report& r) {
   r["rate_hz"] = touch.rate();
   r["stroke"] = p.stylus.held() || p.marking.held();
   r["touching"] = drawn.contact;
-  // The cells that the cursor points at and that the stylus was drawn over: the same when it has followed.
+  // The cells under the cursor and under the drawn stylus: equal when the stylus has followed.
   const engine::Grid& grid = touch.field().grid();
   const auto cell = [&](double x_mm, double y_mm) {
     return Report{std::lround(std::floor(x_mm / grid.spacingXMm())),
@@ -141,7 +141,7 @@ void addDevice(const Parts& p, Report& r) {
   r["stylus_at"] = cell(drawn.endpoint_mm.x, drawn.endpoint_mm.y);
 }
 
-// The picture shows the field as the scene asks for it, and nothing works on it.
+// The picture shows the field as requested by the scene, and no work is running on it.
 bool fieldIsSettled(const Parts& p) {
   const LoopClient& touch = *p.document.touch();
   const haptic::MouseStylus* const mouse = p.document.touch()->mouse();
@@ -154,9 +154,9 @@ bool fieldIsSettled(const Parts& p) {
          (touch.field().reader().sign() < 0.0F) == touch.scene().invert;
 }
 
-// Nothing that a hand did is still to be seen.
+// All effects of the input are visible.
 bool isSettled(const Parts& p, const Input& input) {
-  // A dialog has a frame drawn each time, and is in its place after some of them.
+  // A dialog needs some frames until it is in its final position.
   constexpr int kInPlace = 4;
   const Questions& questions = p.feedback.questions;
   const bool moves =
@@ -183,8 +183,8 @@ Report windowState(const Parts& parts, const Input& input, const RunFigures& run
     addDevice(parts, r);
   }
   const bool settled = isSettled(parts, input);
-  // How near each panel comes to the field, and what keeps it from coming nearer: of a picture at rest alone,
-  // since it differs from frame to frame.
+  // How close each panel is to the field, and what limits it: only of a picture at rest, since it differs
+  // from frame to frame.
   Report bounds = Report::array(), limits = Report::array();
   for (const render::PanelDetail& panel : parts.picture.figures().panels) {
     if (!settled) break;
@@ -199,7 +199,7 @@ Report windowState(const Parts& parts, const Input& input, const RunFigures& run
 
 void logState(EventLog& log, const Parts& parts, const Input& input, const RunFigures& run) {
   if (!log.listens()) return;
-  // What is written changes, or moves, without any of the state: a menu opens, a header closes, a line above
+  // The texts change, or move, without a change of the state: a menu opens, a header closes, a line above
   // grows. Figures change all the time.
   const std::vector<render::PanelText> written = parts.window.texts();
   std::size_t words = written.size();

@@ -9,23 +9,23 @@
 
 namespace fettle::app {
 
-/// What the window's report says besides its parts.
+/// Figures of the window's report in addition to its parts.
 struct RunFigures {
   std::uint64_t frames = 0;  ///< shown
   int device_losses = 0;
 };
 
-/// Something moves or is to be drawn: the next frame comes at once.
+/// Whether something moves or must be drawn: the next frame follows immediately.
 [[nodiscard]] bool isActive(const Parts& parts, const Input& input);
 
-/// The state of the window as a person sees it, for scripts and tests that drive it by keys and mouse and have
-/// to know when what they did is on the screen. Keys are stable. Lengths are pixels of the frame, "cursor" and
+/// The visible state of the window, for scripts and tests that drive it by keys and mouse and must know when
+/// the result of their input is on the screen. Keys are stable. Lengths are pixels of the frame, "cursor" and
 /// "picture" from its upper left corner.
 [[nodiscard]] Report windowState(const Parts& parts, const Input& input, const RunFigures& run);
 /// Writes it to the log when it has changed, with the texts on the screen. After each frame.
 void logState(EventLog& log, const Parts& parts, const Input& input, const RunFigures& run);
 
-/// What `fettle view` reports at its end.
+/// The report of `fettle view` at its end.
 [[nodiscard]] Report runReport(const Parts& parts, const RunFigures& run);
 
 }  // namespace fettle::app

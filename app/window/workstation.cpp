@@ -18,16 +18,16 @@ namespace fettle::app {
 namespace {
 
 constexpr double kIdle_s = 0.1;                                 // between two frames while nothing happens
-constexpr double kBusy_s = 0.03;                                // ... while only figures move
+constexpr double kBusy_s = 0.03;                                // ... while only figures change
 constexpr std::uint64_t kSaveSettingsEvery = 120;               // frames
-constexpr auto kWithoutPicture = std::chrono::milliseconds(5);  // between two looks at touch
+constexpr auto kWithoutPicture = std::chrono::milliseconds(5);  // between two polls of the loop
 
 std::string settingsPath(const char* file) {
   const std::string folder = settingsFolder();
   return folder.empty() ? std::string() : folder + file;
 }
 
-// A worker is busy with something whose progress is shown.
+// Whether a worker runs whose progress is shown.
 bool working(const Parts& p) {
   return p.marking.busy() || p.costs.busy() || p.opening.busy() || p.saving.busy(p.document) ||
          p.filters.computing() || p.filters.applying() || (p.document.isOpen() && p.picture.refining());
@@ -76,12 +76,12 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
     if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
   }
   Report report = runReport(parts_, figures());
-  // Who quits has saved what was to be saved. Else nobody was asked: unsaved work is there when the scan is
-  // opened again.
+  // A user who quits has saved what was to be saved. Otherwise there was no question: unsaved work is
+  // restored when the scan is opened again.
   const bool kept = parts_.quit != Quit::kDone && parts_.document.unsaved();
   parts_.closeDocument(kept ? SessionKeeper::Afterwards::kKeep : SessionKeeper::Afterwards::kDiscard);
   if (kept)
-    warn(fmt::format("{}: what was not saved is kept; open the scan again to go on with it",
+    warn(fmt::format("{}: unsaved work is stored; open the scan again to continue it",
                      parts_.document.path()));
   return report;
 }
@@ -98,10 +98,10 @@ void Workstation::runFrame() {
   takeResults();
   releaseHandsWhenAsked();
   if (!parts_.picture.made() || window_->displayLost()) {
-    // Nothing to draw with: touch and workers go on.
+    // No graphics device: loop and workers continue.
     renewPicture();
   } else if (window_->minimised()) {
-    // Nothing to draw, everything else goes on.
+    // Nothing to draw, everything else continues.
     logState(events_, parts_, input_, figures());
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   } else {
@@ -109,8 +109,8 @@ void Workstation::runFrame() {
   }
 }
 
-// Also called again and again while the device draws: the cursor goes on to the loop, and what the loop
-// reports is taken off its ring.
+// Also called repeatedly while the device draws: passes the cursor to the loop, and takes the loop's reports
+// off its ring.
 void Workstation::whileWaiting() {
   window_->poll(0.0);
   for (const render::InputEvent& event : window_->takeInput()) input_.add(event, parts_);
@@ -128,7 +128,7 @@ void Workstation::handleInput() {
   }
 }
 
-// Hands have nothing else to do until a dialog is answered.
+// Releases what is held by the mouse when a dialog appears.
 void Workstation::releaseHandsWhenAsked() {
   if (!parts_.feedback.questions.takeAsked()) return;
   parts_.releaseHands();
@@ -200,7 +200,7 @@ void Workstation::noteShown(const render::PresentReport& report, std::optional<s
   logState(events_, p, input_, figures());
 }
 
-// What a person chose is written when it has changed, at most once in some seconds.
+// Writes changed settings, at most once in some seconds.
 void Workstation::saveSettings() {
   if (parts_.quit == Quit::kNo && frames_ % kSaveSettingsEvery != 0) return;
   if (parts_.settings == saved_settings_) return;
@@ -221,7 +221,7 @@ void Workstation::carryOut(Answer answer) {
   Question& question = answer.question;
   const bool confirmed = answer.choice == Choice::kConfirm;
   if (answer.choice == Choice::kBack) {
-    // Back to the dialog that the path was typed into.
+    // Back to the dialog in which the path was typed.
     if (question.kind == Kind::kReplace && question.typed)
       p.feedback.questions.ask({.kind = question.from,
                                 .path = std::move(question.path),
@@ -264,7 +264,7 @@ void Workstation::askToOpen(const std::string& path) {
     open(path);
 }
 
-// With what waited for an answer, or for saving.
+// Continues with what waited for an answer, or for saving.
 void Workstation::resumeAfterSave(const Afterwards& afterwards) {
   if (afterwards.what == Afterwards::What::kQuit) parts_.quit = Quit::kDone;
   if (afterwards.what == Afterwards::What::kOpen) open(afterwards.path);
@@ -319,11 +319,11 @@ void Workstation::startDocument(Document document) {
   LoopClient& touch = *p.document.touch();
   const engine::Grid& grid = document.original.grid();
   const bool looked_at = p.opening.coarse() != nullptr;
-  p.dropCoarse();  // its picture stays until there is one of the whole
+  p.dropCoarse();  // the coarse picture stays until the scan is read
   p.opening.noteTouched();
   p.saving.begin(grid.samples());
   p.change.begin(document.original);
-  // Who has turned the coarse picture goes on from there.
+  // A view that was changed in the coarse picture is kept.
   const auto camera = document.notes.find("camera");
   if (!looked_at) p.view = camera != document.notes.end() ? viewOf(camera->second) : startView();
   p.picture.clear();
@@ -333,7 +333,7 @@ void Workstation::startDocument(Document document) {
   if (options_.scene) noteWithoutForce(touch, p.feedback.notices);
   if (document.recovered)
     p.feedback.notices.push_back(
-        {fmt::format("{} steps that were not saved are here again", touch.history().number()), ""});
+        {fmt::format("{} unsaved steps were restored", touch.history().number()), ""});
   p.feedback.status =
       fmt::format("{}: {} x {} samples, {:.4g} x {:.4g} {}", p.document.fileName(), grid.width, grid.height,
                   grid.spacing_x, grid.spacing_y, grid.lateral_unit.name);
@@ -342,20 +342,20 @@ void Workstation::startDocument(Document document) {
 
 void Workstation::setRate(double hz) {
   LoopClient& touch = *parts_.document.touch();
-  // What was computed belongs to the loop that ends (LoopClient::setRate).
+  // Previews in progress belong to the loop that ends (LoopClient::setRate).
   parts_.filters.cancel(touch);
   const engine::Status set = touch.setRate(hz);
   options_.touch.rate_hz = touch.rate();
-  // Without a loop there is nothing to work with; what was done is kept as at every end.
+  // Without a loop no work is possible; the work is stored as at every end.
   if (touch.finished())
     end_ = set;
   else if (!set)
-    parts_.feedback.message(set.error().line(), "the loop runs on as before");
+    parts_.feedback.message(set.error().line(), "the loop continues as before");
   parts_.picture.requestRedraw();
 }
 
-// A graphics device that is lost - its driver restarted, it hung, it was unplugged, its memory ran out - takes
-// the picture with it and nothing else: field, history, marks and camera live with the document.
+// A lost graphics device - its driver restarted, it hung, it was unplugged, its memory ran out - loses only
+// the picture: field, history, marks and camera belong to the document.
 void Workstation::losePicture(const engine::Error& why) {
   parts_.picture.lose();
   parts_.drag.stop();
@@ -390,9 +390,9 @@ void Workstation::renewPicture() {
   std::vector<Notice>& notices = parts_.feedback.notices;
   std::erase_if(notices, [](const Notice& n) { return n.what.starts_with("the graphics device was lost"); });
   notices.push_back({before == window_->device()
-                         ? std::string("the graphics device was lost and has come back")
-                         : fmt::format("the graphics device was lost; {} draws now", window_->device()),
-                     "the field, its marks and its steps were not touched"});
+                         ? std::string("the graphics device was lost and works again")
+                         : fmt::format("the graphics device was lost; {} is used now", window_->device()),
+                     "the field, its marks and its steps are unchanged"});
 }
 
 }  // namespace fettle::app

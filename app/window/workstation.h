@@ -21,15 +21,15 @@ struct ViewOptions {
   LoopClientOptions touch;
   ScanOptions reading;
   render::WindowOptions window;
-  double seconds = 0.0;       ///< ends after so long; 0 = not by itself
-  bool sharp_motion = false;  ///< whatever the settings say, no Sharpness::kHalf while the view moves
-  std::string events;         ///< where to report what happens (EventLog); empty: nowhere
+  double seconds = 0.0;       ///< ends after this time; 0 = no limit
+  bool sharp_motion = false;  ///< never Sharpness::kHalf while the view moves, regardless of the settings
+  std::string events;         ///< where to write the events (EventLog); empty: nowhere
 };
 
-/// `fettle view`: one window, one field, one loop. It owns the parts (parts.h) and runs the frames on the main
-/// thread: take input, take in results of loop and workers, lay the panels out, draw what changed, show it.
-/// While the device draws a frame the cursor goes on to the loop, so that strokes are as smooth on a slow
-/// device as on a fast one.
+/// `fettle view`: one window, one field, one loop. It owns the parts (parts.h) and runs the frames on the
+/// main thread: process input, take results of loop and workers, lay out the panels, draw what changed,
+/// present. While the device draws a frame the cursor is passed to the loop, so that strokes are as smooth on
+/// a slow device as on a fast one.
 ///
 ///   Window -> Input -> actions -> document, touch, picture, ...
 ///   loop, workers -> results -> notices, dialogs -> answers -> open, save, quit
@@ -42,7 +42,7 @@ class Workstation {
   Workstation(const Workstation&) = delete;
   Workstation& operator=(const Workstation&) = delete;
 
-  /// Until the user quits, the time is up or the job is cancelled. The report: runReport.
+  /// Until the user quits, the time is over or the job is cancelled. The report: runReport.
   [[nodiscard]] engine::Result<Report> run(engine::JobControl& job);
 
  private:
@@ -79,7 +79,7 @@ class Workstation {
   Input input_;
   DeviceRenewal renewal_;
   EventLog events_;
-  Settings saved_settings_;  // as the file has them
+  Settings saved_settings_;  // as in the file
   std::uint64_t frames_ = 0;
   engine::Status end_;
 };

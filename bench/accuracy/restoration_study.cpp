@@ -179,7 +179,7 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
     job.advance();
     return {};
   };
-  if (auto ok = judge("scan as it came", "nothing", scan.scan, 0.0, 0.0); !ok)
+  if (auto ok = judge("unfiltered scan", "nothing", scan.scan, 0.0, 0.0); !ok)
     return tl::unexpected(ok.error());
   for (const Start& start : *starts)
     for (const FilterSetting& setting : kFilterSettings) {

@@ -150,11 +150,11 @@ TEST(RestorationStudy, FiltersThatKeepEdgesBeatThoseThatDoNotAndEffortPaysForThe
   const auto study = restorationStudy(options, job);
   ASSERT_TRUE(study) << study.error().line();
   for (const AccuracyRow& row : study->rows) EXPECT_EQ(row.more.size(), study->columns.size()) << row.method;
-  const double nothing = rowOf(*study, "scan as it came", "nothing").error;
+  const double nothing = rowOf(*study, "unfiltered scan", "nothing").error;
   for (const char* keeps : {"bilateral 5", "tv 17"}) {
     const AccuracyRow& row = rowOf(*study, "alone", keeps);
     EXPECT_LT(row.error, 0.7 * nothing) << keeps;
-    EXPECT_LT(row.more[0], 0.5 * rowOf(*study, "scan as it came", "nothing").more[0]) << keeps;
+    EXPECT_LT(row.more[0], 0.5 * rowOf(*study, "unfiltered scan", "nothing").more[0]) << keeps;
   }
   EXPECT_GT(rowOf(*study, "alone", "box 5, 2 passes").error, nothing);
   ASSERT_EQ(study->views.size(), 1U);

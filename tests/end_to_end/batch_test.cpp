@@ -104,12 +104,12 @@ TEST_F(Batch, RefusesBeforeAnythingIsReadWhatWouldEndInOneFile) {
   std::filesystem::copy(folder.file("a.tif"), folder.path() / "other" / "a.tif");
   const Outcome same = fettle({"filter", folder.file("a.tif"), (folder.path() / "other" / "a.tif").string(),
                                "--out-dir", out(), "--filter", "box"});
-  expectRefused(same, "would be written to one file");
+  expectRefused(same, "would be written to the same file");
   // b.asc and b.tif are two names until both become b.tif.
   std::filesystem::copy(folder.file("a.tif"), folder.file("b.tif"));
   expectRefused(
       fettle({"convert", folder.file("b.asc"), folder.file("b.tif"), "--out-dir", out(), "--to", "tif"}),
-      "would be written to one file");
+      "would be written to the same file");
   expectRefused(
       fettle({"filter", folder.file("a.tif"), "--out-dir", folder.path().string(), "--filter", "box"}),
       "replace an input");
@@ -189,7 +189,7 @@ TEST_F(Batch, CtrlCLeavesWholeFilesAlone) {
               out(), "--filter", "median", "--window", "31", "--passes", "300"},
              options);
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.err.find("cancelled after 1 of 3 scans, what was written is whole"), std::string::npos)
+  EXPECT_NE(outcome.err.find("cancelled after 1 of 3 scans, the written files are complete"), std::string::npos)
       << outcome.err;
   EXPECT_EQ(written(), Names{"a.tif"});
   EXPECT_EQ(fettle({"info", first}).status, 0);

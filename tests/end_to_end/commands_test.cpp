@@ -160,7 +160,7 @@ TEST_F(Commands, SuggestedFilterTypedAsToldLeavesWhatWasTolerated) {
   // For people, the same in words; and what cannot be had is said.
   const Outcome told = fettle({"filter", file("s.tif"), "--suggest", "--tolerance", "1um"});
   EXPECT_EQ(told.status, 0) << told.err;
-  EXPECT_NE(told.out.find("Nothing tried stays within 0.001 mm"), std::string::npos) << told.out;
+  EXPECT_NE(told.out.find("No tested filter stays within 0.001 mm"), std::string::npos) << told.out;
   expectRefused(fettle({"filter", file("s.tif"), "--suggest"}), "--tolerance");
   expectRefused(fettle({"filter", file("s.tif"), file("o.tif"), "--filter", "box", "--tolerance", "1"}),
                 "--suggest");

@@ -133,12 +133,12 @@ TEST_F(Original, ThatCannotBeOneIsRefused) {
   ASSERT_EQ(fettle({"convert", scan, file("work.fettle")}).status, 0);
   expectRefused(ask(file("work.fettle"), scan), "a session has its own original");
   expectRefused(fettle({"filter", scan, file("out.tif"), "--filter", "box", "--original", scan}),
-                "nothing limits them");
+                "there is no limit");
   expectRefused(ask(scan, file("out.tif")), "would replace an input");
   writeStrokes();
   expectRefused(
       fettle({"replay", scan, file("strokes.csv"), file("out.tif"), "--original", file("small.tif")}),
-      "nothing limits them");
+      "there is no limit");
 }
 
 TEST_F(Original, OnAnotherGridIsRefusedWithWhatDiffers) {

@@ -164,10 +164,10 @@ TEST(Usage, HelpIsHelpWithOutputFlagsAndKnowsTheCommandsOfACommand) {
 
 TEST(Usage, AnOptionBeforeItsCommandIsSentBehindIt) {
   const Outcome told = fettle({"--compress", "lzw", "convert", "a.tif", "b.tif"});
-  expectRefused(told, "--compress stands before the command that takes it");
-  EXPECT_NE(told.err.find("put it behind: fettle convert --compress"), std::string::npos) << told.err;
-  expectRefused(fettle({"bench", "-q", "haptic"}), "put it behind: fettle bench haptic -q");
-  EXPECT_NE(fettle({"bench", "--json", "haptic"}).err.find("put it behind: fettle bench haptic --json"),
+  expectRefused(told, "--compress is before the command that takes it");
+  EXPECT_NE(told.err.find("put it after: fettle convert --compress"), std::string::npos) << told.err;
+  expectRefused(fettle({"bench", "-q", "haptic"}), "put it after: fettle bench haptic -q");
+  EXPECT_NE(fettle({"bench", "--json", "haptic"}).err.find("put it after: fettle bench haptic --json"),
             std::string::npos);
 }
 

@@ -77,7 +77,7 @@ std::string tableOf(const bench::Study& study) {
   return out + "</table>\n";
 }
 
-// Which number is which method, for reading the plot without the table.
+// The numbers of the methods, for reading the plot without the table.
 std::string legendOf(const bench::Study& study) {
   std::string out;
   int next = 1;

@@ -27,7 +27,7 @@ struct Axis {
     high = std::max(high, value);
   }
   [[nodiscard]] bool logarithmic() const { return high > 3.0 * low; }
-  // Where zero is drawn.
+  // Position of zero.
   [[nodiscard]] double floor() const { return high > 0.0 ? std::max(low, 1e-12 * high) / 4.0 : 1e-3; }
 };
 
@@ -36,7 +36,7 @@ struct Point {
   int method;
 };
 
-// The points that no other is both faster and nearer the truth than, from fast to sure.
+// The Pareto front: points for which no other is both faster and more exact, from the fastest on.
 std::vector<Point> frontOf(std::vector<Point> points) {
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
     return a.cost != b.cost ? a.cost < b.cost : a.error < b.error;
@@ -51,7 +51,7 @@ std::string scriptOf(const bench::Study& study) {
   Axis cost, error;
   for (const bench::AccuracyRow& row : study.rows) {
     cost.take(row.cost);
-    // Rounding is no error worth a decade of the plot.
+    // Rounding errors would take decades of the plot.
     if (row.error > 1e-9) error.take(row.error);
   }
   std::string script = kPlotHead;

@@ -38,7 +38,7 @@ std::vector<Page> pages(const DemoRun& run, const DemoOptions& options) {
     Page& p = add("2_marks.png");
     p.shown.versions = {run.touched};
     p.shown.marks = render::MarksOverlay::kShow;
-    p.input.titles = {"After the strokes: edges marked, the land beside them smoothed"};
+    p.input.titles = {"After the strokes: edges marked, the surface next to them smoothed"};
     p.input.view.elevation_deg = 60.0;
   }
   {

@@ -15,11 +15,11 @@ namespace fettle::app {
 
 namespace {
 
-// The scene is written first and read back, so that what the folder holds is what was done.
+// The scene is written first and read back, so that the folder contains the scene that was used.
 //
-// The contact is certified: in noise the paper's local search rests in minima far from the tip, and marks
-// would have gaps. The marks must cover every sample that some pass can reach over an edge, and the hand's
-// tremor beside it; smoothing stays the paper's one sample.
+// The contact is certified: in noise the paper's local search stops at minima far from the tip, and marks
+// would have gaps. The marks must cover every sample that some pass can reach across an edge, and the tremor
+// of the hand next to it; smoothing uses the one sample of the paper.
 std::string sceneText(const DemoOptions& options) {
   std::int32_t reach = 0;
   for (const engine::FilterKind kind : engine::plainFilters())
@@ -91,8 +91,8 @@ engine::Result<DemoRun> runDemo(const DemoOptions& options, engine::JobControl& 
     run.results.push_back({std::move(name), std::move(title), field, *figures});
     return {};
   };
-  if (auto s = judge("noisy", "scan as it came", run.scan.scan); !s) return tl::unexpected(s.error());
-  if (auto s = judge("touched", "after the strokes alone", run.touched); !s) return tl::unexpected(s.error());
+  if (auto s = judge("noisy", "unfiltered scan", run.scan.scan); !s) return tl::unexpected(s.error());
+  if (auto s = judge("touched", "after the strokes only", run.touched); !s) return tl::unexpected(s.error());
   for (const engine::FilterKind kind : engine::plainFilters()) {
     const std::string filter(engine::name(kind));
     const struct {

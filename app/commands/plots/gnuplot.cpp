@@ -15,7 +15,7 @@
 namespace fettle::app {
 namespace {
 
-// A file of its own that is gone with it.
+// A temporary file that is removed with this object.
 class ScratchFile {
  public:
   ScratchFile() {
@@ -41,7 +41,7 @@ class ScratchFile {
   std::string path_;
 };
 
-// All that gnuplot prints, errors included.
+// The output of gnuplot, errors included.
 engine::Result<std::string> gnuplot(const std::string& arguments) {
   std::FILE* pipe = popen(("gnuplot " + arguments + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return engine::failure("gnuplot cannot be started", "plots", "free memory");
@@ -52,7 +52,7 @@ engine::Result<std::string> gnuplot(const std::string& arguments) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
     return engine::failure("gnuplot is missing", "plots", "install gnuplot-nox");
   if (status != 0)
-    return engine::failure("gnuplot refuses: " + said.substr(0, 200), "plots", "please report this");
+    return engine::failure("gnuplot fails: " + said.substr(0, 200), "plots", "please report this");
   return said;
 }
 

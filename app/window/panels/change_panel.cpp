@@ -10,8 +10,8 @@
 namespace fettle::app {
 namespace {
 
-// How often each change occurs; bars grow with the logarithm of the count, for one sample in a million
-// counts.
+// Frequency of each change; bars grow with the logarithm of the count, so that one sample in a million is
+// visible.
 void drawHistogram(const engine::ChangeHistogram& histogram, const std::string& unit) {
   constexpr int kClasses = engine::ChangeHistogram::kClasses;
   const float height = 5.0F * ImGui::GetTextLineHeight();
@@ -32,7 +32,7 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const std::string& 
     const auto share =
         static_cast<float>(std::log1p(static_cast<double>(n)) / std::log1p(static_cast<double>(most)));
     const float x = corner.x + static_cast<float>(i) * bar;
-    // Blue for lower, red for higher: as the colours of the change on the surface.
+    // Blue for lower, red for higher: the colours of the change on the surface.
     const ImU32 colour = i < kClasses / 2 ? IM_COL32(105, 155, 225, 255) : IM_COL32(225, 115, 100, 255);
     list.AddRectFilled(ImVec2(x, corner.y + height * (1.0F - share)),
                        ImVec2(x + std::max(bar - 1.0F, 1.0F), corner.y + height), colour);
@@ -67,7 +67,7 @@ void changePanel(const PanelContext& context, const ChangeFigures& change) {
   const engine::ChangeHistogram& h = live->histogram;
   figure("largest", fmt::format("{:.4g} {}", live->max_abs, unit));
   figure("rms", fmt::format("{:.4g} {}", live->rms, unit));
-  // Exact figures of the whole field follow when the hand rests.
+  // Exact figures of the whole field follow after the stroke.
   const engine::Deviation* const exact = change.exact(context.touch.upright());
   figure("99 % within", exact != nullptr ? fmt::format("{:.4g} {}", exact->p99, unit) : std::string("..."));
   figure("Sq before, now", fmt::format("{:.4g}, {:.4g} {}", live->sq_original, live->sq, unit));

@@ -1,4 +1,4 @@
-// Where accuracy is chosen, with what each choice costs and gives away on this very scan.
+// Choice of accuracy, with the cost and the error of each choice on this scan.
 #include <algorithm>
 #include <string_view>
 
@@ -14,11 +14,12 @@ namespace {
 
 struct Entry {
   const char* name;
-  std::string off;  // by how much; empty: not measured
+  std::string off;  // its error; empty: not measured
   std::string cost;
 };
 
-// A list to choose from, figures next to the names. The entry chosen, or -1. `opened`: the list is open.
+// A list to choose from, figures next to the names. Returns the chosen entry, or -1. `opened`: the list is
+// open.
 int chooser(const char* id, const std::string& now, const std::vector<Entry>& entries, const char* off_title,
             const char* cost_title, bool& opened) {
   int chosen = -1;
@@ -28,7 +29,7 @@ int chooser(const char* id, const std::string& now, const std::vector<Entry>& en
   for (const Entry& entry : entries)
     if (widest.size() < std::string_view(entry.name).size()) widest = entry.name;
   if (ImGui::BeginTable("##choices", 3, ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_RowBg)) {
-    // As wide as figures will need once they are measured.
+    // As wide as the figures will need once they are measured.
     const auto column = [](const char* title, const std::string& text) {
       ImGui::TableSetupColumn(title, ImGuiTableColumnFlags_WidthFixed,
                               ImGui::CalcTextSize(text.c_str()).x + ImGui::GetFontSize());
@@ -53,7 +54,7 @@ int chooser(const char* id, const std::string& now, const std::vector<Entry>& en
   return chosen;
 }
 
-// Below a chooser: the figures of what is chosen, or how far measuring is.
+// Below a chooser: the figures of the choice, or the progress of measuring.
 template <class Run>
 bool measuringLine(const Run& run, const char* cancel_id) {
   if (!run.busy()) return false;
@@ -73,7 +74,7 @@ std::string duration(double ns) {
   return ns < 999.5 ? fmt::format("{:.0f} ns", ns) : fmt::format("{:.3g} us", 1e-3 * ns);
 }
 
-// Of what may be rounding alone.
+// Lengths that may be only rounding.
 std::string length(double mm) {
   if (mm < 1e-7) return "0 um";
   return mm < 0.0995 ? fmt::format("{:.2g} um", 1e3 * mm) : fmt::format("{:.3g} mm", mm);
@@ -120,13 +121,14 @@ void contactChooser(const PanelContext& context, ChoiceCosts& costs) {
     entry.cost = duration(m.ns);
     if (chosen)
       what = fmt::format(
-          "the point felt is off by {} on average, {} at worst, {:.2g} % of them not the nearest; {} a tick",
+          "error of the contact point {} on average, {} at worst, {:.2g} % of them not the nearest; {} per "
+          "tick",
           length(m.mean_mm), length(m.worst_mm), 100.0 * m.wrong, duration(m.ns));
   }
   bool opened = false;
   int chosen = -1;
   (void)field("contact", [&] {
-    chosen = chooser("##contact", now, entries, "off by", "a tick", opened);
+    chosen = chooser("##contact", now, entries, "error", "per tick", opened);
     return false;
   });
   if (opened && measured.empty() && !costs.contactRun().busy()) costs.measureContact(touch.field());
@@ -159,14 +161,14 @@ void detailChooser(const PanelContext& context, Display& display, WindowPicture&
     entry.cost = fmt::format("{:.3g} ms", m.ms);
     if (chosen)
       what = fmt::format(
-          "surface within {:.2g} px, colours {:.2g} of 255 off on average, {:.2g} % of pixels by more than "
-          "16; {:.3g} ms a whole frame. Once nothing moves it is drawn as finely as within 1 px",
+          "surface within {:.2g} px, colour error {:.2g} of 255 on average, {:.2g} % of pixels by more than "
+          "16; {:.3g} ms per whole frame. When nothing moves it is drawn within 1 px",
           m.bound_px, m.mean_codes, 100.0 * m.far_off, m.ms);
   }
   bool opened = false;
   int chosen = -1;
   (void)field("detail", [&] {
-    chosen = chooser("##detail", now, entries, "off by", "a frame", opened);
+    chosen = chooser("##detail", now, entries, "error", "per frame", opened);
     return false;
   });
   if (opened && measured.empty() && !costs.detailRun().busy() && view.width > 0)

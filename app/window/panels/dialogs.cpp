@@ -17,7 +17,7 @@ using Choice = Answer::Choice;
 using Kind = Question::Kind;
 using render::Key;
 
-// A button that a key presses as well.
+// A button with a key.
 bool button(const char* name, Questions& questions, Key key) {
   return ImGui::Button(name) || questions.take(key);
 }
@@ -26,7 +26,7 @@ bool isPathKind(Kind kind) {
   return kind == Kind::kOpen || kind == Kind::kSaveAs || kind == Kind::kExport;
 }
 
-// What lies where the path points to so far.
+// The files in the folder of the path typed so far.
 void fileList(std::string& path, float scale) {
   std::error_code error;
   const fs::path typed(path);
@@ -54,19 +54,19 @@ void fileList(std::string& path, float scale) {
 void formatHelp(const Question& question, bool& embeds) {
   ImGui::PushTextWrapPos(0.0F);
   ImGui::TextDisabled(
-      "%s",
-      question.kind == Kind::kSaveAs
-          ? "NAME.fettle keeps everything, each step as it is made. Other formats, by extension "
-            ".tif .asc .xyz .ply .stl .x3p .exr .png, keep the field, with its marks beside it as "
-            "NAME_marks.png"
-          : "format by extension: .tif .asc .xyz .ply .stl .x3p .exr .png .fettle; marks go beside it as "
-            "NAME_marks.png");
+      "%s", question.kind == Kind::kSaveAs
+                ? "NAME.fettle keeps everything, each step as it is made. Other formats, by extension "
+                  ".tif .asc .xyz .ply .stl .x3p .exr .png, store the field, with its marks next to it as "
+                  "NAME_marks.png"
+                : "format by extension: .tif .asc .xyz .ply .stl .x3p .exr .png .fettle; marks are written "
+                  "next to it as "
+                  "NAME_marks.png");
   ImGui::PopTextWrapPos();
   if (question.kind == Kind::kSaveAs && isSessionPath(question.path))
-    ImGui::Checkbox("put the scan itself into the session", &embeds);
+    ImGui::Checkbox("store the scan in the session", &embeds);
   std::error_code error;
   if (fs::exists(question.path, error))
-    ImGui::TextColored(ImVec4(1.0F, 0.7F, 0.2F, 1.0F), "there is such a file already");
+    ImGui::TextColored(ImVec4(1.0F, 0.7F, 0.2F, 1.0F), "this file exists already");
 }
 
 std::optional<Choice> pathDialog(Question& question, Parts& parts) {
@@ -97,7 +97,7 @@ std::optional<Choice> unsavedDialog(Question& question, Questions& questions, co
     ImGui::Checkbox("Do not ask again (N)", &question.stop_asking);
     if (questions.take(render::letter('N'))) question.stop_asking = !question.stop_asking;
     ImGui::TextDisabled(
-        "Unsaved work is then kept at the end, and offered when the scan is opened again.\n"
+        "Unsaved work is then stored at the end, and offered when the scan is opened again.\n"
         "The File menu and the Display panel turn the question on again.");
   }
   if (stays) return Choice::kBack;
@@ -107,12 +107,12 @@ std::optional<Choice> unsavedDialog(Question& question, Questions& questions, co
 
 std::optional<Choice> recoverDialog(const Question& question, Questions& questions) {
   ImGui::Text("Work on %s was not saved when the program ended.", fs::path(question.path).filename().c_str());
-  const bool takes = button("Go on with it (Enter)", questions, Key::kEnter);
+  const bool takes = button("Continue it (Enter)", questions, Key::kEnter);
   ImGui::SameLine();
   const bool leaves = button("Start from the scan (S)", questions, render::letter('S'));
   ImGui::SameLine();
   const bool stays = button("Go back (Esc)", questions, Key::kEscape);
-  ImGui::TextDisabled("Starting from the scan, the first new step takes the place of that work.");
+  ImGui::TextDisabled("Starting from the scan, the first new step replaces that work.");
   if (stays) return Choice::kBack;
   if (takes) return Choice::kConfirm;
   return leaves ? std::optional(Choice::kOther) : std::nullopt;

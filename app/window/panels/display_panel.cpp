@@ -13,14 +13,14 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   actionTick("contour lines", display.contours, Action::kContours, context.act);
   actionTick("scale bar and colour bar", display.decorations, Action::kDecorations, context.act);
   actionTick("light background", display.theme == render::Theme::kLight, Action::kTheme, context.act);
-  ImGui::Checkbox("half as sharp while it moves", &display.half_in_motion);
+  ImGui::Checkbox("half resolution while it moves", &display.half_in_motion);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
-        "While the view moves, every second pixel is drawn each way, so that it follows the hand.");
+        "While the view moves, every second pixel is drawn in each direction, for a higher frame rate.");
   ImGui::Checkbox("ask before quitting", &settings.ask_before_quitting);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
-        "With unsaved work. Without the question it is kept as well, and offered when the scan is "
+        "With unsaved work. Without the question it is stored as well, and offered when the scan is "
         "opened again.");
   beginFields();
   detailChooser(context, display, picture, view, costs);

@@ -11,7 +11,7 @@
 namespace fettle::app {
 namespace {
 
-// Late ticks by how late: octaves from a microsecond to four milliseconds, bars by the logarithm of the
+// Histogram of late ticks: octaves from a microsecond to four milliseconds, bars by the logarithm of the
 // count.
 void drawLateness(const haptic::TimingHistogram& lateness) {
   constexpr int kOctaves = 12;
@@ -61,14 +61,14 @@ void deviceFigures(const PanelContext& context) {
   const haptic::LoopState state = context.touch.state();
   const haptic::DeviceProfile& profile = context.touch.device().profile();
   figure("device", profile.name + (profile.gives_force ? "" : ", no force"));
-  // A mouse is no device to plug in or to fear.
+  // A mouse cannot be unplugged and gives no force.
   const bool mouse = context.touch.mouse() != nullptr;
   figure("link",
          mouse ? (state.link == haptic::LinkState::kConnected ? "on the surface" : "no tool on the surface")
          : state.link == haptic::LinkState::kConnected    ? "connected"
          : state.link == haptic::LinkState::kUncalibrated ? "not calibrated"
                                                           : "not plugged in");
-  figure("safety", mouse ? "no force to guard" : std::string(haptic::name(state.safety)));
+  figure("safety", mouse ? "no force to limit" : std::string(haptic::name(state.safety)));
   ImGui::BeginDisabled(mouse);
   actionButton("Arm", Action::kArm, context.act);
   besideOrBelow("Disarm");
@@ -86,8 +86,8 @@ void loopFigures(LoopClient& touch, const std::vector<float>& forces) {
                      ImVec2(ImGui::GetContentRegionAvail().x, 4.0F * ImGui::GetTextLineHeight()));
   const haptic::TimingFigures compute = touch.timing().compute.figures();
   const haptic::TimingFigures late = touch.timing().lateness.figures();
-  figure("ticks", fmt::format("{:.0f} of {:.0f} a second", touch.measuredRate(), touch.rate()));
-  figure("a tick takes",
+  figure("ticks", fmt::format("{:.0f} of {:.0f} per second", touch.measuredRate(), touch.rate()));
+  figure("tick takes",
          fmt::format("{:.1f} us, p99 {:.1f}", microseconds(compute.p50_ns), microseconds(compute.p99_ns)));
   figure("ticks late by",
          fmt::format("{:.0f} us, p99 {:.0f}", microseconds(late.p50_ns), microseconds(late.p99_ns)));
@@ -104,8 +104,8 @@ std::optional<double> rateField(double now_hz) {
   return chosen;
 }
 
-// A number of the scene. A slip of the finger makes it a thousand times as stiff: what is too much is refused
-// with words, and the number there was stays. True when it was taken.
+// A number of the scene. A typing error can make it a thousand times as stiff: a value that is too large is
+// refused with a message, and the previous value stays. True when it was accepted.
 bool sceneNumber(const PanelContext& context, const char* name, const char* id, double haptic::Scene::*number,
                  const char* format) {
   haptic::Scene scene = context.touch.scene();
@@ -126,14 +126,14 @@ void effectTicks(const PanelContext& context) {
     bool on = listed != scene.effects.end();
     std::string name(haptic::effectName(kind));
     std::replace(name.begin(), name.end(), '_', ' ');
-    // In two columns, in one where the panels are narrow.
+    // In two columns, or in one where the panels are narrow.
     const float half = 0.5F * ImGui::GetWindowWidth();
     if (i % 2 != 0 && half > 8.0F * ImGui::GetFontSize()) ImGui::SameLine(half);
     if (!ImGui::Checkbox(name.c_str(), &on)) continue;
     if (!on)
       scene.effects.erase(listed);
     else if (kind == haptic::EffectKind::kSpring)
-      scene.effects.insert(scene.effects.begin(), kind);  // before those that stand on it
+      scene.effects.insert(scene.effects.begin(), kind);  // before those that depend on it
     else
       scene.effects.push_back(kind);
     applyScene(context.touch, scene, context.notices);
@@ -155,7 +155,7 @@ std::optional<double> hapticsPanel(const PanelContext& context, const StylusOver
   (void)sceneNumber(context, "force limit", "##limit", &haptic::Scene::force_limit_n, "%.3g N");
   endFields();
   if (const auto largest = touch.largestStiffness())
-    figure("it holds", fmt::format("{:.4g} N/mm at most", *largest));
+    figure("it can hold", fmt::format("{:.4g} N/mm at most", *largest));
   effectTicks(context);
   ImGui::PushTextWrapPos(0.0F);
   for (const std::string& missing : touch.realTime().missing)

@@ -11,20 +11,20 @@ namespace {
 constexpr float kSide = 320.0F;  // of the side panel, at scale 1 [pixels]
 constexpr float kNarrowest = 160.0F;
 
-// The side panel with the menus above and the status bar below, both `bar` high; what is left of the width.
+// The side panel with the menus above and the status bar below, both `bar` high; returns the remaining width.
 float sideOf(Parts& parts, const Act& act, float bar, std::optional<double>& rate_hz) {
   const auto scale = static_cast<float>(parts.window.scale());
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   if (!parts.settings.side_panel || !parts.document.isOpen()) return size.x;
   float& set = parts.settings.side_width;
   if (set <= 0.0F) set = kSide;
-  // A small window narrows the panels for as long as it is small.
+  // A small window narrows the panels only as long as it is small.
   const float side =
       std::clamp(set * scale, kNarrowest * scale, std::max(0.6F * size.x, (kNarrowest + 1.0F) * scale));
   ImGui::SetNextWindowPos(ImVec2(size.x - side, bar));
   ImGui::SetNextWindowSize(ImVec2(side, size.y - 2.0F * bar));
   ImGui::SetNextWindowSizeConstraints(ImVec2(kNarrowest * scale, 0.0F), size);
-  // ImGui rounds sizes, and has its own ideas about a window of no size: only a hand sets the width.
+  // ImGui rounds sizes, and changes those of a window without size: only the user sets the width.
   float drawn = side;
   rate_hz = sidePanel(parts, act, drawn);
   if (std::abs(drawn - side) > 1.5F && ImGui::IsMouseDown(ImGuiMouseButton_Left)) set = drawn / scale;

@@ -6,12 +6,12 @@
 #include "app/window/panels/widgets.h"
 #include "app/window/parts.h"
 
-/// The panels of the window, laid out once a frame between Window::beginFrame() and present(): each function
-/// is in the file of its name, shows the parts that it is given and changes them as the user does. What is an
-/// action goes through `act`, so that keys, menus and buttons do the same.
+/// The panels of the window, laid out once per frame between Window::beginFrame() and present(): each
+/// function is in the file of its name, shows the given parts and changes them as the user does. Actions go
+/// through `act`, so that keys, menus and buttons do the same.
 namespace fettle::app {
 
-/// What every panel about the document needs.
+/// Data for every panel about the document.
 struct PanelContext {
   LoopClient& touch;
   std::vector<Notice>& notices;
@@ -27,46 +27,46 @@ void changePanel(const PanelContext& context, const ChangeFigures& change);
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,
                   ChoiceCosts& costs);
 void statusPanel(const PanelContext& context, const WindowPicture& picture, const OpeningTimes& times);
-/// The rate of the loop that was asked for [Hz], if one was.
+/// The requested rate of the loop [Hz], if any.
 [[nodiscard]] std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
                                                  ChoiceCosts& costs);
 
-/// Where accuracy is chosen, with what each choice costs and gives away on this very scan.
+/// Choice of accuracy, with the cost and the error of each choice on this scan.
 void contactChooser(const PanelContext& context, ChoiceCosts& costs);
 void detailChooser(const PanelContext& context, Display& display, WindowPicture& picture,
                    const render::View& view, ChoiceCosts& costs);
 
-/// All of the above in one window at the right, notices on top; the rate that was asked for. Returns in `width`
-/// how wide it is [pixels]: what it was given, or what the user drew it to.
+/// All of the above in one window at the right, notices on top; returns the requested rate. `width` is set to
+/// its width [pixels]: the given one, or the one that the user dragged it to.
 [[nodiscard]] std::optional<double> sidePanel(Parts& parts, const Act& act, float& width);
-/// The recent file that was chosen, if one was.
+/// The chosen recent file, if any.
 [[nodiscard]] std::optional<std::string> menuBar(Parts& parts, const Act& act);
 void statusBar(Parts& parts);
-/// In the middle of `width` pixels, where there is no picture yet: why.
+/// Text in the middle of `width` pixels while there is no picture: the reason.
 void placeholder(Parts& parts, float width);
-/// Over the picture: the grip of the split line, the lasso.
+/// Over the picture: the handle of the split line, the lasso.
 void pictureOverlay(const Parts& parts);
 
-/// What the user answered to a dialog, with the question as it was then.
+/// The answer of the user to a dialog, with the question at that time.
 struct Answer {
   enum class Choice : std::uint8_t {
-    kConfirm,  ///< open, write, save, go on with unsaved work, replace
+    kConfirm,  ///< open, write, save, continue with unsaved work, replace
     kOther,    ///< discard the work, start from the scan
-    kBack,     ///< nothing is to be done
+    kBack,     ///< no change
   };
   Choice choice = Choice::kBack;
   Question question;
 };
-/// The dialog that is asked for, if one is; what was answered with this frame.
+/// Lays out the current dialog, if any; returns the answer given in this frame.
 [[nodiscard]] std::optional<Answer> dialog(Parts& parts);
 
-/// What the panels of a frame ask of the owner of the parts.
+/// Requests of the panels of a frame to the owner of the parts.
 struct PanelRequests {
   std::optional<std::string> open;  ///< a recent file
   std::optional<double> rate_hz;
   std::optional<Answer> answer;
 };
-/// All of it, around the place of the picture and over it.
+/// All of it, around the picture and over it.
 [[nodiscard]] PanelRequests layOutPanels(Parts& parts);
 
 }  // namespace fettle::app

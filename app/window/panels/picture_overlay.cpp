@@ -16,7 +16,7 @@ void drawLasso(const Lasso& lasso, float scale) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   std::vector<ImVec2> line;
   for (const glm::dvec2& p : lasso.line()) line.push_back(at(p));
-  // Dark under light: seen on every ground.
+  // Dark under light: visible on every background.
   for (const auto& [colour, width] :
        {std::pair{IM_COL32(0, 0, 0, 160), 4.0F}, {IM_COL32(255, 170, 40, 255), 2.0F}}) {
     if (line.size() > 1)

@@ -7,7 +7,7 @@
 namespace fettle::app {
 namespace {
 
-// A part of the panels that can be folded away, and is found as it was left.
+// A section of the panels that can be collapsed; its state is stored in the settings.
 bool section(Settings& settings, const char* name, bool open_at_first) {
   const auto known = settings.panels.find(name);
   ImGui::SetNextItemOpen(known != settings.panels.end() ? known->second : open_at_first, ImGuiCond_Once);

@@ -11,7 +11,7 @@ void text(const std::string& what) {
   ImGui::TextUnformatted(what.c_str());
 }
 
-// Whether it is to be cancelled.
+// Returns whether the user cancelled.
 bool progressBar(double progress, float width, const char* what) {
   ImGui::ProgressBar(static_cast<float>(progress), ImVec2(width, 0.0F), what);
   ImGui::SameLine();
@@ -26,7 +26,7 @@ std::string brushText(const BrushAdjustment& brush, LoopClient& touch) {
                      brush.typed().empty() ? "" : "[" + brush.typed() + "]");
 }
 
-// What lies open, how it is kept, and where the cursor is.
+// The open document, how it is stored, and the cursor's position.
 std::string documentText(const Parts& parts) {
   std::string line = parts.feedback.status;
   if (!parts.document.isOpen()) return line;

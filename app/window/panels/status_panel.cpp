@@ -9,7 +9,8 @@
 namespace fettle::app {
 namespace {
 
-// Why the surface at rest is not drawn within the screen error asked for; of the panel that is farthest off.
+// Why the surface at rest is not drawn within the requested screen error; of the panel with the largest
+// error.
 std::string limitOf(const std::vector<render::PanelDetail>& panels, bool more_comes) {
   const auto worst = std::max_element(panels.begin(), panels.end(),
                                       [](const auto& a, const auto& b) { return a.bound_px < b.bound_px; });

@@ -13,7 +13,7 @@ namespace {
 using haptic::Tool;
 
 void toolButtons(const PanelContext& context, const Stylus& stylus, const Lasso& lasso) {
-  // As many buttons in a line as there is room for.
+  // As many buttons per line as fit.
   bool first = true;
   const auto button = [&](const char* name, Action action, bool on) {
     if (!first) besideOrBelow(name);

@@ -102,7 +102,7 @@ TEST_F(HapticsTest, the_panel_shows_the_device_arms_it_and_sets_its_rate) {
   program->until("force", givesForce);
   for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)hand.click(header);
   (void)hand.click("Haptics");
-  for (const char* text : {"simulated hand", "connected", "force, 0 to", "a second", "0.5 ms"})
+  for (const char* text : {"simulated hand", "connected", "force, 0 to", "per second", "0.5 ms"})
     EXPECT_TRUE(hand.reads(text)) << text;
   // The force as a grey line, late ticks as yellow bars.
   EXPECT_GT(inPanels(hand, "force", 156, 156, 156), 60);
@@ -121,7 +121,7 @@ TEST_F(HapticsTest, the_panel_shows_the_device_arms_it_and_sets_its_rate) {
   staysWithoutForce(*program);
   hand.tap("Arm");
   program->until("force", givesForce);
-  EXPECT_TRUE(hand.reads("of 3000 a second"));
+  EXPECT_TRUE(hand.reads("of 3000 per second"));
   // And who is armed is so again: the loop begins without force.
   hand.tap("3 kHz");
   program->until("rates",

@@ -37,7 +37,7 @@ class LossTest : public WindowTest {
     std::filesystem::rename(beside, orders_path);
   }
   static State lost(ViewProgram& program, int times) {
-    return program.until("the device was lost and has come back",
+    return program.until("the device was lost and works again",
                          [&](const State& s) { return s["device_losses"] == times && s["settled"] == true; });
   }
 
@@ -105,7 +105,7 @@ TEST_F(LossTest, a_device_that_stays_away_ends_the_program_with_the_work_kept) {
   EXPECT_EQ(program->wait(), 1);
   EXPECT_EQ(program->err().rfind("{\"error\":\"", 0), 0U) << program->err();
   EXPECT_EQ(std::count(program->err().begin(), program->err().end(), '\n'), 1) << program->err();
-  EXPECT_NE(program->err().find("what was not saved is kept"), std::string::npos) << program->err();
+  EXPECT_NE(program->err().find("unsaved work is stored"), std::string::npos) << program->err();
 
   // With the device back the work is where it was left.
   order("");

@@ -128,7 +128,7 @@ TEST_F(OverwriteTest, a_file_that_is_there_is_replaced_after_a_question_alone) {
   (void)hand.press("Return");
   const State told = program->until(
       "a message", [](const State& s) { return s["dialog"] == "message" && s["settled"] == true; });
-  EXPECT_NE(told["message"].get<std::string>().find("everything is kept there"), std::string::npos);
+  EXPECT_NE(told["message"].get<std::string>().find("everything is stored there"), std::string::npos);
   (void)hand.press("Return");
   program->until("no dialog", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
   (void)quit(hand);

@@ -103,7 +103,7 @@ TEST_F(QuestionTest, the_question_at_quitting_is_turned_off_and_on_again_and_no_
     EXPECT_EQ(program->now()["asks_before_quitting"], false);
     (void)hand.press("ctrl+q");
     EXPECT_EQ(program->wait(), 0) << program->err();
-    EXPECT_NE(program->report()["warnings"].dump().find("what was not saved is kept"), std::string::npos)
+    EXPECT_NE(program->report()["warnings"].dump().find("unsaved work is stored"), std::string::npos)
         << program->report();
     expectSilence(*program);
   }
@@ -132,7 +132,7 @@ TEST_F(QuestionTest, a_display_that_closes_keeps_the_work_and_ends_the_program_w
   EXPECT_EQ(program->err().rfind("{\"error\":\"the connection to the display was lost", 0), 0U)
       << program->err();
   EXPECT_EQ(std::count(program->err().begin(), program->err().end(), '\n'), 1) << program->err();
-  EXPECT_NE(program->err().find("what was not saved is kept"), std::string::npos) << program->err();
+  EXPECT_NE(program->err().find("unsaved work is stored"), std::string::npos) << program->err();
 }
 
 TEST(NoWindowTest, without_a_display_the_program_says_so) {

@@ -219,7 +219,7 @@ double distance2(glm::dvec2 p, glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
 // What is drawn of one patch, and the fine surface over it, cell by cell of the patch's level.
 class ScreenTwin {
  public:
-  ScreenTwin(const engine::Version& field, const PatchQuestion& q) : reader_(field.reader()), q_(q) {}
+  ScreenTwin(const engine::Version& field, const PatchQuery& q) : reader_(field.reader()), q_(q) {}
 
   // The largest distance from a point of either surface to the other one, over a patch, as far as one cell of
   // its level can tell: an upper bound of the true one. The fine surface's samples are enough, and the coarse
@@ -272,7 +272,7 @@ class ScreenTwin {
   }
 
   engine::FieldReader reader_;
-  const PatchQuestion& q_;
+  const PatchQuery& q_;
 };
 
 TEST(ScreenBound, HoldsForEverySampleOfFieldsMadeToDefeatIt) {
@@ -305,7 +305,7 @@ TEST(ScreenBound, HoldsForEverySampleOfFieldsMadeToDefeatIt) {
             (void)measure.measureSome(field.reader(), static_cast<std::size_t>(known));
             ASSERT_EQ(measure.unknown(), static_cast<std::size_t>(std::max(0, 4 - known)));
             const engine::HeightBounds all = field.reader().bounds();
-            PatchQuestion q;
+            PatchQuery q;
             q.measure = &measure;
             q.reader = field.reader();
             q.placing = placingOf(field.grid());
