@@ -70,7 +70,8 @@ std::string ActiveDocument::rescue() {
   const engine::Status closed = close(SessionKeeper::Afterwards::kKeep);
   if (closed && !session.empty()) return fmt::format("everything is stored in {}; ", session);
   if (closed)
-    return had_unsaved ? fmt::format("unsaved work is stored, and offered when {} is opened again; ", path_) : "";
+    return had_unsaved ? fmt::format("unsaved work is stored, and offered when {} is opened again; ", path_)
+                       : "";
 
   // The session cannot be written: save at least the field, next to the scan or in a writable folder.
   const std::string why = closed.error().line();

@@ -61,9 +61,9 @@ bool BrushAdjustment::handle(const render::InputEvent& event, LoopClient& touch,
   switch (event.kind) {
     case InputKind::kMove: {
       if (!typed_.empty()) return true;
-      const double way = event.x - from_x_;
+      const double moved_px = event.x - from_x_;
       const double change =
-          of_ == Of::kRadius ? std::round(way / kRadius_px) : way / kDepth_px * 0.1 * press_mm_;
+          of_ == Of::kRadius ? std::round(moved_px / kRadius_px) : moved_px / kDepth_px * 0.1 * press_mm_;
       set(touch, from_ + change, notices);
       return true;
     }

@@ -174,7 +174,7 @@ bool isActive(const Parts& parts, const Input& input) {
 }
 
 Report windowState(const Parts& parts, const Input& input, const RunFigures& run) {
-  static constexpr const char* kLimits[] = {"none", "under way", "memory", "vertices"};
+  static constexpr const char* kLimits[] = {"none", "loading", "memory", "vertices"};
   Report r = firstState(parts, input, run);
   if (parts.document.isOpen()) {
     addDocument(parts, r);

@@ -20,7 +20,7 @@ inline constexpr int kTileStride = (kTileRows + 7) / 8 * 8;  // whole vectors of
 struct TileExtremes {
   static constexpr int kMost = engine::kTileSide / 2;
 
-  /// Of level 1. `cells`: how many cells of level 0 the tile has, 1 .. 64 each way.
+  /// Of level 1. `cells`: how many cells of level 0 the tile has, 1 .. 64 in each direction.
   void ofSamples(const float* heights, glm::ivec2 cells);
   /// Of the next level.
   void coarsen();

@@ -154,7 +154,7 @@ void LiveFrame::makeLayers(Submissions& submissions, vk::Extent2D extent, Sharpn
   submissions.finish();
   using Usage = vk::ImageUsageFlagBits;
   const GpuImage::Kind kind = layers_ == 1 ? GpuImage::Kind::kPlane : GpuImage::Kind::kArray;
-  // Of even size, so that one pixel of half_ is two of whole_ each way, and copied as code values.
+  // Of even size, so that one pixel of half_ is two of whole_ in each direction, and copied as code values.
   const vk::Extent2D small{(extent.width + 1) / 2, (extent.height + 1) / 2};
   const auto make = [&](Layers& layers, vk::Extent2D base) {
     layers.extent = extent;

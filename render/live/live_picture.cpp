@@ -404,7 +404,7 @@ engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input
         std::max(extent.width, extent.height) > most)
       return engine::inputError(
           fmt::format("a picture of {} x {} pixels in one piece", extent.width, extent.height),
-          "picture size", fmt::format("give {} to {} pixels each way", kSmallestPicture, most));
+          "picture size", fmt::format("give {} to {} pixels per side", kSmallestPicture, most));
     if (impl_->canvas.image.extent() != extent) {
       impl_->submissions.finish();
       impl_->canvas.image = pictureImage(impl_->context, extent);

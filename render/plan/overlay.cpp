@@ -98,9 +98,9 @@ NoteLines noteLines(Pen& pen, const std::string& note, double room, int px) {
     if (space != std::string::npos) split.lines.push_back(line.substr(space + 1));
     from = to + 1;
   }
-  for (NoteLines* way : {&whole, &split}) {
-    way->px = pen.sizeFor(way->lines, room, px, kRegular);
-    if (way->px > 0) return *way;
+  for (NoteLines* candidate : {&whole, &split}) {
+    candidate->px = pen.sizeFor(candidate->lines, room, px, kRegular);
+    if (candidate->px > 0) return *candidate;
   }
   return {};
 }

@@ -27,7 +27,7 @@ engine::Status check(const PictureSpec& spec) {
   const auto in = [](double x, double low, double high) { return x >= low && x <= high; };
   if (!in(v.width, kSmallestPicture, kLargestPicture) || !in(v.height, kSmallestPicture, kLargestPicture))
     return inputError(fmt::format("a picture of {} x {} pixels", v.width, v.height), "picture size",
-                      fmt::format("give {} to {} pixels each way", kSmallestPicture, kLargestPicture));
+                      fmt::format("give {} to {} pixels per side", kSmallestPicture, kLargestPicture));
   if (!std::isfinite(v.azimuth_deg)) return inputError("the azimuth is not a number", "view", "give degrees");
   if (!(v.elevation_deg > 0.0 && v.elevation_deg <= 90.0))
     return inputError(fmt::format("an elevation of {} degrees", v.elevation_deg), "view",

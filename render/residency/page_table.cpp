@@ -28,7 +28,7 @@ PageGrid::Key PageGrid::key(int entry, const engine::FieldReader& reader) const 
   Key key{};
   const Place at = place(entry);
   if (at.level == kDataLevels) return key;
-  // A page covers 2^log2_tiles tiles each way: 1, 2 or 4 nodes of 8^up tiles.
+  // A page covers 2^log2_tiles tiles in each direction: 1, 2 or 4 nodes of 8^up tiles.
   const int log2_tiles = log2_side_ + dataShift(at.level) - engine::kTileShift;
   const int up = log2_tiles / 3, across = 1 << (log2_tiles - 3 * up);
   for (int k = 0; k < across * across; ++k) {

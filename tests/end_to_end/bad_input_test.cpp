@@ -143,8 +143,8 @@ TEST(BadInput, WhatWouldDestroyAFileIsRefusedBeforeAnyWork) {
                 "m.jpg");
   expectRefused(fettle({"synth", folder.file("o.tif"), "--edges", folder.file("e.xyz")}), "e.xyz");
   expectRefused(fettle({"render", scan, folder.file("o.jpg")}), "o.jpg");
-  for (const char* beside : {"5,5", "-0.1,0.5", "nan,0.5"})
-    expectRefused(fettle({"render", scan, folder.file("o.png"), "--centre", beside}), "--centre");
+  for (const char* outside : {"5,5", "-0.1,0.5", "nan,0.5"})
+    expectRefused(fettle({"render", scan, folder.file("o.png"), "--centre", outside}), "--centre");
   expectRefused(fettle({"convert", scan, "/dev/full"}), "/dev/full");
   for (const char* name : {"o.tif", "o.png", "o.jpg"})
     EXPECT_FALSE(std::filesystem::exists(folder.file(name))) << name;

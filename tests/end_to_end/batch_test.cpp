@@ -1,4 +1,4 @@
-// Many scans in one run: what works is done, what fails is told, nothing is left half.
+// Many scans in one run: what works is done, what fails is reported, no file is incomplete.
 
 #include <csignal>
 
@@ -149,10 +149,10 @@ TEST_F(Batch, InfoReportsEachOfSeveralScans) {
   EXPECT_EQ(report["files"][2]["format"], "AAIGrid");
   // One scan has the report without a list; options may stand before and behind the names.
   EXPECT_EQ(fettleJson({"info", "--spacing", "0.5", folder.file("b.asc"), "--bins", "3"})["spacing_x"], 0.5);
-  const Outcome told = fettle({"info", folder.file("a.tif"), folder.file("c.x3p")});
-  EXPECT_EQ(told.status, 0) << told.err;
-  EXPECT_NE(told.out.find(folder.file("c.x3p")), std::string::npos) << told.out;
-  EXPECT_TRUE(told.out.ends_with("2 read, 0 failed\n")) << told.out;
+  const Outcome printed = fettle({"info", folder.file("a.tif"), folder.file("c.x3p")});
+  EXPECT_EQ(printed.status, 0) << printed.err;
+  EXPECT_NE(printed.out.find(folder.file("c.x3p")), std::string::npos) << printed.out;
+  EXPECT_TRUE(printed.out.ends_with("2 read, 0 failed\n")) << printed.out;
   expectRefused(fettle({"info", folder.file("a.tif"), folder.file("b.asc"), "--picture", out("p.png")}),
                 "--picture");
 }
@@ -189,7 +189,8 @@ TEST_F(Batch, CtrlCLeavesWholeFilesAlone) {
               out(), "--filter", "median", "--window", "31", "--passes", "300"},
              options);
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.err.find("cancelled after 1 of 3 scans, the written files are complete"), std::string::npos)
+  EXPECT_NE(outcome.err.find("cancelled after 1 of 3 scans, the written files are complete"),
+            std::string::npos)
       << outcome.err;
   EXPECT_EQ(written(), Names{"a.tif"});
   EXPECT_EQ(fettle({"info", first}).status, 0);

@@ -79,11 +79,11 @@ TEST_F(Commands, InfoTellsNoiseSteepestCellAndHistogram) {
 
 TEST_F(Commands, InfoDrawsBarsForPeopleAndAThumbnail) {
   std::ofstream(file("bars.asc")) << "ncols 4\nnrows 1\ncellsize 1\nxllcorner 0\nyllcorner 0\n0 0 0 2\n";
-  const Outcome told = fettle({"info", file("bars.asc"), "--bins", "2", "--picture", file("thumb.png")});
-  ASSERT_EQ(told.status, 0) << told.err;
-  EXPECT_NE(told.out.find(std::string(50, '#') + "  75.000 %"), std::string::npos) << told.out;
-  EXPECT_NE(told.out.find(std::string(17, '#') + std::string(35, ' ') + "25.000 %"), std::string::npos)
-      << told.out;
+  const Outcome printed = fettle({"info", file("bars.asc"), "--bins", "2", "--picture", file("thumb.png")});
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  EXPECT_NE(printed.out.find(std::string(50, '#') + "  75.000 %"), std::string::npos) << printed.out;
+  EXPECT_NE(printed.out.find(std::string(17, '#') + std::string(35, ' ') + "25.000 %"), std::string::npos)
+      << printed.out;
   EXPECT_GT(std::filesystem::file_size(file("thumb.png")), 500U);
   expectRefused(fettle({"info", file("bars.asc"), "--picture", file("bars.asc")}), ".png");
 }
@@ -158,9 +158,9 @@ TEST_F(Commands, SuggestedFilterTypedAsToldLeavesWhatWasTolerated) {
   EXPECT_LT(left["rmse_flat"], 1.2 * 0.015);
   EXPECT_LT(left["rmse_edge"], 1.2 * 0.015);
   // For people, the same in words; and what cannot be had is said.
-  const Outcome told = fettle({"filter", file("s.tif"), "--suggest", "--tolerance", "1um"});
-  EXPECT_EQ(told.status, 0) << told.err;
-  EXPECT_NE(told.out.find("No tested filter stays within 0.001 mm"), std::string::npos) << told.out;
+  const Outcome printed = fettle({"filter", file("s.tif"), "--suggest", "--tolerance", "1um"});
+  EXPECT_EQ(printed.status, 0) << printed.err;
+  EXPECT_NE(printed.out.find("No tested filter stays within 0.001 mm"), std::string::npos) << printed.out;
   expectRefused(fettle({"filter", file("s.tif"), "--suggest"}), "--tolerance");
   expectRefused(fettle({"filter", file("s.tif"), file("o.tif"), "--filter", "box", "--tolerance", "1"}),
                 "--suggest");

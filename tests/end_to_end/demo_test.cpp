@@ -19,7 +19,7 @@ TEST(Demo, HegBeatsTheFilterAloneAtEdgesAndMatchesItOnFlats) {
       if (r["name"] == name) return r;
     return nlohmann::json();
   };
-  // The strokes smooth the land beside the edges and not a sample near them.
+  // The strokes smooth the surface next to the edges and not a sample near them.
   EXPECT_EQ(row("touched")["rmse_edge"], row("noisy")["rmse_edge"]);
   const double noisy_flat = row("noisy")["rmse_flat"];
   for (const std::string filter : {"box", "gaussian", "median"}) {

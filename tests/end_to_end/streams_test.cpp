@@ -59,9 +59,9 @@ TEST_F(Streams, PipesOfCommandsCarryDataAloneAndTheReportIsOnStderr) {
             0);
   EXPECT_EQ(fettleJson({"compare", folder.file("s.tif.tif"), folder.file("piped.tif")})["max_abs"], 0.0);
 
-  const Outcome told = fettle({"convert", folder.file("s.tif"), "-", "--to", "asc", "--json"});
-  EXPECT_TRUE(told.out.starts_with("ncols")) << told.out.substr(0, 80);
-  EXPECT_EQ(nlohmann::json::parse(told.err)["format"], "AAIGrid");
+  const Outcome printed = fettle({"convert", folder.file("s.tif"), "-", "--to", "asc", "--json"});
+  EXPECT_TRUE(printed.out.starts_with("ncols")) << printed.out.substr(0, 80);
+  EXPECT_EQ(nlohmann::json::parse(printed.err)["format"], "AAIGrid");
 
   EXPECT_EQ(fettle({"info", "-"}, from(folder.file("s.tif"))).status, 0);
   EXPECT_TRUE(fettle({"mark", folder.file("s.tif"), "-", "--edges", "-q"}).out.starts_with("\x89PNG"));
@@ -164,9 +164,9 @@ TEST_F(Streams, ArgumentsThatTakeNoneSaySo) {
         {std::vector<std::string>{"info", scan, "--picture", "-"}, "--picture"},
         {std::vector<std::string>{"filter", scan, out, "--filter", "box", "--keep", "-"}, "--keep"},
         {std::vector<std::string>{"synth", out, "--truth", "-"}, "--truth"}}) {
-    const Outcome told = fettle(arguments);
-    expectRefused(told, "takes no -");
-    EXPECT_NE(told.err.find(name), std::string::npos) << told.err;
+    const Outcome printed = fettle(arguments);
+    expectRefused(printed, "takes no -");
+    EXPECT_NE(printed.err.find(name), std::string::npos) << printed.err;
   }
 }
 

@@ -86,10 +86,10 @@ TEST(Usage, QuietRecordsWithoutAWordOfTheDevice) {
                                         "0.05"};
   std::vector<std::string> quiet = record;
   quiet.insert(quiet.begin(), "-q");
-  const Outcome told = fettle(quiet);
-  EXPECT_EQ(told.status, 0) << told.err;
-  EXPECT_EQ(told.err, "");
-  EXPECT_EQ(told.out, "");
+  const Outcome printed = fettle(quiet);
+  EXPECT_EQ(printed.status, 0) << printed.err;
+  EXPECT_EQ(printed.err, "");
+  EXPECT_EQ(printed.out, "");
   EXPECT_NE(fettle(record).err.find("fettle: "), std::string::npos);
 }
 
@@ -152,9 +152,9 @@ TEST(Usage, UnderJsonAnErrorIsOneObjectOnStderr) {
 TEST(Usage, HelpIsHelpWithOutputFlagsAndKnowsTheCommandsOfACommand) {
   const std::string info = fettle({"help", "info"}).out;
   for (const char* flag : {"-q", "--quiet", "--json"}) {
-    const Outcome told = fettle({flag, "help", "info"});
-    EXPECT_EQ(told.status, 0) << told.err;
-    EXPECT_EQ(told.out, info) << flag;
+    const Outcome printed = fettle({flag, "help", "info"});
+    EXPECT_EQ(printed.status, 0) << printed.err;
+    EXPECT_EQ(printed.out, info) << flag;
   }
   expectRefused(fettle({"help", "bench", "hapitc"}),
                 "there is no command bench hapitc, did you mean haptic?");
@@ -163,9 +163,9 @@ TEST(Usage, HelpIsHelpWithOutputFlagsAndKnowsTheCommandsOfACommand) {
 }
 
 TEST(Usage, AnOptionBeforeItsCommandIsSentBehindIt) {
-  const Outcome told = fettle({"--compress", "lzw", "convert", "a.tif", "b.tif"});
-  expectRefused(told, "--compress is before the command that takes it");
-  EXPECT_NE(told.err.find("put it after: fettle convert --compress"), std::string::npos) << told.err;
+  const Outcome printed = fettle({"--compress", "lzw", "convert", "a.tif", "b.tif"});
+  expectRefused(printed, "--compress is before the command that takes it");
+  EXPECT_NE(printed.err.find("put it after: fettle convert --compress"), std::string::npos) << printed.err;
   expectRefused(fettle({"bench", "-q", "haptic"}), "put it after: fettle bench haptic -q");
   EXPECT_NE(fettle({"bench", "--json", "haptic"}).err.find("put it after: fettle bench haptic --json"),
             std::string::npos);
@@ -176,10 +176,10 @@ TEST(Usage, AWarningIsPrintedOnce) {
   const std::string scan = scanWithoutUnit(folder);
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"info", scan}, {"convert", scan, folder.file("o.stl")}}) {
-    const Outcome told = fettle(arguments);
-    EXPECT_NE(told.err.find("fettle: warning: "), std::string::npos);
-    EXPECT_EQ(told.out.find("warning"), std::string::npos) << told.out;
-    EXPECT_EQ(told.out.find("states no unit"), std::string::npos) << told.out;
+    const Outcome printed = fettle(arguments);
+    EXPECT_NE(printed.err.find("fettle: warning: "), std::string::npos);
+    EXPECT_EQ(printed.out.find("warning"), std::string::npos) << printed.out;
+    EXPECT_EQ(printed.out.find("states no unit"), std::string::npos) << printed.out;
   }
   EXPECT_EQ(fettleJson({"info", scan})["warnings"].size(), 1U);
 }

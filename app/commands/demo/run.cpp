@@ -98,14 +98,14 @@ engine::Result<DemoRun> runDemo(const DemoOptions& options, engine::JobControl& 
     const struct {
       std::string name, title;
       const engine::Version& input;
-    } ways[] = {{filter, filter + " filter alone", run.scan.scan},
-                {"heg-" + filter, "HEG with " + filter, run.touched}};
-    for (const auto& way : ways) {
-      const auto filtered = engine::applyFilter(way.input, run.scan.scan, demoFilter(kind, options), job);
+    } methods[] = {{filter, filter + " filter alone", run.scan.scan},
+                   {"heg-" + filter, "HEG with " + filter, run.touched}};
+    for (const auto& method : methods) {
+      const auto filtered = engine::applyFilter(method.input, run.scan.scan, demoFilter(kind, options), job);
       if (!filtered) return tl::unexpected(filtered.error());
-      if (auto s = saveField(filtered->field, file(way.name + ".tif"), job); !s)
+      if (auto s = saveField(filtered->field, file(method.name + ".tif"), job); !s)
         return tl::unexpected(s.error());
-      if (auto s = judge(way.name, way.title, filtered->field); !s) return tl::unexpected(s.error());
+      if (auto s = judge(method.name, method.title, filtered->field); !s) return tl::unexpected(s.error());
     }
   }
   return run;

@@ -39,7 +39,7 @@ struct PcdHeader {
   std::uint64_t points = 0, width = 0, height = 1;
   PcdData data = PcdData::kAscii;
   std::uint64_t record = 0;   // bytes
-  std::uint64_t columns = 0;  // numbers a line
+  std::uint64_t columns = 0;  // numbers per line
   std::uint64_t body = 0;     // offset
   std::array<std::size_t, 3> axes{};
 };

@@ -44,7 +44,7 @@ std::string mainXml(const Grid& grid, char type, const std::string& checksum) {
       grid.height, checksum);
 }
 
-static_assert(std::endian::native == std::endian::little, "x3p wants its numbers little-endian");
+static_assert(std::endian::native == std::endian::little, "x3p stores numbers little-endian");
 
 // Rows from the top, as in other programs, each number as Number in metres.
 template <class Number>

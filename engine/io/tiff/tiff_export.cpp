@@ -295,18 +295,18 @@ Status writeCloudOptimised(const std::string& from, const std::string& to, TiffC
   if (compression == TiffCompression::kDeflate)
     creation.reset(CSLSetNameValue(creation.release(), "LEVEL", "6"));
   job.begin("overviews", 100);
-  struct Told {
+  struct ProgressTarget {
     JobControl& job;
     std::uint64_t percent = 0;
-  } told{job};
+  } target{job};
   const auto progress = [](double done, const char*, void* self) {
-    auto& at = *static_cast<Told*>(self);
+    auto& at = *static_cast<ProgressTarget*>(self);
     const auto percent = static_cast<std::uint64_t>(done * 100.0);
     if (percent > at.percent) at.job.advance(percent - std::exchange(at.percent, percent));
     return at.job.cancelled() ? 0 : 1;
   };
   const DatasetPtr copy(GDALCreateCopy(GDALGetDriverByName("COG"), to.c_str(), source.get(), FALSE,
-                                       creation.get(), progress, &told));
+                                       creation.get(), progress, &target));
   if (job.cancelled()) return cancelled();
   if (!copy || gdal.failed()) return cannotWrite(gdal, path);
   return {};

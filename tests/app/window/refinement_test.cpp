@@ -28,13 +28,13 @@ TEST_F(RefinementOf64k, ComesOnceThePictureHasNotChangedAsAWholeForAWhile) {
   refinement.drawn({.whole = true, .continued = false}, start);
   EXPECT_FALSE(due(249));
   EXPECT_TRUE(refinement.pending());
-  // A brush draws parts anew, and puts nothing off.
+  // A brush draws parts again, and delays nothing.
   EXPECT_EQ(frame(100, false), kChosen);
   EXPECT_TRUE(due(250));
   EXPECT_EQ(frame(250, true), Refinement::kMost);
   EXPECT_FALSE(refinement.pending());
   EXPECT_FALSE(due(10'000));
-  // And goes on in the fine picture.
+  // And continues in the fine picture.
   EXPECT_EQ(frame(300, false), Refinement::kMost);
 }
 

@@ -40,7 +40,7 @@ TEST_F(WindowTest, levels_of_contact_and_detail_are_chosen_by_what_they_cost_on_
   hand.tap("paper, to rest");
   program->until("paper", [](const State& s) { return s["contact_level"] == "paper"; });
   program->until("what it costs, and the list closed", [](const State& s) {
-    return reads(s, "point felt is off") && !reads(s, "ball, radius 2 cells");
+    return reads(s, "error of the contact point") && !reads(s, "ball, radius 2 cells");
   });
   (void)hand.look("contact chosen");
   hand.tap("paper, to rest");
@@ -57,8 +57,7 @@ TEST_F(WindowTest, levels_of_contact_and_detail_are_chosen_by_what_they_cost_on_
   hand.tap("16 k vertices");
   program->until("fewer vertices",
                  [](const State& s) { return s["vertices"] == 16384 && s["settled"] == true; });
-  program->until("what it costs",
-                 [](const State& s) { return reads(s, "of 255 off") && !reads(s, "256 k"); });
+  program->until("what it costs", [](const State& s) { return reads(s, "of 255") && !reads(s, "256 k"); });
   (void)hand.look("detail chosen");
   EXPECT_EQ(program->now()["notices"], State::array());
   program->signal(SIGTERM);

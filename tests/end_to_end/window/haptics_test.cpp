@@ -142,7 +142,7 @@ TEST_F(HapticsTest, a_stiffness_typed_that_the_hand_does_not_hold_is_refused_in_
   for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)hand.click(header);
   (void)hand.click("Haptics");
   EXPECT_EQ(program->now()["stiffness_n_per_mm"], 1.0);
-  EXPECT_TRUE(hand.reads("6 N/mm at most")) << "beside the field";
+  EXPECT_TRUE(hand.reads("6 N/mm at most")) << "next to the field";
   const State refused = hand.enter("stiffness", "99999");
   EXPECT_EQ(refused["stiffness_n_per_mm"], 1.0) << "what was there stays";
   ASSERT_EQ(refused["notices"].size(), 1U) << refused["notices"];

@@ -173,7 +173,7 @@ TEST_F(WindowTest, a_scan_is_smoothed_marked_filtered_and_saved_by_hand) {
   EXPECT_EQ(hand.key("p")["variants"], State({"Gaussian 3 x 3"}));
   const Screen split = hand.changed("Gaussian behind the split line", marked, 300);
   (void)hand.key("shift+p");
-  (void)hand.changed("Gaussian beside the field", split, 2000);
+  (void)hand.changed("Gaussian next to the field", split, 2000);
   EXPECT_EQ(hand.key("n")["filter"], "Median 3 x 3");
   EXPECT_EQ(hand.click("Beside")["variants"], State({"Gaussian 3 x 3", "Median 3 x 3"}));
   hand.at({20, 790});
@@ -236,7 +236,7 @@ TEST_F(WindowTest, a_scan_is_smoothed_marked_filtered_and_saved_by_hand) {
   // The stroke is a band: twice the brush's six samples high, and what the hand wavers.
   EXPECT_LT(stroke.last_row - stroke.first_row, 24);
 
-  // What the window saved is what the filter makes of what was smoothed and marked, to the bit.
+  // What the window saved is what the filter makes of the smoothed and marked field, bit-identical.
   auto kept = engine::importMarks(smoothed_field, folder.file("filtered_marks.png"));
   ASSERT_TRUE(kept) << kept.error().line();
   engine::FilterSpec median;

@@ -225,7 +225,7 @@ TEST(BadInput, ATiffWhoseTagValuesAreCutIsRefused) {
   writeBytes(folder.file("t.tif"), tiffWithText(42113, std::string("2.0", 4)));
   FETTLE_LOAD(inside, folder.file("t.tif"));
   EXPECT_EQ(summarize(inside.field).no_data, 1);
-  // A type that no specification knows: its size cannot be told, readers skip it.
+  // A type that no specification knows: its size is not known, readers skip it.
   std::string unknown = tiffWithText(65000, std::string("2.0000000", 10));
   unknown.replace(10 + 9 * 12 + 2, 2, number(99, 2));
   writeBytes(folder.file("t.tif"), unknown);

@@ -169,15 +169,15 @@ void checkHoles(const Row& row, const Written& how) {
   const Version field = fieldOf(asked);
   const Trip trip = roundTrip(field, how);
   ASSERT_TRUE(trip.whole);
-  const bool beside = row.holes == "cells next to one";
-  if (row.holes == "left out" || beside) {
+  const bool neighbours = row.holes == "cells next to one";
+  if (row.holes == "left out" || neighbours) {
     EXPECT_TRUE(warned(trip.warnings, "left out")) << "nothing says that holes are left out";
   } else if (row.holes != "yes") {
     ADD_FAILURE() << "this test does not know what holes '" << row.holes << "' are";
   }
   for (std::int32_t r = 0; r < kHeight; ++r)
     for (std::int32_t c = 0; c < kWidth; ++c) {
-      const bool hole = std::isnan(field.reader().heightAt(c, r)) || (beside && !hasSurface(field, c, r));
+      const bool hole = std::isnan(field.reader().heightAt(c, r)) || (neighbours && !hasSurface(field, c, r));
       ASSERT_EQ(std::isnan(trip.back.field.reader().heightAt(c, r)), hole) << c << ", " << r;
     }
 }

@@ -38,11 +38,12 @@ TEST(UnitDoubt, HeightsAThousandTimesTooLargeForTheirSpacingName) {
   grid.lateral_unit = {"m", 1000.0};
   grid.height_unit = {"m", 1000.0};
   EXPECT_TRUE(doubts(rough(grid, 0.5)).empty());
-  const auto told = doubts(rough(grid, 500.0));
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_TRUE(told[0].starts_with("heights in mm where m is stated or assumed, or a spacing that is not in m?"))
-      << told[0];
-  EXPECT_TRUE(told[0].ends_with("give --z-scale 0.001 or --spacing")) << told[0];
+  const auto warnings = doubts(rough(grid, 500.0));
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(
+      warnings[0].starts_with("heights in mm where m is stated or assumed, or a spacing that is not in m?"))
+      << warnings[0];
+  EXPECT_TRUE(warnings[0].ends_with("give --z-scale 0.001 or --spacing")) << warnings[0];
   // Doing so ends it; so does a spacing, which says that both were thought of.
   ImportOptions scaled;
   scaled.z_scale = 0.001;
@@ -64,14 +65,14 @@ TEST(UnitDoubt, AFewNeighboursProveNothing) {
 TEST(UnitDoubt, NoUnitFitsHeightsThatAreCounts) {
   Grid grid;
   grid.height_unit = {"nm", 1e-6};
-  const auto told = doubts(rough(grid, 1e9));
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_TRUE(told[0].starts_with("heights that are no lengths in nm?")) << told[0];
+  const auto warnings = doubts(rough(grid, 1e9));
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(warnings[0].starts_with("heights that are no lengths in nm?")) << warnings[0];
 }
 
 // What no warning about coordinates in degrees may propose.
-void expectNoScale(const std::vector<std::string>& told) {
-  for (const std::string& truthError : told) {
+void expectNoScale(const std::vector<std::string>& warnings) {
+  for (const std::string& truthError : warnings) {
     EXPECT_EQ(truthError.find("--z-scale"), std::string::npos) << truthError;
     EXPECT_EQ(truthError.find(" nm"), std::string::npos) << truthError;
   }
@@ -79,18 +80,19 @@ void expectNoScale(const std::vector<std::string>& told) {
 
 TEST(UnitDoubt, DegreesAreNamedAndNeverGivenAScale) {
   // A digital elevation model in degrees and metres that does not say so, as an ASCII grid without .prj:
-  // three arc seconds in the Alps, and beside the corner of the globe's net.
+  // three arc seconds in the Alps, and next to the corner of the globe's grid.
   for (const auto& [x, y] : {std::pair{7.0, 46.0}, {0.0, 0.0}}) {
     Grid grid;
     grid.spacing_x = grid.spacing_y = 1.0 / 1200.0;
     grid.origin_x = x;
     grid.origin_y = y;
     for (const char* name : {"f.asc", "f.tif"}) {
-      const auto told = doubts(rough(grid, 60.0), {}, name);
-      ASSERT_EQ(told.size(), 1U) << name;
-      EXPECT_TRUE(told[0].starts_with("coordinates in degrees where mm is stated or assumed?")) << told[0];
-      EXPECT_NE(told[0].find("0.000833 apart"), std::string::npos) << told[0];
-      expectNoScale(told);
+      const auto warnings = doubts(rough(grid, 60.0), {}, name);
+      ASSERT_EQ(warnings.size(), 1U) << name;
+      EXPECT_TRUE(warnings[0].starts_with("coordinates in degrees where mm is stated or assumed?"))
+          << warnings[0];
+      EXPECT_NE(warnings[0].find("0.000833 apart"), std::string::npos) << warnings[0];
+      expectNoScale(warnings);
     }
   }
   // Degrees that the file says, with heights that cannot be metres.
@@ -109,13 +111,13 @@ TEST(UnitDoubt, DegreesAreNamedAndNeverGivenAScale) {
   // A field of metres that is said to be in degrees.
   Grid far = scan.field.grid();
   far.spacing_x = far.spacing_y = 30.0;
-  const auto told = doubts(rough(far, 60.0));
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_TRUE(told[0].starts_with("coordinates that are no degrees?")) << told[0];
+  const auto warnings = doubts(rough(far, 60.0));
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(warnings[0].starts_with("coordinates that are no degrees?")) << warnings[0];
 }
 
 TEST(UnitDoubt, NearTheCornerOfTheGlobesNetDegreesAreGivenNoScaleEither) {
-  // Not quite an arc second, rounded as people type it, beside (0, 0), across it and in the middle of it.
+  // Not quite an arc second, rounded as typed by users, next to (0, 0), across it and in the middle of it.
   for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.00013885, -0.00151615}, {-0.005, -0.005}})
     for (const char* name : {"f.asc", "f.tif", "f.xyz"}) {
       Grid grid;
@@ -134,20 +136,20 @@ TEST(UnitDoubt, NearTheCornerOfTheGlobesNetDegreesAreGivenNoScaleEither) {
   options.unit = lengthUnitFromName("mm");
   Grid grid;
   grid.spacing_x = grid.spacing_y = 0.01;
-  const auto told = doubts(rough(grid, 1.0), options);
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_TRUE(told[0].starts_with("heights in um where mm")) << told[0];
+  const auto warnings = doubts(rough(grid, 1.0), options);
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(warnings[0].starts_with("heights in um where mm")) << warnings[0];
 }
 
 TEST(UnitDoubt, WholeNumbersMayBeCountsOrBrightness) {
   Grid grid;
   grid.height_per_count = 1.0;  // as of any picture
-  const auto told = doubts(rough(grid, 250.0));
-  ASSERT_EQ(told.size(), 1U);
-  EXPECT_TRUE(told[0].starts_with("counts or brightness where heights in mm are stated or assumed?"))
-      << told[0];
-  EXPECT_EQ(told[0].find("in um"), std::string::npos) << told[0];
-  EXPECT_EQ(told[0].find("--z-scale 0"), std::string::npos) << told[0];
+  const auto warnings = doubts(rough(grid, 250.0));
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_TRUE(warnings[0].starts_with("counts or brightness where heights in mm are stated or assumed?"))
+      << warnings[0];
+  EXPECT_EQ(warnings[0].find("in um"), std::string::npos) << warnings[0];
+  EXPECT_EQ(warnings[0].find("--z-scale 0"), std::string::npos) << warnings[0];
   // What the file itself calls no length is not measured as one.
   grid.height_per_count = 0.0;
   grid.height_unit = {"intensity", 1.0};

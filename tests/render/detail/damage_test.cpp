@@ -50,7 +50,7 @@ class Twins {
   [[nodiscard]] LivePicture& picture() { return *picture_; }
 
   // The next frame in parts, or the first of those that pages keep coming with, then the same as a whole;
-  // equal to the last bit. How much the first drew anew.
+  // equal to the last bit. How much the first drew again.
   double shoot(FrameInput input) {
     Image parts, whole;
     input.redraw = FrameInput::Redraw::kChanged;
@@ -68,7 +68,7 @@ class Twins {
     EXPECT_EQ(second->redrawn, 1.0);
     int off = 0;
     for (std::size_t i = 0; i < parts.rgba.size(); ++i) off += parts.rgba[i] != whole.rgba[i];
-    EXPECT_EQ(off, 0) << "channels differ, drawn anew: " << first->redrawn;
+    EXPECT_EQ(off, 0) << "channels differ, drawn again: " << first->redrawn;
     for (const std::string& message : picture_->validationMessages()) ADD_FAILURE() << message;
     return drawn;
   }
@@ -199,7 +199,7 @@ TEST(Damage, PanelsBesideEachOtherAndSplitAreDrawnInPartsEachForItself) {
     ASSERT_TRUE(twins.picture().update(shown));
     FrameInput input = smallInput();
     input.arrangement = arrangement;
-    input.titles = {"as it is", "a variant"};
+    input.titles = {"unchanged", "a variant"};
     EXPECT_EQ(twins.shoot(input), 1.0);
     engine::LiveField live(start, engine::Growth::kAllowed);
     for (int i = 0; i < 6; ++i) {

@@ -35,7 +35,7 @@ double bruteForce(const engine::FieldReader& reader, const glm::dvec3& from, con
       cut(from.x, dir.x, c * sx, (c + 1) * sx);
       cut(from.y, dir.y, r * sy, (r + 1) * sy);
       if (!(enter <= leave) || enter > best) continue;
-      // A line straight down stays in its cell for good.
+      // A line straight down stays in its cell.
       leave = std::min(leave, enter + 200.0);
       const double z00 = reader.heightAt(c, r), z11 = reader.heightAt(c + 1, r + 1),
                    z10 = reader.heightAt(c + 1, r), z01 = reader.heightAt(c, r + 1);

@@ -179,7 +179,7 @@ TEST(Live, AFilterResultComesOverInSharesAndEndsAsAFreshPicture) {
     frame = shoot(picture, input);
     EXPECT_LE(frame.stats.upload.bytes, 200000 + 18000);
     EXPECT_EQ(frame.stats.upload.stalls, 0);
-    // Another edit while it is under way: of a tile still waiting, or one already there.
+    // Another edit during the upload: of a tile still waiting, or one already there.
     if (frames == 2) {
       ASSERT_TRUE(live.setHeight(5, 5, 8.0F) && live.setHeight(600, 470, 8.0F));
       ASSERT_TRUE(picture.update(live.snapshot()));

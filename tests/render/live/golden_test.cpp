@@ -17,7 +17,7 @@
 namespace fettle::render {
 namespace {
 
-// A machined part in little: a tilted plate with a boss, a groove and a dome, dropouts beside the steps,
+// A small machined part: a tilted plate with a boss, a groove and a dome, dropouts next to the steps,
 // marks on the boss's edge. Formula only, so that it is the same everywhere.
 engine::Version part(double noise_mm) {
   engine::Grid grid = gridOf(160, 120, 0.25, 0.25);

@@ -150,7 +150,7 @@ TEST(Residency, TheBoundHoldsWhilePagesAreMissingAndShrinksAsTheyCome) {
       const Shot coarse = shoot(*tight, input);
       if (coarse.stats.residency.pages_waiting == 0) break;
       EXPECT_GE(coarse.stats.residency.pages_loaded, 1);
-      // The first frame tells of the coarse copies as well, that came with update().
+      // The first frame reports the coarse copies as well, uploaded by update().
       if (frame > 0) {
         EXPECT_LE(coarse.stats.upload.bytes, 2 * 16384);
       }
@@ -180,7 +180,7 @@ TEST(Residency, AViewOfMoreThanTheBudgetComesToRestAndSaysWhatItShows) {
   EXPECT_GT(rest.stats.residency.pages_over_budget, 0);
   EXPECT_LE(rest.stats.residency.device_bytes, 450000);
   EXPECT_GT(rest.stats.bound_px, 1.0);
-  // At rest: nothing is brought any more, and the picture stays as it is.
+  // At rest: nothing is uploaded any more, and the picture does not change.
   for (int i = 0; i < 3; ++i) {
     const Shot again = shoot(*tight, input);
     EXPECT_EQ(again.stats.residency.pages_loaded, 0);

@@ -24,7 +24,7 @@ TEST(PageSlots, TheLongestUnusedPageGoesAndOneOfThisFrameNever) {
   EXPECT_FALSE(slots.take(&e[4], PageSlots::Hold::kEvictable, 4));
   EXPECT_EQ(slots.used(), 3U);
   EXPECT_EQ(slots.evicted(), 1);
-  // A released slot is the first to be taken; one held for good never goes.
+  // A released slot is the first to be taken; one held permanently is never evicted.
   slots.release(&e[3]);
   ASSERT_TRUE(slots.take(&e[4], PageSlots::Hold::kFixed, 4));
   EXPECT_EQ(slots.fixed(), 1U);

@@ -266,7 +266,7 @@ TEST(Residency, ABudgetThatHoldsNotEvenTheCoarseCopiesIsRefused) {
   const auto refused = tight->update(largeField());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().kind, engine::ErrorKind::kFailed);
-  // The picture goes on with what does fit.
+  // The picture is drawn with what fits.
   ASSERT_TRUE(tight->update(fieldOf(gridOf(64, 64, 1, 1), kLargePart)));
   EXPECT_FALSE(shoot(*tight, bareAt(1)).stats.residency.on_demand);
 }

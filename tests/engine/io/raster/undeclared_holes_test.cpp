@@ -214,10 +214,10 @@ TEST_F(LoneValues, TheOtherIsSaidWhenOneOfTwoIsTakenOut) {
 TEST_F(LoneValues, UnitsAreDoubtedWithoutThem) {
   // Said once, as a hole, and not again as a height that is too far or too steep.
   for (const float value : {-3.4028235e38F, 1e38F}) {
-    const auto told = said(with(landscape(), 2025, value));
-    EXPECT_TRUE(warned(told, "--no-data"));
-    EXPECT_FALSE(warned(told, "more than on any planet"));
-    EXPECT_FALSE(warned(told, "Half of all neighbours"));
+    const auto warnings = said(with(landscape(), 2025, value));
+    EXPECT_TRUE(warned(warnings, "--no-data"));
+    EXPECT_FALSE(warned(warnings, "more than on any planet"));
+    EXPECT_FALSE(warned(warnings, "Half of all neighbours"));
   }
 }
 
@@ -238,8 +238,8 @@ TEST_F(LoneValues, PartsWithALevelOfTheirOwnAreNotDoubted) {
     floor.push_back(row < 60 ? -150.0F : column < 100 ? 0.0F : 0.01F * static_cast<float>(column - 100));
   }
   for (const std::vector<float>& z : {block, counted, plate, floor, mask, black}) {
-    const auto told = said(z);
-    EXPECT_FALSE(warned(told, "--no-data")) << told.back();
+    const auto warnings = said(z);
+    EXPECT_FALSE(warned(warnings, "--no-data")) << warnings.back();
   }
 }
 

@@ -197,10 +197,10 @@ TEST_F(X3p, HeightsTooLargeForMetresAreDoubted) {
   EXPECT_TRUE(warned(scan->warnings, "heights in micrometres in a file whose standard says metres?"));
   ImportOptions um;
   um.unit = lengthUnitFromName("um");
-  const auto told = load(
+  const auto loaded = load(
       {{"main.xml", xml.text()}, {"bindata/data.bin", bytesOf(std::vector<double>{1, 2, 3, 4, 5, 6})}}, um);
-  ASSERT_TRUE(told);
-  EXPECT_FALSE(warned(told->warnings, "metres?"));
+  ASSERT_TRUE(loaded);
+  EXPECT_FALSE(warned(loaded->warnings, "metres?"));
 }
 
 TEST_F(X3p, WhatIsNoRasterIsRefusedByName) {

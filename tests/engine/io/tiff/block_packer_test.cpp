@@ -1,4 +1,4 @@
-// What BlockPacker makes is a zlib stream of the predictor's bytes, told here once more in plain words, and
+// What BlockPacker makes is a zlib stream of the predictor's bytes, computed here again in plain code, and
 // GDAL reads the files made of such blocks bit for bit.
 #include "engine/io/tiff/block_packer.h"
 #include "engine/formats/formats.h"

@@ -48,7 +48,7 @@ float sampleAt(const Version& field, int column, int row) {
   return static_cast<float>(field.reader().heightAt(column, row));
 }
 
-// Every sample of the picture is, to the bit and to its place, the sample of the whole that it says it is.
+// Every sample of the picture is bit-identical to the sample of the whole at its position.
 void expectPartOf(const Version& whole, const Preview& coarse) {
   const Grid& w = whole.grid();
   const Grid& c = coarse.field.grid();

@@ -387,9 +387,11 @@ TEST(Tiff, UnitsThatNobodyStatesAreWarnedAbout) {
   };
   using Lines = std::vector<std::string>;
   EXPECT_EQ(warnings(true, nullptr), Lines{"the file states no unit, mm is assumed: give it with --unit"});
-  EXPECT_EQ(warnings(true, "m"), Lines{"the file states no lateral unit, mm is assumed: give it with --unit"});
-  EXPECT_EQ(warnings(false, nullptr), Lines{"the file states no unit and no spacing, mm and 1 mm are assumed: give "
-                                            "them with --unit and --spacing"});
+  EXPECT_EQ(warnings(true, "m"),
+            Lines{"the file states no lateral unit, mm is assumed: give it with --unit"});
+  EXPECT_EQ(warnings(false, nullptr),
+            Lines{"the file states no unit and no spacing, mm and 1 mm are assumed: give "
+                  "them with --unit and --spacing"});
   ImportOptions metres;
   metres.unit = lengthUnitFromName("m");
   EXPECT_EQ(warnings(true, nullptr, metres), Lines{});
@@ -489,7 +491,7 @@ TEST(Tiff, ACloudOptimisedFileHasOverviewsAndEveryBit) {
     }
   EXPECT_NEAR(static_cast<double>(mean), sum / count, 1e-3);
   GDALClose(dataset);
-  // Nothing is left beside it.
+  // Nothing is left next to it.
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
   EXPECT_FALSE(save(field, folder.file("a.png"), options));
 }
