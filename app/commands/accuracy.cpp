@@ -29,10 +29,11 @@ constexpr struct {
   const char* id;
   engine::Result<bench::Study> (*run)(const bench::AccuracyOptions&, engine::JobControl&);
 } kStudies[] = {
-    {"contact", bench::contactStudy}, {"surface", bench::surfaceStudy},
-    {"rate", bench::rateStudy},       {"energy", bench::energyStudy},
-    {"detail", bench::detailStudy},   {"filter", bench::filterStudy},
-    {"upload", bench::uploadStudy},   {"restoration", bench::restorationStudy},
+    {"contact", bench::contactStudy},     {"surface", bench::surfaceStudy},
+    {"rate", bench::rateStudy},           {"energy", bench::energyStudy},
+    {"detail", bench::detailStudy},       {"filter", bench::filterStudy},
+    {"upload", bench::uploadStudy},       {"restoration", bench::restorationStudy},
+    {"automatic", bench::automaticStudy},
 };
 
 std::string studyNames() {

@@ -135,8 +135,8 @@ std::vector<std::string> commandsFor(const FilterArguments& options, const engin
   const std::string out = options.files.files.size() > 1 ? shellWord(options.files.files[1]) : "OUT.tif";
   const std::string reading = scanOptionsText(options.reading);
   std::vector<std::string> commands;
-  std::string filter = fmt::format("fettle filter {} {} --filter {} --window {}", in, out,
-                                   engine::name(c.spec.kind), c.spec.window);
+  std::string filter = fmt::format("fettle filter {} {} --filter {}", in, out, engine::name(c.spec.kind));
+  if (engine::filterOf(c.spec.kind).window.exists()) filter += fmt::format(" --window {}", c.spec.window);
   if (c.spec.passes > 1) filter += fmt::format(" --passes {}", c.spec.passes);
   if (engine::hasRange(c.spec.kind)) filter += fmt::format(" --range-sigma {}", c.spec.range_sigma);
   std::string keep = options.keep;
@@ -153,7 +153,8 @@ std::vector<std::string> commandsFor(const FilterArguments& options, const engin
 
 std::string methodOf(const engine::FilterCandidate& c) {
   if (c.spec.window == 1) return "the unchanged scan";
-  return fmt::format("{} {}{}{}", engine::name(c.spec.kind), c.spec.window,
+  return fmt::format("{}{}{}{}", engine::name(c.spec.kind),
+                     engine::filterOf(c.spec.kind).window.exists() ? fmt::format(" {}", c.spec.window) : "",
                      c.spec.passes > 1 ? fmt::format(", {} passes", c.spec.passes) : "",
                      c.around_edges ? " around suggested edges" : "");
 }

@@ -45,7 +45,9 @@ void filterSeen(const engine::Version& base, const engine::Version& original, co
 }  // namespace
 
 std::string filterName(const engine::FilterSpec& spec) {
-  std::string text = fmt::format("{} {} x {}", engine::filterOf(spec.kind).title, spec.window, spec.window);
+  const engine::Filter& filter = engine::filterOf(spec.kind);
+  std::string text = filter.title;
+  if (filter.window.exists()) text += fmt::format(" {} x {}", spec.window, spec.window);
   if (spec.passes > 1) text += fmt::format(", {} passes", spec.passes);
   if (spec.scope == engine::FilterScope::kOnlyMarks) text += ", only marks";
   return text;

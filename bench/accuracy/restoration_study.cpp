@@ -48,9 +48,10 @@ constexpr FilterSetting kFilterSettings[] = {
     {engine::FilterKind::kBilateral, 7, 1},
     {engine::FilterKind::kTotalVariation, 17, 1},
     {engine::FilterKind::kTotalVariation, 31, 1},
+    {engine::FilterKind::kGeneralisedVariation, engine::FilterSpec{}.window, 1},
 };
 // Marks keep a box of 9, applied twice, away from the edge itself. Edge-preserving filters need less.
-constexpr double kReach = 2 * (9 / 2);
+constexpr int kReach = 2 * (9 / 2);
 
 enum Column : std::uint8_t { kFlats, kNearEdges, kWidth, kHand };
 
@@ -131,7 +132,7 @@ Study effortView(const Study& study, const std::vector<Start>& starts) {
   for (const bool edge_preserving : {false, true})
     for (const Start& start : starts) {
       AccuracyRow row = *bestOf(study, start.name, edge_preserving);
-      row.subject = edge_preserving ? "bilateral, tv" : "box, Gaussian, median";
+      row.subject = edge_preserving ? "bilateral, tv, tgv" : "box, Gaussian, median";
       row.method = start.name;
       row.cost = row.cost_worst = start.hand_s;
       view.rows.push_back(std::move(row));
@@ -191,15 +192,16 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
       const auto filtered = engine::applyFilter(start.field, scan.scan, *spec, quiet);
       if (!filtered) return tl::unexpected(filtered.error());
       const double seconds = start.machine_s + engine::secondsSince(begin);
-      const std::string method =
-          fmt::format("{} {}{}", engine::name(setting.kind), setting.window,
-                      setting.passes > 1 ? fmt::format(", {} passes", setting.passes) : "");
+      std::string method(engine::name(setting.kind));
+      if (engine::filterOf(setting.kind).window.exists()) method += fmt::format(" {}", setting.window);
+      if (setting.passes > 1) method += fmt::format(", {} passes", setting.passes);
       if (auto ok = judge(start.name, method, filtered->field, seconds, start.hand_s); !ok)
         return tl::unexpected(ok.error());
     }
   study.reference =
       "The simulated part's truth, a formula in millimetres (fettle synth). Near edges: within 3 samples of "
-      "a true edge; flats: further than 12. Bilateral and tv take their range sigma from the scan's noise, "
+      "a true edge; flats: further than 12. Bilateral, tv and tgv take their range sigma from the scan's "
+      "noise, "
       "which their time includes. The hand is simulated (tremor and wander as measured on surgeons) and "
       "traces the part's edges once for each thing it does.";
   const auto figures = [](const AccuracyRow& row) {

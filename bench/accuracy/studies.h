@@ -57,4 +57,7 @@ struct AccuracyOptions {
 /// seconds.
 [[nodiscard]] engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::JobControl& job);
 
+/// Filters alone on several simulated parts, noises and seeds: error over all, on flats and near edges.
+[[nodiscard]] engine::Result<Study> automaticStudy(const AccuracyOptions& options, engine::JobControl& job);
+
 }  // namespace fettle::bench

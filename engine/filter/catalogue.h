@@ -56,6 +56,9 @@ struct Filter {
   FilterPass pass;
   /// How far a result of one pass depends on samples around it [samples].
   std::int32_t (*reach)(const FilterSpec& spec);
+  /// Side of the squares, on a grid that begins at the field's first sample, that the filter works in: a piece
+  /// of a field has the field's results where it begins at a multiple of it [samples].
+  std::int32_t grid;
   std::span<const FilterTrial> trials;
 };
 

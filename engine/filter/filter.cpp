@@ -89,7 +89,12 @@ Result<Filtered> compared(const Version& input, Version result) {
 Status validate(const FilterSpec& spec) {
   const Filter& filter = filterOf(spec.kind);
   const FilterParameter& window = filter.window;
-  if (spec.window < window.least || spec.window > window.most || spec.window % 2 == 0)
+  if (!window.exists() && spec.window != FilterSpec{}.window)
+    return inputError(
+        fmt::format("a {} filter has no window", filter.word), "window",
+        fmt::format("leave it out, or use {}",
+                    filterWords([](const Filter& each) { return each.window.exists(); }, " or ")));
+  if (window.exists() && (spec.window < window.least || spec.window > window.most || spec.window % 2 == 0))
     return inputError(fmt::format("a filter window of {} samples cannot be used", spec.window), "window",
                       fmt::format("give an odd number from {:g} to {:g}", window.least, window.most));
   if (!std::isfinite(spec.sigma) || spec.sigma < 0.0)

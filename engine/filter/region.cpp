@@ -33,9 +33,11 @@ Result<Version> filterRange(const Version& input, const Version& original, const
   const std::int32_t tr1 = std::min(range.row + range.rows, all.rows);
   if (tc0 >= tc1 || tr0 >= tr1) return onto;
   const std::int64_t reach = reachOf(spec);
+  const std::int64_t aligned = filterOf(spec.kind).grid;
   // A reach may be half a million samples: cut in 64 bits.
   const auto low = [&](std::int32_t tile) {
-    return static_cast<std::int32_t>(std::max<std::int64_t>(std::int64_t{tile} * kTileSide - reach, 0));
+    const std::int64_t first = std::max<std::int64_t>(std::int64_t{tile} * kTileSide - reach, 0);
+    return static_cast<std::int32_t>(first - first % aligned);
   };
   const auto high = [&](std::int32_t tile, std::int32_t side) {
     return static_cast<std::int32_t>(std::min<std::int64_t>(std::int64_t{tile} * kTileSide + reach, side));

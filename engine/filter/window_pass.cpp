@@ -53,7 +53,7 @@ class Pass {
         reader_(input.reader()),
         original_(original.reader()),
         spec_(spec),
-        radius_(filterOf(spec.kind).reach(spec)),
+        radius_(filter.squares.side > 0 ? filter.squares.halo : filterOf(spec.kind).reach(spec)),
         same_field_(&reader_.root() == &original_.root()),
         level_(level) {}
 
@@ -61,8 +61,10 @@ class Pass {
   bool run(TileRect rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
     // Blocks are mostly taken one beside the other.
     const std::int32_t to_next = rect.column1 - rect.column0;
+    const TileRect all = rect;
     shrink(rect);
     if (rect.column0 == rect.column1) return true;
+    if (filter_.squares.side > 0) rect = all;
     if (filter_.strip != nullptr && radius_ > 0) {
       if (!scratch.strip) scratch.strip = filter_.strip(radius_, level_);
       if (scratch.strip) return runStrip(rect, scratch, job, made);
@@ -291,8 +293,8 @@ Result<PassResult> passInBlocks(const WindowFilter& filter, const Version& input
                                 const FilterSpec& spec, const FilterTuning& tuning, JobControl& job) {
   const Grid& grid = input.grid();
   const FieldReader reader = input.reader();
-  const Cut cut =
-      tuning.block_side > 0 ? Cut{tuning.block_side, tuning.block_side} : suitableCut(filter, spec, grid);
+  const int side = filter.squares.side > 0 ? filter.squares.side : tuning.block_side;
+  const Cut cut = side > 0 ? Cut{side, side} : suitableCut(filter, spec, grid);
   const std::int32_t wide = cut.columns / kTileSide;
   const std::int32_t high = cut.rows / kTileSide;
   assert(wide > 0 && high > 0);

@@ -15,6 +15,13 @@ struct BlockSide {
   int least = 256, most = 1024;
 };
 
+/// Squares, on a grid that begins at the field's first sample, each of which is worked out as a whole with the
+/// samples around it. They are part of what such a filter makes, whatever the tuning.
+struct FixedSquares {
+  std::int32_t side = 0;  ///< [samples], a multiple of kTileSide; 0: there are none
+  std::int32_t halo = 0;  ///< samples around a square that its results depend on
+};
+
 /// A filter each of whose results depends on the samples within Filter::reach alone.
 struct WindowFilter {
   using Maker = std::unique_ptr<BlockFilter>(const FilterSpec& spec, CpuLevel level);
@@ -23,6 +30,7 @@ struct WindowFilter {
   BlockSide columns{}, rows{};
   /// A fast path with the same bits: of a radius, null where the processor has none.
   std::unique_ptr<BoxStrip> (*strip)(int radius, CpuLevel level) = nullptr;
+  FixedSquares squares{};
 };
 
 /// A FilterPass that cuts the field into blocks.

@@ -146,6 +146,7 @@ engine::Result<engine::Version> filterTiles(const engine::Version& input, const 
                                             const engine::FilterSpec& spec,
                                             const std::vector<TileSpot>& spots, engine::JobControl& job) {
   const std::int32_t reach = engine::reachOf(spec);
+  const std::int32_t aligned = engine::filterOf(spec.kind).grid;
   const engine::Grid& grid = input.grid();
   engine::LiveField out(input, engine::Growth::kAllowed);
   std::vector<float> heights(engine::kTileSamples);
@@ -154,8 +155,9 @@ engine::Result<engine::Version> filterTiles(const engine::Version& input, const 
     const std::int32_t tile_r = spot.row * kTileSide;
     const std::int32_t tile_columns = std::min(kTileSide, grid.width - tile_c);
     const std::int32_t tile_rows = std::min(kTileSide, grid.height - tile_r);
-    const std::int32_t c0 = std::max(tile_c - reach, 0);
-    const std::int32_t r0 = std::max(tile_r - reach, 0);
+    // Where a piece begins the filter's grid does, as in the whole field.
+    const std::int32_t c0 = std::max(tile_c - reach, 0) / aligned * aligned;
+    const std::int32_t r0 = std::max(tile_r - reach, 0) / aligned * aligned;
     const std::int32_t columns = std::min(tile_c + tile_columns + reach, grid.width) - c0;
     const std::int32_t rows = std::min(tile_r + tile_rows + reach, grid.height) - r0;
     const engine::Version part = engine::pieceOf(input, c0, r0, columns, rows);

@@ -167,5 +167,23 @@ TEST(RestorationStudy, FiltersThatKeepEdgesBeatThoseThatDoNotAndEffortPaysForThe
   EXPECT_LT(rowOf(effort, "box, Gaussian, median", "by hand: long edges").cost, by_hand.cost);
 }
 
+TEST(AutomaticStudy, GeneralisedVariationIsNearestOnEveryPart) {
+  engine::JobControl job;
+  AccuracyOptions options;
+  options.effort = 0.01;
+  const auto study = automaticStudy(options, job);
+  ASSERT_TRUE(study) << study.error().line();
+  int subjects = 0;
+  for (const AccuracyRow& row : study->rows) {
+    ASSERT_EQ(row.more.size(), study->columns.size()) << row.method;
+    EXPECT_LE(row.error, row.error_worst);
+    if (row.method == "tgv") continue;
+    const AccuracyRow& nearest = rowOf(*study, row.subject, "tgv");
+    EXPECT_LT(nearest.error, row.error) << row.subject << ", " << row.method;
+    subjects += row.method == "nothing" ? 1 : 0;
+  }
+  EXPECT_EQ(subjects, 7);
+}
+
 }  // namespace
 }  // namespace fettle::bench

@@ -16,16 +16,18 @@ void kindField(engine::FilterSpec& spec) {
     if (ImGui::Selectable(each.title, each.kind == spec.kind) && each.kind != spec.kind) {
       spec.kind = each.kind;
       spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
+      if (!each.window.exists()) spec.window = engine::FilterSpec{}.window;
     }
   ImGui::EndCombo();
 }
 
 void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid) {
-  if (field("window", [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
+  const bool window = engine::filterOf(spec.kind).window.exists();
+  if (window && field("window", [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
     spec.window = std::clamp(spec.window | 1, 1, engine::FilterSpec::kMaxWindow);
   // In millimetres across the columns; the nearest odd number of samples is taken.
   double window_mm = spec.window * grid.spacingXMm();
-  if (field("", [&] {
+  if (window && field("", [&] {
         return typeNumber("##window_mm", window_mm, grid.spacingXMm(),
                           engine::FilterSpec::kMaxWindow * grid.spacingXMm(), "%.4g mm");
       }))

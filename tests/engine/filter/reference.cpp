@@ -208,6 +208,7 @@ std::vector<double> totalVariationTwin(const PlainField& field, const FilterSpec
 
 std::string checkWindow(const PlainField& field, int column, int row, const FilterSpec& spec, float got,
                         const std::vector<double>& twin) {
+  if (spec.kind == FilterKind::kGeneralisedVariation) return "";  // of no window
   const int radius = spec.window / 2;
   const int c0 = std::max(column - radius, 0);
   const int c1 = std::min(column + radius, field.width - 1);
@@ -325,6 +326,10 @@ std::string checkPass(const PlainField& before, const PlainField& after, const F
   return complaints;
 }
 
+std::vector<int> windowsOf(FilterKind kind, std::vector<int> windows) {
+  return filterOf(kind).window.exists() ? std::move(windows) : std::vector<int>{FilterSpec{}.window};
+}
+
 Filtered filtered(const Version& input, const FilterSpec& spec) {
   JobControl job;
   Result<Filtered> result = applyFilter(input, input, spec, job);
@@ -338,7 +343,7 @@ Filtered filtered(const Version& input, const FilterSpec& spec) {
 FilterSpec makeSpec(FilterKind kind, int window, double sigma) {
   FilterSpec spec;
   spec.kind = kind;
-  spec.window = window;
+  if (filterOf(kind).window.exists()) spec.window = window;
   spec.sigma = sigma;
   if (hasRange(kind)) spec.range_sigma = 0.25;
   return spec;

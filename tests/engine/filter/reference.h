@@ -35,6 +35,17 @@ inline const std::vector<FilterKind> kEveryKind = [] {
   return kinds;
 }();
 
+/// Those of them that look at a window around each sample.
+inline const std::vector<FilterKind> kWindowed = [] {
+  std::vector<FilterKind> kinds;
+  for (const Filter& filter : filters())
+    if (filter.window.exists()) kinds.push_back(filter.kind);
+  return kinds;
+}();
+
+/// `windows` for a filter that has one, else the only value that it takes.
+[[nodiscard]] std::vector<int> windowsOf(FilterKind kind, std::vector<int> windows);
+
 /// The same bits, all NaN being one.
 [[nodiscard]] bool sameBits(float a, float b);
 [[nodiscard]] bool sameBits(const PlainField& a, const PlainField& b);
@@ -68,7 +79,8 @@ class ExactSum {
 ///            double sum over window x window products;
 ///   median   equal to the exact median, an even count rounded once;
 ///   bilateral  within 1 ulp and the stated (window + 64) * 2^-22 range sigmas of long double sums;
-///   tv       within 1 ulp and the stated window * 2^-19 range sigmas of the same steps in double.
+///   tv       within 1 ulp and the stated window * 2^-19 range sigmas of the same steps in double;
+///   tgv      anything: tgv_test.cpp compares it with its twin.
 /// Of a total variation `twin` is totalVariationTwin of the field.
 [[nodiscard]] std::string checkWindow(const PlainField& field, int column, int row, const FilterSpec& spec,
                                       float got, const std::vector<double>& twin = {});
@@ -84,7 +96,7 @@ class ExactSum {
 /// applyFilter, expecting success.
 [[nodiscard]] Filtered filtered(const Version& input, const FilterSpec& spec);
 
-/// A range sigma of 0.25 where the kind has one.
+/// A range sigma of 0.25 where the kind has one; a window where it has one.
 [[nodiscard]] FilterSpec makeSpec(FilterKind kind, int window, double sigma = 0.0);
 
 }  // namespace fettle::engine::tests

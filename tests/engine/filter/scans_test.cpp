@@ -20,7 +20,7 @@ TEST_P(Scans, AreFilteredAsNearTheReferenceAsStatedAndTheMedianExactly) {
   ASSERT_TRUE(imported) << imported.error().line();
   const PlainField plain = toPlain(imported->field);
   for (const FilterKind kind : kEveryKind)
-    for (const int window : {3, 9, 31}) {
+    for (const int window : windowsOf(kind, {3, 9, 31})) {
       SCOPED_TRACE(std::string(name(kind)) + " " + std::to_string(window));
       FilterSpec spec = makeSpec(kind, window);
       // Scans in counts: a step is a difference to be smoothed.
