@@ -365,7 +365,7 @@ constexpr const char* kRecordFooter =
 input, the device unplugged, the program delayed): the force then rises within half a second. Editing tools act
 only while there is force. Zero force is sent at every exit of the program. A scene with more stiffness or damping
 than the device can hold is refused, with the largest possible value. Keys during the session:
-  a arm   d disarm   c calibrate: the stylus is held in its home pose   f feel   s smooth   m mark   u unmark   q end
+  a arm   d disarm   c calibrate: the stylus is held in its home pose   {}   q end
 Ctrl-C ends and stores the session. A killed program leaves the recording, except for its last second, in
 a temporary file next to STROKES. Bit-identical: fettle replay SCAN STROKES OUT, with the same --scene and --marks.)";
 
@@ -391,7 +391,7 @@ void addRecord(Command root, Chosen& chosen) {
   command.option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF")
       .check(fileName());
   command.option("--tool", options->tool, "The tool at the start")
-      .check(oneOf({haptic::kToolNames.begin(), haptic::kToolNames.end()}))
+      .check(oneOf({haptic::kToolWords.begin(), haptic::kToolWords.end()}))
       .showDefault();
   command
       .option("--switch", options->tool_switch,
@@ -418,7 +418,7 @@ void addRecord(Command root, Chosen& chosen) {
   addOriginalOption(command, options->original);
   addForceOption(command, options->replacing);
   addScanOptions(command, options->reading);
-  command.footer(kRecordFooter);
+  command.footer(fmt::format(kRecordFooter, toolKeys("   ")));
 }
 
 }  // namespace fettle::app

@@ -42,8 +42,8 @@ engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job)
 
 constexpr const char* kViewFooter =
     "F1 in the window lists the keys. Without a device that gives force the mouse is the stylus: choose a "
-    "tool\n"
-    "(T feel, S smooth, M mark, U unmark), press with the left button, deeper with the wheel.";
+    "tool,\n"
+    "press with the left button, deeper with the wheel.";
 
 }  // namespace
 

@@ -168,24 +168,18 @@ class LiveSession {
       case 'c':
         device_.calibrate();
         break;
-      case 'f':
-        choose(haptic::Tool::kFeel);
-        break;
-      case 's':
-        choose(haptic::Tool::kSmooth);
-        break;
-      case 'm':
-        choose(haptic::Tool::kMark);
-        break;
-      case 'u':
-        choose(haptic::Tool::kUnmark);
-        break;
       case 'q':
         quit_ = true;
         break;
       default:
-        report("keys", "a arm, d disarm, c calibrate, f feel, s smooth, m mark, u unmark, q end");
+        pressTool(key);
     }
+  }
+
+  void pressTool(char key) {
+    for (const haptic::ToolRow& tool : haptic::kToolRows)
+      if (key == tool.key) return choose(tool.tool);
+    report("keys", fmt::format("a arm, d disarm, c calibrate, {}, q end", toolKeys(", ")));
   }
 
   void armByItself() {
@@ -240,6 +234,13 @@ class LiveSession {
 };
 
 }  // namespace
+
+std::string toolKeys(std::string_view between) {
+  std::string keys;
+  for (const haptic::ToolRow& tool : haptic::kToolRows)
+    keys += fmt::format("{}{} {}", keys.empty() ? "" : between, tool.key, tool.word);
+  return keys;
+}
 
 engine::Result<LiveOutcome> runLive(const engine::Version& start, const engine::Version& original,
                                     const haptic::Scene& scene, haptic::Device& device,

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/live/keys.h"
@@ -45,12 +46,15 @@ struct LiveOutcome {
   std::vector<SessionEvent> events;
 };
 
+/// "f feel, s smooth, ...": the keys of the tools, with a text between two of them.
+[[nodiscard]] std::string toolKeys(std::string_view between);
+
 /// A live session without a window: the loop on its thread, records to `log`, keys, status and events, until
 /// time, strokes, a key or a signal (job.cancelled()) ends it; then the force is faded out before the loop
 /// stops.
 ///
 ///   a arm   d disarm   c calibrate (stylus held in its home pose)
-///   f feel   s smooth   m mark   u unmark   q end
+///   the keys of the tools (haptic/base/tools.h)   q end
 ///
 /// Errors: those of HapticLoop::create and start, of the device, of the strokes file. Thread: main; blocks.
 [[nodiscard]] engine::Result<LiveOutcome> runLive(const engine::Version& start,

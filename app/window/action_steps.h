@@ -77,7 +77,7 @@ inline bool canRedo(const Parts& p) {
 template <Tool tool>
 void choose(Parts& p) {
   // Painting over a suggestion accepts it first.
-  if (isMarkTool(tool)) (void)p.marking.edges.accept(touchOf(p));
+  if (haptic::isMarkTool(tool)) (void)p.marking.edges.accept(touchOf(p));
   p.chooseTool(tool);
 }
 template <Tool tool>

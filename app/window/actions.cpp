@@ -22,6 +22,12 @@ constexpr Key kNoKey = Key::kNone;
 // Groups of the section's own menu, except for one.
 constexpr MenuPlace kNoMenu{}, kFirst{1}, kSecond{2}, kThird{3}, kMarksMenu{3, "Marks"};
 
+template <Tool tool>
+constexpr ActionRow toolRow(Key key) {
+  return {actionOf(tool), "Tool",      haptic::rowOf(tool).hint, key, kPlain, kNoKey, kFirst, kField,
+          choose<tool>,   chosen<tool>};
+}
+
 constexpr ActionRow kRows[] = {
     ActionRow{Action::kOpen, "File", "Open a scan", letter('O'), kControl, kNoKey, kFirst, kNothing,
               openScan},
@@ -38,14 +44,10 @@ constexpr ActionRow kRows[] = {
 
     ActionRow{Action::kNavigate, "Tool", "End the tool: the mouse moves the view", Key::kEscape, kPlain,
               kNoKey, kFirst, kField, navigate, navigates},
-    ActionRow{Action::kFeel, "Tool", "Feel", letter('T'), kPlain, kNoKey, kFirst, kField, choose<Tool::kFeel>,
-              chosen<Tool::kFeel>},
-    ActionRow{Action::kSmooth, "Tool", "Smooth", letter('S'), kPlain, kNoKey, kFirst, kField,
-              choose<Tool::kSmooth>, chosen<Tool::kSmooth>},
-    ActionRow{Action::kMark, "Tool", "Mark: keep from filters", letter('M'), kPlain, kNoKey, kFirst, kField,
-              choose<Tool::kMark>, chosen<Tool::kMark>},
-    ActionRow{Action::kUnmark, "Tool", "Unmark", letter('U'), kPlain, kNoKey, kFirst, kField,
-              choose<Tool::kUnmark>, chosen<Tool::kUnmark>},
+    toolRow<Tool::kFeel>(letter('T')),
+    toolRow<Tool::kSmooth>(letter('S')),
+    toolRow<Tool::kMark>(letter('M')),
+    toolRow<Tool::kUnmark>(letter('U')),
     ActionRow{Action::kBrushRadius, "Tool", "Brush radius, then move or type", letter('F'), kPlain, kNoKey,
               kSecond, kField, adjustBrush<BrushAdjustment::Of::kRadius>},
     ActionRow{Action::kBrushStrength, "Tool", "Press depth, then move or type", letter('F'), kShift, kNoKey,

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "haptic/base/tools.h"
 #include "render/window/window.h"
 
 namespace fettle::app {
@@ -23,10 +24,8 @@ enum class Action : std::uint8_t {
   kUndo,
   kRedo,
   kNavigate,
-  kFeel,
-  kSmooth,
-  kMark,
-  kUnmark,
+  kFirstTool,  ///< one for each tool, in their order: see actionOf(tool)
+  kLastTool = kFirstTool + haptic::kTools - 1,
   kBrushRadius,
   kBrushStrength,
   kBrushSmaller,
@@ -96,6 +95,11 @@ enum class Action : std::uint8_t {
   kShortcuts,
   kCount
 };
+
+/// Switches the tool on.
+[[nodiscard]] constexpr Action actionOf(haptic::Tool tool) noexcept {
+  return static_cast<Action>(static_cast<int>(Action::kFirstTool) + static_cast<int>(tool));
+}
 
 /// Position of an action in the menus: items of a menu are ordered by group, then by the table.
 struct MenuPlace {

@@ -18,19 +18,15 @@ void noteWithoutForce(const LoopClient& touch, std::vector<Notice>& notices) {
     notices.push_back({withoutForceText(*problem), ""});
 }
 
-bool isMarkTool(haptic::Tool tool) noexcept {
-  return tool == haptic::Tool::kMark || tool == haptic::Tool::kUnmark;
-}
-
 double brushRadius(const LoopClient& touch) {
-  return isMarkTool(touch.tool()) ? touch.scene().mark_radius_samples : touch.scene().brush_radius_samples;
+  return touch.scene().*haptic::brushRadiusOf(touch.tool());
 }
 
 void setBrushRadius(LoopClient& touch, double samples, std::vector<Notice>& notices) {
   if (!std::isfinite(samples)) return;
   haptic::Scene scene = touch.scene();
   const double radius = std::clamp(samples, 0.0, haptic::kMaxBrushRadius);
-  double& of_tool = isMarkTool(touch.tool()) ? scene.mark_radius_samples : scene.brush_radius_samples;
+  double& of_tool = scene.*haptic::brushRadiusOf(touch.tool());
   if (of_tool == radius) return;
   of_tool = radius;
   applyScene(touch, scene, notices);

@@ -13,8 +13,6 @@ void applyScene(LoopClient& touch, const haptic::Scene& scene, std::vector<Notic
 /// A notice when no known device would hold the scene; a connected device refuses for itself.
 void noteWithoutForce(const LoopClient& touch, std::vector<Notice>& notices);
 
-/// Whether the tool sets or clears marks: these tools have their own brush.
-[[nodiscard]] bool isMarkTool(haptic::Tool tool) noexcept;
 /// Of the active tool [samples].
 [[nodiscard]] double brushRadius(const LoopClient& touch);
 void setBrushRadius(LoopClient& touch, double samples, std::vector<Notice>& notices);

@@ -9,21 +9,6 @@ using haptic::Tool;
 using render::InputKind;
 using render::MouseButton;
 
-// The tool that Ctrl selects for one stroke.
-Tool opposite(Tool tool) {
-  switch (tool) {
-    case Tool::kFeel:
-      return Tool::kSmooth;
-    case Tool::kSmooth:
-      return Tool::kFeel;
-    case Tool::kMark:
-      return Tool::kUnmark;
-    case Tool::kUnmark:
-      break;
-  }
-  return Tool::kMark;
-}
-
 }  // namespace
 
 void Stylus::choose(std::optional<Tool> tool, LoopClient& touch, const WindowPicture& picture,
@@ -95,7 +80,7 @@ void Stylus::handle(const render::InputEvent& event, LoopClient& touch, const Wi
 void Stylus::press(const render::InputEvent& event, LoopClient& touch) {
   held_ = true;
   const Tool chosen = turned_.value_or(touch.tool());
-  const Tool tool = event.modifiers.control ? opposite(chosen) : chosen;
+  const Tool tool = event.modifiers.control ? haptic::rowOf(chosen).opposite : chosen;
   if (tool != touch.tool()) {
     turned_ = touch.tool();
     touch.setTool(tool);

@@ -34,7 +34,7 @@ void StylusOverlay::append(const LoopClient& touch, const haptic::LoopState& sta
   ring.x_mm = state.contact ? state.proxy_mm.x : state.endpoint_mm.x;
   ring.y_mm = state.contact ? state.proxy_mm.y : state.endpoint_mm.y;
   ring.radius_mm = std::max(brushRadius(touch), 0.5) * std::max(grid.spacingXMm(), grid.spacingYMm());
-  ring.colour = isMarkTool(touch.tool()) ? glm::vec3{1.0F, 0.55F, 0.0F} : glm::vec3{1.0F, 1.0F, 1.0F};
+  ring.colour = haptic::isMarkTool(touch.tool()) ? glm::vec3{1.0F, 0.55F, 0.0F} : glm::vec3{1.0F, 1.0F, 1.0F};
   overlays.rings.push_back(ring);
 }
 

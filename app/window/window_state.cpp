@@ -54,11 +54,10 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
 }
 
 void addDocument(const Parts& p, Report& r) {
-  static constexpr const char* kTools[] = {"feel", "smooth", "mark", "unmark"};
   const LoopClient& touch = *p.document.touch();
   const SessionKeeper& keeper = *p.document.keeper();
   const Lasso& lasso = p.marking.lasso();
-  r["tool"] = p.stylus.on() ? kTools[static_cast<std::size_t>(touch.tool())] : "view";
+  r["tool"] = p.stylus.on() ? haptic::toolName(touch.tool()) : "view";
   r["lasso"] = !lasso.active() ? "" : lasso.shape() == Lasso::Shape::kBox ? "box" : "free";
   Report open_panels = Report::array();
   for (const auto& [panel, open] : p.settings.panels)

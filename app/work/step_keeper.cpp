@@ -3,29 +3,6 @@
 #include <utility>
 
 namespace fettle::app {
-namespace {
-
-using haptic::Tool;
-
-std::string stepName(Tool tool) {
-  switch (tool) {
-    case Tool::kSmooth:
-      return "Smooth";
-    case Tool::kMark:
-      return "Mark";
-    case Tool::kUnmark:
-      return "Unmark";
-    case Tool::kFeel:
-      break;
-  }
-  return "Stroke";
-}
-
-engine::StepKind stepKind(Tool tool) {
-  return tool == Tool::kMark || tool == Tool::kUnmark ? engine::StepKind::kMark : engine::StepKind::kStroke;
-}
-
-}  // namespace
 
 void StepKeeper::begin(const haptic::Scene& scene) {
   committed_ = history_.current();
@@ -34,7 +11,11 @@ void StepKeeper::begin(const haptic::Scene& scene) {
 }
 
 void StepKeeper::keepStroke(const engine::Version& field, const haptic::LoopPlace& at) {
-  if (differs(field)) push(stepName(stroke_tool_), stepKind(stroke_tool_), field, at);
+  if (!differs(field)) return;
+  const haptic::ToolRow& tool = haptic::rowOf(stroke_tool_);
+  push(tool.edits == haptic::ToolEdits::kNothing ? "Stroke" : std::string(tool.title),
+       tool.edits == haptic::ToolEdits::kMarks ? engine::StepKind::kMark : engine::StepKind::kStroke, field,
+       at);
 }
 
 void StepKeeper::endStroke(const engine::Version& field, const engine::SampleRect& rect,

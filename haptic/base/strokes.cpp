@@ -89,7 +89,7 @@ std::optional<std::string> parseRow(std::string_view row, StrokeSample& out) {
   const std::string_view tool(at, static_cast<std::size_t>(end - at));
   const std::optional<Tool> known = toolNamed(tool);
   if (!known)
-    return fmt::format("the tool \"{}\" is not one of {}", shown(tool), fmt::join(kToolNames, ", "));
+    return fmt::format("the tool \"{}\" is not one of {}", shown(tool), fmt::join(kToolWords, ", "));
   out = {numbers[0], {numbers[1], numbers[2], numbers[3]}, *known};
   return std::nullopt;
 }
@@ -138,12 +138,6 @@ class RowWriter {
 };
 
 }  // namespace
-
-std::optional<Tool> toolNamed(std::string_view word) noexcept {
-  for (std::size_t i = 0; i < kToolNames.size(); ++i)
-    if (word == kToolNames[i]) return static_cast<Tool>(i);
-  return std::nullopt;
-}
 
 engine::Result<std::vector<StrokeSample>> readStrokes(const std::string& path) {
   const engine::Result<std::string> whole = readWhole(path);

@@ -1,37 +1,16 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "engine/base/error.h"
+#include "haptic/base/tools.h"
 
 namespace fettle::haptic {
-
-/// What the stylus does while it is in contact.
-enum class Tool : std::uint8_t {
-  kFeel,    ///< nothing but forces
-  kSmooth,  ///< local smoothing by force, if the scene lists that effect
-  kMark,    ///< adds samples to the keep mask
-  kUnmark,  ///< takes samples out of the keep mask
-};
-
-/// The words of the tools, in the order of Tool: of strokes files and the command line.
-inline constexpr std::array<std::string_view, 4> kToolNames = {"feel", "smooth", "mark", "unmark"};
-inline constexpr int kTools = static_cast<int>(kToolNames.size());
-
-[[nodiscard]] constexpr std::string_view toolName(Tool tool) noexcept {
-  return kToolNames[static_cast<std::size_t>(tool)];
-}
-/// Nothing where no tool has the word.
-[[nodiscard]] std::optional<Tool> toolNamed(std::string_view word) noexcept;
 
 /// One tick of a recorded stylus session.
 struct StrokeSample {

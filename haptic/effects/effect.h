@@ -78,16 +78,20 @@ struct EffectData {
 /// A new effect is a file in effects/ with an `add...` function, a word in EffectKind, its parameters, and a
 /// line in composeEffects; the tick does not change.
 struct EffectList {
-  std::vector<EffectStep> in_contact;    ///< forces while touching
-  std::vector<EffectStep> always;        ///< forces in every tick with good input
-  std::vector<EffectStep> finishing;     ///< after the clamp; they keep |F| <= limit
-  std::array<EffectStep, kTools> tools;  ///< by Tool; an empty step does nothing
-  std::vector<EffectStep> upkeep;        ///< after the tool: bounded work on data that edits touch
-  std::vector<EffectReset> resets;       ///< called when contact, input or field is lost
-  std::optional<VelocityFilter> motion;  ///< there when a listed effect needs it
-  std::vector<EffectData> data;          ///< what the steps point to
-  std::shared_ptr<void> marking;         ///< the disc of the marking tools, which every scene has
+  std::vector<EffectStep> in_contact;            ///< forces while touching
+  std::vector<EffectStep> always;                ///< forces in every tick with good input
+  std::vector<EffectStep> finishing;             ///< after the clamp; they keep |F| <= limit
+  std::array<EffectStep, kTools> tools;          ///< by Tool; those with a step edit the field
+  std::vector<EffectStep> upkeep;                ///< after the tool: bounded work on data that edits touch
+  std::vector<EffectReset> resets;               ///< called when contact, input or field is lost
+  std::optional<VelocityFilter> motion;          ///< there when a listed effect needs it
+  std::vector<EffectData> data;                  ///< what the steps point to
+  std::vector<std::shared_ptr<void>> tool_data;  ///< of tools that are no effect: of every scene
 
+  /// Whether the tool changes the field.
+  [[nodiscard]] bool edits(Tool tool) const noexcept {
+    return tools[static_cast<std::size_t>(tool)].run != nullptr;
+  }
   /// Whether a tick without contact only reports that there is none.
   [[nodiscard]] bool onlyInContact() const noexcept {
     return always.empty() && finishing.empty() && upkeep.empty();

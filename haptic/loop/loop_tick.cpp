@@ -23,13 +23,6 @@ bool finite(const glm::dvec3& p) noexcept {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-bool edits(const Scene& scene, Tool tool) noexcept {
-  if (tool == Tool::kSmooth)
-    return std::find(scene.effects.begin(), scene.effects.end(), EffectKind::kSmoothing) !=
-           scene.effects.end();
-  return tool == Tool::kMark || tool == Tool::kUnmark;
-}
-
 }  // namespace
 
 LoopTick::LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, Device& device,
@@ -296,11 +289,9 @@ void LoopTick::noteTiles(const engine::SampleRect& rect) noexcept {
 }
 
 void LoopTick::noteEdit(const ForceSample& force, Tool tool) noexcept {
-  const Scene& scene = scene_->scene;
-  const bool editing = force.contact && edits(scene, tool);
+  const bool editing = force.contact && scene_->tick.effects().edits(tool);
   if (editing) {
-    const double radius = tool == Tool::kSmooth ? scene.brush_radius_samples : scene.mark_radius_samples;
-    const auto reach = static_cast<std::int32_t>(std::floor(radius));
+    const auto reach = static_cast<std::int32_t>(std::floor(scene_->scene.*brushRadiusOf(tool)));
     const CellIndex centre = scene_->tick.contact().proxy.cell;
     const engine::Grid& grid = scene_->field.grid();
     const std::int32_t c0 = std::max(centre.column - reach, 0);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "haptic/base/tools.h"
 #include "haptic/scene/parameters.h"
 
 namespace fettle::haptic {
@@ -92,6 +93,11 @@ struct Scene {
 
   friend bool operator==(const Scene&, const Scene&) = default;
 };
+
+/// The radius of a tool's brush: that of marking, or of smoothing, which a tool that edits nothing shows.
+[[nodiscard]] constexpr double Scene::*brushRadiusOf(Tool tool) noexcept {
+  return isMarkTool(tool) ? &Scene::mark_radius_samples : &Scene::brush_radius_samples;
+}
 
 /// The scene of `fettle replay` without --scene; the same as assets/scenes/default.toml.
 [[nodiscard]] Scene defaultScene();

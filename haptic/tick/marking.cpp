@@ -41,7 +41,7 @@ void addMarking(EffectList& list, const Scene& scene) {
   auto disc = std::make_shared<Disc>(scene.mark_radius_samples);
   list.tools[static_cast<std::size_t>(Tool::kMark)] = {&runMarking<true>, disc.get()};
   list.tools[static_cast<std::size_t>(Tool::kUnmark)] = {&runMarking<false>, disc.get()};
-  list.marking = std::move(disc);
+  list.tool_data.push_back(std::move(disc));
 }
 
 }  // namespace fettle::haptic

@@ -17,7 +17,7 @@ namespace fettle::haptic {
 
 /// One haptic update, the same for replay and the live loop:
 ///
-///   endpoint --> contact --> forces --> clamp --> finishing --> tool (smooth, mark, unmark) --> sample
+///   endpoint --> contact --> forces --> clamp --> finishing --> tool (haptic/base/tools.h) --> sample
 ///
 /// The contact reads the field, the tool edits it, and the edit is felt from the next tick on.
 ///

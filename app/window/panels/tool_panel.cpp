@@ -10,8 +10,6 @@
 namespace fettle::app {
 namespace {
 
-using haptic::Tool;
-
 void toolButtons(const PanelContext& context, const Stylus& stylus, const Lasso& lasso) {
   // As many buttons per line as fit.
   bool first = true;
@@ -23,13 +21,11 @@ void toolButtons(const PanelContext& context, const Stylus& stylus, const Lasso&
     if (on) ImGui::PopStyleColor();
     tip(action);
   };
-  const auto uses = [&](Tool tool) { return stylus.on() && context.touch.tool() == tool; };
   const auto draws = [&](Lasso::Shape shape) { return lasso.active() && lasso.shape() == shape; };
   button("View", Action::kNavigate, !stylus.on() && !lasso.active());
-  button("Feel", Action::kFeel, uses(Tool::kFeel));
-  button("Smooth", Action::kSmooth, uses(Tool::kSmooth));
-  button("Mark", Action::kMark, uses(Tool::kMark));
-  button("Unmark", Action::kUnmark, uses(Tool::kUnmark));
+  for (const haptic::ToolRow& row : haptic::kToolRows)
+    button(std::string(row.title).c_str(), actionOf(row.tool),
+           stylus.on() && context.touch.tool() == row.tool);
   button("Lasso", Action::kLasso, draws(Lasso::Shape::kFree));
   button("Box", Action::kBox, draws(Lasso::Shape::kBox));
 }
