@@ -1,8 +1,7 @@
 #include "app/window/actions.h"
 
-#include <iterator>
-
 #include "app/window/action_steps.h"
+#include "engine/base/rows.h"
 
 namespace fettle::app {
 namespace {
@@ -185,12 +184,7 @@ constexpr ActionRow kRows[] = {
               listShortcuts},
 };
 
-constexpr bool inOrder() {
-  for (std::size_t i = 0; i < std::size(kRows); ++i)
-    if (kRows[i].action != static_cast<Action>(i)) return false;
-  return std::size(kRows) == static_cast<std::size_t>(Action::kCount);
-}
-static_assert(inOrder(), "a row for each action, in the order of the enumeration");
+static_assert(engine::inOrder(kRows, &ActionRow::action, Action::kCount));
 
 }  // namespace
 

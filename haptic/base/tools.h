@@ -6,6 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "engine/base/rows.h"
+
 namespace fettle::haptic {
 
 /// What the stylus does while it is in contact.
@@ -64,12 +66,6 @@ inline constexpr auto kToolWords = [] {
   return std::nullopt;
 }
 
-static_assert(
-    [] {
-      for (std::size_t i = 0; i < kToolRows.size(); ++i)
-        if (kToolRows[i].tool != static_cast<Tool>(i)) return false;
-      return kToolRows.size() == kTools;
-    }(),
-    "a row for each tool, in the order of the enumeration");
+static_assert(engine::inOrder(kToolRows, &ToolRow::tool, Tool::kCount));
 
 }  // namespace fettle::haptic

@@ -24,12 +24,12 @@ struct Coupling {
 
 }  // namespace
 
-void addCoupling(EffectList& list, const Scene& scene) {
+void addCoupling(EffectList& list, const EffectSource& from) {
   Coupling& coupling =
       addData(list, EffectKind::kCoupling,
-              std::make_shared<Coupling>(Coupling{scene.params.coupling.damping_n_s_per_mm}));
+              std::make_shared<Coupling>(Coupling{from.scene.params.coupling.damping_n_s_per_mm}));
   list.in_contact.push_back({&Coupling::run, &coupling});
-  needMotion(list, scene);
+  needMotion(list, from.scene);
 }
 
 }  // namespace fettle::haptic

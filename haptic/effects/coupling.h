@@ -17,6 +17,6 @@ namespace fettle::haptic {
 /// means b_device + b above K T / 2 plus what the damper's own delay removes from b. Its test reaches both
 /// limits, too little damping and 2 m / T. No state of its own. Cost: ten multiplications and the velocity
 /// filter's.
-void addCoupling(EffectList& list, const Scene& scene);
+AddEffect addCoupling;
 
 }  // namespace fettle::haptic

@@ -78,8 +78,8 @@ void EdgeSnap::reset(ResetCause why) noexcept {
   if (why == ResetCause::kFieldChanged) distance_.rescan();
 }
 
-void addEdgeSnap(EffectList& list, const Scene& scene, const engine::Version& now) {
-  auto made = std::make_shared<EdgeSnap>(scene.params.edge_snap, now.reader());
+void addEdgeSnap(EffectList& list, const EffectSource& from) {
+  auto made = std::make_shared<EdgeSnap>(from.scene.params.edge_snap, from.now.reader());
   const std::size_t held = made->distance().bytesHeld();
   EdgeSnap& snap = addData(list, EffectKind::kEdgeSnap, std::move(made), held);
   list.in_contact.push_back(

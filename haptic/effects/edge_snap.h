@@ -61,6 +61,6 @@ class EdgeSnap {
   bool touching_ = false;
 };
 
-void addEdgeSnap(EffectList& list, const Scene& scene, const engine::Version& now);
+AddEffect addEdgeSnap;
 
 }  // namespace fettle::haptic

@@ -1,5 +1,6 @@
 #include "haptic/effects/effect.h"
 
+#include "engine/base/rows.h"
 #include "haptic/effects/coupling.h"
 #include "haptic/effects/edge_snap.h"
 #include "haptic/effects/friction.h"
@@ -10,6 +11,28 @@
 #include "haptic/effects/viscosity.h"
 
 namespace fettle::haptic {
+
+// In haptic/tick.
+AddEffect addSmoothing, addMarking;
+
+namespace {
+
+struct EffectEntry {
+  EffectKind kind;
+  AddEffect* add;
+};
+constexpr EffectEntry kEffects[] = {
+    {EffectKind::kSpring, addSpring},       {EffectKind::kSmoothing, addSmoothing},
+    {EffectKind::kFriction, addFriction},   {EffectKind::kViscosity, addViscosity},
+    {EffectKind::kEdgeSnap, addEdgeSnap},   {EffectKind::kTexture, addTexture},
+    {EffectKind::kGravity, addGravity},     {EffectKind::kCoupling, addCoupling},
+    {EffectKind::kPassivity, addPassivity},
+};
+static_assert(engine::inOrder(kEffects, &EffectEntry::kind, EffectKind::kCount));
+
+constexpr AddEffect* kToolsOfEveryScene[] = {addMarking};
+
+}  // namespace
 
 std::size_t EffectList::bytesOf(EffectKind kind) const noexcept {
   std::size_t sum = 0;
@@ -29,38 +52,9 @@ void needMotion(EffectList& list, const Scene& scene) {
 
 EffectList composeEffects(const Scene& scene, const engine::Version& original, const engine::Version& now) {
   EffectList list;
-  for (const EffectKind kind : scene.effects) {
-    switch (kind) {
-      case EffectKind::kSpring:
-        addSpring(list, scene);
-        break;
-      case EffectKind::kSmoothing:
-        addSmoothing(list, scene, original);
-        break;
-      case EffectKind::kFriction:
-        addFriction(list, scene);
-        break;
-      case EffectKind::kViscosity:
-        addViscosity(list, scene);
-        break;
-      case EffectKind::kGravity:
-        addGravity(list, scene);
-        break;
-      case EffectKind::kCoupling:
-        addCoupling(list, scene);
-        break;
-      case EffectKind::kEdgeSnap:
-        addEdgeSnap(list, scene, now);
-        break;
-      case EffectKind::kTexture:
-        addTexture(list, scene);
-        break;
-      case EffectKind::kPassivity:
-        addPassivity(list, scene);
-        break;
-    }
-  }
-  addMarking(list, scene);
+  const EffectSource from{scene, original, now};
+  for (const EffectKind kind : scene.effects) kEffects[static_cast<std::size_t>(kind)].add(list, from);
+  for (AddEffect* const add : kToolsOfEveryScene) add(list, from);
   return list;
 }
 

@@ -75,8 +75,8 @@ struct EffectData {
 /// An effect that the scene does not list is in none of them and has no data: no memory, no call, and no
 /// velocity is estimated unless a listed effect needs it.
 ///
-/// A new effect is a file in effects/ with an `add...` function, a word in EffectKind, its parameters, and a
-/// line in composeEffects; the tick does not change.
+/// A new effect is a file in effects/ with an AddEffect function, its row and parameters in
+/// haptic/scene/effects.h, and a line in effect.cpp; the tick does not change.
 struct EffectList {
   std::vector<EffectStep> in_contact;            ///< forces while touching
   std::vector<EffectStep> always;                ///< forces in every tick with good input
@@ -120,8 +120,13 @@ T& addData(EffectList& list, EffectKind kind, std::shared_ptr<T> data, std::size
 /// Makes the list estimate the endpoint's velocity.
 void needMotion(EffectList& list, const Scene& scene);
 
-void addSmoothing(EffectList& list, const Scene& scene, const engine::Version& original);
-/// Marking is a tool of every scene, not an effect.
-void addMarking(EffectList& list, const Scene& scene);
+/// What effects are made from; see composeEffects.
+struct EffectSource {
+  const Scene& scene;
+  const engine::Version& original;
+  const engine::Version& now;
+};
+/// Adds an effect, or a tool that every scene has, to the list. Allocates.
+using AddEffect = void(EffectList& list, const EffectSource& from);
 
 }  // namespace fettle::haptic

@@ -57,9 +57,9 @@ void Friction::run(TickState& state) noexcept {
   state.stored_mj += 0.5 * stiffness_ * glm::dot(strain, strain);
 }
 
-void addFriction(EffectList& list, const Scene& scene) {
+void addFriction(EffectList& list, const EffectSource& from) {
   Friction& friction =
-      addData(list, EffectKind::kFriction, std::make_shared<Friction>(scene.params.friction));
+      addData(list, EffectKind::kFriction, std::make_shared<Friction>(from.scene.params.friction));
   list.in_contact.push_back({&runFriction, &friction});
   list.resets.push_back({&resetFriction, &friction});
 }

@@ -51,6 +51,6 @@ class Friction {
   bool slipping_ = false;
 };
 
-void addFriction(EffectList& list, const Scene& scene);
+AddEffect addFriction;
 
 }  // namespace fettle::haptic

@@ -18,8 +18,8 @@ struct Gravity {
 
 }  // namespace
 
-void addGravity(EffectList& list, const Scene& scene) {
-  const double weight_n = scene.params.gravity.stylus_kg * kStandardGravity;
+void addGravity(EffectList& list, const EffectSource& from) {
+  const double weight_n = from.scene.params.gravity.stylus_kg * kStandardGravity;
   Gravity& gravity = addData(list, EffectKind::kGravity, std::make_shared<Gravity>(Gravity{weight_n}));
   list.always.push_back({&Gravity::run, &gravity});
 }

@@ -12,6 +12,6 @@ namespace fettle::haptic {
 /// 10.4, here of a point mass at the tip.
 /// Stability: a constant force closes no loop. The stylus must weigh at least that much, otherwise it rises.
 /// Cost: one addition.
-void addGravity(EffectList& list, const Scene& scene);
+AddEffect addGravity;
 
 }  // namespace fettle::haptic

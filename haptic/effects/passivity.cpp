@@ -48,12 +48,12 @@ void Passivity::run(TickState& state) noexcept {
   known_ = true;
 }
 
-void addPassivity(EffectList& list, const Scene& scene) {
+void addPassivity(EffectList& list, const EffectSource& from) {
   Passivity& passivity =
-      addData(list, EffectKind::kPassivity, std::make_shared<Passivity>(scene.params.passivity));
+      addData(list, EffectKind::kPassivity, std::make_shared<Passivity>(from.scene.params.passivity));
   list.finishing.push_back({&runPassivity, &passivity});
   list.resets.push_back({&resetPassivity, &passivity});
-  needMotion(list, scene);
+  needMotion(list, from.scene);
 }
 
 }  // namespace fettle::haptic

@@ -47,6 +47,6 @@ class Passivity {
   bool known_ = false;
 };
 
-void addPassivity(EffectList& list, const Scene& scene);
+AddEffect addPassivity;
 
 }  // namespace fettle::haptic

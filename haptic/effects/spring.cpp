@@ -20,9 +20,9 @@ struct Spring {
 
 }  // namespace
 
-void addSpring(EffectList& list, const Scene& scene) {
+void addSpring(EffectList& list, const EffectSource& from) {
   Spring& spring =
-      addData(list, EffectKind::kSpring, std::make_shared<Spring>(Spring{scene.stiffness_n_per_mm}));
+      addData(list, EffectKind::kSpring, std::make_shared<Spring>(Spring{from.scene.stiffness_n_per_mm}));
   list.in_contact.push_back({&Spring::run, &spring});
 }
 

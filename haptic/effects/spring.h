@@ -14,6 +14,6 @@ namespace fettle::haptic {
 /// Colgate and Brown 1994). It is exact for a mass on the wall in the limit of a slow oscillation;
 /// bench/stiffness_sweep measures it.
 /// No state. Cost: three multiplications and additions.
-void addSpring(EffectList& list, const Scene& scene);
+AddEffect addSpring;
 
 }  // namespace fettle::haptic

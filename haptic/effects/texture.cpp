@@ -139,8 +139,8 @@ struct Texture {
 
 }  // namespace
 
-void addTexture(EffectList& list, const Scene& scene) {
-  auto made = std::make_shared<Texture>(Texture{TextureTable(scene.params.texture)});
+void addTexture(EffectList& list, const EffectSource& from) {
+  auto made = std::make_shared<Texture>(Texture{TextureTable(from.scene.params.texture)});
   const std::size_t held = made->table.bytesHeld();
   Texture& texture = addData(list, EffectKind::kTexture, std::move(made), held);
   list.in_contact.push_back({&Texture::run, &texture});

@@ -56,6 +56,6 @@ class TextureTable {
 /// A sampled relief needs enough samples: crossing it at speed v gives v / lambda cycles per second, which
 /// should stay below a tenth of the rate. Cost: 16 coefficients, about 80 multiplications. Memory: 256 KiB,
 /// only in a scene that lists it.
-void addTexture(EffectList& list, const Scene& scene);
+AddEffect addTexture;
 
 }  // namespace fettle::haptic

@@ -14,13 +14,13 @@ struct Viscosity {
 
 }  // namespace
 
-void addViscosity(EffectList& list, const Scene& scene) {
-  const ViscosityParams& params = scene.params.viscosity;
+void addViscosity(EffectList& list, const EffectSource& from) {
+  const ViscosityParams& params = from.scene.params.viscosity;
   Viscosity& viscosity = addData(list, EffectKind::kViscosity,
                                  std::make_shared<Viscosity>(Viscosity{params.damping_n_s_per_mm}));
   auto& where = params.medium == ViscousMedium::kEverywhere ? list.always : list.in_contact;
   where.push_back({&Viscosity::run, &viscosity});
-  needMotion(list, scene);
+  needMotion(list, from.scene);
 }
 
 }  // namespace fettle::haptic

@@ -17,6 +17,6 @@ namespace fettle::haptic {
 /// and Schenkel's condition at the Nyquist frequency, where the filtered difference is weighted so).
 /// What a device allows is in its profile: max_damping_n_s_per_mm; stability.h compares.
 /// No state of its own. Cost: three multiplications, and the filter's ten shared with coupling.
-void addViscosity(EffectList& list, const Scene& scene);
+AddEffect addViscosity;
 
 }  // namespace fettle::haptic

@@ -22,73 +22,25 @@ constexpr double kMaxStiffness = 1000.0;
 constexpr double kMaxForce = 1000.0;
 constexpr double kMaxTipRadius = 100.0;
 
-constexpr std::array<std::string_view, kEffectKinds> kEffectNames = {"spring",    "smoothing", "friction",
-                                                                     "viscosity", "edge_snap", "texture",
-                                                                     "gravity",   "coupling",  "passivity"};
 constexpr std::array<std::string_view, 2> kMediumNames = {"contact", "everywhere"};
 constexpr std::array<std::string_view, 2> kPatternNames = {"noise", "grating"};
 
-// Whether the lower end of a range belongs to it.
-enum class LowEnd : std::uint8_t { kIncluded, kExcluded };
+std::string rangeOf(const EffectNumber& number) {
+  return fmt::format("{} in [{}] must be {} {} and at most {}", number.key, number.table,
+                     number.low_end == LowEnd::kExcluded ? "above" : "at least", number.low, number.high);
+}
 
-// One number of an effect's table.
-struct EffectNumber {
-  std::string_view table, key;
-  double& (*of)(EffectParams&) noexcept;
-  double low, high;
-  LowEnd low_end = LowEnd::kIncluded;
-
-  [[nodiscard]] bool holds(double value) const noexcept {
-    return (low_end == LowEnd::kExcluded ? value > low : value >= low) && value <= high;
-  }
-  [[nodiscard]] std::string range() const {
-    return fmt::format("{} in [{}] must be {} {} and at most {}", key, table,
-                       low_end == LowEnd::kExcluded ? "above" : "at least", low, high);
-  }
-};
-
-using P = EffectParams;
-constexpr std::array kEffectNumbers = {
-    EffectNumber{"friction", "static", [](P& p) noexcept -> double& { return p.friction.static_coefficient; },
-                 0, 2},
-    EffectNumber{"friction", "dynamic",
-                 [](P& p) noexcept -> double& { return p.friction.dynamic_coefficient; }, 0, 2},
-    EffectNumber{"friction", "stiffness_n_per_mm",
-                 [](P& p) noexcept -> double& { return p.friction.stiffness_n_per_mm; }, 0, 1000,
-                 LowEnd::kExcluded},
-    EffectNumber{"viscosity", "damping_n_s_per_mm",
-                 [](P& p) noexcept -> double& { return p.viscosity.damping_n_s_per_mm; }, 0, 1},
-    EffectNumber{"edge_snap", "force_n", [](P& p) noexcept -> double& { return p.edge_snap.force_n; }, 0, 20},
-    EffectNumber{"edge_snap", "reach_mm", [](P& p) noexcept -> double& { return p.edge_snap.reach_mm; }, 0,
-                 50, LowEnd::kExcluded},
-    EffectNumber{"texture", "amplitude_mm", [](P& p) noexcept -> double& { return p.texture.amplitude_mm; },
-                 0, 1},
-    EffectNumber{"texture", "wavelength_mm", [](P& p) noexcept -> double& { return p.texture.wavelength_mm; },
-                 0, 100, LowEnd::kExcluded},
-    EffectNumber{"gravity", "stylus_kg", [](P& p) noexcept -> double& { return p.gravity.stylus_kg; }, 0, 2},
-    EffectNumber{"coupling", "damping_n_s_per_mm",
-                 [](P& p) noexcept -> double& { return p.coupling.damping_n_s_per_mm; }, 0, 1},
-    EffectNumber{"passivity", "max_damping_n_s_per_mm",
-                 [](P& p) noexcept -> double& { return p.passivity.max_damping_n_s_per_mm; }, 0, 1},
-    EffectNumber{"velocity", "filter_ms", [](P& p) noexcept -> double& { return p.velocity.filter_ms; }, 0,
-                 50},
-};
 constexpr std::array<std::string_view, 2> kLevelNames = {"paper", "certified"};
 
 constexpr const char* kDynamicAboveStatic = "the dynamic friction must not be above the static one";
 
-// Friction, texture and coupling depend on the force with which the spring presses.
-bool needsSpring(EffectKind kind) noexcept {
-  return kind == EffectKind::kFriction || kind == EffectKind::kTexture || kind == EffectKind::kCoupling;
-}
-
 // A listed effect that comes before the spring it needs, or has none.
 std::optional<std::string> springProblem(const std::vector<EffectKind>& effects) {
   const auto spring = std::find(effects.begin(), effects.end(), EffectKind::kSpring);
-  const auto early = std::find_if(effects.begin(), effects.end(), needsSpring);
+  const auto early =
+      std::find_if(effects.begin(), effects.end(), [](EffectKind kind) { return rowOf(kind).needs_spring; });
   if (early == effects.end() || (spring != effects.end() && spring < early)) return std::nullopt;
-  return fmt::format("the effect \"{}\" needs \"spring\" listed before it",
-                     kEffectNames[static_cast<std::size_t>(*early)]);
+  return fmt::format("the effect \"{}\" needs \"spring\" listed before it", effectName(*early));
 }
 
 bool positiveUpTo(double value, double limit) noexcept {
@@ -184,11 +136,11 @@ class SceneReader {
     if (list == nullptr) return complain(value, "effects must be a list of names");
     scene_.effects.clear();
     for (const toml::node& entry : *list) {
-      const auto i = word(entry, "an effect", kEffectNames);
+      const auto i = word(entry, "an effect", kEffectWords);
       if (!i) return;
       const auto effect = static_cast<EffectKind>(*i);
       if (std::find(scene_.effects.begin(), scene_.effects.end(), effect) != scene_.effects.end())
-        return complain(entry, fmt::format("the effect \"{}\" is listed twice", kEffectNames[*i]));
+        return complain(entry, fmt::format("the effect \"{}\" is listed twice", kEffectWords[*i]));
       scene_.effects.push_back(effect);
     }
     if (auto problem = springProblem(scene_.effects)) complain(value, std::move(*problem));
@@ -259,7 +211,7 @@ class SceneReader {
         if (known.table != name || known.key != key) continue;
         double& out = known.of(scene_.params);
         number(value, key, out);
-        if (!known.holds(out)) complain(value, known.range());
+        if (!known.holds(out)) complain(value, rangeOf(known));
         return true;
       }
       if (name == "viscosity" && key == "in") {
@@ -280,10 +232,6 @@ class SceneReader {
 };
 
 }  // namespace
-
-std::string_view effectName(EffectKind effect) noexcept {
-  return kEffectNames[static_cast<std::size_t>(effect)];
-}
 
 std::string_view levelName(ContactLevel level) noexcept {
   return kLevelNames[static_cast<std::size_t>(level)];
@@ -310,7 +258,7 @@ std::optional<std::string> sceneProblem(const Scene& scene) {
     return "the largest change must be 0 or more";
   EffectParams params = scene.params;
   for (const EffectNumber& number : kEffectNumbers)
-    if (!number.holds(number.of(params))) return number.range();
+    if (!number.holds(number.of(params))) return rangeOf(number);
   if (params.friction.dynamic_coefficient > params.friction.static_coefficient) return kDynamicAboveStatic;
   if (auto problem = springProblem(scene.effects)) return problem;
   for (auto it = scene.effects.begin(); it != scene.effects.end(); ++it)

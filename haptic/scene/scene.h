@@ -8,7 +8,7 @@
 
 #include "engine/base/error.h"
 #include "haptic/base/tools.h"
-#include "haptic/scene/parameters.h"
+#include "haptic/scene/effects.h"
 
 namespace fettle::haptic {
 
@@ -25,24 +25,6 @@ enum class ContactLevel : std::uint8_t {
   kCertified,  ///< the true closest point of all cells within a radius, by branch and bound
 };
 
-/// What a scene may list. What it does not list is not built, not stored and not called.
-enum class EffectKind : std::uint8_t {
-  kSpring,     ///< force along the penetration vector and proportional to it
-  kSmoothing,  ///< local smoothing of the field by force, with Tool::kSmooth
-  kFriction,   ///< Coulomb friction with stick-slip; needs the spring
-  kViscosity,  ///< against the endpoint's velocity
-  kEdgeSnap,   ///< pull towards marked samples, for tracing
-  kTexture,    ///< relief finer than the grid; needs the spring
-  kGravity,    ///< holds up the stylus, in free space too
-  kCoupling,   ///< damping between proxy and endpoint; needs the spring
-  kPassivity,  ///< no more energy comes out than was put in
-};
-
-inline constexpr int kEffectKinds = 9;
-
-/// "spring", "smoothing", "friction", "viscosity", "edge_snap", "texture", "gravity", "coupling",
-/// "passivity".
-[[nodiscard]] std::string_view effectName(EffectKind effect) noexcept;
 /// "paper", "certified".
 [[nodiscard]] std::string_view levelName(ContactLevel level) noexcept;
 

@@ -150,8 +150,8 @@ void runSmoothing(void* data, TickState& state) noexcept {
 
 }  // namespace
 
-void addSmoothing(EffectList& list, const Scene& scene, const engine::Version& original) {
-  auto made = std::make_shared<Brush>(scene.brush_radius_samples, scene.max_change, original);
+void addSmoothing(EffectList& list, const EffectSource& from) {
+  auto made = std::make_shared<Brush>(from.scene.brush_radius_samples, from.scene.max_change, from.original);
   const std::size_t held = made->bytesHeld();
   Brush& brush = addData(list, EffectKind::kSmoothing, std::move(made), held);
   list.tools[static_cast<std::size_t>(Tool::kSmooth)] = {&runSmoothing, &brush};

@@ -37,8 +37,8 @@ void runMarking(void* data, TickState& state) noexcept {
 
 }  // namespace
 
-void addMarking(EffectList& list, const Scene& scene) {
-  auto disc = std::make_shared<Disc>(scene.mark_radius_samples);
+void addMarking(EffectList& list, const EffectSource& from) {
+  auto disc = std::make_shared<Disc>(from.scene.mark_radius_samples);
   list.tools[static_cast<std::size_t>(Tool::kMark)] = {&runMarking<true>, disc.get()};
   list.tools[static_cast<std::size_t>(Tool::kUnmark)] = {&runMarking<false>, disc.get()};
   list.tool_data.push_back(std::move(disc));

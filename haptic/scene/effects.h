@@ -1,0 +1,194 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "engine/base/rows.h"
+
+namespace fettle::haptic {
+
+// All that a scene states of effects: which there are, and their parameters with their ranges. The header of
+// each effect, in haptic/effects, gives its source and stability condition.
+
+/// What a scene may list. What it does not list is not built, not stored and not called.
+enum class EffectKind : std::uint8_t {
+  kSpring,     ///< force along the penetration vector and proportional to it
+  kSmoothing,  ///< local smoothing of the field by force, with Tool::kSmooth
+  kFriction,   ///< Coulomb friction with stick-slip
+  kViscosity,  ///< against the endpoint's velocity
+  kEdgeSnap,   ///< pull towards marked samples, for tracing
+  kTexture,    ///< relief finer than the grid
+  kGravity,    ///< holds up the stylus, in free space too
+  kCoupling,   ///< damping between proxy and endpoint
+  kPassivity,  ///< no more energy comes out than was put in
+  kCount
+};
+
+inline constexpr int kEffectKinds = static_cast<int>(EffectKind::kCount);
+
+struct EffectRow {
+  EffectKind kind;
+  std::string_view word;      ///< in scene files and reports
+  bool needs_spring = false;  ///< depends on the force with which the spring presses
+};
+inline constexpr std::array kEffectRows = {
+    EffectRow{EffectKind::kSpring, "spring"},           EffectRow{EffectKind::kSmoothing, "smoothing"},
+    EffectRow{EffectKind::kFriction, "friction", true}, EffectRow{EffectKind::kViscosity, "viscosity"},
+    EffectRow{EffectKind::kEdgeSnap, "edge_snap"},      EffectRow{EffectKind::kTexture, "texture", true},
+    EffectRow{EffectKind::kGravity, "gravity"},         EffectRow{EffectKind::kCoupling, "coupling", true},
+    EffectRow{EffectKind::kPassivity, "passivity"},
+};
+static_assert(engine::inOrder(kEffectRows, &EffectRow::kind, EffectKind::kCount));
+
+/// The words, in the order of EffectKind.
+inline constexpr auto kEffectWords = [] {
+  std::array<std::string_view, kEffectRows.size()> words;
+  for (std::size_t i = 0; i < words.size(); ++i) words[i] = kEffectRows[i].word;
+  return words;
+}();
+[[nodiscard]] constexpr const EffectRow& rowOf(EffectKind kind) noexcept {
+  return kEffectRows[static_cast<std::size_t>(kind)];
+}
+[[nodiscard]] constexpr std::string_view effectName(EffectKind kind) noexcept {
+  return rowOf(kind).word;
+}
+
+// Parameters: one table of the scene file for each effect, with the same names.
+
+/// [friction]
+struct FrictionParams {
+  double static_coefficient = 0.4;   ///< "static": tangential over normal force at which it slips, 0 .. 2
+  double dynamic_coefficient = 0.3;  ///< "dynamic": the same while it slips, 0 .. static
+  double stiffness_n_per_mm = 1.0;   ///< of the stuck tip, along the surface, > 0 .. 1000
+
+  friend bool operator==(const FrictionParams&, const FrictionParams&) = default;
+};
+
+/// Where the tip is in the viscous medium.
+enum class ViscousMedium : std::uint8_t {
+  kContact,     ///< while the tip touches
+  kEverywhere,  ///< in free space too
+};
+
+/// [viscosity]
+struct ViscosityParams {
+  double damping_n_s_per_mm = 0.002;               ///< 0 .. 1; hand devices hold 0.004 to 0.03
+  ViscousMedium medium = ViscousMedium::kContact;  ///< "in"
+
+  friend bool operator==(const ViscosityParams&, const ViscosityParams&) = default;
+};
+
+/// [edge_snap]
+struct EdgeSnapParams {
+  double force_n = 0.5;   ///< largest pull, halfway between edge and reach, 0 .. 20
+  double reach_mm = 1.0;  ///< horizontal distance at which the pull begins, > 0 .. 50
+
+  friend bool operator==(const EdgeSnapParams&, const EdgeSnapParams&) = default;
+};
+
+enum class TexturePattern : std::uint8_t {
+  kNoise,    ///< even in all directions, all of it between one and four thirds of the wavelength
+  kGrating,  ///< a sine along x
+};
+
+/// [texture]
+struct TextureParams {
+  double amplitude_mm = 0.02;  ///< highest to lowest point, both below the surface, 0 .. 1
+  double wavelength_mm = 0.5;  ///< shortest there is, > 0 .. 100
+  TexturePattern pattern = TexturePattern::kNoise;
+
+  friend bool operator==(const TextureParams&, const TextureParams&) = default;
+};
+
+/// [gravity]
+struct GravityParams {
+  double stylus_kg = 0.05;  ///< mass held up, 0 .. 2; more than the device weighs makes it rise
+
+  friend bool operator==(const GravityParams&, const GravityParams&) = default;
+};
+
+/// [coupling]
+struct CouplingParams {
+  double damping_n_s_per_mm = 0.001;  ///< between proxy and endpoint, 0 .. 1
+
+  friend bool operator==(const CouplingParams&, const CouplingParams&) = default;
+};
+
+/// [passivity]
+struct PassivityParams {
+  /// Largest damping the controller adds beyond taking driving force away, 0 .. 1
+  double max_damping_n_s_per_mm = 0.005;
+
+  friend bool operator==(const PassivityParams&, const PassivityParams&) = default;
+};
+
+/// [velocity]: the estimate that viscosity and coupling share
+struct VelocityParams {
+  double filter_ms = 2.0;  ///< time constant of its low pass, 0 .. 50
+
+  friend bool operator==(const VelocityParams&, const VelocityParams&) = default;
+};
+
+/// All of them. An effect that is not listed does not use its own.
+struct EffectParams {
+  FrictionParams friction;
+  ViscosityParams viscosity;
+  EdgeSnapParams edge_snap;
+  TextureParams texture;
+  GravityParams gravity;
+  CouplingParams coupling;
+  PassivityParams passivity;
+  VelocityParams velocity;
+
+  friend bool operator==(const EffectParams&, const EffectParams&) = default;
+};
+
+/// Whether the lower end of a range belongs to it.
+enum class LowEnd : std::uint8_t { kIncluded, kExcluded };
+
+/// One number of a table of the scene file, with its range: sceneProblem and loadScene check it.
+struct EffectNumber {
+  std::string_view table, key;
+  double& (*of)(EffectParams&) noexcept;
+  double low, high;
+  LowEnd low_end = LowEnd::kIncluded;
+
+  [[nodiscard]] constexpr bool holds(double value) const noexcept {
+    return (low_end == LowEnd::kExcluded ? value > low : value >= low) && value <= high;
+  }
+};
+
+inline constexpr std::array kEffectNumbers = {
+    EffectNumber{"friction", "static",
+                 [](EffectParams& p) noexcept -> double& { return p.friction.static_coefficient; }, 0, 2},
+    EffectNumber{"friction", "dynamic",
+                 [](EffectParams& p) noexcept -> double& { return p.friction.dynamic_coefficient; }, 0, 2},
+    EffectNumber{"friction", "stiffness_n_per_mm",
+                 [](EffectParams& p) noexcept -> double& { return p.friction.stiffness_n_per_mm; }, 0, 1000,
+                 LowEnd::kExcluded},
+    EffectNumber{"viscosity", "damping_n_s_per_mm",
+                 [](EffectParams& p) noexcept -> double& { return p.viscosity.damping_n_s_per_mm; }, 0, 1},
+    EffectNumber{"edge_snap", "force_n",
+                 [](EffectParams& p) noexcept -> double& { return p.edge_snap.force_n; }, 0, 20},
+    EffectNumber{"edge_snap", "reach_mm",
+                 [](EffectParams& p) noexcept -> double& { return p.edge_snap.reach_mm; }, 0, 50,
+                 LowEnd::kExcluded},
+    EffectNumber{"texture", "amplitude_mm",
+                 [](EffectParams& p) noexcept -> double& { return p.texture.amplitude_mm; }, 0, 1},
+    EffectNumber{"texture", "wavelength_mm",
+                 [](EffectParams& p) noexcept -> double& { return p.texture.wavelength_mm; }, 0, 100,
+                 LowEnd::kExcluded},
+    EffectNumber{"gravity", "stylus_kg",
+                 [](EffectParams& p) noexcept -> double& { return p.gravity.stylus_kg; }, 0, 2},
+    EffectNumber{"coupling", "damping_n_s_per_mm",
+                 [](EffectParams& p) noexcept -> double& { return p.coupling.damping_n_s_per_mm; }, 0, 1},
+    EffectNumber{"passivity", "max_damping_n_s_per_mm",
+                 [](EffectParams& p) noexcept -> double& { return p.passivity.max_damping_n_s_per_mm; }, 0,
+                 1},
+    EffectNumber{"velocity", "filter_ms",
+                 [](EffectParams& p) noexcept -> double& { return p.velocity.filter_ms; }, 0, 50},
+};
+
+}  // namespace fettle::haptic
