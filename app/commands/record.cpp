@@ -58,17 +58,16 @@ struct ChosenDevice {
 
 engine::Result<ChosenDevice> choose(const RecordArguments& options, const haptic::Scene& scene) {
   ChosenDevice chosen;
-  if (options.device == "mouse")
-    return engine::inputError("the mouse needs a window", "--device mouse",
-                              "use another device; fettle devices lists them");
-  if (options.device == "hand")
-    return engine::inputError("the simulated hand needs a path", "--device hand",
-                              "name a strokes file: --device hand:STROKES");
-  for (const std::string_view head : {"hand:", "replay:"})
-    if (options.device.starts_with(head)) {
-      chosen.plays = true;
-      chosen.file = options.device.substr(head.size());
-    }
+  const haptic::NamedDriver named = haptic::driverNamed(options.device);
+  if (named.driver != nullptr && named.driver->needs_window)
+    return engine::inputError(fmt::format("the {} needs a window", options.device),
+                              "--device " + options.device, "use another device; fettle devices lists them");
+  chosen.plays = named.driver != nullptr && !named.driver->argument.empty();
+  if (chosen.plays) chosen.file = named.argument;
+  if (chosen.plays && chosen.file.empty())
+    return engine::inputError(fmt::format("the device {} needs strokes", options.device),
+                              "--device " + options.device,
+                              fmt::format("give --device {}:{}", options.device, named.driver->argument));
   if (chosen.plays) {
     const auto strokes = haptic::readStrokes(chosen.file);
     if (!strokes) return tl::unexpected(strokes.error());
@@ -79,7 +78,7 @@ engine::Result<ChosenDevice> choose(const RecordArguments& options, const haptic
   }
   const bool holds_up = std::find(scene.effects.begin(), scene.effects.end(), haptic::EffectKind::kGravity) !=
                         scene.effects.end();
-  if (holds_up && options.device.starts_with("hand:"))
+  if (holds_up && chosen.plays && named.driver->simulates_hand)
     warn(fmt::format(
         "the simulated hand holds no stylus, and gravity compensation for {:g} kg lifts it by {:.2g} mm",
         scene.params.gravity.stylus_kg,

@@ -57,11 +57,13 @@ haptic::MouseFeel feelFor(const engine::Grid& grid) {
 }  // namespace
 
 DeviceLoop::DeviceLoop(LoopClientOptions options, const engine::Version& original)
-    : options_(std::move(options)), original_(original) {}
+    : options_(std::move(options)),
+      driver_(haptic::driverNamed(options_.device).driver),
+      original_(original) {}
 
 engine::Status DeviceLoop::openDevice(haptic::Scene& scene) {
   const engine::Grid& grid = original_.grid();
-  if (options_.device == "mouse") {
+  if (driver_ != nullptr && driver_->needs_window) {
     auto mouse = std::make_unique<haptic::MouseStylus>(feelFor(grid));
     mouse_ = mouse.get();
     device_ = std::move(mouse);
@@ -85,7 +87,7 @@ engine::Status DeviceLoop::start(const Start& start, std::vector<Notice>& notice
   std::unique_ptr<haptic::Device> before;  // outlives the old loop, which startLoop() replaces
   engine::Status status;
   // Its virtual time is that of the loop's ticks: a new hand, at the start of its path.
-  if (loop_ && options_.device.rfind("hand:", 0) == 0) {
+  if (loop_ && simulatesHand()) {
     auto device = haptic::openDevice(options_.device, options_.rate_hz);
     if (device)
       before = std::exchange(device_, std::move(*device));
@@ -174,7 +176,7 @@ void DeviceLoop::disarm() {
 }
 
 bool DeviceLoop::armsItself() const {
-  return !device_->profile().gives_force || options_.device.rfind("hand", 0) == 0;
+  return !device_->profile().gives_force || simulatesHand();
 }
 
 bool DeviceLoop::atRest() {

@@ -9,6 +9,7 @@
 #include "app/work/notice.h"
 #include "engine/base/error.h"
 #include "haptic/devices/device.h"
+#include "haptic/devices/enumerate.h"
 #include "haptic/devices/virtual/mouse_stylus.h"
 #include "haptic/effects/stability.h"
 #include "haptic/loop/haptic_loop.h"
@@ -97,10 +98,12 @@ class DeviceLoop {
     void measure(const haptic::LoopState& state);
   };
   [[nodiscard]] engine::Status startLoop(const Start& start, std::vector<Notice>& notices);
+  [[nodiscard]] bool simulatesHand() const { return driver_ != nullptr && driver_->simulates_hand; }
   void armByItself(const haptic::LoopState& state);
   void watch(const haptic::LoopState& state, std::vector<Notice>& notices);
 
   LoopClientOptions options_;
+  const haptic::KnownDriver* driver_;  // null for a path
   engine::Version original_;
   std::unique_ptr<haptic::Device> device_;
   haptic::MouseStylus* mouse_ = nullptr;  // device_, when it is one

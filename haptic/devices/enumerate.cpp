@@ -42,6 +42,9 @@ DeviceProfile profileOf(DeviceKind kind) {
   return config ? woodenProfile(*config) : DeviceProfile{};
 }
 
+// Null for kOther.
+const KnownDriver* driverOf(DeviceKind kind);
+
 DeviceInfo describe(const HidInterface& i) {
   DeviceInfo d;
   switch (hidKind(i)) {
@@ -68,8 +71,9 @@ DeviceInfo describe(const HidInterface& i) {
   d.usage = i.usage;
   d.input_bytes = i.input_bytes;
   d.output_bytes = i.output_bytes;
-  d.gives_position = d.kind != DeviceKind::kOther;
-  d.gives_force = d.kind == DeviceKind::kWoodenHaptics;
+  const KnownDriver* const driver = driverOf(d.kind);
+  d.gives_position = driver != nullptr;
+  d.gives_force = driver != nullptr && driver->gives_force;
   if (d.gives_force) {
     if (const auto form = woodenFormOfSize(i.input_bytes)) d.form = *form == WoodenForm::kW8 ? "W8" : "P14";
   }
@@ -131,14 +135,27 @@ constexpr KnownDriver kDrivers[] = {
     {"spacemouse", "", "3Dconnexion SpaceMouse", DeviceKind::kSpaceMouse, false, false, openSpaceMouse},
     {"mouse", "", "mouse as a stylus", DeviceKind::kOther, false, true, openMouse},
     {"hand", "STROKES", "simulated hand in closed loop, on the way of a strokes file", DeviceKind::kOther,
-     true, false, openHand},
+     true, false, openHand, true},
     {"replay", "STROKES", "strokes file in real time", DeviceKind::kOther, false, false, openReplay},
 };
+
+const KnownDriver* driverOf(DeviceKind kind) {
+  const auto* const row = std::ranges::find(kDrivers, kind, &KnownDriver::kind);
+  return kind == DeviceKind::kOther ? nullptr : row;
+}
 
 }  // namespace
 
 std::span<const KnownDriver> knownDrivers() noexcept {
   return kDrivers;
+}
+
+NamedDriver driverNamed(std::string_view words) {
+  const std::size_t colon = words.find(':');
+  const bool has_argument = colon != std::string_view::npos;
+  const auto* const row = std::ranges::find(kDrivers, words.substr(0, colon), &KnownDriver::word);
+  if (row == std::end(kDrivers) || (has_argument && colon + 1 == words.size())) return {};
+  return {row, std::string(has_argument ? words.substr(colon + 1) : "")};
 }
 
 std::string driverWords() {
@@ -220,16 +237,11 @@ DeviceProblem deviceProblem(int open_error) {
 }
 
 engine::Result<std::unique_ptr<Device>> openDevice(const std::string& word, double loop_rate_hz) {
-  const std::size_t colon = word.find(':');
-  const std::string_view head = std::string_view(word).substr(0, colon);
-  const std::string rest = colon == std::string::npos ? std::string() : word.substr(colon + 1);
-  for (const KnownDriver& driver : kDrivers)
-    if (head == driver.word && (colon == std::string::npos || !rest.empty()))
-      return driver.open(rest, loop_rate_hz);
+  if (const NamedDriver named = driverNamed(word); named.driver != nullptr)
+    return named.driver->open(named.argument, loop_rate_hz);
   for (const DeviceInfo& d : listDevices()) {
     if (d.path != word) continue;
-    for (const KnownDriver& driver : kDrivers)
-      if (d.kind != DeviceKind::kOther && d.kind == driver.kind) return driver.open(word, loop_rate_hz);
+    if (const KnownDriver* const driver = driverOf(d.kind)) return driver->open(word, loop_rate_hz);
     return engine::inputError("there is no driver for this device", word, "see fettle devices");
   }
   return engine::inputError("there is no such device", word,

@@ -60,14 +60,22 @@ struct KnownDriver {
   /// Not started yet. `argument`: what the user gave after the colon, may be empty:
   /// of hardware a path or serial number, of others a strokes file.
   engine::Result<std::unique_ptr<Device>> (*open)(const std::string& argument, double loop_rate_hz);
+  bool simulates_hand = false;  ///< no person holds it, and its time is that of the loop's ticks
 };
 [[nodiscard]] std::span<const KnownDriver> knownDrivers() noexcept;
+
+/// The driver that a user's words name, with its argument; null for a path of listDevices() and for words that
+/// name none.
+struct NamedDriver {
+  const KnownDriver* driver = nullptr;
+  std::string argument;  ///< after the colon; empty where none is given
+};
+[[nodiscard]] NamedDriver driverNamed(std::string_view words);
 
 /// What a user may say: "woodenhaptics, serial, spacemouse, hand:STROKES, ...".
 [[nodiscard]] std::string driverWords();
 
-/// A device by the word a user gives, not started yet: a word of knownDrivers(), with its argument after a
-/// colon, or a path of listDevices().
+/// A device by the words a user gives, not started yet: those of driverNamed(), or a path of listDevices().
 /// A device that is not plugged in is no error, it may be plugged in later; a path that does not exist is
 /// one.
 /// Errors (kInput): an unknown word, a bad configuration or strokes file.
