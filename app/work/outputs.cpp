@@ -36,8 +36,7 @@ namespace {
 // Formats whose files are text.
 bool isText(const std::string& extension) {
   return std::ranges::any_of(engine::formats(), [&](const engine::FormatInfo& format) {
-    return (format.name == "XYZ" || format.name == "AAIGrid") &&
-           std::ranges::find(format.extensions, extension) != format.extensions.end();
+    return format.text && std::ranges::find(format.extensions, extension) != format.extensions.end();
   });
 }
 

@@ -46,26 +46,10 @@ namespace fettle::engine {
                                                            const ImportOptions& options,
                                                            std::int64_t max_samples, JobControl& job);
 
-/// Writes a field, its sign applied, in the format that the extension of `path` names (any case):
+/// Writes a field, its sign applied, in the format that the extension of `path` names (any case). What a
+/// format stores is stated at its writer and, for the user, in docs/formats.md.
 ///
-///   .tif .tiff  GeoTIFF, float32, compressed without loss if requested, geo-reference, CRS, units, holes =
-///               NaN, declared
-///   .asc        ESRI ASCII grid, every float with enough digits to be read back bit-identical, holes = a
-///               declared number (ESRI readers do not support NaN); anisotropic spacing as dx, dy; a
-///               coordinate system goes into a .prj file next to it, which is written before the grid
-///   .xyz        text, one "x y z" per sample that is not a hole, world coordinates, shortest exact digits;
-///               raster and units in comments
-///   .ply        binary little-endian points, double x and y, float z, world coordinates; raster and units in
-///               comments; with ExportOptions::mesh the surface: cells without a hole as triangles
-///   .stl        the surface as triangles, binary; x and y from the field's corner, float32, lateral unit
-///   .png        16-bit grey, 0 = hole, quantised: a warning states count and largest error
-///   .x3p        ISO 25178-72, metres: float32 where the field is in metres, otherwise float64, and every
-///               digit of units, spacing and origin in an entry of its own, so that each float is restored
-///   .exr        OpenEXR, channel Y, float32, holes = NaN; units, spacing, origin: an attribute of its own
-///   .fettle     a session (engine/session) that begins with this field, or with ExportOptions::original,
-///               marks and sign included, bit-identical
-///
-/// Other formats store no marks: these have their own file (marks.h). The file appears completely or not at
+/// Only sessions store marks; other formats have a file of marks (marks.h). The file appears completely or not at
 /// all (atomic_file.h). Errors: kInput for an unknown extension, a path that cannot be written; kFailed for a
 /// full disk; kCancelled. Thread: any; a long job.
 [[nodiscard]] Result<Exported> exportField(const Version& field, const std::string& path,

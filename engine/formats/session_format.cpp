@@ -57,6 +57,8 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
   return imported;
 }
 
+// A session (engine/session) that begins with this field, or with ExportOptions::original, marks and sign
+// included, bit-identical.
 Result<Exported> writeSession(const Version& field, const std::string& path, const ExportOptions& options,
                               JobControl& job) {
   // The original of a session is upright; an inverted field is one step from it.

@@ -82,6 +82,7 @@ struct FormatInfo {
   std::span<const std::string_view> extensions;  ///< with the dot, lower case; the first is the usual one
   bool reads = false;
   bool writes = false;
+  bool text = false;  ///< its files are text
 };
 
 }  // namespace fettle::engine

@@ -23,8 +23,12 @@ void importText(const std::string& extension, const std::string& bytes) {
 
 TEST(Damage, EveryFormatThatIsReadHasASeed) {
   const auto seeds = fuzzSeeds();
+  const std::string fuzzed = engine::readBytes(inSourceTree("tests/fuzz/extensions.txt"));
   for (const engine::FormatInfo& format : engine::formats()) {
     if (!format.reads || format.name == "Fettle") continue;
+    EXPECT_NE(("\n" + fuzzed).find("\n" + std::string(format.extensions.front().substr(1)) + "\n"),
+              std::string::npos)
+        << format.name << " is missing from tests/fuzz/extensions.txt";
     bool found = false;
     for (const auto& [extension, bytes] : seeds) found = found || extension == format.extensions.front();
     EXPECT_TRUE(found) << format.name;

@@ -7,6 +7,7 @@
 #include <imgui_stdlib.h>
 
 #include "app/window/panels/panels.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::app {
 namespace {
@@ -51,16 +52,27 @@ void fileList(std::string& path, float scale) {
   ImGui::EndChild();
 }
 
+// " .tif .png ...": the usual extension of each format that can be written, sessions left out.
+std::string writtenExtensions() {
+  std::string all;
+  for (const engine::FormatInfo& format : engine::formats()) {
+    const std::string extension(format.extensions.front());
+    if (format.writes && !isSessionPath("NAME" + extension)) all += " " + extension;
+  }
+  return all;
+}
+
 void formatHelp(const Question& question, bool& embeds) {
   ImGui::PushTextWrapPos(0.0F);
-  ImGui::TextDisabled(
-      "%s", question.kind == Kind::kSaveAs
-                ? "NAME.fettle keeps everything, each step as it is made. Other formats, by extension "
-                  ".tif .asc .xyz .ply .stl .x3p .exr .png, store the field, with its marks next to it as "
-                  "NAME_marks.png"
-                : "format by extension: .tif .asc .xyz .ply .stl .x3p .exr .png .fettle; marks are written "
-                  "next to it as "
-                  "NAME_marks.png");
+  const std::string text =
+      question.kind == Kind::kSaveAs
+          ? fmt::format(
+                "NAME.fettle keeps everything, each step as it is made. Other formats, by extension{}, "
+                "store the field, with its marks next to it as NAME_marks.png",
+                writtenExtensions())
+          : fmt::format("format by extension:{} .fettle; marks are written next to it as NAME_marks.png",
+                        writtenExtensions());
+  ImGui::TextDisabled("%s", text.c_str());
   ImGui::PopTextWrapPos();
   if (question.kind == Kind::kSaveAs && isSessionPath(question.path))
     ImGui::Checkbox("store the scan in the session", &embeds);

@@ -83,6 +83,7 @@ Status writeTriangles(const SurfaceMesh& mesh, TextWriter& out, std::uint64_t tr
 
 }  // namespace
 
+// The surface as triangles, binary; x and y from the field's corner, float32, lateral unit.
 Result<Exported> writeStl(const Version& field, const std::string& path, const ExportOptions& options,
                           JobControl& job) {
   const Grid& grid = field.grid();

@@ -66,6 +66,8 @@ std::int64_t pointsIn(const Version& field) {
 
 }  // namespace
 
+// One "x y z" per sample that is not a hole, world coordinates, shortest exact digits; raster and units in
+// comments.
 Result<Exported> writeXyz(const Version& field, const std::string& path, const ExportOptions&,
                           JobControl& job) {
   Result<AtomicFile> file = AtomicFile::create(path);
@@ -83,6 +85,8 @@ Result<Exported> writeXyz(const Version& field, const std::string& path, const E
   return Exported{"XYZ", whatIsLost(field)};
 }
 
+// Binary little-endian points, double x and y, float z, world coordinates; raster and units in comments;
+// with ExportOptions::mesh the surface: cells without a hole as triangles.
 Result<Exported> writePly(const Version& field, const std::string& path, const ExportOptions& options,
                           JobControl& job) {
   if (options.mesh || options.max_error) return writePlyMesh(field, path, options, job);

@@ -205,7 +205,7 @@ FormatWriter writeXyz;  // engine/io/mesh/points_export.cpp
 const Format& xyzFormat() {
   static constexpr std::string_view kExtensions[] = {".xyz", ".txt", ".csv", ".pts", ".dat"};
   static constexpr Format kFormat{
-      .info = {"XYZ", "text with x y z per line", kExtensions, true, true},
+      .info = {"XYZ", "text with x y z per line", kExtensions, true, true, true},
       .recognises = looksLikeXyz,
       .read = readXyz,
       .write = writeXyz,

@@ -87,6 +87,9 @@ std::vector<std::string> lostByAsciiGrid(const Grid& grid, bool system_kept) {
 
 }  // namespace
 
+// Every float with enough digits to be read back bit-identical, holes = a declared number (ESRI readers do
+// not support NaN); anisotropic spacing as dx, dy; a coordinate system goes into a .prj file next to it,
+// which is written before the grid.
 Result<Exported> writeAsciiGrid(const Version& field, const std::string& path, const ExportOptions&,
                                 JobControl& job) {
   Result<AtomicFile> file = AtomicFile::create(path);

@@ -201,7 +201,7 @@ FormatWriter writeAsciiGrid;  // ascii_grid_export.cpp
 const Format& asciiGridFormat() {
   static constexpr std::string_view kExtensions[] = {".asc", ".agr", ".grd"};
   static constexpr Format kFormat{
-      .info = {"AAIGrid", "ESRI ASCII grid", kExtensions, true, true},
+      .info = {"AAIGrid", "ESRI ASCII grid", kExtensions, true, true, true},
       .recognises = looksLikeAsciiGrid,
       .read = readAsciiGrid,
       .write = writeAsciiGrid,

@@ -53,6 +53,7 @@ Status writePicture(const Version& field, const std::string& path, JobControl& j
 
 }  // namespace
 
+// Channel Y, float32, holes = NaN; units, spacing, origin: an attribute of its own.
 Result<Exported> writeExr(const Version& field, const std::string& path, const ExportOptions&,
                           JobControl& job) {
   Result<AtomicFile> file = AtomicFile::create(path);

@@ -54,6 +54,7 @@ Result<Quantisation> chooseSteps(const Version& field, const ExportOptions& opti
 
 }  // namespace
 
+// 16-bit grey, 0 = hole, quantised: a warning states count and largest error.
 Result<Exported> writePng(const Version& field, const std::string& path, const ExportOptions& options,
                           JobControl& job) {
   const FieldReader reader = field.reader();

@@ -100,6 +100,8 @@ Status writeAll(const Version& field, ZipWriter& zip, JobControl& job) {
 
 }  // namespace
 
+// ISO 25178-72, metres: float32 where the field is in metres, otherwise float64, and every digit of units,
+// spacing and origin in an entry of its own, so that each float is restored.
 Result<Exported> writeX3p(const Version& field, const std::string& path, const ExportOptions&,
                           JobControl& job) {
   Result<AtomicFile> file = AtomicFile::create(path);

@@ -320,6 +320,7 @@ std::optional<TiffCompression> tiffCompressionFromName(std::string_view name) {
   return std::nullopt;
 }
 
+// GeoTIFF, float32, compressed without loss if requested, geo-reference, CRS, units, holes = NaN, declared.
 Result<Exported> writeTiff(const Version& field, const std::string& path, const ExportOptions& options,
                            JobControl& job) {
   Result<AtomicFile> file = AtomicFile::create(path);
