@@ -35,7 +35,7 @@ int reportUnwritten(const char* remedy) {
 int finish(int status) {
   const bool flushed = std::fflush(stdout) == 0;
   const int error = errno;
-  if (!flushed && error == ENOSPC) return reportUnwritten("the disk is full: make room on it");
+  if (!flushed && error == ENOSPC) return reportUnwritten("the disk is full: free space on it");
   if (!flushed || std::ferror(stdout) != 0) return reportUnwritten("");
   return status;
 }

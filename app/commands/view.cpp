@@ -55,10 +55,10 @@ void addView(Command root, Chosen& chosen) {
   command.option("SCAN", options->view.scan, "The scan to open; without it, drop one on the window");
   command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
   command
-      .option("--device", options->view.touch.device,
+      .option("--device", options->view.client.device,
               "An id of fettle devices or one of " + haptic::driverWords())
       .showDefault();
-  command.option("--rate", options->view.touch.rate_hz, "Ticks of the loop per second, 1000 to 10000")
+  command.option("--rate", options->view.client.rate_hz, "Ticks of the loop per second, 1000 to 10000")
       .check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
       .showDefault();
   command.option("--size", options->size, "Pixels of the window, WIDTHxHEIGHT").showDefault();

@@ -19,8 +19,8 @@ using haptic::Tool;
 inline constexpr double kKey_px = 40.0;    ///< by which an arrow key moves the view
 inline constexpr double kBrushStep = 1.0;  ///< [ and ] [samples]
 
-inline LoopClient& touchOf(Parts& p) {
-  return *p.document.touch();
+inline LoopClient& clientOf(Parts& p) {
+  return *p.document.client();
 }
 inline bool hasField(const Parts& p) {
   return p.document.isOpen();
@@ -63,13 +63,13 @@ inline void undo(Parts& p) {
   p.document.undo();
 }
 inline bool canUndo(const Parts& p) {
-  return hasField(p) && p.document.touch()->canUndo();
+  return hasField(p) && p.document.client()->canUndo();
 }
 inline void redo(Parts& p) {
-  touchOf(p).redo();
+  clientOf(p).redo();
 }
 inline bool canRedo(const Parts& p) {
-  return hasField(p) && p.document.touch()->canRedo();
+  return hasField(p) && p.document.client()->canRedo();
 }
 
 // --- Tool
@@ -77,12 +77,12 @@ inline bool canRedo(const Parts& p) {
 template <Tool tool>
 void choose(Parts& p) {
   // Painting over a suggestion accepts it first.
-  if (haptic::isMarkTool(tool)) (void)p.marking.edges.accept(touchOf(p));
+  if (haptic::isMarkTool(tool)) (void)p.marking.edges.accept(clientOf(p));
   p.chooseTool(tool);
 }
 template <Tool tool>
 bool chosen(const Parts& p) {
-  return p.stylus.on() && p.document.isOpen() && p.document.touch()->tool() == tool;
+  return p.stylus.on() && p.document.isOpen() && p.document.client()->tool() == tool;
 }
 
 // The last one begun ends first.
@@ -92,40 +92,40 @@ inline void navigate(Parts& p) {
   else if (p.marking.edges.on())
     p.marking.edges.drop();
   else if (!p.filters.variants().empty() || p.filters.computing() || p.filters.applying())
-    p.filters.cancel(touchOf(p));
+    p.filters.cancel(clientOf(p));
   else
     p.chooseTool(std::nullopt);
 }
 
 template <BrushAdjustment::Of of>
 void adjustBrush(Parts& p) {
-  p.brush.begin(of, touchOf(p), p.cursor.x);
+  p.brush.begin(of, clientOf(p), p.cursor.x);
 }
 template <int by>
 void resizeBrush(Parts& p) {
-  setBrushRadius(touchOf(p), brushRadius(touchOf(p)) + by * kBrushStep, p.feedback.notices);
+  setBrushRadius(clientOf(p), brushRadius(clientOf(p)) + by * kBrushStep, p.feedback.notices);
 }
 
 inline void keepWithin(Parts& p) {
-  haptic::Scene scene = touchOf(p).scene();
+  haptic::Scene scene = clientOf(p).scene();
   toggleLimit(scene.max_change, p.last_limit);
-  applyScene(touchOf(p), scene, p.feedback.notices);
+  applyScene(clientOf(p), scene, p.feedback.notices);
 }
 inline void invert(Parts& p) {
-  haptic::Scene scene = touchOf(p).scene();
+  haptic::Scene scene = clientOf(p).scene();
   scene.invert = !scene.invert;
-  p.filters.cancel(touchOf(p));
-  applyScene(touchOf(p), scene, p.feedback.notices);
+  p.filters.cancel(clientOf(p));
+  applyScene(clientOf(p), scene, p.feedback.notices);
 }
 
 inline bool navigates(const Parts& p) {
   return !p.stylus.on();
 }
 inline bool keepsWithin(const Parts& p) {
-  return hasField(p) && p.document.touch()->scene().max_change.has_value();
+  return hasField(p) && p.document.client()->scene().max_change.has_value();
 }
 inline bool isInverted(const Parts& p) {
-  return hasField(p) && p.document.touch()->scene().invert;
+  return hasField(p) && p.document.client()->scene().invert;
 }
 
 // --- Marks
@@ -141,15 +141,15 @@ bool isLasso(const Parts& p) {
 }
 inline void suggestEdges(Parts& p) {
   p.settings.display.marks = true;
-  p.marking.edges.search(touchOf(p));
+  p.marking.edges.search(clientOf(p));
 }
 template <int steps>
 void sensitivity(Parts& p) {
-  p.marking.turnChoice(&engine::EdgeChoice::sensitivity, 0.05 * steps, 1.0, touchOf(p));
+  p.marking.turnChoice(&engine::EdgeChoice::sensitivity, 0.05 * steps, 1.0, clientOf(p));
 }
 template <int steps>
 void thickness(Parts& p) {
-  p.marking.turnChoice(&engine::EdgeChoice::thickness, 1.0 * steps, 64.0, touchOf(p));
+  p.marking.turnChoice(&engine::EdgeChoice::thickness, 1.0 * steps, 64.0, clientOf(p));
 }
 
 inline void invertMarks(Parts& p) {
@@ -159,10 +159,10 @@ inline void clearMarks(Parts& p) {
   p.marking.edit.ask("Clear marks", engine::clearMarks);
 }
 inline void coarserEdges(Parts& p) {
-  p.marking.scaleEdges(1.25, touchOf(p));
+  p.marking.scaleEdges(1.25, clientOf(p));
 }
 inline void finerEdges(Parts& p) {
-  p.marking.scaleEdges(0.8, touchOf(p));
+  p.marking.scaleEdges(0.8, clientOf(p));
 }
 
 // --- Filter
@@ -174,8 +174,8 @@ inline void nextFilter(Parts& p) {
 }
 template <FilterPreview::Keep keep>
 void preview(Parts& p) {
-  const LoopClient& touch = touchOf(p);
-  p.filters.compute(touchOf(p), keep, p.picture.seenPart(touch.field().grid(), p.view));
+  const LoopClient& client = clientOf(p);
+  p.filters.compute(clientOf(p), keep, p.picture.seenPart(client.field().grid(), p.view));
 }
 inline void dropPreview(Parts& p) {
   if (!p.filters.variants().empty()) p.filters.drop(p.filters.variants().size() - 1);
@@ -195,7 +195,7 @@ inline void changeScope(Parts& p) {
   p.filters.spec.scope = onlyMarks(p) ? engine::FilterScope::kKeepMarks : engine::FilterScope::kOnlyMarks;
 }
 inline void apply(Parts& p) {
-  if (!p.marking.edges.accept(touchOf(p)) && !p.filters.variants().empty()) p.filters.apply(touchOf(p));
+  if (!p.marking.edges.accept(clientOf(p)) && !p.filters.variants().empty()) p.filters.apply(clientOf(p));
 }
 template <int steps>
 void moveSplit(Parts& p) {
@@ -245,8 +245,8 @@ void liftLight(Parts& p) {
   elevation = std::clamp(elevation + static_cast<float>(degrees), 5.0F, 90.0F);
 }
 inline void lastStroke(Parts& p) {
-  const engine::SampleRect rect = touchOf(p).lastRect();
-  const engine::Grid& grid = touchOf(p).field().grid();
+  const engine::SampleRect rect = clientOf(p).lastRect();
+  const engine::Grid& grid = clientOf(p).field().grid();
   if (!rect.empty())
     Navigation::centreOn(p.view, grid, (rect.column + 0.5 * rect.columns) * grid.spacingXMm(),
                          (rect.row + 0.5 * rect.rows) * grid.spacingYMm());
@@ -305,13 +305,13 @@ inline bool hasSidePanel(const Parts& p) {
 // --- Device, Help
 
 inline void arm(Parts& p) {
-  touchOf(p).arm();
+  clientOf(p).arm();
 }
 inline void disarm(Parts& p) {
-  touchOf(p).disarm();
+  clientOf(p).disarm();
 }
 inline void calibrate(Parts& p) {
-  touchOf(p).calibrate();
+  clientOf(p).calibrate();
 }
 inline void listShortcuts(Parts& p) {
   ask(p, Question::Kind::kShortcuts);

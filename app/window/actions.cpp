@@ -89,7 +89,7 @@ constexpr ActionRow kRows[] = {
               nextFilter},
     ActionRow{Action::kFilterPreview, "Filter", "Preview", letter('P'), kPlain, kNoKey, kSecond, kField,
               preview<FilterPreview::Keep::kReplace>},
-    ActionRow{Action::kFilterBeside, "Filter", "Preview next to the others", letter('V'), kPlain, kNoKey,
+    ActionRow{Action::kFilterAdd, "Filter", "Preview next to the others", letter('V'), kPlain, kNoKey,
               kSecond, kField, preview<FilterPreview::Keep::kAdd>},
     ActionRow{Action::kFilterDrop, "Filter", "Drop the newest preview", letter('V'), kShift, Key::kDelete,
               kSecond, kField, dropPreview, nullptr, hasPreview},

@@ -46,7 +46,7 @@ enum class Action : std::uint8_t {
   kEdgesFiner,
   kFilterNext,
   kFilterPreview,
-  kFilterBeside,
+  kFilterAdd,
   kFilterDrop,
   kWindowLarger,
   kWindowSmaller,

@@ -42,12 +42,12 @@ engine::Status ActiveDocument::open(Document& document, const std::optional<hapt
   const haptic::Scene first = firstScene(document, scene, options);
   const engine::History history = document.history;
   keeper_ = std::make_unique<SessionKeeper>(document);
-  auto touch = LoopClient::start(history, document.original, first, options, keeper_.get());
-  if (!touch) {
+  auto client = LoopClient::start(history, document.original, first, options, keeper_.get());
+  if (!client) {
     keeper_.reset();
-    return tl::unexpected(touch.error());
+    return tl::unexpected(client.error());
   }
-  loop_ = std::move(*touch);
+  loop_ = std::move(*client);
   path_ = document.path;
   // Recovered work is not saved yet.
   saved_ = document.recovered ? document.original : history.current();

@@ -28,7 +28,7 @@ class ActiveDocument {
 
   [[nodiscard]] bool isOpen() const noexcept { return loop_ != nullptr; }
   /// Null while none is open.
-  [[nodiscard]] LoopClient* touch() const noexcept { return loop_.get(); }
+  [[nodiscard]] LoopClient* client() const noexcept { return loop_.get(); }
   [[nodiscard]] SessionKeeper* keeper() const noexcept { return keeper_.get(); }
   /// Of the scan or session, the last one that was open; empty before the first.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }

@@ -16,18 +16,18 @@ constexpr double kDepth_px = 20.0;  // ... for a tenth of the largest depth
 
 }  // namespace
 
-void BrushAdjustment::begin(Of of, LoopClient& touch, double cursor_x) {
-  const haptic::MouseStylus* const mouse = touch.mouse();
+void BrushAdjustment::begin(Of of, LoopClient& client, double cursor_x) {
+  const haptic::MouseStylus* const mouse = client.mouse();
   if (of == Of::kDepth && mouse == nullptr) return;
   of_ = of;
   press_mm_ = mouse != nullptr ? mouse->pressMm() : 0.0;
-  from_ = of == Of::kRadius ? brushRadius(touch) : press_mm_;
+  from_ = of == Of::kRadius ? brushRadius(client) : press_mm_;
   from_x_ = cursor_x;
   typed_.clear();
 }
 
-void BrushAdjustment::set(LoopClient& touch, double value, std::vector<Notice>& notices) const {
-  of_ == Of::kRadius ? setBrushRadius(touch, value, notices) : setPressDepth(touch, value);
+void BrushAdjustment::set(LoopClient& client, double value, std::vector<Notice>& notices) const {
+  of_ == Of::kRadius ? setBrushRadius(client, value, notices) : setPressDepth(client, value);
 }
 
 void BrushAdjustment::end() {
@@ -35,8 +35,8 @@ void BrushAdjustment::end() {
   typed_.clear();
 }
 
-void BrushAdjustment::leave(LoopClient& touch, std::vector<Notice>& notices) {
-  if (active()) set(touch, from_, notices);
+void BrushAdjustment::leave(LoopClient& client, std::vector<Notice>& notices) {
+  if (active()) set(client, from_, notices);
   end();
 }
 
@@ -56,7 +56,7 @@ bool BrushAdjustment::typeKey(Key key) {
   return true;
 }
 
-bool BrushAdjustment::handle(const render::InputEvent& event, LoopClient& touch,
+bool BrushAdjustment::handle(const render::InputEvent& event, LoopClient& client,
                              std::vector<Notice>& notices) {
   switch (event.kind) {
     case InputKind::kMove: {
@@ -64,23 +64,23 @@ bool BrushAdjustment::handle(const render::InputEvent& event, LoopClient& touch,
       const double moved_px = event.x - from_x_;
       const double change =
           of_ == Of::kRadius ? std::round(moved_px / kRadius_px) : moved_px / kDepth_px * 0.1 * press_mm_;
-      set(touch, from_ + change, notices);
+      set(client, from_ + change, notices);
       return true;
     }
     case InputKind::kButtonDown:
-      if (event.button == render::MouseButton::kRight) set(touch, from_, notices);
+      if (event.button == render::MouseButton::kRight) set(client, from_, notices);
       end();
       return true;
     case InputKind::kKeyDown:
       if (typeKey(event.key)) {
-        if (!typed_.empty()) set(touch, std::strtod(typed_.c_str(), nullptr), notices);
+        if (!typed_.empty()) set(client, std::strtod(typed_.c_str(), nullptr), notices);
         return true;
       }
       if (event.key == Key::kEnter || event.key == Key::kKeypadEnter) {
         end();
         return true;
       }
-      leave(touch, notices);
+      leave(client, notices);
       return event.key == Key::kEscape;
     default:
       return event.kind != InputKind::kWheel;

@@ -16,11 +16,11 @@ class BrushAdjustment {
   enum class Of : std::uint8_t { kNothing, kRadius, kDepth };
 
   /// kDepth needs a mouse; without one nothing begins.
-  void begin(Of of, LoopClient& touch, double cursor_x);
+  void begin(Of of, LoopClient& client, double cursor_x);
   /// Whether the event was used.
-  bool handle(const render::InputEvent& event, LoopClient& touch, std::vector<Notice>& notices);
+  bool handle(const render::InputEvent& event, LoopClient& client, std::vector<Notice>& notices);
   /// Cancels: restores the previous value.
-  void leave(LoopClient& touch, std::vector<Notice>& notices);
+  void leave(LoopClient& client, std::vector<Notice>& notices);
 
   [[nodiscard]] Of of() const noexcept { return of_; }
   [[nodiscard]] bool active() const noexcept { return of_ != Of::kNothing; }
@@ -28,7 +28,7 @@ class BrushAdjustment {
   [[nodiscard]] const std::string& typed() const noexcept { return typed_; }
 
  private:
-  void set(LoopClient& touch, double value, std::vector<Notice>& notices) const;
+  void set(LoopClient& client, double value, std::vector<Notice>& notices) const;
   bool typeKey(render::Key key);
   void end();
 

@@ -8,13 +8,13 @@ void ChangeFigures::begin(const engine::Version& original) {
   exact_.reset();
 }
 
-bool ChangeFigures::poll(const LoopClient& touch, bool working) {
-  const bool changed = live_.poll(touch);
+bool ChangeFigures::poll(const LoopClient& client, bool working) {
+  const bool changed = live_.poll(client);
   if (auto done = measuring_.take(); done && *done) exact_ = **done;
-  const engine::Version now = touch.upright();
+  const engine::Version now = client.upright();
   if (!measuring_.busy() && !(measured_ == now) && !working) {
     measured_ = now;
-    measuring_.start([original = touch.original(), now](engine::JobControl& job) {
+    measuring_.start([original = client.original(), now](engine::JobControl& job) {
       return engine::compareFields(original, now, job);
     });
   }

@@ -16,7 +16,7 @@ class ChangeFigures {
   void begin(const engine::Version& original);
   /// Takes results, starts on new states; `working`: a stroke is running. True when something visible
   /// changed.
-  [[nodiscard]] bool poll(const LoopClient& touch, bool working);
+  [[nodiscard]] bool poll(const LoopClient& client, bool working);
   void cancel() { measuring_.cancel(); }
 
   [[nodiscard]] const std::optional<engine::LiveFigures>& live() const noexcept { return live_.figures(); }

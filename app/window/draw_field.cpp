@@ -34,10 +34,10 @@ render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, b
 }
 
 render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& previews) {
-  const LoopClient& touch = *parts.document.touch();
+  const LoopClient& client = *parts.document.client();
   const Display& display = parts.settings.display;
   render::Shown shown;
-  shown.versions.push_back(parts.marking.edges.over(touch.field()));
+  shown.versions.push_back(parts.marking.edges.over(client.field()));
   // All with the same sign: the loop inverts the field some ticks after the scene was changed, and a preview
   // may have been computed before that.
   const float sign = shown.versions.front().reader().sign();
@@ -45,9 +45,9 @@ render::Shown shownOf(Parts& parts, const std::vector<FilterPreview::Picture>& p
     return v.reader().sign() == sign ? v : v.inverted();
   };
   for (const FilterPreview::Picture& preview : previews) shown.versions.push_back(likeField(preview.field));
-  if (display.deviation) shown.original = likeField(touch.original());
+  if (display.deviation) shown.original = likeField(client.original());
   shown.marks = display.marks ? render::MarksOverlay::kShow : render::MarksOverlay::kHide;
-  if (parts.marking.edges.suggestion() != nullptr) shown.accepted = touch.field();
+  if (parts.marking.edges.suggestion() != nullptr) shown.accepted = client.field();
   return shown;
 }
 
@@ -64,8 +64,8 @@ void addTitles(const std::vector<FilterPreview::Picture>& previews, render::Fram
 
 void drawField(Parts& parts, bool sharp_motion) {
   WindowPicture& picture = parts.picture;
-  LoopClient& touch = *parts.document.touch();
-  const haptic::LoopState state = touch.state();
+  LoopClient& client = *parts.document.client();
+  const haptic::LoopState state = client.state();
   if (parts.stylus_overlay.moved(state, picture.mmPerPixel())) picture.requestRedraw();
   picture.fit(parts.view);
   const std::vector<FilterPreview::Picture> previews = parts.filters.pictures();
@@ -79,13 +79,13 @@ void drawField(Parts& parts, bool sharp_motion) {
 
   render::FrameInput input = frameInput(parts, sharpness, sharp_motion);
   addTitles(previews, input);
-  const bool stylus = parts.stylus.on() || touch.mouse() == nullptr;
+  const bool stylus = parts.stylus.on() || client.mouse() == nullptr;
   if (stylus && state.link == haptic::LinkState::kConnected)
-    StylusOverlay::append(touch, state, picture.mmPerPixel(), input.overlays);
+    StylusOverlay::append(client, state, picture.mmPerPixel(), input.overlays);
   parts.stylus_overlay.begin(state);
   if (!picture.draw(std::move(input), Draws::kRefined, parts.feedback.status)) return;
   parts.stylus_overlay.drawn();
-  touch.setView(parts.view.azimuth_deg, parts.view.zoom);
+  client.setView(parts.view.azimuth_deg, parts.view.zoom);
 }
 
 void drawCoarse(Parts& parts, bool sharp_motion) {

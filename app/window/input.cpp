@@ -13,12 +13,12 @@ using render::Key;
 
 // Input that cannot wait for the next frame: the mouse as stylus.
 void toStylus(const InputEvent& event, Parts& parts) {
-  LoopClient* const touch = parts.document.touch();
-  if (touch == nullptr || parts.marking.lasso().active()) return;
+  LoopClient* const client = parts.document.client();
+  if (client == nullptr || parts.marking.lasso().active()) return;
   const Stylus::Hands hands = parts.feedback.questions.pending()            ? Stylus::Hands::kNone
                               : parts.drag.active() || parts.brush.active() ? Stylus::Hands::kOther
                                                                             : Stylus::Hands::kFree;
-  parts.stylus.handle(event, *touch, parts.picture, hands);
+  parts.stylus.handle(event, *client, parts.picture, hands);
 }
 
 Input::Request handleKey(const InputEvent& event, Parts& parts) {
@@ -39,8 +39,8 @@ Input::Request handleKey(const InputEvent& event, Parts& parts) {
 
 // The wheel sets the press depth of the stylus.
 bool pressesDeeper(const InputEvent& event, const Parts& parts) {
-  LoopClient* const touch = parts.document.touch();
-  return event.kind == InputKind::kWheel && touch != nullptr && touch->mouse() != nullptr &&
+  LoopClient* const client = parts.document.client();
+  return event.kind == InputKind::kWheel && client != nullptr && client->mouse() != nullptr &&
          parts.stylus.on() && (parts.stylus.held() || event.modifiers.control);
 }
 
@@ -52,7 +52,7 @@ void Input::disarmAtOnce(const InputEvent& event, Parts& parts) {
   const Questions& questions = parts.feedback.questions;
   const bool typing = ImGui::GetIO().WantTextInput && (questions.pending() || !questions.justClosed());
   if (!disarms(event.key, event.modifiers, typing ? Typing::kYes : Typing::kNo)) return;
-  parts.document.touch()->disarm();
+  parts.document.client()->disarm();
   // Keys pressed earlier but not processed yet must not arm after it.
   for (Pending& before : queue_)
     if (actionOf(before.event.key, before.event.modifiers) == Action::kArm) before.event.key = Key::kNone;
@@ -91,19 +91,19 @@ std::optional<InputEvent> Input::next(Parts& parts) {
 }
 
 Input::Request Input::handle(const InputEvent& event, Parts& parts) {
-  LoopClient* const touch = parts.document.touch();
+  LoopClient* const client = parts.document.client();
   const bool dialog = parts.feedback.questions.pending();
-  if (touch != nullptr && parts.brush.active() && parts.brush.handle(event, *touch, parts.feedback.notices))
+  if (client != nullptr && parts.brush.active() && parts.brush.handle(event, *client, parts.feedback.notices))
     return {};
-  if (touch != nullptr && parts.marking.lasso().active() && !dialog &&
+  if (client != nullptr && parts.marking.lasso().active() && !dialog &&
       parts.marking.handle(event,
-                           {*touch, parts.picture, parts.view, parts.settings.display, parts.drag.active()}))
+                           {*client, parts.picture, parts.view, parts.settings.display, parts.drag.active()}))
     return {};
   if (event.kind == InputKind::kKeyDown) return handleKey(event, parts);
   const engine::Grid* const grid = parts.seenGrid();
   if (grid == nullptr || dialog) return {};
   if (pressesDeeper(event, parts)) {
-    if (!event.panels_mouse && parts.picture.inside(event.x, event.y)) touch->mouse()->wheel(event.wheel);
+    if (!event.panels_mouse && parts.picture.inside(event.x, event.y)) client->mouse()->wheel(event.wheel);
     return {};
   }
   parts.drag.handle(event, parts.cursor, parts.stylus.on(),

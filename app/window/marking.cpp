@@ -43,7 +43,7 @@ void Marking::finish(engine::MarkChange change, const Scope& scope) {
   }
   const std::string name = std::string(lasso_.shape() == Lasso::Shape::kBox ? "Box" : "Lasso") +
                            (change == engine::MarkChange::kUnmark ? ", unmark" : "");
-  const engine::Version& field = scope.touch.field();
+  const engine::Version& field = scope.client.field();
   engine::Polygon polygon = lasso_.finish(
       field.grid(), [&](const glm::dvec2& pixel) { return scope.picture.fieldAt(pixel, field, scope.view); });
   scope.display.marks = true;
@@ -118,21 +118,21 @@ bool Marking::handleKey(const render::InputEvent& event, const Scope& scope) {
 }
 
 void Marking::turnChoice(double engine::EdgeChoice::*number, double by, double high,
-                         const LoopClient& touch) {
+                         const LoopClient& client) {
   double& value = edges.choice.*number;
   value = std::clamp(value + by, 0.0, high);
-  edges.redraw(touch);
+  edges.redraw(client);
 }
 
-void Marking::scaleEdges(double factor, const LoopClient& touch) {
+void Marking::scaleEdges(double factor, const LoopClient& client) {
   using engine::EdgeResponse;
   edges.sigma = std::clamp(edges.sigma * factor, EdgeResponse::kSmallestSigma, EdgeResponse::kLargestSigma);
-  if (edges.on()) edges.search(touch);
+  if (edges.on()) edges.search(client);
 }
 
-bool Marking::poll(LoopClient& touch, std::vector<Notice>& notices) {
-  const bool marked = edit.poll(touch, notices);
-  return edges.poll(touch, notices) || marked;
+bool Marking::poll(LoopClient& client, std::vector<Notice>& notices) {
+  const bool marked = edit.poll(client, notices);
+  return edges.poll(client, notices) || marked;
 }
 
 void Marking::reset() {

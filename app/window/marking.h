@@ -14,7 +14,7 @@ class Marking {
  public:
   /// The environment of the lasso.
   struct Scope {
-    const LoopClient& touch;
+    const LoopClient& client;
     const WindowPicture& picture;
     const render::View& view;
     Display& display;
@@ -33,12 +33,12 @@ class Marking {
   [[nodiscard]] bool held() const noexcept { return held_ && lasso_.active(); }
 
   /// Changes a number of the edges' choice, within its range, and follows the result.
-  void turnChoice(double engine::EdgeChoice::*number, double by, double high, const LoopClient& touch);
+  void turnChoice(double engine::EdgeChoice::*number, double by, double high, const LoopClient& client);
   /// Changes the scale: searches again if edges are being searched.
-  void scaleEdges(double factor, const LoopClient& touch);
+  void scaleEdges(double factor, const LoopClient& client);
 
   /// Takes results. True when something visible changed.
-  [[nodiscard]] bool poll(LoopClient& touch, std::vector<Notice>& notices);
+  [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
   /// Another field was opened.
   void reset();
   [[nodiscard]] bool busy() const noexcept { return edit.busy() || edges.busy(); }

@@ -7,7 +7,7 @@
 namespace fettle::app {
 
 const engine::Grid* Parts::seenGrid() const {
-  if (document.isOpen()) return &document.touch()->field().grid();
+  if (document.isOpen()) return &document.client()->field().grid();
   return opening.coarse() != nullptr ? &opening.coarse()->field.grid() : nullptr;
 }
 
@@ -18,7 +18,7 @@ bool Parts::coarseIsShown() const {
 bool Parts::announcesPicture() const {
   constexpr std::int64_t kAtOnce = std::int64_t{1} << 20;  // samples
   return document.isOpen() && picture.empty() && !opening.announced() &&
-         document.touch()->field().grid().samples() > kAtOnce;
+         document.client()->field().grid().samples() > kAtOnce;
 }
 
 bool Parts::held() const {
@@ -27,15 +27,15 @@ bool Parts::held() const {
 
 void Parts::chooseTool(std::optional<haptic::Tool> tool) {
   marking.leaveLasso();
-  stylus.choose(tool, *document.touch(), picture, cursor);
+  stylus.choose(tool, *document.client(), picture, cursor);
 }
 
 void Parts::releaseHands() {
   drag.stop();
   marking.release();
-  LoopClient* const touch = document.touch();
-  if (touch != nullptr) brush.leave(*touch, feedback.notices);
-  stylus.release(touch);
+  LoopClient* const client = document.client();
+  if (client != nullptr) brush.leave(*client, feedback.notices);
+  stylus.release(client);
 }
 
 void Parts::leavePanels() {
@@ -54,7 +54,7 @@ void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {
   if (!document.isOpen()) return;
   releaseHands();
   feedback.questions.dropOfField();
-  filters.finish(*document.touch());
+  filters.finish(*document.client());
   marking.reset();
   change.cancel();
   costs.reset();

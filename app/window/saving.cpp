@@ -40,7 +40,7 @@ std::vector<std::string> outputsOf(const std::string& path, Saving::Keeping keep
         keeping == Saving::Keeping::kWorkThere && fs::equivalent(path, document.keeper()->path(), none);
     return itself ? std::vector<std::string>() : std::vector{path};
   }
-  if (anyMark(document.touch()->upright())) return {path, marksPath(path)};
+  if (anyMark(document.client()->upright())) return {path, marksPath(path)};
   return {path};
 }
 
@@ -130,15 +130,15 @@ void Saving::start(const std::string& path, Keeping keeping, Afterwards afterwar
 }
 
 void Saving::write(ActiveDocument& document) {
-  LoopClient& touch = *document.touch();
+  LoopClient& client = *document.client();
   if (isSessionPath(target_) && keeping_ == Keeping::kWorkThere) {
-    touch.poll();
+    client.poll();
     document.keeper()->saveAs(
         target_, embeds ? engine::OriginalStorage::kEmbedded : engine::OriginalStorage::kReferenced);
     return;
   }
   outputs_ = outputsOf(target_, keeping_, document);
-  writing_.start([path = target_, outputs = outputs_, field = touch.upright(), original = touch.original()](
+  writing_.start([path = target_, outputs = outputs_, field = client.upright(), original = client.original()](
                      engine::JobControl& job) { return writeFiles(path, outputs, field, original, job); });
 }
 

@@ -7,35 +7,35 @@
 
 namespace fettle::app {
 
-void applyScene(LoopClient& touch, const haptic::Scene& scene, std::vector<Notice>& notices) {
-  const engine::Status taken = touch.setScene(scene);
+void applyScene(LoopClient& client, const haptic::Scene& scene, std::vector<Notice>& notices) {
+  const engine::Status taken = client.setScene(scene);
   if (!taken) notices.push_back({taken.error().what, taken.error().remedy});
 }
 
-void noteWithoutForce(const LoopClient& touch, std::vector<Notice>& notices) {
-  if (touch.device().profile().gives_force) return;
-  if (const auto problem = problemOnEveryDevice(touch.scene(), touch.field().grid(), touch.rate()))
+void noteWithoutForce(const LoopClient& client, std::vector<Notice>& notices) {
+  if (client.device().profile().gives_force) return;
+  if (const auto problem = problemOnEveryDevice(client.scene(), client.field().grid(), client.rate()))
     notices.push_back({withoutForceText(*problem), ""});
 }
 
-double brushRadius(const LoopClient& touch) {
-  return touch.scene().*haptic::brushRadiusOf(touch.tool());
+double brushRadius(const LoopClient& client) {
+  return client.scene().*haptic::brushRadiusOf(client.tool());
 }
 
-void setBrushRadius(LoopClient& touch, double samples, std::vector<Notice>& notices) {
+void setBrushRadius(LoopClient& client, double samples, std::vector<Notice>& notices) {
   if (!std::isfinite(samples)) return;
-  haptic::Scene scene = touch.scene();
+  haptic::Scene scene = client.scene();
   const double radius = std::clamp(samples, 0.0, haptic::kMaxBrushRadius);
-  double& of_tool = scene.*haptic::brushRadiusOf(touch.tool());
+  double& of_tool = scene.*haptic::brushRadiusOf(client.tool());
   if (of_tool == radius) return;
   of_tool = radius;
-  applyScene(touch, scene, notices);
+  applyScene(client, scene, notices);
 }
 
-void setPressDepth(LoopClient& touch, double depth_mm) {
-  if (touch.mouse() == nullptr || !std::isfinite(depth_mm)) return;
-  haptic::MouseStylus& mouse = *touch.mouse();
-  const engine::Grid& grid = touch.field().grid();
+void setPressDepth(LoopClient& client, double depth_mm) {
+  if (client.mouse() == nullptr || !std::isfinite(depth_mm)) return;
+  haptic::MouseStylus& mouse = *client.mouse();
+  const engine::Grid& grid = client.field().grid();
   const double step = 0.1 * std::max(grid.spacingXMm(), grid.spacingYMm());  // of LoopClient's mouse
   mouse.wheel((mouse.pressMm() - depth_mm) / step);
 }

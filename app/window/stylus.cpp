@@ -11,17 +11,17 @@ using render::MouseButton;
 
 }  // namespace
 
-void Stylus::choose(std::optional<Tool> tool, LoopClient& touch, const WindowPicture& picture,
+void Stylus::choose(std::optional<Tool> tool, LoopClient& client, const WindowPicture& picture,
                     const glm::dvec2& cursor) {
   on_ = tool.has_value();
   turned_.reset();
-  touch.setTool(tool.value_or(Tool::kFeel));
-  if (touch.mouse() == nullptr) return;
+  client.setTool(tool.value_or(Tool::kFeel));
+  if (client.mouse() == nullptr) return;
   if (!on_) {
-    lift(*touch.mouse());
+    lift(*client.mouse());
   } else if (picture.inside(cursor.x, cursor.y)) {
     under_cursor_ = picture.pick(cursor.x, cursor.y);
-    if (under_cursor_) touch.mouse()->setCursor(under_cursor_->position_mm);
+    if (under_cursor_) client.mouse()->setCursor(under_cursor_->position_mm);
   }
 }
 
@@ -31,21 +31,21 @@ void Stylus::lift(haptic::MouseStylus& mouse) {
   held_ = false;
 }
 
-void Stylus::turnBack(LoopClient& touch) {
-  if (turned_) touch.setTool(*std::exchange(turned_, std::nullopt));
+void Stylus::turnBack(LoopClient& client) {
+  if (turned_) client.setTool(*std::exchange(turned_, std::nullopt));
 }
 
-void Stylus::release(LoopClient* touch) {
+void Stylus::release(LoopClient* client) {
   held_ = false;
-  if (touch == nullptr) return;
-  if (touch->mouse() != nullptr) lift(*touch->mouse());
-  turnBack(*touch);
+  if (client == nullptr) return;
+  if (client->mouse() != nullptr) lift(*client->mouse());
+  turnBack(*client);
 }
 
-void Stylus::handle(const render::InputEvent& event, LoopClient& touch, const WindowPicture& picture,
+void Stylus::handle(const render::InputEvent& event, LoopClient& client, const WindowPicture& picture,
                     Hands hands) {
-  if (touch.mouse() == nullptr) return;
-  haptic::MouseStylus& mouse = *touch.mouse();
+  if (client.mouse() == nullptr) return;
+  haptic::MouseStylus& mouse = *client.mouse();
   if (!on_ || hands == Hands::kNone) {
     lift(mouse);
     return;
@@ -53,7 +53,7 @@ void Stylus::handle(const render::InputEvent& event, LoopClient& touch, const Wi
   if (event.kind == InputKind::kButtonUp && event.button == MouseButton::kLeft) {
     mouse.release();
     held_ = false;
-    turnBack(touch);
+    turnBack(client);
     return;
   }
   if (event.kind == InputKind::kLeave) {
@@ -74,18 +74,18 @@ void Stylus::handle(const render::InputEvent& event, LoopClient& touch, const Wi
   }
   mouse.setCursor(under_cursor_->position_mm);
   if (event.kind == InputKind::kButtonDown && event.button == MouseButton::kLeft && !event.modifiers.alt)
-    press(event, touch);
+    press(event, client);
 }
 
-void Stylus::press(const render::InputEvent& event, LoopClient& touch) {
+void Stylus::press(const render::InputEvent& event, LoopClient& client) {
   held_ = true;
-  const Tool chosen = turned_.value_or(touch.tool());
+  const Tool chosen = turned_.value_or(client.tool());
   const Tool tool = event.modifiers.control ? haptic::rowOf(chosen).opposite : chosen;
-  if (tool != touch.tool()) {
-    turned_ = touch.tool();
-    touch.setTool(tool);
+  if (tool != client.tool()) {
+    turned_ = client.tool();
+    client.setTool(tool);
   }
-  touch.mouse()->press(tool);
+  client.mouse()->press(tool);
 }
 
 }  // namespace fettle::app

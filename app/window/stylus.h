@@ -15,16 +15,16 @@ class Stylus {
  public:
   /// Switches a tool on, or all off: then the mouse moves the view. The tool is applied immediately at the
   /// cursor.
-  void choose(std::optional<haptic::Tool> tool, LoopClient& touch, const WindowPicture& picture,
+  void choose(std::optional<haptic::Tool> tool, LoopClient& client, const WindowPicture& picture,
               const glm::dvec2& cursor);
   [[nodiscard]] bool on() const noexcept { return on_; }
 
   /// `kNone`: a dialog has the input; `kOther`: it turns the view or sets the brush.
   enum class Hands : std::uint8_t { kFree, kOther, kNone };
   /// Handles input that cannot wait for the next frame.
-  void handle(const render::InputEvent& event, LoopClient& touch, const WindowPicture& picture, Hands hands);
-  /// Lifts the stylus off the surface and undoes a change of tool by Ctrl. `touch`: null where none is open.
-  void release(LoopClient* touch);
+  void handle(const render::InputEvent& event, LoopClient& client, const WindowPicture& picture, Hands hands);
+  /// Lifts the stylus off the surface and undoes a change of tool by Ctrl. `client`: null where none is open.
+  void release(LoopClient* client);
 
   /// Whether it presses.
   [[nodiscard]] bool held() const noexcept { return held_; }
@@ -32,8 +32,8 @@ class Stylus {
   [[nodiscard]] const std::optional<render::Picked>& underCursor() const noexcept { return under_cursor_; }
 
  private:
-  void press(const render::InputEvent& event, LoopClient& touch);
-  void turnBack(LoopClient& touch);
+  void press(const render::InputEvent& event, LoopClient& client);
+  void turnBack(LoopClient& client);
   void lift(haptic::MouseStylus& mouse);
 
   bool on_ = false;

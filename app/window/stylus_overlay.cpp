@@ -19,10 +19,10 @@ bool StylusOverlay::moved(const haptic::LoopState& state, double mm_per_pixel) c
          state.contact != state_.contact;
 }
 
-void StylusOverlay::append(const LoopClient& touch, const haptic::LoopState& state, double mm_per_pixel,
+void StylusOverlay::append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
                            render::Overlays& overlays) {
-  const haptic::Scene& scene = touch.scene();
-  const engine::Grid& grid = touch.field().grid();
+  const haptic::Scene& scene = client.scene();
+  const engine::Grid& grid = client.field().grid();
   render::StylusState tip;
   tip.endpoint_mm = state.endpoint_mm;
   tip.proxy_mm = state.proxy_mm;
@@ -33,8 +33,9 @@ void StylusOverlay::append(const LoopClient& touch, const haptic::LoopState& sta
   render::Overlays::Ring ring;
   ring.x_mm = state.contact ? state.proxy_mm.x : state.endpoint_mm.x;
   ring.y_mm = state.contact ? state.proxy_mm.y : state.endpoint_mm.y;
-  ring.radius_mm = std::max(brushRadius(touch), 0.5) * std::max(grid.spacingXMm(), grid.spacingYMm());
-  ring.colour = haptic::isMarkTool(touch.tool()) ? glm::vec3{1.0F, 0.55F, 0.0F} : glm::vec3{1.0F, 1.0F, 1.0F};
+  ring.radius_mm = std::max(brushRadius(client), 0.5) * std::max(grid.spacingXMm(), grid.spacingYMm());
+  ring.colour =
+      haptic::isMarkTool(client.tool()) ? glm::vec3{1.0F, 0.55F, 0.0F} : glm::vec3{1.0F, 1.0F, 1.0F};
   overlays.rings.push_back(ring);
 }
 

@@ -14,7 +14,7 @@ class StylusOverlay {
   /// Whether the drawn position differs from the actual one by more than a pixel.
   [[nodiscard]] bool moved(const haptic::LoopState& state, double mm_per_pixel) const;
   /// Adds it to the overlays of the next frame.
-  static void append(const LoopClient& touch, const haptic::LoopState& state, double mm_per_pixel,
+  static void append(const LoopClient& client, const haptic::LoopState& state, double mm_per_pixel,
                      render::Overlays& overlays);
   /// The next frame shows this state, and `drawn`: it was drawn.
   void begin(const haptic::LoopState& state) { state_ = state; }

@@ -54,17 +54,17 @@ Report firstState(const Parts& p, const Input& input, const RunFigures& run) {
 }
 
 void addDocument(const Parts& p, Report& r) {
-  const LoopClient& touch = *p.document.touch();
+  const LoopClient& client = *p.document.client();
   const SessionKeeper& keeper = *p.document.keeper();
   const Lasso& lasso = p.marking.lasso();
-  r["tool"] = p.stylus.on() ? haptic::toolName(touch.tool()) : "view";
+  r["tool"] = p.stylus.on() ? haptic::toolName(client.tool()) : "view";
   r["lasso"] = !lasso.active() ? "" : lasso.shape() == Lasso::Shape::kBox ? "box" : "free";
   Report open_panels = Report::array();
   for (const auto& [panel, open] : p.settings.panels)
     if (p.settings.side_panel && open) open_panels.push_back(panel);
   r["panels"] = open_panels;
-  r["steps"] = touch.history().number();
-  r["last_step"] = touch.history().last();
+  r["steps"] = client.history().number();
+  r["last_step"] = client.history().last();
   r["unsaved"] = p.document.unsaved();
   r["session"] = keeper.path();
   r["session_named"] = keeper.named();
@@ -73,8 +73,8 @@ void addDocument(const Parts& p, Report& r) {
 }
 
 void addBrushAndView(const Parts& p, Report& r) {
-  const haptic::MouseStylus* const mouse = p.document.touch()->mouse();
-  const haptic::Scene& scene = p.document.touch()->scene();
+  const haptic::MouseStylus* const mouse = p.document.client()->mouse();
+  const haptic::Scene& scene = p.document.client()->scene();
   const Display& display = p.settings.display;
   const render::ValueRange& range = p.picture.figures().range;
   r["inverted"] = scene.invert;
@@ -114,11 +114,11 @@ void addFilters(const Parts& p, Report& r) {
 }
 
 void addDevice(const Parts& p, Report& r) {
-  LoopClient& touch = *p.document.touch();
-  const haptic::LoopState now = touch.state();
+  LoopClient& client = *p.document.client();
+  const haptic::LoopState now = client.state();
   const haptic::LoopState& drawn = p.stylus_overlay.state();
-  const haptic::Scene& scene = touch.scene();
-  r["device"] = touch.device().profile().name;
+  const haptic::Scene& scene = client.scene();
+  r["device"] = client.device().profile().name;
   r["connected"] = now.link == haptic::LinkState::kConnected;
   r["safety"] = std::string(haptic::name(now.safety));
   Report effects = Report::array();
@@ -126,11 +126,11 @@ void addDevice(const Parts& p, Report& r) {
     effects.push_back(std::string(haptic::effectName(effect)));
   r["effects"] = effects;
   r["stiffness_n_per_mm"] = rounded(scene.stiffness_n_per_mm);
-  r["rate_hz"] = touch.rate();
+  r["rate_hz"] = client.rate();
   r["stroke"] = p.stylus.held() || p.marking.held();
   r["touching"] = drawn.contact;
   // The cells under the cursor and under the drawn stylus: equal when the stylus has followed.
-  const engine::Grid& grid = touch.field().grid();
+  const engine::Grid& grid = client.field().grid();
   const auto cell = [&](double x_mm, double y_mm) {
     return Report{std::lround(std::floor(x_mm / grid.spacingXMm())),
                   std::lround(std::floor(y_mm / grid.spacingYMm()))};
@@ -142,15 +142,15 @@ void addDevice(const Parts& p, Report& r) {
 
 // The picture shows the field as requested by the scene, and no work is running on it.
 bool fieldIsSettled(const Parts& p) {
-  const LoopClient& touch = *p.document.touch();
-  const haptic::MouseStylus* const mouse = p.document.touch()->mouse();
+  const LoopClient& client = *p.document.client();
+  const haptic::MouseStylus* const mouse = p.document.client()->mouse();
   if ((mouse != nullptr && mouse->busy()) || p.filters.computing() || p.filters.applying() ||
       p.marking.busy() || p.picture.empty())
     return false;
   const render::Shown& shown = p.picture.shown();
-  return shown.accepted.value_or(shown.versions.front()) == touch.field() &&
-         touch.history().current() == touch.upright() &&
-         (touch.field().reader().sign() < 0.0F) == touch.scene().invert;
+  return shown.accepted.value_or(shown.versions.front()) == client.field() &&
+         client.history().current() == client.upright() &&
+         (client.field().reader().sign() < 0.0F) == client.scene().invert;
 }
 
 // All effects of the input are visible.
@@ -232,24 +232,24 @@ Report runReport(const Parts& parts, const RunFigures& run) {
   r["tiles_uploaded"] = draw.tiles_uploaded;
   r["bytes_uploaded"] = draw.bytes_uploaded;
   if (parts.document.isOpen()) {
-    LoopClient& touch = *parts.document.touch();
+    LoopClient& client = *parts.document.client();
     const OpeningTimes& times = parts.opening.times();
     r["open_coarse_picture_ms"] = times.coarse_ms;
     r["open_read_ms"] = times.read_ms;
     r["open_touched_ms"] = times.touched_ms;
     r["open_first_picture_ms"] = times.seen_ms;
     r["open_whole_picture_ms"] = times.whole_ms;
-    const haptic::TimingFigures late = touch.timing().lateness.figures();
-    const haptic::TimingFigures edit = touch.latency().histogram().figures();
+    const haptic::TimingFigures late = client.timing().lateness.figures();
+    const haptic::TimingFigures edit = client.latency().histogram().figures();
     r["ticks"] = late.count;
-    r["rate_hz"] = touch.measuredRate();
+    r["rate_hz"] = client.measuredRate();
     r["lateness_p50_us"] = 1e3 * ms(late.p50_ns);
     r["lateness_p99_us"] = 1e3 * ms(late.p99_ns);
     r["lateness_worst_us"] = 1e3 * ms(late.worst_ns);
     r["edits_shown"] = edit.count;
     r["edit_to_pixel_p50_ms"] = ms(edit.p50_ns);
     r["edit_to_pixel_p99_ms"] = ms(edit.p99_ns);
-    r["steps"] = touch.history().number();
+    r["steps"] = client.history().number();
     r["filters_applied"] = parts.filters.applied();
     r["saved"] = parts.saving.path();
     r["session"] = parts.document.keeper()->path();

@@ -114,7 +114,7 @@ void Workstation::runFrame() {
 void Workstation::whileWaiting() {
   window_->poll(0.0);
   for (const render::InputEvent& event : window_->takeInput()) input_.add(event, parts_);
-  if (parts_.document.isOpen()) parts_.document.touch()->poll();
+  if (parts_.document.isOpen()) parts_.document.client()->poll();
 }
 
 void Workstation::handleInput() {
@@ -150,13 +150,13 @@ void Workstation::takeResults() {
   }
   if (!p.document.isOpen()) return;
   p.document.poll(p.view, p.feedback);
-  LoopClient& touch = *p.document.touch();
+  LoopClient& client = *p.document.client();
   std::vector<Notice>& notices = p.feedback.notices;
-  bool changed = p.filters.poll(touch, notices);
-  changed |= p.marking.poll(touch, notices);
-  for (Notice& notice : touch.takeNotices()) notices.push_back(std::move(notice));
+  bool changed = p.filters.poll(client, notices);
+  changed |= p.marking.poll(client, notices);
+  for (Notice& notice : client.takeNotices()) notices.push_back(std::move(notice));
   while (notices.size() > Feedback::kMostNotices) notices.erase(notices.begin());
-  changed |= p.change.poll(touch, p.stylus.held() || p.marking.held());
+  changed |= p.change.poll(client, p.stylus.held() || p.marking.held());
   for (const engine::Error& error : p.costs.poll()) notices.push_back({error.line(), ""});
   if (changed) p.picture.requestRedraw();
 }
@@ -165,7 +165,7 @@ void Workstation::showFrame() {
   ImGui::GetIO().DisplaySize =
       ImVec2(static_cast<float>(window_->width()), static_cast<float>(window_->height()));
   const std::optional<std::int64_t> edit_ns =
-      parts_.document.isOpen() ? parts_.document.touch()->latency().takeUnshownEdit() : std::nullopt;
+      parts_.document.isOpen() ? parts_.document.client()->latency().takeUnshownEdit() : std::nullopt;
   window_->beginFrame();
   carryOut(layOutPanels(parts_));
   releaseHandsWhenAsked();
@@ -189,7 +189,7 @@ void Workstation::noteShown(const render::PresentReport& report, std::optional<s
   const Parts& p = parts_;
   const bool open = p.document.isOpen();
   if (open && edit_ns && report.shown_ns > 0)
-    p.document.touch()->latency().noteShown(*edit_ns, report.shown_ns);
+    p.document.client()->latency().noteShown(*edit_ns, report.shown_ns);
   ++frames_;
   if (announces) parts_.opening.noteAnnounced();
   parts_.opening.noteFrame(p.coarseIsShown()                              ? Frame::kCoarse
@@ -308,7 +308,7 @@ void Workstation::startDocument(Document document) {
   p.opening.noteRead(p.document.isOpen());
   p.closeDocument(SessionKeeper::Afterwards::kDiscard);
   const bool first = p.document.path().empty();
-  if (const auto opened = p.document.open(document, options_.scene, options_.touch); !opened) {
+  if (const auto opened = p.document.open(document, options_.scene, options_.client); !opened) {
     p.dropCoarse();
     if (first)
       end_ = opened;
@@ -316,7 +316,7 @@ void Workstation::startDocument(Document document) {
       p.feedback.message(opened.error().line(), "");
     return;
   }
-  LoopClient& touch = *p.document.touch();
+  LoopClient& client = *p.document.client();
   const engine::Grid& grid = document.original.grid();
   const bool looked_at = p.opening.coarse() != nullptr;
   p.dropCoarse();  // the coarse picture stays until the scan is read
@@ -330,10 +330,10 @@ void Workstation::startDocument(Document document) {
   p.chooseTool(std::nullopt);
   p.recent.add(p.document.path());
   for (const std::string& warning : document.warnings) p.feedback.notices.push_back({warning, ""});
-  if (options_.scene) noteWithoutForce(touch, p.feedback.notices);
+  if (options_.scene) noteWithoutForce(client, p.feedback.notices);
   if (document.recovered)
     p.feedback.notices.push_back(
-        {fmt::format("{} unsaved steps were restored", touch.history().number()), ""});
+        {fmt::format("{} unsaved steps were restored", client.history().number()), ""});
   p.feedback.status =
       fmt::format("{}: {} x {} samples, {:.4g} x {:.4g} {}", p.document.fileName(), grid.width, grid.height,
                   grid.spacing_x, grid.spacing_y, grid.lateral_unit.name);
@@ -341,13 +341,13 @@ void Workstation::startDocument(Document document) {
 }
 
 void Workstation::setRate(double hz) {
-  LoopClient& touch = *parts_.document.touch();
+  LoopClient& client = *parts_.document.client();
   // Previews in progress belong to the loop that ends (LoopClient::setRate).
-  parts_.filters.cancel(touch);
-  const engine::Status set = touch.setRate(hz);
-  options_.touch.rate_hz = touch.rate();
+  parts_.filters.cancel(client);
+  const engine::Status set = client.setRate(hz);
+  options_.client.rate_hz = client.rate();
   // Without a loop no work is possible; the work is stored as at every end.
-  if (touch.finished())
+  if (client.finished())
     end_ = set;
   else if (!set)
     parts_.feedback.message(set.error().line(), "the loop continues as before");
@@ -363,7 +363,7 @@ void Workstation::losePicture(const engine::Error& why) {
   if (again) return;
   engine::Error end = why;
   if (parts_.document.isOpen()) {
-    parts_.filters.finish(*parts_.document.touch());
+    parts_.filters.finish(*parts_.document.client());
     end.remedy = parts_.document.rescue() + end.remedy;
   }
   end_ = tl::unexpected(std::move(end));

@@ -18,7 +18,7 @@ namespace fettle::app {
 struct ViewOptions {
   std::string scan;  ///< may be empty: a window to drop one on
   std::optional<haptic::Scene> scene;
-  LoopClientOptions touch;
+  LoopClientOptions client;
   ScanOptions reading;
   render::WindowOptions window;
   double seconds = 0.0;       ///< ends after this time; 0 = no limit

@@ -5,17 +5,18 @@
 
 namespace fettle::app {
 
-void EdgeTool::search(const LoopClient& touch) {
+void EdgeTool::search(const LoopClient& client) {
   drop();
   using Found = std::shared_ptr<const engine::EdgeMap>;
-  searching_.start([field = touch.newest(), scale = sigma](engine::JobControl& job) -> engine::Result<Found> {
-    auto map = engine::findEdges(field, scale, job);
-    if (!map) return tl::unexpected(map.error());
-    return std::make_shared<const engine::EdgeMap>(std::move(*map));
-  });
+  searching_.start(
+      [field = client.newest(), scale = sigma](engine::JobControl& job) -> engine::Result<Found> {
+        auto map = engine::findEdges(field, scale, job);
+        if (!map) return tl::unexpected(map.error());
+        return std::make_shared<const engine::EdgeMap>(std::move(*map));
+      });
 }
 
-void EdgeTool::redraw(const LoopClient& touch) {
+void EdgeTool::redraw(const LoopClient& client) {
   if (!map_) return;
   if (drawing_.busy()) {
     draw_again_ = true;
@@ -23,7 +24,7 @@ void EdgeTool::redraw(const LoopClient& touch) {
   }
   draw_again_ = false;
   drawing_.start(
-      [base = touch.newest(), map = map_, what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
+      [base = client.newest(), map = map_, what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
         auto suggestion = engine::suggestMarks(base, *map, what, job);
         if (!suggestion) return tl::unexpected(suggestion.error());
         return Drawn{base, std::move(*suggestion)};
@@ -39,14 +40,14 @@ void EdgeTool::drop() {
   base_ = under_ = over_ = {};
 }
 
-bool EdgeTool::accept(LoopClient& touch) {
+bool EdgeTool::accept(LoopClient& client) {
   if (!shown_) return false;
-  if (!(shown_->field == base_)) touch.replaceMarks(base_, shown_->field, "Edge suggestion");
+  if (!(shown_->field == base_)) client.replaceMarks(base_, shown_->field, "Edge suggestion");
   drop();
   return true;
 }
 
-bool EdgeTool::poll(LoopClient& touch, std::vector<Notice>& notices) {
+bool EdgeTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   bool changed = false;
   const auto refused = [&](const engine::Error& error) {
     if (error.kind != engine::ErrorKind::kCancelled) notices.push_back({error.what, error.remedy});
@@ -57,7 +58,7 @@ bool EdgeTool::poll(LoopClient& touch, std::vector<Notice>& notices) {
     changed = true;
     if (*found) {
       map_ = std::move(**found);
-      redraw(touch);
+      redraw(client);
     } else {
       refused(found->error());
     }
@@ -72,7 +73,7 @@ bool EdgeTool::poll(LoopClient& touch, std::vector<Notice>& notices) {
     } else {
       refused(drawn->error());
     }
-    if (draw_again_) redraw(touch);
+    if (draw_again_) redraw(client);
   }
   return changed;
 }

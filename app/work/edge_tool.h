@@ -19,14 +19,14 @@ class EdgeTool {
   engine::EdgeChoice choice;                    ///< followed while shown
 
   /// Finds edges on the present field.
-  void search(const LoopClient& touch);
+  void search(const LoopClient& client);
   /// The choice was changed: draws the suggestion again from the edges found.
-  void redraw(const LoopClient& touch);
+  void redraw(const LoopClient& client);
   void drop();
   /// Makes a step of the shown suggestion. False when there is none.
-  bool accept(LoopClient& touch);
+  bool accept(LoopClient& client);
   /// True when something visible changed.
-  [[nodiscard]] bool poll(LoopClient& touch, std::vector<Notice>& notices);
+  [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 
   /// Searching, drawing or showing.
   [[nodiscard]] bool on() const noexcept { return searching_.busy() || drawing_.busy() || shown_; }

@@ -53,15 +53,15 @@ std::string filterName(const engine::FilterSpec& spec) {
   return text;
 }
 
-void FilterPreview::compute(LoopClient& touch, Keep keep, std::vector<engine::TileRange> seen_first) {
+void FilterPreview::compute(LoopClient& client, Keep keep, std::vector<engine::TileRange> seen_first) {
   keep_ = keep;
   apply_when_done_ = false;
   so_far_ = std::make_shared<SoFar>();
   so_far_->spec = spec;
   seen_so_far_ = {};
-  computing_.start([base = touch.field(), id = touch.noteFilterBase(), so_far = so_far_,
-                    seen = std::move(seen_first), original = touch.original(), asked = spec,
-                    inverted = touch.scene().invert](engine::JobControl& job) -> engine::Result<Variant> {
+  computing_.start([base = client.field(), id = client.noteFilterBase(), so_far = so_far_,
+                    seen = std::move(seen_first), original = client.original(), asked = spec,
+                    inverted = client.scene().invert](engine::JobControl& job) -> engine::Result<Variant> {
     const engine::Version limit = inverted ? original.inverted() : original;
     // Before any part of it is filtered: the result is adopted into the field in parts, and replayed.
     const auto ready = engine::withMeasuredRange(asked, base, job);
@@ -77,38 +77,38 @@ void FilterPreview::compute(LoopClient& touch, Keep keep, std::vector<engine::Ti
   });
 }
 
-void FilterPreview::apply(LoopClient& touch) {
+void FilterPreview::apply(LoopClient& client) {
   if (applying()) return;
   if (!variants_.empty() && same(variants_.back().asked, spec)) {
-    adopt(touch, variants_.back());
+    adopt(client, variants_.back());
     return;
   }
-  if (!computing()) compute(touch, Keep::kReplace);
+  if (!computing()) compute(client, Keep::kReplace);
   apply_when_done_ = true;
 }
 
-void FilterPreview::adopt(LoopClient& touch, Variant variant) {
-  touch.noteFilterBegun(variant.base_id, variant.spec, filterName(variant.spec));
-  touch.allowPort();
-  applying_.start([port = &touch.port(), original = touch.original(), inverted = touch.scene().invert,
+void FilterPreview::adopt(LoopClient& client, Variant variant) {
+  client.noteFilterBegun(variant.base_id, variant.spec, filterName(variant.spec));
+  client.allowPort();
+  applying_.start([port = &client.port(), original = client.original(), inverted = client.scene().invert,
                    v = std::move(variant)](engine::JobControl& job) {
     return haptic::adoptFiltered(*port, v.base, v.result.field, inverted ? original.inverted() : original,
                                  v.spec, kMostRounds, job);
   });
 }
 
-void FilterPreview::cancel(LoopClient& touch) {
+void FilterPreview::cancel(LoopClient& client) {
   computing_.cancel();
   applying_.cancel();
-  if (applying_.busy()) touch.closePort();
+  if (applying_.busy()) client.closePort();
   apply_when_done_ = false;
   variants_.clear();
   so_far_.reset();
   seen_so_far_ = {};
 }
 
-void FilterPreview::finish(LoopClient& touch) {
-  cancel(touch);
+void FilterPreview::finish(LoopClient& client) {
+  cancel(client);
   (void)applying_.wait();
 }
 
@@ -128,7 +128,7 @@ std::vector<FilterPreview::Picture> FilterPreview::pictures() const {
   return pictures;
 }
 
-bool FilterPreview::poll(LoopClient& touch, std::vector<Notice>& notices) {
+bool FilterPreview::poll(LoopClient& client, std::vector<Notice>& notices) {
   bool changed = false;
   if (so_far_) {
     const std::scoped_lock lock(so_far_->mutex);
@@ -149,7 +149,7 @@ bool FilterPreview::poll(LoopClient& touch, std::vector<Notice>& notices) {
       if (keep_ == Keep::kReplace) variants_.clear();
       if (variants_.size() == kMostVariants) variants_.erase(variants_.begin());
       variants_.push_back(std::move(**done));
-      if (apply_when_done_) adopt(touch, variants_.back());
+      if (apply_when_done_) adopt(client, variants_.back());
     } else if (done->error().kind != engine::ErrorKind::kCancelled) {
       notices.push_back({done->error().what, done->error().remedy});
     }

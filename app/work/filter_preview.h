@@ -42,14 +42,14 @@ class FilterPreview {
   /// Computes `spec` on the present field. `keep`: in addition to the existing variants, or replacing them.
   /// `seen_first`: tiles that are filtered first (visiblePart), to be shown while the rest is computed.
   enum class Keep : std::uint8_t { kReplace, kAdd };
-  void compute(LoopClient& touch, Keep keep, std::vector<engine::TileRange> seen_first = {});
+  void compute(LoopClient& client, Keep keep, std::vector<engine::TileRange> seen_first = {});
   /// Adopts the newest variant into the field as one step; computes it first when there is none for `spec`.
-  void apply(LoopClient& touch);
-  void cancel(LoopClient& touch);
-  /// As cancel(), and waits until no worker uses the port of `touch`, which may be destroyed afterwards.
-  void finish(LoopClient& touch);
+  void apply(LoopClient& client);
+  void cancel(LoopClient& client);
+  /// As cancel(), and waits until no worker uses the port of `client`, which may be destroyed afterwards.
+  void finish(LoopClient& client);
   /// Takes over computed results. True when something visible changed.
-  [[nodiscard]] bool poll(LoopClient& touch, std::vector<Notice>& notices);
+  [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 
   [[nodiscard]] const std::vector<Variant>& variants() const noexcept { return variants_; }
   void drop(std::size_t variant);
@@ -72,7 +72,7 @@ class FilterPreview {
     engine::Version field;
     engine::FilterSpec spec;
   };
-  void adopt(LoopClient& touch, Variant variant);
+  void adopt(LoopClient& client, Variant variant);
 
   std::vector<Variant> variants_;
   Keep keep_ = Keep::kReplace;

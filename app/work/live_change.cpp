@@ -17,7 +17,7 @@ void LiveChange::begin(const engine::Version& original) {
   });
 }
 
-bool LiveChange::poll(const LoopClient& touch) {
+bool LiveChange::poll(const LoopClient& client) {
   bool changed = false;
   if (auto done = working_.take(); done && *done) {
     deviation_ = std::move((*done)->deviation);
@@ -28,7 +28,7 @@ bool LiveChange::poll(const LoopClient& touch) {
     }
   }
   if (working_.busy() || !deviation_) return changed;
-  engine::Version now = touch.upright();
+  engine::Version now = client.upright();
   if (now == measured_) return changed;
   measured_ = now;
   working_.start([deviation = std::move(deviation_), now](engine::JobControl& job) -> engine::Result<Work> {

@@ -16,7 +16,7 @@ class LiveChange {
   /// Another field: first reads all of `original`.
   void begin(const engine::Version& original);
   /// Takes over computed figures, starts on a new version. True when figures changed.
-  [[nodiscard]] bool poll(const LoopClient& touch);
+  [[nodiscard]] bool poll(const LoopClient& client);
 
   /// Of a version at most one or two frames old; empty until the first is available.
   [[nodiscard]] const std::optional<engine::LiveFigures>& figures() const noexcept { return figures_; }

@@ -32,16 +32,16 @@ engine::Result<std::unique_ptr<LoopClient>> LoopClient::start(engine::History hi
                                                               const haptic::Scene& scene,
                                                               const LoopClientOptions& options,
                                                               haptic::SessionSink* sink) {
-  std::unique_ptr<LoopClient> touch(new LoopClient(std::move(history), original, scene, options, sink));
+  std::unique_ptr<LoopClient> client(new LoopClient(std::move(history), original, scene, options, sink));
   if (auto status = haptic::LastResort::install(); !status) return tl::unexpected(status.error());
   // The exit path when the display is lost (render/window/window.cpp).
   static const int at_quick_exit = std::at_quick_exit([] { haptic::LastResort::fire(); });
   static_cast<void>(at_quick_exit);
-  if (auto status = touch->loop_.openDevice(touch->scene_); !status) return tl::unexpected(status.error());
-  if (auto status = touch->startLoop(options.rate_hz); !status) return tl::unexpected(status.error());
-  for (const std::string& missing : touch->realTime().missing)
-    touch->notices_.push_back({"the system did not grant the loop everything", missing});
-  return touch;
+  if (auto status = client->loop_.openDevice(client->scene_); !status) return tl::unexpected(status.error());
+  if (auto status = client->startLoop(options.rate_hz); !status) return tl::unexpected(status.error());
+  for (const std::string& missing : client->realTime().missing)
+    client->notices_.push_back({"the system did not grant the loop everything", missing});
+  return client;
 }
 
 LoopClient::~LoopClient() {

@@ -11,7 +11,7 @@ void MarkEdit::cancel() {
   working_.cancel();
 }
 
-bool MarkEdit::poll(LoopClient& touch, std::vector<Notice>& notices) {
+bool MarkEdit::poll(LoopClient& client, std::vector<Notice>& notices) {
   bool changed = false;
   // A cancelled job may have finished meanwhile.
   const bool dropped = working_.cancelling();
@@ -23,14 +23,14 @@ bool MarkEdit::poll(LoopClient& touch, std::vector<Notice>& notices) {
       if (done->error().kind != engine::ErrorKind::kCancelled)
         notices.push_back({done->error().what, done->error().remedy});
     } else if (!((*done)->base == (*done)->marked)) {
-      touch.replaceMarks((*done)->base, (*done)->marked, name_);
+      client.replaceMarks((*done)->base, (*done)->marked, name_);
     }
   }
   if (!working_.busy() && !waiting_.empty()) {
     Request next = std::move(waiting_.front());
     waiting_.pop_front();
     name_ = std::move(next.name);
-    working_.start([base = touch.newest(),
+    working_.start([base = client.newest(),
                     change = std::move(next.change)](engine::JobControl& job) -> engine::Result<Done> {
       auto marked = change(base, job);
       if (!marked) return tl::unexpected(marked.error());

@@ -22,7 +22,7 @@ class MarkEdit {
   /// Cancels waiting and running changes.
   void cancel();
   /// Starts waiting changes, applies finished ones. True when something visible changed.
-  [[nodiscard]] bool poll(LoopClient& touch, std::vector<Notice>& notices);
+  [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 
   [[nodiscard]] bool busy() const noexcept { return working_.busy() || !waiting_.empty(); }
   [[nodiscard]] double progress() const noexcept { return working_.progress(); }

@@ -30,15 +30,15 @@ SessionKeeper::~SessionKeeper() {
 
 void SessionKeeper::commit(std::int64_t number, engine::Step step,
                            std::vector<engine::JournalEntry> journal) {
-  hand({Waiting::Kind::kCommit, number, std::move(step), std::move(journal), {}, {}});
+  enqueue({Waiting::Kind::kCommit, number, std::move(step), std::move(journal), {}, {}});
 }
 
 void SessionKeeper::moveTo(std::int64_t number, std::vector<engine::JournalEntry> journal) {
-  hand({Waiting::Kind::kMove, number, {}, std::move(journal), {}, {}});
+  enqueue({Waiting::Kind::kMove, number, {}, std::move(journal), {}, {}});
 }
 
 void SessionKeeper::note(std::vector<engine::JournalEntry> journal) {
-  hand({Waiting::Kind::kJournal, 0, {}, std::move(journal), {}, {}});
+  enqueue({Waiting::Kind::kJournal, 0, {}, std::move(journal), {}, {}});
 }
 
 void SessionKeeper::setNote(const std::string& key, const std::string& text) {
@@ -51,10 +51,10 @@ void SessionKeeper::setNote(const std::string& key, const std::string& text) {
     waiting_.push_back({Waiting::Kind::kNote, 0, {}, {}, key, text});
 }
 
-void SessionKeeper::hand(Waiting&& what) {
+void SessionKeeper::enqueue(Waiting&& what) {
   if (closed_) return;
   if (writer_) {
-    give(std::move(what));
+    passToWriter(std::move(what));
     return;
   }
   const bool step = what.kind == Waiting::Kind::kCommit;
@@ -69,7 +69,7 @@ void SessionKeeper::hand(Waiting&& what) {
   }
 }
 
-void SessionKeeper::give(Waiting&& what) {
+void SessionKeeper::passToWriter(Waiting&& what) {
   switch (what.kind) {
     case Waiting::Kind::kCommit:
       writer_->commit(what.number, std::move(what.step), std::move(what.journal));
@@ -108,7 +108,7 @@ void SessionKeeper::made(engine::Result<Writer> result) {
   }
   failed_.reset();
   writer_ = *std::move(result);
-  for (Waiting& what : std::exchange(waiting_, {})) give(std::move(what));
+  for (Waiting& what : std::exchange(waiting_, {})) passToWriter(std::move(what));
   if (!making_place_.named) return;
   named_ = true;
   saved_ = engine::Status{};

@@ -101,8 +101,8 @@ class SessionKeeper final : public haptic::SessionSink {
     bool named = false;  // by the user
   };
   using Writer = std::unique_ptr<engine::SessionWriter>;
-  void hand(Waiting&& what);
-  void give(Waiting&& what);
+  void enqueue(Waiting&& what);
+  void passToWriter(Waiting&& what);
   void make(const Place& place);
   void made(engine::Result<Writer> result);
   void move(const Place& place);

@@ -77,7 +77,7 @@ engine::Status copyInput(int to, const std::string& scratch, engine::JobControl&
     if (const int error = writeAll(to, buffer.data(), static_cast<std::size_t>(got)); error != 0)
       return engine::failure(fmt::format("standard input cannot be kept while it is read: {}",
                                          std::generic_category().message(error)),
-                             scratch, "make room there, or set TMPDIR to another folder");
+                             scratch, "free space there, or set TMPDIR to another folder");
   }
 }
 

@@ -67,7 +67,7 @@ Result<std::unique_ptr<TileStore>> TileStore::create(const std::string& folder, 
   if (facts->free_bytes < at_least)
     return inputError(fmt::format("the tiles need {} MB of the disk, {} MB are free", at_least >> 20,
                                   facts->free_bytes >> 20),
-                      folder, "make room or name another folder with --store");
+                      folder, "free space or name another folder with --store");
   const int file = openNameless(folder);
   if (file < 0)
     return inputError(fmt::format("no tiles can be kept there ({})", std::strerror(errno)), folder,

@@ -40,7 +40,7 @@ constexpr WindowFilter kTotalVariationWindows{makeTotalVariationFilter};
 constexpr std::int32_t kTgvSide = 256, kTgvHalo = 48;
 constexpr WindowFilter kTgvSquares{.make = makeTgvFilter, .squares = {kTgvSide, kTgvHalo}};
 
-// Means and medians of noise: without a hand they take the edges with it.
+// Means and medians smooth the edges together with the noise unless these are marked.
 constexpr FilterTrial kBoxTrials[] = {{3}, {5}, {9}, {3, 2, 0, true}, {5, 2, 0, true}, {9, 2, 0, true}};
 constexpr FilterTrial kGaussianTrials[] = {{3}, {5}, {9}};
 constexpr FilterTrial kMedianTrials[] = {{3}, {5}, {7}, {5, 1, 0, true}};

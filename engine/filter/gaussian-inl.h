@@ -82,24 +82,24 @@ void smallFinish(const GaussianGroup& g, bool holes) noexcept {
     finishSmall<kRadius, false>(g);
 }
 
-// How many outputs, and vectors of each, are summed at once: what the registers hold beside samples and a
+// How many outputs, and vectors of each, are summed at once: what the registers hold with samples and a
 // weight. With 8 x 2 sums a sample is fetched for eight products and a weight for two, so that fetching keeps
 // up with multiplying.
 constexpr int kOutputs = FETTLE_LEVEL == 2 ? 8 : 4;
-constexpr int kAbreast = FETTLE_LEVEL == 2 ? 2 : 1;
+constexpr int kVectors = FETTLE_LEVEL == 2 ? 2 : 1;
 
 // sum[j] += weights[-j] * x for the outputs j in [from, to), constants after unrolling.
 FETTLE_INLINE void reach(const double* weights, int from, int to, const double* sample,
-                         Doubles (*sum)[kAbreast]) noexcept {
-  Doubles x[kAbreast];
+                         Doubles (*sum)[kVectors]) noexcept {
+  Doubles x[kVectors];
 #pragma GCC unroll 2
-  for (int h = 0; h < kAbreast; ++h) x[h] = load<Doubles>(sample + 8 * h);
+  for (int h = 0; h < kVectors; ++h) x[h] = load<Doubles>(sample + 8 * h);
 #pragma GCC unroll 8
   for (int j = 0; j < kOutputs; ++j) {
     if (j < from || j >= to) continue;
     const Doubles w = spread(weights[-j]);
 #pragma GCC unroll 2
-    for (int h = 0; h < kAbreast; ++h) sum[j][h] = fused(w, x[h], sum[j][h]);
+    for (int h = 0; h < kVectors; ++h) sum[j][h] = fused(w, x[h], sum[j][h]);
   }
 }
 
@@ -109,15 +109,15 @@ FETTLE_INLINE void windows(const double* weights, int taps, const double* sample
 #pragma GCC unroll 2
   for (int first = 0; first < 8; first += kOutputs)
 #pragma GCC unroll 2
-    for (int half = 0; half < 2; half += kAbreast) {
-      Doubles sum[kOutputs][kAbreast] = {};
+    for (int half = 0; half < 2; half += kVectors) {
+      Doubles sum[kOutputs][kVectors] = {};
       const double* sample = samples + first * kSide + half * 8;
       const double* weight = weights;
 #pragma GCC unroll 8
       for (int i = 0; i < kOutputs - 1; ++i, ++weight, sample += kSide) reach(weight, 0, i + 1, sample, sum);
       for (int i = kOutputs - 1; i < taps; ++i, ++weight, sample += kSide) {
-        // A weight is wanted by the next output at the next sample. Left to itself the compiler carries it
-        // over in a register and spreads it anew, which costs more than fetching it.
+        // A weight is used by the next output at the next sample. Left to itself the compiler carries it
+        // over in a register and spreads it again, which costs more than fetching it.
         asm("" : "+r"(weight));
         reach(weight, 0, kOutputs, sample, sum);
       }
@@ -126,7 +126,7 @@ FETTLE_INLINE void windows(const double* weights, int taps, const double* sample
 #pragma GCC unroll 8
       for (int j = 0; j < kOutputs; ++j)
 #pragma GCC unroll 2
-        for (int h = 0; h < kAbreast; ++h) all[first + j][half + h] = sum[j][h];
+        for (int h = 0; h < kVectors; ++h) all[first + j][half + h] = sum[j][h];
     }
 }
 

@@ -12,7 +12,7 @@ namespace fettle::engine {
 /// Largest window that makeSmallMedian takes.
 inline constexpr int kSmallMedianWindow = 11;
 
-/// Windows of 3 to 11: compares samples, many outputs abreast.
+/// Windows of 3 to 11: compares samples, one output in each vector lane.
 [[nodiscard]] std::unique_ptr<BlockFilter> makeSmallMedian(int window, CpuLevel level);
 
 /// Any window from 3 on: sets of ranks that windows share.

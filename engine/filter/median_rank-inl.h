@@ -16,13 +16,13 @@ FETTLE_INLINE void moveRow(WindowGroup& g, const std::uint32_t* ranks, int begin
   const auto atTheSides = [&](int from, int to) {
     for (int x = from; x < to; ++x) {
       const std::uint32_t rank = ranks[x];
-      const Column& column = g.columns[x < g.abreast ? x : x - g.window + g.abreast];
+      const Column& column = g.columns[x < g.lanes ? x : x - g.window + g.lanes];
       for (int i = 0; i < column.count; ++i)
         g.sets[column.sets[i]][rank >> 6] ^= std::uint64_t{1} << (rank & 63U);
       count(rank, load<Ints>(column.lanes));
     }
   };
-  const int shared_begin = g.abreast - 1 > begin ? g.abreast - 1 : begin;
+  const int shared_begin = g.lanes - 1 > begin ? g.lanes - 1 : begin;
   const int shared_end = g.window < end ? g.window : end;
   atTheSides(begin, shared_begin < end ? shared_begin : end);
   const auto all = load<Ints>(g.all_lanes);
@@ -91,7 +91,7 @@ FETTLE_INLINE void mediansOf(WindowGroup& g, const float* heights, int n, float*
 }
 
 inline void groupMedians(WindowGroup& g, const float* heights, int n, float* out) noexcept {
-  switch (g.abreast) {
+  switch (g.lanes) {
     case 16:
       return mediansOf<5>(g, heights, n, out);
     case 8:

@@ -1,9 +1,9 @@
 // The median of any window, with any holes, after J. Suomela, Median filtering is equivalent to sorting,
 // arXiv:1406.1717, 2014: the samples of a block are replaced by their ranks, the window is a set of bits, one
 // a rank, and a pivot follows the median from word to word. A sample that enters or leaves flips its bit and
-// tells the pivot whether it lies below. Exact, because ranks are.
+// changes the count of those below the pivot. Exact, because ranks are.
 //
-// Sixteen windows beside each other go down the block together and share what they have in common, after
+// Sixteen neighbouring windows go down the block together and share what they have in common, after
 // B. Weiss, Fast median and bilateral filtering, 2006: most columns are in all of them and flip one bit for
 // sixteen; those at the sides are in the first or the last few, and go to a tree of sets, each for 8, 4, 2 or
 // 1 of the windows, so that a column flips a bit in at most four and a window is the union of five. An output
@@ -22,25 +22,25 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr int kMostAbreast = 16;
-constexpr int kMostSets = 2 * kMostAbreast - 1;
+constexpr int kMaxLanes = 16;
+constexpr int kMostSets = 2 * kMaxLanes - 1;
 
 /// A column that not all windows of a group have: the lanes that have it, and the sets that make these up.
 struct Column {
-  alignas(64) std::int32_t lanes[kMostAbreast];  // 1 or 0
+  alignas(64) std::int32_t lanes[kMaxLanes];  // 1 or 0
   int count = 0;
   int sets[4];
 };
 
-/// Windows beside each other. Set 0 is for all lanes, sets 1 and 2 for half of them each, and so on.
+/// Neighbouring windows. Set 0 is for all lanes, sets 1 and 2 for half of them each, and so on.
 struct WindowGroup {
-  alignas(64) std::int32_t pivots[kMostAbreast];  // of each lane, a multiple of 64
-  alignas(64) std::int32_t below[kMostAbreast];   // ranks of the window below the pivot
-  alignas(64) std::int32_t sizes[kMostAbreast];   // samples of the window
-  alignas(64) std::int32_t all_lanes[kMostAbreast];
+  alignas(64) std::int32_t pivots[kMaxLanes];  // of each lane, a multiple of 64
+  alignas(64) std::int32_t below[kMaxLanes];   // ranks of the window below the pivot
+  alignas(64) std::int32_t sizes[kMaxLanes];   // samples of the window
+  alignas(64) std::int32_t all_lanes[kMaxLanes];
   std::uint64_t* sets[kMostSets];
   const Column* columns;  // those at the left, then those at the right
-  int abreast;            // lanes, a power of two, 2 .. 16 and no more than the window
+  int lanes;              // a power of two, 2 .. 16 and no more than the window
   int window;
   std::uint32_t hole_rank;  // ranks from here on are no samples
 };
@@ -57,25 +57,25 @@ class RankMedian final : public BlockFilter {
         medians_(FETTLE_AT_LEVEL(level, groupMedians)) {
     group_.window = window;
     // As many as have a column in common.
-    group_.abreast = std::min(static_cast<int>(std::bit_floor(static_cast<unsigned>(window))), kMostAbreast);
-    const int n = group_.abreast;
+    group_.lanes = std::min(static_cast<int>(std::bit_floor(static_cast<unsigned>(window))), kMaxLanes);
+    const int n = group_.lanes;
     columns_.resize(static_cast<std::size_t>(2 * n));
     for (int x = 0; x < n; ++x) columns_[static_cast<std::size_t>(x)] = columnOf(0, x + 1);
     for (int x = 0; x < n; ++x) columns_[static_cast<std::size_t>(n + x)] = columnOf(x + 1, n);
     group_.columns = columns_.data();
-    std::fill_n(group_.all_lanes, kMostAbreast, 1);
+    std::fill_n(group_.all_lanes, kMaxLanes, 1);
   }
 
   bool run(const Block& block, const JobControl& job) override {
     ranks_.sort(block);
     const std::size_t words = ranks_.words();
-    const auto sets = static_cast<std::size_t>(2 * group_.abreast - 1);
+    const auto sets = static_cast<std::size_t>(2 * group_.lanes - 1);
     words_.resize(words * sets);
     for (std::size_t s = 0; s < sets; ++s) group_.sets[s] = words_.data() + s * words;
     group_.hole_rank = ranks_.holeRank();
     // Where the first window's median is likely to be: the block's.
     std::int32_t pivot = static_cast<std::int32_t>(group_.hole_rank / 128 * 64);
-    for (int c = 0; c < block.out_columns; c += group_.abreast)
+    for (int c = 0; c < block.out_columns; c += group_.lanes)
       if (!runGroup(block, c, pivot, job)) return false;
     return true;
   }
@@ -89,29 +89,29 @@ class RankMedian final : public BlockFilter {
     Column column{};
     for (int lane = begin; lane < end; ++lane) column.lanes[lane] = 1;
     int first_set = 0;
-    for (int size = group_.abreast; size > 0; first_set = 2 * first_set + 1, size /= 2)
-      for (int s = 0; s * size < group_.abreast; ++s) {
+    for (int size = group_.lanes; size > 0; first_set = 2 * first_set + 1, size /= 2)
+      for (int s = 0; s * size < group_.lanes; ++s) {
         const bool within = s * size >= begin && (s + 1) * size <= end;
         const int parent = s / 2 * 2 * size;
-        const bool parent_within = size < group_.abreast && parent >= begin && parent + 2 * size <= end;
+        const bool parent_within = size < group_.lanes && parent >= begin && parent + 2 * size <= end;
         if (within && !parent_within) column.sets[column.count++] = first_set + s;
       }
     return column;
   }
 
-  // Outputs [first, first + abreast) of all rows. `pivot`: where to look for the first median, then where it
+  // Outputs [first, first + lanes) of all rows. `pivot`: where to look for the first median, then where it
   // was.
   bool runGroup(const Block& block, int first, std::int32_t& pivot, const JobControl& job) {
     WindowGroup& g = group_;
     std::fill(words_.begin(), words_.end(), 0);
-    std::fill_n(g.pivots, kMostAbreast, pivot);
-    std::fill_n(g.below, kMostAbreast, 0);
-    std::fill_n(g.sizes, kMostAbreast, 0);
-    const int n = std::min(g.abreast, block.out_columns - first);
+    std::fill_n(g.pivots, kMaxLanes, pivot);
+    std::fill_n(g.below, kMaxLanes, 0);
+    std::fill_n(g.sizes, kMaxLanes, 0);
+    const int n = std::min(g.lanes, block.out_columns - first);
     const int left = block.first_column + first - radius_;  // of the first window, in the block
     const int begin = std::max(-left, 0);
-    const int end = std::min(g.window + g.abreast - 1, block.columns - left);
-    std::int32_t across[kMostAbreast] = {};  // columns of each window
+    const int end = std::min(g.window + g.lanes - 1, block.columns - left);
+    std::int32_t across[kMaxLanes] = {};  // columns of each window
     for (int lane = 0; lane < n; ++lane)
       across[lane] = std::min(lane + g.window, end) - std::max(lane, begin);
     const auto ranksOf = [&](int row) {

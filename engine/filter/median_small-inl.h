@@ -1,8 +1,8 @@
 // The kernels of median_small.cpp; see each_cpu-inl.h.
 
 // As many floats as a register has: lists of samples are long enough as they are.
-constexpr int kAbreast = FETTLE_LEVEL == 2 ? 16 : FETTLE_LEVEL == 1 ? 8 : 4;
-using Samples = float __attribute__((vector_size(kAbreast * sizeof(float))));
+constexpr int kColumns = FETTLE_LEVEL == 2 ? 16 : FETTLE_LEVEL == 1 ? 8 : 4;
+using Samples = float __attribute__((vector_size(kColumns * sizeof(float))));
 
 template <Comparator kStep>
 FETTLE_INLINE void exchange(Samples* v) noexcept {
@@ -63,7 +63,7 @@ FETTLE_INLINE Samples middle(const Samples* a, const Samples* b) noexcept {
   return least;
 }
 
-// Medians of kN x kN windows, kN = 5 .. 11, kAbreast columns of outputs, row after row. Four outputs below
+// Medians of kN x kN windows, kN = 5 .. 11, kColumns outputs side by side, row after row. Four outputs below
 // each other share kN - 3 rows of samples, two of them share kN - 1; what is shared is sorted once, and of
 // every sorted list only that part is kept that can still become the median (A. Adams, Fast median filters
 // using separable sorting networks, 2021). Counting rows from 1 at the first window's first, the outputs of
@@ -160,8 +160,8 @@ void medianStrip<3>(const float* corner, std::ptrdiff_t stride, int last_row, in
   }
 }
 
-inline int medianAbreast() noexcept {
-  return kAbreast;
+inline int medianColumns() noexcept {
+  return kColumns;
 }
 
 // Bit i: row[i] is a hole, i < n <= 64.

@@ -1,4 +1,4 @@
-// Medians of windows with few samples, by comparing and exchanging only, many outputs abreast. Windows that
+// Medians of windows with few samples, by comparing and exchanging only, one output in each vector lane. Windows that
 // leave the field or hold a hole have any number of samples: few of them go one by one, many by their ranks.
 
 #include <algorithm>
@@ -52,7 +52,7 @@ class SmallMedian final : public BlockFilter {
   SmallMedian(int window, CpuLevel level)
       : radius_(window / 2),
         strip_(chooseStrip(window, level)),
-        abreast_(FETTLE_AT_LEVEL(level, medianAbreast)()),
+        columns_at_once_(FETTLE_AT_LEVEL(level, medianColumns)()),
         holes_of_(FETTLE_AT_LEVEL(level, holesOf)),
         any_hole_(FETTLE_AT_LEVEL(level, anyHole)),
         by_ranks_(makeRankMedian(window, level)) {}
@@ -73,14 +73,14 @@ class SmallMedian final : public BlockFilter {
     // Outputs whose windows lie in the field, columns and rows.
     const int c0 = std::clamp(radius_ - block.first_column, first, first + n);
     int c1 = std::clamp(block.columns - radius_ - block.first_column, c0, first + n);
-    if (c1 - c0 < abreast_) c1 = c0;
+    if (c1 - c0 < columns_at_once_) c1 = c0;
     const int r0 = std::clamp(radius_ - block.first_row, 0, block.out_rows);
     const int r1 = std::clamp(block.rows - radius_ - block.first_row, r0, block.out_rows);
     const int top = block.first_row + r0 - radius_;
     if (r0 < r1)
-      for (int next = c0; next < c1; next += abreast_) {
+      for (int next = c0; next < c1; next += columns_at_once_) {
         if (job.cancelled()) return false;
-        const int c = std::min(next, c1 - abreast_);  // the last ones may be done twice
+        const int c = std::min(next, c1 - columns_at_once_);  // the last ones may be done twice
         strip_(block.row(top) + block.first_column + c - radius_, block.stride, block.rows - 1 - top, r1 - r0,
                block.out + r0 * block.out_stride + c, block.out_stride);
       }
@@ -177,7 +177,7 @@ class SmallMedian final : public BlockFilter {
 
   int radius_;
   Strip strip_;
-  int abreast_;
+  int columns_at_once_;
   decltype(&plain::holesOf) holes_of_;
   decltype(&plain::anyHole) any_hole_;
   std::unique_ptr<BlockFilter> by_ranks_;

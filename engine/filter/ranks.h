@@ -9,7 +9,7 @@ namespace fettle::engine {
 
 /// The samples of a block in order of height: a median needs no more than the order.
 ///
-/// Every sample has a rank of its own (equal heights are told apart by their place), so that a set of samples
+/// Every sample has a rank of its own (equal heights are distinguished by their place), so that a set of samples
 /// is a set of bits. Holes share the rank `holeRank()`, which lies in a 64-bit word beyond all others.
 class Ranks {
  public:

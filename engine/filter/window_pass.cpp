@@ -59,7 +59,7 @@ class Pass {
 
   // Filters one rectangle of tiles; appends the tiles that changed. False when cancelled or out of memory.
   bool run(TileRect rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
-    // Blocks are mostly taken one beside the other.
+    // The next block is mostly the right neighbour.
     const std::int32_t to_next = rect.column1 - rect.column0;
     const TileRect all = rect;
     shrink(rect);

@@ -77,7 +77,7 @@ Result<ReadingConnection> ReadingConnection::open(const std::string& path) {
       if (!error) fs::copy_file(path + "-wal", at + "-wal", error);
       if (error)
         return inputError(fmt::format("the session cannot be copied for reading: {}", error.message()), path,
-                          "make room in the temporary folder, or set TMPDIR to another");
+                          "free space in the temporary folder, or set TMPDIR to another");
       access = DatabaseAccess::kRead;
     }
   } else {

@@ -58,7 +58,7 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const std::string& 
 }  // namespace
 
 void changePanel(const PanelContext& context, const ChangeFigures& change) {
-  const std::string& unit = context.touch.field().grid().height_unit.name;
+  const std::string& unit = context.client.field().grid().height_unit.name;
   const auto& live = change.live();
   if (!live) {
     ImGui::TextDisabled("measuring ...");
@@ -68,7 +68,7 @@ void changePanel(const PanelContext& context, const ChangeFigures& change) {
   figure("largest", fmt::format("{:.4g} {}", live->max_abs, unit));
   figure("rms", fmt::format("{:.4g} {}", live->rms, unit));
   // Exact figures of the whole field follow after the stroke.
-  const engine::Deviation* const exact = change.exact(context.touch.upright());
+  const engine::Deviation* const exact = change.exact(context.client.upright());
   figure("99 % within", exact != nullptr ? fmt::format("{:.4g} {}", exact->p99, unit) : std::string("..."));
   figure("Sq before, now", fmt::format("{:.4g}, {:.4g} {}", live->sq_original, live->sq, unit));
   figure("Sa before, now",

@@ -104,9 +104,9 @@ std::string described(const haptic::Scene& scene) {
 }  // namespace
 
 void contactChooser(const PanelContext& context, ChoiceCosts& costs) {
-  LoopClient& touch = context.touch;
-  haptic::Scene scene = touch.scene();
-  const engine::Grid& grid = touch.field().grid();
+  LoopClient& client = context.client;
+  haptic::Scene scene = client.scene();
+  const engine::Grid& grid = client.field().grid();
   const std::span<const trials::ContactChoice> choices = trials::contactChoices();
   const std::vector<trials::ContactFigures>& measured = costs.contact();
   std::vector<Entry> entries;
@@ -131,7 +131,7 @@ void contactChooser(const PanelContext& context, ChoiceCosts& costs) {
     chosen = chooser("##contact", now, entries, "error", "per tick", opened);
     return false;
   });
-  if (opened && measured.empty() && !costs.contactRun().busy()) costs.measureContact(touch.field());
+  if (opened && measured.empty() && !costs.contactRun().busy()) costs.measureContact(client.field());
   if (chosen >= 0) {
     scene = choices[static_cast<std::size_t>(chosen)].in(scene, grid);
     if (const auto problem = scene.tip == haptic::TipShape::kSphere
@@ -139,7 +139,7 @@ void contactChooser(const PanelContext& context, ChoiceCosts& costs) {
                                  : std::nullopt)
       context.notices.push_back({*problem, ""});
     else
-      applyScene(touch, scene, context.notices);
+      applyScene(client, scene, context.notices);
   }
   if (measuringLine(costs.contactRun(), "Cancel##contact")) costs.cancelContact();
   if (!what.empty()) wrapped(what);
@@ -172,7 +172,7 @@ void detailChooser(const PanelContext& context, Display& display, WindowPicture&
     return false;
   });
   if (opened && measured.empty() && !costs.detailRun().busy() && view.width > 0)
-    costs.measureDetail(context.touch.field(), view);
+    costs.measureDetail(context.client.field(), view);
   if (chosen >= 0) {
     display.vertices = choices[static_cast<std::size_t>(chosen)].vertices;
     picture.requestRedraw();

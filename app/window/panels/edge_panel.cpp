@@ -22,7 +22,7 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
                                   ImGuiSliderFlags_AlwaysClamp);
       })) {
     edges.choice.sensitivity = static_cast<double>(sensitivity);
-    edges.redraw(context.touch);
+    edges.redraw(context.client);
   }
   auto thickness = static_cast<float>(edges.choice.thickness);
   if (field("thickness", [&] {
@@ -30,10 +30,10 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
                                   ImGuiSliderFlags_AlwaysClamp);
       })) {
     edges.choice.thickness = static_cast<double>(thickness);
-    edges.redraw(context.touch);
+    edges.redraw(context.client);
   }
   endFields();
-  if (edges.on() && scale_done) edges.search(context.touch);
+  if (edges.on() && scale_done) edges.search(context.client);
   if (edges.busy() && edges.suggestion() == nullptr) {
     ImGui::ProgressBar(static_cast<float>(edges.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
                        "looking");
@@ -53,7 +53,7 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
   actionButton("Take", Action::kFilterApply, context.act);
   ImGui::SameLine();
   actionButton("Drop", Action::kNavigate, context.act);
-  besideOrBelow("or paint over it");
+  sameLineIfFits("or paint over it");
   ImGui::TextDisabled("or paint over it");
 }
 

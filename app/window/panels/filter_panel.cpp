@@ -70,13 +70,13 @@ void runButtons(const PanelContext& context, FilterPreview& filters) {
     ImGui::ProgressBar(static_cast<float>(filters.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
                        filters.applying() ? "applying" : "filtering");
     ImGui::SameLine();
-    if (ImGui::Button("Cancel")) filters.cancel(context.touch);
+    if (ImGui::Button("Cancel")) filters.cancel(context.client);
   } else {
     actionButton("Preview", Action::kFilterPreview, context.act);
-    besideOrBelow("Beside");
-    actionButton("Beside", Action::kFilterBeside, context.act);
-    besideOrBelow("Apply");
-    if (ImGui::Button("Apply")) filters.apply(context.touch);
+    sameLineIfFits("Add preview");
+    actionButton("Add preview", Action::kFilterAdd, context.act);
+    sameLineIfFits("Apply");
+    if (ImGui::Button("Apply")) filters.apply(context.client);
     tip(Action::kFilterApply);
   }
 }
@@ -102,7 +102,7 @@ void previewList(const engine::Grid& grid, FilterPreview& filters) {
 
 void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display) {
   engine::FilterSpec& spec = filters.spec;
-  const engine::Grid& grid = context.touch.field().grid();
+  const engine::Grid& grid = context.client.field().grid();
   beginFields();
   kindField(spec);
   sizeFields(spec, grid);
@@ -111,7 +111,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   endFields();
   int scope = static_cast<int>(spec.scope);
   ImGui::RadioButton("keep marks", &scope, 0);
-  besideOrBelow("only marks", Beside::kTick);
+  sameLineIfFits("only marks", ItemKind::kTick);
   ImGui::RadioButton("only marks", &scope, 1);
   tip(Action::kFilterScope);
   spec.scope = static_cast<engine::FilterScope>(scope);

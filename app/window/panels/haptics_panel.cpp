@@ -58,11 +58,11 @@ std::string rateText(double hz) {
 }
 
 void deviceFigures(const PanelContext& context) {
-  const haptic::LoopState state = context.touch.state();
-  const haptic::DeviceProfile& profile = context.touch.device().profile();
+  const haptic::LoopState state = context.client.state();
+  const haptic::DeviceProfile& profile = context.client.device().profile();
   figure("device", profile.name + (profile.gives_force ? "" : ", no force"));
   // A mouse cannot be unplugged and gives no force.
-  const bool mouse = context.touch.mouse() != nullptr;
+  const bool mouse = context.client.mouse() != nullptr;
   figure("link",
          mouse ? (state.link == haptic::LinkState::kConnected ? "on the surface" : "no tool on the surface")
          : state.link == haptic::LinkState::kConnected    ? "connected"
@@ -71,27 +71,27 @@ void deviceFigures(const PanelContext& context) {
   figure("safety", mouse ? "no force to limit" : std::string(haptic::name(state.safety)));
   ImGui::BeginDisabled(mouse);
   actionButton("Arm", Action::kArm, context.act);
-  besideOrBelow("Disarm");
+  sameLineIfFits("Disarm");
   actionButton("Disarm", Action::kDisarm, context.act);
-  besideOrBelow("Calibrate");
+  sameLineIfFits("Calibrate");
   actionButton("Calibrate", Action::kCalibrate, context.act);
   ImGui::EndDisabled();
 }
 
-void loopFigures(LoopClient& touch, const std::vector<float>& forces) {
-  const auto limit = static_cast<float>(touch.scene().force_limit_n);
+void loopFigures(LoopClient& client, const std::vector<float>& forces) {
+  const auto limit = static_cast<float>(client.scene().force_limit_n);
   if (!forces.empty())
     ImGui::PlotLines("##force", forces.data(), static_cast<int>(forces.size()), 0,
                      fmt::format("force, 0 to {:.3g} N", limit).c_str(), 0.0F, limit,
                      ImVec2(ImGui::GetContentRegionAvail().x, 4.0F * ImGui::GetTextLineHeight()));
-  const haptic::TimingFigures compute = touch.timing().compute.figures();
-  const haptic::TimingFigures late = touch.timing().lateness.figures();
-  figure("ticks", fmt::format("{:.0f} of {:.0f} per second", touch.measuredRate(), touch.rate()));
+  const haptic::TimingFigures compute = client.timing().compute.figures();
+  const haptic::TimingFigures late = client.timing().lateness.figures();
+  figure("ticks", fmt::format("{:.0f} of {:.0f} per second", client.measuredRate(), client.rate()));
   figure("tick takes",
          fmt::format("{:.1f} us, p99 {:.1f}", microseconds(compute.p50_ns), microseconds(compute.p99_ns)));
   figure("ticks late by",
          fmt::format("{:.0f} us, p99 {:.0f}", microseconds(late.p50_ns), microseconds(late.p99_ns)));
-  drawLateness(touch.timing().lateness);
+  drawLateness(client.timing().lateness);
 }
 
 std::optional<double> rateField(double now_hz) {
@@ -108,20 +108,20 @@ std::optional<double> rateField(double now_hz) {
 // refused with a message, and the previous value stays. True when it was accepted.
 bool sceneNumber(const PanelContext& context, const char* name, const char* id, double haptic::Scene::*number,
                  const char* format) {
-  haptic::Scene scene = context.touch.scene();
+  haptic::Scene scene = context.client.scene();
   fieldName(name);
   const auto typed = typedNumber(id, scene.*number, format);
   if (!typed) return false;
   scene.*number = *typed;
-  applyScene(context.touch, scene, context.notices);
-  return context.touch.scene() == scene;
+  applyScene(context.client, scene, context.notices);
+  return context.client.scene() == scene;
 }
 
 void effectTicks(const PanelContext& context) {
   ImGui::TextDisabled("effects");
   for (int i = 0; i < haptic::kEffectKinds; ++i) {
     const auto kind = static_cast<haptic::EffectKind>(i);
-    haptic::Scene scene = context.touch.scene();
+    haptic::Scene scene = context.client.scene();
     const auto listed = std::find(scene.effects.begin(), scene.effects.end(), kind);
     bool on = listed != scene.effects.end();
     std::string name(haptic::effectName(kind));
@@ -136,7 +136,7 @@ void effectTicks(const PanelContext& context) {
       scene.effects.insert(scene.effects.begin(), kind);  // before those that depend on it
     else
       scene.effects.push_back(kind);
-    applyScene(context.touch, scene, context.notices);
+    applyScene(context.client, scene, context.notices);
   }
 }
 
@@ -144,21 +144,21 @@ void effectTicks(const PanelContext& context) {
 
 std::optional<double> hapticsPanel(const PanelContext& context, const StylusOverlay& stylus,
                                    ChoiceCosts& costs) {
-  LoopClient& touch = context.touch;
+  LoopClient& client = context.client;
   deviceFigures(context);
-  loopFigures(touch, stylus.forces());
+  loopFigures(client, stylus.forces());
   beginFields();
-  const std::optional<double> rate_hz = rateField(touch.rate());
+  const std::optional<double> rate_hz = rateField(client.rate());
   contactChooser(context, costs);
   if (sceneNumber(context, "stiffness", "##stiffness", &haptic::Scene::stiffness_n_per_mm, "%.4g N/mm"))
-    noteWithoutForce(touch, context.notices);
+    noteWithoutForce(client, context.notices);
   (void)sceneNumber(context, "force limit", "##limit", &haptic::Scene::force_limit_n, "%.3g N");
   endFields();
-  if (const auto largest = touch.largestStiffness())
+  if (const auto largest = client.largestStiffness())
     figure("it can hold", fmt::format("{:.4g} N/mm at most", *largest));
   effectTicks(context);
   ImGui::PushTextWrapPos(0.0F);
-  for (const std::string& missing : touch.realTime().missing)
+  for (const std::string& missing : client.realTime().missing)
     ImGui::TextColored(ImVec4(1.0F, 0.75F, 0.3F, 1.0F), "%s", missing.c_str());
   ImGui::PopTextWrapPos();
   return rate_hz;

@@ -8,13 +8,13 @@
 namespace fettle::app {
 
 void historyPanel(const PanelContext& context) {
-  const engine::History& history = context.touch.history();
+  const engine::History& history = context.client.history();
   if (ImGui::Button("Undo")) context.act(Action::kUndo);
   ImGui::SameLine();
   if (ImGui::Button("Redo")) context.act(Action::kRedo);
   const std::string held = fmt::format("{} step{}, {}", history.last(), history.last() == 1 ? "" : "s",
                                        bytesText(static_cast<double>(history.bytes())));
-  besideOrBelow(held.c_str());
+  sameLineIfFits(held.c_str());
   ImGui::TextDisabled("%s", held.c_str());
   const float lines = static_cast<float>(std::clamp<std::int64_t>(history.last() + 1, 3, 8));
   if (ImGui::BeginChild("steps", ImVec2(0.0F, lines * ImGui::GetTextLineHeightWithSpacing() + 8.0F), true)) {
@@ -29,7 +29,7 @@ void historyPanel(const PanelContext& context) {
       if (ImGui::Selectable(text.c_str(), i == history.number())) chosen = i;
       if (i > history.number()) ImGui::PopStyleColor();
     }
-    if (chosen >= 0) context.touch.goTo(chosen);
+    if (chosen >= 0) context.client.goTo(chosen);
   }
   ImGui::EndChild();
 }

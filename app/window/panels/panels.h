@@ -13,7 +13,7 @@ namespace fettle::app {
 
 /// Data for every panel about the document.
 struct PanelContext {
-  LoopClient& touch;
+  LoopClient& client;
   std::vector<Notice>& notices;
   const Act& act;
 };

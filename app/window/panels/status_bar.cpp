@@ -18,10 +18,10 @@ bool progressBar(double progress, float width, const char* what) {
   return ImGui::SmallButton("Cancel");
 }
 
-std::string brushText(const BrushAdjustment& brush, LoopClient& touch) {
+std::string brushText(const BrushAdjustment& brush, LoopClient& client) {
   const std::string now = brush.of() == BrushAdjustment::Of::kRadius
-                              ? fmt::format("brush radius {:.3g} samples", brushRadius(touch))
-                              : fmt::format("press depth {:.4g} mm", touch.mouse()->pressMm());
+                              ? fmt::format("brush radius {:.3g} samples", brushRadius(client))
+                              : fmt::format("press depth {:.4g} mm", client.mouse()->pressMm());
   return fmt::format("{} {}: move or type, Enter or left button keeps it, Esc or right button leaves it", now,
                      brush.typed().empty() ? "" : "[" + brush.typed() + "]");
 }
@@ -32,7 +32,7 @@ std::string documentText(const Parts& parts) {
   if (!parts.document.isOpen()) return line;
   if (const std::string kept = parts.document.keptText(); !kept.empty()) line += "  (" + kept + ")";
   if (const auto& under = parts.stylus.underCursor(); parts.stylus.on() && under) {
-    const engine::Grid& grid = parts.document.touch()->field().grid();
+    const engine::Grid& grid = parts.document.client()->field().grid();
     line += fmt::format("   x {:.4f}  y {:.4f}  z {:.5g} {}",
                         grid.origin_x + under->position_mm.x / grid.lateral_unit.mm,
                         grid.origin_y + under->position_mm.y / grid.lateral_unit.mm,
@@ -45,7 +45,7 @@ void content(Parts& parts) {
   const Lasso& lasso = parts.marking.lasso();
   const engine::EdgeSuggestion* const edges = parts.marking.edges.suggestion();
   if (parts.brush.active()) {
-    text(brushText(parts.brush, *parts.document.touch()));
+    text(brushText(parts.brush, *parts.document.client()));
   } else if (lasso.active()) {
     text(lasso.shape() == Lasso::Shape::kBox
              ? "box: drag, or corners with arrows and Space; Enter marks, Ctrl+Enter unmarks, Esc leaves"

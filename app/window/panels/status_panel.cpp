@@ -23,16 +23,16 @@ std::string limitOf(const std::vector<render::PanelDetail>& panels, bool more_co
 }  // namespace
 
 void statusPanel(const PanelContext& context, const WindowPicture& picture, const OpeningTimes& times) {
-  LoopClient& touch = context.touch;
+  LoopClient& client = context.client;
   const render::FrameStatistics& figures = picture.figures();
   const DrawFigures& draw = picture.drawFigures();
-  const haptic::TimingFigures late = touch.timing().lateness.figures();
-  const haptic::LoopState state = touch.state();
-  const haptic::TimingFigures edit = touch.latency().histogram().figures();
-  figure("loop", fmt::format("{:.0f} of {:.0f} Hz", touch.measuredRate(), touch.rate()));
+  const haptic::TimingFigures late = client.timing().lateness.figures();
+  const haptic::LoopState state = client.state();
+  const haptic::TimingFigures edit = client.latency().histogram().figures();
+  figure("loop", fmt::format("{:.0f} of {:.0f} Hz", client.measuredRate(), client.rate()));
   figure("late p50, p99",
          fmt::format("{:.0f}, {:.0f} us", microseconds(late.p50_ns), microseconds(late.p99_ns)));
-  figure("missed ticks", fmt::format("{}", touch.timing().missed.load(std::memory_order_relaxed)));
+  figure("missed ticks", fmt::format("{}", client.timing().missed.load(std::memory_order_relaxed)));
   figure("force", fmt::format("{:.2f} N{}", glm::length(state.force_n), state.contact ? ", touching" : ""));
   figure("frame", fmt::format("GPU {:.1f} ms, CPU {:.1f}", figures.device_ms, draw.last_ms));
   figure("surface", fmt::format("{} triangles, {:.2f} px{}", figures.triangles, figures.bound_px,
@@ -45,7 +45,7 @@ void statusPanel(const PanelContext& context, const WindowPicture& picture, cons
          fmt::format("{:.1f} s, read in {:.1f}", 1e-3 * times.seen_ms, 1e-3 * times.read_ms));
   figure("edit to pixel",
          edit.count == 0 ? std::string("-")
-                         : fmt::format("{:.0f} ms; p50 {:.0f}, p99 {:.0f}", touch.latency().lastMs(),
+                         : fmt::format("{:.0f} ms; p50 {:.0f}, p99 {:.0f}", client.latency().lastMs(),
                                        1e-3 * microseconds(edit.p50_ns), 1e-3 * microseconds(edit.p99_ns)));
 }
 

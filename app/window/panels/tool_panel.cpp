@@ -14,7 +14,7 @@ void toolButtons(const PanelContext& context, const Stylus& stylus, const Lasso&
   // As many buttons per line as fit.
   bool first = true;
   const auto button = [&](const char* name, Action action, bool on) {
-    if (!first) besideOrBelow(name);
+    if (!first) sameLineIfFits(name);
     first = false;
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
     if (ImGui::Button(name)) context.act(action);
@@ -25,44 +25,44 @@ void toolButtons(const PanelContext& context, const Stylus& stylus, const Lasso&
   button("View", Action::kNavigate, !stylus.on() && !lasso.active());
   for (const haptic::ToolRow& row : haptic::kToolRows)
     button(std::string(row.title).c_str(), actionOf(row.tool),
-           stylus.on() && context.touch.tool() == row.tool);
+           stylus.on() && context.client.tool() == row.tool);
   button("Lasso", Action::kLasso, draws(Lasso::Shape::kFree));
   button("Box", Action::kBox, draws(Lasso::Shape::kBox));
 }
 
 void brushFields(const PanelContext& context) {
-  LoopClient& touch = context.touch;
-  const engine::Grid& grid = touch.field().grid();
+  LoopClient& client = context.client;
+  const engine::Grid& grid = client.field().grid();
   const double cell = std::max(grid.spacingXMm(), grid.spacingYMm());
-  const double samples = brushRadius(touch);
+  const double samples = brushRadius(client);
   beginFields();
   auto radius = static_cast<float>(samples);
   if (field("radius", [&] {
         return ImGui::SliderFloat("##radius", &radius, 0.0F, static_cast<float>(haptic::kMaxBrushRadius),
                                   "%.0f samples", ImGuiSliderFlags_AlwaysClamp);
       }))
-    setBrushRadius(touch, std::round(static_cast<double>(radius)), context.notices);
+    setBrushRadius(client, std::round(static_cast<double>(radius)), context.notices);
   double radius_mm = samples * cell;
   if (field("", [&] {
         return typeNumber("##radius_mm", radius_mm, 0.0, haptic::kMaxBrushRadius * cell, "%.4g mm");
       }))
-    setBrushRadius(touch, radius_mm / cell, context.notices);
-  if (touch.mouse() != nullptr) {
-    auto depth = static_cast<float>(touch.mouse()->pressMm() / cell);
+    setBrushRadius(client, radius_mm / cell, context.notices);
+  if (client.mouse() != nullptr) {
+    auto depth = static_cast<float>(client.mouse()->pressMm() / cell);
     if (field("depth", [&] {
           return ImGui::SliderFloat("##depth", &depth, 0.0F, 4.0F, "%.2f cells",
                                     ImGuiSliderFlags_AlwaysClamp);
         }))
-      setPressDepth(touch, static_cast<double>(depth) * cell);
+      setPressDepth(client, static_cast<double>(depth) * cell);
   }
-  haptic::Scene scene = touch.scene();
+  haptic::Scene scene = client.scene();
   (void)field("keep within", [&] {
     actionTick("##within", scene.max_change.has_value(), Action::kKeepWithin, context.act);
     if (!scene.max_change) return false;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
     if (typeNumber("##most", *scene.max_change, 0.0, 1e9, "%.4g " + grid.height_unit.name))
-      applyScene(touch, scene, context.notices);
+      applyScene(client, scene, context.notices);
     return false;
   });
   endFields();
@@ -75,13 +75,13 @@ void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking&
   toolButtons(context, stylus, marking.lasso());
   brushFields(context);
   actionTick("marks", display.marks, Action::kShowMarks, context.act);
-  besideOrBelow("upside down", Beside::kTick);
-  actionTick("upside down", context.touch.scene().invert, Action::kInvert, context.act);
+  sameLineIfFits("upside down", ItemKind::kTick);
+  actionTick("upside down", context.client.scene().invert, Action::kInvert, context.act);
   actionButton("Clear marks", Action::kClearMarks, context.act);
-  besideOrBelow("Invert marks");
+  sameLineIfFits("Invert marks");
   actionButton("Invert marks", Action::kInvertMarks, context.act);
   if (marking.edit.busy()) {
-    besideOrBelow("marking ...");
+    sameLineIfFits("marking ...");
     ImGui::ProgressBar(static_cast<float>(marking.edit.progress()), ImVec2(-1.0F, 0.0F), "marking");
   }
 }

@@ -43,10 +43,10 @@ void actionTick(const char* name, bool ticked, Action action, const Act& act) {
   tip(action);
 }
 
-void besideOrBelow(const char* text, Beside what) {
+void sameLineIfFits(const char* text, ItemKind what) {
   const ImGuiStyle& style = ImGui::GetStyle();
-  const float needed = what == Beside::kButton ? style.FramePadding.x * 2.0F
-                                               : ImGui::GetFrameHeight() + style.ItemInnerSpacing.x;
+  const float needed = what == ItemKind::kButton ? style.FramePadding.x * 2.0F
+                                                 : ImGui::GetFrameHeight() + style.ItemInnerSpacing.x;
   ImGui::SameLine();
   if (ImGui::GetContentRegionAvail().x < ImGui::CalcTextSize(text).x + needed) ImGui::NewLine();
 }

@@ -26,8 +26,8 @@ void actionTick(const char* name, bool ticked, Action action, const Act& act);
 
 /// Puts the next button or tick box, with the label `text`, next to the last item where there is room for it,
 /// otherwise below.
-enum class Beside : std::uint8_t { kButton, kTick };
-void besideOrBelow(const char* text, Beside what = Beside::kButton);
+enum class ItemKind : std::uint8_t { kButton, kTick };
+void sameLineIfFits(const char* text, ItemKind what = ItemKind::kButton);
 
 /// Fields one below the other, names to the left: between beginFields() and endFields(), field() gives the
 /// rest of the line to `edit` and returns its result. A name too long for its column has a line of its own.

@@ -29,118 +29,118 @@ class EdgeToolTest : public ::testing::Test {
  protected:
   bool shown() {
     return bench.until([&] {
-      (void)tool.poll(bench.touch(), bench.noticesToFill());
+      (void)tool.poll(bench.client(), bench.noticesToFill());
       return tool.suggestion() != nullptr && !tool.busy();
     });
   }
-  engine::Version seen() { return tool.over(bench.touch().field()); }
+  engine::Version seen() { return tool.over(bench.client().field()); }
 
   LoopClientBench bench{stepped()};
   EdgeTool tool;
 };
 
 TEST_F(EdgeToolTest, a_suggestion_is_seen_and_is_no_mark_until_it_is_taken) {
-  EXPECT_TRUE(seen() == bench.touch().field());
-  EXPECT_FALSE(tool.accept(bench.touch()));
-  tool.search(bench.touch());
+  EXPECT_TRUE(seen() == bench.client().field());
+  EXPECT_FALSE(tool.accept(bench.client()));
+  tool.search(bench.client());
   EXPECT_TRUE(tool.on());
   ASSERT_TRUE(shown());
   EXPECT_EQ(tool.suggestion()->lines, 1);
-  EXPECT_EQ(bench.touch().history().last(), 0);
-  EXPECT_EQ(markedSamples(bench.touch().field()), 0);
+  EXPECT_EQ(bench.client().history().last(), 0);
+  EXPECT_EQ(markedSamples(bench.client().field()), 0);
   const engine::Version suggested = seen();
   EXPECT_GT(markedSamples(suggested), kHeight / 2);
   for (std::int32_t r = 0; r < kHeight; ++r)
     for (std::int32_t c = 0; c < kWidth; ++c)
       ASSERT_TRUE(!suggested.reader().markedAt(c, r) || std::abs(c - kStep) <= 4) << c << ' ' << r;
 
-  EXPECT_TRUE(tool.accept(bench.touch()));
+  EXPECT_TRUE(tool.accept(bench.client()));
   EXPECT_FALSE(tool.on());
   EXPECT_EQ(tool.suggestion(), nullptr);
   ASSERT_TRUE(bench.settled());
-  EXPECT_EQ(bench.touch().history().number(), 1);
-  EXPECT_EQ(bench.touch().history().info(1).kind, engine::StepKind::kMark);
-  EXPECT_TRUE(sameMarks(bench.touch().upright(), suggested));
-  EXPECT_TRUE(seen() == bench.touch().field());
+  EXPECT_EQ(bench.client().history().number(), 1);
+  EXPECT_EQ(bench.client().history().info(1).kind, engine::StepKind::kMark);
+  EXPECT_TRUE(sameMarks(bench.client().upright(), suggested));
+  EXPECT_TRUE(seen() == bench.client().field());
 }
 
 TEST_F(EdgeToolTest, dropped_it_leaves_nothing_even_when_it_is_found_afterwards) {
-  tool.search(bench.touch());
+  tool.search(bench.client());
   tool.drop();
   // What was under way may end well; it is not shown.
   ASSERT_TRUE(bench.until([&] {
-    (void)tool.poll(bench.touch(), bench.noticesToFill());
+    (void)tool.poll(bench.client(), bench.noticesToFill());
     return !tool.busy();
   }));
   EXPECT_FALSE(tool.on());
-  tool.search(bench.touch());
+  tool.search(bench.client());
   ASSERT_TRUE(shown());
   tool.drop();
   EXPECT_FALSE(tool.on());
-  EXPECT_TRUE(seen() == bench.touch().field());
-  EXPECT_FALSE(tool.accept(bench.touch()));
-  EXPECT_EQ(bench.touch().history().last(), 0);
+  EXPECT_TRUE(seen() == bench.client().field());
+  EXPECT_FALSE(tool.accept(bench.client()));
+  EXPECT_EQ(bench.client().history().last(), 0);
   EXPECT_TRUE(bench.notices().empty());
 }
 
 TEST_F(EdgeToolTest, another_choice_is_drawn_without_another_search) {
-  tool.search(bench.touch());
+  tool.search(bench.client());
   ASSERT_TRUE(shown());
   const engine::EdgeMap* found = tool.map();
   const std::int64_t thin = markedSamples(seen());
   // Turned several times while one is drawn: the last counts.
   for (const double thickness : {2.0, 3.0, 5.0}) {
     tool.choice.thickness = thickness;
-    tool.redraw(bench.touch());
+    tool.redraw(bench.client());
   }
   ASSERT_TRUE(bench.until([&] {
-    (void)tool.poll(bench.touch(), bench.noticesToFill());
+    (void)tool.poll(bench.client(), bench.noticesToFill());
     return !tool.busy();
   }));
   EXPECT_EQ(tool.map(), found);
   engine::JobControl job;
-  const auto expected = engine::suggestMarks(bench.touch().upright(), *found, tool.choice, job);
+  const auto expected = engine::suggestMarks(bench.client().upright(), *found, tool.choice, job);
   ASSERT_TRUE(expected);
   EXPECT_TRUE(sameMarks(seen(), expected->field));
   EXPECT_GT(markedSamples(seen()), 2 * thin);
   // Nothing stands out of the noise so far.
   tool.choice.sensitivity = 0.0;
-  tool.redraw(bench.touch());
+  tool.redraw(bench.client());
   ASSERT_TRUE(bench.until([&] {
-    (void)tool.poll(bench.touch(), bench.noticesToFill());
+    (void)tool.poll(bench.client(), bench.noticesToFill());
     return !tool.busy();
   }));
   EXPECT_LE(markedSamples(seen()), markedSamples(expected->field));
 }
 
 TEST_F(EdgeToolTest, work_goes_on_under_it_and_is_in_what_is_seen_and_taken) {
-  tool.search(bench.touch());
+  tool.search(bench.client());
   ASSERT_TRUE(shown());
   const engine::Version suggested = seen();
   ASSERT_TRUE(bench.stroke(Tool::kSmooth, {3.0, 5.0, 0.0}));
-  const engine::Version smoothed = bench.touch().upright();
+  const engine::Version smoothed = bench.client().upright();
   const engine::Version both = seen();
   EXPECT_TRUE(sameMarks(both, suggested));
   for (std::int32_t r = 0; r < kHeight; ++r)
     for (std::int32_t c = 0; c < kWidth; ++c)
       ASSERT_EQ(both.reader().heightAt(c, r), smoothed.reader().heightAt(c, r)) << c << ' ' << r;
-  ASSERT_TRUE(tool.accept(bench.touch()));
+  ASSERT_TRUE(tool.accept(bench.client()));
   ASSERT_TRUE(bench.settled());
-  EXPECT_EQ(bench.touch().history().number(), 2);
-  EXPECT_TRUE(sameMarks(bench.touch().upright(), suggested));
-  bench.touch().undo();
+  EXPECT_EQ(bench.client().history().number(), 2);
+  EXPECT_TRUE(sameMarks(bench.client().upright(), suggested));
+  bench.client().undo();
   ASSERT_TRUE(bench.settled());
-  EXPECT_TRUE(bench.touch().upright() == smoothed);
+  EXPECT_TRUE(bench.client().upright() == smoothed);
 }
 
 TEST_F(EdgeToolTest, it_is_seen_upside_down_as_well) {
-  tool.search(bench.touch());
+  tool.search(bench.client());
   ASSERT_TRUE(shown());
   const engine::Version upright = seen();
-  haptic::Scene scene = bench.touch().scene();
+  haptic::Scene scene = bench.client().scene();
   scene.invert = true;
-  ASSERT_TRUE(bench.touch().setScene(scene));
-  ASSERT_TRUE(bench.until([&] { return bench.touch().field().reader().sign() < 0.0F; }));
+  ASSERT_TRUE(bench.client().setScene(scene));
+  ASSERT_TRUE(bench.until([&] { return bench.client().field().reader().sign() < 0.0F; }));
   const engine::Version inverted = seen();
   EXPECT_LT(inverted.reader().sign(), 0.0F);
   EXPECT_TRUE(sameMarks(inverted, upright));

@@ -12,11 +12,11 @@ namespace fettle::tests {
 using haptic::Tool;
 
 void HandPlay::wait(std::uint64_t ticks) {
-  const std::uint64_t until = touch_.state().tick + ticks;
-  while (touch_.state().tick < until) {
-    touch_.poll();
+  const std::uint64_t until = client_.state().tick + ticks;
+  while (client_.state().tick < until) {
+    client_.poll();
     keeper_.poll();
-    static_cast<void>(filters_.poll(touch_, notices_));
+    static_cast<void>(filters_.poll(client_, notices_));
     // A window's frames look at the loop about as often while it draws.
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
@@ -25,23 +25,23 @@ void HandPlay::wait(std::uint64_t ticks) {
 void HandPlay::press(double u, double v, bool held) {
   u_ = std::clamp(u, 0.02, 0.98);
   v_ = std::clamp(v, 0.02, 0.98);
-  const engine::Version& field = touch_.field();
+  const engine::Version& field = client_.field();
   const engine::Grid& grid = field.grid();
   const auto column = static_cast<std::int32_t>(u_ * (grid.width - 1));
   const auto row = static_cast<std::int32_t>(v_ * (grid.height - 1));
   float height = 0.0F;
   field.reader().readHeights(column, row, 1, 1, &height, 1);
-  touch_.mouse()->setCursor({column * grid.spacingXMm(), row * grid.spacingYMm(),
-                             std::isfinite(height) ? height * grid.height_unit.mm : 0.0});
+  client_.mouse()->setCursor({column * grid.spacingXMm(), row * grid.spacingYMm(),
+                              std::isfinite(height) ? height * grid.height_unit.mm : 0.0});
   if (held)
-    touch_.mouse()->press(touch_.tool());
+    client_.mouse()->press(client_.tool());
   else
-    touch_.mouse()->release();
+    client_.mouse()->release();
 }
 
 std::string HandPlay::stroke(bool ends) {
   const Tool tools[] = {Tool::kSmooth, Tool::kSmooth, Tool::kMark, Tool::kUnmark, Tool::kFeel};
-  touch_.setTool(tools[random_() % 5]);
+  client_.setTool(tools[random_() % 5]);
   press(uniform(0, 1), uniform(0, 1), false);
   wait(30);
   const double du = uniform(-0.02, 0.02), dv = uniform(-0.02, 0.02);
@@ -66,12 +66,12 @@ std::string HandPlay::filter(bool under_a_stroke) {
   spec.passes = 1 + static_cast<int>(random_() % 2);
   spec.scope = random_() % 4 == 0 ? engine::FilterScope::kOnlyMarks : engine::FilterScope::kKeepMarks;
   spec.max_change = random_() % 3 == 0 ? std::optional<double>(0.05) : std::nullopt;
-  filters_.apply(touch_);
+  filters_.apply(client_);
   const bool leaves = random_() % 6 == 0;
   if (under_a_stroke) static_cast<void>(stroke(random_() % 2 == 0));
   if (leaves) {
     wait(random_() % 10);
-    filters_.cancel(touch_);
+    filters_.cancel(client_);
   }
   while (filters_.computing() || filters_.applying()) wait(1);
   press(u_, v_, false);
@@ -80,14 +80,14 @@ std::string HandPlay::filter(bool under_a_stroke) {
 
 void HandPlay::apply(const engine::FilterSpec& spec) {
   filters_.spec = spec;
-  filters_.apply(touch_);
+  filters_.apply(client_);
   static_cast<void>(stroke(true));
   while (filters_.computing() || filters_.applying()) wait(1);
 }
 
 std::string HandPlay::marks() {
-  touch_.poll();
-  const engine::Version base = touch_.upright();
+  client_.poll();
+  const engine::Version base = client_.upright();
   const engine::Grid& grid = base.grid();
   engine::LiveField field(base, engine::Growth::kAllowed);
   const bool marked = random_() % 3 != 0;
@@ -98,19 +98,19 @@ std::string HandPlay::marks() {
       static_cast<void>(field.setMark(c, r, marked));
   // A hand may have worked on meanwhile.
   if (random_() % 2 == 0) wait(5);
-  touch_.replaceMarks(base, field.snapshot(), marked ? "Lasso" : "Clear");
+  client_.replaceMarks(base, field.snapshot(), marked ? "Lasso" : "Clear");
   return "marks";
 }
 
 std::string HandPlay::scene() {
-  haptic::Scene scene = touch_.scene();
+  haptic::Scene scene = client_.scene();
   switch (random_() % 5) {
     case 0:
       scene.brush_radius_samples = static_cast<double>(random_() % 9);
       break;
     case 1:
       scene.invert = !scene.invert;
-      filters_.cancel(touch_);
+      filters_.cancel(client_);
       break;
     case 2:
       scene.max_change = random_() % 2 == 0 ? std::optional<double>(uniform(0.0, 0.2)) : std::nullopt;
@@ -123,7 +123,7 @@ std::string HandPlay::scene() {
       scene.effects = {haptic::EffectKind::kSpring, haptic::EffectKind::kSmoothing};
       scene.mark_radius_samples = static_cast<double>(random_() % 5);
   }
-  static_cast<void>(touch_.setScene(scene));  // in range, and a mouse holds anything
+  static_cast<void>(client_.setScene(scene));  // in range, and a mouse holds anything
   return "scene";
 }
 
@@ -136,16 +136,16 @@ std::string HandPlay::act() {
   if (what < 11) return marks();
   if (what < 12) return scene();
   if (what < 14) {
-    touch_.undo();
+    client_.undo();
     if (random_() % 2 == 0) wait(random_() % 4);
     return "undo";
   }
   if (what < 15) {
-    touch_.redo();
+    client_.redo();
     return "redo";
   }
-  const engine::History& history = touch_.history();
-  touch_.goTo(std::uniform_int_distribution<std::int64_t>(history.first(), history.last())(random_));
+  const engine::History& history = client_.history();
+  client_.goTo(std::uniform_int_distribution<std::int64_t>(history.first(), history.last())(random_));
   return "go to a state";
 }
 
@@ -156,7 +156,7 @@ void HandPlay::untilKept() {
 void HandPlay::settle() {
   press(u_, v_, false);
   while (filters_.computing() || filters_.applying()) wait(1);
-  touch_.setTool(Tool::kFeel);
+  client_.setTool(Tool::kFeel);
   wait(20);
 }
 

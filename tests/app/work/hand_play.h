@@ -15,8 +15,8 @@ namespace fettle::tests {
 /// filters brought in while a stroke goes on, marks, scenes. On the real loop, in real time.
 class HandPlay {
  public:
-  HandPlay(app::LoopClient& touch, app::SessionKeeper& keeper, std::uint64_t seed)
-      : touch_(touch), keeper_(keeper), random_(seed) {}
+  HandPlay(app::LoopClient& client, app::SessionKeeper& keeper, std::uint64_t seed)
+      : client_(client), keeper_(keeper), random_(seed) {}
 
   /// One thing a person does; says what.
   std::string act();
@@ -40,7 +40,7 @@ class HandPlay {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
 
-  app::LoopClient& touch_;
+  app::LoopClient& client_;
   app::SessionKeeper& keeper_;
   std::mt19937_64 random_;
   app::FilterPreview filters_;

@@ -29,14 +29,14 @@ class KeptScan : public testing::Test {
     keeper = std::make_unique<SessionKeeper>(document);
     auto started = app::LoopClient::start(history, document.original, brushScene(), {}, keeper.get());
     EXPECT_TRUE(started);
-    touch = *std::move(started);
-    hand = std::make_unique<HandPlay>(*touch, *keeper, 5);
+    client = *std::move(started);
+    hand = std::make_unique<HandPlay>(*client, *keeper, 5);
   }
-  ~KeptScan() override { touch->finish(); }
+  ~KeptScan() override { client->finish(); }
 
   void work() {
-    const std::int64_t before = touch->history().last();
-    while (touch->history().last() < before + 2) static_cast<void>(hand->act());
+    const std::int64_t before = client->history().last();
+    while (client->history().last() < before + 2) static_cast<void>(hand->act());
     hand->settle();
     hand->untilKept();
   }
@@ -45,19 +45,19 @@ class KeptScan : public testing::Test {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (!done()) {
       ASSERT_LT(std::chrono::steady_clock::now(), end) << what;
-      touch->poll();
+      client->poll();
       keeper->poll();
     }
   }
-  void replaceScan() { ASSERT_TRUE(engine::exportField(touch->upright().inverted(), scan, {}, job)); }
+  void replaceScan() { ASSERT_TRUE(engine::exportField(client->upright().inverted(), scan, {}, job)); }
   // What a program that starts now would find: nothing is closed yet, as after a kill.
   void expectRecovered() {
     const auto session = engine::openSession(app::recoveryPath(scan), {}, engine::importField, job);
     ASSERT_TRUE(session) << session.error().line();
     EXPECT_EQ(engine::contentHash(session->original), engine::contentHash(document.original));
-    EXPECT_EQ(session->history.number(), touch->history().number());
+    EXPECT_EQ(session->history.number(), client->history().number());
     EXPECT_EQ(engine::contentHash(session->history.current()),
-              engine::contentHash(touch->history().current()));
+              engine::contentHash(client->history().current()));
   }
 
   TempFolder folder;
@@ -66,7 +66,7 @@ class KeptScan : public testing::Test {
   app::Document document;
   engine::History history;
   std::unique_ptr<SessionKeeper> keeper;
-  std::unique_ptr<app::LoopClient> touch;
+  std::unique_ptr<app::LoopClient> client;
   std::unique_ptr<HandPlay> hand;
 };
 
@@ -110,7 +110,7 @@ TEST_F(KeptScan, GoesIntoTheSessionSoonAfterAnotherProgramReplacedIt) {
 TEST_F(KeptScan, GoesIntoTheSessionAtItsEndAtTheLatest) {
   work();
   replaceScan();
-  touch->finish();
+  client->finish();
   ASSERT_TRUE(keeper->close(SessionKeeper::Afterwards::kKeep));
   expectRecovered();
 }

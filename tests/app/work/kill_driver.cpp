@@ -50,9 +50,9 @@ int main(int count, char** arguments) {
   const engine::History history = document.history;
   app::SessionKeeper keeper(document);
   if (creates) keeper.saveAs(path, engine::OriginalStorage::kEmbedded);
-  auto touch = app::LoopClient::start(history, document.original, tests::brushScene(), {}, &keeper);
-  if (!touch) return refuse(touch.error());
-  tests::HandPlay play(**touch, keeper, std::strtoull(arguments[2], nullptr, 10));
+  auto client = app::LoopClient::start(history, document.original, tests::brushScene(), {}, &keeper);
+  if (!client) return refuse(client.error());
+  tests::HandPlay play(**client, keeper, std::strtoull(arguments[2], nullptr, 10));
   tell("ready\n");
   if (std::FILE* ready = std::fopen(arguments[4], "w")) std::fclose(ready);
   std::string before;  // told with what follows it, in one write
@@ -62,7 +62,7 @@ int main(int count, char** arguments) {
     play.settle();
     play.untilKept();
     if (const auto error = keeper.error()) return refuse(*error);
-    const engine::History& now = (*touch)->history();
+    const engine::History& now = (*client)->history();
     before = fmt::format("kept {} {:016x}\n", now.number(), engine::contentHash(now.current()));
   }
 }

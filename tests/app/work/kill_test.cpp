@@ -23,27 +23,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What the driver told before it died.
-struct Told {
+// What the driver reported before it died.
+struct DriverReport {
   bool ready = false;
   bool doing = false;  // something was begun and not kept yet
   std::int64_t number = -1;
   std::string hash;
 };
 
-Told readTold(const std::string& out) {
-  Told told;
+DriverReport readReport(const std::string& out) {
+  DriverReport report;
   std::istringstream lines(out);
   std::string word;
   while (lines >> word) {
-    if (word == "ready") told.ready = true;
-    if (word == "doing") told.doing = true;
+    if (word == "ready") report.ready = true;
+    if (word == "doing") report.doing = true;
     if (word == "kept") {
-      lines >> told.number >> told.hash;
-      told.doing = false;
+      lines >> report.number >> report.hash;
+      report.doing = false;
     }
   }
-  return told;
+  return report;
 }
 
 int killsWanted() {
@@ -58,7 +58,7 @@ TEST(SessionOfAHand, OpensAfterAKillAtAnyMomentWithAllButWhatWasBeingDone) {
   std::mt19937_64 random(20261121);
   std::map<std::string, int> seen;
   std::string path;
-  Told last;  // of the lives before
+  DriverReport last;  // of the lives before
   std::int64_t ticks = 0, steps = 0;
   for (int kill = 0; kill < kills; ++kill) {
     const bool is_new = kill % kLives == 0 || !fs::exists(path);
@@ -84,14 +84,14 @@ TEST(SessionOfAHand, OpensAfterAKillAtAnyMomentWithAllButWhatWasBeingDone) {
     const tests::Outcome outcome = tests::runProcess(
         {FETTLE_HAND_DRIVER, path, std::to_string(random()), is_new ? "create" : "resume", ready}, options);
     ASSERT_EQ(outcome.status, 128 + SIGKILL) << "kill " << kill << ": " << outcome.err;
-    Told told = readTold(outcome.out);
-    ++seen[told.doing ? "while something was done" : "between two doings"];
-    if (told.number < 0) {
-      told.number = last.number;
-      told.hash = last.hash;
+    DriverReport report = readReport(outcome.out);
+    ++seen[report.doing ? "while something was done" : "between two doings"];
+    if (report.number < 0) {
+      report.number = last.number;
+      report.hash = last.hash;
     }
     if (!fs::exists(path)) {
-      ASSERT_LT(told.number, 0) << "kill " << kill << ": what was kept is gone";
+      ASSERT_LT(report.number, 0) << "kill " << kill << ": what was kept is gone";
       ++seen["before the session was there"];
       continue;
     }
@@ -100,11 +100,12 @@ TEST(SessionOfAHand, OpensAfterAKillAtAnyMomentWithAllButWhatWasBeingDone) {
     ASSERT_TRUE(session) << "kill " << kill << ": " << session.error().line();
     const auto verified = engine::verifySession(path, job);
     ASSERT_TRUE(verified) << "kill " << kill << ": " << verified.error().line();
-    if (told.number >= 0) {
+    if (report.number >= 0) {
       // One doing more may be there, and an undo may have moved on: the state that was told is held all the
       // same.
-      ASSERT_LE(told.number, session->history.last()) << "kill " << kill;
-      EXPECT_EQ(fmt::format("{:016x}", engine::contentHash(session->history.state(told.number))), told.hash)
+      ASSERT_LE(report.number, session->history.last()) << "kill " << kill;
+      EXPECT_EQ(fmt::format("{:016x}", engine::contentHash(session->history.state(report.number))),
+                report.hash)
           << "kill " << kill;
     }
     const auto played = haptic::playSession(*session, job);

@@ -26,14 +26,14 @@ class LiveChangeTest : public ::testing::Test {
   bool upToDate() {
     int quiet = 0;
     return bench.until([&] {
-      if (change.poll(bench.touch())) told = true;
+      if (change.poll(bench.client())) told = true;
       quiet = change.figures() && change.figures()->max_abs == expected().max_abs ? quiet + 1 : 0;
       return quiet > 0;
     });
   }
   engine::Deviation expected() {
     engine::JobControl job;
-    const auto measured = engine::compareFields(original, bench.touch().upright(), job);
+    const auto measured = engine::compareFields(original, bench.client().upright(), job);
     EXPECT_TRUE(measured);
     return *measured;
   }
@@ -45,7 +45,7 @@ class LiveChangeTest : public ::testing::Test {
 };
 
 TEST_F(LiveChangeTest, a_field_that_is_as_scanned_has_not_changed) {
-  EXPECT_FALSE(change.poll(bench.touch())) << "before begin() there is nothing to look at";
+  EXPECT_FALSE(change.poll(bench.client())) << "before begin() there is nothing to look at";
   EXPECT_FALSE(change.figures());
   change.begin(original);
   EXPECT_FALSE(change.figures());
@@ -73,7 +73,7 @@ TEST_F(LiveChangeTest, figures_follow_strokes_and_undo) {
   EXPECT_NEAR(figures.rms, measured.rms, measured.rms * 18'000 * 1.2e-16);
   EXPECT_LT(figures.histogram.unchanged, 150 * 120);
   EXPECT_GE(change.tookMs(), 0.0);
-  bench.touch().undo();
+  bench.client().undo();
   ASSERT_TRUE(bench.settled());
   ASSERT_TRUE(upToDate());
   EXPECT_EQ(change.figures()->max_abs, 0.0);
@@ -85,8 +85,8 @@ TEST_F(LiveChangeTest, what_has_been_looked_at_is_not_looked_at_again) {
   ASSERT_TRUE(upToDate());
   const double took = change.tookMs();
   for (int i = 0; i < 200; ++i) {
-    bench.touch().poll();
-    EXPECT_FALSE(change.poll(bench.touch())) << i;
+    bench.client().poll();
+    EXPECT_FALSE(change.poll(bench.client())) << i;
   }
   EXPECT_EQ(change.tookMs(), took);
 }

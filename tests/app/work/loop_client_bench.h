@@ -22,10 +22,10 @@ class LoopClientBench {
     auto started =
         app::LoopClient::start(engine::History(field, std::size_t{64} << 20), field, scene, {}, nullptr);
     EXPECT_TRUE(started) << (started ? "" : started.error().line());
-    if (started) touch_ = std::move(*started);
+    if (started) client_ = std::move(*started);
   }
 
-  [[nodiscard]] app::LoopClient& touch() { return *touch_; }
+  [[nodiscard]] app::LoopClient& client() { return *client_; }
   [[nodiscard]] const std::vector<app::Notice>& notices() const { return notices_; }
   [[nodiscard]] std::vector<app::Notice>& noticesToFill() { return notices_; }
 
@@ -33,7 +33,7 @@ class LoopClientBench {
   bool until(const std::function<bool()>& is) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < end) {
-      touch_->poll();
+      client_->poll();
       if (is()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -41,22 +41,22 @@ class LoopClientBench {
   }
   /// Until the field is the history's newest state.
   bool settled() {
-    return until([&] { return touch_->upright() == touch_->history().current(); });
+    return until([&] { return client_->upright() == client_->history().current(); });
   }
   /// A stroke of the stylus at a place of the surface [mm, its height included], until it is a step.
   bool stroke(haptic::Tool tool, const glm::dvec3& at) {
-    const std::int64_t before = touch_->history().number();
-    haptic::MouseStylus& mouse = *touch_->mouse();
-    touch_->setTool(tool);
+    const std::int64_t before = client_->history().number();
+    haptic::MouseStylus& mouse = *client_->mouse();
+    client_->setTool(tool);
     mouse.setCursor(at);
     mouse.press(tool);
-    if (!until([&] { return !(touch_->upright() == touch_->history().current()); })) return false;
+    if (!until([&] { return !(client_->upright() == client_->history().current()); })) return false;
     mouse.release();
-    return until([&] { return touch_->history().number() == before + 1 && !mouse.busy(); });
+    return until([&] { return client_->history().number() == before + 1 && !mouse.busy(); });
   }
 
  private:
-  std::unique_ptr<app::LoopClient> touch_;
+  std::unique_ptr<app::LoopClient> client_;
   std::vector<app::Notice> notices_;
 };
 

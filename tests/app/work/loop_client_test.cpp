@@ -30,12 +30,12 @@ class LoopClientTest : public ::testing::Test {
   // A hand that lands on a plate and lifts again, every second: one that is armed while it is deep inside
   // would feel nothing until it has come out.
   std::unique_ptr<LoopClient> start(const std::string& tool = "feel") {
-    auto touch = tryStart(tool, haptic::defaultScene(), false);
-    if (!touch) {
-      ADD_FAILURE() << touch.error().line();
+    auto client = tryStart(tool, haptic::defaultScene(), false);
+    if (!client) {
+      ADD_FAILURE() << client.error().line();
       return nullptr;
     }
-    return std::move(*touch);
+    return std::move(*client);
   }
   engine::Result<std::unique_ptr<LoopClient>> tryStart(const std::string& tool, const haptic::Scene& scene,
                                                        bool lower_scene) {
@@ -54,119 +54,119 @@ class LoopClientTest : public ::testing::Test {
     return LoopClient::start(engine::History(plate, std::size_t{1} << 20), plate, scene, options, nullptr);
   }
   // Goes round as the window does.
-  static bool until(LoopClient& touch, const std::function<bool(const haptic::LoopState&)>& is) {
+  static bool until(LoopClient& client, const std::function<bool(const haptic::LoopState&)>& is) {
     const auto end = std::chrono::steady_clock::now() + kPatience;
     while (std::chrono::steady_clock::now() < end) {
-      touch.poll();
-      if (is(touch.state())) return true;
+      client.poll();
+      if (is(client.state())) return true;
       std::this_thread::sleep_for(1ms);
     }
     return false;
   }
-  static void rounds(LoopClient& touch, std::uint64_t ticks) {
-    const std::uint64_t end = touch.state().tick + ticks;
-    EXPECT_TRUE(until(touch, [&](const haptic::LoopState& s) { return s.tick >= end; }));
+  static void rounds(LoopClient& client, std::uint64_t ticks) {
+    const std::uint64_t end = client.state().tick + ticks;
+    EXPECT_TRUE(until(client, [&](const haptic::LoopState& s) { return s.tick >= end; }));
   }
 
   tests::TempFolder folder_;
 };
 
 TEST_F(LoopClientTest, who_disarmed_is_not_armed_again_by_the_program) {
-  const auto touch = start();
-  ASSERT_TRUE(touch);
-  ASSERT_TRUE(until(*touch, [](const auto& s) { return s.safety == SafetyState::kActive && s.contact; }))
+  const auto client = start();
+  ASSERT_TRUE(client);
+  ASSERT_TRUE(until(*client, [](const auto& s) { return s.safety == SafetyState::kActive && s.contact; }))
       << "a simulated hand arms itself";
-  touch->disarm();
-  rounds(*touch, 2);  // the tick under way may not have seen it
+  client->disarm();
+  rounds(*client, 2);  // the tick under way may not have seen it
   // Longer than the program waits between two tries to arm by itself.
   for (int i = 0; i < 30; ++i) {
-    rounds(*touch, 10);
-    ASSERT_EQ(touch->state().safety, SafetyState::kUncalibrated) << i;
+    rounds(*client, 10);
+    ASSERT_EQ(client->state().safety, SafetyState::kUncalibrated) << i;
   }
-  EXPECT_EQ(touch->state().given_n, glm::dvec3(0.0));
-  touch->arm();
-  EXPECT_TRUE(until(*touch, givesForce));
+  EXPECT_EQ(client->state().given_n, glm::dvec3(0.0));
+  client->arm();
+  EXPECT_TRUE(until(*client, givesForce));
 }
 
 TEST_F(LoopClientTest, arming_and_disarming_at_once_leaves_it_disarmed) {
-  const auto touch = start();
-  ASSERT_TRUE(touch);
-  ASSERT_TRUE(until(*touch, givesForce));
+  const auto client = start();
+  ASSERT_TRUE(client);
+  ASSERT_TRUE(until(*client, givesForce));
   for (int i = 0; i < 50; ++i) {
-    touch->arm();
-    touch->disarm();
-    rounds(*touch, 3);
-    ASSERT_EQ(touch->state().safety, SafetyState::kUncalibrated) << i;
-    touch->disarm();
-    touch->arm();
-    ASSERT_TRUE(until(*touch, [](const auto& s) { return s.safety != SafetyState::kUncalibrated; })) << i;
+    client->arm();
+    client->disarm();
+    rounds(*client, 3);
+    ASSERT_EQ(client->state().safety, SafetyState::kUncalibrated) << i;
+    client->disarm();
+    client->arm();
+    ASSERT_TRUE(until(*client, [](const auto& s) { return s.safety != SafetyState::kUncalibrated; })) << i;
   }
 }
 
 // The field, the step under way and who is armed outlive the loop.
 TEST_F(LoopClientTest, another_rate_begins_without_force_and_loses_nothing) {
-  const auto touch = start("mark");
-  ASSERT_TRUE(touch);
-  ASSERT_TRUE(until(*touch, [](const auto& s) { return givesForce(s) && s.stroke > 0; }));
-  const haptic::LoopState before = touch->state();
-  const engine::Status set = touch->setRate(4000.0);
+  const auto client = start("mark");
+  ASSERT_TRUE(client);
+  ASSERT_TRUE(until(*client, [](const auto& s) { return givesForce(s) && s.stroke > 0; }));
+  const haptic::LoopState before = client->state();
+  const engine::Status set = client->setRate(4000.0);
   ASSERT_TRUE(set) << set.error().line();
-  EXPECT_EQ(touch->rate(), 4000.0);
-  EXPECT_FALSE(touch->finished());
-  EXPECT_FALSE(givesForce(touch->state())) << "of the new loop's first ticks";
-  EXPECT_LT(touch->state().tick, before.tick);
-  const std::int64_t steps = touch->history().number();
+  EXPECT_EQ(client->rate(), 4000.0);
+  EXPECT_FALSE(client->finished());
+  EXPECT_FALSE(givesForce(client->state())) << "of the new loop's first ticks";
+  EXPECT_LT(client->state().tick, before.tick);
+  const std::int64_t steps = client->history().number();
   EXPECT_GE(steps, 1) << "the stroke under way became a step";
-  EXPECT_TRUE(touch->upright() == touch->history().current());
+  EXPECT_TRUE(client->upright() == client->history().current());
   // The simulated hand is armed by itself again, as at its start, and works on where it was.
-  ASSERT_TRUE(until(*touch, givesForce));
-  ASSERT_TRUE(until(*touch, [&](const auto&) { return touch->measuredRate() > 2000.0; }));
-  EXPECT_EQ(touch->timing().lateness.figures().count > 0, true);
-  touch->undo();
-  ASSERT_TRUE(until(*touch, [&](const auto&) { return touch->upright() == touch->history().current(); }));
+  ASSERT_TRUE(until(*client, givesForce));
+  ASSERT_TRUE(until(*client, [&](const auto&) { return client->measuredRate() > 2000.0; }));
+  EXPECT_EQ(client->timing().lateness.figures().count > 0, true);
+  client->undo();
+  ASSERT_TRUE(until(*client, [&](const auto&) { return client->upright() == client->history().current(); }));
   // Who disarmed stays disarmed.
-  touch->disarm();
-  ASSERT_TRUE(touch->setRate(1000.0));
-  rounds(*touch, 500);
-  EXPECT_EQ(touch->state().safety, SafetyState::kUncalibrated);
+  client->disarm();
+  ASSERT_TRUE(client->setRate(1000.0));
+  rounds(*client, 500);
+  EXPECT_EQ(client->state().safety, SafetyState::kUncalibrated);
   // Out of range nothing happens.
-  EXPECT_FALSE(touch->setRate(999.0));
-  EXPECT_FALSE(touch->setRate(10001.0));
-  EXPECT_EQ(touch->rate(), 1000.0);
-  EXPECT_EQ(touch->state().link, haptic::LinkState::kConnected);
+  EXPECT_FALSE(client->setRate(999.0));
+  EXPECT_FALSE(client->setRate(10001.0));
+  EXPECT_EQ(client->rate(), 1000.0);
+  EXPECT_EQ(client->state().link, haptic::LinkState::kConnected);
 }
 
 TEST_F(LoopClientTest, a_stiffness_that_the_hand_does_not_hold_is_refused_with_the_largest_that_it_does) {
-  const auto touch = start();
-  ASSERT_TRUE(touch);
-  ASSERT_TRUE(until(*touch, givesForce));
-  EXPECT_EQ(touch->largestStiffness(), 6.0);
+  const auto client = start();
+  ASSERT_TRUE(client);
+  ASSERT_TRUE(until(*client, givesForce));
+  EXPECT_EQ(client->largestStiffness(), 6.0);
   for (const double typed : {99999.0, 1000.0, 6.01}) {
-    haptic::Scene scene = touch->scene();
+    haptic::Scene scene = client->scene();
     scene.stiffness_n_per_mm = typed;
-    const engine::Status refused = touch->setScene(scene);
+    const engine::Status refused = client->setScene(scene);
     ASSERT_FALSE(refused) << typed;
     EXPECT_EQ(refused.error().kind, engine::ErrorKind::kInput);
     EXPECT_NE(refused.error().line().find("at most 6 N/mm"), std::string::npos) << refused.error().line();
-    EXPECT_EQ(touch->scene(), haptic::defaultScene()) << "as before";
+    EXPECT_EQ(client->scene(), haptic::defaultScene()) << "as before";
   }
-  haptic::Scene scene = touch->scene();
+  haptic::Scene scene = client->scene();
   scene.stiffness_n_per_mm = -1.0;
-  EXPECT_FALSE(touch->setScene(scene)) << "out of range";
+  EXPECT_FALSE(client->setScene(scene)) << "out of range";
   // Twice as many ticks hold twice as much, and with that there is no way back.
-  ASSERT_TRUE(touch->setRate(2000.0));
-  EXPECT_EQ(touch->largestStiffness(), 12.0);
+  ASSERT_TRUE(client->setRate(2000.0));
+  EXPECT_EQ(client->largestStiffness(), 12.0);
   scene.stiffness_n_per_mm = 10.0;
-  ASSERT_TRUE(touch->setScene(scene));
-  const engine::Status back = touch->setRate(1000.0);
+  ASSERT_TRUE(client->setScene(scene));
+  const engine::Status back = client->setRate(1000.0);
   ASSERT_FALSE(back);
   EXPECT_NE(back.error().line().find("at most 6 N/mm"), std::string::npos) << back.error().line();
-  EXPECT_EQ(touch->rate(), 2000.0);
-  EXPECT_FALSE(touch->finished());
-  EXPECT_TRUE(until(*touch, givesForce)) << "the loop runs on";
+  EXPECT_EQ(client->rate(), 2000.0);
+  EXPECT_FALSE(client->finished());
+  EXPECT_TRUE(until(*client, givesForce)) << "the loop runs on";
   scene.stiffness_n_per_mm = 6.0;
-  ASSERT_TRUE(touch->setScene(scene));
-  EXPECT_TRUE(touch->setRate(1000.0));
+  ASSERT_TRUE(client->setScene(scene));
+  EXPECT_TRUE(client->setRate(1000.0));
 }
 
 // Another device than the scene was made with.

@@ -49,20 +49,20 @@ TEST(MarkEdit, changes_become_steps_in_the_order_they_were_asked_for) {
   edit.ask("All again", engine::invertMarks);
   EXPECT_TRUE(edit.busy());
   ASSERT_TRUE(bench.until([&] {
-    (void)edit.poll(bench.touch(), bench.noticesToFill());
+    (void)edit.poll(bench.client(), bench.noticesToFill());
     return !edit.busy();
   }));
   ASSERT_TRUE(bench.settled());
-  const engine::History& history = bench.touch().history();
+  const engine::History& history = bench.client().history();
   ASSERT_EQ(history.number(), 3);
   EXPECT_EQ(history.info(1).name, "All");
   EXPECT_EQ(history.info(2).name, "None");
   EXPECT_EQ(history.info(3).name, "All again");
   EXPECT_EQ(history.info(2).kind, engine::StepKind::kMark);
-  EXPECT_EQ(markedSamples(bench.touch().upright()), 130 * 100);
-  bench.touch().undo();
+  EXPECT_EQ(markedSamples(bench.client().upright()), 130 * 100);
+  bench.client().undo();
   ASSERT_TRUE(bench.settled());
-  EXPECT_EQ(markedSamples(bench.touch().upright()), 0);
+  EXPECT_EQ(markedSamples(bench.client().upright()), 0);
   EXPECT_TRUE(bench.notices().empty());
 }
 
@@ -71,10 +71,10 @@ TEST(MarkEdit, what_changes_nothing_is_no_step) {
   MarkEdit edit;
   edit.ask("None", engine::clearMarks);
   ASSERT_TRUE(bench.until([&] {
-    (void)edit.poll(bench.touch(), bench.noticesToFill());
+    (void)edit.poll(bench.client(), bench.noticesToFill());
     return !edit.busy();
   }));
-  EXPECT_EQ(bench.touch().history().last(), 0);
+  EXPECT_EQ(bench.client().history().last(), 0);
 }
 
 TEST(MarkEdit, cancelled_nothing_is_done_however_far_it_had_got) {
@@ -84,7 +84,7 @@ TEST(MarkEdit, cancelled_nothing_is_done_however_far_it_had_got) {
     const Held held;
     edit.ask("All", held.change());
     edit.ask("All again", engine::invertMarks);
-    (void)edit.poll(bench.touch(), bench.noticesToFill());
+    (void)edit.poll(bench.client(), bench.noticesToFill());
     held.begun->wait(false);
     if (finished) {
       // Done, but nobody looked yet.
@@ -94,11 +94,11 @@ TEST(MarkEdit, cancelled_nothing_is_done_however_far_it_had_got) {
     edit.cancel();
     held.letGo();
     ASSERT_TRUE(bench.until([&] {
-      (void)edit.poll(bench.touch(), bench.noticesToFill());
+      (void)edit.poll(bench.client(), bench.noticesToFill());
       return !edit.busy();
     }));
-    EXPECT_EQ(bench.touch().history().last(), 0) << finished;
-    EXPECT_EQ(markedSamples(bench.touch().upright()), 0) << finished;
+    EXPECT_EQ(bench.client().history().last(), 0) << finished;
+    EXPECT_EQ(markedSamples(bench.client().upright()), 0) << finished;
     EXPECT_TRUE(bench.notices().empty()) << finished;
   }
 }
@@ -108,18 +108,18 @@ TEST(MarkEdit, a_stroke_made_meanwhile_is_kept) {
   MarkEdit edit;
   const Held held;
   edit.ask("All", held.change());
-  (void)edit.poll(bench.touch(), bench.noticesToFill());
+  (void)edit.poll(bench.client(), bench.noticesToFill());
   held.begun->wait(false);
   ASSERT_TRUE(bench.stroke(Tool::kSmooth, {5.0, 5.0, 0.01}));
-  const engine::Version smoothed = bench.touch().history().current();
+  const engine::Version smoothed = bench.client().history().current();
   held.letGo();
   ASSERT_TRUE(bench.until([&] {
-    (void)edit.poll(bench.touch(), bench.noticesToFill());
+    (void)edit.poll(bench.client(), bench.noticesToFill());
     return !edit.busy();
   }));
   ASSERT_TRUE(bench.settled());
-  EXPECT_EQ(bench.touch().history().number(), 2);
-  const engine::Version now = bench.touch().upright();
+  EXPECT_EQ(bench.client().history().number(), 2);
+  const engine::Version now = bench.client().upright();
   EXPECT_EQ(markedSamples(now), 130 * 100);
   for (std::int32_t r = 0; r < 100; ++r)
     for (std::int32_t c = 0; c < 130; ++c)
@@ -133,13 +133,13 @@ TEST(MarkEdit, what_cannot_be_done_is_said) {
     return engine::failure("no memory", "marks", "close other programs");
   });
   ASSERT_TRUE(bench.until([&] {
-    (void)edit.poll(bench.touch(), bench.noticesToFill());
+    (void)edit.poll(bench.client(), bench.noticesToFill());
     return !edit.busy();
   }));
   ASSERT_EQ(bench.notices().size(), 1U);
   EXPECT_EQ(bench.notices().front().what, "no memory");
   EXPECT_EQ(bench.notices().front().remedy, "close other programs");
-  EXPECT_EQ(bench.touch().history().last(), 0);
+  EXPECT_EQ(bench.client().history().last(), 0);
 }
 
 }  // namespace

@@ -28,11 +28,11 @@ Document fromField(const engine::Version& field, const std::string& name) {
   return document;
 }
 
-std::unique_ptr<LoopClient> touchOf(const Document& document, const engine::History& history,
-                                    SessionKeeper& keeper) {
-  auto touch = LoopClient::start(history, document.original, brushScene(), {}, &keeper);
-  EXPECT_TRUE(touch) << (touch ? "" : touch.error().line());
-  return touch ? std::move(*touch) : nullptr;
+std::unique_ptr<LoopClient> clientOf(const Document& document, const engine::History& history,
+                                     SessionKeeper& keeper) {
+  auto client = LoopClient::start(history, document.original, brushScene(), {}, &keeper);
+  EXPECT_TRUE(client) << (client ? "" : client.error().line());
+  return client ? std::move(*client) : nullptr;
 }
 
 TEST(SessionJournal, ReplaysToTheBitsThatHandsFiltersAndUndoMade) {
@@ -58,19 +58,19 @@ TEST(SessionJournal, ReplaysToTheBitsThatHandsFiltersAndUndoMade) {
     const engine::History history = document.history;
     SessionKeeper keeper(document);
     if (life == 0) keeper.saveAs(path, engine::OriginalStorage::kEmbedded);
-    auto touch = touchOf(document, history, keeper);
-    ASSERT_TRUE(touch);
-    HandPlay play(*touch, keeper, 1000 + life);
+    auto client = clientOf(document, history, keeper);
+    ASSERT_TRUE(client);
+    HandPlay play(*client, keeper, 1000 + life);
     for (int i = 0; i < 10; ++i) ++did[play.act()];
     play.settle();
     // Another loop in the same life.
-    const engine::Status other_rate = touch->setRate(life == 1 ? 1500.0 : 1000.0);
+    const engine::Status other_rate = client->setRate(life == 1 ? 1500.0 : 1000.0);
     ASSERT_TRUE(other_rate) << other_rate.error().line();
     for (int i = 0; i < 4; ++i) ++did[play.act()];
     play.settle();
-    touch->finish();
-    expected = engine::contentHash(touch->history().current());
-    number = touch->history().number();
+    client->finish();
+    expected = engine::contentHash(client->history().current());
+    number = client->history().number();
     const engine::Status closed = keeper.close(SessionKeeper::Afterwards::kKeep);
     ASSERT_TRUE(closed) << closed.error().line();
   }
@@ -98,9 +98,9 @@ TEST(SessionJournal, ReplaysFiltersWhoseRangeWasLeftToTheNoiseToTheSameBits) {
   const engine::History history = document.history;
   SessionKeeper keeper(document);
   keeper.saveAs(path, engine::OriginalStorage::kEmbedded);
-  auto touch = touchOf(document, history, keeper);
-  ASSERT_TRUE(touch);
-  HandPlay play(*touch, keeper, 7);
+  auto client = clientOf(document, history, keeper);
+  ASSERT_TRUE(client);
+  HandPlay play(*client, keeper, 7);
   engine::FilterSpec spec;
   for (const auto& [kind, window] :
        {std::pair{engine::FilterKind::kBilateral, 5}, {engine::FilterKind::kTotalVariation, 11}}) {
@@ -110,8 +110,8 @@ TEST(SessionJournal, ReplaysFiltersWhoseRangeWasLeftToTheNoiseToTheSameBits) {
   }
   play.settle();
   for (const app::Notice& notice : play.notices()) ADD_FAILURE() << notice.what;
-  touch->finish();
-  const std::uint64_t expected = engine::contentHash(touch->history().current());
+  client->finish();
+  const std::uint64_t expected = engine::contentHash(client->history().current());
   ASSERT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
 
   engine::JobControl job;
@@ -142,15 +142,15 @@ TEST(SessionJournal, BeginsWithWhatACommandHadMadeOfTheScan) {
     const engine::History history = opened->history;
     ASSERT_EQ(history.number(), 1);
     SessionKeeper keeper(*opened);
-    auto touch = touchOf(*opened, history, keeper);
-    ASSERT_TRUE(touch);
-    HandPlay play(*touch, keeper, 11);
+    auto client = clientOf(*opened, history, keeper);
+    ASSERT_TRUE(client);
+    HandPlay play(*client, keeper, 11);
     spec.kind = engine::FilterKind::kMedian;
     spec.max_change = 0.02;
     play.apply(spec);
     play.settle();
-    touch->finish();
-    expected = engine::contentHash(touch->history().current());
+    client->finish();
+    expected = engine::contentHash(client->history().current());
     ASSERT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
   }
   const auto session = engine::openSession(path, {}, engine::importField, job);
@@ -169,10 +169,10 @@ TEST(SessionKeeper, WhatIsOnlyLookedAtLeavesNoFile) {
     Document document = fromField(roughPart(), scan);
     const engine::History history = document.history;
     SessionKeeper keeper(document);
-    auto touch = touchOf(document, history, keeper);
-    ASSERT_TRUE(touch);
-    for (int i = 0; i < 50; ++i) touch->poll();
-    touch->finish();
+    auto client = clientOf(document, history, keeper);
+    ASSERT_TRUE(client);
+    for (int i = 0; i < 50; ++i) client->poll();
+    client->finish();
     EXPECT_TRUE(keeper.close(SessionKeeper::Afterwards::kKeep));
   }
   EXPECT_FALSE(std::filesystem::exists(app::recoveryPath(scan)));
@@ -198,13 +198,13 @@ TEST(SessionKeeper, UnsavedWorkIsThereAgainAndGoneWhenDiscarded) {
     }
     const engine::History history = document.history;
     SessionKeeper keeper(document);
-    auto touch = touchOf(document, history, keeper);
-    ASSERT_TRUE(touch);
-    HandPlay play(*touch, keeper, 5);
-    while (touch->history().last() < 2) static_cast<void>(play.act());
+    auto client = clientOf(document, history, keeper);
+    ASSERT_TRUE(client);
+    HandPlay play(*client, keeper, 5);
+    while (client->history().last() < 2) static_cast<void>(play.act());
     play.settle();
-    touch->finish();
-    expected = engine::contentHash(touch->history().current());
+    client->finish();
+    expected = engine::contentHash(client->history().current());
     ASSERT_TRUE(keeper.close(afterwards));
     EXPECT_EQ(std::filesystem::exists(recovery), afterwards == SessionKeeper::Afterwards::kKeep);
   }

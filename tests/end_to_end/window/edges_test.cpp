@@ -10,7 +10,7 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
+using State = User::State;
 
 // Pixels of the surface that are tinted by a colour [sRGB], wholly opaque and shaded by the light: of its
 // hue, and no brighter.
@@ -32,41 +32,41 @@ TEST_F(WindowTest, suggested_edges_have_a_colour_of_their_own_until_they_are_tak
   std::filesystem::create_directories(settings);
   std::ofstream(settings / "window.json") << State{{"marks_opacity", 1.0}};
   const auto program = start({scan});
-  Hand hand(display, *program, "edges");
+  User user(display, *program, "edges");
   (void)opened(*program);
-  hand.at({20, 790});
-  (void)hand.key("7");
-  const auto marks = [&](const Screen& seen) { return tinted(seen, hand.surface(), 0xFF, 0x3B, 0x1F); };
-  const auto suggestions = [&](const Screen& seen) { return tinted(seen, hand.surface(), 0xFF, 0x9D, 0xF5); };
-  (void)hand.key("m");
-  (void)hand.stroke({240, 360}, {340, 360}, 4);
-  (void)hand.key("Escape");
-  hand.at({20, 790});
-  const Screen before = hand.until("marked", [&](const Screen& s) { return marks(s) > 300; });
+  user.at({20, 790});
+  (void)user.key("7");
+  const auto marks = [&](const Screen& seen) { return tinted(seen, user.surface(), 0xFF, 0x3B, 0x1F); };
+  const auto suggestions = [&](const Screen& seen) { return tinted(seen, user.surface(), 0xFF, 0x9D, 0xF5); };
+  (void)user.key("m");
+  (void)user.stroke({240, 360}, {340, 360}, 4);
+  (void)user.key("Escape");
+  user.at({20, 790});
+  const Screen before = user.until("marked", [&](const Screen& s) { return marks(s) > 300; });
   EXPECT_EQ(suggestions(before), 0);
   const int marked = marks(before);
 
-  (void)hand.press("e");
+  (void)user.press("e");
   program->until("a suggestion", [](const State& s) { return s["suggested"] > 0 && s["settled"] == true; });
-  const Screen suggested = hand.until("suggested", [&](const Screen& s) { return suggestions(s) > 1000; });
+  const Screen suggested = user.until("suggested", [&](const Screen& s) { return suggestions(s) > 1000; });
   EXPECT_NEAR(marks(suggested), marked, 0.02 * marked) << "marks that are there keep their colour";
   EXPECT_EQ(program->now()["steps"], 1);
   // Hidden with the marks, and dropped without a trace.
-  (void)hand.key("h");
-  (void)hand.until("hidden", [&](const Screen& s) { return suggestions(s) == 0 && marks(s) == 0; });
-  (void)hand.key("h");
-  (void)hand.same("suggested again", suggested);
-  (void)hand.key("Escape");
-  (void)hand.same("dropped", before);
+  (void)user.key("h");
+  (void)user.until("hidden", [&](const Screen& s) { return suggestions(s) == 0 && marks(s) == 0; });
+  (void)user.key("h");
+  (void)user.same("suggested again", suggested);
+  (void)user.key("Escape");
+  (void)user.same("dropped", before);
 
-  (void)hand.press("e");
+  (void)user.press("e");
   program->until("a suggestion", [](const State& s) { return s["suggested"] > 0 && s["settled"] == true; });
-  (void)hand.same("suggested as before", suggested);
-  EXPECT_EQ(hand.key("Return")["steps"], 2);
-  const Screen taken = hand.until("taken", [&](const Screen& s) { return suggestions(s) == 0; });
+  (void)user.same("suggested as before", suggested);
+  EXPECT_EQ(user.key("Return")["steps"], 2);
+  const Screen taken = user.until("taken", [&](const Screen& s) { return suggestions(s) == 0; });
   EXPECT_NEAR(marks(taken), marked + suggestions(suggested), 0.05 * (marked + suggestions(suggested)));
-  EXPECT_EQ(hand.key("ctrl+z")["steps"], 1);
-  (void)hand.same("undone", before);
+  EXPECT_EQ(user.key("ctrl+z")["steps"], 1);
+  (void)user.same("undone", before);
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);

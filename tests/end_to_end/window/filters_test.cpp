@@ -8,47 +8,47 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
+using State = User::State;
 
 TEST_F(WindowTest, a_filter_is_cancelled_while_touch_goes_on) {
   const std::string saved = folder.file("after.tif");
   const auto program = start({scan});
-  Hand hand(display, *program, "cancel");
+  User user(display, *program, "cancel");
   (void)opened(*program);
-  hand.at({20, 790});
-  (void)hand.key("7");
-  const Screen before = hand.look("before");
-  (void)hand.key("n");
-  (void)hand.key("n");
-  (void)hand.enter("window", "61");
+  user.at({20, 790});
+  (void)user.key("7");
+  const Screen before = user.look("before");
+  (void)user.key("n");
+  (void)user.key("n");
+  (void)user.enter("window", "61");
   // Minutes of work.
-  EXPECT_EQ(hand.enter("passes", "1000")["filter"], "Median 61 x 61, 1000 passes");
-  hand.tap("Apply");
+  EXPECT_EQ(user.enter("passes", "1000")["filter"], "Median 61 x 61, 1000 passes");
+  user.tap("Apply");
   program->until("filtering", [](const State& s) {
     return s["filtering"] == true && s["texts"].dump().find("\"filtering\"") != std::string::npos;
   });
   // A stroke is a step all the while.
-  (void)hand.press("s");
+  (void)user.press("s");
   program->until("a tool", [](const State& s) { return s["tool"] == "smooth"; });
-  hand.draw({240, 332}, {340, 332}, 4);
+  user.draw({240, 332}, {340, 332}, 4);
   program->until("a step while it runs",
                  [](const State& s) { return s["steps"] == 1 && s["filtering"] == true; });
-  (void)hand.look("while it runs");
-  hand.tap("Cancel");
-  const State ended = hand.rest("cancelled");
+  (void)user.look("while it runs");
+  user.tap("Cancel");
+  const State ended = user.rest("cancelled");
   EXPECT_EQ(ended["filtering"], false);
   EXPECT_EQ(ended["applying"], false);
   EXPECT_EQ(ended["variants"], State::array());
   EXPECT_EQ(ended["filters_applied"], 0);
   EXPECT_EQ(ended["steps"], 1);
   EXPECT_EQ(ended["notices"], State::array());
-  EXPECT_FALSE(hand.reads("filtering"));
-  EXPECT_TRUE(hand.reads("Apply"));
-  (void)hand.key("Escape");
-  EXPECT_EQ(hand.key("ctrl+z")["steps"], 0);
-  hand.at({20, 790});
-  (void)hand.same("as before", before);
-  saveAs(hand, saved);
+  EXPECT_FALSE(user.reads("filtering"));
+  EXPECT_TRUE(user.reads("Apply"));
+  (void)user.key("Escape");
+  EXPECT_EQ(user.key("ctrl+z")["steps"], 0);
+  user.at({20, 790});
+  (void)user.same("as before", before);
+  saveAs(user, saved);
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);
@@ -59,17 +59,17 @@ TEST_F(WindowTest, a_largest_change_typed_in_is_kept_by_what_is_applied) {
   constexpr double kMost = 0.015;
   const std::string saved = folder.file("limited.tif");
   const auto program = start({scan});
-  Hand hand(display, *program, "limit");
+  User user(display, *program, "limit");
   (void)opened(*program);
-  (void)hand.key("n");
-  (void)hand.key("n");
-  EXPECT_EQ(hand.enter("window", "9")["filter"], "Median 9 x 9");
-  EXPECT_TRUE(hand.key("x")["max_change"].is_number());
-  EXPECT_EQ(hand.enter("max change", "0.015")["max_change"], kMost);
-  (void)hand.look("typed");
-  EXPECT_EQ(hand.click("Apply")["filters_applied"], 1);
+  (void)user.key("n");
+  (void)user.key("n");
+  EXPECT_EQ(user.enter("window", "9")["filter"], "Median 9 x 9");
+  EXPECT_TRUE(user.key("x")["max_change"].is_number());
+  EXPECT_EQ(user.enter("max change", "0.015")["max_change"], kMost);
+  (void)user.look("typed");
+  EXPECT_EQ(user.click("Apply")["filters_applied"], 1);
   EXPECT_EQ(program->now()["steps"], 1);
-  saveAs(hand, saved);
+  saveAs(user, saved);
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);

@@ -9,7 +9,7 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
+using State = User::State;
 
 constexpr double kPi = 3.14159265358979;
 
@@ -52,11 +52,11 @@ class HapticsTest : public WindowTest {
     EXPECT_EQ(otherwise, "");
   }
   // Pixels of a colour in the panels.
-  int inPanels(Hand& hand, const std::string& what, int red, int green, int blue) {
-    const State now = hand.program().now();
+  int inPanels(User& user, const std::string& what, int red, int green, int blue) {
+    const State now = user.program().now();
     const int left = now["picture"][0].get<int>() + now["picture"][2].get<int>();
     int found = 0;
-    const Screen seen = hand.look(what);
+    const Screen seen = user.look(what);
     for (int y = 0; y < seen.height; ++y)
       for (int x = left; x < seen.width; ++x) {
         const std::uint8_t* p = seen.at(x, y);
@@ -68,27 +68,27 @@ class HapticsTest : public WindowTest {
 
 TEST_F(HapticsTest, disarming_by_key_lasts_until_armed_and_no_dialog_stands_in_its_way) {
   const auto program = startHand();
-  Hand hand(display, *program, "keys");
+  User user(display, *program, "keys");
   program->until("force", givesForce);
-  (void)hand.press("shift+a");
+  (void)user.press("shift+a");
   staysWithoutForce(*program);
-  (void)hand.press("a");
+  (void)user.press("a");
   program->until("force again", givesForce);
   // A list of keys is open.
-  (void)hand.press("F1");
+  (void)user.press("F1");
   program->until("a dialog", [](const State& s) { return s["dialog"] == "shortcuts"; });
-  (void)hand.press("shift+a");
+  (void)user.press("shift+a");
   program->until("no force", [](const State& s) { return s["safety"] == "uncalibrated"; });
-  (void)hand.press("Escape");
+  (void)user.press("Escape");
   program->until("no dialog", [](const State& s) { return s["dialog"] == "none"; });
-  (void)hand.press("a");
+  (void)user.press("a");
   program->until("force again", givesForce);
   // A path is being typed: a capital A belongs to it, Pause does not.
-  (void)hand.press("ctrl+o");
+  (void)user.press("ctrl+o");
   program->until("a dialog", [](const State& s) { return s["dialog"] == "open" && s["text_field"] == true; });
-  (void)hand.press("shift+a");
+  (void)user.press("shift+a");
   EXPECT_EQ(program->until("force while typing", givesForce)["dialog"], "open");
-  (void)hand.press("Pause");
+  (void)user.press("Pause");
   staysWithoutForce(*program);
   EXPECT_EQ(program->now()["dialog"], "open");
   program->signal(SIGTERM);
@@ -98,35 +98,35 @@ TEST_F(HapticsTest, disarming_by_key_lasts_until_armed_and_no_dialog_stands_in_i
 
 TEST_F(HapticsTest, the_panel_shows_the_device_arms_it_and_sets_its_rate) {
   const auto program = startHand();
-  Hand hand(display, *program, "panel");
+  User user(display, *program, "panel");
   program->until("force", givesForce);
-  for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)hand.click(header);
-  (void)hand.click("Haptics");
+  for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)user.click(header);
+  (void)user.click("Haptics");
   for (const char* text : {"simulated hand", "connected", "force, 0 to", "per second", "0.5 ms"})
-    EXPECT_TRUE(hand.reads(text)) << text;
+    EXPECT_TRUE(user.reads(text)) << text;
   // The force as a grey line, late ticks as yellow bars.
-  EXPECT_GT(inPanels(hand, "force", 156, 156, 156), 60);
-  EXPECT_GT(inPanels(hand, "lateness", 230, 179, 0), 60);
+  EXPECT_GT(inPanels(user, "force", 156, 156, 156), 60);
+  EXPECT_GT(inPanels(user, "lateness", 230, 179, 0), 60);
 
-  hand.tap("Disarm");
+  user.tap("Disarm");
   staysWithoutForce(*program);
-  EXPECT_TRUE(hand.reads("uncalibrated"));
+  EXPECT_TRUE(user.reads("uncalibrated"));
   // Who disarmed stays disarmed at another rate.
-  hand.tap("1 kHz");
+  user.tap("1 kHz");
   program->until("rates",
                  [](const State& s) { return s["texts"].dump().find("\"3 kHz\"") != std::string::npos; });
-  hand.tap("3 kHz");
+  user.tap("3 kHz");
   program->until("another rate",
                  [](const State& s) { return s["rate_hz"] == 3000 && s["connected"] == true; });
   staysWithoutForce(*program);
-  hand.tap("Arm");
+  user.tap("Arm");
   program->until("force", givesForce);
-  EXPECT_TRUE(hand.reads("of 3000 per second"));
+  EXPECT_TRUE(user.reads("of 3000 per second"));
   // And who is armed is so again: the loop begins without force.
-  hand.tap("3 kHz");
+  user.tap("3 kHz");
   program->until("rates",
                  [](const State& s) { return s["texts"].dump().find("\"1 kHz\"") != std::string::npos; });
-  hand.tap("1 kHz");
+  user.tap("1 kHz");
   program->until("the first rate",
                  [](const State& s) { return s["rate_hz"] == 1000 && s["safety"] != "active"; });
   program->until("force", givesForce);
@@ -137,24 +137,24 @@ TEST_F(HapticsTest, the_panel_shows_the_device_arms_it_and_sets_its_rate) {
 
 TEST_F(HapticsTest, a_stiffness_typed_that_the_hand_does_not_hold_is_refused_in_words) {
   const auto program = startHand();
-  Hand hand(display, *program, "stiffness");
+  User user(display, *program, "stiffness");
   program->until("force", givesForce);
-  for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)hand.click(header);
-  (void)hand.click("Haptics");
+  for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)user.click(header);
+  (void)user.click("Haptics");
   EXPECT_EQ(program->now()["stiffness_n_per_mm"], 1.0);
-  EXPECT_TRUE(hand.reads("6 N/mm at most")) << "next to the field";
-  const State refused = hand.enter("stiffness", "99999");
+  EXPECT_TRUE(user.reads("6 N/mm at most")) << "next to the field";
+  const State refused = user.enter("stiffness", "99999");
   EXPECT_EQ(refused["stiffness_n_per_mm"], 1.0) << "what was there stays";
   ASSERT_EQ(refused["notices"].size(), 1U) << refused["notices"];
   const std::string said = refused["notices"][0];
   EXPECT_NE(said.find("more than the simulated hand holds at 1000 Hz"), std::string::npos) << said;
   EXPECT_NE(said.find("99999 N/mm"), std::string::npos) << said;
-  EXPECT_TRUE(hand.reads("at most 6")) << program->now()["texts"].dump();
-  hand.tap("Understood");
+  EXPECT_TRUE(user.reads("at most 6")) << program->now()["texts"].dump();
+  user.tap("Understood");
   program->until("the panels without it", [](const State& s) {
     return s["notices"].empty() && s["texts"].dump().find("Understood") == std::string::npos;
   });
-  const State taken = hand.enter("stiffness", "6");
+  const State taken = user.enter("stiffness", "6");
   EXPECT_EQ(taken["stiffness_n_per_mm"], 6.0);
   EXPECT_EQ(taken["notices"], State::array());
   program->signal(SIGTERM);
@@ -164,7 +164,7 @@ TEST_F(HapticsTest, a_stiffness_typed_that_the_hand_does_not_hold_is_refused_in_
 
 TEST_F(HapticsTest, effects_are_ticked_off_and_on_again) {
   const auto program = start({scan});
-  Hand hand(display, *program, "effects");
+  User user(display, *program, "effects");
   const State opened_with = opened(*program);
   const auto has = [](const State& s, const char* effect) {
     for (const State& e : s["effects"])
@@ -173,20 +173,20 @@ TEST_F(HapticsTest, effects_are_ticked_off_and_on_again) {
   };
   ASSERT_TRUE(has(opened_with, "smoothing"));
   ASSERT_FALSE(has(opened_with, "friction"));
-  (void)hand.key("7");
-  for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)hand.click(header);
-  (void)hand.click("Haptics");
-  EXPECT_TRUE(has(hand.click("friction"), "friction"));
-  EXPECT_TRUE(has(hand.click("edge snap"), "edge_snap"));
-  EXPECT_FALSE(has(hand.click("friction"), "friction"));
+  (void)user.key("7");
+  for (const char* header : {"Tool", "Filters", "Steps", "Status"}) (void)user.click(header);
+  (void)user.click("Haptics");
+  EXPECT_TRUE(has(user.click("friction"), "friction"));
+  EXPECT_TRUE(has(user.click("edge snap"), "edge_snap"));
+  EXPECT_FALSE(has(user.click("friction"), "friction"));
   // Without its effect the tool does nothing; ticked again it does.
-  EXPECT_FALSE(has(hand.click("smoothing"), "smoothing"));
-  (void)hand.key("s");
-  EXPECT_EQ(hand.stroke({240, 332}, {340, 332}, 3)["steps"], 0);
-  EXPECT_TRUE(has(hand.click("smoothing"), "smoothing"));
-  EXPECT_EQ(hand.stroke({240, 332}, {340, 332}, 3)["steps"], 1);
+  EXPECT_FALSE(has(user.click("smoothing"), "smoothing"));
+  (void)user.key("s");
+  EXPECT_EQ(user.stroke({240, 332}, {340, 332}, 3)["steps"], 0);
+  EXPECT_TRUE(has(user.click("smoothing"), "smoothing"));
+  EXPECT_EQ(user.stroke({240, 332}, {340, 332}, 3)["steps"], 1);
   EXPECT_EQ(program->now()["notices"], State::array());
-  (void)hand.look("smoothed");
+  (void)user.look("smoothed");
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);

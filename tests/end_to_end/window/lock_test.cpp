@@ -5,7 +5,7 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
+using State = User::State;
 
 bool isWritten(const State& s, const std::string& text) {
   return s["texts"].dump().find(text) != std::string::npos;
@@ -26,18 +26,18 @@ class LockTest : public WindowTest {
     gate_.release();
   }
   // The list of keys is on the screen, Esc leaves it, and tools come.
-  static void listIsLeftByEsc(Hand& hand) {
-    ViewProgram& program = hand.program();
-    program.forget();
+  static void listIsLeftByEsc(User& user) {
+    ViewProgram& program = user.program();
+    program.skipToNewest();
     program.until("the list on the screen", [](const State& s) {
       return s["dialog"] == "shortcuts" && s["settled"] == true && isWritten(s, "Ctrl+Shift+Z");
     });
-    (void)hand.press("Escape");
+    (void)user.press("Escape");
     program.until("no list", [](const State& s) {
       return s["dialog"] == "none" && s["settled"] == true && !isWritten(s, "Ctrl+Shift+Z");
     });
-    EXPECT_EQ(hand.key("s")["tool"], "smooth");
-    EXPECT_EQ(hand.key("Escape")["tool"], "view");
+    EXPECT_EQ(user.key("s")["tool"], "smooth");
+    EXPECT_EQ(user.key("Escape")["tool"], "view");
   }
 
   FrameGate gate_{folder.file("gate")};
@@ -45,49 +45,49 @@ class LockTest : public WindowTest {
 
 TEST_F(LockTest, a_dialog_asked_for_with_the_keyboard_of_the_panels_is_on_the_screen_and_is_left) {
   const auto program = startOpened();
-  Hand hand(display, *program, "lock");
-  hand.at({20, 740});
+  User user(display, *program, "lock");
+  user.at({20, 740});
   inOneFrame({"key", "--delay", "0", "F6", "F1"});
-  listIsLeftByEsc(hand);
+  listIsLeftByEsc(user);
   inOneFrame({"key", "--delay", "0", "F1", "F6"});
-  listIsLeftByEsc(hand);
+  listIsLeftByEsc(user);
   // From the menu, with the keyboard in the panels: Esc takes it from both.
-  (void)hand.press("F6");
-  hand.tap("Help");
+  (void)user.press("F6");
+  user.tap("Help");
   program->until("the menu", [](const State& s) { return isWritten(s, "This list"); });
-  hand.tap("This list");
-  listIsLeftByEsc(hand);
+  user.tap("This list");
+  listIsLeftByEsc(user);
   // A click beside all that can be clicked on, when it comes.
   const State now = program->now();
   const int left = now["picture"][0].get<int>() + now["picture"][2].get<int>();
   for (const char* button : {"1", "3"}) {
     inOneFrame({"mousemove", std::to_string(left + 3), "760", "click", button, "key", "--delay", "0", "F1"});
-    hand.at({20, 740});
-    listIsLeftByEsc(hand);
+    user.at({20, 740});
+    listIsLeftByEsc(user);
   }
-  const State report = quit(hand);
+  const State report = quit(user);
   EXPECT_EQ(report["unsaved_changes"], false);
 }
 
 TEST_F(LockTest, what_comes_after_the_answer_in_a_frame_is_done_after_it) {
   const auto program = startOpened();
-  Hand hand(display, *program, "after");
-  hand.at({20, 740});
-  (void)hand.press("F1");
+  User user(display, *program, "after");
+  user.at({20, 740});
+  (void)user.press("F1");
   program->until("a list", [](const State& s) { return s["dialog"] == "shortcuts" && s["settled"] == true; });
   inOneFrame({"key", "--delay", "0", "Escape", "m"});
   program->until("a tool", [](const State& s) { return s["dialog"] == "none" && s["tool"] == "mark"; });
   // A camera that is turned when a question comes is not turned by a hand that has let go.
-  (void)hand.key("Escape");
-  hand.at({330, 400});
-  hand.down(2);
-  (void)hand.press("F1");
+  (void)user.key("Escape");
+  user.at({330, 400});
+  user.down(2);
+  (void)user.press("F1");
   program->until("a list", [](const State& s) { return s["dialog"] == "shortcuts" && s["settled"] == true; });
-  hand.up(2);
-  const State before = hand.key("Escape");
-  hand.at({390, 460});
-  EXPECT_EQ(hand.rest()["view"], before["view"]);
-  (void)quit(hand);
+  user.up(2);
+  const State before = user.key("Escape");
+  user.at({390, 460});
+  EXPECT_EQ(user.rest()["view"], before["view"]);
+  (void)quit(user);
 }
 
 }  // namespace

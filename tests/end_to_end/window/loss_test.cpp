@@ -10,7 +10,7 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
+using State = User::State;
 
 class LossTest : public WindowTest {
  protected:
@@ -19,16 +19,16 @@ class LossTest : public WindowTest {
     auto program = start({scan}, {{"VK_ADD_LAYER_PATH", FETTLE_LAYER_FOLDER},
                                   {"VK_INSTANCE_LAYERS", "VK_LAYER_FETTLE_lose_device"},
                                   {"FETTLE_LOSE_DEVICE", orders_path}});
-    Hand hand(display, *program, "loss");
+    User user(display, *program, "loss");
     (void)opened(*program);
-    (void)hand.key("7");
-    (void)hand.key("s");
-    (void)hand.stroke({240, 360}, {400, 360}, 5);
-    (void)hand.key("m");
-    (void)hand.stroke({590, 320}, {590, 410}, 5);
-    (void)hand.key("Escape");
-    hand.at({20, 790});
-    (void)hand.rest();
+    (void)user.key("7");
+    (void)user.key("s");
+    (void)user.stroke({240, 360}, {400, 360}, 5);
+    (void)user.key("m");
+    (void)user.stroke({590, 320}, {590, 410}, 5);
+    (void)user.key("Escape");
+    user.at({20, 790});
+    (void)user.rest();
     return program;
   }
   void order(const std::string& lines) const {
@@ -46,52 +46,52 @@ class LossTest : public WindowTest {
 
 TEST_F(LossTest, a_lost_device_comes_back_with_everything_in_its_place) {
   const auto program = startWithWork();
-  Hand hand(display, *program, "loss");
-  const Screen marked = hand.look("with marks");
+  User user(display, *program, "loss");
+  const Screen marked = user.look("with marks");
   const State before = program->now();
-  (void)hand.key("ctrl+z");
-  const Screen unmarked = hand.changed("without marks", marked);
-  (void)hand.key("ctrl+shift+z");
+  (void)user.key("ctrl+z");
+  const Screen unmarked = user.changed("without marks", marked);
+  (void)user.key("ctrl+shift+z");
   int losses = 0;
   for (const char* where : {"surface", "upload", "panels", "acquire", "present"}) {
     // Undo brings tiles over, so that each of these places is come by.
     order(std::string("lose ") + where + "\n");
-    (void)hand.press("ctrl+z");
+    (void)user.press("ctrl+z");
     const State after = lost(*program, ++losses);
     EXPECT_EQ(after["view"], before["view"]) << where;
     EXPECT_EQ(after["steps"], 1) << where;
-    EXPECT_TRUE(hand.reads("graphics device was lost")) << where;
-    (void)hand.same(std::string("unmarked after the loss at ") + where, unmarked);
-    (void)hand.key("ctrl+shift+z");
-    (void)hand.same(std::string("marked after the loss at ") + where, marked);
+    EXPECT_TRUE(user.reads("graphics device was lost")) << where;
+    (void)user.same(std::string("unmarked after the loss at ") + where, unmarked);
+    (void)user.key("ctrl+shift+z");
+    (void)user.same(std::string("marked after the loss at ") + where, marked);
   }
-  (void)hand.look("after five losses");
+  (void)user.look("after five losses");
   // A second loss right away, in the middle of the first uploads; then two refusals to start.
   order("lose surface\nlose upload\nlose present\nrefuse\nrefuse\n");
-  (void)hand.press("Left");
+  (void)user.press("Left");
   (void)lost(*program, losses + 5);
-  (void)hand.changed("turned after losses in a row", marked, 2000);
-  (void)hand.key("7");
-  (void)hand.same("marked after losses in a row", marked);
+  (void)user.changed("turned after losses in a row", marked, 2000);
+  (void)user.key("7");
+  (void)user.same("marked after losses in a row", marked);
 
   // A stroke that runs when the device goes is kept, and is one.
-  (void)hand.key("s");
-  hand.at({250, 186});
-  hand.down(1);
-  hand.at({270, 186});
+  (void)user.key("s");
+  user.at({250, 186});
+  user.down(1);
+  user.at({270, 186});
   order("lose surface\n");
-  hand.at({290, 186});
+  user.at({290, 186});
   program->until("lost in a stroke", [&](const State& s) { return s["device_losses"] == losses + 6; });
-  hand.at({340, 186});
-  hand.up(1);
-  EXPECT_EQ(hand.rest()["steps"], 3);
-  (void)hand.key("Escape");
-  hand.at({20, 790});
-  (void)hand.changed("smoothed across a loss", marked);
+  user.at({340, 186});
+  user.up(1);
+  EXPECT_EQ(user.rest()["steps"], 3);
+  (void)user.key("Escape");
+  user.at({20, 790});
+  (void)user.changed("smoothed across a loss", marked);
 
-  (void)hand.press("ctrl+q");
+  (void)user.press("ctrl+q");
   program->until("a question", [](const State& s) { return s["dialog"] == "unsaved"; });
-  (void)hand.press("d");
+  (void)user.press("d");
   EXPECT_EQ(program->wait(), 0) << program->err();
   EXPECT_EQ(program->report()["steps"], 3);
   expectSilence(*program);
@@ -99,7 +99,7 @@ TEST_F(LossTest, a_lost_device_comes_back_with_everything_in_its_place) {
 
 TEST_F(LossTest, a_device_that_stays_away_ends_the_program_with_the_work_kept) {
   const auto program = startWithWork();
-  Hand hand(display, *program, "gone");
+  User user(display, *program, "gone");
   order("lose present\ngone\n");
   display.hands({"key", "Left"});
   EXPECT_EQ(program->wait(), 1);
@@ -111,7 +111,7 @@ TEST_F(LossTest, a_device_that_stays_away_ends_the_program_with_the_work_kept) {
   order("");
   const auto again = start({scan});
   again->until("a question", [](const State& s) { return s["dialog"] == "recover" && s["settled"] == true; });
-  Hand later(display, *again, "gone");
+  User later(display, *again, "gone");
   (void)later.look("work is found again");
   (void)later.press("Return");
   EXPECT_EQ(opened(*again)["steps"], 2);
@@ -123,17 +123,17 @@ TEST_F(LossTest, a_device_that_stays_away_ends_the_program_with_the_work_kept) {
 
 TEST_F(LossTest, too_little_memory_for_a_preview_costs_the_preview_alone) {
   const auto program = startWithWork();
-  Hand hand(display, *program, "memory");
-  const Screen before = hand.look("before");
+  User user(display, *program, "memory");
+  const Screen before = user.look("before");
   order("memory\n");
-  (void)hand.press("p");
+  (void)user.press("p");
   program->until("a message",
                  [](const State& s) { return s["dialog"] == "message" && s["settled"] == true; });
-  (void)hand.look("message");
-  (void)hand.press("Return");
+  (void)user.look("message");
+  (void)user.press("Return");
   program->until("no message", [](const State& s) { return s["dialog"] == "none"; });
-  (void)hand.key("Escape");
-  (void)hand.same("the field", before);
+  (void)user.key("Escape");
+  (void)user.same("the field", before);
   EXPECT_EQ(program->now()["device_losses"], 0);
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0);
@@ -142,15 +142,15 @@ TEST_F(LossTest, too_little_memory_for_a_preview_costs_the_preview_alone) {
 
 TEST_F(LossTest, a_swap_chain_that_no_longer_fits_is_made_anew) {
   const auto program = startWithWork();
-  Hand hand(display, *program, "swapchain");
-  const Screen before = hand.look("before");
+  User user(display, *program, "swapchain");
+  const Screen before = user.look("before");
   for (const char* what :
        {"outdated acquire", "suboptimal acquire", "outdated present", "suboptimal present"}) {
     order(std::string(what) + "\n");
-    (void)hand.key("c");
-    (void)hand.changed(std::string("contours after ") + what, before, 300);
-    (void)hand.key("c");
-    (void)hand.same(std::string("the field after ") + what, before);
+    (void)user.key("c");
+    (void)user.changed(std::string("contours after ") + what, before, 300);
+    (void)user.key("c");
+    (void)user.same(std::string("the field after ") + what, before);
     EXPECT_EQ(std::filesystem::file_size(orders_path), 0U) << what;
   }
   EXPECT_EQ(program->now()["device_losses"], 0);

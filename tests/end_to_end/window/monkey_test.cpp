@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
-using State = Hand::State;
+using State = User::State;
 
 constexpr int kSlow = 50;    // one frame in so many is held up ...
 constexpr auto kDelay = 1s;  // ... for so long
@@ -50,9 +50,9 @@ class MonkeyTest : public WindowTest {
     std::ofstream(broken_) << "II*";
     // Work that was not saved, to be found again.
     const auto program = start({left_});
-    Hand hand(display, *program, "left");
+    User user(display, *program, "left");
     (void)opened(*program);
-    (void)hand.key("ctrl+i");
+    (void)user.key("ctrl+i");
     program->until("kept", [](const State& s) { return s["kept"] == true; });
     program->signal(SIGKILL);
     (void)program->wait();
@@ -107,23 +107,23 @@ class MonkeyTest : public WindowTest {
   // was about to end, and has.
   bool comesToRest() {
     gate_.release();
-    Hand hand(display, *program_, "monkey");
+    User user(display, *program_, "monkey");
     try {
-      hand.at({20, height_ - 60});
-      (void)hand.press("Escape");  // the panels may have the keyboard, which is not told
-      for (int i = 1; !calm(hand.rest()); ++i) {
+      user.at({20, height_ - 60});
+      (void)user.press("Escape");  // the panels may have the keyboard, which is not told
+      for (int i = 1; !calm(user.rest()); ++i) {
         if (i == kMostEscapes) {
           State last = program_->now();
           last.erase("texts");
           ADD_FAILURE() << "Esc does not lead out of " << last.dump();
           break;
         }
-        (void)hand.press("Escape");
+        (void)user.press("Escape");
       }
       if (program_->now().contains("tool")) {
-        (void)hand.press("s");
+        (void)user.press("s");
         program_->until("a tool", [](const State& s) { return s["tool"] == "smooth"; });
-        (void)hand.press("Escape");
+        (void)user.press("Escape");
         program_->until("no tool", calm);
       }
     } catch (const std::runtime_error&) {
@@ -176,9 +176,9 @@ class MonkeyTest : public WindowTest {
     if (const auto words = monkey.letGo(); !words.empty()) display.hands(words);
   }
   // One more step; how many there are then.
-  std::int64_t invertMarks(Hand& hand) const {
+  std::int64_t invertMarks(User& user) const {
     const std::int64_t before = program_->now()["steps"];
-    (void)hand.press("ctrl+i");
+    (void)user.press("ctrl+i");
     return program_->until(
         "a step", [&](const State& s) { return s["steps"] == before + 1 && s["settled"] == true; })["steps"];
   }
@@ -236,25 +236,25 @@ TEST_F(MonkeyTest, hands_without_sense_leave_a_window_that_works_and_a_journal_t
     (void)begin();
   }
   count();
-  Hand hand(display, *program_, "after the monkey");
+  User user(display, *program_, "after the monkey");
   const std::uint32_t window = other.windowOf("fettle");
   if (program_->now()["path"] == "") openFresh(window);
   // ... what was done is saved, with one more step, ...
   const std::string session = folder.file("monkey.fettle"), field = folder.file("monkey.tif");
-  const std::int64_t steps = invertMarks(hand);
-  saveAs(hand, session);
-  (void)hand.press("ctrl+e");
+  const std::int64_t steps = invertMarks(user);
+  saveAs(user, session);
+  (void)user.press("ctrl+e");
   program_->until("where to", [](const State& s) { return s["dialog"] == "export" && s["settled"] == true; });
-  hand.type(field);
-  (void)hand.press("Return");
+  user.type(field);
+  (void)user.press("Return");
   program_->until("written", [&](const State& s) { return s["status"] == "written: " + field; });
   // ... another scan is opened, a step of it undone, ...
   openFresh(window);
   EXPECT_EQ(program_->now()["steps"], 0);
-  EXPECT_EQ(invertMarks(hand), 1);
-  EXPECT_EQ(hand.key("ctrl+z")["steps"], 0);
+  EXPECT_EQ(invertMarks(user), 1);
+  EXPECT_EQ(user.key("ctrl+z")["steps"], 0);
   // ... and it quits.
-  (void)quit(hand);
+  (void)quit(user);
   program_.reset();
 
   const std::string played = folder.file("played.tif"), marks = folder.file("played_marks.png");

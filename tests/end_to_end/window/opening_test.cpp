@@ -9,7 +9,7 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
+using State = User::State;
 
 TEST_F(WindowTest, a_large_scan_says_what_it_is_at_until_it_is_seen) {
   const std::string large = folder.file("large.tif");
@@ -37,17 +37,17 @@ TEST_F(WindowTest, a_large_scan_is_seen_coarsely_first_and_goes_on_from_where_it
   const Outcome made = runProcess({FETTLE_PROGRAM, "synth", large, "--size", "3000x2800", "--seed", "5"});
   ASSERT_EQ(made.status, 0) << made.err;
   const auto program = start({large});
-  Hand hand(display, *program, "coarse");
+  User user(display, *program, "coarse");
   const State coarse = program->until("a coarse picture", [](const State& s) { return s["coarse"] == true; });
   EXPECT_NE(coarse["texts"].dump().find("coarse picture, 1 sample in"), std::string::npos);
   EXPECT_FALSE(coarse.contains("tool")) << "nothing to touch yet";
   EXPECT_EQ(coarse["path"], "");
-  (void)hand.press("Left");
+  (void)user.press("Left");
   const State whole = opened(*program);
   EXPECT_EQ(whole["coarse"], false);
   EXPECT_EQ(whole["texts"].dump().find("coarse picture"), std::string::npos);
   EXPECT_NE(whole["view"], coarse["view"]);
-  const State report = quit(hand);
+  const State report = quit(user);
   EXPECT_GT(report["open_coarse_picture_ms"], 0.0);
   EXPECT_GE(report["open_read_ms"], report["open_coarse_picture_ms"]);
 }
@@ -86,18 +86,18 @@ TEST_F(WindowTest, a_coarse_picture_goes_when_the_rest_of_the_scan_cannot_be_rea
   ASSERT_EQ(runProcess({FETTLE_PROGRAM, "convert", whole, broken, "--compress", "deflate"}).status, 0);
   ASSERT_TRUE(cutABlockShort(broken));
   const auto program = start({});
-  Hand hand(display, *program, "broken");
+  User user(display, *program, "broken");
   program->until("an empty window", [](const State& s) {
     return s["path"] == "" && s["texts"].dump().find("Drop a scan here") != std::string::npos;
   });
-  const Screen empty = hand.look("empty");
+  const Screen empty = user.look("empty");
   EXPECT_EQ(other.drop(other.windowOf("fettle"), {broken}), "");
   program->until("a coarse picture", [](const State& s) { return s["coarse"] == true; });
   program->until("what is wrong",
                  [](const State& s) { return s["dialog"] == "message" && s["coarse"] == false; });
-  (void)hand.press("Return");
+  (void)user.press("Return");
   program->until("no message", [](const State& s) { return s["dialog"] == "none"; });
-  (void)hand.same("empty again", empty);
+  (void)user.same("empty again", empty);
   EXPECT_EQ(program->now()["path"], "");
 }
 

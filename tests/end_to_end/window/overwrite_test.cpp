@@ -7,28 +7,28 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
+using State = User::State;
 
 class OverwriteTest : public WindowTest {
  protected:
   // Up to the question that stands before `path` is written over.
-  static void exportTo(Hand& hand, const std::string& path) {
-    (void)hand.press("ctrl+e");
-    hand.program().until("where to",
+  static void exportTo(User& user, const std::string& path) {
+    (void)user.press("ctrl+e");
+    user.program().until("where to",
                          [](const State& s) { return s["dialog"] == "export" && s["settled"] == true; });
-    hand.type(path);
-    (void)hand.press("Return");
-    hand.program().until("a question",
+    user.type(path);
+    (void)user.press("Return");
+    user.program().until("a question",
                          [](const State& s) { return s["dialog"] == "replace" && s["settled"] == true; });
   }
-  static void replace(Hand& hand, const std::string& path) {
-    (void)hand.press("r");
-    hand.program().until("written", [&](const State& s) {
+  static void replace(User& user, const std::string& path) {
+    (void)user.press("r");
+    user.program().until("written", [&](const State& s) {
       return s["dialog"] == "none" && s["saving"] == false && s["status"] == "written: " + path;
     });
   }
-  static void untilKept(Hand& hand, int steps) {
-    hand.program().until("on the disk",
+  static void untilKept(User& user, int steps) {
+    user.program().until("on the disk",
                          [&](const State& s) { return s["steps"] == steps && s["kept"] == true; });
   }
 };
@@ -38,44 +38,44 @@ TEST_F(OverwriteTest, a_session_survives_that_the_open_scan_is_saved_over) {
   std::filesystem::copy_file(scan, as_it_was);
   {
     const auto program = start({scan});
-    Hand hand(display, *program, "over");
+    User user(display, *program, "over");
     (void)opened(*program);
-    (void)hand.key("7");
-    (void)hand.key("s");
-    (void)hand.stroke({240, 360}, {400, 360}, 5);
-    hand.at({20, 790});
+    (void)user.key("7");
+    (void)user.key("s");
+    (void)user.stroke({240, 360}, {400, 360}, 5);
+    user.at({20, 790});
     // Going back leaves the file as it is, and the path to be changed.
-    exportTo(hand, scan);
-    EXPECT_TRUE(hand.reads("Replace (R)"));
+    exportTo(user, scan);
+    EXPECT_TRUE(user.reads("Replace (R)"));
     EXPECT_NE(program->now()["texts"].dump().find("is the scan that is worked on"), std::string::npos);
-    (void)hand.look("the question");
-    (void)hand.press("Escape");
+    (void)user.look("the question");
+    (void)user.press("Escape");
     program->until("where to", [&](const State& s) {
       return s["dialog"] == "export" && s["dialog_path"] == scan && s["settled"] == true;
     });
-    (void)hand.press("Escape");
+    (void)user.press("Escape");
     program->until("no dialog", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
     EXPECT_EQ(compare(load(as_it_was), load(scan)).changed, 0);
-    exportTo(hand, scan);
-    replace(hand, scan);
+    exportTo(user, scan);
+    replace(user, scan);
     EXPECT_GT(compare(load(as_it_was), load(scan)).changed, 0);
-    (void)hand.stroke({240, 460}, {400, 460}, 5);
-    untilKept(hand, 2);
+    (void)user.stroke({240, 460}, {400, 460}, 5);
+    untilKept(user, 2);
     program->signal(SIGKILL);
     EXPECT_EQ(program->wait(), 128 + SIGKILL);
   }
   const auto program = start({scan});
-  Hand hand(display, *program, "over again");
+  User user(display, *program, "over again");
   program->until("the work is offered",
                  [](const State& s) { return s["dialog"] == "recover" && s["settled"] == true; });
-  (void)hand.press("Return");
+  (void)user.press("Return");
   EXPECT_EQ(opened(*program)["steps"], 2);
-  saveAs(hand, after);
+  saveAs(user, after);
   // Both strokes, and undo goes back to the scan as it was.
-  EXPECT_EQ(hand.key("ctrl+z")["steps"], 1);
-  EXPECT_EQ(hand.key("ctrl+z")["steps"], 0);
+  EXPECT_EQ(user.key("ctrl+z")["steps"], 1);
+  EXPECT_EQ(user.key("ctrl+z")["steps"], 0);
   const std::string undone = folder.file("undone.tif");
-  saveAs(hand, undone);
+  saveAs(user, undone);
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);
@@ -91,47 +91,47 @@ TEST_F(OverwriteTest, a_file_that_is_there_is_replaced_after_a_question_alone) {
   const std::string there = folder.file("there.tif");
   ASSERT_TRUE(std::filesystem::copy_file(scan, there));
   const auto program = start({scan});
-  Hand hand(display, *program, "there");
+  User user(display, *program, "there");
   (void)opened(*program);
-  (void)hand.key("7");
-  (void)hand.key("m");
-  (void)hand.stroke({240, 360}, {340, 360}, 4);
-  (void)hand.key("Escape");
-  hand.at({20, 790});
-  exportTo(hand, there);
-  EXPECT_TRUE(hand.reads("there.tif is there already."));
-  replace(hand, there);
+  (void)user.key("7");
+  (void)user.key("m");
+  (void)user.stroke({240, 360}, {340, 360}, 4);
+  (void)user.key("Escape");
+  user.at({20, 790});
+  exportTo(user, there);
+  EXPECT_TRUE(user.reads("there.tif is there already."));
+  replace(user, there);
   // The marks lie beside it now, and would be replaced as well.
   std::filesystem::remove(there);
-  exportTo(hand, there);
-  EXPECT_TRUE(hand.reads("there_marks.png is there already."));
-  replace(hand, there);
+  exportTo(user, there);
+  EXPECT_TRUE(user.reads("there_marks.png is there already."));
+  replace(user, there);
   // Where nothing was marked when it was first saved, Ctrl+S comes upon the marks of another.
   const std::string later = folder.file("later.tif"), later_marks = folder.file("later_marks.png");
-  while (program->now()["steps"] > 0) (void)hand.key("ctrl+z");
-  saveAs(hand, later);
+  while (program->now()["steps"] > 0) (void)user.key("ctrl+z");
+  saveAs(user, later);
   std::filesystem::copy_file(folder.file("there_marks.png"), later_marks);
-  (void)hand.key("ctrl+shift+z");
-  (void)hand.press("ctrl+s");
+  (void)user.key("ctrl+shift+z");
+  (void)user.press("ctrl+s");
   program->until("a question",
                  [](const State& s) { return s["dialog"] == "replace" && s["settled"] == true; });
-  EXPECT_TRUE(hand.reads("later_marks.png is there already."));
-  (void)hand.press("Escape");
+  EXPECT_TRUE(user.reads("later_marks.png is there already."));
+  (void)user.press("Escape");
   program->until("no dialog", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
   // Into a session: on to that session's own path there is nothing to ask, and no copy can be made of it.
   const std::string session = folder.file("work.fettle");
-  saveAs(hand, session);
-  saveAs(hand, session);
-  (void)hand.press("ctrl+e");
+  saveAs(user, session);
+  saveAs(user, session);
+  (void)user.press("ctrl+e");
   program->until("where to", [](const State& s) { return s["dialog"] == "export" && s["settled"] == true; });
-  hand.type(session);
-  (void)hand.press("Return");
-  const State told = program->until(
+  user.type(session);
+  (void)user.press("Return");
+  const State refused = program->until(
       "a message", [](const State& s) { return s["dialog"] == "message" && s["settled"] == true; });
-  EXPECT_NE(told["message"].get<std::string>().find("everything is stored there"), std::string::npos);
-  (void)hand.press("Return");
+  EXPECT_NE(refused["message"].get<std::string>().find("everything is stored there"), std::string::npos);
+  (void)user.press("Return");
   program->until("no dialog", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
-  (void)quit(hand);
+  (void)quit(user);
 }
 
 }  // namespace

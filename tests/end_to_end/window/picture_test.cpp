@@ -10,7 +10,7 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
+using State = User::State;
 
 // Colours within a part, counted coarsely: 32 steps of a channel.
 int coloursIn(const Screen& screen, const Part& part) {
@@ -42,14 +42,14 @@ double correlation(const Screen& a, const Screen& b, const Part& part) {
 
 TEST_F(WindowTest, an_inverted_field_shows_its_relief_and_so_does_the_field_turned_back) {
   const auto program = start({scan});
-  Hand hand(display, *program, "invert");
+  User user(display, *program, "invert");
   (void)opened(*program);
-  hand.at({20, 790});  // where it lies in no picture
-  const State above = hand.key("7");
+  user.at({20, 790});  // where it lies in no picture
+  const State above = user.key("7");
   const double low = above["colours"][0], high = above["colours"][1];
   ASSERT_LT(low, high);
-  const Screen upright = hand.look("upright");
-  const Part surface = hand.surface();
+  const Screen upright = user.look("upright");
+  const Part surface = user.surface();
   // The field's middle: no ground beside it, no plinth.
   const Part middle{surface.x + surface.width / 4, surface.y + surface.height / 4, surface.width / 2,
                     surface.height / 2};
@@ -60,10 +60,10 @@ TEST_F(WindowTest, an_inverted_field_shows_its_relief_and_so_does_the_field_turn
   EXPECT_GT(many, 100);
 
   const auto turned = [&](const char* what, const Screen& before) {
-    const State inverted = hand.key("i");
+    const State inverted = user.key("i");
     EXPECT_EQ(inverted["inverted"], true);
     EXPECT_EQ(inverted["colours"], (State{-high, -low})) << what;
-    const Screen now = hand.changed(what, before, 2000);
+    const Screen now = user.changed(what, before, 2000);
     EXPECT_GT(coloursIn(now, middle), many / 2) << what;
     // What was high and light is low and dark.
     EXPECT_LT(correlation(before, now, middle), -0.5) << what;
@@ -71,22 +71,22 @@ TEST_F(WindowTest, an_inverted_field_shows_its_relief_and_so_does_the_field_turn
     return now;
   };
   const auto back = [&](const char* what) {
-    const State again = hand.key("i");
+    const State again = user.key("i");
     EXPECT_EQ(again["inverted"], false);
     EXPECT_EQ(again["colours"], (State{low, high})) << what;
-    const Screen now = hand.same(what, upright);
+    const Screen now = user.same(what, upright);
     EXPECT_EQ(differing(now, upright, bar), 0) << what;
   };
   const Screen inverted = turned("upside down", upright);
   back("right side up");
   (void)turned("upside down again", upright);
   // The deviation map reads all ranges again.
-  EXPECT_EQ(hand.key("d")["deviation"], true);
-  (void)hand.changed("deviation upside down", inverted, 300);
-  EXPECT_EQ(hand.key("d")["deviation"], false);
-  (void)hand.same("without deviation", inverted);
+  EXPECT_EQ(user.key("d")["deviation"], true);
+  (void)user.changed("deviation upside down", inverted, 300);
+  EXPECT_EQ(user.key("d")["deviation"], false);
+  (void)user.same("without deviation", inverted);
   back("right side up after it");
-  const State report = quit(hand);
+  const State report = quit(user);
   EXPECT_EQ(report["unsaved_changes"], false);
 }
 
@@ -102,21 +102,21 @@ TEST_F(WideWindowTest, four_pictures_side_by_side_come_to_rest_as_near_as_one) {
   const Outcome made = runProcess({FETTLE_PROGRAM, "synth", large, "--size", "1000x1000", "--seed", "5"});
   ASSERT_EQ(made.status, 0) << made.err;
   const auto program = start({large});
-  Hand hand(display, *program, "four");
+  User user(display, *program, "four");
   const State one = opened(*program);
   ASSERT_EQ(one["bounds_px"].size(), 1U);
   const double bound = one["bounds_px"][0];
   EXPECT_LE(bound, 3.0);
-  hand.at({20, 950});
-  (void)hand.key("n");
-  EXPECT_EQ(hand.key("p")["variants"].size(), 1U);
-  (void)hand.key("shift+p");
+  user.at({20, 950});
+  (void)user.key("n");
+  EXPECT_EQ(user.key("p")["variants"].size(), 1U);
+  (void)user.key("shift+p");
   for (const std::size_t variants : {2U, 3U}) {
-    (void)hand.key("n");
-    EXPECT_EQ(hand.click("Beside")["variants"].size(), variants);
+    (void)user.key("n");
+    EXPECT_EQ(user.click("Add preview")["variants"].size(), variants);
   }
-  hand.at({20, 950});
-  const State rest = hand.rest();
+  user.at({20, 950});
+  const State rest = user.rest();
   ASSERT_EQ(rest["bounds_px"].size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {
     // Each is smaller on the screen than the one was.
@@ -124,12 +124,12 @@ TEST_F(WideWindowTest, four_pictures_side_by_side_come_to_rest_as_near_as_one) {
     // Else it says why: the vertices that one takes as well, never that the device holds too little.
     EXPECT_EQ(rest["limits"][i], rest["bounds_px"][i] > 1.0 ? "vertices" : "none") << i;
   }
-  const Screen four = hand.look("four");
+  const Screen four = user.look("four");
   // And they stay so: no frame of theirs is coarse again.
-  (void)hand.key("Tab");
-  (void)hand.key("Tab");
-  (void)hand.same("four again", four);
-  (void)quit(hand);
+  (void)user.key("Tab");
+  (void)user.key("Tab");
+  (void)user.same("four again", four);
+  (void)quit(user);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
+using State = User::State;
 
 bool asks(const State& s) {
   return s["dialog"] == "unsaved" && s["settled"] == true;
@@ -18,15 +18,15 @@ bool asks(const State& s) {
 class QuestionTest : public WindowTest {
  protected:
   // A scan with a mark that is not saved.
-  Screen mark(Hand& hand) {
-    (void)opened(hand.program());
-    (void)hand.key("7");
-    const Screen before = hand.look("opened");
-    (void)hand.key("m");
-    (void)hand.stroke({240, 360}, {340, 360}, 4);
-    (void)hand.key("Escape");
-    hand.at({20, 790});
-    return hand.changed("marked", before);
+  Screen mark(User& user) {
+    (void)opened(user.program());
+    (void)user.key("7");
+    const Screen before = user.look("opened");
+    (void)user.key("m");
+    (void)user.stroke({240, 360}, {340, 360}, 4);
+    (void)user.key("Escape");
+    user.at({20, 790});
+    return user.changed("marked", before);
   }
 };
 
@@ -34,31 +34,31 @@ TEST_F(QuestionTest, work_is_not_lost_without_a_question) {
   const std::string second = folder.file("second.tif"), third = folder.file("saved by Enter.tif");
   std::filesystem::copy_file(scan, second);
   const auto program = start({second});
-  Hand hand(display, *program, "ask");
+  User user(display, *program, "ask");
   (void)opened(*program);
   // What was opened last is first in the list of recent files.
   const std::uint32_t window = other.windowOf("fettle");
   EXPECT_EQ(other.drop(window, {scan}), "");
   program->until("the other scan", [&](const State& s) { return s["path"] == scan && s["settled"] == true; });
-  const Screen marked = mark(hand);
+  const Screen marked = mark(user);
 
   // Going back leaves everything as it is.
-  (void)hand.press("ctrl+q");
+  (void)user.press("ctrl+q");
   program->until("a question", asks);
-  const Screen asked = hand.changed("the question", marked, 1000);
-  (void)hand.key("Escape");
-  (void)hand.same("as before the question", marked);
+  const Screen asked = user.changed("the question", marked, 1000);
+  (void)user.key("Escape");
+  (void)user.same("as before the question", marked);
   // Opening another scan asks as well: by drop, and by its number among the recent files.
   EXPECT_EQ(other.drop(window, {second}), "");
   program->until("a question", asks);
-  (void)hand.key("Escape");
-  (void)hand.press("ctrl+2");
+  (void)user.key("Escape");
+  (void)user.press("ctrl+2");
   program->until("a question", asks);
   // Save (Enter) asks where to, and goes on to what was wanted.
-  (void)hand.press("Return");
+  (void)user.press("Return");
   program->until("where to", [](const State& s) { return s["dialog"] == "save as" && s["settled"] == true; });
-  hand.type(third);
-  (void)hand.press("Return");
+  user.type(third);
+  (void)user.press("Return");
   const State next = program->until(
       "the second scan", [&](const State& s) { return s["path"] == second && s["settled"] == true; });
   EXPECT_EQ(next["steps"], 0);
@@ -67,10 +67,10 @@ TEST_F(QuestionTest, work_is_not_lost_without_a_question) {
   EXPECT_TRUE(std::filesystem::exists(folder.file("saved by Enter_marks.png")));
 
   // Discarding ends it.
-  (void)mark(hand);
-  (void)hand.press("ctrl+q");
+  (void)mark(user);
+  (void)user.press("ctrl+q");
   program->until("a question", asks);
-  (void)hand.press("d");
+  (void)user.press("d");
   EXPECT_EQ(program->wait(), 0) << program->err();
   EXPECT_EQ(program->report()["unsaved_changes"], true);
   expectSilence(*program);
@@ -79,54 +79,54 @@ TEST_F(QuestionTest, work_is_not_lost_without_a_question) {
 TEST_F(QuestionTest, the_question_at_quitting_is_turned_off_and_on_again_and_no_work_is_lost) {
   {
     const auto program = start({scan});
-    Hand hand(display, *program, "stop asking");
-    (void)mark(hand);
+    User user(display, *program, "stop asking");
+    (void)mark(user);
     EXPECT_EQ(program->now()["asks_before_quitting"], true);
     // Who goes back decided nothing.
-    (void)hand.press("ctrl+q");
+    (void)user.press("ctrl+q");
     program->until("a question", asks);
-    (void)hand.click("Do not ask again (N)");
-    (void)hand.look("the question, ticked");
-    EXPECT_EQ(hand.key("Escape")["asks_before_quitting"], true);
-    (void)hand.press("ctrl+q");
+    (void)user.click("Do not ask again (N)");
+    (void)user.look("the question, ticked");
+    EXPECT_EQ(user.key("Escape")["asks_before_quitting"], true);
+    (void)user.press("ctrl+q");
     program->until("a question", asks);
-    (void)hand.click("Do not ask again (N)");
-    hand.at({20, 790});
-    (void)hand.press("d");
+    (void)user.click("Do not ask again (N)");
+    user.at({20, 790});
+    (void)user.press("d");
     EXPECT_EQ(program->wait(), 0) << program->err();
     expectSilence(*program);
   }
   {
     const auto program = start({scan});
-    Hand hand(display, *program, "not asked");
-    (void)mark(hand);
+    User user(display, *program, "not asked");
+    (void)mark(user);
     EXPECT_EQ(program->now()["asks_before_quitting"], false);
-    (void)hand.press("ctrl+q");
+    (void)user.press("ctrl+q");
     EXPECT_EQ(program->wait(), 0) << program->err();
     EXPECT_NE(program->report()["warnings"].dump().find("unsaved work is stored"), std::string::npos)
         << program->report();
     expectSilence(*program);
   }
   const auto program = start({scan});
-  Hand hand(display, *program, "ask again");
+  User user(display, *program, "ask again");
   program->until("the work is offered",
                  [](const State& s) { return s["dialog"] == "recover" && s["settled"] == true; });
-  (void)hand.press("Return");
+  (void)user.press("Return");
   EXPECT_EQ(opened(*program)["steps"], 1);
-  for (const char* header : {"Filters", "Display"}) (void)hand.click(header);
-  EXPECT_EQ(hand.click("ask before quitting")["asks_before_quitting"], true);
-  (void)hand.look("asks again");
-  (void)hand.press("ctrl+q");
+  for (const char* header : {"Filters", "Display"}) (void)user.click(header);
+  EXPECT_EQ(user.click("ask before quitting")["asks_before_quitting"], true);
+  (void)user.look("asks again");
+  (void)user.press("ctrl+q");
   program->until("a question", asks);
-  (void)hand.press("d");
+  (void)user.press("d");
   EXPECT_EQ(program->wait(), 0) << program->err();
   expectSilence(*program);
 }
 
 TEST_F(QuestionTest, a_display_that_closes_keeps_the_work_and_ends_the_program_with_a_word) {
   const auto program = start({scan});
-  Hand hand(display, *program, "display");
-  (void)mark(hand);
+  User user(display, *program, "display");
+  (void)mark(user);
   display.close();
   EXPECT_EQ(program->wait(), 1);
   EXPECT_EQ(program->err().rfind("{\"error\":\"the connection to the display was lost", 0), 0U)

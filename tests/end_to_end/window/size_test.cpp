@@ -10,7 +10,7 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
+using State = User::State;
 
 class SizeTest : public WindowTest {
  protected:
@@ -45,32 +45,32 @@ class SizeTest : public WindowTest {
 
 TEST_F(SizeTest, a_window_changes_its_size_at_any_time) {
   const auto program = start({scan, "--size", "1100x800"});
-  Hand hand(display, *program, "size");
+  User user(display, *program, "size");
   (void)opened(*program);
-  (void)hand.key("7");
+  (void)user.key("7");
   const std::uint32_t window = other.windowOf("fettle");
-  const Screen before = hand.look("as opened");
+  const Screen before = user.look("as opened");
   for (const auto& [width, height] :
        {std::pair{1400, 1000}, {640, 480}, {480, 320}, {200, 120}, {1, 1}, {1400, 200}}) {
     resize(window, width, height);
     (void)sized(*program, width, height);
-    (void)hand.look(fmt::format("{}x{}", width, height));
+    (void)user.look(fmt::format("{}x{}", width, height));
   }
   resize(window, 1100, 800);
   (void)sized(*program, 1100, 800);
-  (void)hand.same("the first size again", before);
+  (void)user.same("the first size again", before);
 
   // Minimised: nothing is drawn; afterwards everything is there.
   other.minimise(window);
   program->until("minimised", [](const State& s) { return s["minimised"] == true; });
   other.restore(window);
   program->until("restored", [](const State& s) { return s["minimised"] == false && s["settled"] == true; });
-  (void)hand.same("restored", before);
+  (void)user.same("restored", before);
 
   // A storm of sizes while a stroke runs.
-  (void)hand.key("m");
-  hand.at({240, 360});
-  hand.down(1);
+  (void)user.key("m");
+  user.at({240, 360});
+  user.down(1);
   for (int i = 0; i < 40; ++i) {
     resize(window, 700 + 10 * (i % 7), 600 + 10 * (i % 5));
     display.hands({"mousemove", std::to_string(240 + 2 * i), "360"});
@@ -79,12 +79,12 @@ TEST_F(SizeTest, a_window_changes_its_size_at_any_time) {
   (void)program->until("the size after the storm", [](const State& s) {
     return s["frame"] == State{1100, 800};
   });
-  hand.at({330, 360});
-  hand.up(1);
-  EXPECT_EQ(hand.rest()["steps"], 1);
-  (void)hand.key("Escape");
-  hand.at({20, 790});
-  (void)hand.changed("marked in a storm", before);
+  user.at({330, 360});
+  user.up(1);
+  EXPECT_EQ(user.rest()["steps"], 1);
+  (void)user.key("Escape");
+  user.at({20, 790});
+  (void)user.changed("marked in a storm", before);
   program->signal(SIGTERM);
   EXPECT_EQ(program->wait(), 0);
   expectSilence(*program);
@@ -94,10 +94,10 @@ TEST_F(SizeTest, text_and_panels_grow_with_the_display) {
   for (const auto& [dpi, scale] : {std::pair{96, 1.0}, {120, 1.25}, {144, 1.5}, {192, 2.0}}) {
     other.setResources(fmt::format("Xft.dpi:\t{}\n", dpi));
     const auto program = start({scan, "--size", fmt::format("{}x{}", int(1300 / scale), int(960 / scale))});
-    Hand hand(display, *program, fmt::format("dpi{}", dpi));
+    User user(display, *program, fmt::format("dpi{}", dpi));
     const State shown = opened(*program);
     EXPECT_NEAR(shown["scale"].get<double>(), scale, 0.01);
-    const Screen seen = hand.look("opened");
+    const Screen seen = user.look("opened");
     // The title of the colour bar, in 13 pixels at scale 1: from the top of the h to the foot of the g is the
     // size of the letters (DejaVu: 0.760 above the line, 0.236 below), rounded at both ends.
     EXPECT_NEAR(titleHeight(seen, shown["picture"]), 13.0 * scale, 1.5) << dpi;
@@ -124,20 +124,20 @@ TEST_F(SizeTest, nothing_in_the_panels_overlaps_however_narrow_they_are) {
                                                        {"Status", true},
                                                        {"Haptics", true}}}};
     const auto program = start({scan, "--size", "1100x990"});
-    Hand hand(display, *program, fmt::format("panels {}", side));
+    User user(display, *program, fmt::format("panels {}", side));
     (void)opened(*program);
-    (void)hand.key("shift+x");
-    (void)hand.key("x");
-    const State shown = hand.rest();
+    (void)user.key("shift+x");
+    (void)user.key("x");
+    const State shown = user.rest();
     const int left = shown["picture"][0].get<int>() + shown["picture"][2].get<int>();
     EXPECT_NEAR(shown["frame"][0].get<int>() - left, side, 2);
     // Seen in parts, from top to bottom. The cursor points at the margin: what it explains would lie on the
     // rest.
-    hand.at({left + 5, 500});
+    user.at({left + 5, 500});
     constexpr int kParts = 6;  // with some to spare
     for (int part = 0; part < kParts; ++part) {
       const State before = program->now()["texts"];
-      (void)hand.look("part");
+      (void)user.look("part");
       for (std::size_t i = 0; i < before.size(); ++i)
         for (std::size_t k = 0; k < i; ++k) {
           const State &a = before[i]["at"], &b = before[k]["at"];
@@ -150,9 +150,9 @@ TEST_F(SizeTest, nothing_in_the_panels_overlaps_however_narrow_they_are) {
           EXPECT_FALSE(shared(0, 2) > 1 && shared(1, 3) > 2)
               << side << ": " << before[i].dump() << " on " << before[k].dump();
         }
-      (void)hand.wheel(-8);
+      (void)user.wheel(-8);
     }
-    EXPECT_TRUE(hand.reads("effects")) << "not seen to the end";
+    EXPECT_TRUE(user.reads("effects")) << "not seen to the end";
     program->signal(SIGTERM);
     EXPECT_EQ(program->wait(), 0);
     expectSilence(*program);

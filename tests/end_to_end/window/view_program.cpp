@@ -102,7 +102,7 @@ ViewProgram::State ViewProgram::until(const std::string& what, const std::functi
     if (told_.wait_until(lock, end) == std::cv_status::timeout) {
       State last = states_.empty() ? State() : states_.back();
       if (last.is_object()) last.erase("texts");
-      throw std::runtime_error("never told: " + what + "\nlast told: " + last.dump());
+      throw std::runtime_error("never reported: " + what + "\nlast reported: " + last.dump());
     }
   }
 }
@@ -120,7 +120,7 @@ void ViewProgram::each(const std::function<void(const State&)>& look) {
   seen_ = states_.size();
 }
 
-void ViewProgram::forget() {
+void ViewProgram::skipToNewest() {
   const std::scoped_lock lock(mutex_);
   seen_ = states_.empty() ? 0 : states_.size() - 1;
 }

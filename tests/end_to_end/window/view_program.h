@@ -30,16 +30,16 @@ class ViewProgram {
   ViewProgram(const ViewProgram&) = delete;
   ViewProgram& operator=(const ViewProgram&) = delete;
 
-  /// Waits until the program has told a state that is so, looking at every one since the last that was waited
+  /// Waits until the program has reported such a state, looking at every one since the last that was waited
   /// for, that one included. Throws when it does not come: nothing after it makes sense.
   State until(const std::string& what, const std::function<bool(const State&)>& is);
-  /// The newest state told; null before the first.
+  /// The newest state reported; null before the first.
   [[nodiscard]] State now();
-  /// Shows every state told since the last call of this, or of forget(), without waiting for more; what was
-  /// told before the newest is gone afterwards. For those who drive the program for a long time.
+  /// Shows every state reported since the last call of this, or of skipToNewest(), without waiting for more; what was
+  /// reported before the newest is gone afterwards. For those who drive the program for a long time.
   void each(const std::function<void(const State&)>& look);
-  /// Forgets what was told up to now: until() looks at what comes from here on, beginning with the newest.
-  void forget();
+  /// Skips what was reported up to now: until() looks at what comes from here on, beginning with the newest.
+  void skipToNewest();
 
   /// Whether all that it says has ended: it has, or is about to.
   [[nodiscard]] bool ended();

@@ -10,8 +10,8 @@
 namespace fettle::tests {
 namespace {
 
-using State = Hand::State;
-using Place = Hand::Place;
+using State = User::State;
+using Place = User::Place;
 
 // Strokes are made from above: where the window shows the field's middle.
 constexpr Place kMiddle{330, 400};
@@ -20,82 +20,82 @@ TEST_F(WindowTest, a_dropped_scan_is_looked_at_from_all_sides) {
   const std::string dropped = folder.file("Teil ä 1.tif");
   std::filesystem::copy_file(scan, dropped);
   const auto program = start({});
-  Hand hand(display, *program, "look");
+  User user(display, *program, "look");
   program->until("an empty window, with a word of what to do", [](const State& s) {
     return s["path"] == "" && s["texts"].dump().find("Drop a scan here") != std::string::npos;
   });
-  const Screen empty = hand.look("empty");
+  const Screen empty = user.look("empty");
 
   const std::uint32_t window = other.windowOf("fettle");
   ASSERT_NE(window, 0U);
   EXPECT_EQ(other.drop(window, {dropped}), "");
   EXPECT_EQ(opened(*program)["path"], dropped);
   EXPECT_EQ(program->now()["drops"], 1);
-  Screen seen = hand.changed("dropped", empty, 20000);
+  Screen seen = user.changed("dropped", empty, 20000);
 
   // Each key another picture.
   for (const char* key :
        {"7", "1", "3", "ctrl+KP_1", "ctrl+KP_3", "5", "KP_7", "Left", "Right", "Down", "Up", "shift+Left",
         "shift+Right", "shift+Up", "shift+Down", "Next", "Prior", "KP_Subtract", "KP_Add"}) {
     const State before = program->now();
-    const State after = hand.key(key);
+    const State after = user.key(key);
     EXPECT_TRUE(after["view"] != before["view"] || after["perspective"] != before["perspective"]) << key;
     // From above a turn by "Right" comes back where "Left" came from, but never at once.
-    seen = hand.changed(std::string("view ") + key, seen, 500);
+    seen = user.changed(std::string("view ") + key, seen, 500);
   }
   // The mouse: turn, move, zoom, wheel.
-  (void)hand.key("5");
-  (void)hand.key("Home");
-  seen = hand.look("home");
-  (void)hand.drag(2, kMiddle, {kMiddle.x + 90, kMiddle.y - 20}, 4);
-  Screen next = hand.changed("turned", seen, 2000);
-  (void)hand.drag(2, kMiddle, {kMiddle.x + 40, kMiddle.y + 30}, 3, "shift");
-  seen = hand.changed("moved", next, 2000);
-  (void)hand.drag(2, kMiddle, {kMiddle.x, kMiddle.y - 60}, 3, "ctrl");
-  next = hand.changed("zoomed by a drag", seen, 2000);
-  (void)hand.wheel(-4);
-  seen = hand.changed("zoomed by the wheel", next, 2000);
-  (void)hand.key("7");
-  (void)hand.key("Home");
-  const Screen above = hand.look("above");
+  (void)user.key("5");
+  (void)user.key("Home");
+  seen = user.look("home");
+  (void)user.drag(2, kMiddle, {kMiddle.x + 90, kMiddle.y - 20}, 4);
+  Screen next = user.changed("turned", seen, 2000);
+  (void)user.drag(2, kMiddle, {kMiddle.x + 40, kMiddle.y + 30}, 3, "shift");
+  seen = user.changed("moved", next, 2000);
+  (void)user.drag(2, kMiddle, {kMiddle.x, kMiddle.y - 60}, 3, "ctrl");
+  next = user.changed("zoomed by a drag", seen, 2000);
+  (void)user.wheel(-4);
+  seen = user.changed("zoomed by the wheel", next, 2000);
+  (void)user.key("7");
+  (void)user.key("Home");
+  const Screen above = user.look("above");
 
   // What is drawn on the surface; each off again leaves nothing behind.
   for (const auto& [key, what] : {std::pair{"c", "contours"}, {"d", "deviation"}}) {
-    (void)hand.key(key);
-    (void)hand.changed(what, above, 300);
-    (void)hand.key(key);
-    (void)hand.same(std::string("without ") + what, above);
+    (void)user.key(key);
+    (void)user.changed(what, above, 300);
+    (void)user.key(key);
+    (void)user.same(std::string("without ") + what, above);
   }
   Screen map = above;
   for (int i = 0; i < 4; ++i) {
-    (void)hand.key("k");
+    (void)user.key("k");
     // Automatic is viridis or diverging, so that one of the four is no change.
-    map = hand.look("map");
-    EXPECT_GT(differing(above, map, hand.surface()) + (i == 0 ? 1000 : 0), 500) << i;
+    map = user.look("map");
+    EXPECT_GT(differing(above, map, user.surface()) + (i == 0 ? 1000 : 0), 500) << i;
   }
-  (void)hand.key("k");
-  (void)hand.same("the first map again", above);
+  (void)user.key("k");
+  (void)user.same("the first map again", above);
   // The light, by its slider, in a panel that is closed at first.
-  for (const char* header : {"Status", "Filters", "Display"}) (void)hand.click(header);
-  const State turned = hand.click("135 deg");
+  for (const char* header : {"Status", "Filters", "Display"}) (void)user.click(header);
+  const State turned = user.click("135 deg");
   EXPECT_NE(turned["light"][0], 135);
-  (void)hand.changed("light from elsewhere", above, 2000);
+  (void)user.changed("light from elsewhere", above, 2000);
 
-  (void)hand.press("F1");
+  (void)user.press("F1");
   program->until("the list of keys", [](const State& s) {
     return s["dialog"] == "shortcuts" && s["settled"] == true &&
            s["texts"].dump().find("Ctrl+Shift+Z") != std::string::npos;
   });
-  (void)hand.look("keys");
-  (void)hand.press("Escape");
+  (void)user.look("keys");
+  (void)user.press("Escape");
   program->until("no list", [](const State& s) { return s["dialog"] == "none" && s["settled"] == true; });
 
   // Tab: the picture takes the panels' place, and gives it back.
   const int narrow = program->now()["picture"][2];
-  EXPECT_GT(hand.key("Tab")["picture"][2], narrow);
-  (void)hand.look("without panels");
-  EXPECT_EQ(hand.key("Tab")["picture"][2], narrow);
-  const State report = quit(hand);
+  EXPECT_GT(user.key("Tab")["picture"][2], narrow);
+  (void)user.look("without panels");
+  EXPECT_EQ(user.key("Tab")["picture"][2], narrow);
+  const State report = quit(user);
   EXPECT_EQ(report["unsaved_changes"], false);
 }
 
@@ -105,120 +105,120 @@ TEST_F(WindowTest, a_scan_is_smoothed_marked_filtered_and_saved_by_hand) {
   const std::string exported_path = folder.file("exported.tif");
   const std::string session_path = folder.file("work.fettle");
   const auto program = start({scan});
-  Hand hand(display, *program, "work");
+  User user(display, *program, "work");
   (void)opened(*program);
   const auto save = [&](const char* keys, const std::string& path) {
-    (void)hand.press(keys);
+    (void)user.press(keys);
     program->until("a dialog", [](const State& s) { return s["dialog"] != "none" && s["settled"] == true; });
-    hand.type(path);
-    (void)hand.look("dialog to save");
-    (void)hand.press("Return");
+    user.type(path);
+    (void)user.look("dialog to save");
+    (void)user.press("Return");
     program->until("written", [&](const State& s) {
       return s["dialog"] == "none" && s["saving"] == false &&
              s["status"].get<std::string>().find(path) != std::string::npos;
     });
   };
-  hand.at({20, 790});  // where it lies in no picture
-  (void)hand.key("7");
-  const Screen above = hand.look("above");
+  user.at({20, 790});  // where it lies in no picture
+  (void)user.key("7");
+  const Screen above = user.look("above");
 
   // Smooth, with a brush set by keys and by numbers.
-  EXPECT_EQ(hand.key("s")["tool"], "smooth");
-  (void)hand.press("f");
-  hand.type("9");
-  EXPECT_EQ(hand.key("Return")["brush"], 9.0);
-  EXPECT_EQ(hand.key("bracketleft")["brush"], 8.0);
-  EXPECT_EQ(hand.key("bracketright")["brush"], 9.0);
+  EXPECT_EQ(user.key("s")["tool"], "smooth");
+  (void)user.press("f");
+  user.type("9");
+  EXPECT_EQ(user.key("Return")["brush"], 9.0);
+  EXPECT_EQ(user.key("bracketleft")["brush"], 8.0);
+  EXPECT_EQ(user.key("bracketright")["brush"], 9.0);
   const double depth = program->now()["press_mm"];
-  (void)hand.press("shift+f");
-  hand.type("0.5");
-  EXPECT_EQ(hand.key("Return")["press_mm"], 0.5);
+  (void)user.press("shift+f");
+  user.type("0.5");
+  EXPECT_EQ(user.key("Return")["press_mm"], 0.5);
   EXPECT_NE(depth, 0.5);
-  (void)hand.press("f");
-  hand.type("30");
-  EXPECT_EQ(hand.key("Escape")["brush"], 9.0);
-  (void)hand.press("f");
-  hand.type("6");
-  (void)hand.key("Return");
+  (void)user.press("f");
+  user.type("30");
+  EXPECT_EQ(user.key("Escape")["brush"], 9.0);
+  (void)user.press("f");
+  user.type("6");
+  (void)user.key("Return");
   // Along the ends of two ribs, where smoothing is seen.
-  EXPECT_EQ(hand.stroke({240, 332}, {440, 332}, 8)["steps"], 1);
-  (void)hand.look("after smoothing");
-  EXPECT_EQ(hand.key("Escape")["tool"], "view");
-  hand.at({20, 790});
-  const Screen smoothed = hand.changed("smoothed", above);
+  EXPECT_EQ(user.stroke({240, 332}, {440, 332}, 8)["steps"], 1);
+  (void)user.look("after smoothing");
+  EXPECT_EQ(user.key("Escape")["tool"], "view");
+  user.at({20, 790});
+  const Screen smoothed = user.changed("smoothed", above);
   EXPECT_EQ(differing(above, smoothed, {4, 60, 640, 200}), 0) << "changed where no stroke was";
   EXPECT_EQ(differing(above, smoothed, {4, 420, 640, 250}), 0) << "changed where no stroke was";
   save("ctrl+s", smoothed_path);
 
   // Mark, take a part of it back, hide and show.
-  EXPECT_EQ(hand.key("m")["tool"], "mark");
-  (void)hand.stroke({590, 320}, {590, 410}, 6);
-  (void)hand.key("u");
-  (void)hand.stroke({590, 390}, {590, 410}, 2);
-  (void)hand.key("Escape");
-  hand.at({20, 790});
-  const Screen marked = hand.changed("marked", smoothed);
+  EXPECT_EQ(user.key("m")["tool"], "mark");
+  (void)user.stroke({590, 320}, {590, 410}, 6);
+  (void)user.key("u");
+  (void)user.stroke({590, 390}, {590, 410}, 2);
+  (void)user.key("Escape");
+  user.at({20, 790});
+  const Screen marked = user.changed("marked", smoothed);
   EXPECT_EQ(differing(smoothed, marked, {4, 60, 560, 650}), 0) << "marks where no stroke was";
-  (void)hand.key("h");
-  (void)hand.same("marks hidden", smoothed);
-  (void)hand.key("h");
-  (void)hand.same("marks shown", marked);
-  EXPECT_EQ(hand.key("i")["inverted"], true);
-  (void)hand.changed("upside down", marked, 2000);
-  EXPECT_EQ(hand.key("i")["inverted"], false);
-  (void)hand.same("right side up", marked);
+  (void)user.key("h");
+  (void)user.same("marks hidden", smoothed);
+  (void)user.key("h");
+  (void)user.same("marks shown", marked);
+  EXPECT_EQ(user.key("i")["inverted"], true);
+  (void)user.changed("upside down", marked, 2000);
+  EXPECT_EQ(user.key("i")["inverted"], false);
+  (void)user.same("right side up", marked);
 
   // Variants side by side, with the split line and in a row, then the median alone.
-  EXPECT_EQ(hand.key("n")["filter"], "Gaussian 3 x 3");
-  EXPECT_EQ(hand.key("p")["variants"], State({"Gaussian 3 x 3"}));
-  const Screen split = hand.changed("Gaussian behind the split line", marked, 300);
-  (void)hand.key("shift+p");
-  (void)hand.changed("Gaussian next to the field", split, 2000);
-  EXPECT_EQ(hand.key("n")["filter"], "Median 3 x 3");
-  EXPECT_EQ(hand.click("Beside")["variants"], State({"Gaussian 3 x 3", "Median 3 x 3"}));
-  hand.at({20, 790});
-  (void)hand.changed("two variants", split, 2000);
-  EXPECT_EQ(hand.key("Escape")["variants"], State::array());
-  (void)hand.key("shift+p");
-  (void)hand.same("no preview", marked);
-  EXPECT_EQ(hand.key("p")["variants"], State({"Median 3 x 3"}));
-  const Screen preview = hand.changed("median", marked, 300);
-  const State applied = hand.key("Return");
+  EXPECT_EQ(user.key("n")["filter"], "Gaussian 3 x 3");
+  EXPECT_EQ(user.key("p")["variants"], State({"Gaussian 3 x 3"}));
+  const Screen split = user.changed("Gaussian behind the split line", marked, 300);
+  (void)user.key("shift+p");
+  (void)user.changed("Gaussian next to the field", split, 2000);
+  EXPECT_EQ(user.key("n")["filter"], "Median 3 x 3");
+  EXPECT_EQ(user.click("Add preview")["variants"], State({"Gaussian 3 x 3", "Median 3 x 3"}));
+  user.at({20, 790});
+  (void)user.changed("two variants", split, 2000);
+  EXPECT_EQ(user.key("Escape")["variants"], State::array());
+  (void)user.key("shift+p");
+  (void)user.same("no preview", marked);
+  EXPECT_EQ(user.key("p")["variants"], State({"Median 3 x 3"}));
+  const Screen preview = user.changed("median", marked, 300);
+  const State applied = user.key("Return");
   EXPECT_EQ(applied["filters_applied"], 1);
   EXPECT_EQ(applied["variants"], State::array());
   // The split line's grip goes with the frame after the one that tells: another frame.
-  (void)hand.key("c");
-  (void)hand.key("c");
-  const Screen filtered = hand.until("median applied", [&](const Screen& now) {
-    return differing(preview, now, hand.surface()) > 300 && differing(marked, now, hand.surface()) > 300;
+  (void)user.key("c");
+  (void)user.key("c");
+  const Screen filtered = user.until("median applied", [&](const Screen& now) {
+    return differing(preview, now, user.surface()) > 300 && differing(marked, now, user.surface()) > 300;
   });
   save("ctrl+shift+s", filtered_path);
 
   // Back and forth through everything.
   const std::int64_t steps = program->now()["steps"];
-  EXPECT_EQ(hand.key("ctrl+z")["steps"], steps - 1);
-  (void)hand.same("before the median", marked);
-  for (std::int64_t i = steps - 1; i > 1; --i) (void)hand.key("ctrl+z");
-  (void)hand.same("before the marks", smoothed);
-  (void)hand.key("ctrl+z");
-  (void)hand.same("the scan", above);
-  for (std::int64_t i = 0; i < steps; ++i) (void)hand.key("ctrl+shift+z");
-  (void)hand.same("the median again", filtered);
+  EXPECT_EQ(user.key("ctrl+z")["steps"], steps - 1);
+  (void)user.same("before the median", marked);
+  for (std::int64_t i = steps - 1; i > 1; --i) (void)user.key("ctrl+z");
+  (void)user.same("before the marks", smoothed);
+  (void)user.key("ctrl+z");
+  (void)user.same("the scan", above);
+  for (std::int64_t i = 0; i < steps; ++i) (void)user.key("ctrl+shift+z");
+  (void)user.same("the median again", filtered);
   save("ctrl+e", exported_path);
 
   // Into a session, one more stroke, and the power goes.
   save("ctrl+shift+s", session_path);
-  (void)hand.key("m");
-  (void)hand.stroke({410, 660}, {500, 660}, 3);
-  (void)hand.key("Escape");
-  hand.at({20, 790});
+  (void)user.key("m");
+  (void)user.stroke({410, 660}, {500, 660}, 3);
+  (void)user.key("Escape");
+  user.at({20, 790});
   program->until("on the disk", [&](const State& s) { return s["steps"] == steps + 1 && s["kept"] == true; });
-  const Screen last = hand.changed("the last stroke", filtered);
+  const Screen last = user.changed("the last stroke", filtered);
   program->signal(SIGKILL);
   EXPECT_EQ(program->wait(), 128 + SIGKILL);
 
   const auto reopened = start({session_path});
-  Hand later(display, *reopened, "reopened");
+  User later(display, *reopened, "reopened");
   EXPECT_EQ(opened(*reopened)["steps"], steps + 1);
   later.at({20, 790});
   (void)later.key("7");

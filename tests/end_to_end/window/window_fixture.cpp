@@ -59,36 +59,36 @@ std::unique_ptr<ViewProgram> WindowTest::start(std::vector<std::string> argument
   return std::make_unique<ViewProgram>(arguments, environment);
 }
 
-Hand::State WindowTest::opened(ViewProgram& program) {
-  return program.until("the scan is shown", [](const Hand::State& s) {
+User::State WindowTest::opened(ViewProgram& program) {
+  return program.until("the scan is shown", [](const User::State& s) {
     return s["loading"] == false && !s["path"].get<std::string>().empty() && s["settled"] == true;
   });
 }
 
-void WindowTest::saveAs(Hand& hand, const std::string& path) {
-  ViewProgram& program = hand.program();
-  (void)hand.press("ctrl+shift+s");
+void WindowTest::saveAs(User& user, const std::string& path) {
+  ViewProgram& program = user.program();
+  (void)user.press("ctrl+shift+s");
   program.until("a dialog",
-                [](const Hand::State& s) { return s["dialog"] == "save as" && s["settled"] == true; });
-  hand.type(path);
-  (void)hand.press("Return");
-  program.until("written", [&](const Hand::State& s) {
+                [](const User::State& s) { return s["dialog"] == "save as" && s["settled"] == true; });
+  user.type(path);
+  (void)user.press("Return");
+  program.until("written", [&](const User::State& s) {
     return s["dialog"] == "none" && s["saving"] == false &&
            s["status"].get<std::string>().find(path) != std::string::npos;
   });
 }
 
-Hand::State WindowTest::quit(Hand& hand) {
-  (void)hand.press("ctrl+q");
-  ViewProgram& program = hand.program();
+User::State WindowTest::quit(User& user) {
+  (void)user.press("ctrl+q");
+  ViewProgram& program = user.program();
   EXPECT_EQ(program.wait(), 0) << program.err();
   expectSilence(program);
   return program.report();
 }
 
 void WindowTest::expectSilence(const ViewProgram& program) {
-  const Hand::State report = program.report();
-  EXPECT_EQ(report.value("validation_messages", Hand::State()), Hand::State::array());
+  const User::State report = program.report();
+  EXPECT_EQ(report.value("validation_messages", User::State()), User::State::array());
 }
 
 }  // namespace fettle::tests

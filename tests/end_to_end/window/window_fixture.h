@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/version.h"
-#include "tests/end_to_end/window/hand.h"
+#include "tests/end_to_end/window/user.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::tests {
@@ -37,11 +37,11 @@ class WindowTest : public ::testing::Test {
   std::unique_ptr<ViewProgram> start(std::vector<std::string> arguments,
                                      const std::map<std::string, std::string>& environment = {}) const;
   /// Waits until it shows the scan and rests.
-  static Hand::State opened(ViewProgram& program);
+  static User::State opened(ViewProgram& program);
   /// Ctrl+Shift+S to a path, until it is written.
-  static void saveAs(Hand& hand, const std::string& path);
+  static void saveAs(User& user, const std::string& path);
   /// Ctrl+Q, and the end: exit status 0 and no word from the validation layers. Its report.
-  static Hand::State quit(Hand& hand);
+  static User::State quit(User& user);
   static void expectSilence(const ViewProgram& program);
 
   TempFolder folder;

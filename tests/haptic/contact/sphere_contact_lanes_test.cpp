@@ -1,4 +1,4 @@
-// Cells abreast against one after the other: the same touches, bit for bit.
+// Cells in vector lanes against one after the other: the same touches, bit for bit.
 #include "haptic/contact/sphere_contact_lanes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "tests/end_to_end/window/hand.h"
+#include "tests/end_to_end/window/user.h"
 
 #include <cstdlib>
 
@@ -21,33 +21,33 @@ constexpr auto kGlance = 20ms;  // between two looks at the screen: the server d
 constexpr int kLine = 20;       // pixels, about a line of a panel
 constexpr int kTries = 20;      // to point at a text that moves
 
-bool rests(const Hand::State& s) {
+bool rests(const User::State& s) {
   return s.value("settled", false);
 }
 
 }  // namespace
 
-Hand::Hand(const Display& display, ViewProgram& program, std::string name)
+User::User(const Display& display, ViewProgram& program, std::string name)
     : display_(display), program_(program), name_(std::move(name)) {}
 
-std::uint64_t Hand::told(const char* counter) {
+std::uint64_t User::counter(const char* name) {
   const State now = program_.now();
-  return now.is_object() ? now.value(counter, std::uint64_t{0}) : 0;
+  return now.is_object() ? now.value(name, std::uint64_t{0}) : 0;
 }
 
-Hand::State Hand::press(const std::string& name) {
-  const std::uint64_t before = told("keys");
+User::State User::press(const std::string& name) {
+  const std::uint64_t before = counter("keys");
   display_.hands({"key", name});
   return waitFor("key " + name, [&](const State& s) { return s["keys"] > before; });
 }
 
-Hand::State Hand::key(const std::string& name) {
-  const std::uint64_t before = told("keys");
+User::State User::key(const std::string& name) {
+  const std::uint64_t before = counter("keys");
   display_.hands({"key", name});
   return waitFor("key " + name, [&](const State& s) { return s["keys"] > before && rests(s); });
 }
 
-void Hand::type(const std::string& text) {
+void User::type(const std::string& text) {
   (void)waitFor("a place to type",
                 [](const State& s) { return s["text_field"] == true || s["adjusting"] != ""; });
   display_.hands({"type", "--delay", "0", text});
@@ -55,33 +55,33 @@ void Hand::type(const std::string& text) {
                 [&](const State& s) { return s["dialog_path"] == text || s["typed"] == text; });
 }
 
-void Hand::at(Place place) {
+void User::at(Place place) {
   display_.hands({"mousemove", std::to_string(place.x), std::to_string(place.y)});
   (void)waitFor(fmt::format("cursor at {}, {}", place.x, place.y), [&](const State& s) {
     return s["cursor"] == State{place.x, place.y};
   });
 }
 
-void Hand::down(int button) {
-  const std::uint64_t before = told("buttons");
+void User::down(int button) {
+  const std::uint64_t before = counter("buttons");
   display_.hands({"mousedown", std::to_string(button)});
   (void)waitFor("button down", [&](const State& s) { return s["buttons"] > before; });
 }
 
-void Hand::up(int button) {
-  const std::uint64_t before = told("buttons");
+void User::up(int button) {
+  const std::uint64_t before = counter("buttons");
   display_.hands({"mouseup", std::to_string(button)});
   (void)waitFor("button up", [&](const State& s) { return s["buttons"] > before; });
 }
 
-Hand::State Hand::wheel(int steps) {
-  const std::uint64_t wanted = told("wheels") + static_cast<std::uint64_t>(std::abs(steps));
+User::State User::wheel(int steps) {
+  const std::uint64_t wanted = counter("wheels") + static_cast<std::uint64_t>(std::abs(steps));
   display_.hands(
       {"click", "--repeat", std::to_string(std::abs(steps)), "--delay", "1", steps > 0 ? "4" : "5"});
   return waitFor("wheel", [&](const State& s) { return s["wheels"] >= wanted && rests(s); });
 }
 
-Hand::State Hand::drag(int button, Place from, Place to, int steps, const std::string& modifier) {
+User::State User::drag(int button, Place from, Place to, int steps, const std::string& modifier) {
   at(from);
   if (!modifier.empty()) display_.hands({"keydown", modifier});
   down(button);
@@ -92,12 +92,12 @@ Hand::State Hand::drag(int button, Place from, Place to, int steps, const std::s
   return rest("after a drag");
 }
 
-Hand::State Hand::stroke(Place from, Place to, int steps) {
+User::State User::stroke(Place from, Place to, int steps) {
   draw(from, to, steps);
   return rest("after a stroke");
 }
 
-void Hand::draw(Place from, Place to, int steps) {
+void User::draw(Place from, Place to, int steps) {
   // The stylus follows the cursor with a lag; two cells off is there.
   const auto follow = [&](bool pressed) {
     (void)waitFor("the stylus at the cursor", [&](const State& s) {
@@ -117,7 +117,7 @@ void Hand::draw(Place from, Place to, int steps) {
   up(1);
 }
 
-std::optional<Hand::Place> Hand::readable(const std::string& text) {
+std::optional<User::Place> User::readable(const std::string& text) {
   const State now = program_.now();
   for (const State& t : now["texts"]) {
     if (t["text"] != text) continue;
@@ -132,7 +132,7 @@ std::optional<Hand::Place> Hand::readable(const std::string& text) {
   return std::nullopt;
 }
 
-std::optional<Hand::Place> Hand::scrolledTo(const std::string& text) {
+std::optional<User::Place> User::scrolledTo(const std::string& text) {
   if (const auto place = readable(text)) return place;
   const State picture = program_.now()["picture"];
   at({picture[0].get<int>() + picture[2].get<int>() + kLine,
@@ -146,7 +146,7 @@ std::optional<Hand::Place> Hand::scrolledTo(const std::string& text) {
   return std::nullopt;
 }
 
-bool Hand::pointAt(const std::string& text) {
+bool User::pointAt(const std::string& text) {
   // What lies above it may grow while the cursor is on its way.
   for (int tries = 0; tries < kTries; ++tries) {
     const auto place = scrolledTo(text);
@@ -158,13 +158,13 @@ bool Hand::pointAt(const std::string& text) {
   return false;
 }
 
-void Hand::tap(const std::string& text) {
+void User::tap(const std::string& text) {
   if (!pointAt(text)) return;
   down(1);
   up(1);
 }
 
-Hand::State Hand::enter(const std::string& name, const std::string& value) {
+User::State User::enter(const std::string& name, const std::string& value) {
   if (!pointAt(name)) return program_.now();
   const State now = program_.now();
   const int left = now["picture"][0].get<int>() + now["picture"][2].get<int>();
@@ -186,7 +186,7 @@ Hand::State Hand::enter(const std::string& name, const std::string& value) {
   return waitFor("after typing " + name, [](const State& s) { return s["text_field"] == false && rests(s); });
 }
 
-Hand::State Hand::click(const std::string& text, int count) {
+User::State User::click(const std::string& text, int count) {
   if (!pointAt(text)) return program_.now();
   for (int i = 0; i < count; ++i) {
     down(1);
@@ -195,26 +195,26 @@ Hand::State Hand::click(const std::string& text, int count) {
   return rest("after a click on " + text);
 }
 
-Hand::State Hand::rest(const std::string& what) {
-  program_.forget();
+User::State User::rest(const std::string& what) {
+  program_.skipToNewest();
   return waitFor(what, rests);
 }
 
-bool Hand::reads(const std::string& text) {
+bool User::reads(const std::string& text) {
   const State now = program_.now();
   for (const State& t : now["texts"])
     if (t["text"].get<std::string>().find(text) != std::string::npos) return true;
   return false;
 }
 
-Part Hand::surface() {
+Part User::surface() {
   const State area = program_.now()["picture"];
   const int x = area[0], y = area[1], width = area[2], height = area[3];
   // The colour bar stands at the right, the scale below.
   return {x + 4, y + 20, width - 130, height - 90};
 }
 
-void Hand::keep(const Screen& screen, const std::string& what) {
+void User::keep(const Screen& screen, const std::string& what) {
   const char* folder = std::getenv("FETTLE_WINDOW_SHOTS");
   if (folder == nullptr || screen.width == 0) return;
   std::filesystem::create_directories(folder);
@@ -229,7 +229,7 @@ void Hand::keep(const Screen& screen, const std::string& what) {
   EXPECT_TRUE(written);
 }
 
-Screen Hand::until(const std::string& what, const std::function<bool(const Screen&)>& is) {
+Screen User::until(const std::string& what, const std::function<bool(const Screen&)>& is) {
   const auto end = std::chrono::steady_clock::now() + ViewProgram::kPatience;
   const Part part = surface();
   Screen before = display_.screen();
@@ -247,14 +247,14 @@ Screen Hand::until(const std::string& what, const std::function<bool(const Scree
   return before;
 }
 
-Screen Hand::look(const std::string& what) {
+Screen User::look(const std::string& what) {
   return until(what, [](const Screen&) { return true; });
 }
-Screen Hand::changed(const std::string& what, const Screen& before, int pixels) {
+Screen User::changed(const std::string& what, const Screen& before, int pixels) {
   const Part part = surface();
   return until(what, [&](const Screen& now) { return differing(before, now, part) >= pixels; });
 }
-Screen Hand::same(const std::string& what, const Screen& as) {
+Screen User::same(const std::string& what, const Screen& as) {
   const Part part = surface();
   return until(what, [&](const Screen& now) { return differing(as, now, part) == 0; });
 }

@@ -12,7 +12,7 @@ namespace fettle::tests {
 
 /// A person at the window: presses, moves, reads what is written and looks at the picture. Whatever is done
 /// is waited for until the window says that it took it in and that what came of it is on the screen.
-class Hand {
+class User {
  public:
   using State = ViewProgram::State;
   struct Place {
@@ -20,7 +20,7 @@ class Hand {
   };
 
   /// `name`: of the pictures that are kept when $FETTLE_WINDOW_SHOTS names a folder.
-  Hand(const Display& display, ViewProgram& program, std::string name);
+  User(const Display& display, ViewProgram& program, std::string name);
 
   /// A key with its modifiers ("ctrl+shift+s"), until the window rests again.
   State key(const std::string& name);
@@ -73,7 +73,7 @@ class Hand {
   [[nodiscard]] State waitFor(const std::string& what, const std::function<bool(const State&)>& is) {
     return program_.until(name_ + ": " + what, is);
   }
-  [[nodiscard]] std::uint64_t told(const char* counter);
+  [[nodiscard]] std::uint64_t counter(const char* name);
 
   const Display& display_;
   ViewProgram& program_;
