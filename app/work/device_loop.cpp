@@ -153,7 +153,8 @@ void DeviceLoop::stop() {
 }
 
 void DeviceLoop::send(LoopCommand&& command) {
-  // The ring is only full while the loop does not run.
+  // The ring is only full while the loop does not run; it leaves a command that it has no place for as it is.
+  // NOLINTNEXTLINE(bugprone-use-after-move)
   if (!unsent_.empty() || !loop_->send(std::move(command))) unsent_.push_back(std::move(command));
 }
 
