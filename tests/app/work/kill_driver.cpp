@@ -19,7 +19,7 @@ using namespace fettle;
 
 namespace {
 
-// Straight to the system: what was told stays told when the next instruction is the last.
+// Straight to the system: what was written stays written when the process is killed next.
 void tell(const std::string& text) {
   if (write(STDOUT_FILENO, text.data(), text.size()) < 0) std::exit(0);
 }
@@ -55,7 +55,7 @@ int main(int count, char** arguments) {
   tests::HandPlay play(**client, keeper, std::strtoull(arguments[2], nullptr, 10));
   tell("ready\n");
   if (std::FILE* ready = std::fopen(arguments[4], "w")) std::fclose(ready);
-  std::string before;  // told with what follows it, in one write
+  std::string before;  // written with what follows it, in one write
   for (;;) {
     tell(before + "doing\n");
     static_cast<void>(play.act());

@@ -101,7 +101,7 @@ TEST(SessionOfAHand, OpensAfterAKillAtAnyMomentWithAllButWhatWasBeingDone) {
     const auto verified = engine::verifySession(path, job);
     ASSERT_TRUE(verified) << "kill " << kill << ": " << verified.error().line();
     if (report.number >= 0) {
-      // One doing more may be there, and an undo may have moved on: the state that was told is held all the
+      // One doing more may be there, and an undo may have moved on: the state that was reported is held all the
       // same.
       ASSERT_LE(report.number, session->history.last()) << "kill " << kill;
       EXPECT_EQ(fmt::format("{:016x}", engine::contentHash(session->history.state(report.number))),

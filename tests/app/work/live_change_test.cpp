@@ -26,7 +26,7 @@ class LiveChangeTest : public ::testing::Test {
   bool upToDate() {
     int quiet = 0;
     return bench.until([&] {
-      if (change.poll(bench.client())) told = true;
+      if (change.poll(bench.client())) changed = true;
       quiet = change.figures() && change.figures()->max_abs == expected().max_abs ? quiet + 1 : 0;
       return quiet > 0;
     });
@@ -41,7 +41,7 @@ class LiveChangeTest : public ::testing::Test {
   engine::Version original = rough(3);
   LoopClientBench bench{original};
   LiveChange change;
-  bool told = false;
+  bool changed = false;
 };
 
 TEST_F(LiveChangeTest, a_field_that_is_as_scanned_has_not_changed) {
@@ -50,7 +50,7 @@ TEST_F(LiveChangeTest, a_field_that_is_as_scanned_has_not_changed) {
   change.begin(original);
   EXPECT_FALSE(change.figures());
   ASSERT_TRUE(upToDate());
-  EXPECT_TRUE(told);
+  EXPECT_TRUE(changed);
   EXPECT_EQ(change.figures()->samples, 150 * 120);
   EXPECT_EQ(change.figures()->max_abs, 0.0);
   EXPECT_EQ(change.figures()->rms, 0.0);
@@ -62,9 +62,9 @@ TEST_F(LiveChangeTest, figures_follow_strokes_and_undo) {
   change.begin(original);
   ASSERT_TRUE(upToDate());
   ASSERT_TRUE(bench.stroke(Tool::kSmooth, {5.0, 5.0, 0.05}));
-  told = false;
+  changed = false;
   ASSERT_TRUE(upToDate());
-  EXPECT_TRUE(told);
+  EXPECT_TRUE(changed);
   const engine::LiveFigures& figures = *change.figures();
   const engine::Deviation measured = expected();
   EXPECT_GT(figures.max_abs, 0.0);

@@ -93,7 +93,7 @@ TEST_F(Guard, LosesNoJournalWithoutBeingForcedTo) {
   const auto refused = app::refuseToLoseWork(path);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().line().find("--force"), std::string::npos) << refused.error().line();
-  // What it is cannot be told.
+  // What it is cannot be determined.
   fs::resize_file(path, 5000);
   EXPECT_FALSE(app::refuseToLoseWork(path));
   fs::resize_file(path, 0);

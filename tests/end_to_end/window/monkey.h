@@ -14,7 +14,7 @@ struct Reach {
   std::string what;
   std::vector<std::string>
       way;        ///< steps there, one a frame: what xdotool's key takes, "drop FILE", "panel NAME"
-  int times = 0;  ///< told so far
+  int times = 0;  ///< reported so far
 };
 
 /// Keys, clicks, strokes and texts without sense, from a seed. It is curious: it clicks on what it has
@@ -27,7 +27,7 @@ class Monkey {
 
   /// How many things to do before the next frame: 1 to 50, each order of size as often as another.
   [[nodiscard]] int actions();
-  /// Words for one call of xdotool, in which a hand does so many things at a window that is as told.
+  /// Words for one call of xdotool, of so many actions of a user at a window in this state.
   [[nodiscard]] std::vector<std::string> burst(int count, const State& state);
   /// The same for one step of a way; no words for a drop. "panel NAME" opens that panel, or comes nearer to
   /// it.

@@ -110,7 +110,7 @@ class MonkeyTest : public WindowTest {
     User user(display, *program_, "monkey");
     try {
       user.at({20, height_ - 60});
-      (void)user.press("Escape");  // the panels may have the keyboard, which is not told
+      (void)user.press("Escape");  // the panels may have the keyboard, which is not reported
       for (int i = 1; !calm(user.rest()); ++i) {
         if (i == kMostEscapes) {
           State last = program_->now();
@@ -268,7 +268,7 @@ TEST_F(MonkeyTest, hands_without_sense_leave_a_window_that_works_and_a_journal_t
       frames_, slow_, most_, lives_, most_steps_, steps);
   for (const auto& [kind, all] : {std::pair{"tool", &tools_}, {"dialog", &dialogs_}, {"panel", &panels_}})
     for (const Reach& r : *all) {
-      fmt::print("  {:6} told with {} {}\n", r.times, kind, r.what);
+      fmt::print("  {:6} reported with {} {}\n", r.times, kind, r.what);
       EXPECT_GT(r.times, 0) << kind << " " << r.what;
     }
   EXPECT_GE(slow_, 1);
