@@ -49,7 +49,7 @@ struct Strip {
 /// are not kept are included.
 [[nodiscard]] Strip stripAlong(const Polyline& line, SampleWindow& window, double depth, int tangent_half);
 
-/// Calls visit(sample, s) for the kept samples of the points i - half .. i + half of a line, with s counted
+/// Calls visit(sample, s, j) for the kept samples of the points j = i - half .. i + half of a line, with s counted
 /// from point i and `ranges` the offsets that count at each point.
 template <class Visit>
 void forEachKept(const Polyline& line, const Strip& strip, const SampleWindow& window,

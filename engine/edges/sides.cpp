@@ -1,0 +1,87 @@
+#include "engine/edges/sides.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr double kGuards[] = {1.25, 0.75};  // of each turn [samples]
+constexpr Offsets kFineOffsets{1.5};
+constexpr double kFineStep = 0.3;      // change from point to point [samples]
+constexpr double kMostMisfit = 50.0;   // of one sample [variances]: a spike decides nothing
+constexpr double kInsideExtent = 0.5;  // of a surface at whose end another begins [samples]
+constexpr double kUnsupported =
+    0.4;  // chi-square per squared sample: keeps a point without surfaces in place
+
+void addFineCosts(const SideContext& context, const StripLine& line, int i, double guard, float* costs) {
+  const auto at = static_cast<std::size_t>(i);
+  const int count = kFineOffsets.count();
+  std::fill(costs, costs + count, 0.0F);
+  const Sides sides = sidesAt(context, line, i, guard);
+  if (!sides.supported()) {
+    for (int k = 0; k < count; ++k)
+      costs[k] = static_cast<float>(kUnsupported * kFineOffsets.at(k) * kFineOffsets.at(k));
+    return;
+  }
+  // Log-likelihoods with the variance of each side: a curved surface is a poor plane, and still not the other one.
+  const auto misfit = [&](const PlaneFit& surface, const StripSample& sample) {
+    const double variance = std::max(context.variance, surface.variance());
+    const double residual = sample.z - surface.at(sample.d, sample.s);
+    return static_cast<float>(
+        std::min(residual * residual / variance + std::log(variance / context.variance), kMostMisfit));
+  };
+  const OffsetRange& range = context.ranges[at];
+  const Extent extent = line.extents[at];
+  for (const StripSample& sample : context.strip.at(i)) {
+    if (!context.window.at(sample.index).kept || !range.contains(sample.d)) continue;
+    if (sample.d < extent.low || sample.d > extent.high) continue;
+    if (std::abs(sample.d - line.offsets[at]) > kFineOffsets.reach + 0.5) continue;
+    const float left = misfit(sides.left, sample), right = misfit(sides.right, sample);
+    for (int k = 0; k < count; ++k)
+      costs[k] += sample.d < line.offsets[at] + kFineOffsets.at(k) ? right : left;
+  }
+}
+
+}  // namespace
+
+Sides sidesAt(const SideContext& context, const StripLine& line, int i, double guard) {
+  const auto at = static_cast<std::size_t>(i);
+  const Extent extent = line.extents[at];
+  Moments left, right;
+  forEachKept(context.line, context.strip, context.window, context.ranges, i, context.half,
+              [&](const StripSample& sample, double s, int j) {
+                // The surfaces' ends run along with the line.
+                const double offset = line.offsets[static_cast<std::size_t>(j)];
+                const double shift = offset - line.offsets[at];
+                if (sample.d < extent.low + std::min(shift, 0.0) + kInsideExtent ||
+                    sample.d > extent.high + std::max(shift, 0.0) - kInsideExtent)
+                  return;
+                if (sample.d > offset + guard)
+                  left.add(sample.d, s, sample.z);
+                else if (sample.d < offset - guard)
+                  right.add(sample.d, s, sample.z);
+              });
+  return {fitPlane(left), fitPlane(right), fitPlane(left + right)};
+}
+
+void refine(const SideContext& context, StripLine& line) {
+  const auto count = static_cast<std::size_t>(kFineOffsets.count());
+  for (const double guard : kGuards) {
+    ChainCosts costs{kFineOffsets, {}};
+    costs.costs.resize(line.offsets.size() * count);
+    tbb::parallel_for(tbb::blocked_range<int>(0, context.line.size(), 32), [&](const auto& points) {
+      for (int i = points.begin(); i < points.end(); ++i)
+        addFineCosts(context, line, i, guard, costs.costs.data() + static_cast<std::size_t>(i) * count);
+    });
+    Chain chain = chainAlong(costs, kFineStep, context.line.closed);
+    for (std::size_t i = 0; i < line.offsets.size(); ++i) line.offsets[i] += chain.mean[i];
+    line.deviations = std::move(chain.deviation);
+  }
+}
+
+}  // namespace fettle::engine
