@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/simd/kernel.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -14,36 +16,14 @@ constexpr double kAbsentBreak = 15.0;
 constexpr std::size_t kNarrowest = 4;  // bins of a segment: one sample
 constexpr float kNever = 1e9F;
 
-// Residuals of the planes between edge `low` and each edge from `first` on, times `weight`. `sums` as
-// AcrossSearch::sums_. Without branches, so that it is vectorised; the same formulas as fitPlane().
-void fitFrom(const double* const* sums, std::size_t low, std::size_t first, std::size_t end, double weight,
-             float* residuals) {
-  const double *n = sums[0], *d = sums[1], *s = sums[2], *dd = sums[3], *ds = sums[4], *ss = sums[5];
-  const double *z = sums[6], *zd = sums[7], *zs = sums[8], *zz = sums[9];
-  const double n0 = n[low], d0 = d[low], s0 = s[low], dd0 = dd[low], ds0 = ds[low], ss0 = ss[low];
-  const double z0 = z[low], zd0 = zd[low], zs0 = zs[low], zz0 = zz[low];
-  for (std::size_t b = first; b < end; ++b) {
-    const double count = n[b] - n0;
-    const double share = 1.0 / (count > 0.5 ? count : 1.0);
-    const double mean_d = (d[b] - d0) * share, mean_s = (s[b] - s0) * share, sum_z = z[b] - z0;
-    const double squares_d = dd[b] - dd0 - (d[b] - d0) * mean_d + kLevelling;
-    const double squares_s = ss[b] - ss0 - (s[b] - s0) * mean_s + kLevelling;
-    const double product = ds[b] - ds0 - (d[b] - d0) * mean_s;
-    const double lean_d = zd[b] - zd0 - sum_z * mean_d;
-    const double lean_s = zs[b] - zs0 - sum_z * mean_s;
-    const double level = zz[b] - zz0 - sum_z * sum_z * share;
-    const double explained =
-        (lean_d * lean_d * squares_s - 2.0 * lean_d * lean_s * product + lean_s * lean_s * squares_d) /
-        (squares_d * squares_s - product * product);
-    const double residual = level - (count > kLeastForPlane ? explained : 0.0);
-    residuals[b] = static_cast<float>((residual > 0.0 ? residual : 0.0) * weight);
-  }
-}
+#define FETTLE_KERNEL "engine/edges/segments-inl.h"
+#include "engine/simd/each_cpu-inl.h"
 
 }  // namespace
 
-AcrossSearch::AcrossSearch(const Model& model)
+AcrossSearch::AcrossSearch(const Model& model, CpuLevel level)
     : model_(model),
+      fit_from_(FETTLE_AT_LEVEL(level, fitFrom)),
       bins_(static_cast<std::size_t>(std::lround(2.0 * model.depth / Offsets::kStep))),
       bin_(bins_),
       segments_((bins_ + 1) * (bins_ + 1), kNever),
@@ -81,7 +61,7 @@ void AcrossSearch::fitSegments() {
   for (std::size_t m = 0; m < kMoments; ++m) sums[m] = sums_[m].data();
   const std::size_t edges = bins_ + 1;
   for (std::size_t low = 0; low + kNarrowest < edges; ++low)
-    fitFrom(sums, low, low + kNarrowest, edges, 1.0 / model_.variance, segments_.data() + low * edges);
+    fit_from_(sums, low, low + kNarrowest, edges, 1.0 / model_.variance, segments_.data() + low * edges);
   for (std::size_t low = 0; low + kNarrowest < edges; ++low)
     for (std::size_t high = low + kNarrowest; high < edges; ++high)
       mirrored_[(bins_ - high) * edges + bins_ - low] = segments_[low * edges + high];

@@ -7,6 +7,7 @@
 #include "engine/edges/offsets.h"
 #include "engine/edges/strip.h"
 #include "engine/edges/surface_fit.h"
+#include "engine/simd/cpu.h"
 
 namespace fettle::engine {
 
@@ -39,7 +40,8 @@ class AcrossSearch {
     double variance = 0.0;   ///< of the noise [height_unit^2]
     double deviation = 1.2;  ///< of the breaks from where their lines are now [samples]
   };
-  explicit AcrossSearch(const Model& model);
+  /// `level`: of vector instructions; no bit of a result depends on it.
+  explicit AcrossSearch(const Model& model, CpuLevel level = bestCpuLevel());
 
   void clear();
   /// A sample of the strip; s counts from the point.
@@ -64,6 +66,8 @@ class AcrossSearch {
   [[nodiscard]] Moments between(std::size_t low, std::size_t high) const noexcept;
 
   Model model_;
+  void (*fit_from_)(const double* const* sums, std::size_t low, std::size_t first, std::size_t end,
+                    double weight, float* residuals) noexcept;
   std::size_t bins_;                    // across the strip
   std::vector<Moments> bin_;            // moments of each
   std::vector<double> sums_[kMoments];  // of all bins before an edge between bins, bins_ + 1 each

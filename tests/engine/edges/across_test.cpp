@@ -17,11 +17,11 @@ struct Division {
   double best = 0.0;  // offset
 
   Division(const std::function<double(int)>& z, const std::vector<double>& breaks, std::size_t own,
-           double noise, std::uint64_t seed = 1) {
+           double noise, std::uint64_t seed = 1, CpuLevel level = bestCpuLevel()) {
     AcrossSearch::Model model;
     model.offsets.reach = 4.0;
     model.variance = 1.3 * noise * noise;
-    AcrossSearch search(model);
+    AcrossSearch search(model, level);
     search.clear();
     for (int d = -12; d <= 12; ++d)
       for (int s = -4; s <= 4; ++s)
@@ -87,6 +87,15 @@ TEST(AcrossSearch, CurvedSurfacesMakeItLessCertain) {
     return *std::max_element(found.costs.begin(), found.costs.end());
   };
   EXPECT_LT(spread(0.05), 0.75F * spread(0.0));
+}
+
+TEST(AcrossSearch, AllLevelsOfInstructionsGiveTheSameBits) {
+  const auto wall = [](int d) { return (d >= 2 ? 3.0 : 0.0) + 0.01 * d * d; };
+  const Division plain(wall, {-4.0, 0.0}, 1, 0.3, 5, CpuLevel::kPlain);
+  for (const CpuLevel level : {CpuLevel::kAvx2, CpuLevel::kAvx512})
+    if (level <= bestCpuLevel()) {
+      EXPECT_EQ(Division(wall, {-4.0, 0.0}, 1, 0.3, 5, level).costs, plain.costs);
+    }
 }
 
 TEST(AcrossSearch, WithoutSamplesOnlyTheHandCounts) {
