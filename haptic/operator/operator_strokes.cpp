@@ -5,7 +5,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "haptic/operator/hand_motion.h"
+#include "haptic/operator/hand_drift.h"
 
 namespace fettle::haptic {
 
@@ -13,10 +13,6 @@ namespace {
 
 constexpr double kAirSpeed = 80.0;  // [mm/s] mean speed of free moves
 constexpr double kOverlapMm = 1.0;  // a closed edge is followed this far past its start
-constexpr double kTremorLow = 8.0;  // [Hz]
-constexpr double kTremorHigh = 12.0;
-constexpr double kWanderLow = 0.1;  // [Hz]
-constexpr double kWanderHigh = 1.5;
 
 double length(glm::dvec2 v) noexcept {
   return std::hypot(v.x, v.y);
@@ -176,19 +172,10 @@ class Hand {
   // away from the path's start.
   void trace(const Path& path, Tool tool, double guide, glm::dvec2 approach) {
     ++stroke_;
-    const auto motion = [&](double sigma, double low, double high, int axis) {
-      return HandMotion(sigma, low, high, spec_.seed, 8 * stroke_ + static_cast<std::uint64_t>(axis));
-    };
-    const HandMotion tremor_x = motion(spec_.tremor_mm, kTremorLow, kTremorHigh, 0);
-    const HandMotion tremor_y = motion(spec_.tremor_mm, kTremorLow, kTremorHigh, 1);
-    const HandMotion tremor_z = motion(0.5 * spec_.tremor_mm, kTremorLow, kTremorHigh, 2);
-    const HandMotion wander_x = motion(spec_.wander_mm, kWanderLow, kWanderHigh, 3);
-    const HandMotion wander_y = motion(spec_.wander_mm, kWanderLow, kWanderHigh, 4);
+    const HandDrift drift(spec_.wander_mm, spec_.tremor_mm, spec_.seed, stroke_);
     const auto tipAt = [&](double s, double seconds) {
-      const glm::dvec2 about{tremor_x.at(seconds) + wander_x.at(seconds),
-                             tremor_y.at(seconds) + wander_y.at(seconds)};
-      const glm::dvec2 p = surface_.inside(path.place(s) + about);
-      return glm::dvec3{p.x, p.y, surface_.lowest(p, guide) - spec_.press_mm + tremor_z.at(seconds)};
+      const glm::dvec2 p = surface_.inside(path.place(s) + drift.at(seconds));
+      return glm::dvec3{p.x, p.y, surface_.lowest(p, guide) - spec_.press_mm + drift.heightAt(seconds)};
     };
     const double free_height = surface_.highest() + spec_.lift_mm;
     const glm::dvec3 first = tipAt(0.0, 0.0);
