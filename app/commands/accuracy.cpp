@@ -33,7 +33,7 @@ constexpr struct {
     {"rate", bench::rateStudy},           {"energy", bench::energyStudy},
     {"detail", bench::detailStudy},       {"filter", bench::filterStudy},
     {"upload", bench::uploadStudy},       {"restoration", bench::restorationStudy},
-    {"automatic", bench::automaticStudy},
+    {"automatic", bench::automaticStudy}, {"lines", bench::edgeLineStudy},
 };
 
 std::string studyNames() {

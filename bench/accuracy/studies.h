@@ -60,4 +60,8 @@ struct AccuracyOptions {
 /// Filters alone on several simulated parts, noises and seeds: error over all, on flats and near edges.
 [[nodiscard]] engine::Result<Study> automaticStudy(const AccuracyOptions& options, engine::JobControl& job);
 
+/// Lines located from a simulated hand's strokes along the true edges of simulated scans: distance from the edges,
+/// over time per stroke length.
+[[nodiscard]] engine::Result<Study> edgeLineStudy(const AccuracyOptions& options, engine::JobControl& job);
+
 }  // namespace fettle::bench
