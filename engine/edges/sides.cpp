@@ -28,12 +28,11 @@ void addFineCosts(const SideContext& context, const StripLine& line, int i, doub
       costs[k] = static_cast<float>(kUnsupported * kFineOffsets.at(k) * kFineOffsets.at(k));
     return;
   }
-  // Log-likelihoods with the variance of each side: a curved surface is a poor plane, and still not the other one.
+  // The variance of the better side for both: a side that is no plane makes the other one no less certain.
+  const double variance = std::max(context.variance, std::min(sides.left.variance(), sides.right.variance()));
   const auto misfit = [&](const PlaneFit& surface, const StripSample& sample) {
-    const double variance = std::max(context.variance, surface.variance());
     const double residual = sample.z - surface.at(sample.d, sample.s);
-    return static_cast<float>(
-        std::min(residual * residual / variance + std::log(variance / context.variance), kMostMisfit));
+    return static_cast<float>(std::min(residual * residual / variance, kMostMisfit));
   };
   const OffsetRange& range = context.ranges[at];
   const Extent extent = line.extents[at];
