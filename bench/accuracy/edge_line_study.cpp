@@ -9,7 +9,7 @@
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "engine/base/stopwatch.h"
-#include "engine/edges/edge_line.h"
+#include "engine/edges/locate.h"
 #include "engine/scanner/edge_distance.h"
 #include "engine/scanner/scanner.h"
 #include "haptic/operator/hand_lines.h"

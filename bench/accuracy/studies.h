@@ -64,4 +64,8 @@ struct AccuracyOptions {
 /// over time per stroke length.
 [[nodiscard]] engine::Result<Study> edgeLineStudy(const AccuracyOptions& options, engine::JobControl& job);
 
+/// Generalised variation alone, with the lines of a simulated hand as drawn and as located, and with the true lines:
+/// error over all, on flats and near edges, for every part, noise and hand.
+[[nodiscard]] engine::Result<Study> handStudy(const AccuracyOptions& options, engine::JobControl& job);
+
 }  // namespace fettle::bench

@@ -40,7 +40,7 @@ struct Patch {
 };
 
 // The edge in a patch: v = a + b u + c u^2, u along it and v towards the higher side.
-struct EdgeLine {
+struct LocalEdge {
   glm::dvec2 origin{0.0, 0.0};
   glm::dvec2 along{1.0, 0.0};
   double a = 0.0;
@@ -122,10 +122,10 @@ std::vector<glm::dvec2> boundary(const Patch& patch, double mid, double radius) 
   return points;
 }
 
-std::optional<EdgeLine> fitLine(const Patch& patch, double mid, double radius) {
+std::optional<LocalEdge> fitLine(const Patch& patch, double mid, double radius) {
   const std::vector<glm::dvec2> points = boundary(patch, mid, radius);
   if (points.size() < 6) return {};
-  EdgeLine line;
+  LocalEdge line;
   for (const glm::dvec2& p : points) line.origin += p / static_cast<double>(points.size());
   double xx = 0.0;
   double xy = 0.0;
@@ -169,7 +169,7 @@ struct Lands {
 
 // Calls f(place, distance to the edge, c, r) for the samples of the profile.
 template <class F>
-void forEachInReach(const Patch& patch, const EdgeLine& line, const TruthOptions& options, F&& f) {
+void forEachInReach(const Patch& patch, const LocalEdge& line, const TruthOptions& options, F&& f) {
   const double along = options.profile_half_length * patch.sample;
   const double across = options.profile_reach * patch.sample;
   for (int r = -patch.half_rows; r <= patch.half_rows; ++r)
@@ -182,7 +182,7 @@ void forEachInReach(const Patch& patch, const EdgeLine& line, const TruthOptions
 }
 
 // Planes through the truth on both sides; turns the line so that its positive side is the higher one.
-std::optional<Lands> fitLands(const Patch& patch, EdgeLine& line, const TruthOptions& options) {
+std::optional<Lands> fitLands(const Patch& patch, LocalEdge& line, const TruthOptions& options) {
   ThreeTerms below;
   ThreeTerms above;
   bool whole = true;
@@ -250,7 +250,7 @@ double rise(const std::vector<Block>& bins) {
 }
 
 // NaN when too many samples are missing or the profile does not reach; `lost` tells these apart.
-double widthOf(const Patch& patch, const std::vector<float>& heights, double scale, const EdgeLine& line,
+double widthOf(const Patch& patch, const std::vector<float>& heights, double scale, const LocalEdge& line,
                const Lands& lands, const TruthOptions& options, bool& lost) {
   const double bin = kBin * patch.sample;
   const int bins_a_side = static_cast<int>(std::ceil(options.profile_reach / kBin));
@@ -315,7 +315,7 @@ std::vector<EdgeWidth> edgeWidths(const FieldReader& field, double field_in_trut
                          2 * patch.half_rows + 1, to.data(), patch.width());
       };
       read(truth, patch.truth);
-      std::optional<EdgeLine> line = fitLine(patch, mid, options.profile_half_length * patch.sample);
+      std::optional<LocalEdge> line = fitLine(patch, mid, options.profile_half_length * patch.sample);
       if (!line) continue;
       const std::optional<Lands> lands = fitLands(patch, *line, options);
       if (!lands) continue;

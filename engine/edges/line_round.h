@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "engine/base/job.h"
-#include "engine/edges/edge_line.h"
+#include "engine/field/edge_line.h"
 #include "engine/edges/offsets.h"
 #include "engine/edges/sides.h"
 #include "engine/edges/surroundings.h"

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "engine/edges/edge_line.h"
+#include "engine/edges/locate.h"
 #include "engine/edges/line_round.h"
 #include "engine/edges/separate.h"
 

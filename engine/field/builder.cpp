@@ -49,10 +49,10 @@ Status sidesAndSpacing(const Grid& grid, const std::string& what) {
 }  // namespace
 
 FieldBuilder::FieldBuilder(Grid grid, std::shared_ptr<FieldMemory> memory)
-    : grid_(std::make_shared<const Grid>(std::move(grid))),
+    : description_(std::make_shared<const FieldDescription>(FieldDescription{std::move(grid), nullptr})),
       memory_(std::move(memory)),
-      tile_columns_((grid_->width + kTileSide - 1) / kTileSide),
-      tile_rows_((grid_->height + kTileSide - 1) / kTileSide),
+      tile_columns_((description_->grid.width + kTileSide - 1) / kTileSide),
+      tile_rows_((description_->grid.height + kTileSide - 1) / kTileSide),
       infinities_(std::make_unique<std::atomic<std::int64_t>>(0)) {}
 
 Result<FieldBuilder> FieldBuilder::create(Grid grid, const std::string& what, Start start) {
@@ -73,8 +73,9 @@ Result<FieldBuilder> FieldBuilder::create(Grid grid, std::shared_ptr<FieldMemory
   for (std::size_t i = 0; i < tiles; ++i) {
     TileRef tile = TileRef::adopt(builder.memory_->bulk().acquire());
     if (!tile)
-      return failure(fmt::format("memory for {} samples could not be allocated", builder.grid_->samples()),
-                     what);
+      return failure(
+          fmt::format("memory for {} samples could not be allocated", builder.description_->grid.samples()),
+          what);
     builder.tiles_.push_back(std::move(tile));
   }
   forEachIndex(tiles, [&builder, start](std::size_t i) {
@@ -96,7 +97,8 @@ Result<FieldBuilder> FieldBuilder::create(Grid grid, std::shared_ptr<FieldMemory
 
 void FieldBuilder::writeHeights(std::int32_t column, std::int32_t row, std::int32_t columns,
                                 std::int32_t rows, const float* heights, std::ptrdiff_t stride) noexcept {
-  assert(column >= 0 && row >= 0 && column + columns <= grid_->width && row + rows <= grid_->height);
+  assert(column >= 0 && row >= 0 && column + columns <= description_->grid.width &&
+         row + rows <= description_->grid.height);
   std::int64_t infinite = 0;
   for (std::int32_t r = row; r < row + rows; ++r)
     for (std::int32_t c = column; c < column + columns;) {
@@ -115,7 +117,8 @@ void FieldBuilder::writeHeights(std::int32_t column, std::int32_t row, std::int3
 
 void FieldBuilder::writeMarks(std::int32_t column, std::int32_t row, std::int32_t columns, std::int32_t rows,
                               const std::uint8_t* marks, std::ptrdiff_t stride) noexcept {
-  assert(column >= 0 && row >= 0 && column + columns <= grid_->width && row + rows <= grid_->height);
+  assert(column >= 0 && row >= 0 && column + columns <= description_->grid.width &&
+         row + rows <= description_->grid.height);
   for (std::int32_t r = row; r < row + rows; ++r)
     for (std::int32_t c = column; c < column + columns; ++c) {
       Tile& tile = *tiles_[static_cast<std::size_t>(r >> kTileShift) * tile_columns_ + (c >> kTileShift)];
@@ -169,8 +172,8 @@ Node* FieldBuilder::buildNode(int level, std::int32_t column, std::int32_t row, 
 std::int32_t FieldBuilder::samplesOf(std::size_t place) const noexcept {
   const auto tc = static_cast<std::int32_t>(place % static_cast<std::size_t>(tile_columns_));
   const auto tr = static_cast<std::int32_t>(place / static_cast<std::size_t>(tile_columns_));
-  return std::min(kTileSide, grid_->width - tc * kTileSide) *
-         std::min(kTileSide, grid_->height - tr * kTileSide);
+  return std::min(kTileSide, description_->grid.width - tc * kTileSide) *
+         std::min(kTileSide, description_->grid.height - tr * kTileSide);
 }
 
 void FieldBuilder::summarise(std::size_t place) noexcept {
@@ -200,10 +203,10 @@ Version FieldBuilder::build() && {
   forEachIndex(tiles_.size(), [this](std::size_t i) {
     if (missing_ == nullptr || missing_[i].load(std::memory_order_relaxed) != 0) summarise(i);
   });
-  Node* root = buildNode(rootLevel(*grid_), 0, 0, marked, holed, bounds);
+  Node* root = buildNode(rootLevel(description_->grid), 0, 0, marked, holed, bounds);
   tiles_.clear();
   summaries_.clear();
-  return {std::move(grid_), std::move(memory_), root, 1.0F};
+  return {std::move(description_), std::move(memory_), root, 1.0F};
 }
 
 Version makeField(const Grid& grid, const std::vector<float>& heights,

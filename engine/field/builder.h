@@ -35,7 +35,7 @@ class FieldBuilder {
   FieldBuilder(FieldBuilder&&) = default;
   FieldBuilder& operator=(FieldBuilder&&) = default;
 
-  [[nodiscard]] const Grid& grid() const noexcept { return *grid_; }
+  [[nodiscard]] const Grid& grid() const noexcept { return description_->grid; }
 
   /// Writes samples (row-major, stride in elements, [height_unit]); the rectangle lies in the field. NaN is a
   /// hole; an infinity becomes one and is counted.
@@ -81,7 +81,7 @@ class FieldBuilder {
   [[nodiscard]] Node* buildNode(int level, std::int32_t column, std::int32_t row, bool& marked, bool& holed,
                                 HeightBounds& bounds);
 
-  std::shared_ptr<const Grid> grid_;
+  std::shared_ptr<const FieldDescription> description_;
   std::shared_ptr<FieldMemory> memory_;
   std::vector<TileRef> tiles_;      // row-major
   std::vector<Summary> summaries_;  // of each

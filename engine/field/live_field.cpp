@@ -28,7 +28,7 @@ Version LiveField::adopt(Version version) noexcept {
   assert(version.grid().width == grid().width && version.grid().height == grid().height);
   std::swap(state_.root_, version.root_);
   std::swap(state_.sign_, version.sign_);
-  state_.grid_.swap(version.grid_);
+  state_.description_.swap(version.description_);
   state_.memory_.swap(version.memory_);
   return version;
 }

@@ -1,11 +1,46 @@
 #include "engine/field/piece.h"
 
+#include <algorithm>
 #include <cstddef>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "engine/field/builder.h"
 
 namespace fettle::engine {
+
+namespace {
+
+// The lines in the piece's own coordinates: their points in and near it, and for each run of these a line.
+EdgeLines linesOf(const std::vector<EdgeLine>& lines, std::int32_t column, std::int32_t row,
+                  const Grid& grid) {
+  constexpr double kNear = 2.0 * EdgeLine::kMostApart;
+  const glm::dvec2 first{column, row};
+  const auto isNear = [&](const EdgePoint& point) {
+    const glm::dvec2 p = point.position - first;
+    return p.x >= -kNear && p.y >= -kNear && p.x < grid.width + kNear && p.y < grid.height + kNear;
+  };
+  auto kept = std::make_shared<std::vector<EdgeLine>>();
+  for (const EdgeLine& line : lines) {
+    const std::size_t n = line.points.size();
+    const bool whole = std::ranges::all_of(line.points, isNear);
+    EdgeLine run{line.id, line.closed && whole, {}};
+    for (std::size_t i = 0; i < n + (line.closed && !whole ? 1 : 0); ++i) {
+      EdgePoint point = line.points[i % n];
+      if (isNear(point)) {
+        point.position -= first;
+        run.points.push_back(point);
+      } else if (!run.points.empty()) {
+        kept->push_back(std::exchange(run, EdgeLine{line.id, false, {}}));
+      }
+    }
+    if (!run.points.empty()) kept->push_back(std::move(run));
+  }
+  return kept;
+}
+
+}  // namespace
 
 Version pieceOf(const Version& field, std::int32_t column, std::int32_t row, std::int32_t columns,
                 std::int32_t rows) {
@@ -17,7 +52,8 @@ Version pieceOf(const Version& field, std::int32_t column, std::int32_t row, std
   Grid grid = field.grid();
   grid.width = columns;
   grid.height = rows;
-  return makeField(grid, heights, marks);
+  const Version piece = makeField(grid, heights, marks);
+  return field.lines() == nullptr ? piece : piece.withLines(linesOf(*field.lines(), column, row, grid));
 }
 
 }  // namespace fettle::engine

@@ -9,14 +9,14 @@
 namespace fettle::engine {
 
 Version::Version(const Version& other) noexcept
-    : grid_(other.grid_), memory_(other.memory_), root_(other.root_), sign_(other.sign_) {
+    : description_(other.description_), memory_(other.memory_), root_(other.root_), sign_(other.sign_) {
   if (root_ != nullptr) InnerPool::retain(root_);
 }
 
 Version& Version::operator=(Version other) noexcept {
   std::swap(root_, other.root_);
   std::swap(sign_, other.sign_);
-  grid_.swap(other.grid_);
+  description_.swap(other.description_);
   memory_.swap(other.memory_);
   return *this;
 }
@@ -28,9 +28,15 @@ Version Version::inverted() const noexcept {
 }
 
 Version Version::withGrid(Grid grid) const {
-  assert(grid.width == grid_->width && grid.height == grid_->height);
+  assert(grid.width == this->grid().width && grid.height == this->grid().height);
   Version copy = *this;
-  copy.grid_ = std::make_shared<const Grid>(std::move(grid));
+  copy.description_ = std::make_shared<const FieldDescription>(FieldDescription{std::move(grid), lines()});
+  return copy;
+}
+
+Version Version::withLines(EdgeLines lines) const {
+  Version copy = *this;
+  copy.description_ = std::make_shared<const FieldDescription>(FieldDescription{grid(), std::move(lines)});
   return copy;
 }
 

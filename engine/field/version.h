@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "engine/field/edge_line.h"
 #include "engine/field/grid.h"
 #include "engine/field/node_pool.h"
 #include "engine/field/reader.h"
@@ -12,7 +13,13 @@ namespace fettle::engine {
 
 class LiveField;
 
-/// An immutable state of a field: samples, marks, bounds, sign. Copying one is O(1) and allocates nothing;
+/// What versions share beyond samples: where the samples lie, and the edge lines between them.
+struct FieldDescription {
+  Grid grid;
+  EdgeLines lines;
+};
+
+/// An immutable state of a field: samples, marks, edge lines, bounds, sign. Copying one is O(1) and allocates nothing;
 /// versions share every tile in which they do not differ.
 ///
 /// Threading: a Version may be copied and read from any thread. The last copy frees the tiles that no other
@@ -23,7 +30,7 @@ class Version {
   Version() = default;
   Version(const Version& other) noexcept;
   Version(Version&& other) noexcept
-      : grid_(std::move(other.grid_)),
+      : description_(std::move(other.description_)),
         memory_(std::move(other.memory_)),
         root_(std::exchange(other.root_, nullptr)),
         sign_(other.sign_) {}
@@ -31,8 +38,8 @@ class Version {
   ~Version() { releaseNode(root_); }
 
   [[nodiscard]] bool empty() const noexcept { return root_ == nullptr; }
-  [[nodiscard]] const Grid& grid() const noexcept { return *grid_; }
-  [[nodiscard]] FieldReader reader() const noexcept { return {root_, grid_.get(), sign_}; }
+  [[nodiscard]] const Grid& grid() const noexcept { return description_->grid; }
+  [[nodiscard]] FieldReader reader() const noexcept { return {root_, &description_->grid, sign_}; }
   [[nodiscard]] const std::shared_ptr<FieldMemory>& memory() const noexcept { return memory_; }
 
   /// The same field upside down (z -> -z): a sign, no sample is touched; inverted().inverted() is the same.
@@ -41,20 +48,25 @@ class Version {
   /// The same samples with another position, spacing or units; width and height must agree.
   [[nodiscard]] Version withGrid(Grid grid) const;
 
-  /// Whether both are the same state (same tiles, same sign), not only equal in content. O(1).
+  /// The edge lines, or null.
+  [[nodiscard]] const EdgeLines& lines() const noexcept { return description_->lines; }
+  /// The same samples with other edge lines, or with none.
+  [[nodiscard]] Version withLines(EdgeLines lines) const;
+
+  /// Whether both are the same state (same tiles, same sign, same lines), not only equal in content. O(1).
   friend bool operator==(const Version& a, const Version& b) noexcept {
-    return a.root_ == b.root_ && a.sign_ == b.sign_;
+    return a.root_ == b.root_ && a.sign_ == b.sign_ && (a.empty() || a.lines() == b.lines());
   }
 
  private:
   friend class LiveField;
   friend class FieldBuilder;
   /// Takes over one reference to root.
-  Version(std::shared_ptr<const Grid> grid, std::shared_ptr<FieldMemory> memory, Node* root,
-          float sign) noexcept
-      : grid_(std::move(grid)), memory_(std::move(memory)), root_(root), sign_(sign) {}
+  Version(std::shared_ptr<const FieldDescription> description, std::shared_ptr<FieldMemory> memory,
+          Node* root, float sign) noexcept
+      : description_(std::move(description)), memory_(std::move(memory)), root_(root), sign_(sign) {}
 
-  std::shared_ptr<const Grid> grid_;
+  std::shared_ptr<const FieldDescription> description_;
   std::shared_ptr<FieldMemory> memory_;  // destroyed after root_ was released
   Node* root_ = nullptr;
   float sign_ = 1.0F;

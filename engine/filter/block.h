@@ -4,6 +4,7 @@
 
 #include "engine/base/job.h"
 #include "engine/filter/filter.h"
+#include "engine/filter/line_cuts.h"
 #include "engine/simd/cpu.h"
 
 namespace fettle::engine {
@@ -34,6 +35,10 @@ struct Block {
   int out_rows = 0;
   float* out = nullptr;           ///< out_rows x out_columns, row-major; unspecified where heights has a hole
   std::ptrdiff_t out_stride = 0;  ///< out_columns rounded up to 16 or more: these may be written
+  /// What the field's edge lines cut, or null for no lines; its places count from the field's first sample,
+  /// which is at (-left, -low) in heights.
+  const LineCuts* cuts = nullptr;
+  std::int32_t left = 0, low = 0;
   bool holes = false;             ///< whether heights holds a NaN; true is legal without
   float magnitude = 0.0F;         ///< no |height| is larger; may be more than the largest
 

@@ -67,8 +67,8 @@ void lower(int n, const Weights& most, const float* __restrict u, const float* _
     const float t = up * (y_next[c] - y[c]);
     const float d = 0.5F * (right * (y[c + 1] - y[c]) + up * (x_next[c] - x[c]));
     const float bend = std::sqrt((s * s + t * t) + 2.0F * (d * d));
-    wp[c] = right * (jump / (a + most.half_jump));
-    wq[c] = up * (jump / (b + most.half_jump));
+    wp[c] = wp[c] > kCut ? jump / (a + most.half_jump) : wp[c];
+    wq[c] = wq[c] > kCut ? jump / (b + most.half_jump) : wq[c];
     wv[c] = crease / (bend + most.half_crease);
   }
 }

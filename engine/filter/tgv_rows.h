@@ -35,8 +35,11 @@ struct Weights {
   float half_jump, half_crease;  ///< the jump and the crease that halve them
 };
 
+/// A wp or wq that lets two samples jump, while their slopes are held together.
+inline constexpr float kCut = 1e-18F;
+
 /// Lowers the weights of a row where the surface jumps or is creased; `next` is the row after it. Weights
-/// that are 0 stay 0.
+/// of kCut or less stay so.
 void reweight(CpuLevel level, const Row& row, const Row& next, int columns, const Weights& weights) noexcept;
 
 /// The sums of a window of (2 radius + 1)^2 heights around each sample that a plane through them is fitted

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -55,7 +56,10 @@ class Pass {
         spec_(spec),
         radius_(filter.squares.side > 0 ? filter.squares.halo : filterOf(spec.kind).reach(spec)),
         same_field_(&reader_.root() == &original_.root()),
-        level_(level) {}
+        level_(level) {
+    if (input.lines() != nullptr && !input.lines()->empty())
+      cuts_.emplace(*input.lines(), reader_.width(), reader_.height());
+  }
 
   // Filters one rectangle of tiles; appends the tiles that changed. False when cancelled or out of memory.
   bool run(TileRect rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
@@ -178,6 +182,9 @@ class Pass {
     scratch.out.resize(static_cast<std::size_t>(block.out_stride) * static_cast<std::size_t>(block.out_rows));
     reader_.readHeights(left, low, block.columns, block.rows, scratch.heights.data(), block.stride);
     block.heights = scratch.heights.data();
+    block.cuts = cuts_ ? &*cuts_ : nullptr;
+    block.left = left;
+    block.low = low;
     block.out = scratch.out.data();
     surveyTiles(left, low, block);
     if (radius_ == 0) {
@@ -251,6 +258,7 @@ class Pass {
   int radius_;
   bool same_field_;
   CpuLevel level_;
+  std::optional<LineCuts> cuts_;
   std::atomic<bool> out_of_memory_{false};
 };
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "engine/edges/edge_line.h"
+#include "engine/edges/locate.h"
 #include "engine/scanner/edge_distance.h"
 #include "haptic/operator/hand_lines.h"
 

@@ -7,7 +7,7 @@
 #include <tbb/global_control.h>
 
 #include "engine/base/stopwatch.h"
-#include "engine/edges/edge_line.h"
+#include "engine/edges/locate.h"
 #include "tests/engine/edges/edge_fields.h"
 #include "tests/support/no_data.h"
 

@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/edge_line.h"
 #include "engine/field/reader.h"
 
 namespace fettle::engine {
@@ -24,40 +25,6 @@ struct EdgeStroke {
   std::vector<glm::dvec2>
       points;           ///< [samples], in drawing order; any distance apart, also outside the field
   bool closed = false;  ///< the last point joins the first
-};
-
-/// Which of the changes at a line stands out more from its uncertainty: a guess. Right at 98 % of the located points
-/// of simulated parts.
-enum class LineKind : std::uint8_t {
-  kStep,    ///< the height jumps
-  kCrease,  ///< the slope changes
-};
-
-/// One point of a line. "Left" is left going along the points, with columns to the right and rows up; "across"
-/// is along the normal of the line, in samples.
-struct EdgePoint {
-  glm::dvec2 position{0.0};  ///< [samples], a multiple of 2^-20
-  /// Whether the field shows an edge here, see locateEdgeLines(). If not, the position is that of the hand, and
-  /// the remaining members are 0: the point is a plain mark.
-  bool located = false;
-  LineKind kind = LineKind::kStep;
-  double deviation = 0.0;  ///< standard deviation of the position across the line [samples]
-  /// Height of the left surface minus that of the right one, at the line, and its standard deviation
-  /// [height_unit].
-  double step = 0.0;
-  double step_deviation = 0.0;
-  /// Slope across the line, towards the left: left surface minus right surface, and its standard deviation
-  /// [height_unit per sample].
-  double slope_change = 0.0;
-  double slope_deviation = 0.0;
-};
-
-/// The line of one stroke.
-struct EdgeLine {
-  std::int64_t id = 0;
-  bool closed = false;
-  /// About one sample apart (0.6 to 1.4); empty for a stroke without points.
-  std::vector<EdgePoint> points;
 };
 
 struct LocateOptions {

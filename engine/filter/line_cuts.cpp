@@ -1,0 +1,85 @@
+#include "engine/filter/line_cuts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+
+namespace fettle::engine {
+
+namespace {
+
+// The places, counted in whole numbers of `across`, at which the segment from a to b passes; a whole number belongs to
+// what lies below it, so that of two segments that meet there one passes.
+template <class Visit>
+void forEachPassage(glm::dvec2 a, glm::dvec2 b, int across, std::int32_t end, Visit&& visit) {
+  const int along = 1 - across;
+  const double from = std::min(a[across], b[across]), to = std::max(a[across], b[across]);
+  const double first = std::max(std::floor(from) + 1.0, 0.0);
+  const double last = std::min(std::floor(to), end - 1.0);
+  for (double at = first; at <= last; at += 1.0) {
+    const double place = a[along] + (at - a[across]) / (b[across] - a[across]) * (b[along] - a[along]);
+    visit(static_cast<std::int32_t>(at), place);
+  }
+}
+
+struct Passage {
+  LineCut cut;
+  std::int64_t id = 0;  // of the line
+};
+
+void addPassages(const EdgeLine& line, std::int32_t columns, std::int32_t rows, std::vector<Passage>& out) {
+  const std::size_t n = line.points.size();
+  for (std::size_t i = 0; i + (line.closed ? 0 : 1) < n; ++i) {
+    const EdgePoint &a = line.points[i], &b = line.points[(i + 1) % n];
+    if (!a.located || !b.located) continue;
+    // Where two surfaces meet without a step, their heights are held together there.
+    if (a.kind == LineKind::kCrease || b.kind == LineKind::kCrease) continue;
+    const auto deviation = static_cast<float>(std::max(a.deviation, b.deviation));
+    forEachPassage(a.position, b.position, 1, rows, [&](std::int32_t row, double place) {
+      if (!(place >= 0.0 && place < columns - 1)) return;
+      const auto column = static_cast<std::int32_t>(place);
+      out.push_back(
+          {{row, column, LineCut::kRight, static_cast<float>(place - column), 0.0F, deviation}, line.id});
+    });
+    forEachPassage(a.position, b.position, 0, columns, [&](std::int32_t column, double place) {
+      if (!(place >= 0.0 && place < rows - 1)) return;
+      const auto row = static_cast<std::int32_t>(place);
+      out.push_back({{row, column, LineCut::kUp, 0.0F, static_cast<float>(place - row), deviation}, line.id});
+    });
+  }
+}
+
+}  // namespace
+
+LineCuts::LineCuts(std::span<const EdgeLine> lines, std::int32_t columns, std::int32_t rows) {
+  std::vector<Passage> passages;
+  for (const EdgeLine& line : lines) addPassages(line, columns, rows, passages);
+  std::ranges::sort(passages, {}, [](const Passage& p) { return std::tuple(p.cut.row, p.cut.column, p.id); });
+  for (std::size_t i = 0; i < passages.size();) {
+    const Passage& first = passages[i];
+    LineCut cut{first.cut.row, first.cut.column};
+    while (i < passages.size() && passages[i].cut.row == cut.row && passages[i].cut.column == cut.column) {
+      const std::int64_t id = passages[i].id;
+      std::uint8_t of_line = 0;
+      for (; i < passages.size() && passages[i].id == id && passages[i].cut.row == cut.row &&
+             passages[i].cut.column == cut.column;
+           ++i) {
+        const LineCut& passed = passages[i].cut;
+        of_line ^= passed.links;
+        (passed.links == LineCut::kRight ? cut.right_at : cut.up_at) =
+            passed.links == LineCut::kRight ? passed.right_at : passed.up_at;
+        cut.deviation = std::max(cut.deviation, passed.deviation);
+      }
+      cut.links |= of_line;
+    }
+    if (cut.links != 0) cuts_.push_back(cut);
+  }
+}
+
+std::span<const LineCut> LineCuts::row(std::int32_t row) const noexcept {
+  const auto [first, last] = std::ranges::equal_range(cuts_, row, {}, &LineCut::row);
+  return {first, last};
+}
+
+}  // namespace fettle::engine
