@@ -32,8 +32,10 @@ namespace fettle::engine {
 ///              lowered four times where the surface has them (references and steps in tgv.cpp). R =
 ///              range_sigma is the standard deviation of the noise. Keeps flats, slopes and curved forms,
 ///              steps and creases; samples that belong to no surface next to them (lone_samples.h) are moved
-///              to one. Worked out in squares of 256 samples from the field's first one, each with 48 samples
-///              around it: the squares are part of the definition.
+///              to one. The lines of steps among the field's edge lines cut what holds heights together
+///              (line_sides.h); the other filters do not know lines. Worked out in squares of 256 samples
+///              from the field's first one, each with 48 samples around it: the squares are part of the
+///              definition.
 /// Heights are taken with the version's sign, so filtering commutes with inverting.
 ///
 /// Accuracy, against the same formula without rounding:

@@ -202,6 +202,26 @@ TEST(Versions, UndoneTilesAreTheVerySameMemory) {
   EXPECT_TRUE(changedTiles(before, live.snapshot()).empty());
 }
 
+TEST(Versions, EdgeLinesGoWithTheStatesThatComeFromAFieldAndDifferentOnesAreAnotherState) {
+  const Version plain = toVersion(somePlain(80, 70, 5));
+  EXPECT_EQ(plain.lines(), nullptr);
+  const auto lines = std::make_shared<std::vector<EdgeLine>>(1);
+  const Version field = plain.withLines(lines);
+  EXPECT_EQ(field.lines(), lines);
+  EXPECT_EQ(plain.lines(), nullptr);
+  EXPECT_FALSE(field == plain);
+  EXPECT_EQ(contentHash(field), contentHash(plain));
+  EXPECT_TRUE(changedTiles(plain, field).empty());
+  EXPECT_EQ(field.inverted().lines(), lines);
+  EXPECT_EQ(field.withGrid(field.grid()).lines(), lines);
+  LiveField live(field, Growth::kAllowed);
+  ASSERT_TRUE(live.setHeight(3, 3, 1.0F));
+  EXPECT_EQ(live.snapshot().lines(), lines);
+  EXPECT_EQ(live.adopt(plain).lines(), lines);
+  EXPECT_EQ(live.snapshot().lines(), nullptr);
+  EXPECT_EQ(field.withLines(nullptr), plain);
+}
+
 TEST(Versions, DroppingVersionsGivesEveryTileBack) {
   std::shared_ptr<FieldMemory> memory;
   {

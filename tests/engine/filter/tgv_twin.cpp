@@ -7,6 +7,7 @@
 namespace fettle::engine::tests {
 namespace {
 
+constexpr double kCutLink = 1e-18;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double median(std::vector<double> values) {
@@ -108,6 +109,22 @@ Map solve(Map& f, const TgvTwin& twin) {
       wp(c, r) = here && !std::isnan(scan.get(c + 1, r)) ? 2.2 : 0.0;
       wq(c, r) = here && !std::isnan(scan.get(c, r + 1)) ? 2.2 : 0.0;
     }
+  std::vector<std::vector<int>> cut(h, std::vector<int>(w, 0));
+  for (int r = 0; r < h && twin.cuts != nullptr; ++r)
+    for (const LineCut& each : twin.cuts->row(r)) {
+      cut[r][each.column] = each.links;
+      if ((each.links & LineCut::kRight) != 0) wp(each.column, r) = kCutLink;
+      if ((each.links & LineCut::kUp) != 0) wq(each.column, r) = kCutLink;
+    }
+  // Whether a window has both ends of a cut link.
+  const auto isOverLine = [&](int c, int r, int radius) {
+    for (int b = std::max(r - radius, 0); b <= std::min(r + radius, h - 1); ++b)
+      for (int a = std::max(c - radius, 0); a <= std::min(c + radius, w - 1); ++a)
+        if ((a < c + radius && (cut[b][a] & LineCut::kRight) != 0) ||
+            (b < r + radius && (cut[b][a] & LineCut::kUp) != 0))
+          return true;
+    return false;
+  };
   std::vector<std::pair<int, int>> lone;
   for (int r = 0; r < h && twin.lone; ++r)
     for (int c = 0; c < w; ++c)
@@ -128,6 +145,7 @@ Map solve(Map& f, const TgvTwin& twin) {
     Map fitted_x(w, h, kNone), fitted_y(w, h, kNone);
     for (int r = 0; r < h; ++r)
       for (int c = 0; c < w; ++c) {
+        if (isOverLine(c, r, radius)) continue;
         double m = 0, mm = 0, mx = 0, my = 0;
         for (int b = -radius; b <= radius; ++b)
           for (int a = -radius; a <= radius; ++a) {
@@ -147,7 +165,7 @@ Map solve(Map& f, const TgvTwin& twin) {
           for (int b = r - radius; b <= r + radius; ++b)
             for (int a = c - radius; a <= c + radius; ++a)
               if (!std::isnan(fitted_x.get(a, b))) mx += fitted_x(a, b), my += fitted_y(a, b), ++count;
-          if (2 * count < n) continue;
+          if (isOverLine(c, r, radius) ? count < 2 * radius + 1 : 2 * count < n) continue;
         }
         x(c, r) = mx / count;
         y(c, r) = my / count;
@@ -197,8 +215,10 @@ Map solve(Map& f, const TgvTwin& twin) {
       for (int c = 0; c < w; ++c) {
         double e[3];
         bent(x, y, c, r, e);
-        if (wp(c, r) > 0) wp(c, r) = 2.2 * 0.5 / (std::fabs(u.get(c + 1, r) - u(c, r) - x(c, r)) + 0.5);
-        if (wq(c, r) > 0) wq(c, r) = 2.2 * 0.5 / (std::fabs(u.get(c, r + 1) - u(c, r) - y(c, r)) + 0.5);
+        if (wp(c, r) > kCutLink)
+          wp(c, r) = 2.2 * 0.5 / (std::fabs(u.get(c + 1, r) - u(c, r) - x(c, r)) + 0.5);
+        if (wq(c, r) > kCutLink)
+          wq(c, r) = 2.2 * 0.5 / (std::fabs(u.get(c, r + 1) - u(c, r) - y(c, r)) + 0.5);
         wv(c, r) = 4.4 * 0.1 / (std::sqrt(e[0] * e[0] + e[1] * e[1] + 2 * e[2] * e[2]) + 0.1);
       }
     steps(twin.round_steps);

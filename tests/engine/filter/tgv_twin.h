@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "engine/filter/line_cuts.h"
 #include "tests/engine/filter/reference.h"
 
 namespace fettle::engine::tests {
@@ -12,6 +13,8 @@ struct TgvTwin {
   int first_steps = 60, rounds = 4, round_steps = 40;
   int side = 256, halo = 48;  ///< 0: the whole field in one
   bool lone = true;           ///< lone samples are set aside
+  /// Links that lines cut, of a field of one square; no sample changes its side.
+  const LineCuts* cuts = nullptr;
 };
 
 /// What kGeneralisedVariation makes of a field, in double, sample by sample as its formulas read.
