@@ -92,11 +92,11 @@ void printDemo(const Report& report) {
     return value.is_null() || std::isnan(value.get<double>()) ? std::string("-")
                                                               : fmt::format("{:.4f}", value.get<double>());
   };
-  fmt::print("{:<24}{:>12}{:>12}{:>12}\n", "", "RMSE flat", "RMSE edge", "edge width");
-  fmt::print("{:<24}{:>12}{:>12}{:>12}\n", "", "mm", "mm", "mm");
+  fmt::print("{:<24}{:>12}{:>12}{:>12}{:>12}\n", "", "RMSE", "RMSE flat", "RMSE edge", "edge width");
+  fmt::print("{:<24}{:>12}{:>12}{:>12}{:>12}\n", "", "mm", "mm", "mm", "mm");
   for (const Report& row : report["table"])
-    fmt::print("{:<24}{:>12}{:>12}{:>12}\n", row["title"].get<std::string>(), number(row["rmse_flat"]),
-               number(row["rmse_edge"]), number(row["edge_width"]));
+    fmt::print("{:<24}{:>12}{:>12}{:>12}{:>12}\n", row["title"].get<std::string>(), number(row["rmse"]),
+               number(row["rmse_flat"]), number(row["rmse_edge"]), number(row["edge_width"]));
   for (const auto& [filter, gain] : report["edge_gain"].items())
     fmt::print("{}: near edges HEG is {:.1f} times nearer the truth than the filter alone\n", filter,
                gain.get<double>());

@@ -17,6 +17,7 @@
 #include "engine/edges/locate.h"
 #include "engine/filter/noise_range.h"
 #include "engine/scanner/scanner.h"
+#include "engine/scanner/true_lines.h"
 #include "haptic/operator/hand_lines.h"
 
 namespace fettle::bench {
@@ -70,23 +71,6 @@ AccuracyRow rowOfRuns(const char* subject, const char* method, const std::vector
   }
   row.more = {flats, near, worst_near, ratio};
   return row;
-}
-
-std::vector<engine::EdgeLine> trueLines(const engine::SimulatedScan& scan) {
-  const double spacing = scan.scan.grid().spacingXMm();
-  std::vector<engine::EdgeLine> lines;
-  for (const engine::Edge& edge : scan.edge_lines) {
-    engine::EdgeLine line{static_cast<std::int64_t>(lines.size()), edge.closed, {}};
-    for (const glm::dvec2& p : edge.points_mm) {
-      engine::EdgePoint point;
-      point.position = p / spacing;
-      point.located = true;
-      point.kind = edge.kind == engine::EdgeKind::kStep ? engine::LineKind::kStep : engine::LineKind::kCrease;
-      line.points.push_back(point);
-    }
-    lines.push_back(std::move(line));
-  }
-  return lines;
 }
 
 engine::Result<Errors> errorsWith(const engine::SimulatedScan& scan, std::vector<engine::EdgeLine> lines,
@@ -165,7 +149,7 @@ engine::Status runHands(const HandSubject& subject, std::int32_t side, std::uint
   if (!ready) return tl::unexpected(ready.error());
   const auto alone = errorsWith(*scan, {}, *ready);
   if (!alone) return tl::unexpected(alone.error());
-  const auto ceiling = errorsWith(*scan, trueLines(*scan), *ready);
+  const auto ceiling = errorsWith(*scan, engine::trueLines(*scan), *ready);
   if (!ceiling) return tl::unexpected(ceiling.error());
   for (int hand = 1; hand <= hands; ++hand) {
     if (job.cancelled()) return engine::cancelled();

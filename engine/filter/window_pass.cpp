@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <iterator>
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -58,7 +57,7 @@ class Pass {
         same_field_(&reader_.root() == &original_.root()),
         level_(level) {
     if (input.lines() != nullptr && !input.lines()->empty())
-      cuts_.emplace(*input.lines(), reader_.width(), reader_.height());
+      cuts_ = std::make_unique<const LineCuts>(*input.lines(), reader_.width(), reader_.height());
   }
 
   // Filters one rectangle of tiles; appends the tiles that changed. False when cancelled or out of memory.
@@ -182,7 +181,7 @@ class Pass {
     scratch.out.resize(static_cast<std::size_t>(block.out_stride) * static_cast<std::size_t>(block.out_rows));
     reader_.readHeights(left, low, block.columns, block.rows, scratch.heights.data(), block.stride);
     block.heights = scratch.heights.data();
-    block.cuts = cuts_ ? &*cuts_ : nullptr;
+    block.cuts = cuts_.get();
     block.left = left;
     block.low = low;
     block.out = scratch.out.data();
@@ -258,7 +257,7 @@ class Pass {
   int radius_;
   bool same_field_;
   CpuLevel level_;
-  std::optional<LineCuts> cuts_;
+  std::unique_ptr<const LineCuts> cuts_;  // null without lines
   std::atomic<bool> out_of_memory_{false};
 };
 

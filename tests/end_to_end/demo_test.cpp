@@ -13,7 +13,7 @@ namespace {
 TEST(Demo, HegBeatsTheFilterAloneAtEdgesAndMatchesItOnFlats) {
   const TempFolder folder;
   const auto report = fettleJson({"demo", folder.file("demo")});
-  ASSERT_EQ(report["table"].size(), 8U);
+  ASSERT_EQ(report["table"].size(), 12U);
   const auto row = [&](const std::string& name) {
     for (const auto& r : report["table"])
       if (r["name"] == name) return r;
@@ -32,6 +32,11 @@ TEST(Demo, HegBeatsTheFilterAloneAtEdgesAndMatchesItOnFlats) {
     // samples are marked and keep their noise.
     EXPECT_LT(heg["rmse_flat"], 1.25 * alone["rmse_flat"].get<double>()) << filter;
   }
+  // Lines of the same strokes, where the marks of the same strokes keep their noise.
+  EXPECT_LT(row("tgv")["rmse_edge"], 0.6 * row("tv")["rmse_edge"].get<double>());
+  EXPECT_LE(row("tgv-hand")["rmse"], 1.02 * row("tgv")["rmse"].get<double>());
+  EXPECT_LE(row("tgv-true")["rmse_edge"], 1.02 * row("tgv")["rmse_edge"].get<double>());
+  EXPECT_LT(row("tgv-hand")["rmse_edge"], 0.4 * row("heg-median")["rmse_edge"].get<double>());
   for (const auto& picture : report["pictures"])
     EXPECT_GT(std::filesystem::file_size(folder.path() / "demo" / picture.get<std::string>()), 10000U)
         << picture;

@@ -40,7 +40,9 @@ struct DemoRun {
   engine::SimulatedScan scan;
   engine::Version touched;  ///< after the operator's strokes: smoothed along edges, edges marked
   haptic::ReplayReport strokes;
-  std::vector<DemoResult> results;  ///< noisy, touched, then filter alone and HEG for each filter
+  /// noisy, touched, filter alone and HEG for each plain filter; then the variations alone, and the generalised one
+  /// with the lines located from the marking strokes and with the true ones.
+  std::vector<DemoResult> results;
 };
 
 /// The demonstration's filter of one kind, of engine::plainFilters().

@@ -70,6 +70,21 @@ std::vector<Page> pages(const DemoRun& run, const DemoOptions& options) {
     error.input.view.elevation_deg = 90.0;
     error.input.range = render::ValueRange{-0.2, 0.2};
   }
+  const DemoResult& kept = result(run, "heg-median");
+  const DemoResult& clean = result(run, "tgv-hand");
+  Page& near = closeUp("6_marks_and_lines.png");
+  near.shown.versions = {kept.field, clean.field};
+  near.input.titles = {kept.title + ": marked samples keep their noise",
+                       clean.title + ": clean up to the edge"};
+  near.input.view.azimuth_deg = 335.0;
+  near.input.view.elevation_deg = 50.0;
+  Page& error = closeUp("7_marks_and_lines_error.png");
+  error.shown.versions = {kept.field, clean.field};
+  error.shown.original = run.scan.truth;
+  error.input.titles = {kept.title + ": error against the truth", clean.title + ": error against the truth"};
+  error.input.view.azimuth_deg = 0.0;
+  error.input.view.elevation_deg = 90.0;
+  error.input.range = render::ValueRange{-0.05, 0.05};
   return all;
 }
 

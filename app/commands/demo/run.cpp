@@ -1,12 +1,17 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "app/commands/demo/demo.h"
 #include "app/commands/scan_files.h"
+#include "app/work/edge_strokes.h"
+#include "engine/edges/locate.h"
+#include "engine/filter/noise_range.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/raster/marks.h"
+#include "engine/scanner/true_lines.h"
 #include "haptic/base/strokes.h"
 #include "haptic/operator/operator_strokes.h"
 #include "haptic/scene/scene.h"
@@ -41,6 +46,30 @@ haptic::OperatorSpec operatorSpec(const DemoOptions& options, const engine::Grid
   haptic::OperatorSpec spec;
   spec.seed = options.seed;
   return haptic::offTheEdges(spec, grid);
+}
+
+// A filter that keeps edges by itself, with the range of the noise that it measures.
+engine::Result<engine::FilterSpec> variation(engine::FilterKind kind, const engine::Version& scan,
+                                             engine::JobControl& job) {
+  constexpr int kBestOfTv = 31;  // smaller ones leave more noise, larger ones nothing less
+  engine::FilterSpec spec;
+  spec.kind = kind;
+  if (engine::filterOf(kind).window.exists()) spec.window = kBestOfTv;
+  return engine::withMeasuredRange(spec, scan, job);
+}
+
+// What the marking strokes say of the edges, besides which samples to keep.
+engine::Result<engine::EdgeLines> linesOf(const std::vector<haptic::StrokeSample>& strokes,
+                                          const engine::Version& scan, double noise,
+                                          const haptic::OperatorSpec& person, engine::JobControl& job) {
+  const double off_mm = std::hypot(person.tremor_mm, person.wander_mm);
+  engine::LocateOptions options;
+  options.hand_deviation = std::clamp(off_mm / scan.grid().spacingXMm(), engine::LocateOptions::kLeastHand,
+                                      engine::LocateOptions::kMostHand);
+  auto lines =
+      engine::locateEdgeLines(scan.reader(), noise, edgeStrokesOf(strokes, scan.grid()), options, job);
+  if (!lines) return tl::unexpected(lines.error());
+  return std::make_shared<const std::vector<engine::EdgeLine>>(*std::move(lines));
 }
 
 }  // namespace
@@ -107,6 +136,30 @@ engine::Result<DemoRun> runDemo(const DemoOptions& options, engine::JobControl& 
         return tl::unexpected(s.error());
       if (auto s = judge(method.name, method.title, filtered->field); !s) return tl::unexpected(s.error());
     }
+  }
+  const auto tv = variation(engine::FilterKind::kTotalVariation, run.scan.scan, job);
+  if (!tv) return tl::unexpected(tv.error());
+  const auto tgv = variation(engine::FilterKind::kGeneralisedVariation, run.scan.scan, job);
+  if (!tgv) return tl::unexpected(tgv.error());
+  const auto lines =
+      linesOf(strokes, run.scan.scan, tgv->range_sigma, operatorSpec(options, run.scan.scan.grid()), job);
+  if (!lines) return tl::unexpected(lines.error());
+  const auto true_lines = std::make_shared<const std::vector<engine::EdgeLine>>(engine::trueLines(run.scan));
+  const struct {
+    std::string name, title;
+    const engine::FilterSpec& spec;
+    engine::EdgeLines lines;
+  } variations[] = {{"tv", "tv filter alone", *tv, nullptr},
+                    {"tgv", "tgv filter alone", *tgv, nullptr},
+                    {"tgv-hand", "tgv, lines of the hand", *tgv, *lines},
+                    {"tgv-true", "tgv, true lines", *tgv, true_lines}};
+  for (const auto& each : variations) {
+    const engine::Version input = run.scan.scan.withLines(each.lines);
+    const auto filtered = engine::applyFilter(input, run.scan.scan, each.spec, job);
+    if (!filtered) return tl::unexpected(filtered.error());
+    if (auto s = saveField(filtered->field, file(each.name + ".tif"), job); !s)
+      return tl::unexpected(s.error());
+    if (auto s = judge(each.name, each.title, filtered->field); !s) return tl::unexpected(s.error());
   }
   return run;
 }

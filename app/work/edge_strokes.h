@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/edges/locate.h"
+#include "engine/field/grid.h"
+#include "haptic/base/strokes.h"
+
+namespace fettle::app {
+
+/// The strokes of the mark tool in a recorded session, as strokes along edges: a row for each tick, from where the
+/// tool is first set down until another tool is used or the tip is lost (not finite). A stroke that ends within 3
+/// samples of where it began, and is at least 30 long, is closed. Numbered from 0 in their order. Thread: any.
+[[nodiscard]] std::vector<engine::EdgeStroke> edgeStrokesOf(std::span<const haptic::StrokeSample> session,
+                                                            const engine::Grid& grid);
+
+}  // namespace fettle::app
