@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "engine/base/job.h"
-#include "engine/field/edge_line.h"
 #include "engine/edges/offsets.h"
 #include "engine/edges/sides.h"
 #include "engine/edges/surroundings.h"
+#include "engine/field/edge_line.h"
 
 namespace fettle::engine {
 

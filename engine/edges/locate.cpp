@@ -2,8 +2,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "engine/edges/locate.h"
 #include "engine/edges/line_round.h"
+#include "engine/edges/locate.h"
 #include "engine/edges/separate.h"
 
 namespace fettle::engine {

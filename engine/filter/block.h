@@ -39,8 +39,8 @@ struct Block {
   /// which is at (-left, -low) in heights.
   const LineCuts* cuts = nullptr;
   std::int32_t left = 0, low = 0;
-  bool holes = false;             ///< whether heights holds a NaN; true is legal without
-  float magnitude = 0.0F;         ///< no |height| is larger; may be more than the largest
+  bool holes = false;      ///< whether heights holds a NaN; true is legal without
+  float magnitude = 0.0F;  ///< no |height| is larger; may be more than the largest
 
   [[nodiscard]] const float* row(int r) const noexcept { return heights + r * stride; }
 };
