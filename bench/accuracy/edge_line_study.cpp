@@ -73,6 +73,7 @@ engine::Result<LineRun> runLines(const LineSubject& subject, std::int32_t side, 
   person.tremor_mm *= subject.hand * kUsualSide / side;
   const std::vector<haptic::HandLine> hands = haptic::handLines(scan->edge_lines, grid, person);
   std::vector<engine::EdgeStroke> strokes;
+  strokes.reserve(hands.size());
   for (const haptic::HandLine& hand : hands)
     strokes.push_back({static_cast<std::int64_t>(strokes.size()), hand.points, hand.closed});
 
