@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -46,6 +47,13 @@ struct EdgeLine {
   /// At most kMostApart from one to the next [samples]; empty for a stroke without points.
   std::vector<EdgePoint> points;
 };
+
+/// Points of all lines.
+[[nodiscard]] inline std::int64_t countPoints(std::span<const EdgeLine> lines) noexcept {
+  std::int64_t points = 0;
+  for (const EdgeLine& line : lines) points += static_cast<std::int64_t>(line.points.size());
+  return points;
+}
 
 /// The edge lines of a field, immutable and shared by the versions that have the same ones; null for none.
 using EdgeLines = std::shared_ptr<const std::vector<EdgeLine>>;

@@ -8,6 +8,7 @@
 #include <cpl_conv.h>
 #include <cpl_error.h>
 #include <gdal_frmts.h>
+#include <ogrsf_frmts.h>
 
 #include "engine/io/files/atomic_file.h"
 
@@ -25,6 +26,10 @@ void setUp() {
   GDALSetCacheMax64(GIntBig{64} << 20);
   GDALRegister_GTiff();
   GDALRegister_COG();  // only for writing: importers name their driver
+  RegisterOGRGeoJSON();
+  RegisterOGRGeoPackage();
+  RegisterOGRDXF();
+  CPLSetConfigOption("DXF_INLINE_BLOCKS", "NO");  // blocks of blocks would grow without limit
   // Threads of GDAL's own have no session on their stack; their errors are reported as a failed call.
   CPLSetErrorHandler(CPLQuietErrorHandler);
 }
