@@ -19,6 +19,7 @@
 #include "engine/base/stopwatch.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
+#include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
 #include "engine/suggest/filter_suggestion.h"
 
@@ -35,6 +36,7 @@ struct FilterArguments {
   int passes = 1;
   std::string keep;
   std::string only;
+  std::string lines;
   std::string max_change;
   std::string original;
   int threads = 0;
@@ -48,6 +50,10 @@ struct FilterArguments {
 engine::Result<engine::FilterSpec> specOf(const FilterArguments& options) {
   engine::FilterSpec spec;
   const engine::Filter& filter = *engine::filterNamed(options.filter);
+  if (!options.lines.empty() && !filter.knows_lines)
+    return engine::inputError(
+        fmt::format("{} knows no edge lines", filter.word), "--lines",
+        fmt::format("take --filter {}", engine::filterWords(engine::knowsLines, " or ")));
   spec.kind = filter.kind;
   spec.window = options.window;
   spec.sigma = options.sigma;
@@ -72,6 +78,11 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
     auto marked = engine::importMarks(field, marks);
     if (!marked) return tl::unexpected(marked.error());
     field = *std::move(marked);
+  }
+  if (!options.lines.empty()) {
+    auto lines = engine::importLines(options.lines, field);
+    if (!lines) return tl::unexpected(lines.error());
+    field = field.withLines(std::make_shared<const std::vector<engine::EdgeLine>>(*std::move(lines)));
   }
   if (!options.max_change.empty()) {
     const auto limit = parseHeight(options.max_change, field.grid(), "--max-change");
@@ -98,18 +109,24 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
     return tl::unexpected(status.error());
 
   const double samples = static_cast<double>(field.grid().samples()) * spec.passes;
-  return Report{{"filter", options.filter},
-                {"window", spec.window},
-                {"sigma", spec.sigma},
-                {"range_sigma", engine::hasRange(spec.kind) ? Report(spec.range_sigma) : Report()},
-                {"passes", spec.passes},
-                {"unit", field.grid().height_unit.name},
-                {"changed", filtered->report.changed},
-                {"max_change", filtered->report.max_change},
-                {"rms_change", filtered->report.rms_change},
-                {"seconds", seconds},
-                {"samples_per_second", samples / seconds},
-                {"hash", fmt::format("{:016x}", engine::contentHash(filtered->field))}};
+  const engine::Filter& filter = engine::filterOf(spec.kind);
+  Report report{{"filter", options.filter}};
+  if (filter.window.exists()) report["window"] = spec.window;
+  if (filter.sigma.exists()) report["sigma"] = spec.sigma;
+  if (filter.range_sigma.exists()) report["range_sigma"] = spec.range_sigma;
+  if (const engine::EdgeLines& lines = field.lines(); !options.lines.empty()) {
+    report["lines"] = lines->size();
+    report["line_points"] = engine::countPoints(*lines);
+  }
+  report.update({{"passes", spec.passes},
+                 {"unit", field.grid().height_unit.name},
+                 {"changed", filtered->report.changed},
+                 {"max_change", filtered->report.max_change},
+                 {"rms_change", filtered->report.rms_change},
+                 {"seconds", seconds},
+                 {"samples_per_second", samples / seconds},
+                 {"hash", fmt::format("{:016x}", engine::contentHash(filtered->field))}});
+  return report;
 }
 
 // The file and its options, quoted for a shell.
@@ -235,6 +252,7 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   if (!options.filter.empty()) return refused("--filter", "the filter is what is suggested");
   if (!options.only.empty()) return refused("--only", "give --keep, or nothing");
   if (!options.original.empty()) return refused("--original", "its filters have no limit of change");
+  if (!options.lines.empty()) return refused("--lines", "none of its filters knows edge lines");
   if (options.tolerance.empty())
     return engine::inputError("no tolerance is given", "--tolerance",
                               "give the allowed error, as 0.01 in the scan's unit or 10um");
@@ -294,7 +312,8 @@ engine::Result<Report> filter(const FilterArguments& options, engine::JobControl
                               options.tolerance.empty() ? "--budget" : "--tolerance", "add --suggest");
   const auto spec = specOf(options);
   if (!spec) return tl::unexpected(spec.error());
-  const auto tasks = batchTasks(options.files, {options.keep, options.only, options.original}, job);
+  const auto tasks =
+      batchTasks(options.files, {options.keep, options.only, options.lines, options.original}, job);
   if (!tasks) return tl::unexpected(tasks.error());
   for (const BatchTask& task : *tasks)
     if (auto status = checkOriginal(options.original, !options.max_change.empty(), task.out); !status)
@@ -353,6 +372,12 @@ void addFilter(Command root, Chosen& chosen) {
   command.option("--only", options->only, "Picture of marks: only these samples are filtered")
       .check(fileName())
       .excludes(keep);
+  command
+      .option("--lines", options->lines,
+              fmt::format(
+                  "Edge lines, .csv, .geojson, .gpkg or .dxf: {} keeps the two sides of a step apart there",
+                  engine::filterWords(engine::knowsLines)))
+      .check(fileName());
   command.option("--max-change", options->max_change,
                  "Largest change of a sample from the original: that of a session, else "
                  "--original, else IN; in the scan's height unit, or as 20um, 0.5mm");

@@ -60,7 +60,8 @@ constexpr std::array kFilters{
            .pass = windowPass<kBoxWindows>,
            .reach = halfAWindow,
            .grid = 1,
-           .trials = kBoxTrials},
+           .trials = kBoxTrials,
+           .knows_lines = false},
     Filter{.kind = FilterKind::kGaussian,
            .word = "gaussian",
            .title = "Gaussian",
@@ -72,7 +73,8 @@ constexpr std::array kFilters{
            .pass = windowPass<kGaussianWindows>,
            .reach = halfAWindow,
            .grid = 1,
-           .trials = kGaussianTrials},
+           .trials = kGaussianTrials,
+           .knows_lines = false},
     Filter{.kind = FilterKind::kMedian,
            .word = "median",
            .title = "Median",
@@ -84,7 +86,8 @@ constexpr std::array kFilters{
            .pass = windowPass<kMedianWindows>,
            .reach = halfAWindow,
            .grid = 1,
-           .trials = kMedianTrials},
+           .trials = kMedianTrials,
+           .knows_lines = false},
     Filter{.kind = FilterKind::kBilateral,
            .word = "bilateral",
            .title = "Bilateral",
@@ -96,7 +99,8 @@ constexpr std::array kFilters{
            .pass = windowPass<kBilateralWindows>,
            .reach = halfAWindow,
            .grid = 1,
-           .trials = kBilateralTrials},
+           .trials = kBilateralTrials,
+           .knows_lines = false},
     Filter{.kind = FilterKind::kTotalVariation,
            .word = "tv",
            .title = "Total variation",
@@ -108,7 +112,8 @@ constexpr std::array kFilters{
            .pass = windowPass<kTotalVariationWindows>,
            .reach = halfAWindow,
            .grid = 1,
-           .trials = kTotalVariationTrials},
+           .trials = kTotalVariationTrials,
+           .knows_lines = false},
     Filter{.kind = FilterKind::kGeneralisedVariation,
            .word = "tgv",
            .title = "Generalised variation",
@@ -121,7 +126,8 @@ constexpr std::array kFilters{
            .reach = [](const FilterSpec&) { return kTgvSide - 1 + kTgvHalo; },
            .grid = kTgvSide,
            // Synthetic samples are smoothed by filters that leave twice as much, and would judge it by that.
-           .trials = {}},
+           .trials = {},
+           .knows_lines = true},
 };
 
 constexpr bool inTheOrderOfTheEnum() {
@@ -161,6 +167,10 @@ std::int32_t reachOf(const FilterSpec& spec) noexcept {
 
 bool keepsEdges(const Filter& filter) noexcept {
   return filter.keeps_edges;
+}
+
+bool knowsLines(const Filter& filter) noexcept {
+  return filter.knows_lines;
 }
 
 std::vector<FilterKind> plainFilters() {

@@ -60,6 +60,7 @@ struct Filter {
   /// of a field has the field's results where it begins at a multiple of it [samples].
   std::int32_t grid;
   std::span<const FilterTrial> trials;
+  bool knows_lines;  ///< the edge lines of its input (Version::lines) have an influence
 };
 
 /// Every filter, in the order of FilterKind.
@@ -80,6 +81,9 @@ struct Filter {
 
 /// Filter::keeps_edges, for filterWords.
 [[nodiscard]] bool keepsEdges(const Filter& filter) noexcept;
+
+/// Filter::knows_lines, for filterWords.
+[[nodiscard]] bool knowsLines(const Filter& filter) noexcept;
 
 /// Those that do not keep edges.
 [[nodiscard]] std::vector<FilterKind> plainFilters();
