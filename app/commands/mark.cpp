@@ -1,12 +1,15 @@
 #include <chrono>
+#include <cmath>
 #include <memory>
 
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/stroke_lines.h"
 #include "app/work/streams.h"
 #include "engine/base/stopwatch.h"
+#include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
 #include "engine/marks/edge_suggestion.h"
 
@@ -19,17 +22,56 @@ struct MarkArguments {
   std::string out;
   std::string add;
   bool edges = false;
+  std::string strokes;
+  std::string lines_out;
   double scale = engine::EdgeMap::kUsualSigma;
   engine::EdgeChoice choice;
   bool invert = false;
   ScanOptions reading;
 };
 
+void reportLines(const std::vector<engine::EdgeLine>& lines, Report& report) {
+  double squares = 0.0;
+  std::int64_t located = 0;
+  for (const engine::EdgeLine& line : lines)
+    for (const engine::EdgePoint& p : line.points)
+      if (p.located) {
+        ++located;
+        squares += p.deviation * p.deviation;
+      }
+  const auto points = static_cast<double>(engine::countPoints(lines));
+  const auto found = static_cast<double>(located);
+  report["lines"] = lines.size();
+  report["line_points"] = engine::countPoints(lines);
+  report["located"] = found / points;
+  report["deviation"] = located > 0 ? Report(std::sqrt(squares / found)) : Report();
+}
+
+// Locates the edges along the strokes, writes their lines if asked and marks them.
+engine::Result<engine::Version> markStrokes(const engine::Version& field, const MarkArguments& options,
+                                            Report& report, engine::JobControl& job) {
+  const auto strokes = markedStrokes(options.strokes, field.grid());
+  if (!strokes) return tl::unexpected(strokes.error());
+  const auto lines = locateLines(field, *strokes, job);
+  if (!lines) return tl::unexpected(lines.error());
+  auto marked = markLines(field, *lines, options.choice.thickness, job);
+  if (!marked) return marked;
+  if (!options.lines_out.empty())
+    if (auto status = engine::exportLines(options.lines_out, *lines, field.grid()); !status)
+      return tl::unexpected(status.error());
+  report["thickness"] = options.choice.thickness;
+  reportLines(*lines, report);
+  return marked;
+}
+
 engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& job) {
-  if (!options.edges && !options.invert)
-    return engine::inputError("it is not stated what to mark", "mark", "give --edges or --invert");
-  if (auto status = checkOutputs({{options.out, OutputKind::kMarks, ".png"}}, {options.in, options.add},
-                                 Replacing::kNoWork, job);
+  if (!options.edges && !options.invert && options.strokes.empty())
+    return engine::inputError("it is not stated what to mark", "mark", "give --edges, --strokes or --invert");
+  if (!options.lines_out.empty() && options.strokes.empty())
+    return engine::inputError("lines are located from strokes", "--lines-out", "give --strokes");
+  if (auto status =
+          checkOutputs({{options.out, OutputKind::kMarks, ".png"}, {options.lines_out, OutputKind::kLines}},
+                       {options.in, options.add, options.strokes}, Replacing::kNoWork, job);
       !status)
     return tl::unexpected(status.error());
   auto imported = loadScan(options.in, options.reading, job);
@@ -56,6 +98,11 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     report["step_noise"] = map->step_noise;
     report["crease_noise"] = map->crease_noise;
   }
+  if (!options.strokes.empty()) {
+    auto marked = markStrokes(field, options, report, job);
+    if (!marked) return tl::unexpected(marked.error());
+    field = *std::move(marked);
+  }
   if (options.invert) {
     auto inverted = engine::invertMarks(field, job);
     if (!inverted) return tl::unexpected(inverted.error());
@@ -80,7 +127,17 @@ void addMark(Command root, Chosen& chosen) {
   command
       .option("MARKS", options->out, "Picture of marks to write: .png, .tif, - for a PNG on standard output")
       .required();
-  command.flag("--edges", options->edges, "Mark the sharp edges of the part, as the window suggests them");
+  const Option edges = command.flag("--edges", options->edges,
+                                    "Mark the sharp edges of the part, as the window suggests them");
+  command
+      .option("--strokes", options->strokes,
+              "Strokes file: mark the edges that were drawn with the tool mark, where the scan shows them")
+      .check(fileName())
+      .excludes(edges);
+  command
+      .option("--lines-out", options->lines_out,
+              "Write the edge lines of --strokes: .csv (every value), .geojson, .gpkg, .dxf")
+      .check(fileName());
   command
       .option("--scale", options->scale,
               "Edges: scale of the search in samples, 0.7 to 8; larger finds fainter ones")
@@ -89,7 +146,9 @@ void addMark(Command root, Chosen& chosen) {
       .option("--sensitivity", options->choice.sensitivity,
               "Edges: 0 takes only the strongest, 1 all above the noise")
       .showDefault();
-  command.option("--thickness", options->choice.thickness, "Edges: marked to this distance, in samples")
+  command
+      .option("--thickness", options->choice.thickness,
+              "Edges and strokes: marked to this distance, in samples")
       .showDefault();
   command.option("--add", options->add, "Picture of marks to begin with").check(fileName());
   command.flag("--invert", options->invert, "Afterwards, invert the marks");

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <map>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "app/work/streams.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/input_file.h"
+#include "engine/io/lines/lines.h"
 
 namespace fettle::app {
 
@@ -43,6 +45,8 @@ bool isText(const std::string& extension) {
 std::vector<std::string> extensionsFor(OutputKind kind) {
   if (kind == OutputKind::kMarks) return {".png", ".tif", ".tiff"};
   if (kind == OutputKind::kPicture) return {".png"};
+  if (kind == OutputKind::kLines)
+    return {std::begin(engine::kLineExtensions), std::end(engine::kLineExtensions)};
   return kind == OutputKind::kField ? extensionsOf(&engine::FormatInfo::writes) : std::vector<std::string>();
 }
 

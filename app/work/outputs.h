@@ -17,6 +17,7 @@ enum class OutputKind {
   kField,    ///< extension of a format that can be written
   kMarks,    ///< .png, .tif, .tiff
   kPicture,  ///< .png
+  kLines,    ///< engine::kLineExtensions
   kText,     ///< any
 };
 struct Output {

@@ -1,0 +1,106 @@
+// Edge lines from strokes to a filter: fettle mark --strokes --lines-out, fettle filter --lines.
+
+#include <cmath>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "engine/scanner/scanner.h"
+#include "tests/end_to_end/program.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+class Lines : public ::testing::Test {
+ protected:
+  static constexpr int kSide = 512;
+
+  void SetUp() override {
+    ASSERT_EQ(fettle({"synth", scan, "--part", "steps", "--noise", "3", "--size", "512x512", "--truth", truth,
+                      "--edges", edges})
+                  .status,
+              0);
+  }
+  // A hand about a sample off, that lifts between the edges.
+  void drawTrueEdges() const {
+    engine::ScannerSpec spec;
+    spec.part = "steps";
+    spec.noise = 3.0;
+    spec.width = spec.height = kSide;
+    engine::JobControl job;
+    const auto simulated = engine::simulateScan(spec, job);
+    ASSERT_TRUE(simulated) << simulated.error().line();
+    const double sample = simulated->scan.grid().spacingXMm();
+    std::ofstream rows(strokes);
+    rows << "t,x,y,z,tool\n";
+    int tick = 0;
+    for (const engine::Edge& edge : simulated->edge_lines) {
+      for (const glm::dvec2& p : edge.points_mm) {
+        const double along = 0.05 * ++tick;
+        rows << 0.001 * tick << ',' << p.x + sample * std::sin(along) << ','
+             << p.y + sample * std::cos(0.7 * along) << ",0,mark\n";
+      }
+      rows << 0.001 * ++tick << ",nan,nan,nan,mark\n";
+      rows << 0.001 * ++tick << ",0,0,9,feel\n";
+    }
+  }
+  [[nodiscard]] double errorNearEdges(const std::string& lines) const {
+    std::vector<std::string> arguments{"filter", scan, clean, "--filter", "tgv"};
+    if (!lines.empty()) arguments.insert(arguments.end(), {"--lines", lines});
+    const auto report = fettleJson(arguments);
+    EXPECT_EQ(report.contains("lines"), !lines.empty());
+    EXPECT_FALSE(report.contains("window") || report.contains("sigma"));
+    EXPECT_TRUE(report.contains("range_sigma"));
+    return fettleJson({"compare", scan, clean, "--truth", truth, "--edges", edges})["rmse_edge"];
+  }
+
+  TempFolder folder;
+  std::string scan = folder.file("scan.tif"), truth = folder.file("truth.tif"),
+              edges = folder.file("edges.png");
+  std::string strokes = folder.file("strokes.csv"), marks = folder.file("marks.png");
+  std::string clean = folder.file("clean.tif");
+};
+
+TEST_F(Lines, located_from_strokes_they_lower_the_error_near_edges) {
+  ASSERT_NO_FATAL_FAILURE(drawTrueEdges());
+  const double alone = errorNearEdges("");
+  for (const char* name : {"lines.csv", "lines.geojson", "lines.gpkg", "lines.dxf"}) {
+    const std::string lines = folder.file(name);
+    const auto report = fettleJson({"mark", scan, marks, "--strokes", strokes, "--lines-out", lines});
+    EXPECT_GT(report["lines"], 2);
+    EXPECT_GT(report["line_points"], 1000);
+    EXPECT_GT(report["located"], 0.8);
+    EXPECT_LT(report["deviation"], 1.0);
+    EXPECT_GT(report["marked"], report["line_points"]);
+    EXPECT_LT(errorNearEdges(lines), 0.75 * alone) << name;
+  }
+}
+
+TEST_F(Lines, what_cannot_be_done_is_refused) {
+  std::ofstream(strokes) << "t,x,y,z,tool\n0,1,1,0,mark\n0.001,9,9,0,mark\n";
+  const std::string lines = folder.file("lines.csv");
+  const auto mark = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"mark", scan, marks});
+    return fettle(std::move(more));
+  };
+  ASSERT_EQ(mark({"--strokes", strokes, "--lines-out", lines}).status, 0);
+  expectRefused(mark({"--lines-out", lines}), "--strokes");
+  expectRefused(mark({"--strokes", strokes, "--lines-out", folder.file("lines.shp")}), ".shp");
+  expectRefused(mark({"--strokes", strokes, "--thickness", "99"}), "thickness");
+  expectRefused(mark({"--strokes", folder.file("none.csv")}), "none.csv");
+  EXPECT_EQ(mark({"--strokes", strokes, "--edges"}).status, 2);
+  const auto filter = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"filter", scan, clean});
+    return fettle(std::move(more));
+  };
+  expectRefused(filter({"--filter", "median", "--lines", lines}), "tgv");
+  expectRefused(filter({"--filter", "tgv", "--lines", strokes}), "header");
+  expectRefused(filter({"--filter", "tgv", "--lines", folder.file("none.gpkg")}), "none.gpkg");
+  expectRefused(filter({"--suggest", "--tolerance", "1", "--lines", lines}), "--lines");
+  std::ofstream(strokes) << "t,x,y,z,tool\n0,1,1,0,feel\n";
+  expectRefused(mark({"--strokes", strokes}), "no row of the tool mark");
+}
+
+}  // namespace
+}  // namespace fettle::tests
