@@ -24,6 +24,7 @@ struct MarkArguments {
   bool edges = false;
   std::string strokes;
   std::string lines_out;
+  engine::LocateOptions locating;
   double scale = engine::EdgeMap::kUsualSigma;
   engine::EdgeChoice choice;
   bool invert = false;
@@ -52,7 +53,7 @@ engine::Result<engine::Version> markStrokes(const engine::Version& field, const 
                                             Report& report, engine::JobControl& job) {
   const auto strokes = markedStrokes(options.strokes, field.grid());
   if (!strokes) return tl::unexpected(strokes.error());
-  const auto lines = locateLines(field, *strokes, job);
+  const auto lines = locateLines(field, *strokes, options.locating, job);
   if (!lines) return tl::unexpected(lines.error());
   auto marked = markLines(field, *lines, options.choice.thickness, job);
   if (!marked) return marked;
@@ -134,6 +135,10 @@ void addMark(Command root, Chosen& chosen) {
               "Strokes file: mark the edges that were drawn with the tool mark, where the scan shows them")
       .check(fileName())
       .excludes(edges);
+  command
+      .option("--hand", options->locating.hand_deviation,
+              "How far --strokes are off the edges, a standard deviation: 0.25 to 3 samples")
+      .showDefault();
   command
       .option("--lines-out", options->lines_out,
               "Write the edge lines of --strokes: .csv (every value), .geojson, .gpkg, .dxf")

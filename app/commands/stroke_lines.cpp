@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "app/work/edge_strokes.h"
 #include "engine/field/live_field.h"
 #include "engine/inspect/noise.h"
 #include "haptic/base/strokes.h"
@@ -14,12 +15,6 @@
 namespace fettle::app {
 
 namespace {
-
-// A position as locateEdgeLines wants it: the same for any cut of the field.
-glm::dvec2 samplePosition(const glm::dvec3& tip_mm, const engine::Grid& grid) {
-  const auto coarse = [](double samples) { return std::nearbyint(samples * 0x1p20) * 0x1p-20; };
-  return {coarse(tip_mm.x / grid.spacingXMm()), coarse(tip_mm.y / grid.spacingYMm())};
-}
 
 // Marks the samples within `radius` of `centre`, at least the nearest one. False when memory ran out.
 bool markDisc(engine::LiveField& live, glm::dvec2 centre, double radius) {
@@ -51,26 +46,20 @@ engine::Result<std::vector<engine::EdgeStroke>> markedStrokes(const std::string&
                                                               const engine::Grid& grid) {
   const auto rows = haptic::readStrokes(path);
   if (!rows) return tl::unexpected(rows.error());
-  std::vector<engine::EdgeStroke> strokes;
-  bool drawing = false;
-  for (const haptic::StrokeSample& row : *rows) {
-    const bool draws = row.tool == haptic::Tool::kMark && std::isfinite(row.tip_mm.x) &&
-                       std::isfinite(row.tip_mm.y) && std::isfinite(row.tip_mm.z);
-    if (draws && !drawing) strokes.push_back({static_cast<std::int64_t>(strokes.size()), {}, false});
-    if (draws) strokes.back().points.push_back(samplePosition(row.tip_mm, grid));
-    drawing = draws;
-  }
+  std::vector<engine::EdgeStroke> strokes = edgeStrokesOf(*rows, grid);
   if (strokes.empty())
-    return engine::inputError("the strokes have no row of the tool mark", path, "draw along edges with it");
+    return engine::inputError("the strokes have no stroke of the tool mark", path,
+                              "draw along edges with it");
   return strokes;
 }
 
 engine::Result<std::vector<engine::EdgeLine>> locateLines(const engine::Version& field,
                                                           const std::vector<engine::EdgeStroke>& strokes,
+                                                          const engine::LocateOptions& options,
                                                           engine::JobControl& job) {
   const auto noise = engine::estimateNoise(field, job);
   if (!noise) return tl::unexpected(noise.error());
-  return engine::locateEdgeLines(field.reader(), noise->sigma, strokes, {}, job);
+  return engine::locateEdgeLines(field.reader(), noise->sigma, strokes, options, job);
 }
 
 engine::Result<engine::Version> markLines(const engine::Version& field,

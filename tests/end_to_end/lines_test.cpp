@@ -88,6 +88,7 @@ TEST_F(Lines, what_cannot_be_done_is_refused) {
   expectRefused(mark({"--lines-out", lines}), "--strokes");
   expectRefused(mark({"--strokes", strokes, "--lines-out", folder.file("lines.shp")}), ".shp");
   expectRefused(mark({"--strokes", strokes, "--thickness", "99"}), "thickness");
+  expectRefused(mark({"--strokes", strokes, "--hand", "9"}), "hand");
   expectRefused(mark({"--strokes", folder.file("none.csv")}), "none.csv");
   EXPECT_EQ(mark({"--strokes", strokes, "--edges"}).status, 2);
   const auto filter = [&](std::vector<std::string> more) {
@@ -99,7 +100,7 @@ TEST_F(Lines, what_cannot_be_done_is_refused) {
   expectRefused(filter({"--filter", "tgv", "--lines", folder.file("none.gpkg")}), "none.gpkg");
   expectRefused(filter({"--suggest", "--tolerance", "1", "--lines", lines}), "--lines");
   std::ofstream(strokes) << "t,x,y,z,tool\n0,1,1,0,feel\n";
-  expectRefused(mark({"--strokes", strokes}), "no row of the tool mark");
+  expectRefused(mark({"--strokes", strokes}), "no stroke of the tool mark");
 }
 
 }  // namespace
