@@ -84,8 +84,9 @@ Status LineCollector::insertUpTo(EdgeLine& line, const EdgePoint& next) {
   const double pieces = std::ceil(apart);
   if (Status status = reserve(pieces - 1.0); !status) return status;
   EdgePoint between = from;
-  for (double k = 1.0; k < pieces; k += 1.0) {
-    const glm::dvec2 p = from.position + (next.position - from.position) * (k / pieces);
+  for (std::int64_t k = 1; k < static_cast<std::int64_t>(pieces); ++k) {
+    const double along = static_cast<double>(k) / pieces;
+    const glm::dvec2 p = from.position + (next.position - from.position) * along;
     between.position = {toPositionStep(p.x), toPositionStep(p.y)};
     line.points.push_back(between);
   }
