@@ -21,7 +21,7 @@ struct Polyline {
   [[nodiscard]] int wrapped(int i) const noexcept {
     const int n = size();
     if (i >= 0 && i < n) return i;
-    return closed ? ((i % n) + n) % n : -1;
+    return closed && n > 0 ? ((i % n) + n) % n : -1;
   }
   /// Steps along the line between two of its points, the shorter way round a closed one.
   [[nodiscard]] int stepsBetween(int i, int j) const noexcept {

@@ -15,11 +15,11 @@ template <class Visit>
 void forEachPassage(glm::dvec2 a, glm::dvec2 b, int across, std::int32_t end, Visit&& visit) {
   const int along = 1 - across;
   const double from = std::min(a[across], b[across]), to = std::max(a[across], b[across]);
-  const double first = std::max(std::floor(from) + 1.0, 0.0);
-  const double last = std::min(std::floor(to), end - 1.0);
-  for (double at = first; at <= last; at += 1.0) {
+  const auto first = static_cast<std::int32_t>(std::clamp(std::floor(from) + 1.0, 0.0, 1.0 * end));
+  const auto last = static_cast<std::int32_t>(std::clamp(std::floor(to), -1.0, end - 1.0));
+  for (std::int32_t at = first; at <= last; ++at) {
     const double place = a[along] + (at - a[across]) / (b[across] - a[across]) * (b[along] - a[along]);
-    visit(static_cast<std::int32_t>(at), place);
+    visit(at, place);
   }
 }
 
@@ -78,8 +78,9 @@ LineCuts::LineCuts(std::span<const EdgeLine> lines, std::int32_t columns, std::i
 }
 
 std::span<const LineCut> LineCuts::row(std::int32_t row) const noexcept {
-  const auto [first, last] = std::ranges::equal_range(cuts_, row, {}, &LineCut::row);
-  return {first, last};
+  const auto first = std::ranges::lower_bound(cuts_, row, {}, &LineCut::row);
+  const auto last = std::ranges::upper_bound(cuts_, row, {}, &LineCut::row);
+  return {cuts_.data() + (first - cuts_.begin()), static_cast<std::size_t>(last - first)};
 }
 
 }  // namespace fettle::engine
