@@ -35,7 +35,7 @@ FrameGate::FrameGate(const std::string& path) : path_(path) {
 }
 
 FrameGate::~FrameGate() {
-  if (program_ >= 0) close(program_);
+  disconnect();
   close(listening_);
 }
 
@@ -54,7 +54,7 @@ bool FrameGate::waits() {
   if (!comes(program_)) throw std::runtime_error("no frame for a long time");
   char what = 0;
   if (recv(program_, &what, 1, 0) == 1) return true;
-  close(std::exchange(program_, -1));
+  disconnect();
   return false;
 }
 
@@ -74,6 +74,10 @@ bool FrameGate::step() {
 
 void FrameGate::release() {
   if (program_ >= 0) say('f');
+}
+
+void FrameGate::disconnect() {
+  if (program_ >= 0) close(std::exchange(program_, -1));
 }
 
 }  // namespace fettle::tests

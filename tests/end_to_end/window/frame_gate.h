@@ -27,6 +27,8 @@ class FrameGate {
   [[nodiscard]] bool step();
   /// Frames are shown as they come.
   void release();
+  /// After a program has ended: the next one to show a frame is waited for.
+  void disconnect();
 
  private:
   void say(char what) const;

@@ -75,6 +75,8 @@ class MonkeyTest : public WindowTest {
     EXPECT_EQ(program_->wait(), 0) << program_->err();
     expectSilence(*program_);
     program_.reset();
+    // It may have ended while no frame was held: the gate has not noticed then.
+    gate_.disconnect();
   }
   void count() {
     program_->each([&](const State& s) {
