@@ -82,6 +82,9 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   if (!options.lines.empty()) {
     auto lines = engine::importLines(options.lines, field);
     if (!lines) return tl::unexpected(lines.error());
+    // A number that a file uses twice is that of two lines.
+    std::int64_t id = 0;
+    for (engine::EdgeLine& line : *lines) line.id = id++;
     field = field.withLines(std::make_shared<const std::vector<engine::EdgeLine>>(*std::move(lines)));
   }
   if (!options.max_change.empty()) {

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <memory>
 
+#include <fmt/format.h>
+
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
@@ -66,10 +68,16 @@ engine::Result<engine::Version> markStrokes(const engine::Version& field, const 
 }
 
 engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& job) {
-  if (!options.edges && !options.invert && options.strokes.empty())
-    return engine::inputError("it is not stated what to mark", "mark", "give --edges, --strokes or --invert");
   if (!options.lines_out.empty() && options.strokes.empty())
     return engine::inputError("lines are located from strokes", "--lines-out", "give --strokes");
+  if (!options.edges && !options.invert && options.strokes.empty())
+    return engine::inputError("it is not stated what to mark", "mark", "give --edges, --strokes or --invert");
+  using Locate = engine::LocateOptions;
+  if (const double hand = options.locating.hand_deviation;
+      !(hand >= Locate::kLeastHand && hand <= Locate::kMostHand))
+    return engine::inputError(fmt::format("a hand that is {} samples off the edges cannot be followed", hand),
+                              "--hand",
+                              fmt::format("give {} to {} samples", Locate::kLeastHand, Locate::kMostHand));
   if (auto status =
           checkOutputs({{options.out, OutputKind::kMarks, ".png"}, {options.lines_out, OutputKind::kLines}},
                        {options.in, options.add, options.strokes}, Replacing::kNoWork, job);

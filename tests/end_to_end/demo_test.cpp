@@ -41,7 +41,7 @@ TEST(Demo, HegBeatsTheFilterAloneAtEdgesAndMatchesItOnFlats) {
     EXPECT_GT(std::filesystem::file_size(folder.path() / "demo" / picture.get<std::string>()), 10000U)
         << picture;
   for (const char* name : {"scan.tif", "truth.tif", "edges.png", "marks.png", "strokes.csv", "scene.toml",
-                           "touched.tif", "heg-median.tif", "table.csv"})
+                           "touched.tif", "heg-median.tif", "table.csv", "lines.csv"})
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "demo" / name)) << name;
 }
 
@@ -55,6 +55,9 @@ TEST(Demo, TheSessionItLeavesReplaysToTheSameField) {
                   demo + "scene.toml", "--marks-out", folder.file("again.png")});
   EXPECT_GT(replayed["samples_changed"], 0);
   EXPECT_EQ(fettleJson({"compare", demo + "touched.tif", folder.file("again.tif")})["max_abs"], 0.0);
+  (void)fettleJson({"filter", demo + "scan.tif", folder.file("clean.tif"), "--filter", "tgv", "--lines",
+                    demo + "lines.csv"});
+  EXPECT_EQ(fettleJson({"compare", demo + "tgv-hand.tif", folder.file("clean.tif")})["max_abs"], 0.0);
 }
 
 }  // namespace

@@ -77,6 +77,31 @@ TEST_F(Lines, located_from_strokes_they_lower_the_error_near_edges) {
   }
 }
 
+// Lines of another program, twice with one number: two lines, not one that goes over each place and back.
+TEST_F(Lines, a_number_used_twice_is_that_of_two_lines) {
+  const std::string lines = folder.file("lines.geojson");
+  const auto hashWith = [&](int copies, const char* properties) {
+    std::string features;
+    for (int i = 0; i < copies; ++i)
+      features += std::string(i > 0 ? "," : "") + R"({"type":"Feature","properties":)" + properties +
+                  R"(,"geometry":{"type":"LineString","coordinates":[[10.3,5],[10.3,40]]}})";
+    std::ofstream(lines) << R"({"type":"FeatureCollection","features":[)" << features << "]}";
+    return fettleJson({"filter", scan, clean, "--filter", "tgv", "--lines", lines})["hash"];
+  };
+  const auto once = hashWith(1, R"({"line":3,"located":1})");
+  EXPECT_NE(once, fettleJson({"filter", scan, clean, "--filter", "tgv"})["hash"]);
+  EXPECT_EQ(hashWith(2, R"({"line":3,"located":1})"), once);
+  EXPECT_EQ(hashWith(2, "{}"), once);
+  for (const char* unclear : {R"({"located":"yes"})", R"({"kind":"wall"})", R"({"deviation":"abc"})"}) {
+    SCOPED_TRACE(unclear);
+    std::ofstream(lines) << R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":)"
+                         << unclear
+                         << R"(,"geometry":{"type":"LineString","coordinates":[[10,5],[10,40]]}}]})";
+    expectRefused(fettle({"filter", scan, clean, "--filter", "tgv", "--lines", lines}),
+                  "cannot be understood");
+  }
+}
+
 TEST_F(Lines, what_cannot_be_done_is_refused) {
   std::ofstream(strokes) << "t,x,y,z,tool\n0,1,1,0,mark\n0.001,9,9,0,mark\n";
   const std::string lines = folder.file("lines.csv");

@@ -10,6 +10,7 @@
 #include "engine/edges/locate.h"
 #include "engine/filter/noise_range.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
 #include "engine/scanner/true_lines.h"
 #include "haptic/base/strokes.h"
@@ -144,6 +145,8 @@ engine::Result<DemoRun> runDemo(const DemoOptions& options, engine::JobControl& 
   const auto lines =
       linesOf(strokes, run.scan.scan, tgv->range_sigma, operatorSpec(options, run.scan.scan.grid()), job);
   if (!lines) return tl::unexpected(lines.error());
+  if (auto s = engine::exportLines(file("lines.csv"), **lines, run.scan.scan.grid()); !s)
+    return tl::unexpected(s.error());
   const auto true_lines = std::make_shared<const std::vector<engine::EdgeLine>>(engine::trueLines(run.scan));
   const struct {
     std::string name, title;

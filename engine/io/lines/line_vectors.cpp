@@ -196,6 +196,10 @@ class LineLayerReader {
         return inputError("the lines cannot be read: " + gdal_.reason("the file is damaged"), path_,
                           "the file is cut short or damaged");
       if (!feature) return {};
+      // A view of a GeoPackage may have no end.
+      if (features_ >= kMostFeatures)
+        return inputError(fmt::format("the file has more than {} lines", kMostFeatures), path_,
+                          "divide the file, or leave lines out");
       where_ = fmt::format("feature {}", ++features_);
       if (Status status = readFeature(feature.get()); !status) return status;
     }
@@ -203,8 +207,11 @@ class LineLayerReader {
   [[nodiscard]] Result<std::vector<EdgeLine>> finish() { return lines_.finish(); }
 
  private:
+  static constexpr std::int64_t kMostFeatures = std::int64_t{1} << 18;
+
   struct Attributes {
     std::optional<std::int64_t> id;
+    const char* unclear = nullptr;  // the name of one that cannot be understood
     bool closed = false;
     EdgePoint point;  // all values but the position
   };
@@ -217,18 +224,27 @@ class LineLayerReader {
     };
     Attributes found;
     found.point.located = true;
+    const auto number = [&](const char* name) -> std::optional<int> {
+      const auto i = field(name);
+      if (i && OGR_Fld_GetType(OGR_F_GetFieldDefnRef(feature, *i)) == OFTString) found.unclear = name;
+      return i;
+    };
     if (const auto i = field("Layer"))
       found.point.located = OGR_F_GetFieldAsString(feature, *i) != kOtherLayer;
-    if (const auto i = field("line")) found.id = OGR_F_GetFieldAsInteger64(feature, *i);
-    if (const auto i = field("closed")) found.closed = OGR_F_GetFieldAsInteger(feature, *i) != 0;
-    if (const auto i = field("located")) found.point.located = OGR_F_GetFieldAsInteger(feature, *i) != 0;
+    if (const auto i = number("line")) found.id = OGR_F_GetFieldAsInteger64(feature, *i);
+    if (const auto i = number("closed")) found.closed = OGR_F_GetFieldAsInteger(feature, *i) != 0;
+    if (const auto i = number("located")) found.point.located = OGR_F_GetFieldAsInteger(feature, *i) != 0;
     if (!found.point.located) return found;
-    if (const auto i = field("kind"))
-      if (std::string_view(OGR_F_GetFieldAsString(feature, *i)) == "crease")
+    if (const auto i = field("kind")) {
+      const std::string_view kind = OGR_F_GetFieldAsString(feature, *i);
+      if (kind == "crease")
         found.point.kind = LineKind::kCrease;
-    if (const auto i = field("deviation"))
+      else if (kind != "step")
+        found.unclear = "kind";
+    }
+    if (const auto i = number("deviation"))
       found.point.deviation = static_cast<double>(OGR_F_GetFieldAsDouble(feature, *i) / frame_.sample_mm);
-    if (const auto i = field("step"))
+    if (const auto i = number("step"))
       found.point.step = static_cast<double>(OGR_F_GetFieldAsDouble(feature, *i) / frame_.height_mm);
     return found;
   }
@@ -238,6 +254,9 @@ class LineLayerReader {
     const OGRwkbGeometryType type =
         geometry == nullptr ? wkbNone : OGR_GT_Flatten(OGR_G_GetGeometryType(geometry));
     const Attributes attributes = attributesOf(feature);
+    if (attributes.unclear != nullptr)
+      return inputError(fmt::format("{}: its {} cannot be understood", where_, attributes.unclear), path_,
+                        "give numbers, and step or crease as kind; or leave the attribute out");
     if (type == wkbLineString) return readLine(geometry, attributes);
     if (type != wkbMultiLineString)
       return inputError(fmt::format("{} is no line: {}", where_,
