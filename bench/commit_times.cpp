@@ -1,6 +1,5 @@
 #include "bench/commit_times.h"
 
-#include <chrono>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -20,8 +19,6 @@
 namespace fettle::bench {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr std::int64_t kStrokeTicks = 1000;
 
@@ -55,7 +52,7 @@ engine::Result<CommitTimes> commitTimes(const engine::Version& field, int stroke
         recorder.tick(ticks[static_cast<std::size_t>(i)]);
       }
     }
-    const auto end = Clock::now();
+    const engine::Stopwatch since_end;
     engine::StepInfo info;
     info.name = "smoothing";
     info.time = engine::stepTimeNow();
@@ -67,9 +64,9 @@ engine::Result<CommitTimes> commitTimes(const engine::Version& field, int stroke
                                            {static_cast<std::uint64_t>((stroke + 1) * kStrokeTicks), false},
                                            false});
     (*writer)->commit(number, history.step(number), recorder.take());
-    const double waited = engine::msSince(end);
+    const double waited = since_end.ms();
     if (engine::Status flushed = (*writer)->flush(job); !flushed) return tl::unexpected(flushed.error());
-    times.durable_ms.push_back(engine::msSince(end));
+    times.durable_ms.push_back(since_end.ms());
     times.waits_ms.push_back(waited);
     const auto change = engine::measureChange(history.state(number - 1), history.current());
     times.tiles.push_back(static_cast<double>(change.tiles));

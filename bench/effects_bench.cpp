@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <span>
 
 #include <fmt/format.h>
 
 #include "bench/machine.h"
 #include "bench/repeats.h"
+#include "engine/base/stopwatch.h"
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
 #include "haptic/base/rt_thread.h"
@@ -99,11 +99,11 @@ engine::Result<Outcome> run(const EffectCase& what, const engine::Version& field
   const double raise = raiseFor(what.scene);
   Outcome out;
   const haptic::DenormalScope as_in_the_loop;
-  std::chrono::duration<double, std::nano> spent{0.0};
+  double spent_ns = 0.0;
   for (std::size_t i = 0; i < strokes.size(); i += kTicksPerCheck) {
     if (job.cancelled()) return engine::cancelled();
     const auto part = strokes.subspan(i, std::min(kTicksPerCheck, strokes.size() - i));
-    const auto begin = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     for (haptic::StrokeSample sample : part) {
       sample.tip_mm.z += raise;
       const haptic::ForceSample force = tick.run(sample);
@@ -113,9 +113,9 @@ engine::Result<Outcome> run(const EffectCase& what, const engine::Version& field
       fold(out.hash, force.force_n.z);
       fold(out.hash, force.proxy_mm.z);
     }
-    spent += std::chrono::steady_clock::now() - begin;
+    spent_ns += watch.ns();
   }
-  out.ns_a_tick = spent.count() / static_cast<double>(strokes.size());
+  out.ns_a_tick = spent_ns / static_cast<double>(strokes.size());
   out.hash ^= engine::contentHash(live.snapshot());
   const haptic::EffectList& effects = tick.effects();
   out.bytes = static_cast<std::int64_t>(what.effect ? effects.bytesOf(*what.effect)

@@ -1,7 +1,6 @@
 #include "bench/filters_bench.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <ctime>
@@ -13,6 +12,7 @@
 
 #include "bench/machine.h"
 #include "bench/repeats.h"
+#include "engine/base/stopwatch.h"
 #include "engine/field/builder.h"
 
 namespace fettle::bench {
@@ -37,10 +37,9 @@ double processorSeconds() noexcept {
 template <class Work>
 Seconds timed(Work&& work) {
   const double cpu = processorSeconds();
-  const auto start = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   work();
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  return {wall.count(), processorSeconds() - cpu};
+  return {watch.seconds(), processorSeconds() - cpu};
 }
 
 // Steele, Lea, Flood 2014, SplitMix64: a good hash of a counter, so that any sample can be made by itself.

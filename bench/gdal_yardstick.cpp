@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <memory>
 
 #include <gdal.h>
@@ -96,9 +95,9 @@ engine::Result<std::optional<double>> secondsOfGdal(const std::string& path, std
   }
   double best = 0.0;
   for (const bool whole : {true, false}) {
-    const auto start = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     if (!readBand(path, whole, buffer)) return engine::inputError("the file cannot be read", path);
-    const double took = engine::secondsSince(start);
+    const double took = watch.seconds();
     best = whole ? took : std::min(best, took);
   }
   return best;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <span>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include "bench/machine.h"
 #include "bench/plain_search.h"
 #include "bench/repeats.h"
+#include "engine/base/stopwatch.h"
 #include "engine/field/live_field.h"
 #include "haptic/base/rt_thread.h"
 #include "haptic/scene/scene.h"
@@ -51,9 +51,9 @@ void timeTicks(const haptic::Scene& scene, const engine::Version& field,
   ns.reserve(std::min(strokes.size(), kTimedTicks));
   const haptic::DenormalScope as_in_the_loop;
   for (const haptic::StrokeSample& sample : strokes.first(ns.capacity())) {
-    const auto begin = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     (void)tick.run(sample);
-    ns.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count());
+    ns.push_back(watch.ns());
   }
   std::sort(ns.begin(), ns.end());
   const auto quantile = [&](double q) {
@@ -120,14 +120,13 @@ engine::Result<HapticBenchRow> runPlain(const engine::Version& field,
     if (job.cancelled()) return engine::cancelled();
     row.contact_ticks = 0;
     row.hash = 0;
-    const auto begin = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     for (const haptic::StrokeSample& sample : strokes) {
       const glm::dvec3 force = search.tick(sample.tip_mm, stiffness);
       row.contact_ticks += force.z != 0.0 ? 1 : 0;
       row.hash = std::rotl(row.hash, 7) ^ std::bit_cast<std::uint64_t>(force.z);
     }
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    rates.push_back(static_cast<double>(strokes.size()) / spent.count());
+    rates.push_back(static_cast<double>(strokes.size()) / watch.seconds());
     search.reset();
   }
   std::sort(rates.begin(), rates.end());

@@ -1,7 +1,6 @@
 #include "bench/import_bench.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "bench/machine.h"
 #include "bench/repeats.h"
 #include "bench/temporary_folder.h"
+#include "engine/base/stopwatch.h"
 #include "engine/formats/formats.h"
 #include "haptic/trials/hand_stroke.h"
 
@@ -19,7 +19,6 @@ namespace fettle::bench {
 namespace {
 
 namespace fs = std::filesystem;
-using WallSeconds = std::chrono::duration<double>;
 
 constexpr std::int32_t kEveryFormat = 2048;  // largest side
 constexpr std::int32_t kLargest = 16384;
@@ -87,14 +86,14 @@ engine::Result<std::vector<Case>> makeFiles(const fs::path& folder, std::int32_t
 // Wall time to read the whole file; the bytes are not used, as with `cat FILE > /dev/null`.
 engine::Result<double> readPlainly(const std::string& path) {
   std::vector<char> buffer(std::size_t{1} << 20);
-  const auto start = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   std::ifstream file;
   file.rdbuf()->pubsetbuf(nullptr, 0);  // directly into the buffer
   file.open(path, std::ios::binary);
   while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size()))) {
   }
   if (!file.eof()) return engine::inputError("the file cannot be read", path);
-  return WallSeconds(std::chrono::steady_clock::now() - start).count();
+  return watch.seconds();
 }
 
 }  // namespace
@@ -126,9 +125,9 @@ engine::Result<ImportBenchReport> benchImport(const ImportBenchOptions& options,
       if (!read) return tl::unexpected(read.error());
       const auto alone = secondsOfGdal(cases[k].path, buffer);
       if (!alone) return tl::unexpected(alone.error());
-      const auto start = std::chrono::steady_clock::now();
+      const engine::Stopwatch watch;
       const auto imported = engine::importField(cases[k].path, {}, job);
-      const double seconds = WallSeconds(std::chrono::steady_clock::now() - start).count();
+      const double seconds = watch.seconds();
       if (!imported) return tl::unexpected(imported.error());
       const std::uint64_t hash = engine::contentHash(imported->field);
       ImportBenchRow& row = report.rows[k];

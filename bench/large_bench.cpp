@@ -22,6 +22,7 @@
 #include "bench/repeats.h"
 #include "bench/temporary_folder.h"
 #include "engine/base/memory.h"
+#include "engine/base/stopwatch.h"
 #include "engine/field/live_field.h"
 #include "engine/field/tile_store.h"
 #include "engine/filter/filter.h"
@@ -156,10 +157,9 @@ LargeTicks ticks(const engine::Version& large, const engine::Version& small, hap
   single.reserve(on_large.size());
   for (const haptic::StrokeSample& s : on_large) {
     const std::uint64_t before = diskReads();
-    const auto begin = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     (void)tick.run(s);
-    single.push_back(
-        std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count());
+    single.push_back(watch.ns());
     if (diskReads() != before) ++result.waited;
   }
   std::sort(single.begin(), single.end());

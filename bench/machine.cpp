@@ -1,7 +1,6 @@
 #include "bench/machine.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <fstream>
 #include <thread>
@@ -35,9 +34,9 @@ double copyBytesPerSecond() {
   std::vector<char> to(kBytes, 0);
   double best = 0.0;
   for (int i = 0; i < 5; ++i) {
-    const auto start = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     std::memcpy(to.data(), from.data(), kBytes);
-    const double seconds = engine::secondsSince(start);
+    const double seconds = watch.seconds();
     best = std::max(best, static_cast<double>(kBytes) / seconds);
   }
   return best;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <thread>
@@ -19,8 +18,6 @@
 
 namespace fettle::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 double cpuMs() {
   rusage use{};
@@ -148,7 +145,7 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
                            input.overlays.lines);
     }
     double cpu_before = cpuMs();
-    auto start = Clock::now();
+    engine::Stopwatch watch;
     double update_ms = 0.0;
     if (works) {
       const auto at = static_cast<std::int32_t>(side / 4 + (side / 2 - 40) * i / options.frames);
@@ -161,14 +158,13 @@ engine::Result<RenderBenchRow> run(render::LivePicture& picture, const Scene& sc
       next.versions = {live.snapshot()};
       // The edit belongs to the haptic loop and is not measured.
       cpu_before = cpuMs();
-      start = Clock::now();
-      const auto update_start = start;
+      watch = {};
       if (auto ok = picture.update(next); !ok) return tl::unexpected(ok.error());
-      update_ms = engine::msSince(update_start);
+      update_ms = watch.ms();
     }
     const auto stats = picture.drawAndWait(input);
     if (!stats) return tl::unexpected(stats.error());
-    frames.push_back(engine::msSince(start));
+    frames.push_back(watch.ms());
     if (works) edits.push_back(frames.back());
     redrawn += stats->redrawn;
     cpu += cpuMs() - cpu_before;
@@ -220,13 +216,13 @@ engine::Status drawWithLoop(render::LivePicture& picture, const Scene& scene, do
   render::FrameInput input = scene.input;
   while (!ended.load(std::memory_order_acquire)) {
     input.view.azimuth_deg = 315.0 + 3.0 * static_cast<double>(frames.size() % 120);
-    const auto start = Clock::now();
+    const engine::Stopwatch watch;
     if (const auto stats = picture.drawAndWait(input); !stats) {
       failed = tl::unexpected(stats.error());
       quiet.cancel();
       break;
     }
-    frames.push_back(engine::msSince(start));
+    frames.push_back(watch.ms());
   }
   hand.join();
   if (!failed) return failed;
@@ -297,16 +293,16 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     const auto field = partOf(options.sides[i]);
     if (!field) return tl::unexpected(field.error());
     Scene all_round{"plain", {{*field}, std::nullopt, render::MarksOverlay::kHide}, plain};
-    const auto start = Clock::now();
+    const engine::Stopwatch watch;
     if (auto ok = (*picture)->update(all_round.shown); !ok) return tl::unexpected(ok.error());
     for (bool first = true, rests = false; !rests; first = false) {
       const auto frame = (*picture)->drawAndWait(plain);
       if (!frame) return tl::unexpected(frame.error());
-      if (first) report.first_ms.push_back(engine::msSince(start));
+      if (first) report.first_ms.push_back(watch.ms());
       rests = frame->upload.pending_tiles == 0;
       if (job.cancelled()) return engine::cancelled();
     }
-    report.rest_ms.push_back(engine::msSince(start));
+    report.rest_ms.push_back(watch.ms());
 
     std::vector<Scene> scenes(8, all_round);
     scenes[1].name = "empty";

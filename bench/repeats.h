@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <vector>
 
@@ -14,9 +13,9 @@ inline constexpr double kSpacingMm = 0.05;
 
 /// Wall time of one run of `work` [s].
 [[nodiscard]] inline double secondsOf(const std::function<void()>& work) {
-  const auto begin = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   work();
-  return engine::secondsSince(begin);
+  return watch.seconds();
 }
 
 /// The middle one of repeated times, the upper of two. `values` is not empty.

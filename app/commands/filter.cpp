@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cctype>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -102,9 +101,9 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   const auto ready = engine::withMeasuredRange(spec, field, job);
   if (!ready) return tl::unexpected(ready.error());
   spec = *ready;
-  const auto start = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   const auto filtered = engine::applyFilter(field, *original, spec, job);
-  const double seconds = engine::secondsSince(start);
+  const double seconds = watch.seconds();
   if (!filtered) return tl::unexpected(filtered.error());
   engine::ExportOptions writing = options.writing;
   writing.original = *original;

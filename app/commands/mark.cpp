@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cmath>
 #include <memory>
 
@@ -91,7 +90,7 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     if (!marked) return tl::unexpected(marked.error());
     field = *std::move(marked);
   }
-  const auto start = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   Report report;
   if (options.edges) {
     const auto map = engine::findEdges(field, options.scale, job);
@@ -117,7 +116,7 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     if (!inverted) return tl::unexpected(inverted.error());
     field = *std::move(inverted);
   }
-  const double seconds = engine::secondsSince(start);
+  const double seconds = watch.seconds();
   const auto written = writeTo(options.out, ".png", job,
                                [&](const std::string& file) { return engine::exportMarks(field, file); });
   if (!written) return tl::unexpected(written.error());

@@ -1,4 +1,3 @@
-#include <chrono>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -15,6 +14,7 @@
 #include "app/terminal.h"
 #include "app/work/open_document.h"
 #include "app/work/streams.h"
+#include "engine/base/stopwatch.h"
 #include "engine/formats/formats.h"
 #include "engine/io/raster/marks.h"
 #include "engine/session/session.h"
@@ -67,10 +67,10 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
   if (session->journal.empty() && session->history.number() > 0)
     return engine::inputError("the session has no journal", options.scan,
                               "convert or export its present state instead");
-  const auto begin = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   const auto played = haptic::playSession(*session, job);
   if (!played) return tl::unexpected(played.error());
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  const double seconds = watch.seconds();
   const std::uint64_t made = engine::contentHash(played->field);
   const std::uint64_t stored = engine::contentHash(session->history.current());
   if (made != stored)
@@ -87,7 +87,7 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
   return Report{{"ticks", played->ticks},     {"steps", played->steps},
                 {"filters", played->filters}, {"loops", played->loops},
                 {"state", played->state},     {"entries", session->journal.size()},
-                {"seconds", took.count()},    {"hash", fmt::format("{:016x}", made)}};
+                {"seconds", seconds},         {"hash", fmt::format("{:016x}", made)}};
 }
 
 // Whether a file begins like a strokes file.

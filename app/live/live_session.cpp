@@ -112,7 +112,7 @@ class LiveSession {
   }
 
   engine::Status work() {
-    const auto begin = std::chrono::steady_clock::now();
+    const engine::Stopwatch since_start;
     while (!ended()) {
       if (engine::Status status = drain(); !status) return status;
       for (haptic::LoopEvent event; loop_.poll(event);)
@@ -120,7 +120,7 @@ class LiveSession {
       while (const auto key = keys_.next()) press(*key);
       watch();
       if (settings_.arm == ArmPolicy::kAuto) armByItself();
-      const double lived = engine::secondsSince(begin);
+      const double lived = since_start.seconds();
       status_.show(now_, loop_.timing(), lived, lived > 0.0 ? static_cast<double>(now_.tick) / lived : 0.0);
       std::this_thread::sleep_for(kPollInterval);
     }

@@ -1,5 +1,6 @@
 #include "app/window/opening.h"
 
+#include <chrono>
 #include <filesystem>
 #include <utility>
 
@@ -10,8 +11,6 @@
 namespace fettle::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Memory of undo; older steps are read from the session on demand.
 constexpr std::size_t kHistoryBytes = std::size_t{1} << 30;
 constexpr std::int64_t kCoarseSamples = std::int64_t{1} << 20;
@@ -20,10 +19,6 @@ constexpr std::int64_t kCoarseSamples = std::int64_t{1} << 20;
 constexpr std::chrono::milliseconds kShownFirst{500};
 
 }  // namespace
-
-double OpeningTimes::sinceAsked() const {
-  return std::chrono::duration<double, std::milli>(Clock::now() - asked).count();
-}
 
 Background<Document>::Work Opening::work(const std::string& path, Recovery recovery,
                                          const ScanOptions& reading, std::shared_ptr<CoarseSlot> slot,
@@ -44,9 +39,9 @@ Background<Document>::Work Opening::work(const std::string& path, Recovery recov
 
 void Opening::start(const std::string& path, Recovery recovery, const ScanOptions& reading, bool instead) {
   path_ = path;
-  asked_ = Clock::now();
+  since_asked_ = {};
   if (!instead) {
-    times_ = {asked_};
+    times_ = {since_asked_};
     announced_ = false;
   }
   slot_ = std::make_shared<CoarseSlot>();
@@ -88,14 +83,14 @@ bool Opening::dropCoarse() {
 }
 
 void Opening::noteRead(bool instead) {
-  times_ = {asked_, instead ? 0.0 : times_.coarse_ms};
-  times_.read_ms = times_.sinceAsked();
+  times_ = {since_asked_, instead ? 0.0 : times_.coarse_ms};
+  times_.read_ms = times_.since_asked.ms();
   announced_ = false;
 }
 
 void Opening::noteFrame(Frame frame) {
   const auto note = [&](double& ms) {
-    if (ms == 0.0) ms = times_.sinceAsked();
+    if (ms == 0.0) ms = times_.since_asked.ms();
   };
   if (frame == Frame::kCoarse && times_.coarse_ms == 0.0) {
     note(times_.coarse_ms);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,16 +7,16 @@
 #include "app/work/background.h"
 #include "app/work/coarse_slot.h"
 #include "app/work/open_document.h"
+#include "engine/base/stopwatch.h"
 
 namespace fettle::app {
 
 /// Times since opening the newest scan was requested [ms]: it was read, it could be touched, it was visible,
 /// and all of it was on the device; 0: not yet.
 struct OpeningTimes {
-  std::chrono::steady_clock::time_point asked{};
+  engine::Stopwatch since_asked;
   double coarse_ms = 0.0;  ///< a coarse picture was visible; 0: there was none
   double read_ms = 0.0, touched_ms = 0.0, seen_ms = 0.0, whole_ms = 0.0;
-  [[nodiscard]] double sinceAsked() const;
 };
 
 /// A scan or session that is being opened: read in the background, with a coarse picture shown until then if
@@ -47,7 +46,7 @@ class Opening {
   [[nodiscard]] const OpeningTimes& times() const noexcept { return times_; }
   /// The newest scan was read; `instead` of a document.
   void noteRead(bool instead);
-  void noteTouched() { times_.touched_ms = times_.sinceAsked(); }
+  void noteTouched() { times_.touched_ms = times_.since_asked.ms(); }
   /// The first picture is being drawn, as announced by the frame before it.
   void noteAnnounced() noexcept { announced_ = true; }
   [[nodiscard]] bool announced() const noexcept { return announced_; }
@@ -61,7 +60,7 @@ class Opening {
                                                        std::shared_ptr<CoarseSlot> slot, bool coarse_first);
 
   std::string path_;
-  std::chrono::steady_clock::time_point asked_{};
+  engine::Stopwatch since_asked_;
   std::shared_ptr<CoarseSlot> slot_;  // of the newest reading
   std::optional<engine::Preview> coarse_;
   OpeningTimes times_;

@@ -6,6 +6,7 @@
 
 #include "app/window/plane_map.h"
 #include "app/work/visible_part.h"
+#include "engine/base/stopwatch.h"
 #include "render/plan/overlay.h"
 
 namespace fettle::app {
@@ -71,7 +72,7 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
   if (draws == Draws::kRefined)
     input.panel_vertices =
         refinement_.vertices(input.vertex_budget, shown_.versions.size(), Refinement::Clock::now());
-  const auto start = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   const auto target = window_.pictureTarget();
   if (!target) return false;  // present() reports the reason
   const auto figures = live_->draw(input, **target);
@@ -79,10 +80,10 @@ bool WindowPicture::draw(render::FrameInput input, Draws draws, std::string& sta
     if (window_.usable()) status = figures.error().line();
     return false;
   }
-  const auto took = std::chrono::steady_clock::now() - start;
+  const double took_ns = watch.ns();
   figures_ = *figures;
-  draw_figures_.last_ms = std::chrono::duration<double, std::milli>(took).count();
-  draw_figures_.times.add(std::chrono::duration_cast<std::chrono::nanoseconds>(took).count());
+  draw_figures_.last_ms = 1e-6 * took_ns;
+  draw_figures_.times.add(static_cast<std::int64_t>(took_ns));
   draw_figures_.tiles_uploaded += figures_.upload.tiles;
   draw_figures_.bytes_uploaded += figures_.upload.bytes;
   if (draws == Draws::kRefined)

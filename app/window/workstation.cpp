@@ -13,6 +13,7 @@
 #include "app/terminal.h"
 #include "app/window/draw_field.h"
 #include "app/window/scene_edits.h"
+#include "engine/base/stopwatch.h"
 
 namespace fettle::app {
 namespace {
@@ -64,7 +65,7 @@ engine::Result<std::unique_ptr<Workstation>> Workstation::create(const ViewOptio
 }
 
 engine::Result<Report> Workstation::run(engine::JobControl& job) {
-  const auto begin = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   while (parts_.quit == Quit::kNo) {
     runFrame();
     if (!end_) return tl::unexpected(end_.error());
@@ -72,7 +73,7 @@ engine::Result<Report> Workstation::run(engine::JobControl& job) {
       window_->refuseClose();
       app::carryOut(Action::kQuit, parts_);
     }
-    const double lived = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double lived = watch.seconds();
     if (job.cancelled() || (options_.seconds > 0.0 && lived >= options_.seconds)) break;
   }
   Report report = runReport(parts_, figures());

@@ -1,7 +1,6 @@
 #include "app/work/device_loop.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/live/placement.h"
+#include "engine/base/stopwatch.h"
 #include "haptic/devices/enumerate.h"
 
 namespace fettle::app {
@@ -23,12 +23,6 @@ constexpr std::size_t kRecordedTicks = 1
                                        << 16;  // over a minute at 1 kHz, in which the window may stand still
 constexpr std::int64_t kArmAgain_ns = 100'000'000;
 constexpr std::int64_t kRateWindow_ns = 500'000'000;
-
-std::int64_t nowNs() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 double spacingMm(const engine::Grid& grid) {
   return std::max(grid.spacingXMm(), grid.spacingYMm());
@@ -219,7 +213,7 @@ void DeviceLoop::armByItself(const LoopState& state) {
   if (disarmed_ || !armsItself()) return;
   const bool waits =
       state.safety == haptic::SafetyState::kUncalibrated || state.safety == haptic::SafetyState::kFault;
-  const std::int64_t now = nowNs();
+  const std::int64_t now = engine::steadyNs();
   if (!waits || state.link != haptic::LinkState::kConnected || now - armed_try_ns_ < kArmAgain_ns) return;
   armed_try_ns_ = now;
   arm();

@@ -1,9 +1,8 @@
 #include "app/work/filter_preview.h"
 
-#include <chrono>
-
 #include <fmt/format.h>
 
+#include "engine/base/stopwatch.h"
 #include "engine/filter/noise_range.h"
 #include "engine/filter/region.h"
 
@@ -12,7 +11,7 @@ namespace {
 
 // Rounds of adoption: each leaves only the edits of some milliseconds, so without edits one is enough.
 constexpr int kMostRounds = 50;
-constexpr std::chrono::milliseconds kSeenFirst{1000};
+constexpr double kSeenFirst_s = 1.0;
 constexpr std::int32_t kFarthestReach = 512;  // [samples]
 
 bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
@@ -25,8 +24,7 @@ bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
 template <class Done>
 void filterSeen(const engine::Version& base, const engine::Version& original, const engine::FilterSpec& spec,
                 const std::vector<engine::TileRange>& seen, engine::JobControl& job, const Done& done) {
-  using Clock = std::chrono::steady_clock;
-  const auto begin = Clock::now();
+  const engine::Stopwatch watch;
   std::int64_t tiles = 0;
   for (const engine::TileRange& range : seen) tiles += range.tiles();
   // With a filter of a large reach, a part takes as long as the whole.
@@ -34,7 +32,7 @@ void filterSeen(const engine::Version& base, const engine::Version& original, co
   const bool most = 2 * tiles > engine::allTiles(base.grid()).tiles();
   engine::Version so_far = base;
   for (const engine::TileRange& range : seen) {
-    if (job.cancelled() || (most && Clock::now() - begin > kSeenFirst)) return;
+    if (job.cancelled() || (most && watch.seconds() > kSeenFirst_s)) return;
     auto next = engine::filterRange(base, original, so_far, spec, range, job);
     if (!next) return;  // filtering the whole will report why
     so_far = std::move(*next);

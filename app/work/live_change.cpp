@@ -1,7 +1,5 @@
 #include "app/work/live_change.h"
 
-#include <chrono>
-
 #include "engine/base/stopwatch.h"
 
 namespace fettle::app {
@@ -32,10 +30,10 @@ bool LiveChange::poll(const LoopClient& client) {
   if (now == measured_) return changed;
   measured_ = now;
   working_.start([deviation = std::move(deviation_), now](engine::JobControl& job) -> engine::Result<Work> {
-    const auto begin = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     auto figures = deviation->update(now, job);
     // Without memory the figures do not change; the next computation may succeed.
-    const double ms = engine::msSince(begin);
+    const double ms = watch.ms();
     return Work{deviation, figures ? std::optional(*figures) : std::nullopt, ms};
   });
   return changed;

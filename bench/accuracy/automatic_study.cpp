@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -86,10 +85,10 @@ engine::Result<engine::Version> filteredBy(const Method& method, const engine::V
   engine::JobControl quiet;
   const auto ready = engine::withMeasuredRange(spec, scan, quiet);
   if (!ready) return tl::unexpected(ready.error());
-  const auto begin = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   auto filtered = engine::applyFilter(scan, scan, *ready, quiet);
   if (!filtered) return tl::unexpected(filtered.error());
-  ns = 1e9 * engine::secondsSince(begin) / (static_cast<double>(scan.grid().width) * scan.grid().height);
+  ns = watch.ns() / (static_cast<double>(scan.grid().width) * scan.grid().height);
   return std::move(filtered->field);
 }
 

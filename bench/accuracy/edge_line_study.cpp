@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -78,11 +77,11 @@ engine::Result<LineRun> runLines(const LineSubject& subject, std::int32_t side, 
     strokes.push_back({static_cast<std::int64_t>(strokes.size()), hand.points, hand.closed});
 
   LineRun run;
-  const auto begin = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   const auto lines =
       engine::locateEdgeLines(scan->scan.reader(), scan->sigma_mm, strokes, {subject.hand_deviation}, quiet);
   if (!lines) return tl::unexpected(lines.error());
-  run.seconds = engine::secondsSince(begin);
+  run.seconds = watch.seconds();
   const double spacing = grid.spacingXMm();
   for (std::size_t k = 0; k < lines->size(); ++k) {
     const engine::Edge& edge = scan->edge_lines[k];

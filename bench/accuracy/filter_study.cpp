@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,6 +10,7 @@
 #include "bench/accuracy/studies.h"
 #include "bench/accuracy/subjects.h"
 #include "engine/base/statistics.h"
+#include "engine/base/stopwatch.h"
 #include "engine/filter/filter.h"
 
 namespace fettle::bench {
@@ -130,11 +130,9 @@ engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobCon
         // Not the caller's job: its progress counts variants, not samples.
         engine::JobControl quiet;
         for (int i = 0; i < 3; ++i) {
-          const auto begin = std::chrono::steady_clock::now();
+          const engine::Stopwatch watch;
           auto made = variant.run(subject.field, in, quiet);
-          ns.push_back(
-              std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count() /
-              static_cast<double>(in.z.size()));
+          ns.push_back(watch.ns() / static_cast<double>(in.z.size()));
           if (!made) return tl::unexpected(made.error());
           out = *std::move(made);
         }

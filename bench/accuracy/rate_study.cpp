@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -10,6 +9,7 @@
 #include "bench/accuracy/studies.h"
 #include "bench/accuracy/subjects.h"
 #include "engine/base/statistics.h"
+#include "engine/base/stopwatch.h"
 #include "engine/field/live_field.h"
 #include "haptic/base/rt_thread.h"
 #include "haptic/devices/virtual/simulated_hand.h"
@@ -78,10 +78,9 @@ std::vector<double> times(const engine::Version& field, const Pressed& pressed) 
   for (int i = 0; i < 5; ++i) {
     engine::LiveField live(field, engine::Growth::kAllowed);
     haptic::Tick tick(scene, live, field);
-    const auto begin = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     for (const haptic::StrokeSample& s : pressed.strokes) (void)tick.run(s);
-    ns.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count() /
-                 static_cast<double>(pressed.strokes.size()));
+    ns.push_back(watch.ns() / static_cast<double>(pressed.strokes.size()));
   }
   return ns;
 }

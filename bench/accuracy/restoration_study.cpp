@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -78,14 +77,14 @@ constexpr Care kCares[] = {
 engine::Result<std::vector<Start>> startsOf(const engine::SimulatedScan& scan, engine::JobControl& job) {
   std::vector<Start> starts{{"alone", scan.scan}};
   {
-    const auto begin = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     const auto map = engine::findEdges(scan.scan, engine::EdgeMap::kUsualSigma, job);
     if (!map) return tl::unexpected(map.error());
     engine::EdgeChoice choice;
     choice.thickness = kReach + 1.0;
     auto marked = engine::suggestMarks(scan.scan, *map, choice, job);
     if (!marked) return tl::unexpected(marked.error());
-    starts.push_back({"around suggested edges", std::move(marked->field), engine::secondsSince(begin), 0.0});
+    starts.push_back({"around suggested edges", std::move(marked->field), watch.seconds(), 0.0});
   }
   for (const Care& care : kCares) {
     haptic::Scene scene = haptic::defaultScene();
@@ -186,12 +185,12 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
     for (const FilterSetting& setting : kFilterSettings) {
       if (job.cancelled()) return engine::cancelled();
       engine::JobControl quiet;
-      const auto begin = std::chrono::steady_clock::now();
+      const engine::Stopwatch watch;
       const auto spec = engine::withMeasuredRange(specOf(setting), scan.scan, quiet);
       if (!spec) return tl::unexpected(spec.error());
       const auto filtered = engine::applyFilter(start.field, scan.scan, *spec, quiet);
       if (!filtered) return tl::unexpected(filtered.error());
-      const double seconds = start.machine_s + engine::secondsSince(begin);
+      const double seconds = start.machine_s + watch.seconds();
       std::string method(engine::name(setting.kind));
       if (engine::filterOf(setting.kind).window.exists()) method += fmt::format(" {}", setting.window);
       if (setting.passes > 1) method += fmt::format(", {} passes", setting.passes);

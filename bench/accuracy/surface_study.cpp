@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <random>
 #include <string_view>
@@ -12,6 +11,7 @@
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "engine/base/statistics.h"
+#include "engine/base/stopwatch.h"
 #include "haptic/contact/certified.h"
 #include "haptic/contact/patch.h"
 
@@ -167,11 +167,9 @@ engine::Result<Study> surfaceStudy(const AccuracyOptions& options, engine::JobCo
       std::vector<glm::dvec3> points(count);
       std::vector<double> ns;
       for (int k = 0; k < 5; ++k) {
-        const auto begin = std::chrono::steady_clock::now();
+        const engine::Stopwatch watch;
         for (std::size_t i = 0; i < count; ++i) points[i] = method.closest(cases[i].patch, cases[i].endpoint);
-        ns.push_back(
-            std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count() /
-            static_cast<double>(count));
+        ns.push_back(watch.ns() / static_cast<double>(count));
       }
       if (found.empty()) truth = points;  // the first method is the reference
       AccuracyRow row;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/stopwatch.h"
 #include "engine/session/session_lock.h"
 #include "engine/session/session_rows.h"
 #include "engine/session/session_writer.h"
@@ -19,7 +20,7 @@ struct SessionAction {
   std::vector<JournalEntry> journal;
   std::string key;
   std::string text;
-  std::chrono::steady_clock::time_point enqueued;
+  Stopwatch since_enqueued;  ///< the action is made when it is enqueued
 };
 
 /// A session file open for writing: connection, lock and the head as last committed.

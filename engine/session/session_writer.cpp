@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <filesystem>
@@ -10,7 +11,6 @@
 #include <new>
 #include <thread>
 
-#include "engine/base/stopwatch.h"
 #include "engine/session/session_file.h"
 #include "engine/session/session_reader.h"
 #include "engine/session/session_save.h"
@@ -19,7 +19,6 @@ namespace fettle::engine {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr auto kPollInterval = std::chrono::milliseconds(20);  // of a waiting call, for a cancel
 
 }  // namespace
@@ -39,7 +38,6 @@ class SessionWriter::Impl {
   ~Impl() { finish(); }
 
   void enqueue(std::unique_ptr<SessionAction> action) {
-    action->enqueued = Clock::now();
     {
       const std::scoped_lock lock(queue_lock_);
       if (action->kind == SessionAction::Kind::kStep) {
@@ -201,7 +199,7 @@ class SessionWriter::Impl {
         queue_.pop_front();
         ++status_.committed;
         status_.committed_state = file_->head().state;
-        status_.last_commit_s = secondsSince(done->enqueued);
+        status_.last_commit_s = done->since_enqueued.seconds();
         status_.worst_commit_s = std::max(status_.worst_commit_s, status_.last_commit_s);
         status_.last_commit_bytes = bytes;
         status_.error.reset();

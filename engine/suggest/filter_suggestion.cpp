@@ -1,7 +1,6 @@
 #include "engine/suggest/filter_suggestion.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -22,8 +21,6 @@ namespace {
 
 constexpr int kPiecesASide = 4;
 constexpr std::int32_t kPieceSide = 256;
-
-using Clock = std::chrono::steady_clock;
 
 struct Spot {
   std::int32_t column, row, columns, rows;
@@ -105,7 +102,7 @@ double rootMean(double squares, std::int64_t count) {
 
 Status tryOn(const SyntheticSample& piece, const FilterCandidate& candidate, Sums& sums) {
   JobControl quiet;
-  const auto begin = Clock::now();
+  const Stopwatch watch;
   Version start = piece.scan;
   if (candidate.around_edges) {
     const auto map = findEdges(start, EdgeMap::kUsualSigma, quiet);
@@ -120,7 +117,7 @@ Status tryOn(const SyntheticSample& piece, const FilterCandidate& candidate, Sum
     auto filtered = applyFilter(start, start, candidate.spec, quiet);
     if (!filtered) return tl::unexpected(filtered.error());
     start = std::move(filtered->field);
-    sums.seconds += secondsSince(begin);
+    sums.seconds += watch.seconds();
   }
   const auto figures = compareToTruth(start, piece.surface, piece.edges, quiet);
   if (!figures) return tl::unexpected(figures.error());

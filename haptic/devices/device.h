@@ -54,7 +54,7 @@ struct DeviceInput {
   /// Incremented for each input; never decreases. Unchanged: nothing new arrived. A change of `link` alone
   /// does not count as an input.
   std::uint64_t sequence = 0;
-  std::int64_t arrival_ns = 0;  ///< std::chrono::steady_clock, when it arrived at this machine
+  std::int64_t arrival_ns = 0;  ///< engine::steadyNs() when it arrived at this machine
   LinkState link = LinkState::kDisconnected;
   /// Time for which the report being written has waited for the device [ns]; 0 = nothing waits. Above some ms
   /// the device does not apply the forces of the loop.

@@ -6,6 +6,7 @@
 
 #include <sys/resource.h>
 
+#include "engine/base/stopwatch.h"
 #include "engine/field/tile_store.h"
 #include "haptic/loop/pacer.h"
 #include "haptic/safety/last_resort.h"
@@ -107,7 +108,7 @@ void HapticLoop::main() noexcept {
     const Pacer::Tick tick = pacer.wait();
     tick_.run(tick.woke_ns, tick.since_ns);
     timing_.lateness.add(tick.lateness_ns);
-    timing_.compute.add(monotonicNow() - tick.woke_ns);
+    timing_.compute.add(engine::steadyNs() - tick.woke_ns);
     if (tick.skipped > 0) timing_.addMissed(tick.skipped);
     if (tick_.state().tick % 1024 == 0) noteDiskWaits();
   }

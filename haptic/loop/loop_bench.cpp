@@ -56,7 +56,7 @@ class SimulatedPress : public Device {
   }
   [[nodiscard]] const DeviceProfile& profile() const noexcept override { return profile_; }
   [[nodiscard]] DeviceInput read() noexcept override {
-    const std::int64_t now = monotonicNow();
+    const std::int64_t now = engine::steadyNs();
     const double t = 1e-9 * static_cast<double>(now);
     constexpr double kMiddle = 0.5 * kSide * kSpacing_mm;
     input_.position_mm = {kMiddle + 0.9 * kMiddle * std::sin(0.7 * t),
@@ -136,7 +136,7 @@ class Measurement {
     const bool together = cores.size() > 1;
     const int first = cores.empty() ? -1 : cores.front();
     const int last = cores.empty() ? -1 : cores.back();
-    const auto begin = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     job_.begin("measuring", static_cast<std::uint64_t>(1000.0 * options_.seconds));
     std::unique_ptr<BusyProcesses> load;
     if (options_.load == BenchLoad::kBusy)
@@ -152,7 +152,7 @@ class Measurement {
                    : measure(first, first, even ? Which::kLoop : Which::kReference, slice_s);
       if (!done) return tl::unexpected(done.error());
     }
-    report_.seconds = engine::secondsSince(begin);
+    report_.seconds = watch.seconds();
     report_.rate_hz = options_.rate_hz;
     report_.load = options_.load;
     report_.machine = machineName();
@@ -231,9 +231,8 @@ class Measurement {
 
   // The main thread's part: takes events and reads the state as a display would.
   engine::Status wait(double seconds, HapticLoop* loop) {
-    const auto begin = std::chrono::steady_clock::now();
-    const std::chrono::duration<double> span(seconds);
-    while (std::chrono::steady_clock::now() - begin < span) {
+    const engine::Stopwatch watch;
+    while (watch.seconds() < seconds) {
       if (job_.cancelled()) return engine::cancelled();
       std::this_thread::sleep_for(std::chrono::milliseconds(8));
       job_.advance(8);

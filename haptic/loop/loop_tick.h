@@ -131,7 +131,7 @@ class LoopTick {
   LoopTick(std::unique_ptr<PreparedScene> scene, engine::Version start, Device& device,
            LoopChannels& channels, const LoopOptions& options, TilePrefetcher* tile_prefetcher = nullptr);
 
-  /// One tick. `now_ns`: monotonicNow() at wake-up; `since_ns`: since the previous tick's.
+  /// One tick. `now_ns`: engine::steadyNs() at wake-up; `since_ns`: since the previous tick's.
   void run(std::int64_t now_ns, std::int64_t since_ns) noexcept;
 
   /// The last tick: zero force, the rest of the edits published if the ring has room.

@@ -100,7 +100,7 @@ struct TickRecord {
 /// The newest tick, for the display; the main side reads it from a LatestSlot.
 struct LoopState {
   std::uint64_t tick = 0;
-  std::int64_t time_ns = 0;     ///< steady_clock at wake-up
+  std::int64_t time_ns = 0;     ///< engine::steadyNs() at wake-up
   glm::dvec3 endpoint_mm{0.0};  ///< field coordinates
   glm::dvec3 proxy_mm{0.0};     ///< on the surface while in contact, else the endpoint
   glm::dvec3 force_n{0.0};      ///< the scene's, field frame

@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <ctime>
 
+#include "engine/base/stopwatch.h"
+
 namespace fettle::haptic {
 
 namespace {
@@ -19,14 +21,8 @@ std::int64_t periodOf(double rate_hz) noexcept {
 
 }  // namespace
 
-std::int64_t monotonicNow() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return static_cast<std::int64_t>(now.tv_sec) * kSecond_ns + now.tv_nsec;
-}
-
 Pacer::Pacer(double rate_hz) noexcept
-    : schedule_(monotonicNow() + periodOf(rate_hz), periodOf(rate_hz)), last_ns_(monotonicNow()) {}
+    : schedule_(engine::steadyNs() + periodOf(rate_hz), periodOf(rate_hz)), last_ns_(engine::steadyNs()) {}
 
 Pacer::Tick Pacer::wait() noexcept {
   const timespec due{static_cast<time_t>(schedule_.due() / kSecond_ns),
@@ -34,7 +30,7 @@ Pacer::Tick Pacer::wait() noexcept {
   // A signal handled on this thread interrupts the sleep; the due time is absolute, so it is resumed.
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &due, nullptr) == EINTR) {
   }
-  const std::int64_t now = monotonicNow();
+  const std::int64_t now = engine::steadyNs();
   const Schedule::Wake wake = schedule_.wake(now);
   const Tick tick{now, wake.lateness_ns, wake.skipped, now - last_ns_};
   last_ns_ = now;

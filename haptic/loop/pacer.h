@@ -4,9 +4,6 @@
 
 namespace fettle::haptic {
 
-/// Nanoseconds of CLOCK_MONOTONIC, which is std::chrono::steady_clock's.
-[[nodiscard]] std::int64_t monotonicNow() noexcept;
-
 /// When ticks are due: a grid of times, one per period. A late tick runs late; periods that have passed
 /// completely by then are counted and skipped, so two ticks never share a period and a stall is not followed
 /// by a burst. The grid does not drift.
@@ -49,7 +46,7 @@ class Pacer {
   explicit Pacer(double rate_hz) noexcept;
 
   struct Tick {
-    std::int64_t woke_ns = 0;      ///< monotonicNow() at wake-up
+    std::int64_t woke_ns = 0;      ///< engine::steadyNs() at wake-up
     std::int64_t lateness_ns = 0;  ///< after the due time
     std::int64_t skipped = 0;      ///< periods without a tick since the last one
     std::int64_t since_ns = 0;     ///< since the previous wake-up

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <new>
 
 #include <glm/geometric.hpp>
 
+#include "engine/base/stopwatch.h"
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
 #include "haptic/base/rt_thread.h"
@@ -79,7 +79,7 @@ engine::Result<ReplayResult> run(const engine::Version& start, const engine::Ver
   if (options.record_forces == RecordForces::kYes) result.forces.reserve(strokes.size());
   double max_force2 = 0.0;
   job.begin("replaying", strokes.size());
-  const auto begin = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   {
     const DenormalScope as_in_the_loop;  // bit-identical to the loop
     for (std::size_t i = 0; i < strokes.size(); i += kTicksAStep) {
@@ -98,10 +98,9 @@ engine::Result<ReplayResult> run(const engine::Version& start, const engine::Ver
       job.advance(part.size());
     }
   }
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
   report.ticks = static_cast<std::int64_t>(strokes.size());
   report.max_force_n = std::sqrt(max_force2);
-  report.seconds = spent.count();
+  report.seconds = watch.seconds();
   report.ticks_per_second = report.seconds > 0.0 ? static_cast<double>(report.ticks) / report.seconds : 0.0;
   report.counters = tick.counters();
   if (report.counters.refused_edits > 0)

@@ -1,13 +1,13 @@
 #include "haptic/trials/contact_trial.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include <glm/geometric.hpp>
 
 #include "engine/base/statistics.h"
+#include "engine/base/stopwatch.h"
 #include "engine/field/live_field.h"
 #include "haptic/base/rt_thread.h"
 #include "haptic/contact/certified.h"
@@ -125,10 +125,9 @@ engine::Result<ContactFigures> ContactTrial::measure(const ContactChoice& choice
   for (int i = 0; i < repeats; ++i) {
     engine::LiveField live(field_, engine::Growth::kAllowed);
     haptic::Tick tick(scene, live, field_);
-    const auto begin = std::chrono::steady_clock::now();
+    const engine::Stopwatch watch;
     for (const haptic::StrokeSample& s : strokes_) (void)tick.run(s);
-    ns.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count() /
-                 static_cast<double>(strokes_.size()));
+    ns.push_back(watch.ns() / static_cast<double>(strokes_.size()));
     if (job.cancelled()) return engine::cancelled();
   }
   const engine::TimeSpread times = engine::timeSpread(std::move(ns));

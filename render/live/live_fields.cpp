@@ -1,7 +1,6 @@
 #include "render/live/live_fields.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include <fmt/format.h>
 
@@ -12,8 +11,6 @@
 
 namespace fettle::render {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 // The finest level that stays on the device permanently: what kFixedBytes and a quarter of the pool hold if
 // `textures` fields do so. The coarsest patch, which is drawn when nothing else can be, has vertices every
@@ -210,7 +207,7 @@ engine::Result<bool> LiveFields::setField(std::size_t i, const Shown& next) {
 }
 
 engine::Result<LiveFields::Change> LiveFields::update(const Shown& next) {
-  const auto start = Clock::now();
+  const engine::Stopwatch watch;
   if (next.versions.empty() || next.versions.size() > kMostPanels)
     return engine::inputError(fmt::format("{} versions in one picture", next.versions.size()), "picture",
                               fmt::format("show one to {}", kMostPanels));
@@ -259,12 +256,12 @@ engine::Result<LiveFields::Change> LiveFields::update(const Shown& next) {
   another = another || !(inverted || now == before);
   shown_ = next;
   broken_ = false;
-  uploaded_.ms += engine::msSince(start);
+  uploaded_.ms += watch.ms();
   return another ? Change::kAnother : inverted ? Change::kInverted : Change::kChanged;
 }
 
 void LiveFields::uploadPending(UploadStatistics& all) {
-  const auto start = Clock::now();
+  const engine::Stopwatch watch;
   UploadStatistics count;
   std::vector<glm::ivec2> moved;
   for (Field& f : fields_) {
@@ -288,7 +285,7 @@ void LiveFields::uploadPending(UploadStatistics& all) {
   all.measured_tiles = count.measured_tiles;
   all.unmeasured_tiles = count.unmeasured_tiles;
   all.pending_tiles = count.pending_tiles + count.unmeasured_tiles;
-  all.ms += engine::msSince(start);
+  all.ms += watch.ms();
   uploaded_ = {};
 }
 

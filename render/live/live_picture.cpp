@@ -1,7 +1,6 @@
 #include "render/live/live_picture.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 
@@ -20,8 +19,6 @@
 
 namespace fettle::render {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 engine::Error errorOf(const std::string& device, const char* what) {
   return engine::failure(fmt::format("drawing failed ({})", what), device, "create the picture again")
@@ -256,13 +253,13 @@ DrawnFrame LivePicture::Impl::drawnFrameOf(const std::vector<LivePanel>& panels,
 void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target, FrameStatistics& stats,
                                PicturePlan plan) {
   stats.wait_ms = submissions.begin();
-  const auto start = Clock::now();
+  const engine::Stopwatch watch;
   staging.release(submissions.done());
   // Upload what changed, and update the measures by which patches are chosen.
   fields.uploadPending(stats.upload);
-  const double upload_ms = engine::msSince(start);
+  const double upload_ms = watch.ms();
 
-  const auto select_start = Clock::now();
+  const engine::Stopwatch selecting;
   LivePanels chosen(input, plan, fields, patch_tree_cache);
   uploadPages(chosen, input.pages, stats);
   chosen.finishChoice(stats);
@@ -286,7 +283,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
     parts = cutToDamage(*previous, current, chosen.queries(), panels);
     stats.redrawn = redrawnShare(panels);
   }
-  stats.select_ms = engine::msSince(select_start);
+  stats.select_ms = selecting.ms();
 
   if (stereo)
     recordStereo(input.stereo, input.sharpness, panels, decorations, plan.palette.ground, target);
@@ -301,7 +298,7 @@ void LivePicture::Impl::drawOn(const FrameInput& input, const LiveTarget& target
   stats.range = plan.range;
   stats.vertical_exaggeration = plan.exaggeration;
   stats.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
-  stats.record_ms = engine::msSince(start) - stats.select_ms - upload_ms;
+  stats.record_ms = watch.ms() - stats.select_ms - upload_ms;
   if (input.part) return;
   seen = Seen{std::move(plan), {}, chosen.eyes(), input.stereo.mode, input.view.width};
   for (const LivePanel& panel : panels) seen->visible.push_back(panel.visible);
@@ -394,7 +391,7 @@ engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, LiveT
 
 engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input) {
   try {
-    const auto start = Clock::now();
+    const engine::Stopwatch watch;
     if (engine::Status ok = checkPart(input); !ok) return tl::unexpected(ok.error());
     const vk::Extent2D extent = extentOf(input);
     const std::uint32_t rays = input.sharpness == Sharpness::kFine ? 2 : 1;
@@ -413,7 +410,7 @@ engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input
     if (!stats) return stats;
     impl_->submissions.finish();
     stats->device_ms = impl_->submissions.lastMs();
-    stats->wait_ms = engine::msSince(start) - stats->record_ms - stats->select_ms - stats->upload.ms;
+    stats->wait_ms = watch.ms() - stats->record_ms - stats->select_ms - stats->upload.ms;
     return stats;
   } catch (const std::exception& error) {
     return tl::unexpected(errorOf(impl_->context.name(), error.what()));

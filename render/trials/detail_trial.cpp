@@ -1,11 +1,11 @@
 #include "render/trials/detail_trial.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
 
 #include "engine/base/statistics.h"
+#include "engine/base/stopwatch.h"
 
 namespace fettle::trials {
 namespace {
@@ -29,11 +29,10 @@ engine::Status draw(render::LivePicture& picture, render::FrameInput& input, con
     if (!warm) return tl::unexpected(warm.error());
     if (warm->upload.pending_tiles == 0) break;
   }
-  const auto begin = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   const auto stats = picture.drawAndWait(input);
   if (!stats) return tl::unexpected(stats.error());
-  out.ms.push_back(
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+  out.ms.push_back(watch.ms());
   out.figures.bound_px = std::max(out.figures.bound_px, stats->bound_px);
   out.figures.vertices = std::max(out.figures.vertices, stats->vertices);
   if (const auto shown = picture.draw(input, image); !shown) return tl::unexpected(shown.error());

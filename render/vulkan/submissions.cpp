@@ -25,9 +25,9 @@ Submissions::~Submissions() {
 }
 
 double Submissions::begin() {
-  const auto start = std::chrono::steady_clock::now();
+  const engine::Stopwatch watch;
   if (next_ > kInFlight) waitFor(next_ - kInFlight);
-  const double waited = engine::msSince(start);
+  const double waited = watch.ms();
   const vk::raii::CommandBuffer& commands = slot(next_).commands;
   commands.reset();
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
@@ -50,7 +50,7 @@ void Submissions::submit(const Gate& gate) {
     signal.setSemaphore(gate.signal).setStageMask(vk::PipelineStageFlagBits2::eAllCommands);
     info.setSignalSemaphoreInfos(signal);
   }
-  s.sent = std::chrono::steady_clock::now();
+  s.since_sent = {};
   context_.queue().submit2(info, *s.fence);
   ++next_;
 }
@@ -58,7 +58,7 @@ void Submissions::submit(const Gate& gate) {
 std::uint64_t Submissions::done() {
   while (done_ + 1 < next_ && slot(done_ + 1).fence.getStatus() == vk::Result::eSuccess) {
     ++done_;
-    last_ms_ = engine::msSince(slot(done_).sent);
+    last_ms_ = slot(done_).since_sent.ms();
   }
   return done_;
 }

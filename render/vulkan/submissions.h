@@ -1,11 +1,11 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <optional>
 
+#include "engine/base/stopwatch.h"
 #include "render/vulkan/memory.h"
 
 namespace fettle::render {
@@ -46,7 +46,7 @@ class Submissions {
   struct Slot {
     vk::raii::CommandBuffer commands = nullptr;
     vk::raii::Fence fence = nullptr;
-    std::chrono::steady_clock::time_point sent;
+    engine::Stopwatch since_sent;
   };
   [[nodiscard]] const Slot& slot(std::uint64_t number) const noexcept { return slots_[number % kInFlight]; }
   [[nodiscard]] Slot& slot(std::uint64_t number) noexcept { return slots_[number % kInFlight]; }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "engine/base/stopwatch.h"
 #include "render/vulkan/barrier.h"
 #include "render/vulkan/capture.h"
 #include "render/vulkan/formats.h"
@@ -512,7 +512,7 @@ engine::Result<PresentReport> Window::present() {
     for (int tries = 0; tries < 3; ++tries) {
       if (!w.swapchain->fit(w.frameSize())) return report;
       w.ui->fit(w.swapchain->extent());
-      const auto start = std::chrono::steady_clock::now();
+      const engine::Stopwatch watch;
       const bool shown = w.swapchain->show(
           w.ui->image().image(),
           [&](const vk::raii::CommandBuffer& commands) {
@@ -524,9 +524,8 @@ engine::Result<PresentReport> Window::present() {
           [&w] {
             if (!std::exchange(w.seen, true)) glfwShowWindow(w.glfw.window);
           });
-      const auto end = std::chrono::steady_clock::now();
-      report.draw_ms = std::chrono::duration<double, std::milli>(end - start).count();
-      report.shown_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(end.time_since_epoch()).count();
+      report.draw_ms = watch.ms();
+      report.shown_ns = engine::steadyNs();
       if (shown) break;
     }
     return report;

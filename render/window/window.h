@@ -91,7 +91,7 @@ struct WindowOptions {
 /// Times of showing a frame.
 struct PresentReport {
   double draw_ms = 0.0;       ///< panels and copies, until the device has completed them
-  std::int64_t shown_ns = 0;  ///< steady_clock when the drawn frame was submitted to the window system
+  std::int64_t shown_ns = 0;  ///< engine::steadyNs() when the drawn frame was submitted to the window system
 };
 
 /// A piece of text on the panels, as displayed.

@@ -8,6 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "engine/base/stopwatch.h"
+
 namespace fettle::haptic {
 
 namespace {
@@ -33,12 +35,6 @@ void nameThread(const char* name) noexcept {
 }
 
 }  // namespace
-
-std::int64_t steadyNs() noexcept {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(
-             std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 ReportLink::ReportLink(std::unique_ptr<ReportSource> source, ReportHandler& handler, const OutputTimes& times)
     : source_(std::move(source)), handler_(handler), times_(times) {
@@ -76,7 +72,7 @@ void ReportLink::stop() noexcept {
 }
 
 void ReportLink::write(const glm::dvec3& output) noexcept {
-  published_ns_ = steadyNs();
+  published_ns_ = engine::steadyNs();
   output_.publish({output, published_ns_});
   // Increments a counter and, if the writer sleeps, makes one futex call that wakes it; never waits. It fails
   // only when the counter is full, and then the writer is awake anyway.
@@ -156,7 +152,7 @@ ReportLink::Ended ReportLink::readWhileConnected(ReportPort& port) noexcept {
       outcome = port.read(buffer, wait);
       if (outcome.kind != PortRead::kReport) break;
       wait = std::chrono::milliseconds{0};
-      if (handler_.onReport({buffer.data(), outcome.size}, steadyNs()))
+      if (handler_.onReport({buffer.data(), outcome.size}, engine::steadyNs()))
         ++good;
       else
         add(bad_inputs_);
@@ -185,11 +181,11 @@ PortWrite ReportLink::send(ReportPort& port, OutputRule::Send what, const glm::d
   const bool zero = what == OutputRule::Send::kZero;
   const std::size_t size = handler_.encode(zero ? glm::dvec3{0.0} : value, report);
   if (size == 0) return PortWrite::kFailed;
-  const std::int64_t start = steadyNs();
+  const std::int64_t start = engine::steadyNs();
   writing_since_ns_.store(start, std::memory_order_relaxed);
   const PortWrite outcome = port.write({report.data(), size});
   writing_since_ns_.store(0, std::memory_order_relaxed);
-  const std::int64_t took = steadyNs() - start;
+  const std::int64_t took = engine::steadyNs() - start;
   // Relaxed, no compare-and-swap: only this thread writes it.
   if (took > longest_output_ns_.load(std::memory_order_relaxed))
     longest_output_ns_.store(took, std::memory_order_relaxed);
@@ -204,7 +200,7 @@ void ReportLink::runWriter() noexcept {
   OutputRule rule(Pacing::kNone, times_);
   std::uint64_t generation = 0;
   for (;;) {
-    const std::int64_t now = steadyNs();
+    const std::int64_t now = engine::steadyNs();
     waitForWork(port ? rule.deadline(now) : now + 1'000'000'000);
     bool stopping = false;
     {
@@ -216,13 +212,13 @@ void ReportLink::runWriter() noexcept {
         replace_port_ = false;
         rule = OutputRule(pacing_, times_);
         // From the opening on: the input that determined the pacing needs its reply too.
-        rule.open(steadyNs(), inputs_at_open_);
+        rule.open(engine::steadyNs(), inputs_at_open_);
       }
     }
     if (stopping) break;
     if (!port) continue;
     if (output_.take()) rule.force(output_.latest().written_ns);
-    const auto what = rule.decide(steadyNs(), inputs_.load(std::memory_order_relaxed));
+    const auto what = rule.decide(engine::steadyNs(), inputs_.load(std::memory_order_relaxed));
     if (what == OutputRule::Send::kNothing) continue;
     const PortWrite outcome = send(*port, what, output_.latest().value);
     if (outcome == PortWrite::kDone) sent_ns_.store(output_.latest().written_ns, std::memory_order_relaxed);

@@ -67,7 +67,7 @@ class ReportLink {
   /// Loop thread, wait-free: output for the device (motor currents, whatever encode() takes).
   void write(const glm::dvec3& output) noexcept;
 
-  /// Any thread, wait-free: since when a write has been waiting for the device [ns of steadyNs]; 0 = none is.
+  /// Any thread, wait-free: since when a write has been waiting for the device [engine::steadyNs]; 0 = none is.
   [[nodiscard]] std::int64_t writingSinceNs() const noexcept {
     // Relaxed: independent of other data, read once per tick.
     return writing_since_ns_.load(std::memory_order_relaxed);
@@ -133,8 +133,5 @@ class ReportLink {
   std::atomic<std::int64_t> longest_output_ns_{0};
   std::atomic<std::int64_t> writing_since_ns_{0};
 };
-
-/// std::chrono::steady_clock in nanoseconds, the clock of DeviceInput::arrival_ns.
-[[nodiscard]] std::int64_t steadyNs() noexcept;
 
 }  // namespace fettle::haptic

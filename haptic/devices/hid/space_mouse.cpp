@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/base/stopwatch.h"
+
 namespace fettle::haptic {
 
 namespace {
@@ -43,7 +45,7 @@ SpaceMouse::~SpaceMouse() {
 }
 
 DeviceInput SpaceMouse::read() noexcept {
-  return readAt(steadyNs());
+  return readAt(engine::steadyNs());
 }
 
 DeviceInput SpaceMouse::readAt(std::int64_t now_ns) noexcept {

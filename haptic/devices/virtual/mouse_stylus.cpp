@@ -6,7 +6,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "haptic/devices/hid/report_link.h"
+#include "engine/base/stopwatch.h"
 
 namespace fettle::haptic {
 
@@ -76,7 +76,7 @@ void MouseStylus::wheel(double steps) noexcept {
 }
 
 DeviceInput MouseStylus::read() noexcept {
-  return readAt(steadyNs());
+  return readAt(engine::steadyNs());
 }
 
 bool MouseStylus::accept(const Request& request) noexcept {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "haptic/devices/hid/report_link.h"
+#include "engine/base/stopwatch.h"
 
 namespace fettle::haptic {
 
@@ -25,7 +25,7 @@ engine::Status ReplayDevice::start() {
 }
 
 DeviceInput ReplayDevice::read() noexcept {
-  return readAt(steadyNs());
+  return readAt(engine::steadyNs());
 }
 
 DeviceInput ReplayDevice::readAt(std::int64_t now_ns) noexcept {

@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "haptic/devices/hid/report_link.h"
+#include "engine/base/stopwatch.h"
 
 namespace fettle::haptic {
 
@@ -107,7 +107,7 @@ DeviceInput SimulatedHand::read() noexcept {
   input_.tool = targetAt(seconds()).tool;
   input_.buttons = input_.tool == Tool::kFeel ? 0 : kPrimaryButton;
   input_.link = LinkState::kConnected;
-  input_.arrival_ns = steadyNs();
+  input_.arrival_ns = engine::steadyNs();
   ++input_.sequence;
   return input_;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/stopwatch.h"
 #include "haptic/devices/wooden/wooden_kinematics.h"
 
 namespace fettle::haptic {
@@ -25,7 +26,7 @@ DeviceInput WoodenHaptics::read() noexcept {
   state_.take();
   DeviceInput input = state_.latest().input;
   const std::int64_t since = link_.writingSinceNs();
-  input.output_waits_ns = since == 0 ? 0 : std::max<std::int64_t>(steadyNs() - since, 0);
+  input.output_waits_ns = since == 0 ? 0 : std::max<std::int64_t>(engine::steadyNs() - since, 0);
   input.output_pending = link_.outputPending();
   return input;
 }

@@ -336,9 +336,9 @@ TEST(LocateEdgeLines, BitIdenticalForAnyCutThatHoldsTheReach) {
 
 TEST(LocateEdgeLines, TimeGoesWithTheStrokeAndNotWithTheField) {
   const Version large = edgeField(262144, 40, [](int, int r) { return r >= 20 ? 10.0 : 0.0; });
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const auto lines = located(large, 1.0, {{0, straightStroke({131000.0, 19.0}, {131060.0, 20.0}), false}});
-  const double seconds = secondsSince(begin);
+  const double seconds = watch.seconds();
   fmt::print("a stroke of 60 samples in a field of {} samples: {:.1f} ms\n", large.grid().samples(),
              1e3 * seconds);
   EXPECT_GT(shareLocated(lines[0]), 0.9);
@@ -350,9 +350,9 @@ TEST(LocateEdgeLines, Speed) {
   const std::vector<EdgeStroke> strokes{{0, waving(49.5, 100.0, 1100.0), false}};
   double fastest = 1e9;
   for (int k = 0; k < 5; ++k) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     (void)located(field, 1.0, strokes);
-    fastest = std::min(fastest, 1e3 * secondsSince(begin));
+    fastest = std::min(fastest, watch.ms());
   }
   fmt::print("a stroke of 1,000 samples: {:.0f} ms\n", fastest);
   RecordProperty("milliseconds", fmt::format("{:.1f}", fastest));

@@ -14,6 +14,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/base/stopwatch.h"
 #include "engine/field/difference.h"
 #include "haptic/loop/haptic_loop.h"
 #include "haptic/loop/pacer.h"
@@ -43,7 +44,7 @@ class RestlessHand : public tests::HandDevice {
     input.position_mm = tests::sweep(i, kSide - 1.0, -0.7, 0.1);
     input.tool = i / 900 % 4 == 3 ? Tool::kMark : Tool::kSmooth;
     ++input.sequence;
-    input.arrival_ns = monotonicNow();
+    input.arrival_ns = engine::steadyNs();
     if (said.size() < kMostTicks) said.push_back({0.0, input.position_mm, *input.tool});
     return input;
   }
