@@ -8,32 +8,29 @@
 
 #include <fmt/format.h>
 
+#include "bench/accuracy/drawn_scan.h"
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "engine/base/stopwatch.h"
 #include "engine/compare/compare.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
-#include "engine/scanner/scanner.h"
 
 namespace fettle::bench {
 namespace {
 
 struct Scanned {
-  const char* name;
-  const char* part;
+  PartSubject part;
   int side;  // of the field at full effort [samples]
-  double noise;
-  double outliers;
 };
 constexpr Scanned kScanned[] = {
-    {"bracket", "bracket", 2048, 1.0, 0.0},
-    {"steps, noise x 3", "steps", 1024, 3.0, 0.0},
-    {"ribs, noise x 3", "ribs", 1024, 3.0, 0.0},
-    {"wedges", "wedges", 1024, 1.0, 0.0},
-    {"housing", "housing", 1024, 1.0, 0.0},
-    {"bracket, 2 % mixed pixels", "bracket", 1024, 1.0, 0.02},
-    {"steps, 2 % mixed pixels", "steps", 1024, 1.0, 0.02},
+    {{"bracket", "bracket", 1.0}, 2048},
+    {{"steps, noise x 3", "steps", 3.0}, 1024},
+    {{"ribs, noise x 3", "ribs", 3.0}, 1024},
+    {{"wedges", "wedges", 1.0}, 1024},
+    {{"housing", "housing", 1.0}, 1024},
+    {{"bracket, 2 % mixed pixels", "bracket", 1.0, 0.02}, 1024},
+    {{"steps, 2 % mixed pixels", "steps", 1.0, 0.02}, 1024},
 };
 
 struct Method {
@@ -104,22 +101,16 @@ engine::Result<Study> automaticStudy(const AccuracyOptions& options, engine::Job
   study.error_name = "RMSE against the truth";
   study.error_unit = "um";
   study.columns = {"flats [um]", "near edges [um]", "near edges, worst seed [um]"};
-  const int seeds = options.effort >= 0.5 ? 5 : options.effort >= 0.05 ? 2 : 1;
+  const int seeds = scanSizes(options.effort).seeds;
   const int shrink = options.effort >= 0.5 ? 1 : options.effort >= 0.05 ? 2 : 4;
   job.begin("automatic filters",
             std::size(kScanned) * static_cast<std::size_t>(seeds) * (std::size(kMethods) + 1));
   for (const Scanned& scanned : kScanned) {
     std::array<Figures, std::size(kMethods) + 1> found;  // the scan itself first
     for (int seed = 1; seed <= seeds; ++seed) {
-      engine::ScannerSpec scanner;
-      scanner.part = scanned.part;
-      scanner.width = scanner.height = scanned.side / shrink;
-      scanner.noise = scanned.noise;
-      scanner.outliers = scanned.outliers;
-      scanner.seed = static_cast<std::uint64_t>(seed);
-      engine::JobControl quiet;
-      const auto scan = engine::simulateScan(scanner, quiet);
+      const auto scan = scanOf(scanned.part, scanned.side / shrink, seed);
       if (!scan) return tl::unexpected(scan.error());
+      engine::JobControl quiet;
       for (std::size_t m = 0; m < found.size(); ++m) {
         if (job.cancelled()) return engine::cancelled();
         double ns = 0.0;
@@ -136,9 +127,9 @@ engine::Result<Study> automaticStudy(const AccuracyOptions& options, engine::Job
         job.advance();
       }
     }
-    study.rows.push_back(found[0].row(scanned.name, "nothing"));
+    study.rows.push_back(found[0].row(scanned.part.name, "nothing"));
     for (std::size_t m = 1; m < found.size(); ++m)
-      study.rows.push_back(found[m].row(scanned.name, kMethods[m - 1].name));
+      study.rows.push_back(found[m].row(scanned.part.name, kMethods[m - 1].name));
   }
   study.reference = fmt::format(
       "The simulated parts' truth, formulas in millimetres (fettle synth), with {} {} of noise each. Near "

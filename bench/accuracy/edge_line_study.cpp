@@ -5,30 +5,27 @@
 
 #include <fmt/format.h>
 
+#include "bench/accuracy/drawn_scan.h"
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "engine/base/stopwatch.h"
 #include "engine/edges/locate.h"
 #include "engine/scanner/edge_distance.h"
-#include "engine/scanner/scanner.h"
-#include "haptic/operator/hand_lines.h"
 
 namespace fettle::bench {
 namespace {
 
 struct LineSubject {
-  const char* name;
-  const char* part;
-  double noise;
-  double hand;            // times the drift and tremor of OperatorSpec
-  double hand_deviation;  // what the search is told [samples]
+  PartSubject part;
+  double roughness;       // of the hand, see drawnEdges()
+  double hand_deviation;  // LocateOptions::hand_deviation of the search [samples]
 };
 constexpr LineSubject kLineSubjects[] = {
-    {"bracket x1", "bracket", 1.0, 1.0, 1.2},
-    {"bracket x3", "bracket", 3.0, 1.0, 1.2},
-    {"steps x3", "steps", 3.0, 1.0, 1.2},
-    {"ribs x3", "ribs", 3.0, 1.0, 1.2},
-    {"steps x3, rough hand", "steps", 3.0, 1.8, 2.5},
+    {{"bracket x1", "bracket", 1.0}, 1.0, 1.2},
+    {{"bracket x3", "bracket", 3.0}, 1.0, 1.2},
+    {{"steps x3", "steps", 3.0}, 1.0, 1.2},
+    {{"ribs x3", "ribs", 3.0}, 1.0, 1.2},
+    {{"steps x3, rough hand", "steps", 3.0}, 1.8, 2.5},
 };
 constexpr const char* kHandMethod = "hand";
 constexpr const char* kLocatedMethod = "located line";
@@ -53,40 +50,23 @@ struct LineRun {
   std::uint64_t hash = 0;
 };
 
-engine::Result<LineRun> runLines(const LineSubject& subject, std::int32_t side, std::uint64_t noise_seed,
-                                 std::uint64_t hand_seed) {
-  engine::JobControl quiet;
-  engine::ScannerSpec scanner;
-  scanner.part = subject.part;
-  scanner.noise = subject.noise;
-  scanner.width = scanner.height = side;
-  scanner.seed = noise_seed;
-  const auto scan = engine::simulateScan(scanner, quiet);
+engine::Result<LineRun> runLines(const LineSubject& subject, std::int32_t side, int noise_seed,
+                                 int hand_seed) {
+  const auto scan = scanOf(subject.part, side, noise_seed);
   if (!scan) return tl::unexpected(scan.error());
-  const engine::Grid& grid = scan->scan.grid();
-  // In samples the hand is the same at every size of the scan.
-  constexpr double kUsualSide = 1024.0;
-  haptic::OperatorSpec person;
-  person.seed = hand_seed;
-  person.wander_mm *= subject.hand * kUsualSide / side;
-  person.tremor_mm *= subject.hand * kUsualSide / side;
-  const std::vector<haptic::HandLine> hands = haptic::handLines(scan->edge_lines, grid, person);
-  std::vector<engine::EdgeStroke> strokes;
-  strokes.reserve(hands.size());
-  for (const haptic::HandLine& hand : hands)
-    strokes.push_back({static_cast<std::int64_t>(strokes.size()), hand.points, hand.closed});
-
+  const DrawnEdges drawn = drawnEdges(*scan, hand_seed, subject.roughness);
   LineRun run;
+  engine::JobControl quiet;
   const engine::Stopwatch watch;
-  const auto lines =
-      engine::locateEdgeLines(scan->scan.reader(), scan->sigma_mm, strokes, {subject.hand_deviation}, quiet);
+  const auto lines = engine::locateEdgeLines(scan->scan.reader(), scan->sigma_mm, drawn.strokes,
+                                             {subject.hand_deviation}, quiet);
   if (!lines) return tl::unexpected(lines.error());
   run.seconds = watch.seconds();
-  const double spacing = grid.spacingXMm();
+  const double spacing = scan->scan.grid().spacingXMm();
   for (std::size_t k = 0; k < lines->size(); ++k) {
     const engine::Edge& edge = scan->edge_lines[k];
     const auto off = [&](glm::dvec2 p) { return engine::distanceFrom(edge, p * spacing) / spacing; };
-    for (const glm::dvec2& p : hands[k].points) run.hand.add(off(p));
+    for (const glm::dvec2& p : drawn.strokes[k].points) run.hand.add(off(p));
     for (const engine::EdgePoint& p : (*lines)[k].points) {
       run.points += 1.0;
       if (!p.located) continue;
@@ -107,7 +87,7 @@ engine::Result<LineRun> runLines(const LineSubject& subject, std::int32_t side, 
 void addRows(const LineSubject& subject, const std::vector<LineRun>& runs, Study& study) {
   const double none = std::numeric_limits<double>::quiet_NaN();
   AccuracyRow hand, located;
-  hand.subject = located.subject = subject.name;
+  hand.subject = located.subject = subject.part.name;
   hand.method = kHandMethod;
   located.method = kLocatedMethod;
   hand.error_p99 = located.error_p99 = none;
@@ -145,17 +125,14 @@ engine::Result<Study> edgeLineStudy(const AccuracyOptions& options, engine::JobC
   study.error_name = "root mean square distance from the true edge";
   study.error_unit = "samples";
   study.columns = {"share located", "error over stated deviation", "kind right"};
-  const int noises = std::clamp(static_cast<int>(std::lround(5.0 * options.effort)), 1, 5);
-  const int hands = std::clamp(static_cast<int>(std::lround(3.0 * options.effort)), 1, 3);
-  const std::int32_t side = options.effort >= 0.05 ? 1024 : 512;
-  job.begin("edge lines", std::size(kLineSubjects) * static_cast<std::size_t>(noises * hands));
+  const auto [seeds, hands, side] = scanSizes(options.effort);
+  job.begin("edge lines", std::size(kLineSubjects) * static_cast<std::size_t>(seeds * hands));
   for (const LineSubject& subject : kLineSubjects) {
     std::vector<LineRun> runs;
-    for (int noise = 1; noise <= noises; ++noise)
+    for (int seed = 1; seed <= seeds; ++seed)
       for (int hand = 1; hand <= hands; ++hand) {
         if (job.cancelled()) return engine::cancelled();
-        auto run =
-            runLines(subject, side, static_cast<std::uint64_t>(noise), static_cast<std::uint64_t>(hand));
+        auto run = runLines(subject, side, seed, hand);
         if (!run) return tl::unexpected(run.error());
         runs.push_back(*run);
         job.advance();
@@ -168,13 +145,13 @@ engine::Result<Study> edgeLineStudy(const AccuracyOptions& options, engine::JobC
       "the tremor and drift measured on surgeons along each of them. {} seeds of noise and {} of the hand: "
       "mean "
       "and worst run. Of the located lines only points that the program states as located count.",
-      side, side, noises, hands);
+      side, side, seeds, hands);
   std::string figures;
   for (const LineSubject& subject : kLineSubjects) {
-    const AccuracyRow& hand = rowOf(study, subject.name, kHandMethod);
-    const AccuracyRow& line = rowOf(study, subject.name, kLocatedMethod);
+    const AccuracyRow& hand = rowOf(study, subject.part.name, kHandMethod);
+    const AccuracyRow& line = rowOf(study, subject.part.name, kLocatedMethod);
     figures += fmt::format("{}{}: {:.2f} instead of {:.2f} samples", figures.empty() ? "" : "; ",
-                           subject.name, line.error, hand.error);
+                           subject.part.name, line.error, hand.error);
   }
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const AccuracyRow& row : study.rows)
@@ -185,7 +162,7 @@ engine::Result<Study> edgeLineStudy(const AccuracyOptions& options, engine::JobC
   study.answer = fmt::format(
       "{}. On the bracket {:.0f} ms for 1,000 points. An error is {:.2f} to {:.2f} times the stated standard "
       "deviation.",
-      figures, rowOf(study, kLineSubjects[0].name, kLocatedMethod).cost, least, most);
+      figures, rowOf(study, kLineSubjects[0].part.name, kLocatedMethod).cost, least, most);
   return study;
 }
 

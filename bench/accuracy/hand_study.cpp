@@ -9,27 +9,19 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
+#include "bench/accuracy/drawn_scan.h"
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "engine/compare/compare.h"
 #include "engine/edges/locate.h"
 #include "engine/filter/noise_range.h"
-#include "engine/scanner/scanner.h"
 #include "engine/scanner/true_lines.h"
-#include "haptic/operator/hand_lines.h"
 
 namespace fettle::bench {
 namespace {
 
-struct HandSubject {
-  const char* name;
-  const char* part;
-  double noise;
-  double outliers;
-};
-constexpr HandSubject kHandSubjects[] = {
+constexpr PartSubject kHandSubjects[] = {
     {"bracket", "bracket", 1.0, 0.0},
     {"bracket, noise x 3", "bracket", 3.0, 0.0},
     {"steps, noise x 3", "steps", 3.0, 0.0},
@@ -86,30 +78,6 @@ engine::Result<Errors> errorsWith(const engine::SimulatedScan& scan, std::vector
   return Errors{1e3 * figures->rmse, 1e3 * figures->rmse_flat, 1e3 * figures->rmse_edge};
 }
 
-// What a hand draws along all edges of a scan.
-struct Drawing {
-  std::vector<engine::EdgeStroke> strokes;
-  double seconds = 0.0;
-};
-
-Drawing drawn(const engine::SimulatedScan& scan, std::uint64_t seed) {
-  const engine::Grid& grid = scan.scan.grid();
-  // In samples the hand is the same at every size of the scan.
-  constexpr double kUsualSide = 1024.0;
-  haptic::OperatorSpec person;
-  person.seed = seed;
-  person.wander_mm *= kUsualSide / grid.width;
-  person.tremor_mm *= kUsualSide / grid.width;
-  Drawing drawing;
-  for (const haptic::HandLine& line : haptic::handLines(scan.edge_lines, grid, person)) {
-    drawing.strokes.push_back({static_cast<std::int64_t>(drawing.strokes.size()), line.points, line.closed});
-    for (std::size_t i = 1; i < line.points.size(); ++i)
-      drawing.seconds +=
-          glm::distance(line.points[i], line.points[i - 1]) * grid.spacingXMm() / person.speed_mm_s;
-  }
-  return drawing;
-}
-
 // Strokes taken for lines as they are.
 std::vector<engine::EdgeLine> asDrawn(const std::vector<engine::EdgeStroke>& strokes) {
   std::vector<engine::EdgeLine> lines;
@@ -132,16 +100,10 @@ struct HandRuns {
   std::vector<double> seconds;
 };
 
-engine::Status runHands(const HandSubject& subject, std::int32_t side, std::uint64_t seed, int hands,
-                        HandRuns& runs, engine::JobControl& job) {
+engine::Status runHands(const PartSubject& subject, std::int32_t side, int seed, int hands, HandRuns& runs,
+                        engine::JobControl& job) {
   engine::JobControl quiet;
-  engine::ScannerSpec scanner;
-  scanner.part = subject.part;
-  scanner.width = scanner.height = side;
-  scanner.noise = subject.noise;
-  scanner.outliers = subject.outliers;
-  scanner.seed = seed;
-  const auto scan = engine::simulateScan(scanner, quiet);
+  const auto scan = scanOf(subject, side, seed);
   if (!scan) return tl::unexpected(scan.error());
   engine::FilterSpec spec;
   spec.kind = engine::FilterKind::kGeneralisedVariation;
@@ -153,18 +115,18 @@ engine::Status runHands(const HandSubject& subject, std::int32_t side, std::uint
   if (!ceiling) return tl::unexpected(ceiling.error());
   for (int hand = 1; hand <= hands; ++hand) {
     if (job.cancelled()) return engine::cancelled();
-    const Drawing drawing = drawn(*scan, static_cast<std::uint64_t>(hand));
-    auto lines = engine::locateEdgeLines(scan->scan.reader(), ready->range_sigma, drawing.strokes, {}, quiet);
+    const DrawnEdges drawn = drawnEdges(*scan, hand);
+    auto lines = engine::locateEdgeLines(scan->scan.reader(), ready->range_sigma, drawn.strokes, {}, quiet);
     if (!lines) return tl::unexpected(lines.error());
     const auto located = errorsWith(*scan, *std::move(lines), *ready);
     if (!located) return tl::unexpected(located.error());
-    const auto raw = errorsWith(*scan, asDrawn(drawing.strokes), *ready);
+    const auto raw = errorsWith(*scan, asDrawn(drawn.strokes), *ready);
     if (!raw) return tl::unexpected(raw.error());
     runs.alone.push_back(*alone);
     runs.raw.push_back(*raw);
     runs.located.push_back(*located);
     runs.ceiling.push_back(*ceiling);
-    runs.seconds.push_back(drawing.seconds);
+    runs.seconds.push_back(drawn.seconds);
     job.advance();
   }
   return {};
@@ -194,18 +156,14 @@ engine::Result<Study> handStudy(const AccuracyOptions& options, engine::JobContr
   study.error_unit = "um";
   study.columns = {"flats [um]", "near edges [um]", "near edges, worst run [um]",
                    "largest ratio to tgv alone"};
-  const int seeds = options.effort >= 0.5 ? 5 : options.effort >= 0.05 ? 2 : 1;
-  const int hands = options.effort >= 0.5 ? 3 : 1;
-  const std::int32_t side = options.effort >= 0.05 ? 1024 : 512;
-  job.begin("lines of a hand",
-            std::size(kHandSubjects) * static_cast<std::size_t>(seeds) * static_cast<std::size_t>(hands));
+  const auto [seeds, hands, side] = scanSizes(options.effort);
+  job.begin("lines of a hand", std::size(kHandSubjects) * static_cast<std::size_t>(seeds * hands));
   double most = 0.0;
   std::string shares, without;
-  for (const HandSubject& subject : kHandSubjects) {
+  for (const PartSubject& subject : kHandSubjects) {
     HandRuns runs;
     for (int seed = 1; seed <= seeds; ++seed)
-      if (engine::Status done = runHands(subject, side, static_cast<std::uint64_t>(seed), hands, runs, job);
-          !done)
+      if (engine::Status done = runHands(subject, side, seed, hands, runs, job); !done)
         return tl::unexpected(done.error());
     const std::vector<double> no_hand(runs.alone.size(), 0.0);
     study.rows.push_back(rowOfRuns(subject.name, kAlone, runs.alone, runs.alone, no_hand));
