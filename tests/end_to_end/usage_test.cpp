@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/end_to_end/program.h"
+#include "tests/support/source_tree.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::tests {
@@ -31,6 +32,15 @@ TEST(Usage, HelpAndVersionAreFoundUnderTheNamesPeopleTry) {
   EXPECT_NE(all.out.find("fettle help filter"), std::string::npos);
   expectRefused(fettle({"help", "fitler"}), "did you mean filter?");
   expectRefused(fettle({"fitler", "--help"}), "did you mean filter?");
+}
+
+TEST(Usage, TheVersionIsTheNewestReleaseOfTheChangelog) {
+  std::ifstream changelog(inSourceTree("CHANGELOG.md"));
+  std::string released;
+  for (std::string line; released.empty() && std::getline(changelog, line);)
+    if (line.starts_with("## [") && !line.starts_with("## [Unreleased]"))
+      released = line.substr(4, line.find(']') - 4);
+  EXPECT_EQ(fettle({"--version"}).out, "fettle " + released + "\n");
 }
 
 TEST(Usage, ASlipOfTheFingerIsAnsweredWithWhatWasMeant) {
