@@ -58,7 +58,7 @@ function(fettle_group group program)
 endfunction()
 
 # fettle_test(name SOURCES files... LINKS targets... [LABELS label] [DRAWS] [SERIAL]): one test program.
-# SERIAL: its cases play in real time, so none runs beside another test.
+# SERIAL: its cases play in real time, so none runs at the same time as another test.
 # Every case is its own CTest entry, so a failure names the sentence that broke. The first label says what the program
 # needs; DRAWS programs need a Vulkan device.
 function(fettle_test name)

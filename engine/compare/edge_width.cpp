@@ -249,7 +249,7 @@ double rise(const std::vector<Block>& bins) {
   return crossing(0.9) - crossing(0.1);
 }
 
-// NaN when too many samples are missing or the profile does not reach; `lost` tells these apart.
+// NaN when too many samples are missing or the profile does not reach; `lost` distinguishes the two.
 double widthOf(const Patch& patch, const std::vector<float>& heights, double scale, const LocalEdge& line,
                const Lands& lands, const TruthOptions& options, bool& lost) {
   const double bin = kBin * patch.sample;

@@ -4,7 +4,7 @@
 //
 // Differences are taken before all else and in float, so that a scan at 5000 m loses nothing of its noise of
 // millimetres. The two samples opposite each other across the centre are added to each other first: over a
-// plane they cancel to the bit.
+// plane they cancel exactly.
 
 #include <algorithm>
 #include <cmath>

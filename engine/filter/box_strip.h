@@ -18,8 +18,8 @@ namespace fettle::engine {
 /// and come out right, so that they can run down the columns and along the row as in box.cpp. Where samples
 /// have no such power of two rows() says so, and box.cpp's sums of doubles in lanes take over.
 ///
-/// Samples are read as they are stored, without the version's sign: means of negated samples are negated
-/// means, to the bit.
+/// Samples are read as they are stored, without the version's sign: means of negated samples are
+/// exactly the negated means.
 ///
 /// Threading: one thread at a time; every thread makes its own.
 class BoxStrip {

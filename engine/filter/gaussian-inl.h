@@ -1,6 +1,6 @@
 // The kernels of gaussian.cpp; see each_cpu-inl.h. Each output is a chain of fused multiply-adds that begins
-// with 0 at the first sample of the window and goes on in order, whatever part of the work a kernel takes at
-// once: a weight or a sample that is 0 leaves the sum as it is.
+// with 0 at the first sample of the window and continues in order, whatever part of the work a kernel takes
+// at once: a weight or a sample that is 0 leaves the sum as it is.
 
 // A hole as a sample of 0 and weight 0.
 template <bool kHoles>

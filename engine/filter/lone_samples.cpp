@@ -9,10 +9,10 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr int kCompany = 3;      // counts that a sample needs
-constexpr float kSame = 4.0F;    // of two heights on one surface, but for one pair of 200
-constexpr float kGoesOn = 2.0F;  // how far a side goes on, in its own spread
-constexpr int kFewest = 4;       // samples between surfaces that are not chance
+constexpr int kCompany = 3;         // counts that a sample needs
+constexpr float kSame = 4.0F;       // of two heights on one surface, but for one pair of 200
+constexpr float kContinues = 2.0F;  // how far a side continues, in its own spread
+constexpr int kFewest = 4;          // samples between surfaces that are not chance
 
 class Heights {
  public:
@@ -61,7 +61,7 @@ class Heights {
   }
 
  private:
-  // Whether it goes on from the nearer of the two sides that the samples next to it fall into at their largest
+  // Whether it continues the nearer of the two sides that the samples next to it fall into at their largest
   // gap: where a surface is so steep or curved that they differ by as much themselves.
   [[nodiscard]] bool joinsASide(std::int32_t column, std::int32_t row) const noexcept {
     const float z = (*this)(column, row);
@@ -80,10 +80,10 @@ class Heights {
       // Of equal gaps any counts, as of sides equally near: what is upside down has the same company.
       if (next[i] - next[i - 1] < widest) continue;
       const float to_low = z - next[i - 1], to_high = next[i] - z;
-      if (to_low <= to_high && goesOn(to_low, next[0] - z, i, next[i - (i > 3 ? 2 : 1)] - next[0]))
+      if (to_low <= to_high && continues(to_low, next[0] - z, i, next[i - (i > 3 ? 2 : 1)] - next[0]))
         return true;
       if (to_high <= to_low &&
-          goesOn(to_high, z - next[n - 1], n - i, next[n - 1] - next[i + (n - i > 3 ? 1 : 0)]))
+          continues(to_high, z - next[n - 1], n - i, next[n - 1] - next[i + (n - i > 3 ? 1 : 0)]))
         return true;
     }
     return false;
@@ -91,9 +91,9 @@ class Heights {
 
   // How far it lies from a side of so many samples, in the gap or past its other end. The spread is that
   // without the sample nearest to the gap, which may be a lone one itself; of few samples that of all.
-  [[nodiscard]] static bool goesOn(float in_gap, float past, std::size_t samples, float spread) noexcept {
+  [[nodiscard]] static bool continues(float in_gap, float past, std::size_t samples, float spread) noexcept {
     if (in_gap <= 0.0F && past <= 0.0F) return samples > 1;
-    return samples > 1 && in_gap <= kGoesOn * spread && past < spread;
+    return samples > 1 && in_gap <= kContinues * spread && past < spread;
   }
 
   [[nodiscard]] int leadsTo(float z, std::int32_t column, std::int32_t row, std::int32_t x,

@@ -22,7 +22,7 @@ struct TileReport {
 ///
 /// results: kTileSide x kTileSide, row-major, stride in elements, of the version's sign (1 or -1) while tiles
 /// are stored without; read everywhere, unspecified at holes and outside the field. ahead: a tile that is
-/// read soon; the wait for its samples goes on meanwhile. Null: none.
+/// read soon; its samples are fetched meanwhile. Null: none.
 [[nodiscard]] TileReport mergeTile(const Tile& before, const float* results, std::ptrdiff_t stride,
                                    float sign, FilterScope scope, Tile& after, CpuLevel level,
                                    const Tile* ahead = nullptr) noexcept;

@@ -35,7 +35,7 @@ FETTLE_INLINE void storePast(float* to, const Floats& v) noexcept {
 #endif
 }
 
-// Once storePast is done: only then may another thread be told of what was stored.
+// After storePast and before another thread is notified of what was stored.
 FETTLE_INLINE void pastCaches() noexcept {
 #if FETTLE_LEVEL != 0
   _mm_sfence();

@@ -124,7 +124,7 @@ TEST(SurfaceStudy, TrianglesAreAnotherSurfaceAndFloatLosesFarFromTheCorner) {
   ASSERT_TRUE(study) << study.error().line();
   EXPECT_EQ(rowOf(*study, "noise 20 um", "bilinear, all stationary points, double").error, 0.0);
   EXPECT_GT(rowOf(*study, "noise 20 um", "two triangles").error, 1e-4);
-  // A float's last bit is 0.5 um at 8 m and some 1e-6 um beside the corner.
+  // A float's last bit is 0.5 um at 8 m and some 1e-6 um next to the corner.
   const AccuracyRow& far = rowOf(*study, "noise 20 um, 8 m away", "two triangles, float");
   const AccuracyRow& near = rowOf(*study, "noise 20 um", "two triangles, float");
   EXPECT_GT(offTwin(far), 0.1) << far.note;

@@ -31,7 +31,7 @@ TEST(Instructions, TwiceTheWorkIsTwiceTheInstructionsOrNoneAreClaimed) {
   EXPECT_LE(*once.instructions, 500 * 20);
   const double ratio = static_cast<double>(*twice.instructions) / static_cast<double>(*once.instructions);
   EXPECT_NEAR(ratio, 2.0, 0.15);
-  // Work that ends the process has no count, and this process goes on.
+  // Work that ends the process has no count, and this process continues.
   if (once.by == CountedBy::kSteps) {
     EXPECT_FALSE(countInstructions([] { std::abort(); }).instructions.has_value());
   }

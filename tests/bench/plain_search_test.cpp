@@ -33,7 +33,7 @@ TEST(PlainSearch, PushesAsTheTickDoesOnASmoothPart) {
     same += glm::length(ours.force_n - theirs) <= 1e-6 ? 1 : 0;
   }
   EXPECT_GT(contacts, 10'000);
-  // Ridges have two sides: where a hand comes down beside one the two may differ until it leaves.
+  // Ridges have two sides: where a hand comes down next to one the two may differ until it leaves.
   EXPECT_GT(same, 0.97 * contacts) << contacts;
   RecordProperty("same", same);
 }

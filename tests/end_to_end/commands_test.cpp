@@ -34,7 +34,7 @@ class Commands : public testing::Test {
 };
 std::unique_ptr<TempFolder> Commands::folder_;
 
-TEST_F(Commands, InfoTellsSizeSpacingHeightsAndHoles) {
+TEST_F(Commands, InfoReportsSizeSpacingHeightsAndHoles) {
   const auto info = fettleJson({"info", scan()});
   EXPECT_EQ(info["width"], 256);
   EXPECT_EQ(info["height"], 192);
@@ -45,8 +45,8 @@ TEST_F(Commands, InfoTellsSizeSpacingHeightsAndHoles) {
   EXPECT_EQ(info["format"], "GTiff");
 }
 
-TEST_F(Commands, InfoTellsNoiseSteepestCellAndHistogram) {
-  // The simulated noise is known from the truth. Counts of 0.01 mm tell the estimate to 0.0025 mm; what
+TEST_F(Commands, InfoReportsNoiseSteepestCellAndHistogram) {
+  // The simulated noise is known from the truth. Counts of 0.01 mm give the estimate to 0.0025 mm; what
   // lines have in common is in the one figure and not in the other.
   ASSERT_EQ(fettle({"synth", file("noisy.tif"), "--size", "256x192", "--seed", "5", "--truth",
                     file("smooth.tif"), "--part", "plate"})
@@ -135,7 +135,7 @@ TEST_F(Commands, FilterTakesARangeSigmaWithAUnitOrFromTheNoise) {
                 "range sigma");
 }
 
-TEST_F(Commands, SuggestedFilterTypedAsToldLeavesWhatWasTolerated) {
+TEST_F(Commands, SuggestedFilterTypedAsPrintedLeavesWhatWasTolerated) {
   ASSERT_EQ(fettle({"synth", file("s.tif"), "--size", "512x512", "--truth", file("st.tif"), "--edges",
                     file("se.png")})
                 .status,

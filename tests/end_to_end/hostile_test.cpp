@@ -102,7 +102,7 @@ std::string zip(const std::vector<Entry>& entries) {
   return bytes;
 }
 
-// main.xml of an x3p; `heights` is what stands in Record3 beside the dimensions.
+// main.xml of an x3p; `heights` is what Record3 contains in addition to the dimensions.
 std::string mainXml(const std::string& width, const std::string& height, const std::string& heights,
                     const std::string& type = "F") {
   return fmt::format(

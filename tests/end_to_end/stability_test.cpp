@@ -40,7 +40,7 @@ TEST_F(Stability, RecordRefusesWhatTheHandDoesNotHoldAndNamesTheLargestThatItDoe
   EXPECT_NE(stiff.err.find("scene.toml"), std::string::npos) << stiff.err;
   EXPECT_NE(stiff.err.find("simulated hand"), std::string::npos) << stiff.err;
   EXPECT_FALSE(std::filesystem::exists(recorded));
-  // A faster loop holds more, an effect takes its part, and damping is told of likewise.
+  // A faster loop holds more, an effect takes its part, and damping is reported as well.
   expectRefused(record("hand:", {"--rate", "4000", "--scene", folder.file("scene.toml")}), "at most 24 N/mm");
   expectRefused(record("hand:", {"--scene", scene("effects = [\"spring\", \"texture\"]\n")}), "texture");
   expectRefused(record("hand:", {"--scene", scene("effects = [\"spring\", \"viscosity\"]\n"

@@ -7,8 +7,8 @@
 
 namespace fettle::tests {
 
-/// Path of a real scan by file name. The scans lie outside the project, in ../shared/data beside the checkout
-/// or in the folder that FETTLE_SCANS names; nothing when neither is there.
+/// Path of a real scan by file name. The scans lie outside the project, in ../shared/data next to the
+/// checkout or in the folder that FETTLE_SCANS names; nothing when neither is there.
 [[nodiscard]] std::optional<std::string> scan(const std::string& name);
 
 }  // namespace fettle::tests

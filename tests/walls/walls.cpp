@@ -101,7 +101,7 @@ std::vector<std::string> wrongIncludes(const Walls& walls, const std::string& pa
     }
     const Walls::Library* library = walls.libraryOf(include.header);
     if (library == nullptr) {
-      // What is generated while building lies beside the room's own files, without a folder.
+      // What is generated while building lies next to the room's own files, without a folder.
       const bool generated = include.quoted && include.header.find('/') == std::string::npos;
       if (!generated && !standard(include.header))
         wrong.push_back(path + ": " + include.header + " is of no library that the table knows");

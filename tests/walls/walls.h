@@ -14,7 +14,7 @@ struct Walls {
   struct Room {
     std::string name;
     std::set<std::string> rooms;      ///< that it may include
-    std::set<std::string> libraries;  ///< beside those for all
+    std::set<std::string> libraries;  ///< in addition to those for all
   };
   struct Library {
     std::string name;

@@ -54,7 +54,7 @@ std::string HandPlay::stroke(bool ends) {
     press(u_, v_, false);
     wait(static_cast<std::uint64_t>(uniform(0, 60)));
   }
-  return ends ? "stroke" : "stroke goes on";
+  return ends ? "stroke" : "stroke continues";
 }
 
 std::string HandPlay::filter(bool under_a_stroke) {

@@ -12,7 +12,7 @@
 namespace fettle::tests {
 
 /// A person at the window, without the window: random strokes with the mouse as stylus, undo and redo,
-/// filters brought in while a stroke goes on, marks, scenes. On the real loop, in real time.
+/// filters applied during a stroke, marks, scenes. On the real loop, in real time.
 class HandPlay {
  public:
   HandPlay(app::LoopClient& client, app::SessionKeeper& keeper, std::uint64_t seed)
@@ -20,7 +20,7 @@ class HandPlay {
 
   /// One thing a person does; says what.
   std::string act();
-  /// This filter, brought in while a stroke goes on.
+  /// This filter, applied during a stroke.
   void apply(const engine::FilterSpec& spec);
   /// Until nothing is under way: no stroke, no filter, every step handed over.
   void settle();

@@ -1,5 +1,6 @@
 // session_hand_driver FILE SEED create|resume READY
-// A person at work on a session, on the real loop, until the program is killed. Tells on stdout, a line each:
+// A person at work on a session, on the real loop, until the program is killed. Reports on stdout, a line
+// each:
 //   ready             the loop runs; the file READY is made as well
 //   doing             something is begun
 //   kept NUMBER HASH  state NUMBER, of that content, is the field now, and nothing waits to be written
@@ -20,7 +21,7 @@ using namespace fettle;
 namespace {
 
 // Straight to the system: what was written stays written when the process is killed next.
-void tell(const std::string& text) {
+void report(const std::string& text) {
   if (write(STDOUT_FILENO, text.data(), text.size()) < 0) std::exit(0);
 }
 
@@ -53,11 +54,11 @@ int main(int count, char** arguments) {
   auto client = app::LoopClient::start(history, document.original, tests::brushScene(), {}, &keeper);
   if (!client) return refuse(client.error());
   tests::HandPlay play(**client, keeper, std::strtoull(arguments[2], nullptr, 10));
-  tell("ready\n");
+  report("ready\n");
   if (std::FILE* ready = std::fopen(arguments[4], "w")) std::fclose(ready);
   std::string before;  // written with what follows it, in one write
   for (;;) {
-    tell(before + "doing\n");
+    report(before + "doing\n");
     static_cast<void>(play.act());
     play.settle();
     play.untilKept();

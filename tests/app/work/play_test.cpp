@@ -41,7 +41,7 @@ TEST(SessionJournal, ReplaysToTheBitsThatHandsFiltersAndUndoMade) {
   std::map<std::string, int> did;
   std::uint64_t expected = 0;
   std::int64_t number = 0;
-  // Three lives of one session: the second and third go on from the file.
+  // Three lives of one session: the second and third continue from the file.
   for (std::uint64_t life = 0; life < 3; ++life) {
     Document document;
     if (life == 0) {

@@ -20,10 +20,10 @@ TEST(ReplacedFiles, AreThoseThatAreThereEachWithWhatGoes) {
   std::ofstream(scan) << "scan";
   EXPECT_TRUE(replacedFiles({folder.file("new.tif"), marks}, scan).texts.empty());
   std::ofstream(marks) << "marks";
-  const auto beside = replacedFiles({folder.file("new.tif"), marks}, scan);
-  ASSERT_EQ(beside.texts.size(), 1U);
-  EXPECT_EQ(beside.texts[0], "new_marks.png is there already.");
-  EXPECT_FALSE(beside.scan);
+  const auto marks_only = replacedFiles({folder.file("new.tif"), marks}, scan);
+  ASSERT_EQ(marks_only.texts.size(), 1U);
+  EXPECT_EQ(marks_only.texts[0], "new_marks.png is there already.");
+  EXPECT_FALSE(marks_only.scan);
   // By another spelling, too.
   const auto itself = replacedFiles({folder.file("./scan.tif")}, scan);
   ASSERT_EQ(itself.texts.size(), 1U);

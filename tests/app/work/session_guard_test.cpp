@@ -50,20 +50,20 @@ class Guard : public testing::Test {
 };
 
 TEST_F(Guard, GivesEachSessionOfAScanTheScanBeforeThatIsReplaced) {
-  const std::string beside = folder.file("scans/a.fettle"), recent = folder.file("work/a.fettle");
+  const std::string next_to_scan = folder.file("scans/a.fettle"), recent = folder.file("work/a.fettle");
   const std::string recovery = app::recoveryPath(scan), other = folder.file("scans/b.fettle");
-  for (const std::string& path : {beside, recent, recovery}) makeSession(path, scan);
+  for (const std::string& path : {next_to_scan, recent, recovery}) makeSession(path, scan);
   makeSession(other, other_scan);
   app::RecentFiles(app::recentFile()).add(recent);
   app::ScanGuard guard;
   ASSERT_TRUE(guard.protectSessions(folder.file("scans/new.tif"), job));
-  EXPECT_FALSE(holdsItsScan(beside));
+  EXPECT_FALSE(holdsItsScan(next_to_scan));
   const auto spared = guard.protectSessions(scan, job);
   ASSERT_TRUE(spared) << spared.error().line();
-  for (const std::string& path : {beside, recent, recovery}) EXPECT_TRUE(holdsItsScan(path)) << path;
+  for (const std::string& path : {next_to_scan, recent, recovery}) EXPECT_TRUE(holdsItsScan(path)) << path;
   EXPECT_FALSE(holdsItsScan(other));
   fs::remove(scan);
-  for (const std::string& path : {beside, recent, recovery}) {
+  for (const std::string& path : {next_to_scan, recent, recovery}) {
     const auto session = engine::openSession(path, {}, engine::importField, job);
     ASSERT_TRUE(session) << session.error().line();
     EXPECT_EQ(engine::contentHash(session->original), engine::contentHash(roughPart()));

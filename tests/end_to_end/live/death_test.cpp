@@ -65,7 +65,7 @@ TEST_P(LiveDeath, KilledProgramLeavesTheFirmwaresWatchdogAndTheRecordingOfTheLas
   EXPECT_EQ(history.back().by, By::kWatchdog);
   session->felt("SIGKILL while pressing: zero after " + std::to_string(static_cast<int>(ms)) + " ms", from);
 
-  // Nothing half-written stands where the outputs would be; what was recorded is beside it, and replays.
+  // Nothing half-written stands where the outputs would be; what was recorded is next to it, and replays.
   EXPECT_FALSE(std::filesystem::exists(session->strokes));
   EXPECT_FALSE(std::filesystem::exists(session->out));
   std::string left;

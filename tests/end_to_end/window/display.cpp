@@ -34,7 +34,7 @@ Display::Display(int width, int height, const std::filesystem::path& folder)
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return;
   const std::string size = std::to_string(width) + "x" + std::to_string(height) + "x24";
-  const std::string number = "9";  // the descriptor that the server tells its display's number on
+  const std::string number = "9";  // the descriptor on which the server reports its display's number
   pid_ = fork();
   if (pid_ == 0) {
     dup2(ends[1], 9);

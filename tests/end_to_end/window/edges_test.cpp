@@ -1,4 +1,4 @@
-// Suggested edges by hand: seen in a colour of their own beside the marks there are, and in theirs once
+// Suggested edges by hand: seen in a colour of their own next to the marks there are, and in theirs once
 // taken.
 #include <csignal>
 #include <cstdlib>

@@ -57,7 +57,7 @@ TEST_F(LockTest, a_dialog_asked_for_with_the_keyboard_of_the_panels_is_on_the_sc
   program->until("the menu", [](const State& s) { return isWritten(s, "This list"); });
   user.tap("This list");
   listIsLeftByEsc(user);
-  // A click beside all that can be clicked on, when it comes.
+  // A click on nothing that can be clicked on, when it comes.
   const State now = program->now();
   const int left = now["picture"][0].get<int>() + now["picture"][2].get<int>();
   for (const char* button : {"1", "3"}) {

@@ -59,7 +59,7 @@ class Gate {
     socket_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) != 0) leave();
   }
-  // An order, if there is one; waits for one unless told not to.
+  // An order, if there is one; waits for one unless it may not wait.
   void take(int flags) {
     char order = 0;
     if (socket_ < 0) return;
@@ -127,13 +127,13 @@ bool ordered(const std::string& order) {
   }
   if (lines.empty() || lines.front() != order) return false;
   if (order == "gone") return true;
-  // Beside and renamed: whoever looks sees either all of the lines or all but the first.
-  const std::string beside = std::string(path) + ".new";
+  // Written as another file and renamed: whoever looks sees either all of the lines or all but the first.
+  const std::string temporary = std::string(path) + ".new";
   {
-    std::ofstream out(beside);
+    std::ofstream out(temporary);
     for (std::size_t i = 1; i < lines.size(); ++i) out << lines[i] << '\n';
   }
-  std::rename(beside.c_str(), path);
+  std::rename(temporary.c_str(), path);
   return true;
 }
 

@@ -32,9 +32,9 @@ class LossTest : public WindowTest {
     return program;
   }
   void order(const std::string& lines) const {
-    const std::string beside = orders_path + ".all";
-    std::ofstream(beside) << lines;
-    std::filesystem::rename(beside, orders_path);
+    const std::string temporary = orders_path + ".all";
+    std::ofstream(temporary) << lines;
+    std::filesystem::rename(temporary, orders_path);
   }
   static State lost(ViewProgram& program, int times) {
     return program.until("the device was lost and works again",

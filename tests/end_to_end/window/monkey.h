@@ -46,7 +46,7 @@ class Monkey {
   std::mt19937_64 random_;
   int width_, height_;
   std::map<std::string, int> clicked_;  // texts without their digits
-  std::string held_;                    // button of a stroke that goes on with the frames to come
+  std::string held_;                    // button of a stroke that continues in the next frames
 };
 
 /// What xdotool calls the key of each action of the window, with its modifiers.

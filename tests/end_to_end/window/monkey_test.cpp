@@ -1,4 +1,4 @@
-// Whatever hands do, in frames of any length: the window goes on, and its journal plays to what it saved.
+// Whatever hands do, in frames of any length: the window continues, and its journal plays to what it saved.
 #include <csignal>
 #include <cstdlib>
 #include <deque>
@@ -189,7 +189,7 @@ class MonkeyTest : public WindowTest {
     program_->until("a fresh scan",
                     [&](const State& s) { return s["path"] == fresh_ && s["settled"] == true; });
   }
-  // Marks of a field, from a file beside it if there is one.
+  // Marks of a field, from a file next to it if there is one.
   static std::int64_t marked(const std::string& field, const std::string& marks) {
     if (!fs::exists(marks)) return 0;
     auto with = engine::importMarks(load(field), marks);

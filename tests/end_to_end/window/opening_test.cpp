@@ -79,7 +79,7 @@ bool cutABlockShort(const std::string& path) {
 
 TEST_F(WindowTest, a_coarse_picture_goes_when_the_rest_of_the_scan_cannot_be_read) {
   const std::string broken = folder.file("broken.tif");
-  // Packed: of plain blocks no reader can tell that they are damaged.
+  // Packed: no reader can detect damage in plain blocks.
   const std::string whole = folder.file("whole.tif");
   const Outcome made = runProcess({FETTLE_PROGRAM, "synth", whole, "--size", "5120x5120", "--seed", "5"});
   ASSERT_EQ(made.status, 0) << made.err;

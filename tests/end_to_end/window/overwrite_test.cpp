@@ -101,7 +101,7 @@ TEST_F(OverwriteTest, a_file_that_is_there_is_replaced_after_a_question_alone) {
   exportTo(user, there);
   EXPECT_TRUE(user.reads("there.tif is there already."));
   replace(user, there);
-  // The marks lie beside it now, and would be replaced as well.
+  // The marks lie next to it now, and would be replaced as well.
   std::filesystem::remove(there);
   exportTo(user, there);
   EXPECT_TRUE(user.reads("there_marks.png is there already."));

@@ -50,7 +50,7 @@ TEST_F(WindowTest, an_inverted_field_shows_its_relief_and_so_does_the_field_turn
   ASSERT_LT(low, high);
   const Screen upright = user.look("upright");
   const Part surface = user.surface();
-  // The field's middle: no ground beside it, no plinth.
+  // The field's middle: no ground next to it, no plinth.
   const Part middle{surface.x + surface.width / 4, surface.y + surface.height / 4, surface.width / 2,
                     surface.height / 2};
   // Right of the surface stands the colour bar.

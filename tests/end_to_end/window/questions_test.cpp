@@ -54,7 +54,7 @@ TEST_F(QuestionTest, work_is_not_lost_without_a_question) {
   (void)user.key("Escape");
   (void)user.press("ctrl+2");
   program->until("a question", asks);
-  // Save (Enter) asks where to, and goes on to what was wanted.
+  // Save (Enter) asks where to, and continues with what was requested.
   (void)user.press("Return");
   program->until("where to", [](const State& s) { return s["dialog"] == "save as" && s["settled"] == true; });
   user.type(third);

@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kGlance = 20ms;  // between two looks at the screen: the server draws it, and tells nobody
+constexpr auto kGlance = 20ms;  // between two looks at the screen: the server draws it, and notifies nobody
 constexpr int kLine = 20;       // pixels, about a line of a panel
 constexpr int kTries = 20;      // to point at a text that moves
 

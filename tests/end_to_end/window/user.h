@@ -36,11 +36,11 @@ class User {
   State drag(int button, Place from, Place to, int steps, const std::string& modifier = "");
   /// A stroke of the stylus: as drag() with the left button, waiting at each place until the stylus is there.
   State stroke(Place from, Place to, int steps);
-  /// The same without waiting for the rest at its end: while something else goes on.
+  /// The same without waiting for the rest at its end: while something else continues.
   void draw(Place from, Place to, int steps);
   /// Clicks on what reads `text`, until the window rests. Panels are scrolled for it where they have to be.
   State click(const std::string& text, int count = 1);
-  /// One click on what reads `text`, taken in by the window; whatever it began goes on.
+  /// One click on what reads `text`, taken in by the window; whatever it began continues.
   void tap(const std::string& text);
   /// Types into the field to the right of the name that reads `name`, confirmed, until the window rests.
   State enter(const std::string& name, const std::string& value);

@@ -15,7 +15,7 @@
 namespace fettle::tests {
 namespace {
 
-constexpr int kEvents = 9;  // the program's descriptor for what it tells
+constexpr int kEvents = 9;  // the program's descriptor for what it reports
 
 std::array<int, 2> makePipe() {
   std::array<int, 2> ends{};
@@ -82,14 +82,14 @@ void ViewProgram::listen() {
           State state = State::parse(line.substr(0, end));
           const std::scoped_lock lock(mutex_);
           states_.push_back(std::move(state));
-          told_.notify_all();
+          reported_.notify_all();
         }
       }
     }
   }
   const std::scoped_lock lock(mutex_);
   ended_ = true;
-  told_.notify_all();
+  reported_.notify_all();
 }
 
 ViewProgram::State ViewProgram::until(const std::string& what, const std::function<bool(const State&)>& is) {
@@ -99,7 +99,7 @@ ViewProgram::State ViewProgram::until(const std::string& what, const std::functi
     for (; seen_ < states_.size(); ++seen_)
       if (is(states_[seen_])) return states_[seen_];
     if (ended_) throw std::runtime_error("the program ended before: " + what + "\n" + err_);
-    if (told_.wait_until(lock, end) == std::cv_status::timeout) {
+    if (reported_.wait_until(lock, end) == std::cv_status::timeout) {
       State last = states_.empty() ? State() : states_.back();
       if (last.is_object()) last.erase("texts");
       throw std::runtime_error("never reported: " + what + "\nlast reported: " + last.dump());

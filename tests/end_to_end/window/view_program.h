@@ -14,7 +14,7 @@
 
 namespace fettle::tests {
 
-/// `fettle view` while it runs: what it tells (--events) is taken in as it comes. Ends it with this object.
+/// `fettle view` while it runs: what it reports (--events) is read as it comes. Ends it with this object.
 /// Threading: one thread; a thread of its own reads.
 class ViewProgram {
  public:
@@ -61,7 +61,7 @@ class ViewProgram {
   int out_end_ = -1, err_end_ = -1, events_end_ = -1;
   std::string out_, err_;
   std::mutex mutex_;
-  std::condition_variable told_;
+  std::condition_variable reported_;
   std::vector<State> states_;  // guarded by mutex_
   bool ended_ = false;         // guarded by mutex_
   std::size_t seen_ = 0;

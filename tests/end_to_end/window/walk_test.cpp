@@ -186,7 +186,7 @@ TEST_F(WindowTest, a_scan_is_smoothed_marked_filtered_and_saved_by_hand) {
   const State applied = user.key("Return");
   EXPECT_EQ(applied["filters_applied"], 1);
   EXPECT_EQ(applied["variants"], State::array());
-  // The split line's grip goes with the frame after the one that tells: another frame.
+  // The split line's grip goes with the frame after the one that reports it: another frame.
   (void)user.key("c");
   (void)user.key("c");
   const Screen filtered = user.until("median applied", [&](const Screen& now) {

@@ -8,7 +8,7 @@
 namespace fettle::tests {
 
 /// Another program on the display: what a file manager, a window manager and a settings daemon do, as far as
-/// the window under test can tell. Connected by xcb, so that a display that ends does not end the test. One
+/// the window under test can notice. Connected by xcb, so that a display that ends does not end the test. One
 /// thread.
 class XClient {
  public:

@@ -27,8 +27,8 @@ std::vector<float> someHeights(const Grid& grid) {
   return z;
 }
 
-// Straight into the tiles, and told where `told`.
-void writeAndTell(FieldBuilder& builder, const std::vector<float>& z, const Window& w, bool told) {
+// Straight into the tiles, and reported where `reported`.
+void writeAndReport(FieldBuilder& builder, const std::vector<float>& z, const Window& w, bool reported) {
   const std::int32_t width = builder.grid().width;
   for (std::int32_t tr = w.row / kTileSide; tr * kTileSide < w.row + w.rows; ++tr)
     for (std::int32_t tc = w.column / kTileSide; tc * kTileSide < w.column + w.columns; ++tc) {
@@ -44,7 +44,7 @@ void writeAndTell(FieldBuilder& builder, const std::vector<float>& z, const Wind
                 static_cast<std::size_t>(column)];
           ++samples;
         }
-      if (told) builder.wrote(tc, tr, samples);
+      if (reported) builder.wrote(tc, tr, samples);
     }
 }
 
@@ -68,7 +68,7 @@ void expectSameTiles(const Version& a, const Version& b) {
   EXPECT_EQ(contentHash(a), contentHash(b));
 }
 
-TEST(FieldBuilder, TilesToldWholeAreWhatTheEndMakesOfThem) {
+TEST(FieldBuilder, TilesReportedWholeAreWhatTheEndMakesOfThem) {
   Grid grid;
   grid.width = 300;
   grid.height = 217;
@@ -79,14 +79,14 @@ TEST(FieldBuilder, TilesToldWholeAreWhatTheEndMakesOfThem) {
   for (std::int32_t row = 0; row < grid.height; row += 50)
     for (std::int32_t column = 0; column < grid.width; column += 90)
       windows.push_back({column, row, std::min(90, grid.width - column), std::min(50, grid.height - row)});
-  for (const int untold_each : {0, 1, 3}) {
+  for (const int unreported_each : {0, 1, 3}) {
     auto builder = FieldBuilder::create(grid, "field", FieldBuilder::Start::kUnwritten);
     ASSERT_TRUE(builder);
     std::mt19937 random(3);
     std::shuffle(windows.begin(), windows.end(), random);
     for (std::size_t i = 0; i < windows.size(); ++i)
-      writeAndTell(*builder, z, windows[i],
-                   untold_each == 0 || i % static_cast<std::size_t>(untold_each) != 0);
+      writeAndReport(*builder, z, windows[i],
+                     unreported_each == 0 || i % static_cast<std::size_t>(unreported_each) != 0);
     expectSameTiles(std::move(*builder).build(), plain);
   }
 }
@@ -102,7 +102,7 @@ TEST(FieldBuilder, ATileThatTwoThreadsFillIsSummedUpByTheLast) {
     ASSERT_TRUE(builder);
     const auto half = [&](std::int32_t begin) {  // every second row
       for (std::int32_t row = begin; row < grid.height; row += 2)
-        writeAndTell(*builder, z, {0, row, grid.width, 1}, true);
+        writeAndReport(*builder, z, {0, row, grid.width, 1}, true);
     };
     std::thread other(half, 1);
     half(0);

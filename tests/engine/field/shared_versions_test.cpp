@@ -37,7 +37,7 @@ Version flat(int side, float height) {
 }
 
 // The owner writes the same number all over a square that spans four tiles, a new number each time; whoever
-// reads a version must see one number only, in samples and in bounds, while the owner goes on and versions
+// reads a version must see one number only, in samples and in bounds, while the owner continues and versions
 // die on every thread.
 TEST(SharedVersions, ReadersSeeWholeEditsWhileTheOwnerGoesOnWriting) {
   constexpr int kSide = 160;

@@ -161,7 +161,7 @@ TEST_F(TileStoreTest, ThePolicySaysWhatLiesWhere) {
   policy.share = 0.0;
   setStorePolicy(policy);
   EXPECT_EQ(placeOf(2000, 2000, 0, "scan").value(), Place::kStore);
-  // 294 GB, and as much beside it as no machine has.
+  // 294 GB, and more in addition than any machine has.
   const auto nowhere = placeOf(262144, 262144, std::uint64_t{1} << 60, "scan");
   ASSERT_FALSE(nowhere);
   EXPECT_EQ(nowhere.error().kind, ErrorKind::kInput);

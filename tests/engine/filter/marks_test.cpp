@@ -145,7 +145,7 @@ TEST(MaxChange, IsNeverExceededOverSeveralPassesAgainstTheOriginal) {
       const Filtered first = filtered(original, spec);
       expectWithin(toPlain(first.field), plain, most);
       EXPECT_LE(first.report.max_change, most);
-      // A second filter goes on from the first one's result, under the same promise to the original.
+      // A second filter starts from the first one's result, under the same promise to the original.
       JobControl job;
       spec.kind = FilterKind::kBox;
       spec.range_sigma = 0.0;
@@ -177,7 +177,7 @@ TEST(MaxChange, DrawsBackInputsThatHaveLeftTheOriginalAndSparesHolesOfTheOrigina
   }
 }
 
-TEST(Report, TellsTheChangeAgainstTheInputOverSamplesThatAreNotHoles) {
+TEST(Report, StatesTheChangeAgainstTheInputOverSamplesThatAreNotHoles) {
   PlainField plain = formed(3, 1, [](int, int) { return 0.0F; });
   plain.at(1, 0) = 6.0F;
   plain.z.push_back(kNan);

@@ -29,7 +29,7 @@ struct Map {
   [[nodiscard]] double orZero(int c, int r) const { return c >= 0 && r >= 0 ? get(c, r) : 0.0; }
 };
 
-// Whether z goes on from the nearer of two groups of heights, which their largest gap divides.
+// Whether z continues the nearer of two groups of heights, which their largest gap divides.
 bool joinsASide(std::vector<float> next, float z) {
   const int n = static_cast<int>(next.size());
   if (n < 4) return false;

@@ -90,7 +90,8 @@ TEST(Noise, NeedsAWindowWithoutHoles) {
   EXPECT_TRUE(std::isnan(sigmaOf(makeField(grid, std::vector<float>(10, 1.0F)))));
   grid.height = 3;
   std::vector<float> z{0, 0, 0, 0, 0, 0, 6, 0, 0, NAN, 0, 0, 0, 0, 0};
-  // Windows: about the 6 in the middle (|d| = 24) and beside it (12); the third has a hole. The lower counts.
+  // Windows: about the 6 in the middle (|d| = 24) and next to it (12); the third has a hole. The lower
+  // counts.
   EXPECT_NEAR(sigmaOf(makeField(grid, z)), 1.482602218505602 * 12.0 / 6.0, 1e-12);
 }
 

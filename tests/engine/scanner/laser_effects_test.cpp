@@ -148,7 +148,7 @@ TEST(Quantise, GivesWholeCountsHalfACountAwayAtMost) {
 }
 
 TEST(MixedPixels, AppearBesideStepsOnlyInTheirShareAndBetweenTheLevels) {
-  double beside = 0.0;
+  double next_to_step = 0.0;
   double mixed = 0.0;
   double sum = 0.0;
   for (int k = 0; k < 64; ++k) {
@@ -160,7 +160,7 @@ TEST(MixedPixels, AppearBesideStepsOnlyInTheirShareAndBetweenTheLevels) {
         const bool at_step = c == 29 || c == 30;
         const bool changed = b.heightAt(c, r) != ScanBlock(before).heightAt(c, r);
         EXPECT_TRUE(at_step || !changed) << c;
-        beside += at_step;
+        next_to_step += at_step;
         if (!changed) continue;
         mixed += 1.0;
         sum += b.heightAt(c, r);
@@ -169,7 +169,7 @@ TEST(MixedPixels, AppearBesideStepsOnlyInTheirShareAndBetweenTheLevels) {
       }
   }
   // Binomial and uniform at significance 1e-4.
-  EXPECT_NEAR(mixed / beside, 0.3, kDeviations * std::sqrt(0.3 * 0.7 / beside));
+  EXPECT_NEAR(mixed / next_to_step, 0.3, kDeviations * std::sqrt(0.3 * 0.7 / next_to_step));
   EXPECT_NEAR(sum / mixed, 3.0, kDeviations * 4.0 / std::sqrt(12.0 * mixed));
 }
 

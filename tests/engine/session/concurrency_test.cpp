@@ -15,7 +15,7 @@ namespace fettle::engine {
 namespace {
 
 TEST(SessionConcurrency, WorkGoesOnWhileAJobSavesElsewhereAndAnotherReads) {
-  // The packaged oneTBB tells the thread sanitizer nothing of how its workers synchronise; what is looked at
+  // The thread sanitizer cannot see how the workers of the packaged oneTBB synchronise; what is looked at
   // here are the threads of the session, each of which then packs its tiles by itself.
   const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
   const tests::TempFolder folder;

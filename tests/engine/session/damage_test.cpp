@@ -158,7 +158,7 @@ TEST(Damage, AFlippedBitAnywhereIsNoticedOrChangesNothing) {
       ++harmless;
       EXPECT_EQ(difference(play.session, *session, Compare::kWhole), "") << "byte " << at;
     }
-    for (const char* beside : {"-wal", "-shm", "-journal"}) fs::remove(path + beside);
+    for (const char* suffix : {"-wal", "-shm", "-journal"}) fs::remove(path + suffix);
   }
   fmt::print("{} flipped bits noticed, {} harmless\n", noticed, harmless);
   EXPECT_GT(noticed, 200);

@@ -5,7 +5,7 @@
 namespace fettle::engine {
 
 /// While one lives, every new database connection of this process goes through it to the real files. It can
-/// be told to run full, and to lose power. One at a time.
+/// be made to run full, and to lose power. One at a time.
 class FaultyDisk {
  public:
   FaultyDisk();

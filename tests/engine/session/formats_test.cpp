@@ -32,7 +32,7 @@ TEST(SessionFormat, AWorkedOnSessionReadsAsItsCurrentState) {
   Play play(3, 200, 200);
   for (int a = 0; a < 30; ++a) play.act(nullptr);
   ASSERT_TRUE(saveSession(play.session, folder.file("a.fettle"), job));
-  // The content tells, whatever the name.
+  // The content decides, whatever the name.
   std::filesystem::rename(folder.file("a.fettle"), folder.file("a.tif"));
   const auto read = importField(folder.file("a.tif"), {}, job);
   ASSERT_TRUE(read) << read.error().line();

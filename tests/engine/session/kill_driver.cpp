@@ -1,6 +1,6 @@
 // session_kill_driver FILE SEED WIDTH HEIGHT create|resume READY
-// Works on a session as Play does, as fast as the writer keeps up with, until it is killed. Tells on stdout,
-// a line each:
+// Works on a session as Play does, as fast as the writer keeps up with, until it is killed. Reports on
+// stdout, a line each:
 //   ready          the session exists and is open; the file READY is made as well
 //   begun N        action N is about to be handed to the writer
 //   committed N    the writer has reported that nothing waits any more
@@ -21,8 +21,8 @@ using namespace fettle::engine;
 
 namespace {
 
-// Straight to the system: what was told stays told when the next instruction is the last.
-void tell(const std::string& line) {
+// Straight to the system: what was reported is known even if the next instruction is the last.
+void report(const std::string& line) {
   if (write(STDOUT_FILENO, line.data(), line.size()) < 0) std::exit(0);
 }
 
@@ -53,12 +53,12 @@ int main(int count, char** arguments) {
     writer = std::move(resumed->writer);
     play = std::make_unique<Play>(seed, resumed->session);
   }
-  tell("ready\n");
+  report("ready\n");
   if (std::FILE* ready = std::fopen(arguments[6], "w")) std::fclose(ready);
-  std::string before;  // told in one write with what follows it: between two actions there is no moment
+  std::string before;  // reported in one write with what follows it: between two actions there is no moment
   for (;;) {
     const std::int64_t n = play->actions() + 1;
-    tell(before + fmt::format("begun {}\n", n));
+    report(before + fmt::format("begun {}\n", n));
     play->act(writer.get());
     for (SessionStatus status = writer->status(); status.waiting != 0; status = writer->status()) {
       if (status.error) return refuse(*status.error);

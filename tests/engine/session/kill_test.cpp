@@ -26,23 +26,23 @@ namespace fs = std::filesystem;
 constexpr int kWidth = 500;
 constexpr int kHeight = 300;
 
-// What the driver told before it died.
-struct Told {
+// What the driver reported before it was killed.
+struct Reported {
   bool ready = false;
   std::int64_t begun = 0;
   std::int64_t committed = 0;
 };
 
-Told readTold(const std::string& out) {
-  Told told;
+Reported readReported(const std::string& out) {
+  Reported reported;
   std::istringstream lines(out);
   std::string word;
   while (lines >> word) {
-    if (word == "ready") told.ready = true;
-    if (word == "begun") lines >> told.begun;
-    if (word == "committed") lines >> told.committed;
+    if (word == "ready") reported.ready = true;
+    if (word == "begun") lines >> reported.begun;
+    if (word == "committed") lines >> reported.committed;
   }
-  return told;
+  return reported;
 }
 
 int killsWanted() {
@@ -95,15 +95,15 @@ TEST(SessionKill, AtAnyMomentNothingButTheActionInProgressIsLost) {
                            std::to_string(kHeight), is_new ? "create" : "resume", ready},
                           options);
     ASSERT_EQ(outcome.status, 128 + SIGKILL) << "kill " << kill << ": " << outcome.err;
-    const Told told = readTold(outcome.out);
+    const Reported reported = readReported(outcome.out);
     const bool log = fs::exists(path + "-wal") && fs::file_size(path + "-wal") > 0;
-    ++seen[!fs::exists(path)             ? "before the session was there"
-           : !told.ready                 ? "while it opened"
-           : told.begun > told.committed ? "within an action"
-                                         : "before its first action"];
+    ++seen[!fs::exists(path)                     ? "before the session was there"
+           : !reported.ready                     ? "while it opened"
+           : reported.begun > reported.committed ? "within an action"
+                                                 : "before its first action"];
     seen["with a log left"] += log ? 1 : 0;
     if (!fs::exists(path)) {
-      ASSERT_FALSE(told.ready);
+      ASSERT_FALSE(reported.ready);
       continue;
     }
     JobControl job;
@@ -117,9 +117,9 @@ TEST(SessionKill, AtAnyMomentNothingButTheActionInProgressIsLost) {
     EXPECT_FALSE(fs::exists(path + "-wal")) << "reading puts a dead program's log in order";
 
     const auto there = static_cast<std::int64_t>(session->journal.size());
-    ASSERT_GE(there, std::max(known, told.committed)) << "kill " << kill << " lost what was committed";
-    ASSERT_LE(there, std::max(known, told.begun)) << "kill " << kill;
-    seen["the action in progress was there"] += there > std::max(known, told.committed) ? 1 : 0;
+    ASSERT_GE(there, std::max(known, reported.committed)) << "kill " << kill << " lost what was committed";
+    ASSERT_LE(there, std::max(known, reported.begun)) << "kill " << kill;
+    seen["the action in progress was there"] += there > std::max(known, reported.committed) ? 1 : 0;
     actions += there - known;
     known = there;
     while (replay->actions() < there) replay->act(nullptr);

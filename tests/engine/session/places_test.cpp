@@ -81,7 +81,7 @@ TEST(ReadOnlyFolder, ALogThatACrashLeftIsReadTooWithoutBeingTouched) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
 }
 
-TEST(TwoPrograms, TheSecondIsToldWhoWorksOnTheSessionAndMayRead) {
+TEST(TwoPrograms, TheSecondLearnsWhoWorksOnTheSessionAndMayRead) {
   const TempFolder folder;
   const std::string path = folder.file("a.fettle");
   JobControl job;

@@ -202,7 +202,7 @@ std::string difference(const Session& a, const Session& b, Compare compare) {
     const StepInfo& x = a.history.info(k);
     const StepInfo& y = b.history.info(k);
     if (x.name != y.name || x.kind != y.kind || x.time != y.time || !(x.rect == y.rect))
-      return fmt::format("step {} is told otherwise: {} against {}", k, x.name, y.name);
+      return fmt::format("step {} differs: {} against {}", k, x.name, y.name);
   }
   if (a.notes != b.notes) return "the notes differ";
   if (a.journal != b.journal)

@@ -17,7 +17,7 @@ class Play {
   /// Begins with a field of this size that has all a float can be: holes of several kinds of NaN, zeros of
   /// both signs, denormals; marks; a border that cuts tiles.
   Play(std::uint64_t seed, std::int32_t width, std::int32_t height);
-  /// Goes on where a session stands that such a play has made; `actions` is how many it holds.
+  /// Continues a session that such a play has made; `actions` is how many it holds.
   Play(std::uint64_t seed, const Session& session);
 
   /// Does action number actions() + 1: stroke, filter, mark, inversion, undo, redo or a text; hands it to the

@@ -38,7 +38,7 @@ RC_GTEST_PROP(Session, WhateverWasDoneComesBackBitForBit, ()) {
   const auto session = opened(folder.file("a.fettle"));
   if (!session) RC_FAIL(session.error().line());
   RC_ASSERT(difference(play.session, *session, Compare::kWhole) == "");
-  // One file, and nothing beside it.
+  // One file, and nothing next to it.
   RC_ASSERT(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()) == 1);
 }
 

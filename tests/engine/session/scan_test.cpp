@@ -22,7 +22,7 @@ class ReferredScan : public testing::Test {
     EXPECT_TRUE(exportField(play.session.original, scan, {}, job));
     take({}, scan);
   }
-  // The play goes on with what a file holds.
+  // The play continues with what a file holds.
   void take(const ImportOptions& options, const std::string& file) {
     const auto stamp = fileStamp(file);
     const auto imported = importField(file, options, job);

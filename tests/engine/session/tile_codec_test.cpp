@@ -27,7 +27,7 @@ void expectRoundTrip(const Tile& tile) {
 
 TEST(TileCodec, EveryBitPatternComesBack) {
   // A pattern from each of 2^20 neighbourhoods of the 2^32, in steps that are no multiple of anything, so
-  // that NaNs with payloads, infinities, denormals and both zeros stand beside one another.
+  // that NaNs with payloads, infinities, denormals and both zeros stand next to one another.
   const auto tile = blankTile();
   std::uint32_t bits = 0;
   for (int k = 0; k < 256; ++k) {

@@ -119,7 +119,7 @@ TEST(SessionWriter, SaveAsTakesEverythingAndGoesOnThere) {
   const auto old = openSession(folder.file("a.fettle"), {}, importField, reading);
   ASSERT_TRUE(old) << old.error().line();
   EXPECT_LE(old->journal.size(), then.journal.size());
-  // It is free: another program may go on with it.
+  // It is free: another program may continue it.
   EXPECT_TRUE(SessionWriter::open(folder.file("a.fettle"), {}, {}, importField, reading));
 }
 

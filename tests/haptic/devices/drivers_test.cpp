@@ -1,5 +1,5 @@
 // The HID drivers, threads and all, on a fake device behind a drop-in libhidapi-hidraw. Nothing here asserts
-// a time: things are waited for, with a deadline far beyond any machine's load, and told by counters.
+// a time: things are waited for, with a deadline far beyond any machine's load, and recognised by counters.
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -34,7 +34,7 @@ using fake::FakeWoody;
 using Firmware = FakeWoody::Firmware;
 using Clock = std::chrono::steady_clock;
 
-// A loop on a thread of its own, 1 kHz: reads, writes the force it is told to, and notes what it saw.
+// A loop on a thread of its own, 1 kHz: reads, writes the force that was set, and notes what it saw.
 class Loop {
  public:
   explicit Loop(Device& device) : device_(device), thread_([this] { run(); }) {}
@@ -366,7 +366,7 @@ TEST_F(Drivers, DriverStartsAgainAfterStop) {
   }
 }
 
-TEST_F(Drivers, TwoDevicesAreToldApartBySerialNumber) {
+TEST_F(Drivers, TwoDevicesAreDistinguishedBySerialNumber) {
   FakeWoody left(folder(), "left", Firmware::kW8, "L1");
   FakeWoody right(folder(), "right", Firmware::kW8, "R2");
   left.plug();

@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-TEST(SpaceMouseCodec, BothFormsAreToldApartByLength) {
+TEST(SpaceMouseCodec, BothFormsAreDistinguishedByLength) {
   SpaceMouseState s;
   EXPECT_TRUE(takeSpaceMouse(std::array<std::uint8_t, 7>{1, 0x5E, 0x01, 0xA2, 0xFE, 10, 0}, s));
   EXPECT_TRUE(takeSpaceMouse(std::array<std::uint8_t, 7>{2, 1, 0, 2, 0, 0xFD, 0xFF}, s));
@@ -71,7 +71,7 @@ TEST(SpaceMouse, RateIsOddMonotonicAndZeroAtRest) {
   }
 }
 
-TEST(ReportDescriptor, WoodenHapticsDescriptorsTellTheirSizes) {
+TEST(ReportDescriptor, WoodenHapticsDescriptorsStateTheirSizes) {
   for (const std::uint8_t n : {std::uint8_t{8}, std::uint8_t{14}}) {
     const std::vector<std::uint8_t> d{0x06, 0xAB, 0xFF, 0x0A, 0x00, 0x02, 0xA1, 0x01, 0x75, 0x08,
                                       0x15, 0x00, 0x26, 0xFF, 0x00, 0x95, n,    0x09, 0x01, 0x81,

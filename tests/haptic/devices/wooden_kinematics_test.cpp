@@ -206,7 +206,7 @@ TEST(WoodenCalibration, HostOffsetMakesTheHomePoseReadItsCounts) {
   calibration.onReport(reportOf(-30, 40, 32700), true, 0);
   ASSERT_TRUE(calibration.calibrated());
   EXPECT_EQ(calibration.counts(), (std::array<std::int32_t, 3>{0, 0, 6000}));
-  calibration.onReport(reportOf(-20, 30, -32736), false, 0);  // c went on by 100, over the border
+  calibration.onReport(reportOf(-20, 30, -32736), false, 0);  // c advanced by 100, over the border
   EXPECT_EQ(calibration.counts(), (std::array<std::int32_t, 3>{10, -10, 6100}));
 }
 

@@ -170,7 +170,7 @@ TEST(Gravity, HoldsUpTheStylusInFreeSpaceAndInTouchButNotWithoutInput) {
   EXPECT_FALSE(free.contact);
   EXPECT_NEAR(free.force_n.z, weight, 1e-15);
   EXPECT_NEAR(touch.tick.weight().z, weight, 1e-15);
-  EXPECT_NEAR(touch.at({-500.0, 5.0, 3.0}).force_n.z, weight, 1e-15);  // beside the field
+  EXPECT_NEAR(touch.at({-500.0, 5.0, 3.0}).force_n.z, weight, 1e-15);  // outside the field
   EXPECT_NEAR(touch.at({5.0, 5.0, -0.5}).force_n.z, weight + 0.5, 1e-12);
   EXPECT_EQ(touch.at({5.0, std::nan(""), -0.5}).force_n, glm::dvec3(0.0));
   EXPECT_EQ(touch.tick.weight(), glm::dvec3(0.0));

@@ -106,7 +106,7 @@ TEST(MarkDistance, FollowsMarksDrawnTakenAwayAndReplacedInBoundedSlices) {
     for (int i = 0; i < 8; ++i) {
       ASSERT_TRUE(live.setMark(c + i, r + i / 2, round % 3 != 2));
       distance.markChanged(c + i, r + i / 2, 1, 1);
-      distance.advance(live.reader());  // work goes on between changes
+      distance.advance(live.reader());  // work continues between changes
     }
     int slices = 0;
     while (!distance.upToDate() && slices < 2000) {
@@ -233,7 +233,7 @@ TEST(EdgeSnap, RestoringStiffnessIsAtMostFourForcesOverTheReach) {
   EXPECT_GT(stiffest, 1.5);
 }
 
-// The stated condition at work: a mass beside a marked line, device damping b, 4 F / R around 2 b / T.
+// The stated condition at work: a mass next to a marked line, device damping b, 4 F / R around 2 b / T.
 TEST(EdgeSnap, HoldsATipOnTheLineWithoutBuzzUpToItsCondition) {
   const double b = 0.001, rate = 1000.0;
   for (const double factor : {0.85, 1.2}) {

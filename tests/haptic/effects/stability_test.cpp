@@ -24,7 +24,8 @@ TEST(Stability, TheWallStartsToBuzzWhereTheorySaysFromOneToTenKilohertz) {
                   row.measured_n_per_mm, row.ratio);
       EXPECT_EQ(row.theory_n_per_mm, 2.0 * b * row.rate_hz);
       EXPECT_NEAR(row.ratio, 1.0, 0.15);
-      // The bound of this very loop; found to 0.1 %, told by a swing that must change within 20 s at most.
+      // The bound of this very loop; found to 0.1 %, recognised by a swing that must change within 20 s at
+      // most.
       EXPECT_NEAR(row.measured_n_per_mm / row.exact_n_per_mm, 1.0, 0.005);
     }
   }

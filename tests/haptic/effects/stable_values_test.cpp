@@ -128,7 +128,7 @@ TEST(StableValues, AFasterLoopHoldsNoMoreThanTheDevicesOwnInputs) {
   EXPECT_NE(stabilityProblem(scene, device, 1000.0), std::nullopt);
 }
 
-TEST(StableValues, AWholeSceneIsMendedAndADeviceThatHoldsNothingIsToldOf) {
+TEST(StableValues, AWholeSceneIsMendedAndADeviceThatHoldsNothingIsReported) {
   Scene scene;
   scene.effects.clear();
   for (const EffectKind kind :

@@ -1,6 +1,6 @@
 // The live loop on its own thread against everything at once: a display that stalls, a worker whose results
 // are adopted every 50 ms, undo while touching, and a hand that never lets go. Nothing may be lost: what the
-// events told must make the field, and so must a single-threaded replay in the same order.
+// events reported must make the field, and so must a single-threaded replay in the same order.
 
 #include <chrono>
 #include <cmath>

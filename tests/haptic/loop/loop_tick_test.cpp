@@ -101,7 +101,7 @@ TEST(LoopTick, ToolThatChangesNothingPublishesNothing) {
   EXPECT_TRUE(bench.field() == flat);
 }
 
-TEST(LoopTick, StrokeEndsWithTheButtonAndTellsTheCommittedVersion) {
+TEST(LoopTick, StrokeEndsWithTheButtonAndReportsTheCommittedVersion) {
   const engine::Version start = bumpy();
   reserve(start);
   LoopOptions options = testOptions(Tool::kMark);
@@ -153,13 +153,13 @@ engine::Version raised(const engine::Version& base) {
   return field.snapshot();
 }
 
-TEST(LoopTick, AdoptionKeepsWhatTheHandDidMeanwhileAndTellsWhere) {
+TEST(LoopTick, AdoptionKeepsWhatTheHandDidMeanwhileAndReportsWhere) {
   const engine::Version start = bumpy();
   reserve(start);
   LoopBench bench(start, start, sceneWithBrush(1.0), testOptions(Tool::kSmooth));
   // The filter began here ...
   const engine::Version result = raised(start);
-  // ... the hand went on in tile (0, 0) ...
+  // ... the hand continued in tile (0, 0) ...
   for (int i = 0; i < 60; ++i) bench.tickAt({3.0 + 0.5 * i, 30.0, -0.8});
   ASSERT_TRUE(bench.send(CommandKind::kSnapshot, [](LoopCommand& c) { c.id = 9; }));
   for (int i = 0; i < 3; ++i) bench.tickAt({33.0, 30.0, 2.0});

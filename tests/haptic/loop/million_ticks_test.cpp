@@ -81,7 +81,7 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
       scene.mark_radius_samples = static_cast<double>(k % 4);
       scene.invert = k % 7 == 3;
       if (k % 3 == 0) scene.max_change = 0.1;
-      // Every effect is in half of the scenes, each time beside others.
+      // Every effect is in half of the scenes, each time next to others.
       for (int effect = static_cast<int>(EffectKind::kFriction); effect < kEffectKinds; ++effect)
         if (((k >> (effect % 3)) + static_cast<std::uint64_t>(effect)) % 2 == 0)
           scene.effects.push_back(static_cast<EffectKind>(effect));

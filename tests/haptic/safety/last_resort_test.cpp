@@ -53,12 +53,12 @@ Ended inAnotherProcess(const std::function<void(FakeDevice&)>& child,
   }
   close(ends[1]);
   Ended ended;
-  bool told = false;
+  bool called = false;
   char buffer[256];
   for (ssize_t n; (n = read(ends[0], buffer, sizeof buffer)) > 0;) {
     ended.reports.append(buffer, static_cast<std::size_t>(n));
-    if (!told && when_running) when_running(pid);
-    told = true;
+    if (!called && when_running) when_running(pid);
+    called = true;
   }
   close(ends[0]);
   waitpid(pid, &ended.status, 0);

@@ -77,7 +77,7 @@ inline long double bruteDistance2(const haptic::Patch& s, const glm::dvec3& e) {
     const Real z = w + p * u;
     return px * px + py * py + z * z;
   };
-  // Evenly, and ever closer to both ends: beside a spike all happens within a millionth of an edge.
+  // Evenly, and ever closer to both ends: next to a spike all happens within a millionth of an edge.
   std::vector<Real> v;
   for (int i = 0; i <= 200; ++i) v.push_back(Real(i) / 200);
   for (Real near = 0.005L; near > 1e-13L; near *= 0.7L) {

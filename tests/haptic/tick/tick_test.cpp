@@ -129,7 +129,7 @@ TEST(Tick, RayThatClearsAWallIsNotHeldByIt) {
 
 TEST(Tick, EndpointDeepBelowIsFoundWhateverTheRayWas) {
   Bench bench(fieldOf(40, 40, [](int c, int r) { return 0.1 * ((c * 7 + r * 5) % 3); }));
-  EXPECT_FALSE(bench.at(-5.0, 20.0, -3.0).contact);  // beside the field
+  EXPECT_FALSE(bench.at(-5.0, 20.0, -3.0).contact);  // outside the field
   const ForceSample f = bench.at(20.2, 20.1, -3.0);  // in through its side
   EXPECT_TRUE(f.contact);
   EXPECT_GT(f.force_n.z, 0.0);

@@ -41,7 +41,7 @@ TEST_P(Continuity, ABoundedMoveOnALipschitzFieldIsABoundedJumpOfForce) {
     const double radius = scene.tip == TipShape::kSphere ? scene.tip_radius_mm : 0.0;
     engine::LiveField live(hard.field, engine::Growth::kAllowed);
     Tick tick(scene, live, hard.field);
-    // Well within the field: a ball that came in from beside it is held by its side.
+    // Well within the field: a ball that came in from outside it is held by its side.
     const double side = hard.field.grid().width - 1.0;
     std::vector<StrokeSample> path = tests::wander(hard, 8000, 21, Jumps::kNo);
     for (StrokeSample& sample : path) {
@@ -194,7 +194,7 @@ TEST(Resting, OnAVertexAnEdgeAndARidgeTheProxyIsTheFeatureItself) {
       const double dx = 0.9 * std::sin(0.37 * i), dy = 0.9 * std::cos(0.23 * i);
       const ForceSample vertex = at_pit.run({0.0, {12.0 + dx, 12.0 + dy, -1.0}, Tool::kFeel});
       ASSERT_TRUE(vertex.contact);
-      // u and v are exactly 0 or 1 there, so the vertex is met to the bit; K = 1 N/mm: the force is the way.
+      // u and v are exactly 0 or 1 there, so the vertex is met exactly; K = 1 N/mm: the force is the way.
       ASSERT_EQ(vertex.proxy_mm, glm::dvec3(12.0, 12.0, 0.0)) << i;
       ASSERT_EQ(vertex.force_n, glm::dvec3(12.0 - (12.0 + dx), 12.0 - (12.0 + dy), 1.0)) << i;
       const ForceSample edge = at_groove.run({0.0, {12.0 + dx, 12.0 + dy, -1.0}, Tool::kFeel});

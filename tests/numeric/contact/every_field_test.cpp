@@ -1,6 +1,6 @@
 // What must hold at every tick on every hard field, whichever way it is touched.
 //
-// A ball beside a needle, slope 1e6, is the one exception: which of the needle's faces holds it depends on
+// A ball next to a needle, slope 1e6, is the one exception: which of the needle's faces holds it depends on
 // the last bits of a foot on a patch 1e6 high, and a tick may end a tenth of a cell farther from the endpoint
 // than the one before. Counted, and bounded by a step of the ball's walk.
 #include <cmath>
@@ -142,8 +142,8 @@ TEST_P(EveryField, ProxyLiesOnTheSurface) {
 
 // A point's proxy is a local minimum of the distance: of points 1e-6 of a cell around it, in whichever cells,
 // none is nearer. (1e-3 around it there are: beyond a crease, and along the twist of a patch.) Newton's last
-// step, 1e-7 of a cell, leaves a slope of its square, times curvature, at most 1 + slope^2: nothing beside
-// the step of 1e-7 itself, which is allowed here.
+// step, 1e-7 of a cell, leaves a slope of its square, times curvature, at most 1 + slope^2: nothing compared
+// with the step of 1e-7 itself, which is allowed here.
 TEST_P(EveryField, NoPointAroundTheProxyIsNearer) {
   if (ball()) GTEST_SKIP() << "a ball is held by several points: tests/haptic/contact/sphere_tip_test.cpp";
   if (hard().slope > 100.0) GTEST_SKIP() << "rounding of a place is more than 1e-6 of what a wall rises";
@@ -165,7 +165,7 @@ TEST_P(EveryField, NoPointAroundTheProxyIsNearer) {
       glm::dvec3 q =
           felt.proxy_mm + 1e-6 * glm::dvec3(sx * std::cos(k * 0.3927), sy * std::sin(k * 0.3927), 0.0);
       q.z = static_cast<double>(tests::heightAt(hard().field, q.x, q.y));
-      if (std::isnan(q.z)) continue;  // a hole or beside the field
+      if (std::isnan(q.z)) continue;  // a hole or outside the field
       ASSERT_GE(glm::dot(q - e, q - e), distance * distance - slack)
           << "tip " << e.x << ' ' << e.y << ' ' << e.z << ", proxy " << felt.proxy_mm.x << ' '
           << felt.proxy_mm.y;

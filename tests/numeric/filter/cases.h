@@ -18,7 +18,7 @@ struct FilterCase {
   /// in its window: the kind's own statement in filter.h. 0: nothing.
   double error = 0.0;
   /// Every window's sum is taken in an order that mirrors and turns do not change, or has no order: so they
-  /// commute with the filter to the bit. Otherwise to twice its error.
+  /// commute with the filter exactly. Otherwise to twice its error.
   bool symmetric = true;
 
   /// `error` as a height, for a window of that largest magnitude.

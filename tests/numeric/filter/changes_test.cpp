@@ -184,7 +184,7 @@ TEST(Changes, OfTheBrushStopShortWhereTheLimitItselfIsRoundedUp) {
 }
 
 TEST(Changes, OfDenormalHeightsAreNoneWhereTheHapticThreadFlushesThem) {
-  // Found by the property above. A replay flushes denormals as the loop does; marked samples, those beside
+  // Found by the property above. A replay flushes denormals as the loop does; marked samples, those next to
   // the disc within its square, and those that a limit holds must keep their bits all the same, either way
   // up.
   const PlainField plain = [] {
@@ -236,11 +236,12 @@ TEST(Changes, AreWrittenAsACaseThatWorksOutTheSame) {
   const Version start = toVersion(plain);
   const SmallStep press{SmallStep::Kind::kSmooth, 0, 2, 3, false, 4, 4, 8};
   const WorkStep step = workStep(press, start, 0.02 / 3);
-  const std::string told = fettle::tests::writeCase("written", "a test of the test", start, {step});
-  const std::string folder = told.substr(3, told.find(":\n") - 3);
-  EXPECT_NE(told.find("fettle replay scan.tif strokes1.csv step1.tif --scene scene1.toml --marks marks.png"),
-            std::string::npos)
-      << told;
+  const std::string report = fettle::tests::writeCase("written", "a test of the test", start, {step});
+  const std::string folder = report.substr(3, report.find(":\n") - 3);
+  EXPECT_NE(
+      report.find("fettle replay scan.tif strokes1.csv step1.tif --scene scene1.toml --marks marks.png"),
+      std::string::npos)
+      << report;
   JobControl job;
   const auto scan = importField(folder + "/scan.tif", {}, job);
   ASSERT_TRUE(scan) << folder;

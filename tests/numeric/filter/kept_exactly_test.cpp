@@ -46,7 +46,7 @@ TEST(Constants, ComeBackToTheBitBesideHolesBordersAndOtherTiles) {
             different += !sameBits(after.at(c, r), before.at(c, r));
             ++compared;
           }
-        EXPECT_EQ(different, 0) << filter.name << " of " << z << " beside " << odd;
+        EXPECT_EQ(different, 0) << filter.name << " of " << z << " next to " << odd;
       }
     }
   EXPECT_GT(compared, 1000000);
@@ -60,7 +60,7 @@ PlainField plane(double a, double b, double k, double step) {
 TEST(Planes, OfHeightsThatFloatsHoldAreKeptToTheBitAwayFromBorders) {
   // The exact mean of a whole window is its centre. What the kind may be off is a share of the window's
   // largest magnitude: below a quarter of the centre's last bit it rounds away, and it may show where the
-  // plane crosses zero beside large heights.
+  // plane crosses zero next to large heights.
   struct Plane {
     double a, b, k, step;
   };
@@ -75,7 +75,7 @@ TEST(Planes, OfHeightsThatFloatsHoldAreKeptToTheBitAwayFromBorders) {
       const PlainField after = toPlain(filtered(toVersion(before), filter.spec).field);
       const std::vector<std::uint8_t> whole = wholeWindows(before, filter.spec.window);
       const WindowExtremes extremes = windowExtremes(before, filter.spec.window);
-      // A line of zero height crosses at most 150 + 140 samples of 21000, and a few steps beside it count.
+      // A line of zero height crosses at most 150 + 140 samples of 21000, and a few steps next to it count.
       fettle::tests::Rare rounded("a plane off by a rounding near height zero",
                                   filter.error > 0.5 ? 0.05 : 0.0);
       for (std::size_t i = 0; i < before.z.size(); ++i) {
@@ -83,7 +83,7 @@ TEST(Planes, OfHeightsThatFloatsHoldAreKeptToTheBitAwayFromBorders) {
         const long double error = filter.errorOf(extremes.magnitude(i));
         const float z = before.z[i];
         const long double off = std::fabs(static_cast<long double>(after.z[i]) - z);
-        // Rounded to float once: half a last bit beside the error itself, or nothing.
+        // Rounded to float once: half a last bit in addition to the error itself, or nothing.
         ASSERT_LE(off, error < ulp(z) / 4 ? 0.0L : error + ulp(after.z[i]) / 2) << i;
         rounded.saw(off != 0.0L);
       }

@@ -5,7 +5,7 @@
 // there are, is a random walk that is reversible: P(i, j) = w(i, j) / W(i) and W(i) P(i, j) = W(j) P(j, i).
 // So sum_i W(i) z(i) is kept by exact arithmetic whatever the borders and holes, and every connected part
 // comes to its mean with the weights W (Levin, Peres, Wilmer, Markov Chains and Mixing Times, 2009, sections
-// 1.5 and 12.1). Samples at borders and beside holes count less in it: that is the price of renormalising.
+// 1.5 and 12.1). Samples at borders and next to holes count less in it: that is the price of renormalising.
 //
 // Each pass rounds every sample by at most h = half a last bit of the largest magnitude (what the kinds round
 // in double is 2^-20 of that, and is doubled away below). In the norm weighted by W, P is self-adjoint and
@@ -189,7 +189,7 @@ INSTANTIATE_TEST_SUITE_P(Filters, TenThousandPasses,
                          });
 
 TEST(TenThousandPassesOfParts, ThatHolesSeparateComeEachToItsOwnMean) {
-  // Two constants beside each other, a column of holes between: nothing may cross.
+  // Two constants next to each other, a column of holes between: nothing may cross.
   PlainField start = formed(11, 6, [](int c, int r) {
     return c == 5 ? kNan : c < 5 ? 0.1F + (c == 1 && r == 2 ? 3.0F : 0.0F) : -7.3F;
   });
@@ -234,7 +234,7 @@ TEST(MedianRoots, AreReachedOrACycleOfTwoIsWhenEveryWindowIsOdd) {
 }
 
 TEST(MedianRoots, AreReachedFromHardFieldsWithBordersAndHoles) {
-  // Even counts at borders and beside holes take a mean of two, so that new heights come to be and the
+  // Even counts at borders and next to holes take a mean of two, so that new heights come to be and the
   // theorem does not hold. It ends all the same, since heights stay within their range and floats are
   // finitely many; 10,000 passes are enough for these.
   fettle::tests::Rare cycles("a median with even windows ends in a cycle of two", 0.5);

@@ -1,5 +1,5 @@
 // How far a coarse surface may lie from the fine one, on fields made to defeat it: spikes of one sample at
-// any place, steps beside the borders of patches, waves that every vertex of a level meets at the same
+// any place, steps next to the borders of patches, waves that every vertex of a level meets at the same
 // height. The twin is both surfaces themselves in double precision (tests/render/support/drawn_surface.h); on
 // the screen the same two, projected.
 
@@ -42,7 +42,8 @@ std::string differing(const DetailMeasure& kept, const DetailMeasure& fresh) {
 TEST(DetailBound, HoldsForASpikeOfOneSampleAnywhere) {
   // Closed form. A spike between vertices is its whole height above the coarse surface, in every patch whose
   // rectangle has it (on a border: two or four). At a vertex it is a cone to the next vertices, and one
-  // sample beside it the coarse surface is too high by 1 - 1 / stride of it. Rounding: four last bits of 1e6.
+  // sample next to it the coarse surface is too high by 1 - 1 / stride of it. Rounding: four last bits of
+  // 1e6.
   const int width = 200, height = 140;
   const float high = 1e6F;
   engine::LiveField live(fieldOf(gridOf(width, height), [](int, int) { return 0.0; }),
@@ -114,8 +115,8 @@ TEST(DetailBound, HoldsForCheckerboardsAndForStepsBesideTheBordersOfPatches) {
 
 TEST(DetailBound, HoldsForFieldsThatHolesLeaveLittleOf) {
   constexpr double hole = kNan;
-  // Samples left only where no vertex of any level is; not at the first ones beside them; single rows between
-  // holes.
+  // Samples left only where no vertex of any level is; not at the first ones next to them; single rows
+  // between holes.
   expectBound(
       fieldOf(gridOf(90, 80), [&](int c, int r) { return c % 8 == 0 || r % 8 == 0 ? hole : pebble(c, r); }),
       kAnyTightness);
@@ -126,7 +127,7 @@ TEST(DetailBound, HoldsForFieldsThatHolesLeaveLittleOf) {
               kAnyTightness);
 }
 
-// Measures, raises one sample, measures its tile anew and all anew.
+// Measures, raises one sample, measures its tile again and all again.
 std::string afterRaising(const engine::Version& start, int column, int row) {
   DetailMeasure kept;
   kept.measure(start.reader());
@@ -222,8 +223,8 @@ class ScreenTwin {
   ScreenTwin(const engine::Version& field, const PatchQuery& q) : reader_(field.reader()), q_(q) {}
 
   // The largest distance from a point of either surface to the other one, over a patch, as far as one cell of
-  // its level can tell: an upper bound of the true one. The fine surface's samples are enough, and the coarse
-  // one's at samples: each is linear on the other's triangles but for its own kinks.
+  // its level can measure: an upper bound of the true one. The fine surface's samples are enough, and the
+  // coarse one's at samples: each is linear on the other's triangles but for its own kinks.
   [[nodiscard]] double worst(glm::ivec2 first, int level) const {
     const int stride = 1 << level, side = DetailMeasure::side(level);
     const glm::ivec2 end = q_.placing.size - 1, last = glm::min(first + side, end);
@@ -283,7 +284,7 @@ TEST(ScreenBound, HoldsForEverySampleOfFieldsMadeToDefeatIt) {
   const std::vector<Case> cases = {
       {"noise", [](int c, int r) { return pebble(c, r); }},
       {"a spike", [](int c, int r) { return c == 37 && r == 51 ? 200.0 : 0.0; }},
-      {"a step beside a patch", [](int c, int) { return c > 32 ? 30.0 : 0.0; }},
+      {"a step next to a patch", [](int c, int) { return c > 32 ? 30.0 : 0.0; }},
       {"a checkerboard", [](int c, int r) { return (c + r) % 2 == 0 ? 3.0 : -3.0; }},
       {"a wave of 16", [](int c, int r) { return 8.0 * std::cos(M_PI / 8 * c) * std::cos(M_PI / 8 * r); }},
       {"a saddle", [](int c, int r) { return 0.02 * ((c - 60) * (c - 60) - (r - 45) * (r - 45)); }},

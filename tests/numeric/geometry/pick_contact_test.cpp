@@ -113,7 +113,7 @@ struct Shot {
   glm::dvec3 from, dir;
 };
 
-// Rays from above: at random places, at samples to the bit, along edges of cells, and grazing.
+// Rays from above: at random places, exactly at samples, along edges of cells, and grazing.
 class Shots {
  public:
   Shots(const engine::FieldReader& reader, unsigned seed)
@@ -200,7 +200,7 @@ TEST(PickAndContact, NothingIsTouchedBeforeThePickedPointAndSomethingIsBehindIt)
     Shots shots(reader, 5);
     for (int i = 0; i < 200; ++i) {
       const Shot shot = shots.next(i);
-      // Who comes in from beside the field may come in below the surface, through the wall there.
+      // A ray that comes from outside the field may come in below the surface, through the wall there.
       if (!(shot.from.x >= 0.0 && shot.from.y >= 0.0 && shot.from.x <= size.high.x &&
             shot.from.y <= size.high.y))
         continue;
@@ -291,7 +291,7 @@ TEST(PickAndContact, NoRayFromAboveToBelowComesThroughAClosedSurface) {
 
 TEST(PickAndContact, AgreeOnHeightsAtEverySampleEdgeAndBorder) {
   // Straight down on samples, edges and the far borders: surfaceHeight, meetSurface and the haptic patch give
-  // one height; over holes and beside the field all three give none.
+  // one height; over holes and outside the field all three give none.
   std::vector<PickField> fields = closedFields();
   for (PickField& f : fieldsWithHoles()) fields.push_back(std::move(f));
   for (const PickField& f : fields) {

@@ -135,7 +135,7 @@ std::string wrongBounds(const Version& version, const PlainField& field) {
   return wrong;
 }
 
-// A session on a field of one size: the live field by every way there is to write it, the plain one beside
+// A session on a field of one size: the live field by every way there is to write it, the plain one next to
 // it.
 class Session {
  public:

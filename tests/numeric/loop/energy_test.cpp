@@ -62,7 +62,7 @@ const T* dataOf(const Tick& tick, EffectKind kind) {
   return nullptr;
 }
 
-// What a scene stores after a tick [mJ], worked out beside it, and the largest force that holding costs.
+// What a scene stores after a tick [mJ], computed independently, and the largest force that holding costs.
 class Books {
  public:
   Books(const Scene& scene, double rate_hz)
@@ -250,7 +250,7 @@ Scene sceneOf(std::vector<EffectKind> effects, Choice choice, const engine::Grid
   return scene;
 }
 
-void tell(const std::string& name, const Balance& b) {
+void print(const std::string& name, const Balance& b) {
   tests::tellRare(
       name, b.counters,
       fmt::format("{} ticks, {} contacts, {} entries, {} of them far, lowest balance {:.2e} of {:.2g} mJ, {} "
@@ -320,7 +320,7 @@ TEST_P(EnergyOf, OnTheFlatNothingComesOutAtThePublishedDamping) {
       const Balance b = session(flat, scene, rate, damping);
       const std::string name =
           fmt::format("{} {} {} Hz b = {:.2g}", listed().name, tests::choiceName(choice), rate, damping);
-      tell(name, b);
+      print(name, b);
       EXPECT_GT(b.contacts, b.ticks / 3) << name;
       EXPECT_GE(b.lowest_mj, -sumError(b)) << name;
       // The controller takes force away without taking from what is stored: its own promise is the balance.
@@ -347,7 +347,7 @@ TEST_P(EnergyOn, NothingComesOutOfAnySurface) {
         const Balance b = session(field, scene, rate, damping);
         const std::string name =
             fmt::format("{} {} {} {} Hz", hard.name, listed.name, tests::choiceName(choice), rate);
-        tell(name, b);
+        print(name, b);
         EXPECT_GE(b.lowest_mj, -sumError(b)) << name;
         // A local search may hand over to a farther minimum where slopes are steep.
         if (choice != Choice::kPaper || hard.slope < 1.0) {

@@ -45,7 +45,7 @@ engine::Version ground() {
   });
 }
 
-// A closed way over all of it, in and out of contact, beside the field too.
+// A closed way over all of it, in and out of contact, outside the field too.
 std::vector<glm::dvec3> lap() {
   std::vector<glm::dvec3> way;
   for (std::size_t i = 0; i < kLap; ++i) {

@@ -199,7 +199,7 @@ std::vector<haptic::StrokeSample> wander(const HardField& hard, int ticks, std::
       way =
           size * glm::dvec3(sx * uniform(random, -1, 1), sy * uniform(random, -1, 1), uniform(random, -1, 1));
       if (i == 0 || random() % 12 == 0) {
-        // Somewhere else, a little beside the field at times; without jumps that is where it begins.
+        // Somewhere else, a little outside the field at times; without jumps that is where it begins.
         if (i == 0 || jumps == Jumps::kYes) {
           e = {uniform(random, -0.05, 1.05) * w, uniform(random, -0.05, 1.05) * h, 0.0};
           depth = uniform(random, -1.0, 3.0);
@@ -214,14 +214,14 @@ std::vector<haptic::StrokeSample> wander(const HardField& hard, int ticks, std::
       if (jumps == Jumps::kYes && random() % 5 == 0) e.x = std::round(e.x / sx) * sx;
       if (jumps == Jumps::kYes && random() % 5 == 0) e.y = std::round(e.y / sy) * sy;
     }
-    // Beside the field it turns back.
+    // Outside the field it turns back.
     if (e.x < 0.0 || e.x > w) way.x = std::copysign(way.x, 0.5 * w - e.x);
     if (e.y < 0.0 || e.y > h) way.y = std::copysign(way.y, 0.5 * h - e.y);
     e.x = std::clamp(e.x + way.x, -0.1 * w, 1.1 * w);
     e.y = std::clamp(e.y + way.y, -0.1 * h, 1.1 * h);
     depth = std::clamp(depth + way.z, -2.0, 4.0);
     const auto surface = static_cast<double>(heightAt(hard.field, e.x, e.y));
-    // Follows the surface, but at a spike goes on straight into it rather than to climb a million.
+    // Follows the surface, but at a spike continues straight into it rather than to climb a million.
     if (std::isfinite(surface) && std::abs(surface - last_surface) < 3.0 * cell) last_surface = surface;
     if (i == 0 && std::isfinite(surface)) last_surface = surface;
     out.push_back({0.001 * i, {e.x, e.y, last_surface - depth * cell}, haptic::Tool::kFeel});

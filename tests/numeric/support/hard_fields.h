@@ -38,15 +38,15 @@ inline constexpr Choice kChoices[] = {Choice::kPaper, Choice::kCertified, Choice
 [[nodiscard]] haptic::Scene sceneFor(Choice choice, const engine::Grid& grid);
 
 /// Height of the surface [mm] by plain interpolation in long double, sign and unit applied; NaN over holes
-/// and beside the field. The twin of Surface and Patch that shares no line with them.
+/// and outside the field. The twin of Surface and Patch that shares no line with them.
 [[nodiscard]] long double heightAt(const engine::Version& field, double x_mm, double y_mm);
 /// |n| times the rounding of a double of that size.
 [[nodiscard]] inline double ulps(double n, double size) {
   return n * 2.3e-16 * size;
 }
 
-/// A hand that wanders over, on, below and beside the field: rests, moves of 1e-9 to half a cell, and now and
-/// then of many; `jumps` false leaves those out. Depth is a few cells. Same seed, same path.
+/// A hand that wanders over, on, below and outside the field: rests, moves of 1e-9 to half a cell, and now
+/// and then of many; `jumps` false leaves those out. Depth is a few cells. Same seed, same path.
 enum class Jumps : std::uint8_t { kNo, kYes };
 [[nodiscard]] std::vector<haptic::StrokeSample> wander(const HardField& hard, int ticks, std::uint64_t seed,
                                                        Jumps jumps);

@@ -85,7 +85,7 @@ std::string writeCase(const TouchCase& touch, const std::string& folder) {
 
 std::optional<SmallestCase> findBroken(const std::string& name, Choice choice, const TouchProperty& property,
                                        const std::string& folder) {
-  // Shrinking goes on from a case only when it is broken too: the last broken one is the smallest.
+  // Shrinking continues from a case only when it is broken too: the last broken one is the smallest.
   std::optional<SmallestCase> smallest;
   // 100 cases a check, RapidCheck's default; RC_PARAMS sets seed and more.
   bool holds = true;

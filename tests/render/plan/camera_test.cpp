@@ -114,11 +114,11 @@ TEST(Camera, APartOfThePictureSeesItsPointsAtTheirPixelsAndEndsWhereItDoes) {
       const Ray ray = part.rayAt(whole.pixelOf(p));
       EXPECT_NEAR(glm::length(glm::cross(p - ray.from, ray.along)), 0.0, 1e-8);
     }
-    const Ray inside = whole.rayAt({332, 115}), beside = whole.rayAt({290, 115});
+    const Ray inside = whole.rayAt({332, 115}), outside = whole.rayAt({290, 115});
     const auto point = [](const Ray& ray) { return Box{ray.from + ray.along, ray.from + ray.along}; };
     EXPECT_FALSE(part.misses(point(inside)));
-    EXPECT_TRUE(part.misses(point(beside)));
-    EXPECT_FALSE(whole.misses(point(beside)));
+    EXPECT_TRUE(part.misses(point(outside)));
+    EXPECT_FALSE(whole.misses(point(outside)));
     EXPECT_NEAR(part.asidePixels(1.0), whole.asidePixels(1.0), 1e-9);
   }
 }

@@ -43,7 +43,7 @@ TEST(Residency, PreviewsAndTheOriginalShareEqualPagesAndShowWhatTheyShould) {
   // is still there as well.)
   const ResidencyStatistics shared = compare("a preview and the deviation from the original");
   EXPECT_LT(shared.pages_used, shared.pages_requested * 3 / 4);
-  // Both go on, apart from each other: what one of them changes is not the other's.
+  // Both continue, independent of each other: what one of them changes is not the other's.
   ASSERT_TRUE(live.writeHeights(690, 530, 60, 60, z.data(), 60));
   shown.versions = {live.snapshot(), edited};
   (void)compare("an edit in pages that were shared");

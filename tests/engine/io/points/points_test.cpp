@@ -225,7 +225,7 @@ TEST(Lattice, SpacingIsFoundThroughGapsRoundingAndFloats) {
       ASSERT_TRUE(r);
       EXPECT_EQ(r->count, 900);
       EXPECT_NEAR(r->spacing, spacing, spacing * 1e-3);
-      // A float must be able to tell two columns apart: 2.58e-6 at -47 it cannot.
+      // A float must be able to distinguish two columns: 2.58e-6 at -47 it cannot.
       if (!floats.empty() && spacing > 1e-4) {
         const auto f = findAxisLattice(floats);
         ASSERT_TRUE(f) << spacing << ' ' << origin;

@@ -90,7 +90,7 @@ class FakeWoody {
   std::array<std::int32_t, 3> preset_offset_{};
   std::uint16_t counter_ = 0;
   bool waits_for_reply_ = false;
-  std::array<std::int32_t, 3> from_{};  // of the motion that goes on
+  std::array<std::int32_t, 3> from_{};  // of the motion in progress
   std::array<std::int32_t, 3> to_{};
   std::chrono::steady_clock::time_point from_at_;
   std::chrono::steady_clock::time_point to_at_;
