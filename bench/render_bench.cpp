@@ -64,7 +64,7 @@ engine::Result<engine::Version> partOf(std::int32_t side) {
 
 double percentile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
 }
 
 std::uint64_t hashOf(const render::Image& image) {

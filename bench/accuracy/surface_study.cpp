@@ -104,7 +104,8 @@ std::vector<Case> casesOf(double sigma_mm, double away_mm, std::size_t count) {
 double bruteDistance(const Case& c) {
   double best = 1e300;
   for (int i = 0; i < 25; ++i) {
-    long double u = i % 5 / 4.0L, v = i / 5 / 4.0L;
+    const int row = i / 5;
+    long double u = i % 5 / 4.0L, v = row / 4.0L;
     const auto& p = c.patch;
     const long double ex = c.endpoint.x - p.x0, ey = c.endpoint.y - p.y0, ez = c.endpoint.z - p.a;
     for (int k = 0; k < 400; ++k) {

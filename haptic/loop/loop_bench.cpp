@@ -191,7 +191,7 @@ class Measurement {
     };
     if (!report_.no_cyclictest.empty()) {
       PlainThread plain(options_.rate_hz, requestFor(reference_core), reference_timing_);
-      const engine::Status done = alongside();
+      engine::Status done = alongside();
       const RealTimeReport granted = plain.stop();
       report_.reference.missing = granted.missing;
       report_.reference.latency_held = granted.latency_held;
@@ -218,7 +218,7 @@ class Measurement {
     HapticLoop& loop = **created;
     if (engine::Status started = loop.start(); !started) return started;
     static_cast<void>(loop.send(loop.armCommand()));
-    const engine::Status done = wait(seconds, &loop);
+    engine::Status done = wait(seconds, &loop);
     static_cast<void>(loop.stop());
     report_.loop.missing = loop.realTime().missing;
     report_.loop.latency_held = loop.realTime().latency_held;

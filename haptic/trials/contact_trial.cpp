@@ -191,7 +191,8 @@ double ContactTrial::truthError() const {
         haptic::Patch patch;
         if (!surface.hasCell(cell) || !surface.patch(cell, patch)) continue;
         for (int k = 0; k < 33 * 33; ++k) {
-          const glm::dvec3 d = patch.at(k % 33 / 32.0, k / 33 / 32.0) - e;
+          const int row = k / 33;
+          const glm::dvec3 d = patch.at(k % 33 / 32.0, row / 32.0) - e;
           nearest2 = std::min(nearest2, glm::dot(d, d));
         }
       }
