@@ -28,6 +28,9 @@ class LiveField {
   /// Valid until the next write.
   [[nodiscard]] FieldReader reader() const noexcept { return state_.reader(); }
 
+  /// As Version::lineCuts(); valid until adopt().
+  [[nodiscard]] const LineCuts* lineCuts() const noexcept { return state_.lineCuts(); }
+
   /// The present state, immutable from now on. O(1).
   [[nodiscard]] Version snapshot() const noexcept { return state_; }
 

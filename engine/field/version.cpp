@@ -1,5 +1,7 @@
 #include "engine/field/version.h"
 
+#include "engine/field/line_cuts.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -30,13 +32,18 @@ Version Version::inverted() const noexcept {
 Version Version::withGrid(Grid grid) const {
   assert(grid.width == this->grid().width && grid.height == this->grid().height);
   Version copy = *this;
-  copy.description_ = std::make_shared<const FieldDescription>(FieldDescription{std::move(grid), lines()});
+  copy.description_ = std::make_shared<const FieldDescription>(
+      FieldDescription{std::move(grid), lines(), description_->cuts});
   return copy;
 }
 
 Version Version::withLines(EdgeLines lines) const {
   Version copy = *this;
-  copy.description_ = std::make_shared<const FieldDescription>(FieldDescription{grid(), std::move(lines)});
+  FieldDescription description{grid(), std::move(lines), nullptr};
+  if (description.lines != nullptr)
+    description.cuts =
+        std::make_shared<const LineCuts>(*description.lines, description.grid.width, description.grid.height);
+  copy.description_ = std::make_shared<const FieldDescription>(std::move(description));
   return copy;
 }
 

@@ -13,10 +13,13 @@ namespace fettle::engine {
 
 class LiveField;
 
+class LineCuts;
+
 /// What versions share beyond samples: where the samples lie, and the edge lines between them.
 struct FieldDescription {
   Grid grid;
   EdgeLines lines;
+  std::shared_ptr<const LineCuts> cuts;  ///< null without lines
 };
 
 /// An immutable state of a field: samples, marks, edge lines, bounds, sign. Copying one is O(1) and allocates nothing;
@@ -50,7 +53,9 @@ class Version {
 
   /// The edge lines, or null.
   [[nodiscard]] const EdgeLines& lines() const noexcept { return description_->lines; }
-  /// The same samples with other edge lines, or with none.
+  /// The links between samples that the edge lines cut (line_cuts.h), or null without lines.
+  [[nodiscard]] const LineCuts* lineCuts() const noexcept { return description_->cuts.get(); }
+  /// The same samples with other edge lines, or with none. O(points). Throws std::bad_alloc.
   [[nodiscard]] Version withLines(EdgeLines lines) const;
 
   /// Whether both are the same state (same tiles, same sign, same lines), not only equal in content. O(1).

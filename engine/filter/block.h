@@ -4,7 +4,7 @@
 
 #include "engine/base/job.h"
 #include "engine/filter/filter.h"
-#include "engine/filter/line_cuts.h"
+#include "engine/field/line_cuts.h"
 #include "engine/simd/cpu.h"
 
 namespace fettle::engine {

@@ -55,10 +55,8 @@ class Pass {
         spec_(spec),
         radius_(filter.squares.side > 0 ? filter.squares.halo : filterOf(spec.kind).reach(spec)),
         same_field_(&reader_.root() == &original_.root()),
-        level_(level) {
-    if (input.lines() != nullptr && !input.lines()->empty())
-      cuts_ = std::make_unique<const LineCuts>(*input.lines(), reader_.width(), reader_.height());
-  }
+        level_(level),
+        cuts_(input.lineCuts()) {}
 
   // Filters one rectangle of tiles; appends the tiles that changed. False when cancelled or out of memory.
   bool run(TileRect rect, Scratch& scratch, const JobControl& job, std::vector<NewTile>& made) {
@@ -181,7 +179,7 @@ class Pass {
     scratch.out.resize(static_cast<std::size_t>(block.out_stride) * static_cast<std::size_t>(block.out_rows));
     reader_.readHeights(left, low, block.columns, block.rows, scratch.heights.data(), block.stride);
     block.heights = scratch.heights.data();
-    block.cuts = cuts_.get();
+    block.cuts = cuts_;
     block.left = left;
     block.low = low;
     block.out = scratch.out.data();
@@ -257,7 +255,7 @@ class Pass {
   int radius_;
   bool same_field_;
   CpuLevel level_;
-  std::unique_ptr<const LineCuts> cuts_;  // null without lines
+  const LineCuts* cuts_;  // null without lines
   std::atomic<bool> out_of_memory_{false};
 };
 

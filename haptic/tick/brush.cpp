@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <memory>
+#include <span>
 
 #include "engine/filter/limit_change.h"
 #include "haptic/effects/effect.h"
@@ -14,18 +15,22 @@ namespace {
 
 constexpr double kBinomial[3][3] = {{1, 2, 1}, {2, 4, 2}, {1, 2, 1}};
 
-// The sums of blend() where the window has holes: no weight, the rest is renormalised.
+// The sums of blend() where not all of the window counts, as around holes: no weight, the rest is renormalised.
 struct WindowSums {
   double gauss = 0.0, gauss_weight = 0.0;
   double box = 0.0, box_weight = 0.0;
 };
 
-WindowSums sumsAroundHoles(const float* centre, std::ptrdiff_t stride) noexcept {
+// Which of a window's samples count, by row, then column: bit 3 (r + 1) + c + 1.
+using WindowMask = unsigned;
+constexpr WindowMask kWholeWindow = 0x1FF;
+
+WindowSums sumsOf(const float* centre, std::ptrdiff_t stride, WindowMask mask) noexcept {
   WindowSums sums;
   for (int r = -1; r <= 1; ++r)
     for (int c = -1; c <= 1; ++c) {
       const auto z = static_cast<double>(centre[r * stride + c]);
-      if (std::isnan(z)) continue;
+      if (std::isnan(z) || (mask >> (3 * (r + 1) + c + 1) & 1U) == 0) continue;
       const double w = kBinomial[r + 1][c + 1];
       sums.gauss += w * z;
       sums.gauss_weight += w;
@@ -35,8 +40,30 @@ WindowSums sumsAroundHoles(const float* centre, std::ptrdiff_t stride) noexcept 
   return sums;
 }
 
-// The blend over one 3 x 3 window around `centre` (stride in elements); the centre is no hole.
-double blend(const float* centre, std::ptrdiff_t stride, double strength) noexcept {
+// The samples of a window that no line parts from its middle; `cut` holds the links that are cut, as LineCut::links.
+WindowMask connected(const std::uint8_t* cut, std::ptrdiff_t stride) noexcept {
+  using engine::LineCut;
+  // Whether the link from (c, r) to the next column, to the next row, is whole.
+  const auto right = [&](int c, int r) { return (cut[r * stride + c] & LineCut::kRight) == 0; };
+  const auto up = [&](int c, int r) { return (cut[r * stride + c] & LineCut::kUp) == 0; };
+  WindowMask mask = 1U << 4;
+  for (const int c : {-1, 1})
+    if (right(std::min(c, 0), 0)) mask |= 1U << (4 + c);
+  for (const int r : {-1, 1})
+    if (up(0, std::min(r, 0))) mask |= 1U << (4 + 3 * r);
+  for (const int r : {-1, 1})
+    for (const int c : {-1, 1}) {
+      const bool row_first = right(std::min(c, 0), 0) && up(c, std::min(r, 0));
+      const bool column_first = up(0, std::min(r, 0)) && right(std::min(c, 0), r);
+      if (row_first || column_first) mask |= 1U << (4 + 3 * r + c);
+    }
+  return mask;
+}
+
+// The blend over the samples that count of one 3 x 3 window around `centre` (stride in elements); the centre is no
+// hole and counts.
+double blend(const float* centre, std::ptrdiff_t stride, double strength,
+             WindowMask mask = kWholeWindow) noexcept {
   WindowSums sums{0.0, 16.0, 0.0, 9.0};
   for (int r = -1; r <= 1; ++r)
     for (int c = -1; c <= 1; ++c) {
@@ -45,8 +72,8 @@ double blend(const float* centre, std::ptrdiff_t stride, double strength) noexce
       sums.box += z;
     }
   // Nine floats cannot overflow a double: a NaN among them, and nothing else, makes the sum NaN.
-  if (std::isnan(sums.box)) [[unlikely]]
-    sums = sumsAroundHoles(centre, stride);
+  if (std::isnan(sums.box) || mask != kWholeWindow) [[unlikely]]
+    sums = sumsOf(centre, stride, mask);
   const double gauss = sums.gauss / sums.gauss_weight;
   const double box = sums.box / sums.box_weight;
   // In this form a flat window stays exactly flat.
@@ -78,6 +105,23 @@ Brush::Brush(double radius, std::optional<double> max_change, const engine::Vers
   before_.resize((side + 2) * (side + 2));
   after_.resize(side * side);
   marked_.resize(side * side);
+  cut_.resize(before_.size());
+}
+
+bool Brush::findCuts(const engine::LineCuts* cuts, std::int32_t column, std::int32_t row,
+                     std::int32_t side) noexcept {
+  if (cuts == nullptr) return false;
+  bool any = false;
+  for (std::int32_t r = 0; r < side; ++r) {
+    const std::span<const engine::LineCut> all = cuts->row(row + r);
+    auto cut = std::ranges::lower_bound(all, column, {}, &engine::LineCut::column);
+    if (cut == all.end() || cut->column >= column + side) continue;
+    if (!any) std::ranges::fill(cut_, std::uint8_t{0});
+    any = true;
+    for (; cut != all.end() && cut->column < column + side; ++cut)
+      cut_[static_cast<std::size_t>(r * side + cut->column - column)] = cut->links;
+  }
+  return any;
 }
 
 float Brush::limited(double height, float old, std::int32_t column, std::int32_t row) const noexcept {
@@ -108,7 +152,9 @@ bool Brush::applyToOne(engine::LiveField& field, std::int32_t column, std::int32
   }
   const float old = *centre;
   if (std::isnan(old)) return true;
-  return field.setHeight(column, row, limited(blend(centre, stride, strength), old, column, row));
+  const WindowMask mask =
+      findCuts(field.lineCuts(), column - 1, row - 1, 3) ? connected(cut_.data() + 4, 3) : kWholeWindow;
+  return field.setHeight(column, row, limited(blend(centre, stride, strength, mask), old, column, row));
 }
 
 bool Brush::apply(engine::LiveField& field, std::int32_t column, std::int32_t row, double strength) noexcept {
@@ -119,15 +165,18 @@ bool Brush::apply(engine::LiveField& field, std::int32_t column, std::int32_t ro
   const std::int32_t stride = side + 2;
   reader.readHeights(column - reach - 1, row - reach - 1, stride, stride, before_.data(), stride);
   reader.readMarks(column - reach, row - reach, side, side, marked_.data(), side);
+  const bool cut = findCuts(field.lineCuts(), column - reach - 1, row - reach - 1, stride);
   for (std::int32_t dr = 0; dr < side; ++dr) {
+    const std::uint8_t* links = cut_.data() + (dr + 1) * stride + 1;
     const float* before = before_.data() + (dr + 1) * stride + 1;
     float* after = after_.data() + dr * side;
     std::copy_n(before, side, after);
     const std::int32_t half = disc_.half_width[static_cast<std::size_t>(dr)];
     for (std::int32_t dc = reach - half; dc <= reach + half; ++dc) {
       if (std::isnan(before[dc]) || marked_[static_cast<std::size_t>(dr * side + dc)] != 0) continue;
-      after[dc] =
-          limited(blend(before + dc, stride, strength), before[dc], column - reach + dc, row - reach + dr);
+      const WindowMask mask = cut ? connected(links + dc, stride) : kWholeWindow;
+      after[dc] = limited(blend(before + dc, stride, strength, mask), before[dc], column - reach + dc,
+                          row - reach + dr);
     }
   }
   // Only samples of the field can be written.

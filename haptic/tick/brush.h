@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/field/line_cuts.h"
 #include "engine/field/live_field.h"
 #include "engine/field/version.h"
 #include "haptic/contact/disc.h"
@@ -21,7 +22,9 @@ namespace fettle::haptic {
 /// that of the original's sample, exactly, without rounding error; where the original has a hole there is no
 /// reference, and the sample is kept.
 ///
-/// No edge stops the window: a sample next to a step that is not marked itself is blended with both sides.
+/// The window never reaches over an edge line of the field (engine::LineCuts): a sample counts as a neighbour where a
+/// way of one link, or of one along the row and one along the column, leads to it over no cut link. No other edge stops
+/// the window: a sample next to a step that is not marked itself is blended with both sides.
 ///
 /// A sample whose original is a denormal is kept, too, with `max_change`: the haptic thread flushes
 /// denormals, so that they count as zero there. They keep their bits where they are not smoothed.
@@ -41,13 +44,16 @@ class Brush {
 
   /// Memory apart from the object itself; the tiles of `original`, shared with others, do not count.
   [[nodiscard]] std::size_t bytesHeld() const noexcept {
-    return (before_.capacity() + after_.capacity()) * sizeof(float) + marked_.capacity() +
+    return (before_.capacity() + after_.capacity()) * sizeof(float) + marked_.capacity() + cut_.capacity() +
            disc_.half_width.capacity() * sizeof(std::int32_t);
   }
 
  private:
   [[nodiscard]] bool applyToOne(engine::LiveField& field, std::int32_t column, std::int32_t row,
                                 double strength) noexcept;
+  /// Fills cut_ for `side` x `side` samples from (column, row) on; false when no link of theirs is cut.
+  [[nodiscard]] bool findCuts(const engine::LineCuts* cuts, std::int32_t column, std::int32_t row,
+                              std::int32_t side) noexcept;
   [[nodiscard]] float limited(double height, float old, std::int32_t column, std::int32_t row) const noexcept;
 
   Disc disc_;
@@ -56,6 +62,7 @@ class Brush {
   std::vector<float> before_;         // (2 reach + 3)^2, row-major
   std::vector<float> after_;          // (2 reach + 1)^2
   std::vector<std::uint8_t> marked_;  // (2 reach + 1)^2
+  std::vector<std::uint8_t> cut_;     // as before_: LineCut's links; only valid where a field has lines
 };
 
 }  // namespace fettle::haptic

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "engine/filter/line_cuts.h"
+#include "engine/field/line_cuts.h"
 #include "tests/engine/filter/reference.h"
 
 namespace fettle::engine::tests {

@@ -60,6 +60,71 @@ TEST(Brush, EqualsItsDefinitionOverHolesBordersMarksAndRadii) {
   }
 }
 
+// A straight edge line through (x, y), `angle` from the columns, beyond the field at both ends.
+engine::EdgeLines straightLine(double x, double y, double angle) {
+  engine::EdgeLine line;
+  for (int i = -100; i <= 100; ++i) {
+    engine::EdgePoint point;
+    point.position = {x + i * std::cos(angle), y + i * std::sin(angle)};
+    point.located = true;
+    line.points.push_back(point);
+  }
+  return std::make_shared<const std::vector<engine::EdgeLine>>(1, line);
+}
+
+TEST(Brush, NeverReachesOverAnEdgeLine) {
+  std::mt19937_64 random(4);
+  for (int i = 0; i < 200; ++i) {
+    const double x = uniform(random, 20, 50), y = uniform(random, 15, 35);
+    const double angle = uniform(random, 0, 3.1416);
+    const engine::Version plain = fieldOf(
+        70, 50,
+        [&](int c, int r) {
+          if (random() % 40 == 0) return static_cast<double>(kHole);
+          return (c - x) * std::sin(angle) - (r - y) * std::cos(angle) > 0.0 ? 1.5 : -0.25;
+        },
+        1.0, 1.0);
+    const engine::Version lined = plain.withLines(straightLine(x, y, angle));
+    const engine::Version start = i % 2 == 0 ? lined : lined.inverted();
+    Brush brush((i % 3) * 2.0, std::nullopt, start);
+    engine::LiveField field(start, engine::Growth::kAllowed);
+    for (int k = 0; k < 40; ++k) {
+      const double along = uniform(random, -12, 12), off = uniform(random, -3, 3);
+      ASSERT_TRUE(brush.apply(field, static_cast<int>(x + along * std::cos(angle) - off * std::sin(angle)),
+                              static_cast<int>(y + along * std::sin(angle) + off * std::cos(angle)), 0.5));
+    }
+    // Both sides are flat and remain so, to the last bit.
+    for (int r = 0; r < 50; ++r)
+      for (int c = 0; c < 70; ++c) {
+        const float was = start.reader().heightAt(c, r), now = field.reader().heightAt(c, r);
+        ASSERT_TRUE(was == now || (std::isnan(was) && std::isnan(now))) << i << ": " << c << ", " << r;
+      }
+    // Without the line both are blended.
+    if (i % 2 != 0) continue;
+    engine::LiveField over(plain, engine::Growth::kAllowed);
+    ASSERT_TRUE(brush.apply(over, static_cast<int>(x), static_cast<int>(y), 0.5));
+    ASSERT_TRUE(brush.apply(over, static_cast<int>(x) + 1, static_cast<int>(y) + 1, 0.5));
+    if (i % 3 != 0) {
+      EXPECT_FALSE(over.snapshot() == plain);
+    }
+  }
+}
+
+TEST(Brush, AsksNothingOfLinesThatAreElsewhere) {
+  std::mt19937_64 random(5);
+  const engine::Version plain = randomField(random, 70, 50, 2, 1.0, 1.0, 0.1);
+  for (const double radius : {0.0, 3.0}) {
+    engine::LiveField without(plain, engine::Growth::kAllowed);
+    engine::LiveField with(plain.withLines(straightLine(60.0, 0.0, 1.5708)), engine::Growth::kAllowed);
+    Brush brush(radius, std::nullopt, plain);
+    for (int c = 5; c < 50; c += 3) {
+      ASSERT_TRUE(brush.apply(without, c, 20, 0.7));
+      ASSERT_TRUE(brush.apply(with, c, 20, 0.7));
+    }
+    EXPECT_EQ(engine::contentHash(without.snapshot()), engine::contentHash(with.snapshot()));
+  }
+}
+
 TEST(Brush, StaysWithinTheLargestChangeAsExactNumbers) {
   std::mt19937_64 random(2);
   const engine::Version start = randomField(random, 20, 20, 2, 1.0, 1.0);

@@ -2,7 +2,10 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <new>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -47,6 +50,17 @@ TEST(NeverAllocate, ATickDoesNotWithAnyToolLevelOrEffect) {
   const engine::Version field = trials::workpiece(300, 0.05);
   ASSERT_TRUE(field.memory()->tiles.reserve(200));
   ASSERT_TRUE(field.memory()->nodes.reserve(50));
+  // Edge lines across the field, for the brush.
+  std::vector<engine::EdgeLine> lines(30);
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    for (int i = 0; i < 300; ++i) {
+      engine::EdgePoint point;
+      point.position = {10.0 * static_cast<double>(k) + 0.3 * i, 1.0 * i};
+      point.located = true;
+      lines[k].points.push_back(point);
+    }
+  const engine::Version lined =
+      field.withLines(std::make_shared<const std::vector<engine::EdgeLine>>(std::move(lines)));
   trials::HandMotion motion;
   motion.ticks = 60000;
   std::vector<StrokeSample> strokes = trials::handStroke(field, motion);
@@ -71,7 +85,7 @@ TEST(NeverAllocate, ATickDoesNotWithAnyToolLevelOrEffect) {
           scene.effects.push_back(kind);
       }
       ASSERT_FALSE(sceneProblem(scene));
-      engine::LiveField live(field, engine::Growth::kNever);
+      engine::LiveField live(listed % 2 == 0 ? field : lined, engine::Growth::kNever);
       Tick tick(scene, live, field);
       const long before = g_allocations.load(std::memory_order_relaxed);
       long contacts = 0;

@@ -1,4 +1,4 @@
-#include "engine/filter/line_cuts.h"
+#include "engine/field/line_cuts.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "engine/filter/line_cuts.h"
+#include "engine/field/line_cuts.h"
 
 #include <cmath>
 #include <random>
@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/field/builder.h"
 #include "engine/field/piece.h"
 #include "tests/engine/filter/edge_line_of.h"
-#include "tests/engine/filter/reference.h"
 
 namespace fettle::engine::tests {
 namespace {
@@ -104,9 +104,11 @@ TEST(LineCuts, OfAPieceOfAFieldAreThoseOfTheFieldThere) {
     wave.points.push_back(point);
   }
   wave.closed = true;
-  const Version field = toVersion(formed(80, 70, [](int, int) {
-                          return 0.0F;
-                        })).withLines(std::make_shared<std::vector<EdgeLine>>(std::vector{wave}));
+  Grid grid;
+  grid.width = 80;
+  grid.height = 70;
+  const Version field = makeField(grid, std::vector<float>(80 * 70))
+                            .withLines(std::make_shared<std::vector<EdgeLine>>(std::vector{wave}));
   const Version piece = pieceOf(field, 13, 17, 40, 30);
   const Cuts of_field = cutsOf(*field.lines(), 80, 70), of_piece = cutsOf(*piece.lines(), 40, 30);
   int compared = 0;
