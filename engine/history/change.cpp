@@ -15,6 +15,28 @@ struct Extent {
   std::int32_t column1 = -1, row1 = -1;                                             // the last ones
 };
 
+bool runAlike(const EdgeLine& a, const EdgeLine& b) noexcept {
+  return a.id == b.id && a.closed == b.closed &&
+         std::ranges::equal(a.points, b.points, {}, &EdgePoint::position, &EdgePoint::position);
+}
+
+// Around the points of the lines that are not among the others, clipped to the field.
+SampleRect rectOfOtherLines(const EdgeLines& lines, const EdgeLines& others, const Grid& grid) noexcept {
+  SampleRect rect;
+  if (lines == nullptr) return rect;
+  for (const EdgeLine& line : *lines) {
+    if (others != nullptr &&
+        std::ranges::any_of(*others, [&](const EdgeLine& other) { return runAlike(line, other); }))
+      continue;
+    for (const EdgePoint& point : line.points) {
+      const auto column = static_cast<std::int32_t>(std::clamp(point.position.x, 0.0, grid.width - 1.0));
+      const auto row = static_cast<std::int32_t>(std::clamp(point.position.y, 0.0, grid.height - 1.0));
+      rect = rect.joined({column, row, 1, 1});
+    }
+  }
+  return rect;
+}
+
 }  // namespace
 
 Change measureChange(const Version& before, const Version& after) noexcept {
@@ -22,6 +44,7 @@ Change measureChange(const Version& before, const Version& after) noexcept {
   assert(grid.width == after.grid().width && grid.height == after.grid().height);
   Change change;
   change.inverted = before.reader().sign() != after.reader().sign();
+  change.lines = before.lines() != after.lines();
   Extent extent;
   change.nodes = detail::walkChanges(before.reader().root(), after.reader().root(), 0, 0,
                                      [&](std::int32_t column, std::int32_t row, const Tile&, const Tile&) {
@@ -39,6 +62,9 @@ Change measureChange(const Version& before, const Version& after) noexcept {
     change.rect = {column, row, std::min((extent.column1 + 1) * kTileSide, grid.width) - column,
                    std::min((extent.row1 + 1) * kTileSide, grid.height) - row};
   }
+  if (change.lines)
+    change.rect = change.rect.joined(rectOfOtherLines(before.lines(), after.lines(), grid))
+                      .joined(rectOfOtherLines(after.lines(), before.lines(), grid));
   return change;
 }
 

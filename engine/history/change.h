@@ -12,10 +12,13 @@ namespace fettle::engine {
 struct Change {
   std::int64_t tiles = 0;  ///< places of the table whose tile is another object
   std::int64_t nodes = 0;  ///< inner nodes that are other objects
-  SampleRect rect;  ///< around those tiles, clipped to the field: whole tiles, unchanged samples included
+  /// Around those tiles, clipped to the field: whole tiles, unchanged samples included; and around the edge lines that
+  /// only one of them has.
+  SampleRect rect;
   bool inverted = false;  ///< whether the signs differ
+  bool lines = false;     ///< whether the edge lines are other ones
 
-  [[nodiscard]] bool none() const noexcept { return tiles == 0 && !inverted; }
+  [[nodiscard]] bool none() const noexcept { return tiles == 0 && !inverted && !lines; }
   /// Memory of one version that the other does not share [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept {
     return static_cast<std::size_t>(tiles) * sizeof(Tile) + static_cast<std::size_t>(nodes) * sizeof(Node);

@@ -10,7 +10,7 @@ namespace fettle::engine {
 namespace {
 
 using namespace std::string_view_literals;
-constexpr std::array kKindNames{"stroke"sv, "filter"sv, "mark"sv, "invert"sv, "import"sv};
+constexpr std::array kKindNames{"stroke"sv, "filter"sv, "mark"sv, "invert"sv, "import"sv, "lines"sv};
 
 }  // namespace
 

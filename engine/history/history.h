@@ -16,9 +16,9 @@
 namespace fettle::engine {
 
 /// What made a step.
-enum class StepKind : std::uint8_t { kStroke, kFilter, kMark, kInvert, kImport };
+enum class StepKind : std::uint8_t { kStroke, kFilter, kMark, kInvert, kImport, kLines };
 
-/// "stroke", "filter", "mark", "invert", "import"; these words are stored in session files.
+/// "stroke", "filter", "mark", "invert", "import", "lines"; these words are stored in session files.
 [[nodiscard]] std::string_view stepKindName(StepKind kind) noexcept;
 [[nodiscard]] std::optional<StepKind> stepKindFromName(std::string_view name) noexcept;
 

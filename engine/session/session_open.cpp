@@ -65,7 +65,8 @@ Result<Version> moved(const Version& from, std::int64_t state, std::span<const s
   }
   const float sign = index.steps[static_cast<std::size_t>(state)].sign;
   if (live.snapshot().reader().sign() != sign) live.invert();
-  return live.snapshot();
+  const EdgeLines& lines = index.lines[static_cast<std::size_t>(state)];
+  return live.snapshot().lines() == lines ? live.snapshot() : live.snapshot().withLines(lines);
 }
 
 // Reads tiles that are not in `tiles` yet.
@@ -184,7 +185,7 @@ Result<Session> read(SessionTables& tables, const SessionOpenOptions& options, S
                                  ? embeddedOriginal(tables, index, job)
                                  : referencedOriginal(index, options, session.scan, path, import_scan, job);
   if (!original) return tl::unexpected(original.error());
-  session.original = *original;
+  session.original = index.lines.front() ? original->withLines(index.lines.front()) : *std::move(original);
 
   const auto by_step = placesByStep(index);
   const auto [first, last] = statesToHold(index, options.history_bytes);
@@ -266,6 +267,9 @@ Result<SessionIndex> readIndex(SessionTables& tables) {
   auto places = tables.readPlaces(index.steps);
   if (!places) return tl::unexpected(places.error());
   index.places = std::move(*places);
+  auto lines = tables.readLines(index.steps);
+  if (!lines) return tl::unexpected(lines.error());
+  index.lines = std::move(*lines);
   return index;
 }
 

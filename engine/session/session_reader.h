@@ -34,6 +34,7 @@ struct SessionIndex {
   OriginalRow original;
   std::vector<StepRow> steps;
   std::vector<TilePlace> places;  ///< by position, then step
+  std::vector<EdgeLines> lines;   ///< of each state
 };
 [[nodiscard]] Result<SessionIndex> readIndex(SessionTables& tables);
 

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/session/line_codec.h"
+
 namespace fettle::engine {
 
 namespace fs = std::filesystem;
@@ -20,6 +22,8 @@ Status putStep(SessionTables& tables, std::int64_t number, const Step& step, Hea
   if (Status status = tables.insertStep(row); !status) return status;
   job.begin("writing the session", tiles.size());
   if (Status status = storeTiles(tables, tiles, number, head, bytes, job); !status) return status;
+  if (step.after.lines() != step.before.lines())
+    if (Status status = tables.insertLines(number, packLines(step.after.lines())); !status) return status;
   head.state = number;
   head.last_state = number;
   return {};

@@ -4,6 +4,7 @@
 #include <new>
 
 #include "engine/io/files/atomic_file.h"
+#include "engine/session/line_codec.h"
 #include "engine/session/session_rows.h"
 
 namespace fettle::engine {
@@ -31,6 +32,8 @@ Status writeAll(SessionTables& tables, const Session& session, const OriginalRow
   job.begin("writing the session", tiles.size());
   if (Status status = storeTiles(tables, tiles, 0, head, size.tile_bytes, job); !status) return status;
   tiles.clear();
+  if (session.original.lines())
+    if (Status status = tables.insertLines(0, packLines(session.original.lines())); !status) return status;
 
   // States that the history no longer holds become one step, with the number of the state it leads to:
   // numbers do not change.

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/session/line_codec.h"
 #include "engine/session/packed_bytes.h"
 
 namespace fettle::engine {
@@ -34,6 +35,10 @@ CREATE INDEX tile_place ON tile(position, step);
 CREATE TABLE journal(id INTEGER PRIMARY KEY, state INTEGER NOT NULL, time_ms INTEGER NOT NULL,
   checksum INTEGER NOT NULL, action TEXT NOT NULL, data BLOB NOT NULL) STRICT;
 CREATE TABLE note(key TEXT PRIMARY KEY, checksum INTEGER NOT NULL, text TEXT NOT NULL) STRICT;
+)";
+constexpr const char* kLinesSchema = R"(
+CREATE TABLE lines(step INTEGER PRIMARY KEY, checksum INTEGER NOT NULL, data BLOB NOT NULL) STRICT;
+PRAGMA user_version=2;
 )";
 
 StepTime timeOf(std::int64_t ms) {
@@ -115,8 +120,8 @@ Result<Statement*> SessionTables::cached(const char* sql) {
 }
 
 Status SessionTables::create() {
-  return database_->execute(fmt::format("{} PRAGMA application_id={}; PRAGMA user_version={};", kSchema,
-                                        kSessionApplicationId, kSessionFormat));
+  return database_->execute(
+      fmt::format("{} PRAGMA application_id={}; PRAGMA user_version=1;", kSchema, kSessionApplicationId));
 }
 
 Status SessionTables::recognise() {
@@ -246,6 +251,14 @@ Result<std::vector<StepRow>> SessionTables::readSteps(const HeadRow& head) {
 }
 
 Status SessionTables::truncateSteps(std::int64_t number) {
+  const Result<bool> has_lines = hasLines();
+  if (!has_lines) return tl::unexpected(has_lines.error());
+  if (*has_lines) {
+    const Result<Statement*> lines = cached("DELETE FROM lines WHERE step>?");
+    if (!lines) return tl::unexpected(lines.error());
+    (*lines)->bind(1, number);
+    if (Status status = (*lines)->run(); !status) return status;
+  }
   // Tiles lie in the order of their steps, so theirs are the last ids: a range of the table, no search. Only
   // those of a scan that was embedded later lie among them or after them.
   const Result<Statement*> tiles =
@@ -310,6 +323,60 @@ Status SessionTables::readTile(const TilePlace& place, std::string& data) {
   (*s)->reset();
   if (!right) return damaged(fmt::format("tile {} does not fit its checksum", place.id), path);
   return {};
+}
+
+Result<bool> SessionTables::hasLines() {
+  const Result<std::int64_t> format = database_->integer("PRAGMA user_version");
+  if (!format) return tl::unexpected(format.error());
+  return *format >= 2;
+}
+
+Status SessionTables::insertLines(std::int64_t step, std::string_view packed) {
+  const Result<bool> has_lines = hasLines();
+  if (!has_lines) return tl::unexpected(has_lines.error());
+  if (!*has_lines)
+    if (Status status = database_->execute(kLinesSchema); !status) return status;
+  const Result<Statement*> s = cached("INSERT INTO lines VALUES(?,?,?)");
+  if (!s) return tl::unexpected(s.error());
+  const std::string data = packBytes(packed);
+  (*s)->bind(1, step).bind(2, RowChecksum().integer(step).text(data).value()).bindBlob(3, data);
+  return (*s)->run();
+}
+
+Result<std::vector<EdgeLines>> SessionTables::readLines(const std::vector<StepRow>& steps) {
+  const std::string& path = database_->shownPath();
+  std::vector<EdgeLines> lines(steps.size());
+  const Result<bool> has_lines = hasLines();
+  if (!has_lines) return tl::unexpected(has_lines.error());
+  std::size_t next = 0;  // state whose lines are not known yet
+  const auto fillTo = [&](std::size_t end) {
+    for (; next < end; ++next) lines[next] = next == 0 ? nullptr : lines[next - 1];
+  };
+  if (*has_lines) {
+    const Result<Statement*> s = cached("SELECT step,checksum,data FROM lines ORDER BY step");
+    if (!s) return tl::unexpected(s.error());
+    for (;;) {
+      const Result<bool> row = (*s)->step();
+      if (!row) return tl::unexpected(row.error());
+      if (!*row) break;
+      const std::int64_t step = (*s)->integer(0);
+      const std::string_view data = (*s)->bytes(2);
+      std::string packed;
+      if (step < 0 || step >= static_cast<std::int64_t>(steps.size()) ||
+          (*s)->integer(1) != RowChecksum().integer(step).text(data).value() || !unpackBytes(data, packed))
+        return damaged(fmt::format("the lines of step {} do not fit their checksum", step), path);
+      std::optional<EdgeLines> unpacked = unpackLines(packed);
+      if (!unpacked) return damaged(fmt::format("the lines of step {} cannot be read", step), path);
+      fillTo(static_cast<std::size_t>(step));
+      lines[next++] = *std::move(unpacked);
+    }
+    (*s)->reset();
+  }
+  fillTo(lines.size());
+  for (std::size_t k = 1; k < steps.size(); ++k)
+    if (steps[k].info.kind == StepKind::kLines && lines[k] == lines[k - 1])
+      return damaged(fmt::format("the lines of step {} are missing", k), path);
+  return lines;
 }
 
 Status SessionTables::appendJournal(std::int64_t id, const JournalEntry& entry) {

@@ -18,7 +18,9 @@ namespace fettle::engine {
 // and its ranges; errors are those of Database, and damaged().
 
 inline constexpr std::int64_t kSessionApplicationId = 0x4654544C;  // "FTTL"
-inline constexpr std::int64_t kSessionFormat = 1;                  // user_version
+/// user_version: 2 where a step has changed edge lines, 1 where none has, so that a program that knows no lines
+/// reads the sessions without them.
+inline constexpr std::int64_t kSessionFormat = 2;
 
 /// The only row that changes: the user's position, and the expected numbers of rows.
 struct HeadRow {
@@ -83,6 +85,11 @@ class SessionTables {
   /// The packed tile of a place, checked.
   [[nodiscard]] Status readTile(const TilePlace& place, std::string& data);
 
+  /// The edge lines that a step leaves behind (packLines()), where they are not those before it.
+  [[nodiscard]] Status insertLines(std::int64_t step, std::string_view packed);
+  /// The edge lines of each state, by its number; states that have the same ones share them.
+  [[nodiscard]] Result<std::vector<EdgeLines>> readLines(const std::vector<StepRow>& steps);
+
   [[nodiscard]] Status appendJournal(std::int64_t id, const JournalEntry& entry);
   [[nodiscard]] Result<std::vector<JournalEntry>> readJournal(const HeadRow& head);
   /// `is_new`: whether there was none of that key.
@@ -92,6 +99,8 @@ class SessionTables {
  private:
   // Prepared at first use and kept.
   [[nodiscard]] Result<Statement*> cached(const char* sql);
+  // Whether there is a table of edge lines: made when the first are stored.
+  [[nodiscard]] Result<bool> hasLines();
 
   Database* database_;
   std::vector<std::pair<const char*, std::unique_ptr<Statement>>> statements_;

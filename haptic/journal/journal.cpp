@@ -82,8 +82,8 @@ journal::Entry entryOf(const json& in) {
   if (what == "step") {
     const auto kind = engine::stepKindFromName(in.at("kind").get_ref<const std::string&>());
     if (!kind) throw std::out_of_range("an unknown kind of step");
-    return journal::StepMade{state(), in.at("name").get<std::string>(), *kind, placeOf(in),
-                             in.value("marks", false)};
+    return journal::StepMade{state(),     in.at("name").get<std::string>(), *kind,
+                             placeOf(in), in.value("marks", false),         in.value("lines", false)};
   }
   if (what == "restore") return journal::RestoreRequested{id(), state()};
   if (what == "restored") return journal::Restored{id(), placeOf(in)};
@@ -117,6 +117,7 @@ std::string journalText(const journal::Entry& entry) {
             out = {
                 {"do", "step"}, {"state", e.state}, {"name", e.name}, {"kind", engine::stepKindName(e.kind)}};
             if (e.marks) out["marks"] = true;
+            if (e.lines) out["lines"] = true;
             put(out, e.at);
           },
           [&](const journal::RestoreRequested& e) {

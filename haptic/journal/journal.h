@@ -43,13 +43,15 @@ struct SceneSet {
   haptic::Scene scene;
 };
 /// A step led to state `state`: the field at that point. With `marks` it is the state before with the marks
-/// of the entry's data (mark_codec.h), set by other means than strokes.
+/// of the entry's data (mark_codec.h), set by other means than strokes; with `lines`, with its marks and edge
+/// lines (line_change.h).
 struct StepMade {
   std::int64_t state = 0;
   std::string name;
   engine::StepKind kind = engine::StepKind::kStroke;
   LoopPlace at;
   bool marks = false;
+  bool lines = false;
 };
 /// The restoring of state `state` was requested ...
 struct RestoreRequested {

@@ -13,6 +13,7 @@
 
 #include "engine/field/upright.h"
 #include "haptic/journal/journal.h"
+#include "haptic/journal/line_change.h"
 #include "haptic/journal/mark_codec.h"
 #include "haptic/journal/tick_codec.h"
 #include "haptic/loop/adopt_filtered.h"
@@ -140,12 +141,13 @@ class Player final : public haptic::AdoptionPort {
 
   engine::Status play(const journal::StepMade& step, const std::string& data) {
     Version state;
-    if (step.marks) {
+    if (step.marks || step.lines) {
       const auto before = states_.find(step.state - 1);
       if (before == states_.end()) return mismatch("marks on a state that does not exist");
-      auto marked = applyMarkChanges(before->second, data);
-      if (!marked) return tl::unexpected(marked.error());
-      state = *std::move(marked);
+      auto changed =
+          step.lines ? applyLineChange(before->second, data) : applyMarkChanges(before->second, data);
+      if (!changed) return tl::unexpected(changed.error());
+      state = *std::move(changed);
     } else {
       auto there = versionAt(step.at);
       if (!there) return tl::unexpected(there.error());

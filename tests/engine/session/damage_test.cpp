@@ -91,8 +91,37 @@ TEST(NoSession, ANewerFormatSaysToUpdate) {
   const std::string path = folder.file("a.fettle");
   JobControl job;
   ASSERT_TRUE(saveSession(somePlay().session, path, job));
-  runSql(path, "PRAGMA user_version=2");
-  expectRefused(path, "written by a newer Fettle (format 2, supported up to 1)");
+  runSql(path, "PRAGMA user_version=3");
+  expectRefused(path, "written by a newer Fettle (format 3, supported up to 2)");
+}
+
+TEST(Damage, LinesThatWereChangedAreNoticed) {
+  const TempFolder folder;
+  JobControl job;
+  Session session;
+  session.original = strangeField(4, 100, 80);
+  session.scan.format = "none";
+  session.history = History(session.original);
+  EdgeLine line;
+  line.points.resize(50);
+  for (int k = 0; k < 2; ++k) {
+    line.id = k;
+    session.history.push({"Edge line", StepKind::kLines, {}, {}, 0},
+                         session.original.withLines(std::make_shared<const std::vector<EdgeLine>>(1, line)));
+  }
+  for (const auto& [sql, reason] :
+       {std::pair("DELETE FROM lines WHERE step=2", "the lines of step 2 are missing"),
+        {"UPDATE lines SET step=7 WHERE step=2", "the lines of step 7 do not fit"},
+        {"UPDATE lines SET data=x'00' WHERE step=1", "the lines of step 1 do not fit"},
+        {"UPDATE lines SET data=(SELECT data FROM lines WHERE step=2) WHERE step=1", "step 1 do not fit"},
+        {"UPDATE lines SET checksum=checksum+1 WHERE step=2", "step 2 do not fit"},
+        {"PRAGMA user_version=1", "the lines of step 1 are missing"}}) {
+    const std::string path = folder.file("a.fettle");
+    ASSERT_TRUE(saveSession(session, path, job));
+    runSql(path, sql);
+    expectRefused(path, reason);
+    fs::remove(path);
+  }
 }
 
 TEST(Damage, RowsThatWereChangedAreNoticed) {

@@ -11,6 +11,7 @@
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
 #include "engine/formats/formats.h"
+#include "engine/session/line_codec.h"
 #include "engine/session/tile_codec.h"
 
 namespace fettle::engine {
@@ -56,6 +57,30 @@ void mark(LiveField& live, Random& random) {
   const int r = below(random, live.grid().height);
   const bool on = random() % 3 != 0;
   for (int k = 0; k < 100; ++k) (void)live.setMark(std::min(c + k, live.grid().width - 1), r, on);
+}
+
+// Any bits a line can have; sometimes none.
+EdgeLines someLines(Random& random) {
+  std::vector<EdgeLine> lines(static_cast<std::size_t>(below(random, 4)));
+  const auto real = [&] { return std::ldexp(static_cast<double>(random()), below(random, 200) - 150); };
+  for (EdgeLine& line : lines) {
+    line.id = static_cast<std::int64_t>(random());
+    line.closed = random() % 3 == 0;
+    line.points.resize(static_cast<std::size_t>(below(random, 200)));
+    for (EdgePoint& point : line.points) {
+      point.position = {below(random, 1000) / 7.0, -below(random, 1000) * 0x1p-20};
+      point.kind = random() % 2 == 0 ? LineKind::kStep : LineKind::kCrease;
+      point.located = random() % 4 != 0;
+      if (point.located) {
+        point.deviation = real();
+        point.step = -real();
+        point.step_deviation = real();
+        point.slope_change = real();
+        point.slope_deviation = real();
+      }
+    }
+  }
+  return lines.empty() ? EdgeLines() : std::make_shared<const std::vector<EdgeLine>>(std::move(lines));
 }
 
 }  // namespace
@@ -149,9 +174,14 @@ void Play::act(SessionWriter* writer) {
   } else if (what < 85) {
     filter(live, random);
     info.kind = StepKind::kFilter;
-  } else if (what < 92) {
+  } else if (what < 89) {
     mark(live, random);
     info.kind = StepKind::kMark;
+  } else if (what < 92) {
+    mark(live, random);
+    const EdgeLines lines = someLines(random);
+    info.kind = lines == live.snapshot().lines() ? StepKind::kMark : StepKind::kLines;
+    static_cast<void>(live.adopt(live.snapshot().withLines(lines)));
   } else {
     live.invert();
     info.kind = StepKind::kInvert;
@@ -183,6 +213,7 @@ std::string difference(const Version& a, const Version& b) {
   if (m.child_min != n.child_min || m.child_max != n.child_max || m.marked_children != n.marked_children ||
       m.holed_children != n.holed_children)
     return "the roots differ";
+  if (packLines(a.lines()) != packLines(b.lines())) return "the edge lines differ";
   return {};
 }
 

@@ -133,6 +133,7 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
       haptic::journal::SceneSet{there, anyScene(random)},
       haptic::journal::StepMade{5, "Median \"5 x 5\"", engine::StepKind::kFilter, before, false},
       haptic::journal::StepMade{6, "Lasso", engine::StepKind::kMark, there, true},
+      haptic::journal::StepMade{7, "Edge line", engine::StepKind::kLines, there, false, true},
       haptic::journal::RestoreRequested{8, 2},
       haptic::journal::Restored{8, there},
       haptic::journal::FilterBase{1, before},
@@ -149,7 +150,7 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
     EXPECT_EQ(back->index(), entry.index());
     EXPECT_EQ(haptic::journalText(*back), text);
   }
-  const auto back = haptic::journalEntry(haptic::journalText(all[9]));
+  const auto back = haptic::journalEntry(haptic::journalText(all[10]));
   ASSERT_TRUE(back);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*back).spec.sigma, spec.sigma);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*back).spec.max_change, spec.max_change);
