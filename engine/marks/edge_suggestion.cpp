@@ -11,6 +11,8 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/field/sample_rect.h"
+#include "engine/marks/chosen_lines.h"
+#include "engine/marks/tile_bits.h"
 
 namespace fettle::engine {
 
@@ -170,46 +172,6 @@ class Thinning {
   std::vector<float> strength_;
 };
 
-// One bit per sample, by tiles.
-class TileBits {
- public:
-  explicit TileBits(const Grid& grid) : range_(allTiles(grid)), width_(grid.width), height_(grid.height) {
-    rows_.resize(static_cast<std::size_t>(range_.columns) * static_cast<std::size_t>(range_.rows));
-  }
-  [[nodiscard]] bool has(std::int32_t c, std::int32_t r) const noexcept {
-    if (c < 0 || r < 0 || c >= width_ || r >= height_) return false;
-    return ((word(c, r) >> (c & (kTileSide - 1))) & 1U) != 0;
-  }
-  void set(std::int32_t c, std::int32_t r) noexcept { word(c, r) |= bit(c); }
-  void clear(std::int32_t c, std::int32_t r) noexcept { word(c, r) &= ~bit(c); }
-  // Samples of one row, clipped to the field.
-  void setSpan(std::int32_t c0, std::int32_t c1, std::int32_t r) noexcept {
-    if (r < 0 || r >= height_) return;
-    for (std::int32_t c = std::max(c0, 0); c < std::min(c1, width_); ++c) set(c, r);
-  }
-  [[nodiscard]] const MarkRows& tile(std::int32_t tc, std::int32_t tr) const noexcept {
-    return rows_[static_cast<std::size_t>(tr) * static_cast<std::size_t>(range_.columns) +
-                 static_cast<std::size_t>(tc)];
-  }
-
- private:
-  static std::uint64_t bit(std::int32_t c) noexcept { return std::uint64_t{1} << (c & (kTileSide - 1)); }
-  [[nodiscard]] const std::uint64_t& word(std::int32_t c, std::int32_t r) const noexcept {
-    return tile(c >> kTileShift, r >> kTileShift)[static_cast<std::size_t>(r & (kTileSide - 1))];
-  }
-  [[nodiscard]] std::uint64_t& word(std::int32_t c, std::int32_t r) noexcept {
-    return const_cast<std::uint64_t&>(std::as_const(*this).word(c, r));
-  }
-
-  TileRange range_;
-  std::int32_t width_, height_;
-  std::vector<MarkRows> rows_;
-};
-
-struct Spot {
-  std::int32_t column, row;
-};
-
 // Half widths of the rows of a disc, lowest row first.
 std::vector<std::int32_t> disc(double radius) {
   const auto reach = static_cast<std::int32_t>(std::floor(radius));
@@ -270,46 +232,21 @@ Result<EdgeMap> findEdges(const Version& field, double sigma, JobControl& job) t
 
 Result<EdgeSuggestion> suggestMarks(const Version& field, const EdgeMap& map, const EdgeChoice& choice,
                                     JobControl& job) try {
-  if (!(choice.sensitivity >= 0.0 && choice.sensitivity <= 1.0))
-    return inputError(fmt::format("a sensitivity of {} cannot be used", choice.sensitivity), "sensitivity",
-                      "give 0 to 1");
   if (!(choice.thickness >= 0.0 && choice.thickness <= 64.0))
     return inputError(fmt::format("a thickness of {} samples cannot be used", choice.thickness), "thickness",
                       "give 0 to 64");
   const Grid& grid = field.grid();
-  const auto high = static_cast<float>(choice.strength());
-  const float low = std::max(0.5F * high, EdgeMap::kLeastStrength);
-  const auto shortest = static_cast<std::size_t>(
-      choice.shortest > 0 ? choice.shortest : std::max(1L, std::lround(4.0 * map.sigma)));
-  job.begin("drawing edges", map.candidates.size());
-  TileBits open(grid), chosen(grid);
-  for (const EdgeCandidate& e : map.candidates)
-    if (e.strength >= low) open.set(e.column, e.row);
-
+  const auto lines = chosenLines(grid, map, choice, job);
+  if (!lines) return tl::unexpected(lines.error());
   EdgeSuggestion suggestion;
+  TileBits chosen(grid);
   const std::vector<std::int32_t> half = disc(choice.thickness);
   const auto reach = static_cast<std::int32_t>(half.size() / 2);
-  std::vector<Spot> line;
-  for (const EdgeCandidate& e : map.candidates) {
-    job.advance();
-    // A line is followed from the first of its strong samples.
-    if (e.strength < high || !open.has(e.column, e.row)) continue;
+  for (const EdgePiece& line : *lines) {
     if (job.cancelled()) return cancelled();
-    line.assign(1, {e.column, e.row});
-    open.clear(e.column, e.row);
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      const Spot at = line[i];
-      for (std::int32_t r = at.row - 2; r <= at.row + 2; ++r)
-        for (std::int32_t c = at.column - 2; c <= at.column + 2; ++c)
-          if (open.has(c, r)) {
-            open.clear(c, r);
-            line.push_back({c, r});
-          }
-    }
-    if (line.size() < shortest) continue;
     ++suggestion.lines;
     suggestion.samples += static_cast<std::int64_t>(line.size());
-    for (const Spot& s : line)
+    for (const EdgeSpot& s : line)
       for (std::int32_t dr = -reach; dr <= reach; ++dr) {
         const std::int32_t h = half[static_cast<std::size_t>(dr + reach)];
         chosen.setSpan(s.column - h, s.column + h + 1, s.row + dr);
