@@ -13,6 +13,7 @@
 #include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
 #include "engine/marks/edge_suggestion.h"
+#include "engine/marks/edge_traces.h"
 
 namespace fettle::app {
 
@@ -66,9 +67,27 @@ engine::Result<engine::Version> markStrokes(const engine::Version& field, const 
   return marked;
 }
 
+// Locates the suggested edges and writes their lines.
+engine::Status writeEdgeLines(const engine::Version& field, const engine::EdgeMap& map,
+                              const MarkArguments& options, Report& report, engine::JobControl& job) {
+  const auto traces = engine::traceEdges(field.grid(), map, options.choice, job);
+  if (!traces) return tl::unexpected(traces.error());
+  std::vector<engine::EdgeStroke> strokes;
+  for (const engine::EdgeTrace& trace : *traces)
+    strokes.push_back({static_cast<std::int64_t>(strokes.size()), trace.points, trace.closed});
+  if (strokes.empty())
+    return engine::inputError("no edges were found, so there are no lines", options.lines_out,
+                              "give a larger --sensitivity");
+  const auto lines = locateLines(field, strokes, options.locating, job);
+  if (!lines) return tl::unexpected(lines.error());
+  reportLines(*lines, report);
+  return engine::exportLines(options.lines_out, *lines, field.grid());
+}
+
 engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& job) {
-  if (!options.lines_out.empty() && options.strokes.empty())
-    return engine::inputError("lines are located from strokes", "--lines-out", "give --strokes");
+  if (!options.lines_out.empty() && options.strokes.empty() && !options.edges)
+    return engine::inputError("lines are located from strokes or edges", "--lines-out",
+                              "give --strokes or --edges");
   if (!options.edges && !options.invert && options.strokes.empty())
     return engine::inputError("it is not stated what to mark", "mark", "give --edges, --strokes or --invert");
   using Locate = engine::LocateOptions;
@@ -105,6 +124,9 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     report["line_samples"] = found->samples;
     report["step_noise"] = map->step_noise;
     report["crease_noise"] = map->crease_noise;
+    if (!options.lines_out.empty())
+      if (auto status = writeEdgeLines(imported->field, *map, options, report, job); !status)
+        return tl::unexpected(status.error());
   }
   if (!options.strokes.empty()) {
     auto marked = markStrokes(field, options, report, job);
@@ -148,7 +170,7 @@ void addMark(Command root, Chosen& chosen) {
       .showDefault();
   command
       .option("--lines-out", options->lines_out,
-              "Write the edge lines of --strokes: .csv (every value), .geojson, .gpkg, .dxf")
+              "Write the edge lines of --strokes or --edges: .csv (every value), .geojson, .gpkg, .dxf")
       .check(fileName());
   command
       .option("--scale", options->scale,

@@ -8,6 +8,7 @@
 
 #include "app/window/parts.h"
 #include "app/window/scene_edits.h"
+#include "app/work/line_edits.h"
 #include "engine/marks/change_marks.h"
 
 /// What each action does, and its state in the menu: only for the table in actions.cpp. The document or
@@ -158,6 +159,34 @@ inline void invertMarks(Parts& p) {
 inline void clearMarks(Parts& p) {
   p.marking.edit.ask("Clear marks", engine::clearMarks);
 }
+inline bool drawsLines(const Parts& p) {
+  return p.settings.draw_lines;
+}
+inline void toggleLines(Parts& p) {
+  p.settings.draw_lines = !p.settings.draw_lines;
+}
+inline bool hasLines(const Parts& p) {
+  return hasField(p) && p.document.client()->newest().lines() != nullptr;
+}
+inline bool hasChosenLine(const Parts& p) {
+  return hasField(p) && p.marking.lines.chosen(*p.document.client()).has_value();
+}
+inline void nextLine(Parts& p) {
+  p.marking.lines.chooseNext(clientOf(p));
+  p.picture.requestRedraw();
+}
+inline void removeLine(Parts& p) {
+  p.marking.lines.removeChosen(clientOf(p), p.marking.edit);
+}
+inline void joinLine(Parts& p) {
+  p.marking.lines.joinChosen(clientOf(p), p.marking.edit);
+}
+inline void clearLines(Parts& p) {
+  p.marking.edit.ask("Remove all edge lines",
+                     [](const engine::Version& base, engine::JobControl&) -> engine::Result<engine::Version> {
+                       return removeLines(base, std::nullopt);
+                     });
+}
 inline void coarserEdges(Parts& p) {
   p.marking.scaleEdges(1.25, clientOf(p));
 }
@@ -195,7 +224,9 @@ inline void changeScope(Parts& p) {
   p.filters.spec.scope = onlyMarks(p) ? engine::FilterScope::kKeepMarks : engine::FilterScope::kOnlyMarks;
 }
 inline void apply(Parts& p) {
-  if (!p.marking.edges.accept(clientOf(p)) && !p.filters.variants().empty()) p.filters.apply(clientOf(p));
+  EdgeTool& edges = p.marking.edges;
+  const bool taken = p.settings.draw_lines ? edges.acceptAsLines(p.marking.edit) : edges.accept(clientOf(p));
+  if (!taken && !p.filters.variants().empty()) p.filters.apply(clientOf(p));
 }
 template <int steps>
 void moveSplit(Parts& p) {

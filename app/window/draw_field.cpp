@@ -82,6 +82,9 @@ void drawField(Parts& parts, bool sharp_motion) {
   const bool stylus = parts.stylus.on() || client.mouse() == nullptr;
   if (stylus && state.link == haptic::LinkState::kConnected)
     StylusOverlay::append(client, state, picture.mmPerPixel(), input.overlays);
+  if (parts.settings.display.marks)
+    parts.line_overlay.append(client.field(), parts.marking.lines.chosen(client), picture.mmPerPixel(),
+                              input.overlays);
   parts.stylus_overlay.begin(state);
   if (!picture.draw(std::move(input), Draws::kRefined, parts.feedback.status)) return;
   parts.stylus_overlay.drawn();

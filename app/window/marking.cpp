@@ -130,7 +130,8 @@ void Marking::scaleEdges(double factor, const LoopClient& client) {
   if (edges.on()) edges.search(client);
 }
 
-bool Marking::poll(LoopClient& client, std::vector<Notice>& notices) {
+bool Marking::poll(LoopClient& client, bool draw_lines, std::vector<Notice>& notices) {
+  lines.follow(client, edit, draw_lines);
   const bool marked = edit.poll(client, notices);
   return edges.poll(client, notices) || marked;
 }
@@ -139,6 +140,7 @@ void Marking::reset() {
   edit.cancel();
   leaveLasso();
   edges.drop();
+  lines.choose(std::nullopt);
 }
 
 }  // namespace fettle::app

@@ -5,11 +5,12 @@
 #include "app/window/window_picture.h"
 #include "app/work/edge_tool.h"
 #include "app/work/lasso.h"
+#include "app/work/line_tool.h"
 #include "app/work/mark_edit.h"
 
 namespace fettle::app {
 
-/// Marks set in one step: by a lasso, by a box, by suggested edges, or all of them. Threading: main.
+/// Marks set in one step: by a lasso, by a box, by suggested edges, or all of them; and edge lines. Threading: main.
 class Marking {
  public:
   /// The environment of the lasso.
@@ -38,13 +39,15 @@ class Marking {
   void scaleEdges(double factor, const LoopClient& client);
 
   /// Takes results. True when something visible changed.
-  [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
+  /// `draw_lines`: strokes of the mark tool become edge lines.
+  [[nodiscard]] bool poll(LoopClient& client, bool draw_lines, std::vector<Notice>& notices);
   /// Another field was opened.
   void reset();
   [[nodiscard]] bool busy() const noexcept { return edit.busy() || edges.busy(); }
 
   MarkEdit edit;
   EdgeTool edges;
+  LineTool lines;
 
  private:
   bool handleKey(const render::InputEvent& event, const Scope& scope);

@@ -8,6 +8,7 @@
 #include "app/window/brush_adjustment.h"
 #include "app/window/change_figures.h"
 #include "app/window/feedback.h"
+#include "app/window/line_overlay.h"
 #include "app/window/marking.h"
 #include "app/window/opening.h"
 #include "app/window/saving.h"
@@ -44,6 +45,7 @@ struct Parts {
   WindowPicture picture;
   render::View view = startView();
   StylusOverlay stylus_overlay;
+  LineOverlay line_overlay;
 
   glm::dvec2 cursor{0.0};  ///< pixels of the window's frame
   Stylus stylus;

@@ -56,6 +56,7 @@ std::string Settings::text() const {
               {"side_panel", side_panel},
               {"side_width", side_width},
               {"panels", panels},
+              {"edge_lines", draw_lines},
               {"ask_before_quitting", ask_before_quitting}}
       .dump(2);
 }
@@ -87,6 +88,7 @@ Settings Settings::load(const std::string& path) {
   if (const auto it = file.find("panels"); it != file.end() && it->is_object())
     for (const auto& [name, open] : it->items())
       if (open.is_boolean()) settings.panels[name] = open.get<bool>();
+  take(file, "edge_lines", settings.draw_lines);
   take(file, "ask_before_quitting", settings.ask_before_quitting);
   return settings;
 }

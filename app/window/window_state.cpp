@@ -109,6 +109,10 @@ void addFilters(const Parts& p, Report& r) {
   r["filtering"] = filters.computing();
   r["suggested"] = edges.suggestion() != nullptr ? edges.suggestion()->samples : 0;
   r["looking_for_edges"] = edges.busy();
+  const engine::EdgeLines lines = p.document.client()->newest().lines();
+  r["lines"] = lines ? lines->size() : 0;
+  r["draws_lines"] = p.settings.draw_lines;
+  r["marking"] = p.marking.edit.busy();
   r["applying"] = filters.applying();
   r["filters_applied"] = filters.applied();
 }

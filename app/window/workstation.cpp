@@ -154,7 +154,7 @@ void Workstation::takeResults() {
   LoopClient& client = *p.document.client();
   std::vector<Notice>& notices = p.feedback.notices;
   bool changed = p.filters.poll(client, notices);
-  changed |= p.marking.poll(client, notices);
+  changed |= p.marking.poll(client, p.settings.draw_lines, notices);
   for (Notice& notice : client.takeNotices()) notices.push_back(std::move(notice));
   while (notices.size() > Feedback::kMostNotices) notices.erase(notices.begin());
   changed |= p.change.poll(client, p.stylus.held() || p.marking.held());

@@ -11,13 +11,14 @@ namespace {
 
 constexpr double kMeets = 3.0, kLeastClosed = 30.0;  // [samples]
 
-bool isClosed(const std::vector<glm::dvec2>& points) {
+}  // namespace
+
+bool isClosedStroke(std::span<const glm::dvec2> points) {
+  if (points.empty()) return false;
   double length = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) length += glm::distance(points[i - 1], points[i]);
   return length >= kLeastClosed && glm::distance(points.front(), points.back()) <= kMeets;
 }
-
-}  // namespace
 
 std::vector<engine::EdgeStroke> edgeStrokesOf(std::span<const haptic::StrokeSample> session,
                                               const engine::Grid& grid) {
@@ -26,7 +27,7 @@ std::vector<engine::EdgeStroke> edgeStrokesOf(std::span<const haptic::StrokeSamp
   const auto end = [&] {
     if (stroke.points.size() > 1) {
       stroke.id = static_cast<std::int64_t>(strokes.size());
-      stroke.closed = isClosed(stroke.points);
+      stroke.closed = isClosedStroke(stroke.points);
       strokes.push_back(std::move(stroke));
     }
     stroke = {};

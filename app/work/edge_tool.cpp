@@ -1,5 +1,6 @@
 #include "app/work/edge_tool.h"
 
+#include "app/work/line_edits.h"
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
 
@@ -42,7 +43,18 @@ void EdgeTool::drop() {
 
 bool EdgeTool::accept(LoopClient& client) {
   if (!shown_) return false;
-  if (!(shown_->field == base_)) client.replaceMarks(base_, shown_->field, "Edge suggestion");
+  if (!(shown_->field == base_)) static_cast<void>(client.change(base_, shown_->field, "Edge suggestion"));
+  drop();
+  return true;
+}
+
+bool EdgeTool::acceptAsLines(MarkEdit& edit) {
+  if (!shown_) return false;
+  edit.ask("Edge lines",
+           [map = map_, what = choice](const engine::Version& base, engine::JobControl& job) {
+             return drawSuggestion(base, *map, what, job);
+           },
+           {"none of the suggested edges could be located", "take them as marks (Shift+E)"});
   drop();
   return true;
 }

@@ -6,6 +6,7 @@
 
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
+#include "app/work/mark_edit.h"
 #include "engine/marks/edge_suggestion.h"
 
 namespace fettle::app {
@@ -25,6 +26,8 @@ class EdgeTool {
   void drop();
   /// Makes a step of the shown suggestion. False when there is none.
   bool accept(LoopClient& client);
+  /// The same as edge lines, located in the background (drawSuggestion).
+  bool acceptAsLines(MarkEdit& edit);
   /// True when something visible changed.
   [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "haptic/journal/line_change.h"
 #include "haptic/journal/mark_codec.h"
 #include "haptic/loop/pacer.h"
 #include "haptic/safety/last_resort.h"
@@ -51,6 +52,7 @@ LoopClient::~LoopClient() {
 // Starts from the history's state. The data of the previous loop is reset.
 engine::Status LoopClient::startLoop(double rate_hz) {
   field_ = scene_.invert ? history().current().inverted() : history().current();
+  path_ = StrokePath(field_.grid());
   place_ = {};
   restores_open_ = 0;
   latency_.restart();
@@ -127,7 +129,7 @@ void LoopClient::poll() {
 }
 
 void LoopClient::takeTicks() {
-  if (steps_.journal().takeTicks(loop_.loop()))
+  if (steps_.journal().takeTicks(loop_.loop(), path_))
     notices_.push_back({"the window did not respond for too long to record every tick",
                         "the work is kept; the journal cannot replay beyond this point"});
 }
@@ -147,6 +149,7 @@ void LoopClient::take(haptic::LoopEvent&& event) {
       steps_.strokeIsOf(tool_);
       break;
     case EventKind::kStrokeEnded:
+      endPath(event);
       if (event.rect.empty() || !steps_.differs(upright(event.version))) break;
       latency_.noteEdit(event, loop_.loop().state(), rate());
       steps_.endStroke(upright(event.version),
@@ -171,6 +174,12 @@ void LoopClient::take(haptic::LoopEvent&& event) {
   }
   latency_.noteEvent(event);
   // What the event still holds is freed here, off the loop.
+}
+
+// The event comes before the step of the stroke, if it makes one.
+void LoopClient::endPath(const haptic::LoopEvent& event) {
+  for (StrokePath::Ended& ended : path_.endAt(event.tick))
+    mark_strokes_.push_back({ended.tool, std::move(ended.points), history().current()});
 }
 
 void LoopClient::setTool(haptic::Tool tool) {
@@ -225,18 +234,24 @@ void LoopClient::goTo(std::int64_t state) {
   if (const auto version = steps_.goTo(state)) restore(*version);
 }
 
-void LoopClient::replaceMarks(const engine::Version& base, const engine::Version& marked, std::string name) {
+bool LoopClient::change(const engine::Version& base, const engine::Version& changed, std::string name) {
   poll();
   keepStroke();
-  std::string changes = haptic::packMarkChanges(base, marked);
   const engine::Version& now = history().current();  // field() may lag behind an undo
-  auto after = base == now ? engine::Result<engine::Version>(marked) : haptic::applyMarkChanges(now, changes);
+  const bool lines = base.lines() != changed.lines();
+  if (lines && base.lines() != now.lines()) return false;
+  std::string data = lines ? haptic::packLineChange(base, changed) : haptic::packMarkChanges(base, changed);
+  auto after = base == now ? engine::Result<engine::Version>(changed)
+               : lines     ? haptic::applyLineChange(now, data)
+                           : haptic::applyMarkChanges(now, data);
   if (!after) {
     notices_.push_back({after.error().what, after.error().remedy});
-    return;
+    return true;
   }
-  steps_.changeMarks(std::move(name), *after, place_, std::move(changes));
+  steps_.change(std::move(name), lines ? engine::StepKind::kLines : engine::StepKind::kMark, *after, place_,
+                std::move(data));
   restore(*after);
+  return true;
 }
 
 void LoopClient::noteFilterBegun(std::uint64_t base, const engine::FilterSpec& spec, std::string name) {

@@ -13,6 +13,7 @@
 #include "app/work/edit_latency.h"
 #include "app/work/notice.h"
 #include "app/work/step_keeper.h"
+#include "app/work/stroke_path.h"
 #include "engine/base/error.h"
 #include "engine/field/upright.h"
 #include "engine/history/history.h"
@@ -86,9 +87,14 @@ class LoopClient final {
   [[nodiscard]] bool canRedo() const noexcept { return history().canRedo() && !strokeRuns(); }
   /// Puts a step read back from a session in front of those held.
   void prepend(engine::Step step) { steps_.prepend(std::move(step)); }
-  /// Replaces the marks as one step of kind kMark: `marked` is a version of the newest field (upright(), the
-  /// same memory) with marks set and cleared. Strokes made since `marked` was taken are kept.
-  void replaceMarks(const engine::Version& base, const engine::Version& marked, std::string name);
+  /// Changes marks, or marks and edge lines, as one step of kind kMark or kLines: `changed` is `base`, a version of the
+  /// newest field (upright(), the same memory), with marks set and cleared and with other lines. Strokes made since
+  /// `base` was taken are kept. False, and no step: the lines are no longer those of `base`, `changed` is to be made
+  /// again.
+  [[nodiscard]] bool change(const engine::Version& base, const engine::Version& changed, std::string name);
+  /// The strokes of tools that edit marks which ended since the last call, in their order; only where the session is
+  /// recorded.
+  [[nodiscard]] std::vector<MarkStroke> takeMarkStrokes() { return std::exchange(mark_strokes_, {}); }
 
   /// To be called when a filter starts on field(); returns the base's number.
   [[nodiscard]] std::uint64_t noteFilterBase() { return steps_.journal().filterBase(place_); }
@@ -138,6 +144,8 @@ class LoopClient final {
   void sendQuestion();
   [[nodiscard]] bool strokeRuns() const noexcept;
   void keepStroke();
+  // The paths of marking tools until an event become strokes.
+  void endPath(const haptic::LoopEvent& event);
 
   engine::Version original_;
   haptic::Scene scene_;
@@ -151,6 +159,8 @@ class LoopClient final {
   std::deque<haptic::LoopEvent> held_;  // until the ticks before them are recorded
   std::uint64_t next_id_ = 1;           // of a command
   std::uint64_t restores_open_ = 0;     // requested, not answered
+  StrokePath path_;                     // of the running stroke
+  std::vector<MarkStroke> mark_strokes_;
   std::vector<Notice> notices_;
 };
 

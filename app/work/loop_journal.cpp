@@ -11,9 +11,12 @@ void LoopJournal::begin(std::int64_t state, const haptic::Scene& scene) {
   if (sink_ != nullptr) recorder_.add(haptic::journal::Begin{state, scene});
 }
 
-bool LoopJournal::takeTicks(haptic::HapticLoop& loop) {
+bool LoopJournal::takeTicks(haptic::HapticLoop& loop, StrokePath& path) {
   if (sink_ == nullptr) return false;
-  for (haptic::TickRecord record; loop.pollRecord(record); ++recorded_) recorder_.tick(record.input);
+  for (haptic::TickRecord record; loop.pollRecord(record); ++recorded_) {
+    recorder_.tick(record.input);
+    path.add(recorded_, record);
+  }
   const std::uint64_t lost = loop.state().lost_records;
   if (lost == lost_) return false;
   recorder_.add(haptic::journal::Lost{static_cast<std::int64_t>(lost - lost_)});

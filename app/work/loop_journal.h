@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "app/work/stroke_path.h"
 #include "engine/history/history.h"
 #include "haptic/journal/journal.h"
 #include "haptic/journal/recorder.h"
@@ -25,8 +26,9 @@ class LoopJournal {
 
   /// A loop starts from a state of the history. Entries of the loop before were flushed.
   void begin(std::int64_t state, const haptic::Scene& scene);
-  /// Takes the ticks that the loop has recorded. True when ticks were lost since the last call.
-  [[nodiscard]] bool takeTicks(haptic::HapticLoop& loop);
+  /// Takes the ticks that the loop has recorded, and adds them to the path of the stroke. True when ticks were lost
+  /// since the last call.
+  [[nodiscard]] bool takeTicks(haptic::HapticLoop& loop, StrokePath& path);
   /// Whether all ticks that precede this event in the journal were taken.
   [[nodiscard]] bool reached(const haptic::LoopEvent& event) const noexcept;
 

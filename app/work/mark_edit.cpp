@@ -2,8 +2,8 @@
 
 namespace fettle::app {
 
-void MarkEdit::ask(std::string name, Change change) {
-  waiting_.push_back({std::move(name), std::move(change)});
+void MarkEdit::ask(std::string name, Change change, Notice unchanged) {
+  waiting_.push_back({std::move(name), std::move(change), std::move(unchanged)});
 }
 
 void MarkEdit::cancel() {
@@ -22,20 +22,21 @@ bool MarkEdit::poll(LoopClient& client, std::vector<Notice>& notices) {
     } else if (!*done) {
       if (done->error().kind != engine::ErrorKind::kCancelled)
         notices.push_back({done->error().what, done->error().remedy});
-    } else if (!((*done)->base == (*done)->marked)) {
-      client.replaceMarks((*done)->base, (*done)->marked, name_);
+    } else if ((*done)->base == (*done)->changed) {
+      if (!running_.unchanged.what.empty()) notices.push_back(running_.unchanged);
+    } else if (!client.change((*done)->base, (*done)->changed, running_.name)) {
+      waiting_.push_front(std::move(running_));
     }
   }
   if (!working_.busy() && !waiting_.empty()) {
-    Request next = std::move(waiting_.front());
+    running_ = std::move(waiting_.front());
     waiting_.pop_front();
-    name_ = std::move(next.name);
-    working_.start([base = client.newest(),
-                    change = std::move(next.change)](engine::JobControl& job) -> engine::Result<Done> {
-      auto marked = change(base, job);
-      if (!marked) return tl::unexpected(marked.error());
-      return Done{base, std::move(*marked)};
-    });
+    working_.start(
+        [base = client.newest(), change = running_.change](engine::JobControl& job) -> engine::Result<Done> {
+          auto result = change(base, job);
+          if (!result) return tl::unexpected(result.error());
+          return Done{base, std::move(*result)};
+        });
   }
   return changed;
 }

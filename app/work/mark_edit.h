@@ -10,15 +10,16 @@
 
 namespace fettle::app {
 
-/// Changes of many marks at once (lasso, box, all, none), computed in the background in the order of the
-/// requests. Each becomes one step; a stroke that runs meanwhile continues and is kept.
+/// Changes of many marks at once (lasso, box, all, none) and of edge lines, computed in the background in the order of
+/// the requests. Each becomes one step; a stroke that runs meanwhile continues and is kept.
 /// Threading: main.
 class MarkEdit {
  public:
-  /// Makes the new marks of a version: the same heights.
+  /// Makes the new marks and edge lines of a version: the same heights.
   using Change = std::function<engine::Result<engine::Version>(const engine::Version&, engine::JobControl&)>;
 
-  void ask(std::string name, Change change);
+  /// `unchanged`: the notice for a change that turns out to change nothing; none if empty.
+  void ask(std::string name, Change change, Notice unchanged = {});
   /// Cancels waiting and running changes.
   void cancel();
   /// Starts waiting changes, applies finished ones. True when something visible changed.
@@ -31,12 +32,13 @@ class MarkEdit {
   struct Request {
     std::string name;
     Change change;
+    Notice unchanged;
   };
   struct Done {
-    engine::Version base, marked;
+    engine::Version base, changed;
   };
   std::deque<Request> waiting_;
-  std::string name_;
+  Request running_;
   Background<Done> working_;
 };
 

@@ -33,9 +33,9 @@ void StepKeeper::adopted(const engine::Version& field, const haptic::LoopPlace& 
   adopting_ = true;
 }
 
-void StepKeeper::changeMarks(std::string name, const engine::Version& field, const haptic::LoopPlace& at,
-                             std::string changes) {
-  push(std::move(name), engine::StepKind::kMark, field, at, Source::kMarks, std::move(changes));
+void StepKeeper::change(std::string name, engine::StepKind kind, const engine::Version& field,
+                        const haptic::LoopPlace& at, std::string changes) {
+  push(std::move(name), kind, field, at, Source::kChange, std::move(changes));
 }
 
 void StepKeeper::restoreRequested(std::uint64_t id) {
@@ -53,9 +53,11 @@ void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Ver
   committed_ = after;
   if (!made) return;
   const std::int64_t state = history_.number();
-  if (kind == engine::StepKind::kFilter || source == Source::kMarks) last_rect_ = history_.info(state).rect;
+  if (kind == engine::StepKind::kFilter || source == Source::kChange) last_rect_ = history_.info(state).rect;
   if (!journal_.records()) return;
-  journal_.commit({state, std::move(name), kind, at, source == Source::kMarks}, history_.step(state),
+  const bool changed = source == Source::kChange;
+  const bool lines = changed && kind == engine::StepKind::kLines;
+  journal_.commit({state, std::move(name), kind, at, changed && !lines, lines}, history_.step(state),
                   std::move(data));
 }
 

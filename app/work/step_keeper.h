@@ -42,9 +42,10 @@ class StepKeeper {
   void endAdoption() noexcept { adopting_ = false; }
   [[nodiscard]] bool adopting() const noexcept { return adopting_; }
 
-  /// Changes the marks of the newest step's field; `changes` as of haptic::packMarkChanges.
-  void changeMarks(std::string name, const engine::Version& field, const haptic::LoopPlace& at,
-                   std::string changes);
+  /// Changes the marks (kMark) or the edge lines and marks (kLines) of the newest step's field; `changes` as of
+  /// haptic::packMarkChanges or haptic::packLineChange.
+  void change(std::string name, engine::StepKind kind, const engine::Version& field,
+              const haptic::LoopPlace& at, std::string changes);
 
   /// Move in the history; return the version to be restored, if there is such a state.
   std::optional<engine::Version> undo() { return history_.undo(); }
@@ -55,8 +56,8 @@ class StepKeeper {
   void restored(const engine::Version& field) { committed_ = field; }
 
  private:
-  // Whether a step was made by ticks and filters, or by changing marks.
-  enum class Source : std::uint8_t { kLoop, kMarks };
+  // Whether a step was made by ticks and filters, or by changing marks and lines.
+  enum class Source : std::uint8_t { kLoop, kChange };
   void push(std::string name, engine::StepKind kind, const engine::Version& after,
             const haptic::LoopPlace& at, Source source = Source::kLoop, std::string data = {});
 

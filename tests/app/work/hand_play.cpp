@@ -98,8 +98,30 @@ std::string HandPlay::marks() {
       static_cast<void>(field.setMark(c, r, marked));
   // A hand may have worked on meanwhile.
   if (random_() % 2 == 0) wait(5);
-  client_.replaceMarks(base, field.snapshot(), marked ? "Lasso" : "Clear");
+  static_cast<void>(client_.change(base, field.snapshot(), marked ? "Lasso" : "Clear"));
   return "marks";
+}
+
+std::string HandPlay::lines() {
+  client_.poll();
+  const engine::Version base = client_.upright();
+  const engine::Grid& grid = base.grid();
+  engine::EdgeLine line;
+  line.id = static_cast<std::int64_t>(random_() % 1000);
+  glm::dvec2 at{uniform(0, grid.width - 1), uniform(0, grid.height - 1)};
+  for (int i = 0; i < 40; ++i) {
+    engine::EdgePoint point;
+    point.position = at;
+    point.located = i % 5 != 0;
+    if (point.located) point.deviation = uniform(0.0, 1.0);
+    line.points.push_back(point);
+    at += glm::dvec2(uniform(-0.5, 0.9), uniform(-0.2, 1.0));
+  }
+  const engine::Version changed = base.withLines(
+      random_() % 4 == 0 ? nullptr : std::make_shared<const std::vector<engine::EdgeLine>>(1, line));
+  if (random_() % 2 == 0) wait(5);
+  static_cast<void>(client_.change(base, changed, "Edge line"));
+  return "lines";
 }
 
 std::string HandPlay::scene() {
@@ -133,7 +155,7 @@ std::string HandPlay::act() {
   if (what < 7) return stroke(false);
   if (what < 9) return filter(false);
   if (what < 10) return filter(true);
-  if (what < 11) return marks();
+  if (what < 11) return random_() % 2 == 0 ? marks() : lines();
   if (what < 12) return scene();
   if (what < 14) {
     client_.undo();

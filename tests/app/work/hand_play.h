@@ -35,6 +35,7 @@ class HandPlay {
   std::string stroke(bool ends);
   std::string filter(bool under_a_stroke);
   std::string marks();
+  std::string lines();
   std::string scene();
   double uniform(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);

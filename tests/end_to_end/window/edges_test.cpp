@@ -30,7 +30,7 @@ TEST_F(WindowTest, suggested_edges_have_a_colour_of_their_own_until_they_are_tak
   // As opaque as can be: the colours themselves.
   const std::filesystem::path settings = folder.path() / "fettle";
   std::filesystem::create_directories(settings);
-  std::ofstream(settings / "window.json") << State{{"marks_opacity", 1.0}};
+  std::ofstream(settings / "window.json") << State{{"marks_opacity", 1.0}, {"edge_lines", false}};
   const auto program = start({scan});
   User user(display, *program, "edges");
   (void)opened(*program);

@@ -117,6 +117,7 @@ TEST_F(SizeTest, nothing_in_the_panels_overlaps_however_narrow_they_are) {
                                                      {"panels",
                                                       {{"Tool", true},
                                                        {"Edges", true},
+                                                       {"Edge lines", true},
                                                        {"Filters", true},
                                                        {"Steps", true},
                                                        {"Change since the scan", true},

@@ -4,6 +4,8 @@
 #include <cstdlib>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 
 #include "engine/formats/formats.h"
 #include "tests/support/process.h"
@@ -50,6 +52,10 @@ void WindowTest::SetUp() {
   setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
   const Outcome made = runProcess({FETTLE_PROGRAM, "synth", scan, "--size", "320x320", "--seed", "5"});
   ASSERT_EQ(made.status, 0) << made.err;
+  // Strokes are marks, each a step: whether an edge is found along one is not what most of these tests are about.
+  const std::filesystem::path settings = folder.path() / "fettle";
+  std::filesystem::create_directories(settings);
+  std::ofstream(settings / "window.json") << User::State{{"edge_lines", false}};
 }
 
 std::unique_ptr<ViewProgram> WindowTest::start(std::vector<std::string> arguments,

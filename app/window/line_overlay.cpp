@@ -1,0 +1,93 @@
+#include "app/window/line_overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fettle::app {
+
+namespace {
+
+using engine::EdgeLine;
+using engine::EdgePoint;
+
+constexpr double kPiece_px = 3.0;
+constexpr double kBand = 2.0;  // standard deviations to either side
+constexpr float kLine_px = 2.0F, kChosen_px = 4.0F;
+constexpr float kWidest_px = 64.0F;
+const glm::vec3 kStepColour{1.0F, 0.35F, 0.02F}, kCreaseColour{0.1F, 0.5F, 1.0F},
+    kUnlocatedColour{0.35F, 0.35F, 0.35F}, kChosenColour{1.0F, 1.0F, 0.25F};
+
+// The highest of the samples around a position, a little above the surface.
+glm::dvec3 above(const engine::FieldReader& reader, glm::dvec2 at) {
+  const engine::Grid& grid = reader.grid();
+  const auto clamped = [](double v, std::int32_t side) {
+    return static_cast<std::int32_t>(std::clamp(v, 0.0, side - 1.0));
+  };
+  double height = -std::numeric_limits<double>::infinity();
+  for (const double dr : {-0.5, 1.0})
+    for (const double dc : {-0.5, 1.0}) {
+      const float z = reader.heightAt(clamped(std::floor(at.x + dc), grid.width),
+                                      clamped(std::floor(at.y + dr), grid.height));
+      if (z > height) height = static_cast<double>(z);
+    }
+  if (!std::isfinite(height)) height = 0.0;
+  return {at.x * grid.spacingXMm(), at.y * grid.spacingYMm(), height * grid.height_unit.mm};
+}
+
+const glm::vec3& colourOf(const EdgePoint& point, bool chosen) {
+  return chosen                                    ? kChosenColour
+         : !point.located                          ? kUnlocatedColour
+         : point.kind == engine::LineKind::kCrease ? kCreaseColour
+                                                   : kStepColour;
+}
+
+}  // namespace
+
+void LineOverlay::append(const engine::Version& field, std::optional<std::int64_t> chosen,
+                         double mm_per_pixel, render::Overlays& overlays) {
+  if (field.lines() == nullptr) {
+    of_.reset();
+    return;
+  }
+  const engine::Grid& grid = field.grid();
+  const double sample_mm = std::max(grid.spacingXMm(), grid.spacingYMm());
+  const int stride = static_cast<int>(std::clamp(kPiece_px * mm_per_pixel / sample_mm, 1.0, 1e6));
+  const engine::FieldReader reader = field.reader();
+  if (field.lines() != of_ || chosen != chosen_ || stride != stride_ || reader.sign() != sign_ ||
+      mm_per_pixel != mm_per_pixel_) {
+    of_ = field.lines();
+    chosen_ = chosen;
+    stride_ = stride;
+    sign_ = reader.sign();
+    mm_per_pixel_ = mm_per_pixel;
+    pieces_.clear();
+    for (const EdgeLine& line : *of_) {
+      const std::size_t points = line.points.size();
+      const bool is_chosen = chosen == line.id;
+      const std::size_t end = line.closed ? points : points - std::min<std::size_t>(points, 1);
+      for (std::size_t i = 0; i < end; i += static_cast<std::size_t>(stride)) {
+        const std::size_t to = std::min(i + static_cast<std::size_t>(stride), end);
+        const EdgePoint &a = line.points[i], &b = line.points[to % points];
+        render::OverlayLine piece;
+        piece.from_mm = above(reader, a.position);
+        piece.to_mm = above(reader, b.position);
+        piece.depth = render::OverlayLine::Depth::kInScene;
+        if (a.located) {
+          render::OverlayLine band = piece;
+          const double width_px = 2.0 * kBand * a.deviation * sample_mm / mm_per_pixel;
+          band.width_px = std::min(static_cast<float>(width_px), kWidest_px);
+          band.opacity = 0.3F;
+          band.colour = colourOf(a, false);
+          if (band.width_px > kLine_px) pieces_.push_back(band);
+        }
+        piece.width_px = is_chosen ? kChosen_px : kLine_px;
+        piece.colour = colourOf(a, is_chosen);
+        pieces_.push_back(piece);
+      }
+    }
+  }
+  overlays.lines.insert(overlays.lines.end(), pieces_.begin(), pieces_.end());
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/field/version.h"
+#include "render/live/live_picture.h"
+
+namespace fettle::app {
+
+/// The edge lines of a field in the picture: thin lines over a band of twice their standard deviation to either side;
+/// steps, creases, what is not located and the chosen line each in a colour. They lie on the upper side of the surface
+/// and are hidden by what is in front of them.
+/// Threading: main.
+class LineOverlay {
+ public:
+  /// Adds the lines to the overlays of the next frame, with pieces of about three pixels or longer. They are computed
+  /// again where lines, choice or that length differ from the last frame's: O(points).
+  void append(const engine::Version& field, std::optional<std::int64_t> chosen, double mm_per_pixel,
+              render::Overlays& overlays);
+
+ private:
+  engine::EdgeLines of_;
+  std::optional<std::int64_t> chosen_;
+  int stride_ = 0;
+  float sign_ = 0.0F;
+  double mm_per_pixel_ = 0.0;
+  std::vector<render::OverlayLine> pieces_;
+};
+
+}  // namespace fettle::app

@@ -1,0 +1,74 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/panels/panels.h"
+
+namespace fettle::app {
+
+namespace {
+
+constexpr float kRows = 8.0F;  // of the list, without scrolling
+
+void lineList(const PanelContext& context, LineTool& lines, const std::vector<LineFigures>& figures) {
+  const float row = ImGui::GetTextLineHeightWithSpacing();
+  const float height = row * (std::min(static_cast<float>(figures.size()), kRows) + 1.5F);
+  if (!ImGui::BeginTable("##lines", 5,
+                         ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp,
+                         ImVec2(0.0F, height)))
+    return;
+  ImGui::TableSetupScrollFreeze(0, 1);
+  const std::string step = "step " + context.client.field().grid().height_unit.name;
+  for (const char* title : {"line", "mm", "found", "+- um", step.c_str()}) ImGui::TableSetupColumn(title);
+  ImGui::TableHeadersRow();
+  const std::optional<std::int64_t> chosen = lines.chosen(context.client);
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(figures.size()));
+  while (clipper.Step())
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      const LineFigures& line = figures[static_cast<std::size_t>(i)];
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      const std::string name = fmt::format("{}{}", line.id, line.closed ? " closed" : "");
+      if (ImGui::Selectable(name.c_str(), chosen == line.id, ImGuiSelectableFlags_SpanAllColumns))
+        lines.choose(line.id);
+      for (const std::string& text :
+           {fmt::format("{:.4g}", line.length_mm), fmt::format("{:.0f} %", 100.0 * line.located),
+            fmt::format("{:.3g}", 1e3 * line.deviation_mm), fmt::format("{:.3g}", line.step)}) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(text.c_str());
+      }
+    }
+  ImGui::EndTable();
+}
+
+}  // namespace
+
+void linePanel(const PanelContext& context, LineTool& lines, bool draws) {
+  actionTick("strokes become edge lines", draws, Action::kDrawLines, context.act);
+  beginFields();
+  auto hand = static_cast<float>(lines.options.hand_deviation);
+  if (field("hand off by", [&] {
+        return ImGui::SliderFloat("##hand", &hand, static_cast<float>(engine::LocateOptions::kLeastHand),
+                                  static_cast<float>(engine::LocateOptions::kMostHand), "%.2f samples",
+                                  ImGuiSliderFlags_AlwaysClamp);
+      }))
+    lines.options.hand_deviation = static_cast<double>(hand);
+  endFields();
+  const std::vector<LineFigures>& figures = lines.figures(context.client.upright());
+  if (figures.empty()) {
+    ImGui::PushTextWrapPos(0.0F);
+    ImGui::TextDisabled("draw along an edge with the mark tool");
+    ImGui::PopTextWrapPos();
+    return;
+  }
+  lineList(context, lines, figures);
+  actionButton("Remove", Action::kRemoveLine, context.act);
+  sameLineIfFits("Join");
+  actionButton("Join", Action::kJoinLine, context.act);
+  sameLineIfFits("Remove all");
+  actionButton("Remove all", Action::kClearLines, context.act);
+}
+
+}  // namespace fettle::app

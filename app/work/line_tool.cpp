@@ -1,0 +1,109 @@
+#include "app/work/line_tool.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "app/work/line_edits.h"
+
+namespace fettle::app {
+
+namespace {
+
+using engine::EdgeLine;
+using engine::EdgePoint;
+
+LineFigures figuresOf(const EdgeLine& line, const engine::Grid& grid) {
+  LineFigures out;
+  out.id = line.id;
+  out.closed = line.closed;
+  const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
+  std::vector<double> steps;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < line.points.size(); ++i) {
+    const EdgePoint& point = line.points[i];
+    const bool first = i == 0;
+    if (!first || line.closed) {
+      const EdgePoint& before = first ? line.points.back() : line.points[i - 1];
+      out.length_mm += glm::length(spacing * (point.position - before.position));
+    }
+    if (!point.located) continue;
+    squares += point.deviation * point.deviation;
+    steps.push_back(std::abs(point.step));
+  }
+  if (steps.empty()) return out;
+  out.located = static_cast<double>(steps.size()) / static_cast<double>(line.points.size());
+  out.deviation_mm =
+      std::sqrt(squares / static_cast<double>(steps.size())) * std::sqrt(spacing.x * spacing.y);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::ranges::nth_element(steps, middle);
+  out.step = *middle;
+  return out;
+}
+
+}  // namespace
+
+void LineTool::follow(LoopClient& client, MarkEdit& edit, bool draws) {
+  for (MarkStroke& taken : client.takeMarkStrokes()) {
+    if (!draws) continue;
+    const double radius = client.scene().mark_radius_samples;
+    const auto stroke = std::make_shared<const MarkStroke>(std::move(taken));
+    if (stroke->tool == haptic::Tool::kMark)
+      edit.ask("Edge line",
+               [stroke, radius, options = options](const engine::Version& base, engine::JobControl& job) {
+                 return drawLine(base, {stroke->points, stroke->before, radius}, options, job);
+               },
+               {"no edge was found along the stroke", "it stays a mark"});
+    else if (client.newest().lines() || edit.busy())
+      edit.ask("Erase edge line",
+               [stroke, radius](const engine::Version& base,
+                                engine::JobControl&) -> engine::Result<engine::Version> {
+                 return eraseLines(base, stroke->points, radius + 1.0);
+               });
+  }
+}
+
+std::optional<std::int64_t> LineTool::chosen(const LoopClient& client) const {
+  const engine::EdgeLines lines = client.newest().lines();
+  if (!chosen_ || lines == nullptr || std::ranges::find(*lines, *chosen_, &EdgeLine::id) == lines->end())
+    return std::nullopt;
+  return chosen_;
+}
+
+void LineTool::chooseNext(const LoopClient& client) {
+  const engine::EdgeLines lines = client.newest().lines();
+  if (lines == nullptr) return;
+  auto at = chosen_ ? std::ranges::find(*lines, *chosen_, &EdgeLine::id) : lines->end();
+  if (at != lines->end()) ++at;
+  chosen_ = at == lines->end() ? lines->front().id : at->id;
+}
+
+void LineTool::removeChosen(const LoopClient& client, MarkEdit& edit) const {
+  if (const auto id = chosen(client))
+    edit.ask("Remove edge line",
+             [id](const engine::Version& base, engine::JobControl&) -> engine::Result<engine::Version> {
+               return removeLines(base, id);
+             });
+}
+
+void LineTool::joinChosen(const LoopClient& client, MarkEdit& edit) const {
+  if (const auto id = chosen(client))
+    edit.ask("Join edge lines",
+             [id = *id, options = options](const engine::Version& base, engine::JobControl& job) {
+               return joinLine(base, id, options, job);
+             });
+}
+
+const std::vector<LineFigures>& LineTool::figures(const engine::Version& field) {
+  if (field.lines() == figures_of_) return figures_;
+  figures_of_ = field.lines();
+  figures_.clear();
+  if (figures_of_ != nullptr)
+    for (const EdgeLine& line : *figures_of_) figures_.push_back(figuresOf(line, field.grid()));
+  return figures_;
+}
+
+}  // namespace fettle::app

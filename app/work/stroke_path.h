@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "engine/field/grid.h"
+#include "engine/field/version.h"
+#include "haptic/base/tools.h"
+#include "haptic/loop/messages.h"
+
+namespace fettle::app {
+
+/// A stroke of a tool that edits marks.
+struct MarkStroke {
+  haptic::Tool tool = haptic::Tool::kMark;
+  /// Path of the tip, in its order [samples], multiples of 2^-20; a quarter of a sample apart at least.
+  std::vector<glm::dvec2> points;
+  engine::Version before;  ///< upright; the field before the stroke
+};
+
+/// Keeps the path of the tip while a tool that edits marks touches the surface, from the ticks of a live loop.
+/// Threading: main.
+class StrokePath {
+ public:
+  struct Ended {
+    haptic::Tool tool = haptic::Tool::kMark;
+    std::vector<glm::dvec2> points;
+  };
+
+  /// Keeps nothing.
+  StrokePath() = default;
+  explicit StrokePath(const engine::Grid& grid) : spacing_mm_(grid.spacingXMm(), grid.spacingYMm()) {}
+
+  /// The ticks in their order; `tick` counts from 0.
+  void add(std::uint64_t tick, const haptic::TickRecord& record);
+  /// A stroke has ended with the ticks before `tick`: the paths until there, one for each tool in use.
+  [[nodiscard]] std::vector<Ended> endAt(std::uint64_t tick);
+
+ private:
+  struct Point {
+    std::uint64_t tick = 0;
+    haptic::Tool tool = haptic::Tool::kMark;
+    glm::dvec2 at{0.0};
+  };
+  glm::dvec2 spacing_mm_{0.0};
+  std::deque<Point> points_;
+};
+
+}  // namespace fettle::app
