@@ -15,6 +15,7 @@
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
 #include "engine/filter/catalogue.h"
+#include "engine/filter/line_windows.h"
 #include "engine/filter/pass.h"
 
 namespace fettle::engine {
@@ -129,9 +130,15 @@ Status validate(const FilterSpec& spec) {
 Result<Filtered> applyFilter(const Version& input, const Version& original, const FilterSpec& spec,
                              const FilterTuning& tuning, JobControl& job) {
   if (Status valid = validate(spec); !valid) return tl::unexpected(valid.error());
+  const Filter& filter = filterOf(spec.kind);
+  if (input.lines() != nullptr && filter.knows_lines && filter.window.exists() &&
+      spec.window > kMostLineWindow)
+    return inputError(fmt::format("next to edge lines a window of {} samples is too large", spec.window),
+                      "window",
+                      fmt::format("give {} at most, take tgv, or remove the lines", kMostLineWindow));
   assert(input.grid().width == original.grid().width && input.grid().height == original.grid().height);
   assert(tuning.block_side % kTileSide == 0);
-  const FilterPass pass_once = filterOf(spec.kind).pass;
+  const FilterPass pass_once = filter.pass;
   try {
     job.begin("filtering",
               static_cast<std::uint64_t>(input.grid().samples()) * static_cast<std::uint64_t>(spec.passes));

@@ -19,6 +19,7 @@
 #include "engine/field/live_field.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/limit_change.h"
+#include "engine/filter/line_windows.h"
 #include "engine/filter/merge.h"
 
 namespace fettle::engine {
@@ -66,7 +67,7 @@ class Pass {
     shrink(rect);
     if (rect.column0 == rect.column1) return true;
     if (filter_.squares.side > 0) rect = all;
-    if (filter_.strip != nullptr && radius_ > 0) {
+    if (filter_.strip != nullptr && radius_ > 0 && cuts_ == nullptr) {
       if (!scratch.strip) scratch.strip = filter_.strip(radius_, level_);
       if (scratch.strip) return runStrip(rect, scratch, job, made);
     }
@@ -189,7 +190,12 @@ class Pass {
         std::copy_n(block.row(r), block.out_columns, block.out + r * block.out_stride);
       return true;
     }
-    if (!scratch.filter) scratch.filter = filter_.make(spec_, level_);
+    if (!scratch.filter) {
+      scratch.filter = filter_.make(spec_, level_);
+      const Filter& kind = filterOf(spec_.kind);
+      if (cuts_ != nullptr && kind.knows_lines && kind.window.exists())
+        scratch.filter = endingAtLines(std::move(scratch.filter), radius_);
+    }
     return scratch.filter->run(block, job);
   }
 

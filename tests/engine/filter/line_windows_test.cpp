@@ -1,0 +1,179 @@
+// Windows that end at edge lines: box, Gaussian, median and bilateral.
+#include "engine/filter/line_windows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/filter/catalogue.h"
+#include "engine/filter/pass.h"
+#include "engine/filter/region.h"
+#include "tests/engine/filter/edge_line_of.h"
+#include "tests/engine/filter/reference.h"
+
+namespace fettle::engine::tests {
+namespace {
+
+std::vector<FilterKind> windowsWithLines() {
+  std::vector<FilterKind> kinds;
+  for (const Filter& filter : filters())
+    if (filter.knows_lines && filter.window.exists()) kinds.push_back(filter.kind);
+  return kinds;
+}
+
+FilterSpec specOf(FilterKind kind, int window) {
+  FilterSpec spec = makeSpec(kind, window);
+  if (hasRange(kind)) spec.range_sigma = 1e3;
+  return spec;
+}
+
+EdgeLine slanted(double x, double y, double angle, double length = 400.0) {
+  const double c = length * std::cos(angle), s = length * std::sin(angle);
+  return edgeLineOf({{x - c, y - s}, {x + c, y + s}});
+}
+
+// Positions are multiples of 2^-20, and ids differ, as those of located lines.
+Version withLines(const PlainField& field, std::vector<EdgeLine> lines) {
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    lines[k].id = static_cast<std::int64_t>(k);
+    for (EdgePoint& p : lines[k].points)
+      p.position = {std::round(p.position.x * 0x1p20) * 0x1p-20, std::round(p.position.y * 0x1p20) * 0x1p-20};
+  }
+  return toVersion(field).withLines(std::make_shared<std::vector<EdgeLine>>(std::move(lines)));
+}
+
+// On which side of the line a sample lies.
+bool isLeft(double x, double y, double angle, int c, int r) {
+  return (c - x) * std::sin(angle) - (r - y) * std::cos(angle) > 0.0;
+}
+
+TEST(LineWindows, AreOfAllFiltersWithWindowsButTotalVariation) {
+  EXPECT_EQ(windowsWithLines(), (std::vector{FilterKind::kBox, FilterKind::kGaussian, FilterKind::kMedian,
+                                             FilterKind::kBilateral}));
+}
+
+// Two flats keep every bit, whatever the line's angle and the window.
+TEST(LineWindows, NeverReachOverALine) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(25.0, 50.0), turn(0.0, 3.1416);
+  for (const FilterKind kind : windowsWithLines())
+    for (int i = 0; i < 12; ++i) {
+      const double x = place(random), y = place(random), angle = turn(random);
+      PlainField field =
+          formed(80, 75, [&](int c, int r) { return isLeft(x, y, angle, c, r) ? 3.25F : -1.5F; });
+      for (int k = 0; k < 60; ++k)
+        field.at(static_cast<int>(random() % 80), static_cast<int>(random() % 75)) = std::nanf("");
+      const Version lined = withLines(field, {slanted(x, y, angle)});
+      const PlainField got = toPlain(filtered(lined, specOf(kind, 3 + 4 * (i % 4))).field);
+      EXPECT_TRUE(sameBits(got, field)) << static_cast<int>(kind) << ", angle " << angle;
+      EXPECT_FALSE(sameBits(toPlain(filtered(toVersion(field), specOf(kind, 5)).field), field));
+    }
+}
+
+// On noise: each side as if it were the whole field.
+TEST(LineWindows, FilterEachSideAsIfTheOtherWereHoles) {
+  std::mt19937 random(7);
+  std::normal_distribution<float> noise(0.0F, 0.1F);
+  const double x = 40.3, y = 35.0, angle = 1.1;
+  const PlainField field =
+      formed(90, 70, [&](int c, int r) { return noise(random) + (isLeft(x, y, angle, c, r) ? 1.0F : 0.0F); });
+  for (const FilterKind kind : windowsWithLines())
+    for (const int window : {3, 9}) {
+      const FilterSpec spec = specOf(kind, window);
+      const PlainField got = toPlain(filtered(withLines(field, {slanted(x, y, angle)}), spec).field);
+      for (const bool left : {false, true}) {
+        PlainField half = field;
+        for (int r = 0; r < half.height; ++r)
+          for (int c = 0; c < half.width; ++c)
+            if (isLeft(x, y, angle, c, r) != left) half.at(c, r) = std::nanf("");
+        const PlainField expected = toPlain(filtered(toVersion(half), spec).field);
+        for (int r = 0; r < half.height; ++r)
+          for (int c = 0; c < half.width; ++c)
+            if (!std::isnan(half.at(c, r))) {
+              ASSERT_TRUE(sameBits(got.at(c, r), expected.at(c, r)))
+                  << static_cast<int>(kind) << ": " << c << ", " << r;
+            }
+      }
+    }
+}
+
+TEST(LineWindows, ReachAroundTheEndOfALine) {
+  const PlainField field = formed(40, 40, [](int c, int) { return c > 19 ? 1.0F : 0.0F; });
+  // It ends in the middle of the field.
+  const Version lined = withLines(field, {edgeLineOf({{19.5, -3.0}, {19.5, 20.5}})});
+  const PlainField got = toPlain(filtered(lined, specOf(FilterKind::kBox, 5)).field);
+  for (int r = 0; r < 18; ++r) EXPECT_EQ(got.at(19, r), 0.0F) << r;
+  for (int r = 19; r < 40; ++r) EXPECT_GT(got.at(19, r), 0.0F) << r;
+}
+
+TEST(LineWindows, GiveTheSameBitsForAnyThreadsBlocksPiecesAndUpsideDown) {
+  std::mt19937 random(9);
+  std::normal_distribution<float> noise(0.0F, 0.1F);
+  const PlainField field = formed(300, 200, [&](int, int) { return noise(random); });
+  const Version scan = withLines(
+      field, {slanted(150, 100, 0.3), slanted(60, 100, 1.5), edgeLineOf({{200, 50}, {280, 60}, {240, 130}})});
+  JobControl job;
+  for (const FilterKind kind : windowsWithLines()) {
+    FilterSpec spec = specOf(kind, 7);
+    spec.passes = 2;
+    spec.threads = 1;
+    const Version whole = applyFilter(scan, scan, spec, job)->field;
+    EXPECT_EQ(whole.lines(), scan.lines());
+    spec.threads = 4;
+    EXPECT_EQ(contentHash(applyFilter(scan, scan, spec, FilterTuning{64, CpuLevel::kPlain}, job)->field),
+              contentHash(whole));
+    EXPECT_EQ(contentHash(applyFilter(scan.inverted(), scan.inverted(), spec, job)->field.inverted()),
+              contentHash(whole));
+    spec.passes = 1;
+    const Version once = applyFilter(scan, scan, spec, job)->field;
+    Version so_far = scan;
+    for (const TileRange& range : {TileRange{1, 1, 2, 2}, {0, 0, 3, 5}, {3, 0, 9, 9}})
+      so_far = *filterRange(scan, scan, so_far, spec, range, job);
+    EXPECT_EQ(contentHash(so_far), contentHash(once));
+  }
+}
+
+TEST(LineWindows, LargeOnesAreRefused) {
+  const PlainField field = formed(60, 60, [](int c, int) { return static_cast<float>(c); });
+  const Version lined = withLines(field, {slanted(30, 30, 0.5)});
+  JobControl job;
+  EXPECT_TRUE(applyFilter(lined, lined, specOf(FilterKind::kBox, kMostLineWindow), job));
+  const auto refused = applyFilter(lined, lined, specOf(FilterKind::kBox, kMostLineWindow + 2), job);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kInput);
+}
+
+class LineWindowsHardField : public testing::TestWithParam<std::string> {};
+
+TEST_P(LineWindowsHardField, KeepHolesMarksAndFiniteHeights) {
+  const PlainField field = hardField(GetParam());
+  const double w = field.width, h = field.height;
+  const Version scan =
+      withLines(field, {edgeLineOf({{0.5, -1.0}, {0.5, h}}), edgeLineOf({{-1.0, 0.3 * h}, {w, 0.6 * h}}),
+                        edgeLineOf({{0.2 * w, 0.2 * h}, {0.7 * w, 0.3 * h}, {0.4 * w, 0.9 * h}})});
+  for (const FilterKind kind : windowsWithLines()) {
+    const PlainField got = toPlain(filtered(scan, specOf(kind, 5)).field);
+    for (int r = 0; r < field.height; ++r)
+      for (int c = 0; c < field.width; ++c) {
+        ASSERT_EQ(std::isnan(got.at(c, r)), std::isnan(field.at(c, r)));
+        ASSERT_FALSE(std::isinf(got.at(c, r)));
+        if (field.marked(c, r)) {
+          ASSERT_TRUE(sameBits(got.at(c, r), field.at(c, r)));
+        }
+      }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Filters, LineWindowsHardField, testing::ValuesIn(hardFieldNames()),
+                         [](const auto& test) {
+                           std::string text = test.param;
+                           for (char& c : text) c = c == ' ' ? '_' : c;
+                           return text;
+                         });
+
+}  // namespace
+}  // namespace fettle::engine::tests
