@@ -17,6 +17,7 @@
 #include "engine/base/stopwatch.h"
 #include "engine/formats/formats.h"
 #include "engine/io/raster/marks.h"
+#include "engine/session/line_codec.h"
 #include "engine/session/session.h"
 #include "haptic/base/strokes.h"
 #include "haptic/journal/session_player.h"
@@ -78,6 +79,9 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
         fmt::format("the journal gives another field ({:016x}) than that of the session ({:016x})", made,
                     stored),
         options.scan, "the session's state is intact: convert or export it instead");
+  if (engine::packLines(played->field.lines()) != engine::packLines(session->history.current().lines()))
+    return engine::failure("the journal gives other edge lines than those of the session", options.scan,
+                           "the session's state is intact: convert or export it instead");
   if (auto status = saveField(played->field, options.out, job, beginningWith(session->original), options.to);
       !status)
     return tl::unexpected(status.error());

@@ -61,12 +61,14 @@ inline void exportField(Parts& p) {
   ask(p, Question::Kind::kExport, p.document.suggestedPath("_fettled.tif"));
 }
 inline void undo(Parts& p) {
-  p.document.undo();
+  // What is being worked out is the newest change, though it is no step yet.
+  if (!p.marking.edit.cancelNewest()) p.document.undo();
 }
 inline bool canUndo(const Parts& p) {
-  return hasField(p) && p.document.client()->canUndo();
+  return hasField(p) && (p.document.client()->canUndo() || p.marking.edit.busy());
 }
 inline void redo(Parts& p) {
+  p.marking.edit.cancel();
   clientOf(p).redo();
 }
 inline bool canRedo(const Parts& p) {

@@ -47,22 +47,22 @@ const glm::vec3& colourOf(const EdgePoint& point, bool chosen) {
 void LineOverlay::append(const engine::Version& field, std::optional<std::int64_t> chosen,
                          double mm_per_pixel, render::Overlays& overlays) {
   if (field.lines() == nullptr) {
-    of_.reset();
+    of_ = {};
     return;
   }
   const engine::Grid& grid = field.grid();
   const double sample_mm = std::max(grid.spacingXMm(), grid.spacingYMm());
+  const double across_mm = std::sqrt(grid.spacingXMm() * grid.spacingYMm());
   const int stride = static_cast<int>(std::clamp(kPiece_px * mm_per_pixel / sample_mm, 1.0, 1e6));
   const engine::FieldReader reader = field.reader();
-  if (field.lines() != of_ || chosen != chosen_ || stride != stride_ || reader.sign() != sign_ ||
+  if (of_.empty() || !(field == of_) || chosen != chosen_ || stride != stride_ ||
       mm_per_pixel != mm_per_pixel_) {
-    of_ = field.lines();
+    of_ = field;
     chosen_ = chosen;
     stride_ = stride;
-    sign_ = reader.sign();
     mm_per_pixel_ = mm_per_pixel;
     pieces_.clear();
-    for (const EdgeLine& line : *of_) {
+    for (const EdgeLine& line : *field.lines()) {
       const std::size_t points = line.points.size();
       const bool is_chosen = chosen == line.id;
       const std::size_t end = line.closed ? points : points - std::min<std::size_t>(points, 1);
@@ -75,7 +75,7 @@ void LineOverlay::append(const engine::Version& field, std::optional<std::int64_
         piece.depth = render::OverlayLine::Depth::kInScene;
         if (a.located) {
           render::OverlayLine band = piece;
-          const double width_px = 2.0 * kBand * a.deviation * sample_mm / mm_per_pixel;
+          const double width_px = 2.0 * kBand * a.deviation * across_mm / mm_per_pixel;
           band.width_px = std::min(static_cast<float>(width_px), kWidest_px);
           band.opacity = 0.3F;
           band.colour = colourOf(a, false);

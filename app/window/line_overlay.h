@@ -16,15 +16,14 @@ namespace fettle::app {
 class LineOverlay {
  public:
   /// Adds the lines to the overlays of the next frame, with pieces of about three pixels or longer. They are computed
-  /// again where lines, choice or that length differ from the last frame's: O(points).
+  /// again where field, choice or that length differ from the last frame's: O(points).
   void append(const engine::Version& field, std::optional<std::int64_t> chosen, double mm_per_pixel,
               render::Overlays& overlays);
 
  private:
-  engine::EdgeLines of_;
+  engine::Version of_;
   std::optional<std::int64_t> chosen_;
   int stride_ = 0;
-  float sign_ = 0.0F;
   double mm_per_pixel_ = 0.0;
   std::vector<render::OverlayLine> pieces_;
 };

@@ -2,15 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <memory>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "app/work/edge_strokes.h"
+#include "app/work/line_pieces.h"
 #include "engine/field/live_field.h"
 #include "engine/field/piece.h"
 #include "engine/inspect/noise.h"
@@ -25,9 +26,7 @@ using engine::EdgePoint;
 using engine::EdgeStroke;
 using engine::Version;
 
-constexpr double kSameEdge = 1.0;        // [samples] lines located this near to each other are of one edge
-constexpr std::size_t kLeastPoints = 5;  // of a line
-constexpr double kNear = 24.0;           // [samples] lines within are located together
+constexpr double kNear = 24.0;  // [samples] lines within are located together
 constexpr std::ptrdiff_t kLongestBridge =
     8;                                     // points: shorter unlocated runs between located ones are no marks
 constexpr double kLongestGap = 60.0;       // [samples] between ends that are joined
@@ -57,15 +56,26 @@ std::span<const EdgeLine> linesOf(const Version& version) {
   return version.lines() ? std::span<const EdgeLine>(*version.lines()) : std::span<const EdgeLine>();
 }
 
-Version withLines(const Version& version, std::vector<EdgeLine> lines) {
-  return version.withLines(lines.empty() ? nullptr
-                                         : std::make_shared<const std::vector<EdgeLine>>(std::move(lines)));
+bool isSound(const EdgePoint& p) {
+  for (const double value : {p.step, p.step_deviation, p.slope_change, p.slope_deviation, p.deviation})
+    if (!std::isfinite(value)) return false;
+  return p.deviation >= 0.0 && p.step_deviation >= 0.0 && p.slope_deviation >= 0.0;
 }
 
-std::int64_t nextId(std::span<const EdgeLine> lines) {
-  std::int64_t next = 1;
-  for (const EdgeLine& line : lines) next = std::max(next, line.id + 1);
-  return next;
+// What a session can hold: ids that differ, located points whose figures are numbers.
+Version withLines(const Version& version, std::vector<EdgeLine> lines) {
+  std::unordered_set<std::int64_t> ids;
+  for (EdgeLine& line : lines) {
+    if (!ids.insert(line.id).second) ids.insert(line.id = nextId(lines));
+    for (EdgePoint& p : line.points)
+      if (p.located && !isSound(p)) {
+        const glm::dvec2 position = p.position;
+        p = {};
+        p.position = position;
+      }
+  }
+  return version.withLines(lines.empty() ? nullptr
+                                         : std::make_shared<const std::vector<EdgeLine>>(std::move(lines)));
 }
 
 // A field without noise still has rounding: a hundred-thousandth of its heights.
@@ -95,72 +105,6 @@ engine::Result<double> noiseAround(const Version& field, const Box& box, engine:
   if (!noise) return tl::unexpected(noise.error());
   return leastNoise(field, noise->sigma);
 }
-// The lines without the points that `covered` holds for.
-template <class Covered>
-std::vector<EdgeLine> linesWithout(std::span<const EdgeLine> all, Covered&& covered) {
-  std::int64_t id = nextId(all);
-  std::vector<EdgeLine> lines;
-  for (const EdgeLine& line : all) {
-    const auto cut = std::ranges::find_if(line.points, covered);
-    if (cut == line.points.end()) {
-      lines.push_back(line);
-      continue;
-    }
-    // A closed line is opened where it is cut first.
-    std::vector<EdgePoint> points = line.points;
-    if (line.closed) std::rotate(points.begin(), points.begin() + (cut - line.points.begin()), points.end());
-    bool first = true;
-    for (auto from = points.begin(); from != points.end();) {
-      from = std::find_if_not(from, points.end(), covered);
-      const auto to = std::find_if(from, points.end(), covered);
-      if (static_cast<std::size_t>(to - from) >= kLeastPoints) {
-        lines.push_back({first ? line.id : id++, false, {from, to}});
-        first = false;
-      }
-      from = to;
-    }
-  }
-  return lines;
-}
-
-bool isNear(const EdgePoint& point, std::span<const EdgePoint> points, double distance) {
-  return std::ranges::any_of(
-      points, [&](const EdgePoint& p) { return glm::distance(p.position, point.position) <= distance; });
-}
-
-Box boxOf(const EdgeLine& line) {
-  Box box;
-  for (const EdgePoint& p : line.points) box.add(p.position);
-  return box;
-}
-
-// Whether most of what is located of a line lies on other ones.
-bool mostlyAmong(const EdgeLine& line, std::span<const EdgePoint> others) {
-  const Box box = boxOf(line);
-  std::vector<EdgePoint> near;
-  std::ranges::copy_if(others, std::back_inserter(near),
-                       [&](const EdgePoint& p) { return box.contains(p.position, kSameEdge); });
-  std::ptrdiff_t located = 0, among = 0;
-  for (const EdgePoint& p : line.points) {
-    if (!p.located) continue;
-    ++located;
-    among += isNear(p, near, kSameEdge) ? 1 : 0;
-  }
-  return 2 * among > located;
-}
-
-// The lines without what a stroke draws again, where that is most of what was located along it; all of them where it is
-// an edge of its own.
-std::vector<EdgeLine> linesNotRedrawn(std::span<const EdgeLine> all, const EdgeLine& drawn) {
-  const Box box = boxOf(drawn);
-  std::vector<EdgePoint> present;
-  for (const EdgeLine& line : all) present.insert(present.end(), line.points.begin(), line.points.end());
-  if (!mostlyAmong(drawn, present)) return {all.begin(), all.end()};
-  return linesWithout(all, [&](const EdgePoint& p) {
-    return box.contains(p.position, kSameEdge) && isNear(p, drawn.points, kSameEdge);
-  });
-}
-
 // The parts of the lines near a box, as strokes along their edges.
 std::vector<EdgeStroke> strokesNear(std::span<const EdgeLine> lines, const Box& box) {
   std::vector<EdgeStroke> strokes;
@@ -201,13 +145,26 @@ bool setMarks(engine::LiveField& live, glm::dvec2 centre, double radius, Chosen&
   return true;
 }
 
+// Calls visit(point) for the points that are not located, but for short runs of them. False when a call is.
+template <class Visit>
+bool forEachUnlocated(const EdgeLine& line, Visit&& visit) {
+  for (auto from = line.points.begin(); from != line.points.end();) {
+    from = std::ranges::find(from, line.points.end(), false, &EdgePoint::located);
+    const auto to = std::ranges::find(from, line.points.end(), true, &EdgePoint::located);
+    if (to - from >= kLongestBridge && !std::all_of(from, to, visit)) return false;
+    from = to;
+  }
+  return true;
+}
+
 // Without the marks that the stroke has set where its line was located.
 engine::Result<Version> withoutMarks(const Version& base, const LineStroke& stroke, const EdgeLine& line,
                                      const engine::LocateOptions& options) {
   engine::LiveField live(base, engine::Growth::kAllowed);
-  const engine::FieldReader before = stroke.before.reader(), now = base.reader();
+  const engine::FieldReader before = stroke.before.reader(), after = stroke.after.reader();
+  const engine::FieldReader now = base.reader();
   const auto is_new = [&](std::int32_t column, std::int32_t row) {
-    return now.markedAt(column, row) && !before.markedAt(column, row);
+    return now.markedAt(column, row) && after.markedAt(column, row) && !before.markedAt(column, row);
   };
   const double brush = stroke.mark_radius + 1.0;
   const double around = brush + std::ceil(2.75 * options.hand_deviation);
@@ -216,15 +173,10 @@ engine::Result<Version> withoutMarks(const Version& base, const LineStroke& stro
       return is_new(column, row) ? std::optional(marked) : std::nullopt;
     });
   };
-  bool done = std::ranges::all_of(line.points,
-                                  [&](const EdgePoint& p) { return !p.located || set(p, around, false); });
-  for (auto from = line.points.begin(); done && from != line.points.end();) {
-    from = std::ranges::find(from, line.points.end(), false, &EdgePoint::located);
-    const auto to = std::ranges::find(from, line.points.end(), true, &EdgePoint::located);
-    if (to - from >= kLongestBridge)
-      done = std::all_of(from, to, [&](const EdgePoint& p) { return set(p, brush, true); });
-    from = to;
-  }
+  const bool done =
+      std::ranges::all_of(line.points,
+                          [&](const EdgePoint& p) { return !p.located || set(p, around, false); }) &&
+      forEachUnlocated(line, [&](const EdgePoint& p) { return set(p, brush, true); });
   if (!done) return engine::failure("there is not enough memory for the marks", "edge line");
   return live.snapshot();
 }
@@ -265,6 +217,7 @@ engine::Result<Version> drawLine(const Version& base, const LineStroke& stroke,
   if (!isLocated(*line)) return base;
   auto marked = withoutMarks(base, stroke, *line, options);
   if (!marked) return marked;
+  line->id = nextId(lines);  // pieces of a line that was drawn again may have taken its own
   lines.push_back(std::move(*line));
   return withLines(*marked, std::move(lines));
 }
@@ -287,35 +240,30 @@ engine::Result<Version> drawSuggestion(const Version& base, const engine::EdgeMa
   const auto located = engine::locateEdgeLines(base.reader(), leastNoise(base, noise->sigma), strokes,
                                                engine::LocateOptions{}, job);
   if (!located) return tl::unexpected(located.error());
-  std::vector<EdgePoint> present;
-  for (const EdgeLine& line : lines) present.insert(present.end(), line.points.begin(), line.points.end());
+  const NearPoints present = pointsOf(lines);
   engine::LiveField live(base, engine::Growth::kAllowed);
   for (std::size_t k = 0; k < traced; ++k) {
     const EdgeLine& line = (*located)[k];
     if (mostlyAmong(line, present)) continue;
-    if (isLocated(line)) {
-      lines.push_back(line);
-      continue;
-    }
-    for (const glm::dvec2& p : strokes[k].points)
-      if (!setMarks(live, p, std::max(choice.thickness, 0.5),
-                    [&](std::int32_t column, std::int32_t row) -> std::optional<bool> {
-                      if (std::isnan(live.reader().heightAt(column, row))) return std::nullopt;
-                      return true;
-                    }))
-        return engine::failure("there is not enough memory for the marks", "edge lines");
+    if (job.cancelled()) return engine::cancelled();
+    if (isLocated(line)) lines.push_back(line);
+    const bool marked = forEachUnlocated(line, [&](const EdgePoint& p) {
+      return setMarks(live, p.position, std::max(choice.thickness, 0.5),
+                      [&](std::int32_t column, std::int32_t row) -> std::optional<bool> {
+                        if (std::isnan(live.reader().heightAt(column, row))) return std::nullopt;
+                        return true;
+                      });
+    });
+    if (!marked) return engine::failure("there is not enough memory for the marks", "edge lines");
   }
   return lines.size() == linesOf(base).size() ? live.snapshot()
                                               : withLines(live.snapshot(), std::move(lines));
 }
 
 Version eraseLines(const Version& base, std::span<const glm::dvec2> path, double radius) {
-  const Box box = boxOf(path);
-  const auto covered = [&](const EdgePoint& p) {
-    return box.contains(p.position, radius) && std::ranges::any_of(path, [&](const glm::dvec2& at) {
-             return glm::distance(at, p.position) <= radius;
-           });
-  };
+  NearPoints under(radius);
+  for (const glm::dvec2& p : path) under.add(p);
+  const auto covered = [&](const EdgePoint& p) { return under.any(p.position); };
   const bool any = std::ranges::any_of(
       linesOf(base), [&](const EdgeLine& line) { return std::ranges::any_of(line.points, covered); });
   return any ? withLines(base, linesWithout(linesOf(base), covered)) : base;
@@ -343,6 +291,9 @@ engine::Result<Version> joinLine(const Version& base, std::int64_t id, const eng
     bool at_front = false;    // of the chosen line
     bool other_back = false;  // which end of the other
   };
+  double length_of_line = 0.0;
+  for (std::size_t i = 1; i < chosen->points.size(); ++i)
+    length_of_line += glm::distance(chosen->points[i - 1].position, chosen->points[i].position);
   Joint best;
   for (const EdgeLine& other : all) {
     if (other.closed || other.points.empty()) continue;
@@ -352,6 +303,8 @@ engine::Result<Version> joinLine(const Version& base, std::int64_t id, const eng
         if (own && (at_front || other_back)) continue;  // its back to its front
         const double length = glm::distance(
             at_front ? front : back, (other_back ? other.points.back() : other.points.front()).position);
+        // A line is closed over a gap that is small beside it.
+        if (own && length > 0.25 * length_of_line) continue;
         if (length < best.length) best = {length, &other, at_front, other_back};
       }
   }
@@ -376,6 +329,9 @@ engine::Result<Version> joinLine(const Version& base, std::int64_t id, const eng
   if (!noise) return tl::unexpected(noise.error());
   auto joined = locateAmong(base, stroke, *noise, strokesNear(lines, box), options, job);
   if (!joined) return tl::unexpected(joined.error());
+  if (!isLocated(*joined))
+    return engine::inputError("no edge was found along the joined lines", "join",
+                              "draw the edge between them");
   lines.push_back(std::move(*joined));
   return withLines(base, std::move(lines));
 }

@@ -18,9 +18,9 @@ namespace fettle::app {
 
 /// A stroke along an edge, and the marks it has set.
 struct LineStroke {
-  std::span<const glm::dvec2> points;  ///< as MarkStroke
-  const engine::Version& before;       ///< the field before the stroke
-  double mark_radius = 0.0;            ///< of the marking brush [samples]
+  std::span<const glm::dvec2> points;     ///< as MarkStroke
+  const engine::Version &before, &after;  ///< the field before the stroke and at its end
+  double mark_radius = 0.0;               ///< of the marking brush [samples]
 };
 
 /// Locates the edge along a stroke and adds its line; the present lines next to it stay where they are, and their edges

@@ -54,7 +54,7 @@ void LineTool::follow(LoopClient& client, MarkEdit& edit, bool draws) {
     if (stroke->tool == haptic::Tool::kMark)
       edit.ask("Edge line",
                [stroke, radius, options = options](const engine::Version& base, engine::JobControl& job) {
-                 return drawLine(base, {stroke->points, stroke->before, radius}, options, job);
+                 return drawLine(base, {stroke->points, stroke->before, stroke->after, radius}, options, job);
                },
                {"no edge was found along the stroke", "it stays a mark"});
     else if (client.newest().lines() || edit.busy())

@@ -129,7 +129,10 @@ void LoopClient::poll() {
 }
 
 void LoopClient::takeTicks() {
-  if (steps_.journal().takeTicks(loop_.loop(), path_))
+  const bool none = path_.empty();
+  const bool lost = steps_.journal().takeTicks(loop_.loop(), path_);
+  if (none && !path_.empty()) path_base_ = history().current();
+  if (lost)
     notices_.push_back({"the window did not respond for too long to record every tick",
                         "the work is kept; the journal cannot replay beyond this point"});
 }
@@ -167,6 +170,7 @@ void LoopClient::take(haptic::LoopEvent&& event) {
       break;
     case EventKind::kRestored:
       if (restores_open_ > 0) --restores_open_;
+      path_.dropBefore(event.tick);  // the loop has ended the stroke
       steps_.restored(upright(event.version));
       break;
     case EventKind::kSceneChanged:
@@ -179,7 +183,7 @@ void LoopClient::take(haptic::LoopEvent&& event) {
 // The event comes before the step of the stroke, if it makes one.
 void LoopClient::endPath(const haptic::LoopEvent& event) {
   for (StrokePath::Ended& ended : path_.endAt(event.tick))
-    mark_strokes_.push_back({ended.tool, std::move(ended.points), history().current()});
+    mark_strokes_.push_back({ended.tool, std::move(ended.points), path_base_, upright(event.version)});
 }
 
 void LoopClient::setTool(haptic::Tool tool) {
@@ -218,18 +222,21 @@ void LoopClient::restore(const engine::Version& version) {
 void LoopClient::undo() {
   poll();
   keepStroke();
+  mark_strokes_.clear();
   if (const auto version = steps_.undo()) restore(*version);
 }
 
 void LoopClient::redo() {
   poll();
   if (!canRedo()) return;
+  mark_strokes_.clear();
   if (const auto version = steps_.redo()) restore(*version);
 }
 
 void LoopClient::goTo(std::int64_t state) {
   poll();
   keepStroke();
+  mark_strokes_.clear();
   if (state == history().number()) return;
   if (const auto version = steps_.goTo(state)) restore(*version);
 }

@@ -95,6 +95,8 @@ class LoopClient final {
   /// The strokes of tools that edit marks which ended since the last call, in their order; only where the session is
   /// recorded.
   [[nodiscard]] std::vector<MarkStroke> takeMarkStrokes() { return std::exchange(mark_strokes_, {}); }
+  /// Whether a stroke has edited something, or marks, and has not ended.
+  [[nodiscard]] bool strokeIsUnderWay() const noexcept { return !path_.empty() || strokeRuns(); }
 
   /// To be called when a filter starts on field(); returns the base's number.
   [[nodiscard]] std::uint64_t noteFilterBase() { return steps_.journal().filterBase(place_); }
@@ -160,6 +162,7 @@ class LoopClient final {
   std::uint64_t next_id_ = 1;           // of a command
   std::uint64_t restores_open_ = 0;     // requested, not answered
   StrokePath path_;                     // of the running stroke
+  engine::Version path_base_;           // upright: the field before it
   std::vector<MarkStroke> mark_strokes_;
   std::vector<Notice> notices_;
 };

@@ -9,26 +9,47 @@ void MarkEdit::ask(std::string name, Change change, Notice unchanged) {
 void MarkEdit::cancel() {
   waiting_.clear();
   working_.cancel();
+  done_.reset();
+}
+
+bool MarkEdit::cancelNewest() {
+  if (!waiting_.empty()) {
+    waiting_.pop_back();
+    return true;
+  }
+  if (done_) {
+    done_.reset();
+    return true;
+  }
+  if (!working_.busy() || working_.cancelling()) return false;
+  working_.cancel();
+  return true;
 }
 
 bool MarkEdit::poll(LoopClient& client, std::vector<Notice>& notices) {
   bool changed = false;
   // A cancelled job may have finished meanwhile.
   const bool dropped = working_.cancelling();
-  if (auto done = working_.take()) {
+  if (auto result = working_.take()) {
     changed = true;
     if (dropped) {
       // Its result is not needed.
-    } else if (!*done) {
-      if (done->error().kind != engine::ErrorKind::kCancelled)
-        notices.push_back({done->error().what, done->error().remedy});
-    } else if ((*done)->base == (*done)->changed) {
+    } else if (!*result) {
+      if (result->error().kind != engine::ErrorKind::kCancelled)
+        notices.push_back({result->error().what, result->error().remedy});
+    } else if ((*result)->base == (*result)->changed) {
       if (!running_.unchanged.what.empty()) notices.push_back(running_.unchanged);
-    } else if (!client.change((*done)->base, (*done)->changed, running_.name)) {
-      waiting_.push_front(std::move(running_));
+    } else {
+      done_ = std::move(**result);
     }
   }
-  if (!working_.busy() && !waiting_.empty()) {
+  // A line that comes while the next edge is drawn would divide that stroke.
+  if (done_ && (done_->base.lines() == done_->changed.lines() || !client.strokeIsUnderWay())) {
+    if (!client.change(done_->base, done_->changed, running_.name)) waiting_.push_front(std::move(running_));
+    done_.reset();
+    changed = true;
+  }
+  if (!working_.busy() && !done_ && !waiting_.empty()) {
     running_ = std::move(waiting_.front());
     waiting_.pop_front();
     working_.start(

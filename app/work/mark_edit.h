@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@
 namespace fettle::app {
 
 /// Changes of many marks at once (lasso, box, all, none) and of edge lines, computed in the background in the order of
-/// the requests. Each becomes one step; a stroke that runs meanwhile continues and is kept.
+/// the requests. Each becomes one step; a stroke that runs meanwhile continues and is kept; a change of lines waits for
+/// its end.
 /// Threading: main.
 class MarkEdit {
  public:
@@ -22,10 +24,12 @@ class MarkEdit {
   void ask(std::string name, Change change, Notice unchanged = {});
   /// Cancels waiting and running changes.
   void cancel();
+  /// Cancels the one asked for last. False when none waits or runs.
+  bool cancelNewest();
   /// Starts waiting changes, applies finished ones. True when something visible changed.
   [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 
-  [[nodiscard]] bool busy() const noexcept { return working_.busy() || !waiting_.empty(); }
+  [[nodiscard]] bool busy() const noexcept { return working_.busy() || done_ || !waiting_.empty(); }
   [[nodiscard]] double progress() const noexcept { return working_.progress(); }
 
  private:
@@ -40,6 +44,7 @@ class MarkEdit {
   std::deque<Request> waiting_;
   Request running_;
   Background<Done> working_;
+  std::optional<Done> done_;  // waits for the end of a stroke
 };
 
 }  // namespace fettle::app

@@ -9,7 +9,7 @@ namespace fettle::app {
 
 namespace {
 
-constexpr double kLeastApart = 0.25;  // [samples]
+constexpr double kLeastApart = 0.25, kGap = 4.0;  // [samples]
 
 }  // namespace
 
@@ -21,18 +21,23 @@ void StrokePath::add(std::uint64_t tick, const haptic::TickRecord& record) {
   const auto rounded = [](double at) { return std::round(at * 0x1p20) * 0x1p-20; };
   const glm::dvec2 at{rounded(input.tip_mm.x / spacing_mm_.x), rounded(input.tip_mm.y / spacing_mm_.y)};
   const bool same = !points_.empty() && points_.back().tool == input.tool;
-  if (!same || glm::distance(points_.back().at, at) >= kLeastApart)
-    points_.push_back({tick, input.tool, at});
+  if (!same || glm::distance(points_.back().at, at) >= kLeastApart) points_.push_back({tick, input.tool, at});
 }
 
 std::vector<StrokePath::Ended> StrokePath::endAt(std::uint64_t tick) {
   std::vector<Ended> ended;
   for (; !points_.empty() && points_.front().tick < tick; points_.pop_front()) {
     const Point& point = points_.front();
-    if (ended.empty() || ended.back().tool != point.tool) ended.push_back({point.tool, {}});
+    if (ended.empty() || ended.back().tool != point.tool ||
+        glm::distance(ended.back().points.back(), point.at) > kGap)
+      ended.push_back({point.tool, {}});
     ended.back().points.push_back(point.at);
   }
   return ended;
+}
+
+void StrokePath::dropBefore(std::uint64_t tick) {
+  while (!points_.empty() && points_.front().tick < tick) points_.pop_front();
 }
 
 }  // namespace fettle::app

@@ -18,7 +18,7 @@ struct MarkStroke {
   haptic::Tool tool = haptic::Tool::kMark;
   /// Path of the tip, in its order [samples], multiples of 2^-20; a quarter of a sample apart at least.
   std::vector<glm::dvec2> points;
-  engine::Version before;  ///< upright; the field before the stroke
+  engine::Version before, after;  ///< upright; the field before the stroke and at its end
 };
 
 /// Keeps the path of the tip while a tool that edits marks touches the surface, from the ticks of a live loop.
@@ -36,8 +36,12 @@ class StrokePath {
 
   /// The ticks in their order; `tick` counts from 0.
   void add(std::uint64_t tick, const haptic::TickRecord& record);
-  /// A stroke has ended with the ticks before `tick`: the paths until there, one for each tool in use.
+  /// A stroke has ended with the ticks before `tick`: the paths until there, one for each tool in use and each piece
+  /// without a gap, as over a hole.
   [[nodiscard]] std::vector<Ended> endAt(std::uint64_t tick);
+  /// The ticks before `tick` belong to no stroke any more.
+  void dropBefore(std::uint64_t tick);
+  [[nodiscard]] bool empty() const noexcept { return points_.empty(); }
 
  private:
   struct Point {

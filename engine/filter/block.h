@@ -3,8 +3,8 @@
 #include <cstddef>
 
 #include "engine/base/job.h"
-#include "engine/filter/filter.h"
 #include "engine/field/line_cuts.h"
+#include "engine/filter/filter.h"
 #include "engine/simd/cpu.h"
 
 namespace fettle::engine {

@@ -66,7 +66,8 @@ Result<Exported> writeSession(const Version& field, const std::string& path, con
   Session session;
   session.original = upright(options.original.value_or(field));
   session.history = History(session.original);
-  if (const Version worked = upright(field); !tilesThatDiffer(session.original, worked).empty())
+  if (const Version worked = upright(field);
+      !tilesThatDiffer(session.original, worked).empty() || worked.lines() != session.original.lines())
     session.history.push({"Earlier steps", StepKind::kImport, stepTimeNow(), {}, 0}, worked);
   if (inverted) session.history.push({"Invert", StepKind::kInvert, stepTimeNow(), {}, 0}, field);
   if (auto saved = saveSession(session, path, job); !saved) return tl::unexpected(saved.error());

@@ -24,10 +24,19 @@ bool runAlike(const EdgeLine& a, const EdgeLine& b) noexcept {
 SampleRect rectOfOtherLines(const EdgeLines& lines, const EdgeLines& others, const Grid& grid) noexcept {
   SampleRect rect;
   if (lines == nullptr) return rect;
+  std::size_t next = 0;  // lines keep their order: the search begins after the last one found
+  const auto isAmong = [&](const EdgeLine& line) {
+    const std::size_t n = others == nullptr ? 0 : others->size();
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::size_t at = (next + i) % n;
+      if (!runAlike(line, (*others)[at])) continue;
+      next = at + 1;
+      return true;
+    }
+    return false;
+  };
   for (const EdgeLine& line : *lines) {
-    if (others != nullptr &&
-        std::ranges::any_of(*others, [&](const EdgeLine& other) { return runAlike(line, other); }))
-      continue;
+    if (isAmong(line)) continue;
     for (const EdgePoint& point : line.points) {
       const auto column = static_cast<std::int32_t>(std::clamp(point.position.x, 0.0, grid.width - 1.0));
       const auto row = static_cast<std::int32_t>(std::clamp(point.position.y, 0.0, grid.height - 1.0));
@@ -62,6 +71,8 @@ Change measureChange(const Version& before, const Version& after) noexcept {
     change.rect = {column, row, std::min((extent.column1 + 1) * kTileSide, grid.width) - column,
                    std::min((extent.row1 + 1) * kTileSide, grid.height) - row};
   }
+  if (change.lines && after.lines() != nullptr)
+    change.line_bytes = static_cast<std::size_t>(countPoints(*after.lines())) * sizeof(EdgePoint);
   if (change.lines)
     change.rect = change.rect.joined(rectOfOtherLines(before.lines(), after.lines(), grid))
                       .joined(rectOfOtherLines(after.lines(), before.lines(), grid));

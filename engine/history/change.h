@@ -15,13 +15,15 @@ struct Change {
   /// Around those tiles, clipped to the field: whole tiles, unchanged samples included; and around the edge lines that
   /// only one of them has.
   SampleRect rect;
-  bool inverted = false;  ///< whether the signs differ
-  bool lines = false;     ///< whether the edge lines are other ones
+  bool inverted = false;       ///< whether the signs differ
+  std::size_t line_bytes = 0;  ///< of the lines of the later version, where they are other ones
+  bool lines = false;          ///< whether the edge lines are other ones
 
   [[nodiscard]] bool none() const noexcept { return tiles == 0 && !inverted && !lines; }
   /// Memory of one version that the other does not share [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept {
-    return static_cast<std::size_t>(tiles) * sizeof(Tile) + static_cast<std::size_t>(nodes) * sizeof(Node);
+    return static_cast<std::size_t>(tiles) * sizeof(Tile) + static_cast<std::size_t>(nodes) * sizeof(Node) +
+           line_bytes;
   }
 };
 

@@ -25,7 +25,11 @@ constexpr double kLeastClosed = 30.0;  // [samples] length of a closed line
 // A piece of samples as a graph: neighbours are up to kLineGap apart.
 class PieceGraph {
  public:
-  explicit PieceGraph(EdgePiece spots) : spots_(std::move(spots)), open_(spots_.size(), true) {
+  explicit PieceGraph(EdgePiece spots)
+      : spots_(std::move(spots)),
+        open_(spots_.size(), true),
+        distance_(spots_.size(), kFar),
+        before_(spots_.size(), 0) {
     std::ranges::sort(spots_, less);
   }
 
@@ -44,6 +48,7 @@ class PieceGraph {
   }
 
  private:
+  static constexpr int kFar = std::numeric_limits<int>::max();
   static bool less(const EdgeSpot& a, const EdgeSpot& b) {
     return std::pair(a.row, a.column) < std::pair(b.row, b.column);
   }
@@ -58,37 +63,40 @@ class PieceGraph {
   }
   // The shortest way from a sample to the one to which it is longest (Dijkstra 1959). A way of squares of distances
   // takes all samples in between.
-  std::vector<std::size_t> farthest(std::size_t from) const {
-    constexpr int kFar = std::numeric_limits<int>::max();
-    std::vector<int> distance(spots_.size(), kFar);
-    std::vector<std::size_t> before(spots_.size(), from);
+  std::vector<std::size_t> farthest(std::size_t from) {
+    for (const std::size_t i : seen_) distance_[i] = kFar;
+    seen_.assign(1, from);
     using Entry = std::pair<int, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    distance[from] = 0;
+    distance_[from] = 0;
     queue.emplace(0, from);
     std::size_t last = from;
     while (!queue.empty()) {
       const auto [length, at] = queue.top();
       queue.pop();
-      if (length > distance[at]) continue;
+      if (length > distance_[at]) continue;
       last = at;
       forEachNear(spots_[at], [&](std::size_t i) {
         const std::int32_t dc = spots_[i].column - spots_[at].column, dr = spots_[i].row - spots_[at].row;
         const int next = length + dc * dc + dr * dr;
-        if (next >= distance[i]) return;
-        distance[i] = next;
-        before[i] = at;
+        if (next >= distance_[i]) return;
+        if (distance_[i] == kFar) seen_.push_back(i);
+        distance_[i] = next;
+        before_[i] = at;
         queue.emplace(next, i);
       });
     }
     std::vector<std::size_t> way{last};
-    while (way.back() != from) way.push_back(before[way.back()]);
+    while (way.back() != from) way.push_back(before_[way.back()]);
     std::ranges::reverse(way);
     return way;
   }
 
   std::vector<EdgeSpot> spots_;  // ordered
   std::vector<bool> open_;
+  // Of the search: only the entries of the samples it has seen are in use, so that it costs what it sees.
+  std::vector<int> distance_;
+  std::vector<std::size_t> before_, seen_;
   std::size_t first_ = 0;  // none before is open
 };
 

@@ -87,8 +87,8 @@ std::string packLines(const EdgeLines& lines) {
       putInteger(out, static_cast<std::uint8_t>((point.located ? kLocatedBit : 0) |
                                                 (point.kind == LineKind::kCrease ? kCreaseBit : 0)));
       if (!point.located) continue;
-      for (const double value : {point.deviation, point.step, point.step_deviation, point.slope_change,
-                                 point.slope_deviation})
+      for (const double value :
+           {point.deviation, point.step, point.step_deviation, point.slope_change, point.slope_deviation})
         putReal(out, value);
     }
   }

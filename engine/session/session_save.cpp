@@ -16,7 +16,8 @@ Status writeAll(SessionTables& tables, const Session& session, const OriginalRow
   const History& history = session.history;
   HeadRow head;
   if (history.first() == 0 && (!tilesThatDiffer(session.original, history.state(0)).empty() ||
-                               session.original.reader().sign() != history.state(0).reader().sign()))
+                               session.original.reader().sign() != history.state(0).reader().sign() ||
+                               session.original.lines() != history.state(0).lines()))
     return failure("state 0 of the history is not the original scan", tables.database().shownPath());
   if (Status status = tables.create(); !status) return status;
   if (Status status = tables.writeGrid(session.original.grid()); !status) return status;

@@ -7,7 +7,7 @@
 
 namespace fettle::app {
 
-void historyPanel(const PanelContext& context) {
+void historyPanel(const PanelContext& context, MarkEdit& edit) {
   const engine::History& history = context.client.history();
   if (ImGui::Button("Undo")) context.act(Action::kUndo);
   ImGui::SameLine();
@@ -29,7 +29,10 @@ void historyPanel(const PanelContext& context) {
       if (ImGui::Selectable(text.c_str(), i == history.number())) chosen = i;
       if (i > history.number()) ImGui::PopStyleColor();
     }
-    if (chosen >= 0) context.client.goTo(chosen);
+    if (chosen >= 0) {
+      edit.cancel();
+      context.client.goTo(chosen);
+    }
   }
   ImGui::EndChild();
 }

@@ -24,7 +24,7 @@ void edgePanel(const PanelContext& context, EdgeTool& edges);
 /// `draws`: whether strokes of the mark tool become edge lines.
 void linePanel(const PanelContext& context, LineTool& lines, bool draws);
 void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display);
-void historyPanel(const PanelContext& context);
+void historyPanel(const PanelContext& context, MarkEdit& edit);
 void changePanel(const PanelContext& context, const ChangeFigures& change);
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,
                   ChoiceCosts& costs);

@@ -45,7 +45,7 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
   if (section(settings, "Edges", false)) edgePanel(context, parts.marking.edges);
   if (section(settings, "Edge lines", false)) linePanel(context, parts.marking.lines, settings.draw_lines);
   if (section(settings, "Filters", true)) filterPanel(context, parts.filters, settings.display);
-  if (section(settings, "Steps", true)) historyPanel(context);
+  if (section(settings, "Steps", true)) historyPanel(context, parts.marking.edit);
   if (section(settings, "Change since the scan", true)) changePanel(context, parts.change);
   if (section(settings, "Display", false))
     displayPanel(context, settings, parts.picture, parts.view, parts.costs);

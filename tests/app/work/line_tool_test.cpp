@@ -19,10 +19,11 @@ using app::LoopClient;
 using app::SessionKeeper;
 using haptic::Tool;
 
-// A step at column 60.5, ten times the noise.
+// Steps at columns 60.5 and 120.5, ten times the noise.
 engine::Version step() {
-  return engine::edgeField(
-      160, 140, [](int c, int r) { return (c > 60 ? 0.1 : 0.0) + 0.01 * engine::whiteNoise(c, r); });
+  return engine::edgeField(160, 140, [](int c, int r) {
+    return (c > 60 ? 0.1 : 0.0) + (c > 120 ? 0.1 : 0.0) + 0.01 * engine::whiteNoise(c, r);
+  });
 }
 
 class LineTool : public testing::Test {
@@ -44,7 +45,7 @@ class LineTool : public testing::Test {
     while (std::chrono::steady_clock::now() < end) {
       client_->poll();
       keeper_->poll();
-      tool_.follow(*client_, edit_, draws_);
+      if (follows_) tool_.follow(*client_, edit_, draws_);
       static_cast<void>(edit_.poll(*client_, notices_));
       if (holds()) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -52,8 +53,8 @@ class LineTool : public testing::Test {
     return false;
   }
 
-  // Along a straight line [samples], until the tool is up and all that follows is done.
-  void stroke(Tool tool, glm::dvec2 from, glm::dvec2 to) {
+  // Along a straight line [samples], until the tool is up.
+  void draw(Tool tool, glm::dvec2 from, glm::dvec2 to) {
     const engine::Grid& grid = client_->field().grid();
     haptic::MouseStylus& mouse = *client_->mouse();
     client_->setTool(tool);
@@ -65,14 +66,20 @@ class LineTool : public testing::Test {
       const std::uint64_t tick = client_->state().tick;
       ASSERT_TRUE(until([&] { return client_->state().tick > tick + 3; }));
     }
-    const std::uint64_t strokes = client_->state().stroke;
-    ASSERT_GT(strokes, 0U);
     mouse.release();
+    ASSERT_TRUE(until([&] { return !mouse.busy(); }));
+  }
+  // Until all that follows from the strokes is done.
+  void settle() {
     const std::uint64_t tick = client_->state().tick;
     ASSERT_TRUE(until([&] {
-      return !mouse.busy() && client_->state().tick > tick + 300 && !edit_.busy() &&
+      return client_->state().tick > tick + 300 && !edit_.busy() &&
              client_->upright() == client_->history().current();
     }));
+  }
+  void stroke(Tool tool, glm::dvec2 from, glm::dvec2 to) {
+    draw(tool, from, to);
+    settle();
   }
   [[nodiscard]] std::size_t lines() const {
     const engine::EdgeLines lines = client_->history().current().lines();
@@ -90,6 +97,7 @@ class LineTool : public testing::Test {
   app::MarkEdit edit_;
   app::LineTool tool_;
   bool draws_ = true;
+  bool follows_ = true;
   std::vector<app::Notice> notices_;
 };
 
@@ -131,6 +139,28 @@ TEST_F(LineTool, AStrokeBecomesALineThatUndoRedoSessionAndReplayKeep) {
   ASSERT_TRUE(played) << played.error().line();
   EXPECT_EQ(engine::contentHash(played->field), hash);
   EXPECT_EQ(engine::packLines(played->field.lines()), cut);
+}
+
+TEST_F(LineTool, StrokesOneAfterTheOtherAreEachALine) {
+  draw(Tool::kMark, {61.5, 30}, {59.5, 100});
+  draw(Tool::kMark, {121.5, 30}, {119.5, 100});
+  settle();
+  EXPECT_EQ(lines(), 2U);
+  EXPECT_EQ(engine::summarize(client_->history().current()).marked, 0);
+  EXPECT_EQ(notices_.size(), 0U);
+}
+
+TEST_F(LineTool, WhatIsUndoneBecomesNoLine) {
+  // The stroke has ended and is undone before the tool looks at it.
+  follows_ = false;
+  stroke(Tool::kMark, {61.5, 30}, {59.5, 100});
+  ASSERT_EQ(client_->history().number(), 1);
+  client_->undo();
+  follows_ = true;
+  settle();
+  EXPECT_EQ(lines(), 0U);
+  EXPECT_EQ(client_->history().number(), 0);
+  EXPECT_TRUE(client_->canRedo());
 }
 
 TEST_F(LineTool, WithoutDrawingAStrokeRemainsMarks) {

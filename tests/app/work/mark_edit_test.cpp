@@ -103,6 +103,38 @@ TEST(MarkEdit, cancelled_nothing_is_done_however_far_it_had_got) {
   }
 }
 
+TEST(MarkEdit, the_newest_alone_is_cancelled) {
+  LoopClientBench bench(plate());
+  MarkEdit edit;
+  EXPECT_FALSE(edit.cancelNewest());
+  const Held held;
+  edit.ask("All", held.change());
+  (void)edit.poll(bench.client(), bench.noticesToFill());
+  held.begun->wait(false);
+  edit.ask("All again", engine::invertMarks);
+  EXPECT_TRUE(edit.cancelNewest());
+  held.letGo();
+  ASSERT_TRUE(bench.until([&] {
+    (void)edit.poll(bench.client(), bench.noticesToFill());
+    return !edit.busy();
+  }));
+  ASSERT_TRUE(bench.settled());
+  EXPECT_EQ(bench.client().history().number(), 1);
+  EXPECT_EQ(bench.client().history().info(1).name, "All");
+  // The one that is worked out.
+  const Held other;
+  edit.ask("None", other.change());
+  (void)edit.poll(bench.client(), bench.noticesToFill());
+  EXPECT_TRUE(edit.cancelNewest());
+  EXPECT_FALSE(edit.cancelNewest());
+  other.letGo();
+  ASSERT_TRUE(bench.until([&] {
+    (void)edit.poll(bench.client(), bench.noticesToFill());
+    return !edit.busy();
+  }));
+  EXPECT_EQ(bench.client().history().number(), 1);
+}
+
 TEST(MarkEdit, a_stroke_made_meanwhile_is_kept) {
   LoopClientBench bench(plate());
   MarkEdit edit;

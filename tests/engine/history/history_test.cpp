@@ -252,9 +252,8 @@ TEST(History, DroppingItGivesEveryTileBack) {
 }
 
 TEST(History, KindsHaveNamesThatReadBack) {
-  for (const StepKind kind :
-       {StepKind::kStroke, StepKind::kFilter, StepKind::kMark, StepKind::kInvert, StepKind::kImport,
-        StepKind::kLines})
+  for (const StepKind kind : {StepKind::kStroke, StepKind::kFilter, StepKind::kMark, StepKind::kInvert,
+                              StepKind::kImport, StepKind::kLines})
     EXPECT_EQ(stepKindFromName(stepKindName(kind)), kind);
   EXPECT_FALSE(stepKindFromName("sculpt"));
 }
