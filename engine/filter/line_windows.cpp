@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/filter/median.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -80,9 +82,7 @@ class LineWindows final : public BlockFilter {
                     std::numeric_limits<float>::quiet_NaN());
     reached_.assign(at(window.columns, 0, window.rows), 0);
     const auto reach = [&](int c, int r) {
-      if (std::exchange(reached_[at(window.columns, c, r)], std::uint8_t{1}) != 0) return;
-      heights_[at(static_cast<int>(window.stride), c, r)] = block.row(r0 + r)[c0 + c];
-      next_.emplace_back(c, r);
+      if (std::exchange(reached_[at(window.columns, c, r)], std::uint8_t{1}) == 0) next_.emplace_back(c, r);
     };
     const auto whole = [&](int c, int r, int link) {
       return (links_[at(block.columns, c0 + c, r0 + r)] & link) == 0;
@@ -96,6 +96,12 @@ class LineWindows final : public BlockFilter {
       if (r + 1 < window.rows && whole(c, r, LineCut::kUp)) reach(c, r + 1);
       if (r > 0 && whole(c, r - 1, LineCut::kUp)) reach(c, r - 1);
     }
+    const auto height = [&](int c, int r) { return block.row(r0 + r)[c0 + c]; };
+    const std::uint8_t own = settleSides(window, c0, r0, block, height);
+    for (int r = 0; r < window.rows; ++r)
+      for (int c = 0; c < window.columns; ++c)
+        if (reached_[at(window.columns, c, r)] == own)
+          heights_[at(static_cast<int>(window.stride), c, r)] = height(c, r);
     window.heights = heights_.data();
     float results[kOutputs];
     window.out = results;
@@ -104,11 +110,58 @@ class LineWindows final : public BlockFilter {
     return true;
   }
 
-  static constexpr int kOutputs = 16;  // room for a vector
+  // A located line is some tenths of a sample off. Where both sides of the window differ by far more than each varies,
+  // the samples next to the line are on the side whose height they are nearer to. Returns the side of the middle.
+  template <class HeightAt>
+  std::uint8_t settleSides(const Block& window, int c0, int r0, const Block& block, HeightAt&& height) {
+    const auto isNear = [&](int c, int r) {
+      for (int y = std::max(r0 + r - kNear, 0); y <= std::min(r0 + r + kNear - 1, block.rows - 1); ++y)
+        for (int x = std::max(c0 + c - kNear, 0); x <= std::min(c0 + c + kNear - 1, block.columns - 1); ++x)
+          if (links_[at(block.columns, x, y)] != 0) return true;
+      return false;
+    };
+    for (std::vector<float>& side : sides_) side.clear();
+    for (int r = 0; r < window.rows; ++r)
+      for (int c = 0; c < window.columns; ++c)
+        if (const float z = height(c, r); z == z) sides_[reached_[at(window.columns, c, r)]].push_back(z);
+    const float own = medianOf(sides_[1]);
+    const float own_spread = spreadOf(sides_[1], own);
+    // A window may hold no more of the other side than samples that the line has on this one.
+    const bool one_side = sides_[0].empty();
+    const float other = one_side ? own : medianOf(sides_[0]);
+    const float spread = one_side ? own_spread : std::max(own_spread, spreadOf(sides_[0], other));
+    if (!one_side && !(std::fabs(own - other) > kFarApart * spread)) return 1;
+    for (int r = 0; r < window.rows; ++r)
+      for (int c = 0; c < window.columns; ++c) {
+        if (!isNear(c, r)) continue;
+        const float from_own = std::fabs(height(c, r) - own);
+        const bool fits =
+            one_side ? !(from_own > kStandsOut * spread) : from_own <= std::fabs(height(c, r) - other);
+        reached_[at(window.columns, c, r)] = fits ? 1 : 0;
+      }
+    return reached_[at(window.columns, window.first_column, window.first_row)];
+  }
+
+  // Of an even number the mean of the middle two: the same upside down.
+  static float medianOf(std::vector<float>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::ranges::nth_element(values, middle);
+    return values.size() % 2 != 0 ? *middle : midpoint(*std::max_element(values.begin(), middle), *middle);
+  }
+  // Median of the distances from the median.
+  static float spreadOf(std::vector<float>& values, float median) {
+    for (float& value : values) value = std::fabs(value - median);
+    return medianOf(values);
+  }
+
+  static constexpr int kNear = 2;             // [samples] from a cut link
+  static constexpr float kFarApart = 9.0F;    // six standard deviations, in medians of distances
+  static constexpr float kStandsOut = 27.0F;  // of one sample among a few
+  static constexpr int kOutputs = 16;         // room for a vector
   std::unique_ptr<BlockFilter> windows_;
   int radius_;
   std::vector<std::uint8_t> links_, crossed_, reached_;
-  std::vector<float> heights_;
+  std::vector<float> heights_, sides_[2];
   std::vector<std::pair<int, int>> next_;
 };
 

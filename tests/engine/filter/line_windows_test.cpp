@@ -101,13 +101,31 @@ TEST(LineWindows, FilterEachSideAsIfTheOtherWereHoles) {
     }
 }
 
+// A line half a sample off puts every second sample next to it on the wrong side of a tall wall.
+TEST(LineWindows, KeepSamplesOnTheSideOfTheirHeight) {
+  std::mt19937 random(8);
+  std::normal_distribution<float> noise(0.0F, 0.01F);
+  const double x = 40.3, y = 35.0, angle = 1.1;
+  const auto truth = [&](int c, int r) { return isLeft(x, y, angle, c, r) ? 5.0F : 0.0F; };
+  const PlainField field = formed(90, 70, [&](int c, int r) { return noise(random) + truth(c, r); });
+  for (const FilterKind kind : windowsWithLines())
+    for (const double off : {-0.6, 0.6}) {
+      const PlainField got =
+          toPlain(filtered(withLines(field, {slanted(x + off, y, angle)}), specOf(kind, 7)).field);
+      for (int r = 0; r < field.height; ++r)
+        for (int c = 0; c < field.width; ++c)
+          ASSERT_NEAR(got.at(c, r), truth(c, r), 0.04) << static_cast<int>(kind) << ": " << c << ", " << r;
+    }
+}
+
 TEST(LineWindows, ReachAroundTheEndOfALine) {
   const PlainField field = formed(40, 40, [](int c, int) { return c > 19 ? 1.0F : 0.0F; });
   // It ends in the middle of the field.
   const Version lined = withLines(field, {edgeLineOf({{19.5, -3.0}, {19.5, 20.5}})});
   const PlainField got = toPlain(filtered(lined, specOf(FilterKind::kBox, 5)).field);
   for (int r = 0; r < 18; ++r) EXPECT_EQ(got.at(19, r), 0.0F) << r;
-  for (int r = 19; r < 40; ++r) EXPECT_GT(got.at(19, r), 0.0F) << r;
+  // Samples beside the line stay on the side of their height.
+  for (int r = 23; r < 40; ++r) EXPECT_GT(got.at(19, r), 0.0F) << r;
 }
 
 TEST(LineWindows, GiveTheSameBitsForAnyThreadsBlocksPiecesAndUpsideDown) {
