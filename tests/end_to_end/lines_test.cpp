@@ -102,6 +102,22 @@ TEST_F(Lines, a_number_used_twice_is_that_of_two_lines) {
   }
 }
 
+TEST_F(Lines, of_suggested_edges_end_the_windows_of_the_paper) {
+  const std::string lines = folder.file("lines.csv");
+  const auto report = fettleJson({"mark", scan, marks, "--edges", "--lines-out", lines});
+  EXPECT_GT(report["lines"], 5);
+  EXPECT_GT(report["located"], 0.8);
+  const auto error = [&](std::vector<std::string> more) -> double {
+    more.insert(more.begin(), {"filter", scan, clean, "--window", "5"});
+    EXPECT_EQ(fettle(std::move(more)).status, 0);
+    return fettleJson({"compare", scan, clean, "--truth", truth, "--edges", edges})["rmse_edge"];
+  };
+  for (const char* filter : {"box", "median"}) {
+    const double alone = error({"--filter", filter});
+    EXPECT_LT(error({"--filter", filter, "--lines", lines}), 0.6 * alone) << filter;
+  }
+}
+
 TEST_F(Lines, what_cannot_be_done_is_refused) {
   std::ofstream(strokes) << "t,x,y,z,tool\n0,1,1,0,mark\n0.001,9,9,0,mark\n";
   const std::string lines = folder.file("lines.csv");
@@ -120,7 +136,8 @@ TEST_F(Lines, what_cannot_be_done_is_refused) {
     more.insert(more.begin(), {"filter", scan, clean});
     return fettle(std::move(more));
   };
-  expectRefused(filter({"--filter", "median", "--lines", lines}), "tgv");
+  expectRefused(filter({"--filter", "tv", "--lines", lines}), "tgv");
+  expectRefused(filter({"--filter", "median", "--window", "53", "--lines", lines}), "51");
   expectRefused(filter({"--filter", "tgv", "--lines", strokes}), "header");
   expectRefused(filter({"--filter", "tgv", "--lines", folder.file("none.gpkg")}), "none.gpkg");
   expectRefused(filter({"--suggest", "--tolerance", "1", "--lines", lines}), "--lines");
