@@ -116,7 +116,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   if (filter.window.exists()) report["window"] = spec.window;
   if (filter.sigma.exists()) report["sigma"] = spec.sigma;
   if (filter.range_sigma.exists()) report["range_sigma"] = spec.range_sigma;
-  if (const engine::EdgeLines& lines = field.lines(); !options.lines.empty()) {
+  if (const engine::EdgeLines& lines = field.lines(); lines != nullptr && filter.knows_lines) {
     report["lines"] = lines->size();
     report["line_points"] = engine::countPoints(*lines);
   }

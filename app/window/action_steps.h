@@ -60,16 +60,40 @@ inline void saveAs(Parts& p) {
 inline void exportField(Parts& p) {
   ask(p, Question::Kind::kExport, p.document.suggestedPath("_fettled.tif"));
 }
+// Whether a step is the line that took the place of the marks of the step before it.
+inline bool isLineOfStroke(const engine::History& history, std::int64_t number) {
+  return number - 1 > history.first() && number <= history.last() &&
+         history.info(number).kind == engine::StepKind::kLines &&
+         history.info(number).name == kLineOfStroke &&
+         history.info(number - 1).kind == engine::StepKind::kMark;
+}
 inline void undo(Parts& p) {
-  // What is being worked out is the newest change, though it is no step yet.
-  if (!p.marking.edit.cancelNewest()) p.document.undo();
+  LoopClient& client = clientOf(p);
+  const engine::History& history = client.history();
+  // What is being worked out is the newest change, though it is no step yet: the line of a stroke that is one.
+  client.poll();
+  p.marking.lines.follow(client, p.marking.edit, p.settings.draw_lines);
+  if (const auto cancelled = p.marking.edit.cancelNewest()) {
+    const bool of_stroke = *cancelled == kLineOfStroke && history.canUndo() &&
+                           history.info(history.number()).name == haptic::rowOf(haptic::Tool::kMark).title;
+    if (of_stroke) p.document.undo();
+  } else if (!client.strokeIsUnderWay() && isLineOfStroke(history, history.number())) {
+    client.goTo(history.number() - 2);
+  } else {
+    p.document.undo();
+  }
 }
 inline bool canUndo(const Parts& p) {
   return hasField(p) && (p.document.client()->canUndo() || p.marking.edit.busy());
 }
 inline void redo(Parts& p) {
   p.marking.edit.cancel();
-  clientOf(p).redo();
+  LoopClient& client = clientOf(p);
+  const engine::History& history = client.history();
+  if (isLineOfStroke(history, history.number() + 2))
+    client.goTo(history.number() + 2);
+  else
+    client.redo();
 }
 inline bool canRedo(const Parts& p) {
   return hasField(p) && p.document.client()->canRedo();

@@ -25,8 +25,8 @@ glm::dvec3 above(const engine::FieldReader& reader, glm::dvec2 at) {
     return static_cast<std::int32_t>(std::clamp(v, 0.0, side - 1.0));
   };
   double height = -std::numeric_limits<double>::infinity();
-  for (const double dr : {-0.5, 1.0})
-    for (const double dc : {-0.5, 1.0}) {
+  for (const double dr : {-1.0, 0.0, 1.0, 2.0})
+    for (const double dc : {-1.0, 0.0, 1.0, 2.0}) {
       const float z = reader.heightAt(clamped(std::floor(at.x + dc), grid.width),
                                       clamped(std::floor(at.y + dr), grid.height));
       if (z > height) height = static_cast<double>(z);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -52,7 +53,7 @@ void LineTool::follow(LoopClient& client, MarkEdit& edit, bool draws) {
     const double radius = client.scene().mark_radius_samples;
     const auto stroke = std::make_shared<const MarkStroke>(std::move(taken));
     if (stroke->tool == haptic::Tool::kMark)
-      edit.ask("Edge line",
+      edit.ask(std::string(kLineOfStroke),
                [stroke, radius, options = options](const engine::Version& base, engine::JobControl& job) {
                  return drawLine(base, {stroke->points, stroke->before, stroke->after, radius}, options, job);
                },

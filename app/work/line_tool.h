@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "app/work/loop_client.h"
@@ -9,6 +10,9 @@
 #include "engine/edges/locate.h"
 
 namespace fettle::app {
+
+/// The name of the step that puts a line in the place of the marks of its stroke, the step before it.
+inline constexpr std::string_view kLineOfStroke = "Edge line";
 
 /// An edge line as a list shows it.
 struct LineFigures {

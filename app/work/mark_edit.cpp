@@ -12,18 +12,16 @@ void MarkEdit::cancel() {
   done_.reset();
 }
 
-bool MarkEdit::cancelNewest() {
+std::optional<std::string> MarkEdit::cancelNewest() {
   if (!waiting_.empty()) {
+    std::string name = std::move(waiting_.back().name);
     waiting_.pop_back();
-    return true;
+    return name;
   }
-  if (done_) {
-    done_.reset();
-    return true;
-  }
-  if (!working_.busy() || working_.cancelling()) return false;
+  if (!done_ && (!working_.busy() || working_.cancelling())) return std::nullopt;
+  done_.reset();
   working_.cancel();
-  return true;
+  return running_.name;
 }
 
 bool MarkEdit::poll(LoopClient& client, std::vector<Notice>& notices) {

@@ -24,8 +24,8 @@ class MarkEdit {
   void ask(std::string name, Change change, Notice unchanged = {});
   /// Cancels waiting and running changes.
   void cancel();
-  /// Cancels the one asked for last. False when none waits or runs.
-  bool cancelNewest();
+  /// Cancels the one asked for last; its name, or nothing when none waits or runs.
+  std::optional<std::string> cancelNewest();
   /// Starts waiting changes, applies finished ones. True when something visible changed.
   [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 

@@ -15,22 +15,27 @@ constexpr double kLeastApart = 0.25, kGap = 4.0;  // [samples]
 
 void StrokePath::add(std::uint64_t tick, const haptic::TickRecord& record) {
   const haptic::StrokeSample& input = record.input;
-  if (!record.contact || !haptic::isMarkTool(input.tool) || !(spacing_mm_.x > 0.0)) return;
-  if (!std::isfinite(input.tip_mm.x) || !std::isfinite(input.tip_mm.y)) return;
+  if (!record.contact || !haptic::isMarkTool(input.tool) || !(spacing_mm_.x > 0.0) ||
+      !std::isfinite(input.tip_mm.x) || !std::isfinite(input.tip_mm.y)) {
+    interrupted_ = true;
+    return;
+  }
   // As engine::locateEdgeLines() wants them: to 2^-20 samples.
   const auto rounded = [](double at) { return std::round(at * 0x1p20) * 0x1p-20; };
   const glm::dvec2 at{rounded(input.tip_mm.x / spacing_mm_.x), rounded(input.tip_mm.y / spacing_mm_.y)};
   const bool same = !points_.empty() && points_.back().tool == input.tool;
-  if (!same || glm::distance(points_.back().at, at) >= kLeastApart) points_.push_back({tick, input.tool, at});
+  const double step = same ? glm::distance(points_.back().at, at) : kGap;
+  // A tip that bounces stays on its way; over a hole, or beside the field, it is another one.
+  const bool begins = !same || (interrupted_ && step > kGap);
+  interrupted_ = false;
+  if (begins || step >= kLeastApart) points_.push_back({tick, begins, input.tool, at});
 }
 
 std::vector<StrokePath::Ended> StrokePath::endAt(std::uint64_t tick) {
   std::vector<Ended> ended;
   for (; !points_.empty() && points_.front().tick < tick; points_.pop_front()) {
     const Point& point = points_.front();
-    if (ended.empty() || ended.back().tool != point.tool ||
-        glm::distance(ended.back().points.back(), point.at) > kGap)
-      ended.push_back({point.tool, {}});
+    if (ended.empty() || point.begins) ended.push_back({point.tool, {}});
     ended.back().points.push_back(point.at);
   }
   return ended;

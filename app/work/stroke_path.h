@@ -46,11 +46,13 @@ class StrokePath {
  private:
   struct Point {
     std::uint64_t tick = 0;
+    bool begins = false;  // contact was lost before it, or the tool was another
     haptic::Tool tool = haptic::Tool::kMark;
     glm::dvec2 at{0.0};
   };
   glm::dvec2 spacing_mm_{0.0};
   std::deque<Point> points_;
+  bool interrupted_ = true;
 };
 
 }  // namespace fettle::app

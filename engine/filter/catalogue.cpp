@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 
+#include "engine/filter/line_windows.h"
 #include "engine/filter/median.h"
 #include "engine/filter/window_pass.h"
 
@@ -163,6 +164,12 @@ bool hasRange(FilterKind kind) noexcept {
 
 std::int32_t reachOf(const FilterSpec& spec) noexcept {
   return spec.passes * filterOf(spec.kind).reach(spec);
+}
+
+std::int32_t reachOf(const FilterSpec& spec, const Version& input) noexcept {
+  const Filter& filter = filterOf(spec.kind);
+  const bool ends_at_lines = filter.knows_lines && filter.window.exists() && input.lines() != nullptr;
+  return reachOf(spec) + (ends_at_lines ? spec.passes * kLineReach : 0);
 }
 
 bool keepsEdges(const Filter& filter) noexcept {

@@ -78,6 +78,8 @@ struct Filter {
 
 /// How far the result of all passes depends on samples around it [samples].
 [[nodiscard]] std::int32_t reachOf(const FilterSpec& spec) noexcept;
+/// The same in a field: with edge lines a window that ends at them looks farther (kLineReach).
+[[nodiscard]] std::int32_t reachOf(const FilterSpec& spec, const Version& input) noexcept;
 
 /// Filter::keeps_edges, for filterWords.
 [[nodiscard]] bool keepsEdges(const Filter& filter) noexcept;

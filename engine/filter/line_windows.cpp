@@ -19,7 +19,7 @@ class LineWindows final : public BlockFilter {
       : windows_(std::move(windows)), radius_(radius) {}
 
   bool run(const Block& block, const JobControl& job) override {
-    if (!windows_->run(block, job)) return false;
+    if (!windows_->run(windowsOnly(block), job)) return false;
     if (block.cuts == nullptr || !findLines(block)) return true;
     for (int r = 0; r < block.out_rows; ++r) {
       if (job.cancelled()) return false;
@@ -37,6 +37,21 @@ class LineWindows final : public BlockFilter {
  private:
   static std::size_t at(int columns, int c, int r) {
     return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c);
+  }
+
+  // The block without the samples that no window reaches: they are only there for the lines around.
+  [[nodiscard]] Block windowsOnly(const Block& block) const {
+    Block inner = block;
+    const int columns = std::max(block.first_column - radius_, 0);
+    const int rows = std::max(block.first_row - radius_, 0);
+    inner.heights = block.row(rows) + columns;
+    inner.first_column -= columns;
+    inner.first_row -= rows;
+    inner.left += columns;
+    inner.low += rows;
+    inner.columns = std::min(block.columns - columns, inner.first_column + block.out_columns + radius_);
+    inner.rows = std::min(block.rows - rows, inner.first_row + block.out_rows + radius_);
+    return inner;
   }
 
   // The cut links of the block, and which outputs have a window with one. False when there are none.
@@ -115,8 +130,10 @@ class LineWindows final : public BlockFilter {
   template <class HeightAt>
   std::uint8_t settleSides(const Block& window, int c0, int r0, const Block& block, HeightAt&& height) {
     const auto isNear = [&](int c, int r) {
-      for (int y = std::max(r0 + r - kNear, 0); y <= std::min(r0 + r + kNear - 1, block.rows - 1); ++y)
-        for (int x = std::max(c0 + c - kNear, 0); x <= std::min(c0 + c + kNear - 1, block.columns - 1); ++x)
+      for (int y = std::max(r0 + r - kLineReach, 0); y <= std::min(r0 + r + kLineReach - 1, block.rows - 1);
+           ++y)
+        for (int x = std::max(c0 + c - kLineReach, 0);
+             x <= std::min(c0 + c + kLineReach - 1, block.columns - 1); ++x)
           if (links_[at(block.columns, x, y)] != 0) return true;
       return false;
     };
@@ -131,12 +148,17 @@ class LineWindows final : public BlockFilter {
     const float other = one_side ? own : medianOf(sides_[0]);
     const float spread = one_side ? own_spread : std::max(own_spread, spreadOf(sides_[0], other));
     if (!one_side && !(std::fabs(own - other) > kFarApart * spread)) return 1;
+    const auto standsOut = [&](int c, int r) { return std::fabs(height(c, r) - own) > kStandsOut * spread; };
+    if (one_side)
+      for (int r = 0; r < window.rows; ++r)
+        for (int c = 0; c < window.columns; ++c)
+          // A way around the end of the line leads to the other side.
+          if (standsOut(c, r) && !isNear(c, r)) return 1;
     for (int r = 0; r < window.rows; ++r)
       for (int c = 0; c < window.columns; ++c) {
         if (!isNear(c, r)) continue;
-        const float from_own = std::fabs(height(c, r) - own);
         const bool fits =
-            one_side ? !(from_own > kStandsOut * spread) : from_own <= std::fabs(height(c, r) - other);
+            one_side ? !standsOut(c, r) : std::fabs(height(c, r) - own) <= std::fabs(height(c, r) - other);
         reached_[at(window.columns, c, r)] = fits ? 1 : 0;
       }
     return reached_[at(window.columns, window.first_column, window.first_row)];
@@ -154,7 +176,7 @@ class LineWindows final : public BlockFilter {
     return medianOf(values);
   }
 
-  static constexpr int kNear = 2;             // [samples] from a cut link
+  static constexpr int kLineReach = 2;        // [samples] from a cut link
   static constexpr float kFarApart = 9.0F;    // six standard deviations, in medians of distances
   static constexpr float kStandsOut = 27.0F;  // of one sample among a few
   static constexpr int kOutputs = 16;         // room for a vector

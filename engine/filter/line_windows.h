@@ -10,6 +10,9 @@ namespace fettle::engine {
 /// itself.
 inline constexpr int kMostLineWindow = 51;
 
+/// How far beyond a window its results then depend on the lines and samples around it [samples].
+inline constexpr int kLineReach = 2;
+
 /// `windows`, each of whose results depends on the samples within `radius` alone, made to end at the edge lines of the
 /// field: of a window that a line crosses only the samples count to which a way within it leads from its middle, from
 /// row to row and from column to column, over no cut link (LineCuts). The others count as holes. Around the end of a line

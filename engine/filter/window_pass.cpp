@@ -56,6 +56,8 @@ class Pass {
         spec_(spec),
         radius_(filter.squares.side > 0 ? filter.squares.halo : filterOf(spec.kind).reach(spec)),
         same_field_(&reader_.root() == &original_.root()),
+        halo_(filter.squares.side > 0 ? radius_
+                                      : radius_ + (reachOf(spec, input) - reachOf(spec)) / spec.passes),
         level_(level),
         cuts_(input.lineCuts()) {}
 
@@ -163,11 +165,11 @@ class Pass {
     const std::int32_t r0 = rect.row0 * kTileSide;
     const std::int32_t c1 = std::min(rect.column1 * kTileSide, reader_.width());
     const std::int32_t r1 = std::min(rect.row1 * kTileSide, reader_.height());
-    const std::int32_t left = std::max(c0 - radius_, 0);
-    const std::int32_t low = std::max(r0 - radius_, 0);
+    const std::int32_t left = std::max(c0 - halo_, 0);
+    const std::int32_t low = std::max(r0 - halo_, 0);
     Block block;
-    block.columns = std::min(c1 + radius_, reader_.width()) - left;
-    block.rows = std::min(r1 + radius_, reader_.height()) - low;
+    block.columns = std::min(c1 + halo_, reader_.width()) - left;
+    block.rows = std::min(r1 + halo_, reader_.height()) - low;
     // Rows end with room for a vector, so that kernels may read and write beyond them.
     block.stride = (block.columns + 31) / 16 * 16;
     block.first_column = c0 - left;
@@ -260,6 +262,7 @@ class Pass {
   const FilterSpec& spec_;
   int radius_;
   bool same_field_;
+  int halo_;  // of samples that a block needs: more than the radius where windows end at lines
   CpuLevel level_;
   const LineCuts* cuts_;  // null without lines
   std::atomic<bool> out_of_memory_{false};

@@ -102,7 +102,7 @@ class Adoption {
          first_ ? changedSpots(raw_, now) : std::vector<TileSpot>(unfiltered_.begin(), unfiltered_.end()))
       if (!follow(spot)) return noMemory();
     raw_ = raw.snapshot();
-    const std::vector<TileSpot> affected = withHalo(edited, engine::reachOf(spec_), now.grid());
+    const std::vector<TileSpot> affected = withHalo(edited, engine::reachOf(spec_, raw_), now.grid());
     if (!affected.empty()) {
       engine::Result<engine::Version> again = filterTiles(raw_, original_, spec_, affected, job_);
       if (!again) return tl::unexpected(again.error());
@@ -145,7 +145,7 @@ class Adoption {
 engine::Result<engine::Version> filterTiles(const engine::Version& input, const engine::Version& original,
                                             const engine::FilterSpec& spec,
                                             const std::vector<TileSpot>& spots, engine::JobControl& job) {
-  const std::int32_t reach = engine::reachOf(spec);
+  const std::int32_t reach = engine::reachOf(spec, input);
   const std::int32_t aligned = engine::filterOf(spec.kind).grid;
   const engine::Grid& grid = input.grid();
   engine::LiveField out(input, engine::Growth::kAllowed);

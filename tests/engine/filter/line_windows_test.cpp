@@ -131,9 +131,13 @@ TEST(LineWindows, ReachAroundTheEndOfALine) {
 TEST(LineWindows, GiveTheSameBitsForAnyThreadsBlocksPiecesAndUpsideDown) {
   std::mt19937 random(9);
   std::normal_distribution<float> noise(0.0F, 0.1F);
-  const PlainField field = formed(300, 200, [&](int, int) { return noise(random); });
-  const Version scan = withLines(
-      field, {slanted(150, 100, 0.3), slanted(60, 100, 1.5), edgeLineOf({{200, 50}, {280, 60}, {240, 130}})});
+  // Walls under the lines, which are up to a sample off: heights decide there.
+  const PlainField field = formed(300, 200, [&](int c, int r) {
+    return noise(random) + (isLeft(150, 100, 0.3, c, r) ? 3.0F : 0.0F) +
+           (isLeft(60.8, 100, 1.5, c, r) ? 5.0F : 0.0F);
+  });
+  const Version scan = withLines(field, {slanted(150, 100.7, 0.3), slanted(60, 100, 1.5),
+                                         edgeLineOf({{200, 50}, {280, 60}, {240, 130}})});
   JobControl job;
   for (const FilterKind kind : windowsWithLines()) {
     FilterSpec spec = specOf(kind, 7);
@@ -144,6 +148,10 @@ TEST(LineWindows, GiveTheSameBitsForAnyThreadsBlocksPiecesAndUpsideDown) {
     spec.threads = 4;
     EXPECT_EQ(contentHash(applyFilter(scan, scan, spec, FilterTuning{64, CpuLevel::kPlain}, job)->field),
               contentHash(whole));
+    spec.threads = 2;
+    for (const int side : {64, 128, 192})
+      EXPECT_EQ(contentHash(applyFilter(scan, scan, spec, FilterTuning{side}, job)->field),
+                contentHash(whole));
     EXPECT_EQ(contentHash(applyFilter(scan.inverted(), scan.inverted(), spec, job)->field.inverted()),
               contentHash(whole));
     spec.passes = 1;
