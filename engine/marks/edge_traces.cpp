@@ -72,7 +72,8 @@ class PieceGraph {
     queue.emplace(0, from);
     std::size_t last = from;
     while (!queue.empty()) {
-      const auto [length, at] = queue.top();
+      const int length = queue.top().first;
+      const std::size_t at = queue.top().second;
       queue.pop();
       if (length > distance_[at]) continue;
       last = at;
