@@ -66,7 +66,7 @@ inline constexpr int kSphereSteps = 128;
 ///
 /// Errors. The ball reaches into the material by at most toleranceMm(): 1e-6 of the smaller of radius and
 /// spacing, plus roundings of the heights. At rest no step longer than 1e-4 of that size makes it nearer.
-/// Continuity: steps are at most stepMm(), between a quarter of a cell and a cell, and both ends are free of
+/// Continuity: steps are between a quarter of a cell and a cell, and both ends are free of
 /// the material. A ball cannot step over anything that would lift its centre by more than s^2 / (8 r) for a
 /// step s: 1/16 of a cell for r = 2 cells. A hand that moves more than kSphereSteps steps in one tick is
 /// placed again, lifted out vertically, as at the first tick; so is a centre that an edit left inside the
@@ -99,8 +99,6 @@ class SphereTracker {
   [[nodiscard]] const glm::dvec3& centre() const noexcept { return centre_; }
   /// The contact that carries most of the force, while touching: contact.proxy with its normal.
   [[nodiscard]] const SphereContact& pressed() const noexcept { return pressed_; }
-  [[nodiscard]] double radiusMm() const noexcept { return radius_; }
-  [[nodiscard]] double stepMm() const noexcept { return step_; }
   [[nodiscard]] double toleranceMm(double height_mm) const noexcept;
 
  private:

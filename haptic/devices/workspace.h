@@ -74,12 +74,6 @@ class Workspace {
   [[nodiscard]] double scale() const noexcept { return scale_; }
   [[nodiscard]] double feltStiffness(double field_n_per_mm) const noexcept { return field_n_per_mm * scale_; }
   [[nodiscard]] double fieldStiffness(double felt_n_per_mm) const noexcept { return felt_n_per_mm / scale_; }
-  [[nodiscard]] double feltDamping(double field_n_s_per_mm) const noexcept {
-    return field_n_s_per_mm * scale_;
-  }
-  [[nodiscard]] double fieldDamping(double felt_n_s_per_mm) const noexcept {
-    return felt_n_s_per_mm / scale_;
-  }
 
  private:
   [[nodiscard]] glm::dvec3 turned(const glm::dvec3& p) const noexcept {

@@ -36,9 +36,6 @@ class Passivity {
   /// No input: no force was applied, so the motion of the hand is not counted.
   void inputLost() noexcept { known_ = false; }
 
-  /// W [N mm], within [-stored, small].
-  [[nodiscard]] double balanceMj() const noexcept { return balance_mj_; }
-
  private:
   double brake_;
   glm::dvec3 given_n_{0.0};

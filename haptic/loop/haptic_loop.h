@@ -76,7 +76,6 @@ class HapticLoop {
   [[nodiscard]] std::uint64_t diskWaits() const noexcept {
     return disk_waits_.load(std::memory_order_relaxed);
   }
-  [[nodiscard]] const PoolKeeper* pools() const noexcept { return keeper_ ? &*keeper_ : nullptr; }
 
  private:
   HapticLoop(const engine::Version& start, std::unique_ptr<PreparedScene> scene, Device& device,

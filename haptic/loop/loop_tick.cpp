@@ -11,16 +11,9 @@ namespace fettle::haptic {
 
 namespace {
 
-// Inputs that arrive in a burst must not give a wrong speed.
-constexpr double kShortestInput_s = 0.0005;
-
 bool hasAnswer(CommandKind kind) noexcept {
   return kind == CommandKind::kScene || kind == CommandKind::kSnapshot || kind == CommandKind::kAdopt ||
          kind == CommandKind::kRestore;
-}
-
-bool finite(const glm::dvec3& p) noexcept {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
 }  // namespace
@@ -97,7 +90,7 @@ void LoopTick::take(LoopCommand& command) noexcept {
       disturbance_ = Disturbance::kSurfaceReplaced;
       break;
     case CommandKind::kView:
-      workspace_.setView(command.scale, command.turn_rad, last_input_.position_mm);
+      workspace_.setView(command.scale, command.turn_rad, motion_.position());
       disturbance_ = Disturbance::kSurfaceReplaced;
       break;
     case CommandKind::kArm:
@@ -110,11 +103,7 @@ void LoopTick::take(LoopCommand& command) noexcept {
       break;
     case CommandKind::kSnapshot: {
       LoopEvent event = eventNow(EventKind::kSnapshot, command.id);
-      event.retired_base = std::move(job_base_);
-      job_base_ = event.version;
-      job_id_ = command.id;
-      job_valid_ = true;
-      edited_count_ = 0;
+      event.retired_base = since_snapshot_.begin(event.version, command.id);
       send(std::move(event));
       break;
     }
@@ -148,34 +137,20 @@ void LoopTick::swapScene(LoopCommand& command) noexcept {
   send(std::move(event));
 }
 
-bool LoopTick::carryOver(const engine::Version& live) noexcept {
-  const engine::FieldReader now = live.reader();
-  const engine::FieldReader base = job_base_.reader();
-  for (int i = 0; i < edited_count_; ++i) {
-    const TileIndex t = edited_[static_cast<std::size_t>(i)];
-    const engine::Tile* tile = &now.tile(t.column, t.row);
-    // The base holds its tiles, so the same address is the same tile, unchanged.
-    if (tile == &base.tile(t.column, t.row)) continue;
-    if (!scene_->field.replaceTile(t.column, t.row, engine::TileRef::share(tile))) return false;
-    ++state_.carried;
-  }
-  return true;
-}
-
 void LoopTick::adopt(LoopCommand& command) noexcept {
   engine::LiveField& field = scene_->field;
   const float sign = field.reader().sign();
   bool done = false;
-  if (job_valid_ && command.id == job_id_) {
-    const std::uint64_t carried_before = state_.carried;
+  if (since_snapshot_.covers(command.id)) {
     engine::Version live = field.adopt(std::move(command.version));
-    done = carryOver(live);
+    const int carried = since_snapshot_.carryInto(field, live);
+    done = carried >= 0;
     if (done) {
       if (field.reader().sign() != sign) field.invert();
       command.version = std::move(live);
       ++state_.adopted;
+      state_.carried += static_cast<std::uint64_t>(carried);
     } else {
-      state_.carried = carried_before;
       command.version = field.adopt(std::move(live));
     }
     scene_->tick.fieldChanged();
@@ -185,8 +160,7 @@ void LoopTick::adopt(LoopCommand& command) noexcept {
   event.retired = std::move(command.version);
   if (done) {
     event.rect = wholeField();
-    event.retired_base = std::move(job_base_);
-    job_valid_ = false;
+    event.retired_base = since_snapshot_.end();
     disturbance_ = Disturbance::kSurfaceReplaced;
   }
   send(std::move(event));
@@ -200,9 +174,8 @@ void LoopTick::restore(LoopCommand& command) noexcept {
   scene_->tick.fieldChanged();
   if (tile_prefetcher_ != nullptr) tile_prefetcher_->replaced();
   disturbance_ = Disturbance::kSurfaceReplaced;
-  job_valid_ = false;
-  in_stroke_ = stroke_ended_ = false;
-  stroke_rect_ = {};
+  since_snapshot_.drop();
+  stroke_.reset();
   LoopEvent event = eventNow(EventKind::kRestored, command.id);
   event.retired = std::move(command.version);
   event.rect = wholeField();
@@ -223,23 +196,6 @@ Tool LoopTick::toolInEffect(const DeviceInput& input, double age_s) const noexce
 void LoopTick::record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept {
   if (options_.record_capacity == 0) return;
   if (!channels_.records.push({input, guard_.force(), since_ns, force.contact})) ++state_.lost_records;
-}
-
-void LoopTick::noteVelocity(const DeviceInput& input) noexcept {
-  if (has_input_ && input.sequence == last_input_.sequence) return;
-  // A stylus that was lifted off has no position, and its next position is not a movement.
-  const auto placed = [](const DeviceInput& i) {
-    return i.link == LinkState::kConnected && finite(i.position_mm);
-  };
-  if (has_input_ && placed(input) && placed(last_input_)) {
-    const double dt_s =
-        std::max(1e-9 * static_cast<double>(input.arrival_ns - last_input_.arrival_ns), kShortestInput_s);
-    velocity_ = (input.position_mm - last_input_.position_mm) / dt_s;
-  } else {
-    velocity_ = glm::dvec3(0.0);
-  }
-  last_input_ = input;
-  has_input_ = true;
 }
 
 // A tick may read samples around the tip, the previous tip and the proxy.
@@ -269,62 +225,28 @@ bool LoopTick::samplesArePrefetched(const glm::dvec3& tip_mm) noexcept {
   return ready;
 }
 
-void LoopTick::noteTiles(const engine::SampleRect& rect) noexcept {
-  using engine::kTileShift;
-  for (std::int32_t r = rect.row >> kTileShift; r <= (rect.row + rect.rows - 1) >> kTileShift; ++r)
-    for (std::int32_t c = rect.column >> kTileShift; c <= (rect.column + rect.columns - 1) >> kTileShift;
-         ++c) {
-      // Starting with the newest: consecutive ticks edit the same tiles.
-      int i = edited_count_ - 1;
-      while (i >= 0 && !(edited_[static_cast<std::size_t>(i)].column == c &&
-                         edited_[static_cast<std::size_t>(i)].row == r))
-        --i;
-      if (i >= 0) continue;
-      if (edited_count_ == kMostCarried) {
-        job_valid_ = false;
-        return;
-      }
-      edited_[static_cast<std::size_t>(edited_count_++)] = {c, r};
-    }
-}
-
 void LoopTick::noteEdit(const ForceSample& force, Tool tool) noexcept {
-  const bool editing = force.contact && scene_->tick.effects().edits(tool);
-  if (editing) {
-    const auto reach = static_cast<std::int32_t>(std::floor(scene_->scene.*brushRadiusOf(tool)));
-    const CellIndex centre = scene_->tick.contact().proxy.cell;
-    const engine::Grid& grid = scene_->field.grid();
-    const std::int32_t c0 = std::max(centre.column - reach, 0);
-    const std::int32_t r0 = std::max(centre.row - reach, 0);
-    const engine::SampleRect rect{c0, r0, std::min(centre.column + reach + 1, grid.width) - c0,
-                                  std::min(centre.row + reach + 1, grid.height) - r0};
-    dirty_ = dirty_.joined(rect);
-    stroke_rect_ = stroke_rect_.joined(rect);
-    if (job_valid_) noteTiles(rect);
-  }
-  noteStroke(editing);
-  if (in_stroke_ && !editing && (tool == Tool::kFeel || ticks_without_edit_ >= options_.stroke_gap_ticks)) {
-    in_stroke_ = false;
-    stroke_ended_ = true;
-  }
-}
-
-void LoopTick::noteStroke(bool editing) noexcept {
-  if (!editing) {
-    ++ticks_without_edit_;
+  if (!force.contact || !scene_->tick.effects().edits(tool)) {
+    stroke_.rested(tool == Tool::kFeel, options_.stroke_gap_ticks);
     return;
   }
-  ticks_without_edit_ = 0;
-  if (in_stroke_) return;
-  in_stroke_ = true;
-  ++state_.stroke;
+  const auto reach = static_cast<std::int32_t>(std::floor(scene_->scene.*brushRadiusOf(tool)));
+  const CellIndex centre = scene_->tick.contact().proxy.cell;
+  const engine::Grid& grid = scene_->field.grid();
+  const std::int32_t c0 = std::max(centre.column - reach, 0);
+  const std::int32_t r0 = std::max(centre.row - reach, 0);
+  const engine::SampleRect rect{c0, r0, std::min(centre.column + reach + 1, grid.width) - c0,
+                                std::min(centre.row + reach + 1, grid.height) - r0};
+  dirty_ = dirty_.joined(rect);
+  since_snapshot_.add(rect);
+  if (stroke_.edited(rect)) ++state_.stroke;
 }
 
 void LoopTick::publish() noexcept {
   ++since_publish_;
   const bool due = since_publish_ >= options_.publish_ticks && !dirty_.empty();
-  if (!due && !stroke_ended_) return;
-  if (!stroke_ended_ && published_ == scene_->field.snapshot()) {
+  if (!due && !stroke_.hasEnded()) return;
+  if (!stroke_.hasEnded() && published_ == scene_->field.snapshot()) {
     // The root is still shared with the published version, so nothing was written since.
     dirty_ = {};
     since_publish_ = 0;
@@ -337,11 +259,8 @@ void LoopTick::publish() noexcept {
     ++state_.merged;
     return;
   }
-  LoopEvent event = eventNow(stroke_ended_ ? EventKind::kStrokeEnded : EventKind::kEdited, 0);
-  if (stroke_ended_) {
-    event.rect = event.rect.joined(std::exchange(stroke_rect_, {}));
-    stroke_ended_ = false;
-  }
+  LoopEvent event = eventNow(stroke_.hasEnded() ? EventKind::kStrokeEnded : EventKind::kEdited, 0);
+  if (stroke_.hasEnded()) event.rect = event.rect.joined(stroke_.takeEnded());
   send(std::move(event));
 }
 
@@ -352,7 +271,7 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
 
   const DeviceInput input = device_.read();
   const double age_s = 1e-9 * static_cast<double>(std::max<std::int64_t>(now_ns - input.arrival_ns, 0));
-  noteVelocity(input);
+  motion_.note(input);
   const bool in_field = device_.profile().space == DeviceSpace::kField;
   const bool clutched = !in_field && (input.buttons & options_.clutch_buttons) != 0;
   if (clutched != clutched_) disturbance_ = Disturbance::kSurfaceReplaced;
@@ -373,9 +292,9 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
   const glm::dvec3 command = in_field ? force.force_n : workspace_.forceToDevice(force.force_n);
   const glm::dvec3 weight = scene_->tick.weight();
   const glm::dvec3 at_rest = in_field ? weight : workspace_.forceToDevice(weight);
-  const glm::dvec3 given =
-      guard_.step({1e-9 * static_cast<double>(since_ns), age_s, input.link, command, velocity_, disturbance_,
-                   1e-9 * static_cast<double>(input.output_waits_ns), at_rest, input.output_pending});
+  const glm::dvec3 given = guard_.step(
+      {1e-9 * static_cast<double>(since_ns), age_s, input.link, command, motion_.velocity(), disturbance_,
+       1e-9 * static_cast<double>(input.output_waits_ns), at_rest, input.output_pending});
   device_.write(given);
 
   ++state_.tick;
@@ -404,10 +323,7 @@ void LoopTick::run(std::int64_t now_ns, std::int64_t since_ns) noexcept {
 void LoopTick::stop() noexcept {
   guard_.disarm();
   device_.write(glm::dvec3(0.0));
-  if (in_stroke_) {
-    in_stroke_ = false;
-    stroke_ended_ = true;
-  }
+  stroke_.end();
   since_publish_ = options_.publish_ticks;
   publish();
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -9,7 +8,10 @@
 #include "haptic/base/latest_slot.h"
 #include "haptic/base/rings.h"
 #include "haptic/devices/device.h"
+#include "haptic/loop/edits_since.h"
+#include "haptic/loop/input_motion.h"
 #include "haptic/loop/messages.h"
+#include "haptic/loop/running_stroke.h"
 #include "haptic/loop/tile_prefetcher.h"
 #include "haptic/safety/safety.h"
 
@@ -98,7 +100,7 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 ///   2. a worker makes the new version M: S with the result's tiles inserted, O(changed tiles),
 ///      off the loop (mergeResult in adoption.h);
 ///   3. the loop takes over M's root, O(1), and puts back the tiles of its list whose memory is no longer
-///      S's: at most kMostCarried, half a microsecond each (measured: 29 us for 64). Nothing else can differ,
+///      S's: at most EditsSince::kMostTiles, half a microsecond each (measured: 29 us for 64). Nothing else can differ,
 ///      so nothing is lost.
 /// Because S is requested immediately before step 2 and not when the filter starts, the list holds the edits
 /// of some milliseconds (a few tiles), however long the filter took. The answer is kAdoptRefused, with
@@ -122,7 +124,6 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 /// system call except the device's wake-up.
 class LoopTick {
  public:
-  static constexpr int kMostCarried = 64;
   static constexpr int kMostCommands = 8;
 
   /// Starts from `start`, upright (the scene's inversion is applied here). `device` and `channels` outlive
@@ -143,29 +144,21 @@ class LoopTick {
   [[nodiscard]] const LoopState& state() const noexcept { return state_; }
 
  private:
-  struct TileIndex {
-    std::int32_t column, row;
-  };
-
   void takeDisarm(std::uint64_t times) noexcept;
   void takeCommands() noexcept;
   void take(LoopCommand& command) noexcept;
   void swapScene(LoopCommand& command) noexcept;
   void adopt(LoopCommand& command) noexcept;
   void restore(LoopCommand& command) noexcept;
-  [[nodiscard]] bool carryOver(const engine::Version& live) noexcept;
   [[nodiscard]] LoopEvent eventNow(EventKind kind, std::uint64_t id) noexcept;
   void send(LoopEvent&& event) noexcept;
   [[nodiscard]] engine::SampleRect wholeField() const noexcept;
 
   void noteEdit(const ForceSample& force, Tool tool) noexcept;
-  void noteTiles(const engine::SampleRect& rect) noexcept;
-  void noteStroke(bool editing) noexcept;
   void publish() noexcept;
 
   [[nodiscard]] Tool toolInEffect(const DeviceInput& input, double age_s) const noexcept;
   void record(const StrokeSample& input, const ForceSample& force, std::int64_t since_ns) noexcept;
-  void noteVelocity(const DeviceInput& input) noexcept;
   [[nodiscard]] bool samplesArePrefetched(const glm::dvec3& tip_mm) noexcept;
 
   // Places of the event ring that edits leave free for answers.
@@ -190,23 +183,13 @@ class LoopTick {
   std::uint32_t since_publish_ = 0;
   std::uint32_t merged_ = 0;
 
-  engine::SampleRect stroke_rect_;
-  bool in_stroke_ = false;
-  bool stroke_ended_ = false;  // not reported yet
-  std::uint32_t ticks_without_edit_ = 0;
-
-  engine::Version job_base_;  // S
-  std::uint64_t job_id_ = 0;
-  bool job_valid_ = false;
-  std::array<TileIndex, kMostCarried> edited_{};
-  int edited_count_ = 0;
+  RunningStroke stroke_;
+  EditsSince since_snapshot_;
 
   std::int64_t first_ns_ = -1;        // wake-up of the first tick: the session's time 0
   std::uint64_t refused_before_ = 0;  // by previous scenes
-  DeviceInput last_input_;
-  bool has_input_ = false;
+  InputMotion motion_;
   bool clutched_ = false;
-  glm::dvec3 velocity_{0.0};
   LoopState state_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "haptic/base/finite.h"
 #include "haptic/base/force.h"
 
 namespace fettle::haptic {
@@ -18,10 +19,6 @@ constexpr double kLongestRise_s = 0.002;
 constexpr double kNominal_s = 0.001;
 // Share of the allowed warmth above which the thermal limit falls.
 constexpr double kThermalKnee = 0.8;
-
-bool finite(const glm::dvec3& v) noexcept {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // From `from` towards `to` by at most `distance`. The norm stays within the larger of both: balls are convex.
 glm::dvec3 approach(const glm::dvec3& from, const glm::dvec3& to, double distance, bool& held) noexcept {

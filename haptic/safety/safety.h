@@ -29,7 +29,6 @@ enum class SafetyState : std::uint8_t {
   kActive,        ///< the commanded force, within limits
   kFault,         ///< 0 N, latched until arm()
 };
-inline constexpr int kSafetyStates = 6;
 
 enum class FaultCause : std::uint8_t {
   kNone,

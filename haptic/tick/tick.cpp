@@ -1,7 +1,6 @@
 #include "haptic/tick/tick.h"
 
-#include <cmath>
-
+#include "haptic/base/finite.h"
 #include "haptic/base/force.h"
 
 namespace fettle::haptic {
@@ -28,7 +27,7 @@ void Tick::fieldChanged() noexcept {
 
 ForceSample Tick::run(const StrokeSample& input) noexcept {
   ForceSample out{input.t, input.tip_mm, glm::dvec3(0.0), false};
-  if (!(std::isfinite(input.tip_mm.x) && std::isfinite(input.tip_mm.y) && std::isfinite(input.tip_mm.z))) {
+  if (!finite(input.tip_mm)) {
     ++counters_.bad_input;
     tracker_.reset();
     if (sphere_) sphere_->reset();

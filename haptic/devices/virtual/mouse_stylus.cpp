@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/base/stopwatch.h"
+#include "haptic/base/finite.h"
 
 namespace fettle::haptic {
 
@@ -41,7 +42,7 @@ void MouseStylus::send() noexcept {
 }
 
 void MouseStylus::setCursor(const glm::dvec3& p) noexcept {
-  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+  if (!finite(p)) {
     leave();
     return;
   }

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/base/stopwatch.h"
+#include "haptic/base/finite.h"
 
 namespace fettle::haptic {
 
@@ -60,7 +61,7 @@ double SimulatedHand::seconds() const noexcept {
 }
 
 void SimulatedHand::write(const glm::dvec3& f) noexcept {
-  force_ = std::isfinite(f.x) && std::isfinite(f.y) && std::isfinite(f.z) ? f : glm::dvec3{0.0};
+  force_ = finite(f) ? f : glm::dvec3{0.0};
 }
 
 SimulatedHand::Target SimulatedHand::targetAt(double t) noexcept {
