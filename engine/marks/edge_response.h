@@ -1,13 +1,13 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "engine/base/job.h"
 #include "engine/field/reader.h"
-#include "engine/filter/median.h"
 #include "engine/marks/edge_kernels.h"
+#include "engine/marks/surface_derivatives.h"
+#include "engine/marks/whole_surface.h"
 
 namespace fettle::engine {
 
@@ -19,10 +19,8 @@ namespace fettle::engine {
 ///
 /// Both are 0 on every plane, whatever its tilt. [height unit per sample], and per square sample.
 ///
-/// Single outliers are replaced by the median of their 3 x 3 (5 x 5 from sigma 1.5 on) surroundings, by the
-/// rule of Hampel (1974), which leaves all others as they are. Holes, and what lies beyond the border, are
-/// continued as the plane through what is around them
-/// (weighted least squares); the weight of a sample is the share of its surroundings that is not filled in.
+/// Of the surface without lone outliers, continued over holes (whole_surface.h); the weight of a sample is the
+/// share of its surroundings that is not filled in.
 class EdgeResponse {
  public:
   /// `sigma` in samples, kSmallestSigma .. kLargestSigma.
@@ -48,31 +46,14 @@ class EdgeResponse {
   std::vector<std::uint8_t> whole;  ///< 1: a sample without hole or border near it
 
  private:
-  [[nodiscard]] bool read(const FieldReader& field, const JobControl& job);
-  void fill();
-  void differentiate();
   void measure(int columns, int rows);
-  [[nodiscard]] std::size_t at(int c, int r) const noexcept {
-    return static_cast<std::size_t>(r) * static_cast<std::size_t>(wide_) + static_cast<std::size_t>(c);
-  }
 
-  double sigma_;
-  EdgeKernels kernels_;
   Scatter scatter_;
-  int side_ = 1;  // distance along the slope at which the surroundings are sampled
-  std::unique_ptr<BlockFilter> median_;
-  int median_reach_ = 1;
-  int fill_reach_ = 1;
-
-  // The block with a margin on all sides, wide_ x tall_ from (first_column_, first_row_) of the field.
-  std::int32_t first_column_ = 0, first_row_ = 0;
-  int wide_ = 0, tall_ = 0;
-  int margin_ = 0;
-  bool holes_ = false;
-  std::vector<float> raw_, middle_, rest_, spread_, z_, smooth_rows_, first_rows_, second_rows_;
-  std::vector<float> gx_, gy_, hxx_, hxy_, hyy_, share_;
-  std::vector<std::uint8_t> valid_;
-  std::vector<std::int32_t> counts_;
+  int side_;  // distance along the slope at which the surroundings are sampled
+  EdgeKernels kernels_;
+  WholeSurface surface_;
+  SurfaceDerivatives derivatives_;
+  int margin_;  // of the surface around the block: slope at the side, its kernel, holes
 };
 
 }  // namespace fettle::engine

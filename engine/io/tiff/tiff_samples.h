@@ -54,7 +54,6 @@ class TiffSamples {
   /// How many samples readEvery decompresses; of uncompressed ones it reads those of its rows.
   [[nodiscard]] std::int64_t costOfEvery(std::int32_t step) const noexcept;
 
-  [[nodiscard]] ReadStrategy strategy() const noexcept { return strategy_; }
   [[nodiscard]] std::int32_t blockRows() const noexcept { return block_rows_; }
   /// Estimate of the memory that reading takes in addition to the field [bytes], from the header.
   [[nodiscard]] static std::uint64_t extraBytes(const TiffDirectory& directory) noexcept;

@@ -1,4 +1,4 @@
-// The kernels of edge_response.cpp; see kernel.h.
+// The kernels of surface_derivatives.cpp; see kernel.h.
 
 // out[c] = sum of weights[k] * in[c + k] for c in [0, n).
 void slide(const float* __restrict in, const float* __restrict weights, int taps, int n,
