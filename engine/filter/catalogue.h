@@ -46,21 +46,22 @@ struct Filter {
   const char* title;      ///< of panels
   /// Steps stay as steep as they are. Those that do not are the paper's: the demonstration and, unless
   /// others are named, the benchmarks run these. What keeps edges costs ten to a hundred times as much.
-  bool keeps_edges;
-  FilterParameter window, sigma, range_sigma;
+  bool keeps_edges = false;
+  FilterParameter window{"samples", 1, FilterSpec::kMaxWindow, 3};
+  FilterParameter sigma{}, range_sigma{};
   /// Range sigma in standard deviations of the noise when none is given: with it the least error was left
   /// over the whole of simulated bracket, wedges, steps and die (384 x 384, noise 1 and 3), 0.41 of the scan's
   /// own for both that have one. Half as much leaves a tenth more, twice as much takes a tenth more off the
   /// edges.
-  double noises;
+  double noises = 0.0;
   FilterPass pass;
   /// How far a result of one pass depends on samples around it [samples].
-  std::int32_t (*reach)(const FilterSpec& spec);
+  std::int32_t (*reach)(const FilterSpec& spec) = [](const FilterSpec& spec) { return spec.window / 2; };
   /// Side of the squares, on a grid that begins at the field's first sample, that the filter works in: a piece
   /// of a field has the field's results where it begins at a multiple of it [samples].
-  std::int32_t grid;
+  std::int32_t grid = 1;
   std::span<const FilterTrial> trials;
-  bool knows_lines;  ///< the edge lines of its input (Version::lines) have an influence
+  bool knows_lines = false;  ///< the edge lines of its input (Version::lines) have an influence
 };
 
 /// Every filter, in the order of FilterKind.

@@ -7,14 +7,17 @@
 
 namespace fettle::render {
 
-/// A pass that fills all of a picture from other pictures: no vertices but gl_VertexIndex, no depth, no
-/// blending; viewport and scissor are dynamic.
+/// A pass that draws on a picture: no vertices but gl_VertexIndex; viewport and scissor are dynamic.
 struct PicturePass {
-  std::span<const std::uint32_t> vertex, fragment;  ///< SPIR-V
+  std::span<const std::uint32_t> vertex, fragment;  ///< SPIR-V; no fragment shader: depth alone
   vk::PrimitiveTopology topology = vk::PrimitiveTopology::eTriangleList;
-  vk::Format colour{};
+  vk::Format colour{};  ///< undefined: no colour
   vk::PipelineLayout layout;
-  const vk::SpecializationInfo* constants = nullptr;  ///< of the fragment shader
+  const vk::SpecializationInfo* constants = nullptr;  ///< of both shaders
+  enum class Blend : std::uint8_t { kReplace, kPremultiplied } blend = Blend::kReplace;
+  vk::Format depth_format{};  ///< undefined: no depth
+  vk::PipelineDepthStencilStateCreateInfo depth{};
+  std::uint32_t view_mask = 0;
 };
 /// Throws vk::SystemError.
 [[nodiscard]] vk::raii::Pipeline makePipeline(const Context& context, const PicturePass& pass);

@@ -1,7 +1,8 @@
 #include "render/vulkan/pipelines.h"
 
 #include <array>
-#include <span>
+
+#include "render/vulkan/picture_pipeline.h"
 
 #include "floor.frag.h"
 #include "floor.vert.eyes.h"
@@ -43,7 +44,8 @@ struct Pipelines::Recipe {
   vk::PipelineLayout layout;
   vk::PrimitiveTopology topology = vk::PrimitiveTopology::eTriangleStrip;
   enum class Depth { kTestAndWrite, kTest, kBehind, kIgnore, kNone } depth = Depth::kTestAndWrite;
-  enum class Blend { kReplace, kPremultiplied } blend = Blend::kReplace;
+  using Blend = PicturePass::Blend;
+  Blend blend = Blend::kReplace;
   enum class Colour { kYes, kNone } colour = Colour::kYes;
   std::array<vk::Bool32, gpu::kSpecCount> constants{};  // by constant_id
 };
@@ -83,67 +85,28 @@ Pipelines::Words Pipelines::one(Words for_one, Words for_both) const noexcept {
 }
 
 vk::raii::Pipeline Pipelines::make(const Recipe& recipe) {
-  const auto module = [&](Words words) {
-    vk::ShaderModuleCreateInfo info;
-    return vk::raii::ShaderModule(context_.device(),
-                                  info.setCodeSize(words.size_bytes()).setPCode(words.data()));
-  };
-  const vk::raii::ShaderModule vertex = module(recipe.vertex);
-  vk::raii::ShaderModule fragment = nullptr;
-  if (!recipe.fragment.empty()) fragment = module(recipe.fragment);
   std::array<vk::SpecializationMapEntry, gpu::kSpecCount> entries;
   for (std::uint32_t i = 0; i < entries.size(); ++i)
     entries[i] =
         vk::SpecializationMapEntry{i, i * static_cast<std::uint32_t>(sizeof(vk::Bool32)), sizeof(vk::Bool32)};
   vk::SpecializationInfo constants;
   constants.setMapEntries(entries).setDataSize(sizeof(recipe.constants)).setPData(recipe.constants.data());
-  std::vector<vk::PipelineShaderStageCreateInfo> stages{
-      {{}, ShaderStage::eVertex, *vertex, "main", &constants}};
-  if (*fragment) stages.push_back({{}, ShaderStage::eFragment, *fragment, "main", &constants});
-
-  const vk::PipelineVertexInputStateCreateInfo no_vertices;
-  const vk::PipelineInputAssemblyStateCreateInfo assembly{{}, recipe.topology};
-  const vk::PipelineViewportStateCreateInfo viewport{{}, 1, nullptr, 1, nullptr};
-  vk::PipelineRasterizationStateCreateInfo raster;
-  raster.setCullMode(vk::CullModeFlagBits::eNone).setLineWidth(1.0F);
-  const vk::PipelineMultisampleStateCreateInfo one_sample{{}, vk::SampleCountFlagBits::e1};
-  vk::PipelineDepthStencilStateCreateInfo depth;
+  PicturePass pass{.vertex = recipe.vertex,
+                   .fragment = recipe.fragment,
+                   .topology = recipe.topology,
+                   .layout = recipe.layout,
+                   .constants = &constants,
+                   .blend = recipe.blend,
+                   .view_mask = views_ == Views::kBoth ? std::uint32_t{gpu::kBothViews} : 0U};
+  if (recipe.colour == Recipe::Colour::kYes) pass.colour = colour_;
+  if (recipe.depth != Recipe::Depth::kNone) pass.depth_format = kDepthFormat;
   const bool writes = recipe.depth == Recipe::Depth::kTestAndWrite;
   const bool behind = recipe.depth == Recipe::Depth::kBehind;
-  depth.setDepthTestEnable(writes || behind || recipe.depth == Recipe::Depth::kTest)
+  pass.depth.setDepthTestEnable(writes || behind || recipe.depth == Recipe::Depth::kTest)
       .setDepthWriteEnable(writes)
       .setDepthCompareOp(behind ? vk::CompareOp::eGreater : vk::CompareOp::eLessOrEqual);
-  vk::PipelineColorBlendAttachmentState blend;
-  using Channel = vk::ColorComponentFlagBits;
-  blend.setColorWriteMask(Channel::eR | Channel::eG | Channel::eB | Channel::eA)
-      .setBlendEnable(recipe.blend == Recipe::Blend::kPremultiplied)
-      .setSrcColorBlendFactor(vk::BlendFactor::eOne)
-      .setDstColorBlendFactor(vk::BlendFactor::eOneMinusSrcAlpha)
-      .setSrcAlphaBlendFactor(vk::BlendFactor::eOne)
-      .setDstAlphaBlendFactor(vk::BlendFactor::eOneMinusSrcAlpha);
-  vk::PipelineColorBlendStateCreateInfo blending;
-  if (recipe.colour == Recipe::Colour::kYes) blending.setAttachments(blend);
-  const std::array dynamic_states{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
-  vk::PipelineDynamicStateCreateInfo dynamic;
-  dynamic.setDynamicStates(dynamic_states);
-  vk::PipelineRenderingCreateInfo rendering;
-  rendering.setViewMask(views_ == Views::kBoth ? gpu::kBothViews : 0);
-  if (recipe.colour == Recipe::Colour::kYes) rendering.setColorAttachmentFormats(colour_);
-  if (recipe.depth != Recipe::Depth::kNone) rendering.setDepthAttachmentFormat(kDepthFormat);
-  vk::GraphicsPipelineCreateInfo info;
-  info.setStages(stages)
-      .setPVertexInputState(&no_vertices)
-      .setPInputAssemblyState(&assembly)
-      .setPViewportState(&viewport)
-      .setPRasterizationState(&raster)
-      .setPMultisampleState(&one_sample)
-      .setPDepthStencilState(&depth)
-      .setPColorBlendState(&blending)
-      .setPDynamicState(&dynamic)
-      .setLayout(recipe.layout)
-      .setPNext(&rendering);
   ++made_;
-  return {context_.device(), nullptr, info};
+  return makePipeline(context_, pass);
 }
 
 namespace {
