@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <tuple>
+#include <utility>
+
+#include "engine/field/tile.h"
 
 namespace fettle::engine {
 
@@ -28,33 +31,47 @@ struct Passage {
   std::int64_t id = 0;  // of the line
 };
 
-void addPassages(const EdgeLine& line, std::int32_t columns, std::int32_t rows, std::vector<Passage>& out) {
+void addPassages(const EdgeLine& line, std::int32_t columns, std::int32_t rows, std::vector<Passage>& out,
+                 std::vector<LineSample>& samples) {
   const std::size_t n = line.points.size();
   for (std::size_t i = 0; i + (line.closed ? 0 : 1) < n; ++i) {
     const EdgePoint &a = line.points[i], &b = line.points[(i + 1) % n];
     if (!a.located || !b.located) continue;
     // Where two surfaces meet without a step, their heights are held together there.
-    if (a.kind == LineKind::kCrease || b.kind == LineKind::kCrease) continue;
+    const bool crease = a.kind == LineKind::kCrease || b.kind == LineKind::kCrease;
     const auto deviation = static_cast<float>(std::max(a.deviation, b.deviation));
     forEachPassage(a.position, b.position, 1, rows, [&](std::int32_t row, double place) {
       if (!(place >= 0.0 && place < columns - 1)) return;
       const auto column = static_cast<std::int32_t>(place);
+      samples.push_back({row, static_cast<std::int32_t>(place + 0.5)});
+      if (crease) return;
       out.push_back(
           {{row, column, LineCut::kRight, static_cast<float>(place - column), 0.0F, deviation}, line.id});
     });
     forEachPassage(a.position, b.position, 0, columns, [&](std::int32_t column, double place) {
       if (!(place >= 0.0 && place < rows - 1)) return;
       const auto row = static_cast<std::int32_t>(place);
+      samples.push_back({static_cast<std::int32_t>(place + 0.5), column});
+      if (crease) return;
       out.push_back({{row, column, LineCut::kUp, 0.0F, static_cast<float>(place - row), deviation}, line.id});
     });
   }
+}
+
+std::pair<std::int32_t, std::int32_t> tileOfSample(const LineSample& sample) noexcept {
+  return {sample.row >> kTileShift, sample.column >> kTileShift};
+}
+
+std::tuple<std::pair<std::int32_t, std::int32_t>, std::int32_t, std::int32_t> orderOfSample(
+    const LineSample& sample) noexcept {
+  return {tileOfSample(sample), sample.row, sample.column};
 }
 
 }  // namespace
 
 LineCuts::LineCuts(std::span<const EdgeLine> lines, std::int32_t columns, std::int32_t rows) {
   std::vector<Passage> passages;
-  for (const EdgeLine& line : lines) addPassages(line, columns, rows, passages);
+  for (const EdgeLine& line : lines) addPassages(line, columns, rows, passages, samples_);
   std::ranges::sort(passages, {}, [](const Passage& p) { return std::tuple(p.cut.row, p.cut.column, p.id); });
   for (std::size_t i = 0; i < passages.size();) {
     const Passage& first = passages[i];
@@ -75,6 +92,17 @@ LineCuts::LineCuts(std::span<const EdgeLine> lines, std::int32_t columns, std::i
     }
     if (cut.links != 0) cuts_.push_back(cut);
   }
+  std::ranges::sort(samples_, {}, orderOfSample);
+  const auto doubled = std::ranges::unique(samples_);
+  samples_.erase(doubled.begin(), doubled.end());
+  samples_.shrink_to_fit();
+}
+
+std::span<const LineSample> LineCuts::samplesOf(std::int32_t tile_column,
+                                                std::int32_t tile_row) const noexcept {
+  const auto first = std::ranges::lower_bound(samples_, std::pair(tile_row, tile_column), {}, tileOfSample);
+  const auto last = std::ranges::upper_bound(samples_, std::pair(tile_row, tile_column), {}, tileOfSample);
+  return {samples_.data() + (first - samples_.begin()), static_cast<std::size_t>(last - first)};
 }
 
 std::span<const LineCut> LineCuts::row(std::int32_t row) const noexcept {

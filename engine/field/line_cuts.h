@@ -20,9 +20,16 @@ struct LineCut {
   float deviation = 0.0F;  ///< of the line across itself [samples]
 };
 
+/// A sample that a line passes, the nearest one of each passage of a row or a column.
+struct LineSample {
+  std::int32_t row = 0, column = 0;
+  [[nodiscard]] friend bool operator==(const LineSample&, const LineSample&) noexcept = default;
+};
+
 /// The links that lines cross between located points, each by an odd number of passages of one line (EdgeLine::id):
 /// a line that goes over a link and back leaves it whole. A line through a sample passes on the side of the smaller
-/// coordinate. Immutable; any thread. 24 bytes per sample with a cut link.
+/// coordinate. Creases cut nothing, but have
+/// samples. Immutable; any thread. 24 bytes per sample with a cut link, 8 per sample that a line passes.
 class LineCuts {
  public:
   /// Those of a field of so many samples; `lines` may lead out of it. Throws std::bad_alloc.
@@ -31,8 +38,13 @@ class LineCuts {
   /// The cuts of a row, by column.
   [[nodiscard]] std::span<const LineCut> row(std::int32_t row) const noexcept;
 
+  /// The samples of a tile that lines pass, by row, then column.
+  [[nodiscard]] std::span<const LineSample> samplesOf(std::int32_t tile_column,
+                                                      std::int32_t tile_row) const noexcept;
+
  private:
-  std::vector<LineCut> cuts_;  // by row, then column
+  std::vector<LineCut> cuts_;        // by row, then column
+  std::vector<LineSample> samples_;  // by tile, row by row
 };
 
 }  // namespace fettle::engine

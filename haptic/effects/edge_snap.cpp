@@ -21,8 +21,9 @@ struct QuadraticWeights {
 
 }  // namespace
 
-EdgeSnap::EdgeSnap(const EdgeSnapParams& params, const engine::FieldReader& reader)
-    : distance_(reader, params.reach_mm),
+EdgeSnap::EdgeSnap(const EdgeSnapParams& params, const engine::FieldReader& reader,
+                   const engine::LineCuts* lines)
+    : distance_(reader, lines, params.reach_mm),
       sx_(reader.grid().spacingXMm()),
       sy_(reader.grid().spacingYMm()),
       width_(reader.width()),
@@ -69,7 +70,7 @@ void EdgeSnap::run(TickState& state) noexcept {
 void EdgeSnap::upkeep(TickState& state) noexcept {
   const engine::SampleRect& rect = state.marked;
   if (rect.columns > 0) distance_.markChanged(rect.column, rect.row, rect.columns, rect.rows);
-  distance_.advance(state.field.reader());
+  distance_.advance(state.field.reader(), state.field.lineCuts());
   state.counters.snap_tiles_refused = distance_.refused();
 }
 
@@ -79,7 +80,7 @@ void EdgeSnap::reset(ResetCause why) noexcept {
 }
 
 void addEdgeSnap(EffectList& list, const EffectSource& from) {
-  auto made = std::make_shared<EdgeSnap>(from.scene.params.edge_snap, from.now.reader());
+  auto made = std::make_shared<EdgeSnap>(from.scene.params.edge_snap, from.now.reader(), from.now.lineCuts());
   const std::size_t held = made->distance().bytesHeld();
   EdgeSnap& snap = addData(list, EffectKind::kEdgeSnap, std::move(made), held);
   list.in_contact.push_back(

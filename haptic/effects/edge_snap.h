@@ -9,8 +9,8 @@
 
 namespace fettle::haptic {
 
-/// Edge snap: while the tip touches, a horizontal pull towards the nearest marked sample, for tracing edges
-/// that are marked already. With r the horizontal distance to it, F the largest pull and R the reach:
+/// Edge snap: while the tip touches, a horizontal pull towards the nearest sample that is marked or that an edge line
+/// passes, for tracing edges that are marked already. With r the horizontal distance to it, F the largest pull and R the reach:
 ///   pull(r) = 4 F (r / R) (1 - r / R),   the slope of   U(r) = -2 F R / 3 (1 - r / R)^2 (1 + 2 r / R)
 /// zero on the edge, F halfway, zero at the reach and beyond, where U is zero. Between samples U
 /// is the quadratic B-spline whose coefficients are its values at the samples (Unser, "Splines: a perfect fit
@@ -37,7 +37,7 @@ class EdgeSnap {
     glm::dvec2 slope{0.0};  ///< [N]
   };
 
-  EdgeSnap(const EdgeSnapParams& params, const engine::FieldReader& reader);
+  EdgeSnap(const EdgeSnapParams& params, const engine::FieldReader& reader, const engine::LineCuts* lines);
 
   /// At a point over the field (outside it: finite).
   [[nodiscard]] Potential at(double x_mm, double y_mm) const noexcept;

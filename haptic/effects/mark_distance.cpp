@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace fettle::haptic {
 
@@ -14,19 +15,27 @@ namespace {
 // Rows from a sample to the nearest mark of its column, when there is none within the reach.
 constexpr std::uint8_t kNone = 255;
 
-std::uint64_t printOf(const engine::Tile& tile) noexcept {
-  if (tile.marked_samples == 0) return 0;
+std::uint64_t printOf(const engine::Tile& tile, std::span<const engine::LineSample> on_lines) noexcept {
+  if (tile.marked_samples == 0 && on_lines.empty()) return 0;
   std::uint64_t print = 0xcbf29ce484222325ULL;  // FNV-1a, word by word
-  for (const std::uint64_t row : tile.marks) {
-    print = (print ^ row) * 0x100000001b3ULL;
+  const auto add = [&print](std::uint64_t word) {
+    print = (print ^ word) * 0x100000001b3ULL;
     print ^= print >> 32U;
-  }
+  };
+  for (const std::uint64_t row : tile.marks) add(row);
+  for (const engine::LineSample& sample : on_lines)
+    add(static_cast<std::uint64_t>(sample.row) << 32U | static_cast<std::uint64_t>(sample.column));
   return print | 1U;
+}
+
+std::span<const engine::LineSample> samplesOf(const engine::LineCuts* lines, std::int32_t tile_column,
+                                              std::int32_t tile_row) noexcept {
+  return lines == nullptr ? std::span<const engine::LineSample>() : lines->samplesOf(tile_column, tile_row);
 }
 
 }  // namespace
 
-MarkDistance::MarkDistance(const engine::FieldReader& reader, double reach_mm)
+MarkDistance::MarkDistance(const engine::FieldReader& reader, const engine::LineCuts* lines, double reach_mm)
     : tile_columns_(reader.tileColumns()),
       tile_rows_(reader.tileRows()),
       width_(reader.width()),
@@ -44,12 +53,12 @@ MarkDistance::MarkDistance(const engine::FieldReader& reader, double reach_mm)
   requested_.assign(count, 0);
   waiting_.assign(count, 0);
   // All tiles with marks have to be processed; so an upper bound of the memory is known.
-  while (next_tile_ < tiles()) scanSlice(reader);
+  while (next_tile_ < tiles()) scanSlice(reader, lines);
   const std::size_t places = waiting_count_ + kSpareTiles;
   memory_.assign(places * kTileSamples, far_);
   free_slots_.reserve(places);
   for (std::size_t i = places; i > 0; --i) free_slots_.push_back(static_cast<std::int32_t>(i - 1));
-  while (!upToDate()) advance(reader);
+  while (!upToDate()) advance(reader, lines);
 }
 
 std::size_t MarkDistance::bytesHeld() const noexcept {
@@ -81,12 +90,12 @@ void MarkDistance::markChanged(std::int32_t column, std::int32_t row, std::int32
     for (std::int32_t c = c0; c <= c1; ++c) requestTile(c, r);
 }
 
-void MarkDistance::scanSlice(const engine::FieldReader& reader) noexcept {
+void MarkDistance::scanSlice(const engine::FieldReader& reader, const engine::LineCuts* lines) noexcept {
   const std::int32_t end = std::min(next_tile_ + kTilesASlice, tiles());
   for (; next_tile_ < end; ++next_tile_) {
     const std::int32_t tc = next_tile_ % tile_columns_;
     const std::int32_t tr = next_tile_ / tile_columns_;
-    const std::uint64_t print = printOf(reader.tile(tc, tr));
+    const std::uint64_t print = printOf(reader.tile(tc, tr), samplesOf(lines, tc, tr));
     std::uint64_t& known = prints_[static_cast<std::size_t>(next_tile_)];
     if (print == known) continue;
     known = print;
@@ -94,20 +103,20 @@ void MarkDistance::scanSlice(const engine::FieldReader& reader) noexcept {
   }
 }
 
-void MarkDistance::advance(const engine::FieldReader& reader) noexcept {
+void MarkDistance::advance(const engine::FieldReader& reader, const engine::LineCuts* lines) noexcept {
   if (job_tile_ >= 0) {
     if (job_in_rows_)
       rowSlice();
     else
-      columnSlice(reader);
+      columnSlice(reader, lines);
   } else if (next_tile_ < tiles()) {
-    scanSlice(reader);
+    scanSlice(reader, lines);
   } else if (waiting_count_ > 0) {
-    startJob(reader);
+    startJob(reader, lines);
   }
 }
 
-void MarkDistance::startJob(const engine::FieldReader& reader) noexcept {
+void MarkDistance::startJob(const engine::FieldReader& reader, const engine::LineCuts* lines) noexcept {
   job_tile_ = waiting_[waiting_head_];
   waiting_head_ = (waiting_head_ + 1) % waiting_.size();
   --waiting_count_;
@@ -118,21 +127,22 @@ void MarkDistance::startJob(const engine::FieldReader& reader) noexcept {
   job_in_rows_ = false;
   const std::int32_t tc = job_tile_ % tile_columns_;
   const std::int32_t tr = job_tile_ / tile_columns_;
-  std::uint32_t marked = 0;
+  std::size_t marked = 0;
   for (std::int32_t r = std::max(tr - 1, 0); r <= std::min(tr + 1, tile_rows_ - 1); ++r)
     for (std::int32_t c = std::max(tc - 1, 0); c <= std::min(tc + 1, tile_columns_ - 1); ++c)
-      marked += reader.tile(c, r).marked_samples;
+      marked += reader.tile(c, r).marked_samples + samplesOf(lines, c, r).size();
   if (marked == 0) finishJob();
 }
 
 // First pass: for some columns, how many rows each sample of the tile is from a mark in the same column.
-void MarkDistance::columnSlice(const engine::FieldReader& reader) noexcept {
+void MarkDistance::columnSlice(const engine::FieldReader& reader, const engine::LineCuts* lines) noexcept {
   const int columns = kTileSide + 2 * reach_columns_;
   const int rows = kTileSide + 2 * reach_rows_;
   const int count = std::min(kColumnsASlice, columns - job_line_);
   const std::int32_t c0 = ((job_tile_ % tile_columns_) << kTileShift) - reach_columns_ + job_line_;
   const std::int32_t r0 = ((job_tile_ / tile_columns_) << kTileShift) - reach_rows_;
   reader.readMarks(c0, r0, count, rows, marks_.data(), kColumnsASlice);
+  if (lines != nullptr) addLines(*lines, {c0, r0, count, rows});
   for (int c = 0; c < count; ++c) {
     const auto marked = [&](int r) { return marks_[static_cast<std::size_t>(r * kColumnsASlice + c)] != 0; };
     const auto vertical = [&](int r) -> std::uint8_t& {
@@ -154,6 +164,19 @@ void MarkDistance::columnSlice(const engine::FieldReader& reader) noexcept {
   if (job_line_ < columns) return;
   job_line_ = 0;
   job_in_rows_ = true;
+}
+
+// Adds the samples that lines pass to the marks of a block.
+void MarkDistance::addLines(const engine::LineCuts& lines, const engine::SampleRect& block) noexcept {
+  const std::int32_t c1 = std::min(block.column + block.columns, width_),
+                     r1 = std::min(block.row + block.rows, height_);
+  for (std::int32_t tr = std::max(block.row, 0) >> kTileShift; tr << kTileShift < r1; ++tr)
+    for (std::int32_t tc = std::max(block.column, 0) >> kTileShift; tc << kTileShift < c1; ++tc)
+      for (const engine::LineSample& sample : lines.samplesOf(tc, tr)) {
+        const std::int32_t c = sample.column - block.column, r = sample.row - block.row;
+        if (c >= 0 && c < block.columns && r >= 0 && r < block.rows)
+          marks_[static_cast<std::size_t>(r * kColumnsASlice + c)] = 1;
+      }
 }
 
 // Second pass: for some rows, the lower envelope of one parabola per column.

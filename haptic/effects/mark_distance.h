@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/field/line_cuts.h"
 #include "engine/field/reader.h"
+#include "engine/field/sample_rect.h"
 
 namespace fettle::haptic {
 
-/// Distance from samples to the nearest marked sample, horizontal, in millimetres, up to a reach. Exact for
-/// any spacings: Euclidean distance transform by two passes, columns then lower envelopes of parabolas.
+/// Distance from samples to the nearest marked sample, or sample that an edge line passes, horizontal, in millimetres,
+/// up to a reach. Exact for any spacings: Euclidean distance transform by two passes, columns then lower envelopes of parabolas.
 /// Sparse: only tiles with a sample nearer than the reach have memory, 16 KiB each, in addition to 17 bytes
 /// per tile of the field.
 ///
@@ -34,7 +36,8 @@ class MarkDistance {
   static constexpr int kTilesASlice = 64;
 
   /// `reach_mm` > 0; clamped to 63 samples of the finer spacing.
-  MarkDistance(const engine::FieldReader& reader, double reach_mm);
+  /// `lines`: of the field, null without edge lines.
+  MarkDistance(const engine::FieldReader& reader, const engine::LineCuts* lines, double reach_mm);
 
   [[nodiscard]] double reachMm() const noexcept { return reach_mm_; }
   /// Distance of a sample of the field [mm]; the reach (rounded up to a float) when it is at least that far.
@@ -52,7 +55,7 @@ class MarkDistance {
   /// Marks anywhere may have changed.
   void rescan() noexcept { next_tile_ = 0; }
   /// One slice of work, if there is any. `reader` is of the same grid, whatever its marks are now.
-  void advance(const engine::FieldReader& reader) noexcept;
+  void advance(const engine::FieldReader& reader, const engine::LineCuts* lines) noexcept;
   /// Whether no work is left.
   [[nodiscard]] bool upToDate() const noexcept {
     return waiting_count_ == 0 && job_tile_ < 0 && next_tile_ >= tiles();
@@ -69,9 +72,10 @@ class MarkDistance {
 
   [[nodiscard]] std::int32_t tiles() const noexcept { return tile_columns_ * tile_rows_; }
   void requestTile(std::int32_t tc, std::int32_t tr) noexcept;
-  void scanSlice(const engine::FieldReader& reader) noexcept;
-  void startJob(const engine::FieldReader& reader) noexcept;
-  void columnSlice(const engine::FieldReader& reader) noexcept;
+  void scanSlice(const engine::FieldReader& reader, const engine::LineCuts* lines) noexcept;
+  void startJob(const engine::FieldReader& reader, const engine::LineCuts* lines) noexcept;
+  void columnSlice(const engine::FieldReader& reader, const engine::LineCuts* lines) noexcept;
+  void addLines(const engine::LineCuts& lines, const engine::SampleRect& block) noexcept;
   void rowSlice() noexcept;
   void finishJob() noexcept;
 
@@ -81,7 +85,7 @@ class MarkDistance {
   int reach_columns_, reach_rows_;
 
   std::vector<std::int32_t> slots_;      // by tile: its place in memory_ or -1
-  std::vector<std::uint64_t> prints_;    // by tile: hash of its marks when last read, 0 without marks
+  std::vector<std::uint64_t> prints_;    // by tile: hash of its marks and lines when last read, 0 without
   std::vector<std::uint8_t> requested_;  // by tile: waits
   std::vector<std::int32_t> waiting_;    // ring of tiles
   std::size_t waiting_head_ = 0, waiting_count_ = 0;

@@ -4,6 +4,7 @@
 #include <random>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -128,6 +129,43 @@ TEST(LineCuts, LinesLeadOutOfTheFieldAndFarAway) {
   EXPECT_EQ(cutsOf({edgeLineOf({{0.5, -3.0}, {0.5, 3.0}})}, 2, 1), (Cuts{{0, 0, LineCut::kRight}}));
   EXPECT_EQ(cutsOf({edgeLineOf({{-0.5, -3.0}, {-0.5, 3.0}}), edgeLineOf({{1.5, -3.0}, {1.5, 3.0}})}, 2, 4),
             Cuts());
+}
+
+TEST(LineCuts, HaveTheSamplesNearestToStepsAndCreases) {
+  std::vector<EdgeLine> lines{edgeLineOf({{3.2, -4.0}, {150.7, 90.4}, {140.0, 200.0}}),
+                              edgeLineOf({{20.0, 70.0}, {20.0, 60.0}})};
+  for (EdgePoint& point : lines[1].points) point.kind = LineKind::kCrease;
+  const LineCuts cuts(lines, 160, 130);
+  std::set<std::pair<int, int>> found;
+  for (int tr = 0; tr < 3; ++tr)
+    for (int tc = 0; tc < 3; ++tc)
+      for (const LineSample& sample : cuts.samplesOf(tc, tr)) {
+        EXPECT_EQ(sample.column / kTileSide, tc);
+        EXPECT_EQ(sample.row / kTileSide, tr);
+        EXPECT_TRUE(found.emplace(sample.column, sample.row).second);
+      }
+  const auto isNear = [&](int c, int r) {
+    double least = HUGE_VAL;
+    for (const EdgeLine& line : lines)
+      for (const EdgePoint& point : line.points)
+        least = std::min(least, glm::distance(point.position, glm::dvec2(c, r)));
+    return least;
+  };
+  int near = 0;
+  for (int r = 0; r < 129; ++r)
+    for (int c = 0; c < 159; ++c) {
+      const bool has = found.contains({c, r});
+      // Points are half a sample apart.
+      if (has) {
+        EXPECT_LE(isNear(c, r), 0.71 + 0.25) << c << ' ' << r;
+      }
+      if (isNear(c, r) < 0.25) {
+        EXPECT_TRUE(has) << c << ' ' << r;
+      }
+      near += static_cast<int>(has);
+    }
+  EXPECT_GT(near, 250);
+  EXPECT_TRUE(LineCuts(std::vector<EdgeLine>{}, 10, 10).samplesOf(0, 0).empty());
 }
 
 }  // namespace

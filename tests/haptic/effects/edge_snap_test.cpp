@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include "tests/engine/filter/edge_line_of.h"
 #include "tests/haptic/effects/touch.h"
 
 namespace fettle::haptic {
@@ -77,7 +78,7 @@ TEST(MarkDistance, IsExactForAnySpacingSizeAndReach) {
                         {80, 80, 0.1, 0.1, 1.0, 0}}) {
     const engine::Version field =
         marked(flat(k.width, k.height, k.sx, k.sy), randomMarks(random, k.marks, k.width, k.height));
-    const MarkDistance distance(field.reader(), k.reach);
+    const MarkDistance distance(field.reader(), nullptr, k.reach);
     EXPECT_EQ(distance.reachMm(), std::min(k.reach, 63 * std::min(k.sx, k.sy)));
     EXPECT_TRUE(distance.upToDate());
     expectExact(distance, field.reader());
@@ -86,31 +87,31 @@ TEST(MarkDistance, IsExactForAnySpacingSizeAndReach) {
 
 TEST(MarkDistance, HoldsTilesNearMarksOnly) {
   const engine::Version far_apart = marked(flat(2000, 2000, 0.05, 0.05), {{32, 32}, {1000, 1023}});
-  const MarkDistance distance(far_apart.reader(), 0.5);
+  const MarkDistance distance(far_apart.reader(), nullptr, 0.5);
   // The first mark's own tile; the second lies on its tile's upper edge, so one more; and 10 samples from
   // column 1000 (tile 15, 960 .. 1023) nothing else.
   EXPECT_EQ(distance.tilesHeld(), 3);
   // 2000^2 samples in floats would be 16 MB.
   EXPECT_LT(distance.bytesHeld(), 3'000'000U);
-  EXPECT_EQ(MarkDistance(flat(2000, 2000, 0.05, 0.05).reader(), 0.5).tilesHeld(), 0);
+  EXPECT_EQ(MarkDistance(flat(2000, 2000, 0.05, 0.05).reader(), nullptr, 0.5).tilesHeld(), 0);
 }
 
 TEST(MarkDistance, FollowsMarksDrawnTakenAwayAndReplacedInBoundedSlices) {
   std::mt19937_64 random(2);
   engine::LiveField live(marked(flat(200, 180, 0.1, 0.12), randomMarks(random, 5, 200, 180)),
                          engine::Growth::kAllowed);
-  MarkDistance distance(live.reader(), 2.0);
+  MarkDistance distance(live.reader(), nullptr, 2.0);
   for (int round = 0; round < 12; ++round) {
     const int c = static_cast<int>(uniform(random, 0, 190));
     const int r = static_cast<int>(uniform(random, 0, 170));
     for (int i = 0; i < 8; ++i) {
       ASSERT_TRUE(live.setMark(c + i, r + i / 2, round % 3 != 2));
       distance.markChanged(c + i, r + i / 2, 1, 1);
-      distance.advance(live.reader());  // work continues between changes
+      distance.advance(live.reader(), nullptr);  // work continues between changes
     }
     int slices = 0;
     while (!distance.upToDate() && slices < 2000) {
-      distance.advance(live.reader());
+      distance.advance(live.reader(), nullptr);
       ++slices;
     }
     // At most 12 tiles are near, 1 + 13 + 16 slices each, and some are begun twice.
@@ -120,20 +121,20 @@ TEST(MarkDistance, FollowsMarksDrawnTakenAwayAndReplacedInBoundedSlices) {
   // Another version: nobody says where.
   const engine::Version other = marked(flat(200, 180, 0.1, 0.12), {{5, 170}, {100, 64}});
   distance.rescan();
-  while (!distance.upToDate()) distance.advance(other.reader());
+  while (!distance.upToDate()) distance.advance(other.reader(), nullptr);
   expectExact(distance, other.reader());
   EXPECT_EQ(distance.refused(), 0);
 }
 
 TEST(MarkDistance, SaysWhenItsMemoryIsUsedUpAndGoesOnWithoutThoseTiles) {
   engine::LiveField live(flat(1000, 1000, 0.1, 0.1), engine::Growth::kAllowed);
-  MarkDistance distance(live.reader(), 1.0);
+  MarkDistance distance(live.reader(), nullptr, 1.0);
   for (int r = 30; r < 1000; r += 64)
     for (int c = 30; c < 1000; c += 64) {
       ASSERT_TRUE(live.setMark(c, r, true));
       distance.markChanged(c, r, 1, 1);
     }
-  while (!distance.upToDate()) distance.advance(live.reader());
+  while (!distance.upToDate()) distance.advance(live.reader(), nullptr);
   EXPECT_EQ(distance.tilesHeld(), MarkDistance::kSpareTiles);
   EXPECT_EQ(distance.refused(), 16 * 16 - MarkDistance::kSpareTiles);
   // What is freed is used again.
@@ -142,7 +143,7 @@ TEST(MarkDistance, SaysWhenItsMemoryIsUsedUpAndGoesOnWithoutThoseTiles) {
       ASSERT_TRUE(live.setMark(c, r, false));
       distance.markChanged(c, r, 1, 1);
     }
-  while (!distance.upToDate()) distance.advance(live.reader());
+  while (!distance.upToDate()) distance.advance(live.reader(), nullptr);
   EXPECT_EQ(distance.tilesHeld(), 0);
 }
 
@@ -188,7 +189,7 @@ TEST(EdgeSnap, PullIsZeroOnTheEdgeFullHalfwayAndZeroAtTheReach) {
 TEST(EdgeSnap, DoesNoWorkOverClosedLoopsAndHasNoSteps) {
   std::mt19937_64 random(3);
   const engine::Version field = marked(flat(120, 120, 0.1, 0.17), randomMarks(random, 9, 120, 120));
-  const EdgeSnap snap({1.0, 2.0}, field.reader());
+  const EdgeSnap snap({1.0, 2.0}, field.reader(), nullptr);
   const double bound = 4.0 * 1.0 / 2.0;  // 4 F / R
   for (int i = 0; i < 40; ++i) {
     const glm::dvec2 centre{uniform(random, 0.5, 11.0), uniform(random, 0.5, 19.0)};
@@ -220,7 +221,7 @@ TEST(EdgeSnap, DoesNoWorkOverClosedLoopsAndHasNoSteps) {
 TEST(EdgeSnap, RestoringStiffnessIsAtMostFourForcesOverTheReach) {
   std::mt19937_64 random(4);
   const engine::Version field = marked(flat(120, 120, 0.1, 0.1), randomMarks(random, 25, 120, 120));
-  const EdgeSnap snap({1.0, 2.0}, field.reader());
+  const EdgeSnap snap({1.0, 2.0}, field.reader(), nullptr);
   double stiffest = 0.0;
   for (int i = 0; i < 200000; ++i) {
     const glm::dvec2 at{uniform(random, 0.3, 11.6), uniform(random, 0.3, 11.6)};
@@ -282,6 +283,52 @@ TEST(EdgeSnap, MarksOfAnAdoptedVersionPullSoonAfterAndComeOnWithoutAKick) {
     last = now;
   }
   EXPECT_NEAR(last, -0.5, 0.01);
+}
+
+engine::Version lined(const engine::Version& field, const std::vector<engine::EdgeLine>& lines) {
+  return field.withLines(std::make_shared<const std::vector<engine::EdgeLine>>(lines));
+}
+
+// A step and a crease: both pull.
+std::vector<engine::EdgeLine> stepAndCrease() {
+  std::vector<engine::EdgeLine> lines{engine::tests::edgeLineOf({{12.3, 8.0}, {150.6, 71.2}, {90.0, 170.0}}),
+                                      engine::tests::edgeLineOf({{60.0, 100.0}, {10.0, 140.5}})};
+  for (engine::EdgePoint& point : lines[1].points) point.kind = engine::LineKind::kCrease;
+  return lines;
+}
+
+TEST(MarkDistance, CountsTheSamplesThatLinesPass) {
+  const engine::Version plain = marked(flat(200, 180, 0.1, 0.12), {{150, 20}});
+  const engine::Version with = lined(plain, stepAndCrease());
+  const MarkDistance distance(with.reader(), with.lineCuts(), 2.0);
+  // The same samples, marked instead.
+  engine::LiveField live(plain, engine::Growth::kAllowed);
+  for (int tr = 0; tr < 3; ++tr)
+    for (int tc = 0; tc < 4; ++tc)
+      for (const engine::LineSample& sample : with.lineCuts()->samplesOf(tc, tr))
+        ASSERT_TRUE(live.setMark(sample.column, sample.row, true));
+  expectExact(distance, live.reader());
+  // Lines that come and go with a version, as those of an undone stroke.
+  MarkDistance follows(plain.reader(), nullptr, 2.0);
+  expectExact(follows, plain.reader());
+  follows.rescan();
+  while (!follows.upToDate()) follows.advance(with.reader(), with.lineCuts());
+  expectExact(follows, live.reader());
+  follows.rescan();
+  while (!follows.upToDate()) follows.advance(plain.reader(), nullptr);
+  expectExact(follows, plain.reader());
+}
+
+TEST(EdgeSnap, PullsToTheLinesOfAnAdoptedVersion) {
+  const engine::Version plain = flat(200, 200, 0.05, 0.05);
+  Touch touch(plain, snapping(0.5, 1.0));
+  EXPECT_EQ(settled(touch, {5.5, 5.02, -0.5}).force_n.x, 0.0);
+  const engine::Version left =
+      touch.field.adopt(lined(plain, {engine::tests::edgeLineOf({{100.2, -5.0}, {100.2, 205.0}})}));
+  touch.tick.fieldChanged();
+  for (int i = 0; i < 800; ++i) static_cast<void>(touch.at({5.5, 5.02, -0.5}));
+  EXPECT_NEAR(touch.at({5.5, 5.02, -0.5}).force_n.x, -0.5, 0.01);
+  EXPECT_NEAR(touch.at({4.5, 5.02, -0.5}).force_n.x, 0.5, 0.01);
 }
 
 TEST(EdgeSnap, HardInputsGiveFiniteForcesWithinTheLimit) {
