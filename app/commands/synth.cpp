@@ -45,11 +45,9 @@ engine::Result<Report> synth(SynthArguments options, engine::JobControl& job) {
     if (auto status = engine::exportMarks(scan->edges, options.edges); !status)
       return tl::unexpected(status.error());
   const engine::FieldSummary summary = engine::summarize(scan->scan);
-  return Report{
-      {"width", options.spec.width}, {"height", options.spec.height},
-      {"part", options.spec.part},   {"noise", options.spec.noise},
-      {"seed", options.spec.seed},   {"sigma_mm", scan->sigma_mm},
-      {"no_data", summary.no_data},  {"hash", fmt::format("{:016x}", engine::contentHash(scan->scan))}};
+  return Report{{"width", options.spec.width}, {"height", options.spec.height}, {"part", options.spec.part},
+                {"noise", options.spec.noise}, {"seed", options.spec.seed},     {"sigma_mm", scan->sigma_mm},
+                {"no_data", summary.no_data},  {"hash", hashOf(scan->scan)}};
 }
 
 }  // namespace
@@ -75,6 +73,11 @@ void addSynth(Command root, Chosen& chosen) {
   command.option("--outliers", options->spec.outliers, "Share of samples near edges that are outliers")
       .showDefault();
   command.option("--dropouts", options->spec.dropouts, "Scale of dropouts by slope and shadow").showDefault();
+  command
+      .option("--spot", options->spec.spot,
+              "Spot of light that a height is the mean of, a standard deviation in samples; 0 = none, 1 = "
+              "realistic")
+      .showDefault();
   command.option("--seed", options->spec.seed, "Same seed, same bits").check({seedProblem}).showDefault();
   addForceOption(command, options->replacing);
   command.option("--truth", options->truth, "Also write the true surface").check(fileName());

@@ -14,6 +14,7 @@
 #include "engine/field/live_field.h"
 #include "engine/scanner/counter_random.h"
 #include "engine/scanner/laser_effects.h"
+#include "engine/scanner/lateral_spot.h"
 #include "engine/scanner/part.h"
 
 namespace fettle::engine {
@@ -35,6 +36,9 @@ Status check(const ScannerSpec& spec) {
   if (!within(spec.dropouts, 10.0))
     return inputError(fmt::format("dropouts of {} cannot be simulated", spec.dropouts), "--dropouts",
                       "give 0 to 10");
+  if (!within(spec.spot, 4.0))
+    return inputError(fmt::format("a spot of {} samples cannot be simulated", spec.spot), "--spot",
+                      "give 0 to 4");
   return {};
 }
 
@@ -51,7 +55,7 @@ struct Layout {
     grid.height = height;
     grid.spacing_x = grid.spacing_y = spacing_mm;
   }
-  [[nodiscard]] glm::dvec2 inPart(std::int32_t column, std::int32_t row) const noexcept {
+  [[nodiscard]] glm::dvec2 inPart(double column, double row) const noexcept {
     return glm::dvec2{column * spacing_mm, row * spacing_mm} - shift;
   }
 };
@@ -101,6 +105,7 @@ struct TruthTile {
 
 struct ScannedTile {
   const ScannerSpec& spec;
+  const Part& part;
   const LaserModel& model;
   const Layout& layout;
   const FieldReader truth;
@@ -122,6 +127,16 @@ struct ScannedTile {
                       ScanBlock::kStride);
     for (int r = 0; r < block.rows; ++r)
       for (int c = 0; c < block.columns; ++c) block.heightAt(c, r) = block.truthAt(c, r);
+    if (spec.spot > 0.0) {
+      const double reach =
+          ScanBlock::kSide + 4.0 * spec.spot;  // of its corners from the middle, and the spot
+      const std::vector<const Feature*> features =
+          part.near(layout.inPart(block.column + 0.5 * block.columns, block.row + 0.5 * block.rows),
+                    reach * layout.spacing_mm);
+      averageUnderSpot(block, spec.spot, [&](double column, double row) {
+        return Part::heightAt(layout.inPart(column, row), features);
+      });
+    }
     const auto random = [&](Stream stream) { return CounterRandom(spec.seed, stream); };
     if (spec.outliers > 0.0) mixPixels(block, model, spec.outliers, random(kMixing));
     if (spec.noise > 0.0) {
@@ -190,7 +205,7 @@ Result<SimulatedScan> simulate(const ScannerSpec& spec, const Part& part, JobCon
 
   Result<FieldBuilder> scan_builder = FieldBuilder::create(layout.grid, memory, what);
   if (!scan_builder) return tl::unexpected(scan_builder.error());
-  const ScannedTile scanned{spec, model, layout, result.truth.reader(), *scan_builder};
+  const ScannedTile scanned{spec, part, model, layout, result.truth.reader(), *scan_builder};
   if (!forEachTileDown(layout.grid, "scanning the part", job, scanned)) return cancelled();
   result.scan = std::move(*scan_builder).build();
   result.sigma_mm = model.sigma_mm * spec.noise;
