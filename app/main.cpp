@@ -7,6 +7,7 @@ int main(int argc, char** argv) {
     addSynth(root, chosen);
     addFilter(root, chosen);
     addMark(root, chosen);
+    addLines(root, chosen);
     addReplay(root, chosen);
     addRecord(root, chosen);
     addRender(root, chosen);

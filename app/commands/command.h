@@ -64,6 +64,7 @@ void addInfo(Command root, Chosen& chosen);
 void addSynth(Command root, Chosen& chosen);
 void addFilter(Command root, Chosen& chosen);
 void addMark(Command root, Chosen& chosen);
+void addLines(Command root, Chosen& chosen);
 void addReplay(Command root, Chosen& chosen);
 void addRecord(Command root, Chosen& chosen);
 void addRender(Command root, Chosen& chosen);

@@ -182,6 +182,7 @@ engine::Result<Report> infoOf(const InfoArguments& options, const std::string& s
                           {"empty_cells", imported->gridding->empty_cells},
                           {"multiple_cells", imported->gridding->multiple_cells},
                           {"lattice", imported->gridding->lattice}};
+  if (imported->field.lines() != nullptr) report["lines"] = imported->field.lines()->size();
   if (!options.at.empty()) report["at"] = *samples;
   if (!options.picture.empty()) report["picture"] = options.picture;
   return report;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/work/edge_strokes.h"
+#include "engine/edges/corners.h"
 #include "engine/field/live_field.h"
 #include "engine/inspect/noise.h"
 #include "haptic/base/strokes.h"
@@ -59,7 +60,9 @@ engine::Result<std::vector<engine::EdgeLine>> locateLines(const engine::Version&
                                                           engine::JobControl& job) {
   const auto noise = engine::estimateNoise(field, job);
   if (!noise) return tl::unexpected(noise.error());
-  return engine::locateEdgeLines(field.reader(), noise->sigma, strokes, options, job);
+  auto lines = engine::locateEdgeLines(field.reader(), noise->sigma, strokes, options, job);
+  if (lines) engine::extendEnds(*lines, 0, field.grid().width, field.grid().height);
+  return lines;
 }
 
 engine::Result<engine::Version> markLines(const engine::Version& field,

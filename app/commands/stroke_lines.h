@@ -15,7 +15,8 @@ namespace fettle::app {
                                                                             const engine::Grid& grid);
 
 /// Edge lines along strokes, located by the samples of `field`, whose noise is measured. Errors: no noise, which
-/// states how sure a line is (kInput); as locateEdgeLines.
+/// states how sure a line is (kInput); as locateEdgeLines. The
+/// ends of the lines are extended to where they meet (engine::extendEnds).
 [[nodiscard]] engine::Result<std::vector<engine::EdgeLine>> locateLines(
     const engine::Version& field, const std::vector<engine::EdgeStroke>& strokes,
     const engine::LocateOptions& options, engine::JobControl& job);

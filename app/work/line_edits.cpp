@@ -12,6 +12,7 @@
 
 #include "app/work/edge_strokes.h"
 #include "app/work/line_pieces.h"
+#include "engine/edges/corners.h"
 #include "engine/field/live_field.h"
 #include "engine/field/piece.h"
 #include "engine/inspect/noise.h"
@@ -29,6 +30,7 @@ using engine::Version;
 constexpr double kNear = 24.0;  // [samples] lines within are located together
 constexpr std::ptrdiff_t kLongestBridge =
     8;                                     // points: shorter unlocated runs between located ones are no marks
+constexpr double kDragWidth = 4.0;         // [samples] along a dragged line, more for longer drags
 constexpr double kLongestGap = 60.0;       // [samples] between ends that are joined
 constexpr std::int32_t kNoiseMargin = 32;  // [samples] around a stroke, for its noise
 constexpr std::int32_t kNoiseSide = 2048;  // most of them in a row or column
@@ -195,6 +197,22 @@ engine::Result<EdgeLine> locateAmong(const Version& field, const EdgeStroke& str
   return std::move(located->front());
 }
 
+// `lines` and the line of a stroke among them.
+engine::Result<Version> withLocated(const Version& base, std::vector<EdgeLine> lines,
+                                    const EdgeStroke& stroke, const engine::LocateOptions& options,
+                                    const char* edit, engine::JobControl& job) {
+  const Box box = boxOf(stroke.points);
+  const auto noise = noiseAround(base, box, job);
+  if (!noise) return tl::unexpected(noise.error());
+  auto line = locateAmong(base, stroke, *noise, strokesNear(lines, box), options, job);
+  if (!line) return tl::unexpected(line.error());
+  if (!isLocated(*line))
+    return engine::inputError("no edge was found along the line", edit, "draw the edge instead");
+  lines.push_back(std::move(*line));
+  engine::extendEnds(lines, lines.size() - 1, base.grid().width, base.grid().height);
+  return withLines(base, std::move(lines));
+}
+
 }  // namespace
 
 engine::Result<Version> drawLine(const Version& base, const LineStroke& stroke,
@@ -219,6 +237,7 @@ engine::Result<Version> drawLine(const Version& base, const LineStroke& stroke,
   if (!marked) return marked;
   line->id = nextId(lines);  // pieces of a line that was drawn again may have taken its own
   lines.push_back(std::move(*line));
+  engine::extendEnds(lines, lines.size() - 1, base.grid().width, base.grid().height);
   return withLines(*marked, std::move(lines));
 }
 
@@ -256,6 +275,7 @@ engine::Result<Version> drawSuggestion(const Version& base, const engine::EdgeMa
     });
     if (!marked) return engine::failure("there is not enough memory for the marks", "edge lines");
   }
+  engine::extendEnds(lines, linesOf(base).size(), base.grid().width, base.grid().height);
   return lines.size() == linesOf(base).size() ? live.snapshot()
                                               : withLines(live.snapshot(), std::move(lines));
 }
@@ -274,6 +294,30 @@ Version removeLines(const Version& base, std::optional<std::int64_t> id) {
   for (const EdgeLine& line : linesOf(base))
     if (id && line.id != *id) lines.push_back(line);
   return lines.size() == linesOf(base).size() ? base : withLines(base, std::move(lines));
+}
+
+engine::Result<Version> dragLine(const Version& base, std::int64_t id, glm::dvec2 from, glm::dvec2 to,
+                                 const engine::LocateOptions& options, engine::JobControl& job) {
+  const std::span<const EdgeLine> all = linesOf(base);
+  const auto dragged = std::ranges::find(all, id, &EdgeLine::id);
+  if (dragged == all.end() || dragged->points.empty())
+    return engine::inputError("there is no such edge line", "drag", "choose one of the list");
+  const std::vector<EdgePoint>& points = dragged->points;
+  const auto nearest = std::ranges::min_element(
+      points, {}, [&](const EdgePoint& p) { return glm::distance(p.position, from); });
+  const double n = static_cast<double>(points.size()), held = static_cast<double>(nearest - points.begin());
+  const double width = kDragWidth + glm::distance(from, to);  // points are about a sample apart
+  EdgeStroke stroke{id, {}, dragged->closed};
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    double along = std::abs(static_cast<double>(i) - held);
+    if (dragged->closed) along = std::min(along, n - along);
+    stroke.points.push_back(points[i].position +
+                            std::exp(-0.5 * along * along / (width * width)) * (to - from));
+  }
+  std::vector<EdgeLine> lines;
+  for (const EdgeLine& line : all)
+    if (line.id != id) lines.push_back(line);
+  return withLocated(base, std::move(lines), stroke, options, "drag", job);
 }
 
 engine::Result<Version> joinLine(const Version& base, std::int64_t id, const engine::LocateOptions& options,
@@ -324,16 +368,7 @@ engine::Result<Version> joinLine(const Version& base, std::int64_t id, const eng
   std::vector<EdgeLine> lines;
   for (const EdgeLine& line : all)
     if (&line != &*chosen && &line != best.other) lines.push_back(line);
-  const Box box = boxOf(stroke.points);
-  const auto noise = noiseAround(base, box, job);
-  if (!noise) return tl::unexpected(noise.error());
-  auto joined = locateAmong(base, stroke, *noise, strokesNear(lines, box), options, job);
-  if (!joined) return tl::unexpected(joined.error());
-  if (!isLocated(*joined))
-    return engine::inputError("no edge was found along the joined lines", "join",
-                              "draw the edge between them");
-  lines.push_back(std::move(*joined));
-  return withLines(base, std::move(lines));
+  return withLocated(base, std::move(lines), stroke, options, "join", job);
 }
 
 }  // namespace fettle::app

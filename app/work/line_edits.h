@@ -48,6 +48,14 @@ struct LineStroke {
 /// Without the line of an id; without all lines when there is no id.
 [[nodiscard]] engine::Version removeLines(const engine::Version& base, std::optional<std::int64_t> id);
 
+/// Moves the part of a line around `from` [samples], its nearest point, by to - from, less and less along the line, as a
+/// thread that is pulled, and locates the line again from there under its id. Errors: kInput where there is no such line
+/// or no edge is found; as engine::locateEdgeLines().
+[[nodiscard]] engine::Result<engine::Version> dragLine(const engine::Version& base, std::int64_t id,
+                                                       glm::dvec2 from, glm::dvec2 to,
+                                                       const engine::LocateOptions& options,
+                                                       engine::JobControl& job);
+
 /// Joins a line with the one whose end is nearest to one of its ends, its own other end included, and locates the whole
 /// again under its id. Errors: kInput where there is no such line, it is closed, or no end is within 60 samples; as
 /// engine::locateEdgeLines().

@@ -82,6 +82,25 @@ void LineTool::chooseNext(const LoopClient& client) {
   chosen_ = at == lines->end() ? lines->front().id : at->id;
 }
 
+std::optional<std::int64_t> LineTool::lineAt(const LoopClient& client, glm::dvec2 place, double radius) {
+  const engine::EdgeLines lines = client.newest().lines();
+  std::optional<std::int64_t> found;
+  if (lines == nullptr) return found;
+  for (const EdgeLine& line : *lines)
+    for (const EdgePoint& point : line.points)
+      if (const double away = glm::distance(point.position, place); away <= radius) {
+        radius = away;
+        found = line.id;
+      }
+  return found;
+}
+
+void LineTool::drag(MarkEdit& edit, std::int64_t id, glm::dvec2 from, glm::dvec2 to) const {
+  edit.ask("Drag edge line", [=, options = options](const engine::Version& base, engine::JobControl& job) {
+    return dragLine(base, id, from, to, options, job);
+  });
+}
+
 void LineTool::removeChosen(const LoopClient& client, MarkEdit& edit) const {
   if (const auto id = chosen(client))
     edit.ask("Remove edge line",

@@ -40,6 +40,12 @@ class LineTool {
   /// Of the newest field; none when its line is gone.
   [[nodiscard]] std::optional<std::int64_t> chosen(const LoopClient& client) const;
 
+  /// The line with a point within `radius` [samples] of a place, the nearest; nothing where there is none.
+  [[nodiscard]] static std::optional<std::int64_t> lineAt(const LoopClient& client, glm::dvec2 place,
+                                                          double radius);
+  /// Pulls a line at a place to another one (dragLine).
+  void drag(MarkEdit& edit, std::int64_t id, glm::dvec2 from, glm::dvec2 to) const;
+
   void removeChosen(const LoopClient& client, MarkEdit& edit) const;
   void joinChosen(const LoopClient& client, MarkEdit& edit) const;
 

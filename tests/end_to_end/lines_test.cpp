@@ -145,5 +145,48 @@ TEST_F(Lines, what_cannot_be_done_is_refused) {
   expectRefused(mark({"--strokes", strokes}), "no stroke of the tool mark");
 }
 
+TEST_F(Lines, steps_and_angles_along_lines_come_as_table_plot_and_csv) {
+  ASSERT_NO_FATAL_FAILURE(drawTrueEdges());
+  const std::string lines = folder.file("lines.csv"), csv = folder.file("sections.csv"),
+                    plot = folder.file("plot.svg"), other = folder.file("other.gpkg");
+  (void)fettleJson({"mark", scan, marks, "--strokes", strokes, "--lines-out", lines});
+  const auto report = fettleJson({"lines", scan, lines, "--csv", csv, "--plot", plot, "--out", other});
+  ASSERT_GT(report["lines"].size(), 2U);
+  std::size_t points = 0, measured = 0;
+  for (const auto& line : report["lines"]) {
+    points += line["points"].get<std::size_t>();
+    if (line["measured"] == 0) {
+      EXPECT_TRUE(line["step"].is_null());
+      continue;
+    }
+    measured += 1;
+    EXPECT_GT(line["step_deviation"], 0.0);
+    EXPECT_LE(line["step_low"], line["step"]);
+    EXPECT_GE(line["step_high"], line["step"]);
+  }
+  EXPECT_GT(measured, 2U);
+  std::ifstream rows(csv);
+  std::size_t count = 0;
+  std::string text;
+  std::getline(rows, text);
+  EXPECT_EQ(text, "line,along_mm,x_mm,y_mm,step_mm,step_deviation_mm,turn_deg,turn_deviation_deg");
+  while (std::getline(rows, text)) count += 1;
+  EXPECT_EQ(count, points);
+  std::ifstream svg(plot);
+  std::getline(svg, text, '\0');
+  EXPECT_NE(text.find("</svg>"), std::string::npos);
+  EXPECT_NE(text.find("turn [degrees]"), std::string::npos);
+  // The lines of a session, one of them alone.
+  const std::string session = folder.file("work.fettle");
+  (void)fettleJson({"filter", scan, session, "--filter", "tgv", "--lines", other});
+  EXPECT_EQ(fettleJson({"info", session})["lines"], fettleJson({"lines", scan, other})["lines"].size());
+  const auto one = fettleJson({"lines", session, "--only", "1"});
+  ASSERT_EQ(one["lines"].size(), 1U);
+  EXPECT_EQ(one["lines"][0]["line"], 1);
+  expectRefused(fettle({"lines", scan}), "no edge lines");
+  expectRefused(fettle({"lines", session, "--only", "1,999"}), "no line 999");
+  expectRefused(fettle({"lines", scan, lines, "--plot", "/no/such/folder/p.svg"}), "/no/such/folder");
+}
+
 }  // namespace
 }  // namespace fettle::tests

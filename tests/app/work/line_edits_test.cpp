@@ -207,5 +207,39 @@ TEST(LineEdits, HardFieldsGiveALineOrNone) {
   }
 }
 
+TEST(LineEdits, ADraggedLineIsLocatedAgainWhereItWasLeft) {
+  const Version made = lineAlong(twoSteps(), {61.5, 20}, {60.5, 110});
+  engine::JobControl job;
+  const std::int64_t id = linesOf(made).front().id;
+  // A little aside: the same edge. The part that is pulled to the other step: that one.
+  const auto same = dragLine(made, id, {60.5, 60}, {62.0, 61}, {}, job);
+  ASSERT_TRUE(same) << same.error().line();
+  ASSERT_EQ(linesOf(*same).size(), 1U);
+  EXPECT_EQ(linesOf(*same).front().id, id);
+  EXPECT_LT(rmsFrom(linesOf(*same).front(), 60.5), 0.3);
+  const auto other = dragLine(made, id, {60.5, 65}, {90.0, 65}, {}, job);
+  ASSERT_TRUE(other) << other.error().line();
+  const auto& points = linesOf(*other).front().points;
+  const auto farthest =
+      std::ranges::max_element(points, {}, [](const engine::EdgePoint& p) { return p.position.x; });
+  EXPECT_NEAR(farthest->position.x, 90.5, 2.0);
+  EXPECT_FALSE(dragLine(made, id + 7, {60.5, 60}, {62.0, 61}, {}, job));
+}
+
+TEST(LineEdits, ALineIsExtendedToTheLineThatItMeetsAndToTheBorder) {
+  // A step along row 70.5 that ends at the one along column 60.5.
+  const Version field = engine::edgeField(160, 140, [](int c, int r) {
+    return (c > 60 ? 0.5 : r > 70 ? 0.2 : 0.0) + kNoise * engine::whiteNoise(c, r);
+  });
+  const Version across = lineAlong(field, {60.5, 3}, {60.5, 136});
+  const auto& upright = linesOf(across).front().points;
+  EXPECT_LT(std::min(upright.front().position.y, upright.back().position.y), 0.01);
+  const Version both = lineAlong(across, {3, 70.5}, {58, 70.5});
+  ASSERT_EQ(linesOf(both).size(), 2U);
+  const auto& meeting = linesOf(both).back().points;
+  EXPECT_NEAR(meeting.back().position.x, 60.5, 0.5);
+  EXPECT_EQ(meeting.front().position.x, 0.0);
+}
+
 }  // namespace
 }  // namespace fettle::app

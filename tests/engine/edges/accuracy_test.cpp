@@ -77,8 +77,7 @@ void expectWithin(const TracedPart& traced, double bound, double least_share) {
     const Figures figures = figuresOf(traced, seed);
     fmt::print(
         "{} x{:g}, seed {}: hand {:.2f}, located {:.3f} samples, {:.2f} of the stated deviation; located "
-        "{:.1f} %, "
-        "kind right {:.1f} %\n",
+        "{:.1f} %, kind right {:.1f} %\n",
         traced.part, traced.noise, seed, figures.hand, figures.located, figures.normalised,
         100.0 * figures.share, 100.0 * figures.kind_right);
     EXPECT_LE(figures.located, bound) << traced.part << ", seed " << seed;

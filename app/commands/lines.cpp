@@ -1,0 +1,193 @@
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "app/commands/command.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/plots/edge_plot.h"
+#include "app/commands/plots/gnuplot.h"
+#include "app/commands/scan_files.h"
+#include "app/commands/scan_options.h"
+#include "app/work/streams.h"
+#include "engine/edges/edge_profile.h"
+#include "engine/inspect/noise.h"
+#include "engine/io/files/atomic_file.h"
+#include "engine/io/lines/lines.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct LinesArguments {
+  std::string scan;
+  std::string lines;
+  std::vector<int> only;
+  std::string out;
+  std::string csv;
+  std::string plot;
+  ScanOptions reading;
+};
+
+// The lines of a file, else those of the scan itself, which a session has.
+engine::Result<std::vector<engine::EdgeLine>> linesOf(const LinesArguments& options,
+                                                      const engine::Version& field) {
+  std::vector<engine::EdgeLine> lines;
+  if (!options.lines.empty()) {
+    auto read = engine::importLines(options.lines, field);
+    if (!read) return read;
+    lines = *std::move(read);
+  } else if (field.lines() != nullptr) {
+    lines = *field.lines();
+  } else {
+    return engine::inputError("it has no edge lines", shownInput(options.scan),
+                              "give LINES, or a session in which edges were drawn");
+  }
+  if (options.only.empty()) return lines;
+  const std::set<std::int64_t> wanted(options.only.begin(), options.only.end());
+  std::set<std::int64_t> found;
+  std::erase_if(lines, [&](const engine::EdgeLine& line) {
+    if (!wanted.contains(line.id)) return true;
+    found.insert(line.id);
+    return false;
+  });
+  for (const std::int64_t id : wanted)
+    if (!found.contains(id))
+      return engine::inputError(fmt::format("there is no line {}", id), "--only",
+                                "fettle lines without it lists them");
+  return lines;
+}
+
+Report reportOf(const MeasuredLine& line) {
+  const engine::EdgeMeans& means = line.means;
+  const auto points = line.line.points.size();
+  const auto located = std::ranges::count_if(line.line.points, &engine::EdgePoint::located);
+  double squares = 0.0;
+  for (const engine::EdgePoint& point : line.line.points) squares += point.deviation * point.deviation;
+  Report report{
+      {"line", line.line.id},
+      {"closed", line.line.closed},
+      {"points", points},
+      {"located", static_cast<double>(located) / static_cast<double>(std::max<std::size_t>(points, 1))},
+      {"length_mm", line.length_mm},
+      {"deviation", located > 0 ? Report(std::sqrt(squares / static_cast<double>(located))) : Report()},
+      {"measured", means.measured}};
+  const auto add = [&](const char* key, double value) {
+    report[key] = means.measured > 0 ? Report(value) : Report();
+  };
+  add("step", means.step);
+  add("step_deviation", means.step_deviation);
+  add("step_low", means.step_low);
+  add("step_high", means.step_high);
+  add("turn_deg", means.turn);
+  add("turn_deviation_deg", means.turn_deviation);
+  add("turn_low_deg", means.turn_low);
+  add("turn_high_deg", means.turn_high);
+  return report;
+}
+
+// One row per point, in field coordinates as strokes files have them. Cells of points that are not measured are empty.
+std::string csvOf(const std::vector<MeasuredLine>& lines, const engine::Grid& grid) {
+  const double mm = grid.height_unit.mm;
+  std::string text = "line,along_mm,x_mm,y_mm,step_mm,step_deviation_mm,turn_deg,turn_deviation_deg\n";
+  auto out = std::back_inserter(text);
+  for (const MeasuredLine& line : lines)
+    for (const engine::EdgeSection& s : line.sections) {
+      fmt::format_to(out, "{},{:.9g},{:.9g},{:.9g},", line.line.id, s.along_mm,
+                     s.position.x * grid.spacingXMm(), s.position.y * grid.spacingYMm());
+      if (s.measured)
+        fmt::format_to(out, "{:.9g},{:.3g},{:.9g},{:.3g}\n", s.step * mm, s.step_deviation * mm, s.turn,
+                       s.turn_deviation);
+      else
+        text += ",,,\n";
+    }
+  return text;
+}
+
+engine::Status writeFiles(const LinesArguments& options, const std::vector<MeasuredLine>& measured,
+                          const std::vector<engine::EdgeLine>& lines, const engine::Grid& grid) {
+  if (!options.out.empty())
+    if (auto status = engine::exportLines(options.out, lines, grid); !status) return status;
+  if (!options.csv.empty())
+    if (auto status = engine::writeFileAtomically(options.csv, csvOf(measured, grid)); !status) return status;
+  if (options.plot.empty()) return {};
+  const auto svg = edgePlot(measured, grid.height_unit);
+  if (!svg) return tl::unexpected(svg.error());
+  return engine::writeFileAtomically(options.plot, *svg);
+}
+
+engine::Result<Report> measureLines(const LinesArguments& options, engine::JobControl& job) {
+  if (auto status = checkOutputs({{options.out, OutputKind::kLines}, {options.csv}, {options.plot}},
+                                 {options.scan, options.lines}, Replacing::kNoWork, job);
+      !status)
+    return tl::unexpected(status.error());
+  if (!options.plot.empty())
+    if (auto status = plotsCanBeMade(); !status) return tl::unexpected(status.error());
+  const auto imported = loadScan(options.scan, options.reading, job);
+  if (!imported) return tl::unexpected(imported.error());
+  const engine::Version& field = imported->field;
+  const auto lines = linesOf(options, field);
+  if (!lines) return tl::unexpected(lines.error());
+  const auto noise = engine::estimateNoise(field, job);
+  if (!noise) return tl::unexpected(noise.error());
+  auto sections = engine::measureEdges(field, noise->sigma, *lines, job);
+  if (!sections) return tl::unexpected(sections.error());
+  std::vector<MeasuredLine> measured;
+  for (std::size_t i = 0; i < lines->size(); ++i) {
+    const engine::EdgeMeans means = engine::meansOf((*sections)[i]);
+    measured.push_back({(*lines)[i], std::move((*sections)[i]), means});
+  }
+  if (auto status = writeFiles(options, measured, *lines, field.grid()); !status)
+    return tl::unexpected(status.error());
+  Report report{{"unit", field.grid().height_unit.name}, {"noise", noise->sigma}, {"lines", Report::array()}};
+  for (const MeasuredLine& line : measured) report["lines"].push_back(reportOf(line));
+  return report;
+}
+
+void printLines(const Report& report) {
+  fmt::print(
+      "noise {:.4g} {}; step: left surface less right one; turn: above 0 concave; +- standard deviation\n",
+      report["noise"].get<double>(), report["unit"].get<std::string>());
+  fmt::print("{:>6}{:>11}{:>8}{:>10}  {:<24}{:<22}\n", "line", "length mm", "found", "+- sample",
+             fmt::format("step [{}]", report["unit"].get<std::string>()), "turn [degrees]");
+  for (const Report& line : report["lines"]) {
+    const auto number = [&line](const char* key) { return line[key].get<double>(); };
+    const bool measured = line["measured"].get<int>() > 0;
+    fmt::print(
+        "{:>6}{:>11.4g}{:>6.0f} %{:>10}  {:<24}{:<22}\n", line["line"].get<std::int64_t>(),
+        number("length_mm"), 100.0 * number("located"),
+        line["deviation"].is_null() ? "-" : fmt::format("{:.2f}", number("deviation")),
+        measured ? fmt::format("{:.5g} +- {:.2g}", number("step"), number("step_deviation")) : "-",
+        measured ? fmt::format("{:.4g} +- {:.2g}", number("turn_deg"), number("turn_deviation_deg")) : "-");
+  }
+}
+
+}  // namespace
+
+void addLines(Command root, Chosen& chosen) {
+  auto options = std::make_shared<LinesArguments>();
+  Command command = addCommand(
+      root, chosen, "lines", "Step height and angle along edge lines, with uncertainty",
+      [options](engine::JobControl& job) { return measureLines(*options, job); }, printLines);
+  command.option("SCAN", options->scan, "The scan, or a session; - for standard input").required();
+  command.option("LINES", options->lines, "File of edge lines; none: those of the session SCAN")
+      .check(fileName());
+  command.option("--only", options->only, "Only the lines of these numbers, as 3,7").delimiter(',');
+  command.option("--csv", options->csv, "Write a row per point: step and angle there, in mm and degrees")
+      .check(fileName());
+  command.option("--plot", options->plot, "Draw step and angle over the length of the longest lines, as SVG")
+      .check(fileName());
+  command.option("--out", options->out, "Write the lines: .csv (every value), .geojson, .gpkg, .dxf")
+      .check(fileName());
+  addScanOptions(command, options->reading);
+  command.footer(
+      "At each point of a line planes are fitted to the samples on both sides, up to 10 from the line and 5 "
+      "points\n"
+      "  along. Step: their difference in height at the line. Turn: their difference in inclination across "
+      "it.");
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "engine/field/edge_line.h"
+
+namespace fettle::engine {
+
+/// Extends the located ends of the open lines from number `first` on, straight on, to where they meet another line, the extension of another end, or
+/// the border of a field of so many samples: at most kMostExtension samples. A line is located up to where it has
+/// samples on both sides, a sample or two short of a corner, and filters would reach around its end.
+///
+/// The points that are added have step, slope and kind of the end, and its deviation, which grows by kEndTangent of
+/// the extension. Ends that meet something already stay as they are, as do those that run along what they would meet
+/// (less than some 20 degrees). Positions are multiples of 2^-20. Deterministic; O(points). Thread: any.
+void extendEnds(std::vector<EdgeLine>& lines, std::size_t first, std::int32_t columns, std::int32_t rows);
+
+inline constexpr double kMostExtension = 4.0;  ///< [samples]
+inline constexpr double kEndTangent = 0.15;    ///< error of the direction of an end
+
+}  // namespace fettle::engine

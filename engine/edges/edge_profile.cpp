@@ -1,0 +1,189 @@
+#include "engine/edges/edge_profile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <glm/geometric.hpp>
+
+#include "engine/edges/sides.h"
+#include "engine/edges/surroundings.h"
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr double kSectionDepths[] = {10.0, 7.0, 5.0,
+                                     4.0};  // of the surfaces [samples], the first that fits counts
+constexpr double kSectionGuard = 0.75;      // samples nearer to the line may lie on either side
+constexpr double kSharedNoise = 1.3;        // of the variance: neighbouring samples share some noise
+constexpr double kFitsNoPlane = 1.5;        // residual variance over that of the noise
+constexpr int kTangentPointsHalf = 3;
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+Polyline polylineAt(const EdgeLine& line, glm::dvec2 origin) {
+  Polyline polyline;
+  polyline.closed = line.closed;
+  polyline.period = static_cast<double>(line.points.size());
+  for (const EdgePoint& point : line.points) {
+    polyline.origins.push_back(static_cast<double>(polyline.points.size()));
+    polyline.points.push_back(point.position - origin);
+  }
+  return polyline;
+}
+
+glm::dvec2 lowestSample(const std::vector<EdgeLine>& lines) {
+  glm::dvec2 low(HUGE_VAL);
+  for (const EdgeLine& line : lines)
+    for (const EdgePoint& point : line.points) low = glm::min(low, point.position);
+  return glm::floor(low);
+}
+
+// The samples up to `depth` from a line that follows the strip's own points.
+StripLine lineOf(std::size_t points, double depth) {
+  const auto reach = static_cast<float>(depth);
+  return {std::vector<double>(points, 0.0), std::vector<double>(points, 0.0),
+          std::vector<Extent>(points, {-reach, reach})};
+}
+
+// Inclination of a fitted surface across a line, in radians, and its variance for noise of variance 1.
+struct Inclination {
+  double angle, variance;
+};
+
+// How slopes along the strip's axes, in height units per sample, become a slope across the line in millimetres.
+class Across {
+ public:
+  Across(const Grid& grid, glm::dvec2 tangent) {
+    const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
+    const glm::dvec2 along = glm::normalize(tangent * spacing);
+    const glm::dvec2 per_mm = glm::dvec2(-along.y, along.x) / spacing * grid.height_unit.mm;
+    d_ = glm::dot(per_mm, glm::dvec2(-tangent.y, tangent.x));
+    s_ = glm::dot(per_mm, tangent);
+  }
+  [[nodiscard]] Inclination of(const PlaneFit& plane) const noexcept {
+    const double slope = d_ * plane.slope_d + s_ * plane.slope_s;
+    const double variance =
+        d_ * d_ * plane.inverse_dd + 2.0 * d_ * s_ * plane.inverse_ds + s_ * s_ * plane.inverse_ss;
+    const double per_slope = 1.0 / (1.0 + slope * slope);
+    return {std::atan(slope), variance * per_slope * per_slope};
+  }
+
+ private:
+  double d_, s_;
+};
+
+class LineSections {
+ public:
+  LineSections(const Version& field, double variance, const EdgeLine& line, const SideContext& context)
+      : grid_(field.grid()), variance_(variance), line_(line), context_(context) {
+    for (const double depth : kSectionDepths) at_depth_.push_back(lineOf(line.points.size(), depth));
+  }
+
+  void measure(int i, EdgeSection& section) const {
+    if (!line_.points[static_cast<std::size_t>(i)].located) return;
+    for (const StripLine& reach : at_depth_) {
+      const Sides sides = sidesAt(context_, reach, i, kSectionGuard);
+      if (!sides.supported()) return;
+      const double left = std::max(variance_, sides.left.variance());
+      const double right = std::max(variance_, sides.right.variance());
+      if (std::max(left, right) > kFitsNoPlane * variance_ && &reach != &at_depth_.back()) continue;
+      const EdgePoint& point = line_.points[static_cast<std::size_t>(i)];
+      section.measured = true;
+      section.step = sides.left.at(0.0, 0.0) - sides.right.at(0.0, 0.0);
+      const double off = (sides.left.slope_d - sides.right.slope_d) * point.deviation;
+      section.step_deviation = std::sqrt(left * sides.left.varianceAt(0.0, 0.0) +
+                                         right * sides.right.varianceAt(0.0, 0.0) + off * off);
+      const Across across(grid_, context_.strip.tangents[static_cast<std::size_t>(i)]);
+      const Inclination up = across.of(sides.left), down = across.of(sides.right);
+      section.turn = kDegrees * (up.angle - down.angle);
+      section.turn_deviation = kDegrees * std::sqrt(left * up.variance + right * down.variance);
+      return;
+    }
+  }
+
+ private:
+  const Grid& grid_;
+  double variance_;
+  const EdgeLine& line_;
+  const SideContext& context_;
+  std::vector<StripLine> at_depth_;
+};
+
+}  // namespace
+
+Result<std::vector<std::vector<EdgeSection>>> measureEdges(const Version& field, double noise,
+                                                           const std::vector<EdgeLine>& lines,
+                                                           JobControl& job) {
+  if (!(noise > 0.0) || !std::isfinite(noise))
+    return inputError("the noise is not above 0", "measuring edges",
+                      "give its standard deviation, or add noise to an exact field");
+  std::vector<std::vector<EdgeSection>> all(lines.size());
+  const std::int64_t points = countPoints(lines);
+  job.begin("measuring edges", static_cast<std::uint64_t>(points));
+  if (points == 0) return all;
+  const glm::dvec2 origin = lowestSample(lines);
+  std::vector<Polyline> polylines;
+  for (const EdgeLine& line : lines) polylines.push_back(polylineAt(line, origin));
+  SampleWindow window(field.reader(), glm::ivec2(origin), polylines, kSectionDepths[0] + 1.0, noise);
+  const LineIndex index(polylines);
+  const std::vector<bool> known(lines.size(), true);
+  const glm::dvec2 spacing(field.grid().spacingXMm(), field.grid().spacingYMm());
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    if (job.cancelled()) return cancelled();
+    const Polyline& line = polylines[k];
+    const Strip strip = stripAlong(line, window, kSectionDepths[0], kTangentPointsHalf);
+    const LineNeighbours neighbours = neighboursOf(index, static_cast<int>(k), strip.tangents, strip.depth);
+    std::vector<OffsetRange> ranges;
+    for (const Surroundings& here : surroundingsOf(line, neighbours, Stage::kRefine, false, known))
+      ranges.push_back(here.range);
+    const double variance = kSharedNoise * noise * noise;
+    const SideContext context{line, strip, window, ranges, EdgeMeans::kHalf, variance};
+    const LineSections sections(field, variance, lines[k], context);
+    all[k].resize(line.points.size());
+    for (std::size_t i = 0; i < line.points.size(); ++i) {
+      EdgeSection& section = all[k][i];
+      section.position = lines[k].points[i].position;
+      if (i == 0) continue;
+      section.along_mm =
+          all[k][i - 1].along_mm + glm::length((line.points[i] - line.points[i - 1]) * spacing);
+    }
+    tbb::parallel_for(tbb::blocked_range<int>(0, line.size(), 16), [&](const auto& range) {
+      for (int i = range.begin(); i < range.end(); ++i)
+        sections.measure(i, all[k][static_cast<std::size_t>(i)]);
+    });
+    job.advance(line.points.size());
+  }
+  return all;
+}
+
+EdgeMeans meansOf(const std::vector<EdgeSection>& sections) noexcept {
+  EdgeMeans means;
+  double step_squares = 0.0, turn_squares = 0.0;
+  for (const EdgeSection& section : sections) {
+    if (!section.measured) continue;
+    if (means.measured++ == 0) {
+      means.step_low = means.step_high = section.step;
+      means.turn_low = means.turn_high = section.turn;
+    }
+    means.step += section.step;
+    means.turn += section.turn;
+    means.step_low = std::min(means.step_low, section.step);
+    means.step_high = std::max(means.step_high, section.step);
+    means.turn_low = std::min(means.turn_low, section.turn);
+    means.turn_high = std::max(means.turn_high, section.turn);
+    step_squares += section.step_deviation * section.step_deviation;
+    turn_squares += section.turn_deviation * section.turn_deviation;
+  }
+  if (means.measured == 0) return means;
+  const double n = means.measured, independent = std::max(1.0, n / (2.0 * EdgeMeans::kHalf + 1.0));
+  means.step /= n;
+  means.turn /= n;
+  means.step_deviation = std::sqrt(step_squares / n / independent);
+  means.turn_deviation = std::sqrt(turn_squares / n / independent);
+  return means;
+}
+
+}  // namespace fettle::engine

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/edge_line.h"
+#include "engine/field/version.h"
+
+namespace fettle::engine {
+
+// Step height and edge angle along lines, measured in the samples on both sides: of the scan that a line was located
+// in, or of what a filter made of it.
+
+/// The surfaces on both sides of a line at one of its points. "Left" as in edge_line.h.
+struct EdgeSection {
+  double along_mm = 0.0;     ///< length of the line up to here
+  glm::dvec2 position{0.0};  ///< [samples]
+  /// Whether the point is located and both sides have samples for a plane; if not, what follows is 0.
+  bool measured = false;
+  /// Height of the left surface minus that of the right one, at the line, and its standard deviation
+  /// [height_unit].
+  double step = 0.0, step_deviation = 0.0;
+  /// How far the surface turns across the line, and its standard deviation [degrees]: inclination of the left surface,
+  /// across the line and rising to the left, minus that of the right one. 0: none; above 0 a concave edge.
+  double turn = 0.0, turn_deviation = 0.0;
+};
+
+/// Means over the measured points of a line. Points share samples with their neighbours: 2 kHalf + 1 count once.
+struct EdgeMeans {
+  static constexpr int kHalf = 5;  ///< points before and after whose samples a section is fitted to
+
+  int measured = 0;                         ///< points; without any the rest is 0
+  double step = 0.0, step_deviation = 0.0;  ///< [height_unit]
+  double step_low = 0.0, step_high = 0.0;   ///< [height_unit]
+  double turn = 0.0, turn_deviation = 0.0;  ///< [degrees]
+  double turn_low = 0.0, turn_high = 0.0;   ///< [degrees]
+};
+
+/// The sections at the points of each line of a field. At a point, planes are fitted by least squares to the samples up
+/// to 10 samples from the line (fewer where these fit no plane), more than 0.75 from it, and kHalf points along, up to
+/// the next line; slopes come out 1.2e-4 of themselves too small. `noise` is the standard deviation of the field's noise [height_unit], > 0; deviations are those that
+/// it, the lines' own deviations and surfaces that are no planes explain. Noise that neighbouring samples share is not
+/// known: 1.3 times the variance is assumed, as by locateEdgeLines().
+///
+/// Signs follow Version::reader(): of an inverted version both figures have the other sign. Memory and time as
+/// locateEdgeLines(), a tenth of its time. Progress counts points. Thread: any; blocks, on all workers. Errors: kInput
+/// for a noise that is not above 0; kCancelled.
+[[nodiscard]] Result<std::vector<std::vector<EdgeSection>>> measureEdges(const Version& field, double noise,
+                                                                         const std::vector<EdgeLine>& lines,
+                                                                         JobControl& job);
+
+[[nodiscard]] EdgeMeans meansOf(const std::vector<EdgeSection>& sections) noexcept;
+
+}  // namespace fettle::engine

@@ -1,0 +1,194 @@
+#include "engine/edges/edge_profile.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "engine/edges/locate.h"
+#include "engine/field/builder.h"
+#include "engine/scanner/scanner.h"
+#include "engine/scanner/true_lines.h"
+#include "tests/engine/filter/edge_line_of.h"
+
+namespace fettle::engine {
+namespace {
+
+using tests::edgeLineOf;
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+struct TwoPlanes {
+  int columns = 60, rows = 50;
+  double sx = 0.05, sy = 0.05;
+  double step = 0.1;  // left surface less right one [mm]
+  double left = 0.0,
+         right = 0.0;  // inclinations across a line along y, going up: left is towards smaller x [degrees]
+  double level = 0.0;
+};
+
+template <class Height>
+Version sampledField(const Grid& grid, Height&& height) {
+  auto builder = FieldBuilder::create(grid, "test");
+  EXPECT_TRUE(builder);
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      const auto z = static_cast<float>(height(c, r));
+      builder->writeHeights(c, r, 1, 1, &z, 1);
+    }
+  return std::move(*builder).build();
+}
+
+// A line up the column 29.4, with the left surface at smaller x.
+Version twoPlaneField(const TwoPlanes& shape, double noise, std::uint64_t seed) {
+  Grid grid;
+  grid.width = shape.columns;
+  grid.height = shape.rows;
+  grid.spacing_x = shape.sx;
+  grid.spacing_y = shape.sy;
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> white(0.0, noise > 0.0 ? noise : 1.0);
+  return sampledField(grid, [&](int c, int) {
+    const double across = (29.4 - c) * shape.sx;  // towards the left
+    const double slope = std::tan((across > 0 ? shape.left : shape.right) * kDegree);
+    const double z = shape.level + slope * across + (across > 0 ? shape.step : 0.0);
+    return z + (noise > 0.0 ? white(random) : 0.0);
+  });
+}
+
+std::vector<EdgeSection> measured(const Version& field, double noise, const EdgeLine& line) {
+  JobControl job;
+  const auto sections = measureEdges(field, noise, {line}, job);
+  EXPECT_TRUE(sections);
+  return sections ? sections->front() : std::vector<EdgeSection>{};
+}
+
+TEST(EdgeProfile, IsExactOnTwoPlanes) {
+  for (const TwoPlanes& shape :
+       {TwoPlanes{}, TwoPlanes{60, 50, 0.05, 0.05, -0.2, 30.0, -12.0},
+        TwoPlanes{60, 50, 0.1, 0.025, 0.0, 20.0, 0.0}, TwoPlanes{60, 50, 0.02, 0.2, 1e-3, -5.0, 40.0},
+        TwoPlanes{60, 50, 0.05, 0.05, 0.1, 1.0, 0.0, 1e4}}) {
+    const Version field = twoPlaneField(shape, 0.0, 1);
+    // Slopes are fitted 1.2e-4 too small (kLevelling).
+    const double level = 1e-6 * (std::abs(shape.level) + 1.0),
+                 slopes = std::abs(shape.left) + std::abs(shape.right);
+    const double of_step = level + 3e-4 * kDegree * slopes * shape.sx,
+                 of_turn = level / (kDegree * shape.sx) + 2e-4 * slopes;
+    for (const EdgeSection& s : measured(field, 1e-4, edgeLineOf({{29.4, 5.0}, {29.4, 44.0}}))) {
+      ASSERT_TRUE(s.measured);
+      EXPECT_NEAR(s.step, shape.step, of_step);
+      EXPECT_NEAR(s.turn, shape.left - shape.right, of_turn);
+    }
+    // The other way along, left is right.
+    const auto back = measured(field, 1e-4, edgeLineOf({{29.4, 44.0}, {29.4, 5.0}}));
+    EXPECT_NEAR(back[20].step, -shape.step, of_step);
+    EXPECT_NEAR(back[20].turn, shape.left - shape.right, of_turn);
+    EXPECT_NEAR(back.back().along_mm, 39.0 * shape.sy, 0.6 * shape.sy);
+  }
+}
+
+// The stated deviations assume some noise that neighbours share: of white noise 1.14 times too large.
+TEST(EdgeProfile, StatedDeviationsCoverTheErrors) {
+  const TwoPlanes shape{60, 50, 0.05, 0.05, 0.05, 8.0, -3.0};
+  constexpr double kNoise = 0.02;
+  constexpr int kRuns = 1000;
+  int step_within[3] = {}, turn_within[3] = {}, mean_within[3] = {};
+  for (int run = 0; run < kRuns; ++run) {
+    const Version field = twoPlaneField(shape, kNoise, 100 + run);
+    const auto sections = measured(field, kNoise, edgeLineOf({{29.4, 5.0}, {29.4, 44.0}}));
+    const EdgeSection& s = sections[40];
+    const EdgeMeans means = meansOf(sections);
+    ASSERT_TRUE(s.measured);
+    for (int k = 0; k < 3; ++k) {
+      step_within[k] += std::abs(s.step - shape.step) <= (k + 1) * s.step_deviation;
+      turn_within[k] += std::abs(s.turn - (shape.left - shape.right)) <= (k + 1) * s.turn_deviation;
+      mean_within[k] += std::abs(means.step - shape.step) <= (k + 1) * means.step_deviation;
+    }
+  }
+  for (const auto* within : {step_within, turn_within, mean_within}) {
+    EXPECT_GT(within[0], 683 - 45);
+    EXPECT_LT(within[0], 820);
+    EXPECT_GT(within[1], 954 - 20);
+    EXPECT_GE(within[2], 991);
+  }
+}
+
+// The lines of a part, with noise of a scanner: the mean over each line next to the true step.
+TEST(EdgeProfile, FindsTheStepsOfAPart) {
+  JobControl job;
+  ScannerSpec spec;
+  spec.part = "steps";
+  spec.width = spec.height = 512;
+  int lines = 0, within = 0;
+  for (const std::uint64_t seed : {11U, 12U, 13U}) {
+    spec.seed = seed;
+    const auto scan = simulateScan(spec, job);
+    ASSERT_TRUE(scan);
+    const std::vector<EdgeLine> truth = trueLines(*scan);
+    const auto sections = measureEdges(scan->scan, scan->sigma_mm, truth, job);
+    const auto exact = measureEdges(scan->truth, scan->sigma_mm, truth, job);
+    ASSERT_TRUE(sections && exact);
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      const EdgeMeans of_scan = meansOf((*sections)[k]), of_truth = meansOf((*exact)[k]);
+      if (of_scan.measured < 50) continue;
+      ++lines;
+      within += std::abs(of_scan.step - of_truth.step) <= 3.0 * of_scan.step_deviation;
+      EXPECT_NEAR(of_scan.step, of_truth.step, 0.1 * std::abs(of_truth.step) + 5.0 * of_scan.step_deviation);
+    }
+  }
+  EXPECT_GT(lines, 10);
+  EXPECT_GE(within, 0.9 * lines) << lines;
+}
+
+TEST(EdgeProfile, NextToAnotherLineOnlyTheSurfaceBetweenCounts) {
+  // A rib 8 samples wide on a plate.
+  Grid grid;
+  grid.width = 60, grid.height = 50;
+  grid.spacing_x = grid.spacing_y = 0.05;
+  const Version field = sampledField(grid, [](int c, int) { return c >= 25 && c < 33 ? 0.5 : 0.0; });
+  JobControl job;
+  const auto both = measureEdges(
+      field, 1e-3, {edgeLineOf({{24.5, 2.0}, {24.5, 47.0}}), edgeLineOf({{32.5, 2.0}, {32.5, 47.0}})}, job);
+  ASSERT_TRUE(both);
+  EXPECT_NEAR(meansOf((*both)[0]).step, -0.5, 1e-6);
+  EXPECT_NEAR(meansOf((*both)[1]).step, 0.5, 1e-6);
+}
+
+TEST(EdgeProfile, HardFieldsGiveAFigureOrNone) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const glm::ivec2 size : {glm::ivec2(60, 1), {1, 50}, {2, 2}, {60, 50}})
+    for (const float value : {0.0F, 1e-42F, 1e6F, nan}) {
+      Grid grid;
+      grid.width = size.x, grid.height = size.y;
+      std::mt19937 random(5);
+      const Version field = sampledField(grid, [&](int, int) { return random() % 7 == 0 ? value : 0.25F; });
+      EdgeLine plain = edgeLineOf({{3.0, -20.0}, {40.0, 80.0}});
+      for (EdgePoint& point : plain.points) point.located = false;
+      JobControl job;
+      const auto all =
+          measureEdges(field, 0.01,
+                       {edgeLineOf({{29.4, 5.0}, {29.4, 44.0}}), edgeLineOf({{-500.0, 3.0}, {-480.0, 3.0}}),
+                        edgeLineOf({{5.0, 0.0}, {6.0, 0.0}}), plain, EdgeLine{}},
+                       job);
+      ASSERT_TRUE(all);
+      for (const auto& sections : *all)
+        for (const EdgeSection& s : sections) {
+          EXPECT_TRUE(std::isfinite(s.step) && std::isfinite(s.step_deviation) && std::isfinite(s.turn) &&
+                      std::isfinite(s.turn_deviation) && std::isfinite(s.along_mm));
+          if (!s.measured) {
+            EXPECT_EQ(s.step_deviation, 0.0);
+          }
+        }
+      EXPECT_EQ(meansOf((*all)[1]).measured, 0);
+      EXPECT_EQ(meansOf((*all)[3]).measured, 0);
+      EXPECT_EQ(meansOf((*all)[4]).measured, 0);
+    }
+  JobControl job;
+  EXPECT_FALSE(measureEdges(twoPlaneField({}, 0.0, 1), 0.0, {}, job));
+  job.cancel();
+  EXPECT_FALSE(measureEdges(twoPlaneField({}, 0.0, 1), 0.01, {edgeLineOf({{29.4, 5.0}, {29.4, 44.0}})}, job));
+}
+
+}  // namespace
+}  // namespace fettle::engine
