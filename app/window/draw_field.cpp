@@ -85,6 +85,7 @@ void drawField(Parts& parts, bool sharp_motion) {
   if (parts.settings.display.marks)
     parts.line_overlay.append(client.field(), parts.marking.lines.chosen(client), picture.mmPerPixel(),
                               input.overlays);
+  parts.line_drag.append(client.field(), input.overlays);
   parts.stylus_overlay.begin(state);
   if (!picture.draw(std::move(input), Draws::kRefined, parts.feedback.status)) return;
   parts.stylus_overlay.drawn();

@@ -15,9 +15,11 @@ using render::Key;
 void toStylus(const InputEvent& event, Parts& parts) {
   LoopClient* const client = parts.document.client();
   if (client == nullptr || parts.marking.lasso().active()) return;
-  const Stylus::Hands hands = parts.feedback.questions.pending()            ? Stylus::Hands::kNone
-                              : parts.drag.active() || parts.brush.active() ? Stylus::Hands::kOther
-                                                                            : Stylus::Hands::kFree;
+  const Stylus::Hands hands =
+      parts.feedback.questions.pending() ? Stylus::Hands::kNone
+      : parts.drag.active() || parts.brush.active() || parts.line_drag.active() || LineDrag::begins(event)
+          ? Stylus::Hands::kOther
+          : Stylus::Hands::kFree;
   parts.stylus.handle(event, *client, parts.picture, hands);
 }
 
@@ -100,6 +102,10 @@ Input::Request Input::handle(const InputEvent& event, Parts& parts) {
                            {*client, parts.picture, parts.view, parts.settings.display, parts.drag.active()}))
     return {};
   if (event.kind == InputKind::kKeyDown) return handleKey(event, parts);
+  if (client != nullptr && !dialog && !parts.marking.lasso().active() &&
+      parts.line_drag.handle(event, {*client, parts.picture, parts.marking, parts.stylus.on(),
+                                     parts.settings.display.marks && client->field().lines() != nullptr}))
+    return {};
   const engine::Grid* const grid = parts.seenGrid();
   if (grid == nullptr || dialog) return {};
   if (pressesDeeper(event, parts)) {

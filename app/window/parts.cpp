@@ -32,6 +32,7 @@ void Parts::chooseTool(std::optional<haptic::Tool> tool) {
 
 void Parts::releaseHands() {
   drag.stop();
+  line_drag.stop();
   marking.release();
   LoopClient* const client = document.client();
   if (client != nullptr) brush.leave(*client, feedback.notices);
@@ -48,6 +49,7 @@ void Parts::dropCoarse() {
   window.clearPicture();
   picture.clear();
   drag.stop();
+  line_drag.stop();
 }
 
 void Parts::closeDocument(SessionKeeper::Afterwards afterwards) {

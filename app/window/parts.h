@@ -8,6 +8,7 @@
 #include "app/window/brush_adjustment.h"
 #include "app/window/change_figures.h"
 #include "app/window/feedback.h"
+#include "app/window/line_drag.h"
 #include "app/window/line_overlay.h"
 #include "app/window/marking.h"
 #include "app/window/opening.h"
@@ -53,6 +54,7 @@ struct Parts {
   ViewDrag drag;
 
   Marking marking;
+  LineDrag line_drag;
   FilterPreview filters;
   ChangeFigures change;
   ChoiceCosts costs;

@@ -10,6 +10,7 @@
 #include "app/work/replaced_files.h"
 #include "app/work/session_guard.h"
 #include "engine/formats/formats.h"
+#include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
 
 namespace fettle::app {
@@ -24,10 +25,20 @@ bool anyMark(const engine::Version& version) {
   return version.reader().root().marked_children != 0;
 }
 
-// The marks are stored next to the field: NAME_marks.png.
-std::string marksPath(const std::string& path) {
+bool hasLines(const engine::Version& version) {
+  return version.lines() != nullptr && !version.lines()->empty();
+}
+
+// What a format does not hold is stored next to the field: NAME_marks.png, NAME_lines.csv.
+std::string nextTo(const std::string& path, const char* ending) {
   const fs::path p(path);
-  return (p.parent_path() / (p.stem().string() + "_marks.png")).string();
+  return (p.parent_path() / (p.stem().string() + ending)).string();
+}
+std::string marksPath(const std::string& path) {
+  return nextTo(path, "_marks.png");
+}
+std::string linesPath(const std::string& path) {
+  return nextTo(path, "_lines.csv");
 }
 
 // The files that are written, and may replace others.
@@ -40,8 +51,11 @@ std::vector<std::string> outputsOf(const std::string& path, Saving::Keeping keep
         keeping == Saving::Keeping::kWorkThere && fs::equivalent(path, document.keeper()->path(), none);
     return itself ? std::vector<std::string>() : std::vector{path};
   }
-  if (anyMark(document.client()->upright())) return {path, marksPath(path)};
-  return {path};
+  std::vector<std::string> outputs{path};
+  const engine::Version field = document.client()->upright();
+  if (anyMark(field)) outputs.push_back(marksPath(path));
+  if (hasLines(field)) outputs.push_back(linesPath(path));
+  return outputs;
 }
 
 engine::Result<engine::Version> writeFiles(const std::string& path, const std::vector<std::string>& outputs,
@@ -57,6 +71,9 @@ engine::Result<engine::Version> writeFiles(const std::string& path, const std::v
   if (anyMark(field) && !isSessionPath(path))
     if (auto marks = engine::exportMarks(field, marksPath(path)); !marks)
       return tl::unexpected(marks.error());
+  if (hasLines(field) && !isSessionPath(path))
+    if (auto lines = engine::exportLines(linesPath(path), *field.lines(), field.grid()); !lines)
+      return tl::unexpected(lines.error());
   return field;
 }
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
 #include <filesystem>
 
 #include <fmt/format.h>
 
+#include "app/work/user_folder.h"
 #include "engine/formats/formats.h"
 #include "engine/session/checksum.h"
 
@@ -49,17 +49,7 @@ engine::Result<Document> openSessionDocument(const std::string& file, std::size_
 }  // namespace
 
 std::string recoveryFolder() {
-  fs::path folder;
-  if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0')
-    folder = state;
-  else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
-    folder = fs::path(home) / ".local" / "state";
-  else
-    return {};
-  folder /= "fettle";
-  std::error_code error;
-  fs::create_directories(folder, error);
-  return error ? std::string() : folder.string();
+  return userFolder("XDG_STATE_HOME", ".local/state");
 }
 
 std::string recoveryPath(const std::string& scan) {

@@ -1,25 +1,15 @@
 #include "app/work/recent_files.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+
+#include "app/work/user_folder.h"
 
 namespace fettle::app {
 
 std::string settingsFolder() {
-  namespace fs = std::filesystem;
-  fs::path folder;
-  if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
-    folder = config;
-  else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
-    folder = fs::path(home) / ".config";
-  else
-    return {};
-  folder /= "fettle";
-  std::error_code error;
-  fs::create_directories(folder, error);
-  return error ? std::string() : folder.string();
+  return userFolder("XDG_CONFIG_HOME", ".config");
 }
 
 std::string recentFile() {

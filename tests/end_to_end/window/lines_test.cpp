@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/lines/lines.h"
 #include "engine/session/line_codec.h"
 #include "tests/end_to_end/window/window_fixture.h"
 #include "tests/support/process.h"
@@ -62,6 +63,15 @@ TEST_F(WindowTest, strokes_become_edge_lines_that_are_cut_chosen_removed_and_kep
   (void)user.key("ctrl+y");
   (void)lines(1);
 
+  // Dragged aside, the line is located again: the edge is where it was.
+  (void)user.drag(1, {196, 330}, {199, 332}, 8, "ctrl+shift");
+  now = lines(1);
+  EXPECT_EQ(now["steps"], 5);
+  (void)user.key("ctrl+z");
+  (void)lines(1);
+
+  const std::string scan_with_lines = folder.file("work.tif");
+  saveAs(user, scan_with_lines);
   const std::string session = folder.file("work.fettle");
   saveAs(user, session);
   program->signal(SIGTERM);
@@ -70,6 +80,10 @@ TEST_F(WindowTest, strokes_become_edge_lines_that_are_cut_chosen_removed_and_kep
   const engine::Version kept = load(session);
   ASSERT_TRUE(kept.lines());
   EXPECT_EQ(kept.lines()->size(), 1U);
+  const engine::Version saved = load(scan_with_lines);
+  const auto beside = engine::importLines(folder.file("work_lines.csv"), saved);
+  ASSERT_TRUE(beside) << beside.error().line();
+  EXPECT_EQ(beside->size(), 1U);
   const Outcome again = runProcess({FETTLE_PROGRAM, "replay", session, folder.file("again.tif")});
   EXPECT_EQ(again.status, 0) << again.err;
 }

@@ -1,0 +1,85 @@
+#include "app/window/line_drag.h"
+
+#include <algorithm>
+
+#include <glm/geometric.hpp>
+
+namespace fettle::app {
+
+namespace {
+
+using render::InputKind;
+using render::MouseButton;
+
+constexpr double kGrip_px = 10.0;  // within which a line is under the cursor
+constexpr double kClick_px = 3.0;  // a longer movement is no click
+
+double gripOf(const engine::Grid& grid, const WindowPicture& picture) {
+  return std::max(1.0, kGrip_px * picture.mmPerPixel() / std::min(grid.spacingXMm(), grid.spacingYMm()));
+}
+
+glm::dvec3 onSurface(const engine::Version& field, glm::dvec2 at) {
+  const engine::Grid& grid = field.grid();
+  const auto sample = [](double v, std::int32_t side) {
+    return static_cast<std::int32_t>(std::clamp(v + 0.5, 0.0, side - 1.0));
+  };
+  const double z =
+      static_cast<double>(field.reader().heightAt(sample(at.x, grid.width), sample(at.y, grid.height)));
+  return {at.x * grid.spacingXMm(), at.y * grid.spacingYMm(), z == z ? z * grid.height_unit.mm : 0.0};
+}
+
+}  // namespace
+
+std::optional<glm::dvec2> LineDrag::placeOf(const render::InputEvent& event, const Scope& scope) {
+  if (event.panels_mouse || !scope.picture.inside(event.x, event.y)) return std::nullopt;
+  const auto picked = scope.picture.pick(event.x, event.y);
+  if (!picked) return std::nullopt;
+  const engine::Grid& grid = scope.client.field().grid();
+  return glm::dvec2(picked->position_mm) / glm::dvec2(grid.spacingXMm(), grid.spacingYMm());
+}
+
+bool LineDrag::handle(const render::InputEvent& event, const Scope& scope) {
+  if (event.kind == InputKind::kMove && dragged_) {
+    to_ = placeOf(event, scope).value_or(to_);
+    return true;
+  }
+  if (event.button != MouseButton::kLeft) return false;
+  LineTool& lines = scope.marking.lines;
+  const double grip = gripOf(scope.client.field().grid(), scope.picture);
+  if (event.kind == InputKind::kButtonDown && scope.lines_are_shown) {
+    click_.reset();
+    if (!begins(event)) {
+      if (!scope.tool_on) click_ = {event.x, event.y};
+      return false;
+    }
+    const auto place = placeOf(event, scope);
+    if (!place) return true;
+    dragged_ = LineTool::lineAt(scope.client, *place, grip);
+    lines.choose(dragged_);
+    from_ = to_ = *place;
+    return true;
+  }
+  if (event.kind != InputKind::kButtonUp) return false;
+  if (dragged_) {
+    if (glm::distance(from_, to_) > 0.5) lines.drag(scope.marking.edit, *dragged_, from_, to_);
+    dragged_.reset();
+    return true;
+  }
+  if (click_ && glm::distance(*click_, {event.x, event.y}) <= kClick_px)
+    if (const auto place = placeOf(event, scope))
+      if (const auto id = LineTool::lineAt(scope.client, *place, grip)) lines.choose(id);
+  click_.reset();
+  return false;
+}
+
+void LineDrag::append(const engine::Version& field, render::Overlays& overlays) const {
+  if (!dragged_) return;
+  render::OverlayLine thread;
+  thread.from_mm = onSurface(field, from_);
+  thread.to_mm = onSurface(field, to_);
+  thread.width_px = 3.0F;
+  thread.colour = {1.0F, 1.0F, 0.25F};
+  overlays.lines.push_back(thread);
+}
+
+}  // namespace fettle::app

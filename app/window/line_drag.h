@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <glm/vec2.hpp>
+
+#include "app/window/marking.h"
+#include "render/live/live_picture.h"
+
+namespace fettle::app {
+
+/// Edge lines under the cursor: a click chooses the line (where no tool is on), Ctrl+Shift and the left button drag it.
+/// Threading: main.
+class LineDrag {
+ public:
+  struct Scope {
+    LoopClient& client;
+    const WindowPicture& picture;
+    Marking& marking;
+    bool tool_on;
+    bool lines_are_shown;
+  };
+
+  /// Whether the press of a button begins a drag, whatever else it would do.
+  [[nodiscard]] static bool begins(const render::InputEvent& event) noexcept {
+    return event.kind == render::InputKind::kButtonDown && event.button == render::MouseButton::kLeft &&
+           event.modifiers.control && event.modifiers.shift && !event.modifiers.alt;
+  }
+  /// Whether it used the event; a click is passed on, for it may turn the view, too.
+  bool handle(const render::InputEvent& event, const Scope& scope);
+  [[nodiscard]] bool active() const noexcept { return dragged_.has_value(); }
+  void stop() noexcept { dragged_.reset(); }
+
+  /// Adds the thread from where the line was held to the cursor.
+  void append(const engine::Version& field, render::Overlays& overlays) const;
+
+ private:
+  [[nodiscard]] static std::optional<glm::dvec2> placeOf(const render::InputEvent& event, const Scope& scope);
+
+  std::optional<std::int64_t> dragged_;
+  glm::dvec2 from_{0.0}, to_{0.0};   // [samples]
+  std::optional<glm::dvec2> click_;  // [pixels] where the button went down
+};
+
+}  // namespace fettle::app
