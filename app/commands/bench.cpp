@@ -247,8 +247,8 @@ void printPicture(const Report& report) {
   for (const Report& row : report["rows"])
     fmt::print(
         "{:<14}{:>8.1f}{:>8.2f}{:>8.2f}{:>8.2f}{:>8.2f}{:>7.2f}{:>9}{:>7.2f}{:>8.3f}{:>9.2f}{:>9.2f}{:>7}{:>"
-        "9}"
-        "{:>7.3f}  {}\n",
+        "9}{:>7.3f}  "
+        "{}\n",
         row["name"].get<std::string>(), row["samples"].get<double>() / 1e6, row["p50_ms"].get<double>(),
         row["p99_ms"].get<double>(), row["worst_ms"].get<double>(), row["cpu_ms"].get<double>(),
         row["of_plain"].get<double>(), row["vertices"].get<std::int64_t>(), row["bound_px"].get<double>(),

@@ -52,10 +52,8 @@ std::string valueAndTarget(double value, double target, int digits) {
 void printBenchFilters(const Report& report) {
   fmt::print(
       "{}\nwhole filter with its report, million samples/s, median of {} runs; share: of plain copying of "
-      "floats "
-      "by as many threads, in the same run, and its target; x one: of the rate with one thread, and its "
-      "target; "
-      "*: met; CPU: per second of processor time\n\n",
+      "floats by as many threads, in the same run, and its target; x one: of the rate with one thread, and "
+      "its target; *: met; CPU: per second of processor time\n\n",
       report["machine"].get<std::string>(), report["repeats"].get<int>());
   fmt::print("{:<12}{:>7}{:>8}{:>9}{:>7}{:>10}{:>10}{:>10}{:>8}{:>16}{:>16}{:>10}{:>10}  hash\n", "",
              "window", "ground", "threads", "side", "Ms/s", "slowest", "fastest", "copy", "share target ",

@@ -33,15 +33,13 @@ std::string scriptOf(const bench::Growth& growth) {
     const char* colour = kPlotColours[i % std::size(kPlotColours)];
     plots += fmt::format(
         "{0}$s{1} using 1:2:2:3 with yerrorbars lc rgb '{2}' pt 0 lw 1 notitle, $s{1} using 1:2 with "
-        "linespoints lc "
-        "rgb '{2}' lw 1.5 pt 7 ps 0.7 title {3}",
+        "linespoints lc rgb '{2}' lw 1.5 pt 7 ps 0.7 title {3}",
         i == 0 ? "plot " : ", ", i, colour, quoted(fmt::format("{}: {:.2f}", series.name, series.slope)));
   }
   // Costs that do not grow must not look as if they did.
   return script +
          "set autoscale yfixmin\nset yrange [*:*] extend\nset key title 'slope' left\nset offsets graph 0, "
-         "0, "
-         "graph 0.2, graph 0.2\n" +
+         "0, graph 0.2, graph 0.2\n" +
          plots + "\n";
 }
 

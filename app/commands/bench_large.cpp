@@ -97,8 +97,7 @@ void printBenchLarge(const Report& report) {
   const Report& loop = report["live_loop"];
   fmt::print(
       "\nlive loop at 1 kHz: {} ticks, {} in contact, {} without contact because samples were on the disk;  "
-      "waited for the disk {} times; {} tiles read, {} not locked; compute p50 {:.1f} us, p99.9 {:.1f} "
-      "us, "
+      "waited for the disk {} times; {} tiles read, {} not locked; compute p50 {:.1f} us, p99.9 {:.1f} us, "
       "worst {:.1f} us\n",
       loop["ticks"].get<std::uint64_t>(), loop["contact_ticks"].get<std::uint64_t>(),
       loop["ticks_not_near"].get<std::uint64_t>(), loop["disk_waits"].get<std::uint64_t>(),

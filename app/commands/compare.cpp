@@ -10,7 +10,6 @@
 #include "app/work/streams.h"
 #include "engine/compare/compare.h"
 #include "engine/compare/deviation_field.h"
-#include "engine/io/raster/marks.h"
 
 namespace fettle::app {
 
@@ -80,13 +79,9 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
 
   const auto truth = loadScan(options.truth, options.reading, job);
   if (!truth) return tl::unexpected(truth.error());
-  engine::Version edges = truth->field;
-  if (!options.edges.empty()) {
-    auto marked = engine::importMarks(truth->field, options.edges);
-    if (!marked) return tl::unexpected(marked.error());
-    edges = *std::move(marked);
-  }
-  const auto figures = engine::compareToTruth(b->field, truth->field, edges, job);
+  const auto edges = withMarks(truth->field, options.edges);
+  if (!edges) return tl::unexpected(edges.error());
+  const auto figures = engine::compareToTruth(b->field, truth->field, *edges, job);
   if (!figures) return tl::unexpected(figures.error());
   report["rmse"] = figures->rmse;
   report["rmse_flat"] = figures->rmse_flat;

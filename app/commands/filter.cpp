@@ -19,7 +19,6 @@
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
 #include "engine/io/lines/lines.h"
-#include "engine/io/raster/marks.h"
 #include "engine/suggest/filter_suggestion.h"
 
 namespace fettle::app {
@@ -72,12 +71,9 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   if (!imported) return tl::unexpected(imported.error());
   const auto original = originalOf(*imported, options.original, options.reading, job);
   if (!original) return tl::unexpected(original.error());
-  engine::Version field = imported->field;
-  if (const std::string& marks = options.only.empty() ? options.keep : options.only; !marks.empty()) {
-    auto marked = engine::importMarks(field, marks);
-    if (!marked) return tl::unexpected(marked.error());
-    field = *std::move(marked);
-  }
+  auto marked = withMarks(imported->field, options.only.empty() ? options.keep : options.only);
+  if (!marked) return tl::unexpected(marked.error());
+  engine::Version field = *std::move(marked);
   if (!options.lines.empty()) {
     auto lines = engine::importLines(options.lines, field);
     if (!lines) return tl::unexpected(lines.error());
@@ -127,7 +123,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
                  {"rms_change", filtered->report.rms_change},
                  {"seconds", seconds},
                  {"samples_per_second", samples / seconds},
-                 {"hash", fmt::format("{:016x}", engine::contentHash(filtered->field))}});
+                 {"hash", hashOf(filtered->field)}});
   return report;
 }
 
@@ -261,12 +257,9 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   const ProgressLine progress(job);
   auto imported = loadScan(options.files.files[0], options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  engine::Version field = imported->field;
-  if (!options.keep.empty()) {
-    auto marked = engine::importMarks(field, options.keep);
-    if (!marked) return tl::unexpected(marked.error());
-    field = *std::move(marked);
-  }
+  auto marked = withMarks(imported->field, options.keep);
+  if (!marked) return tl::unexpected(marked.error());
+  const engine::Version field = *std::move(marked);
   engine::SuggestionRequest request;
   const auto tolerance = parseHeight(options.tolerance, field.grid(), "--tolerance");
   if (!tolerance) return tl::unexpected(tolerance.error());

@@ -103,12 +103,9 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     return tl::unexpected(status.error());
   auto imported = loadScan(options.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  engine::Version field = imported->field;
-  if (!options.add.empty()) {
-    auto marked = engine::importMarks(field, options.add);
-    if (!marked) return tl::unexpected(marked.error());
-    field = *std::move(marked);
-  }
+  auto marked = withMarks(imported->field, options.add);
+  if (!marked) return tl::unexpected(marked.error());
+  engine::Version field = *std::move(marked);
   const engine::Stopwatch watch;
   Report report;
   if (options.edges) {
@@ -129,9 +126,9 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
         return tl::unexpected(status.error());
   }
   if (!options.strokes.empty()) {
-    auto marked = markStrokes(field, options, report, job);
-    if (!marked) return tl::unexpected(marked.error());
-    field = *std::move(marked);
+    auto along = markStrokes(field, options, report, job);
+    if (!along) return tl::unexpected(along.error());
+    field = *std::move(along);
   }
   if (options.invert) {
     auto inverted = engine::invertMarks(field, job);

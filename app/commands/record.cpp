@@ -251,12 +251,9 @@ engine::Result<Field> load(const RecordArguments& options, engine::JobControl& j
   if (!imported) return tl::unexpected(imported.error());
   auto original = originalOf(*imported, options.original, options.reading, job);
   if (!original) return tl::unexpected(original.error());
-  Field field{*std::move(original), imported->field};
-  if (options.marks.empty()) return field;
-  auto marked = engine::importMarks(field.start, options.marks);
+  auto marked = withMarks(imported->field, options.marks);
   if (!marked) return tl::unexpected(marked.error());
-  field.start = *std::move(marked);
-  return field;
+  return Field{*std::move(original), *std::move(marked)};
 }
 
 // The recording is stored first, regardless of other errors, and cannot be cancelled.
@@ -272,20 +269,12 @@ engine::Status save(const RecordArguments& options, const engine::Version& field
   return {};
 }
 
-std::string hashOf(const engine::Version& field) {
-  return fmt::format("{:016x}", engine::contentHash(field));
-}
-
 engine::Result<Report> record(const RecordArguments& options, engine::JobControl& job) {
-  haptic::Scene scene = haptic::defaultScene();
-  if (!options.scene.empty()) {
-    auto loaded = haptic::loadScene(options.scene);
-    if (!loaded) return tl::unexpected(loaded.error());
-    scene = *std::move(loaded);
-  }
-  if (auto status = checkOriginal(options.original, scene.max_change.has_value(), options.out); !status)
+  const auto scene = haptic::loadSceneOrDefault(options.scene);
+  if (!scene) return tl::unexpected(scene.error());
+  if (auto status = checkOriginal(options.original, scene->max_change.has_value(), options.out); !status)
     return tl::unexpected(status.error());
-  auto chosen = choose(options, scene);
+  auto chosen = choose(options, *scene);
   if (!chosen) return tl::unexpected(chosen.error());
   if (auto status = checkOutputs({{options.strokes, OutputKind::kText},
                                   {options.out, OutputKind::kField},
@@ -296,15 +285,15 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
     return tl::unexpected(status.error());
   const auto field = load(options, job);
   if (!field) return tl::unexpected(field.error());
-  const engine::Version felt = scene.invert ? field->start.inverted() : field->start;
-  const auto settings = settingsFor(options, *chosen, felt, scene);
+  const engine::Version felt = scene->invert ? field->start.inverted() : field->start;
+  const auto settings = settingsFor(options, *chosen, felt, *scene);
   if (!settings) return tl::unexpected(settings.error());
   auto strokes = haptic::StrokesWriter::create(options.strokes);
   if (!strokes) return tl::unexpected(strokes.error());
 
   haptic::Device& device = *chosen->device;
   SessionLog log(*strokes);
-  auto outcome = runLive(field->start, field->original, scene, device, *settings, log, job);
+  auto outcome = runLive(field->start, field->original, *scene, device, *settings, log, job);
   if (!outcome) return tl::unexpected(outcome.error());
   if (auto status = save(options, outcome->field, field->original, *strokes); !status)
     return tl::unexpected(status.error());
@@ -313,7 +302,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
   engine::JobControl unhurried;
   const auto rows = haptic::readStrokes(options.strokes);
   if (!rows) return tl::unexpected(rows.error());
-  const auto again = haptic::replay(field->start, field->original, *rows, scene, {}, unhurried);
+  const auto again = haptic::replay(field->start, field->original, *rows, *scene, {}, unhurried);
   if (!again) return tl::unexpected(again.error());
   const std::string hash = hashOf(outcome->field);
   const std::string replayed = hashOf(again->field);
@@ -325,9 +314,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
             : ", please report it"));
 
   if (device.profile().gives_force && again->report.contact_ticks > 0 && !(log.given().peak_n > 0.0))
-    warn(
-        "there was no force and no edit: armed inside the surface, the stylus must first come out of "
-        "it");
+    warn("there was no force and no edit: armed inside the surface, the stylus must first come out of it");
 
   const haptic::Workspace& workspace = settings->loop.options.workspace;
   const bool desk = device.profile().space == haptic::DeviceSpace::kDesk;
@@ -347,7 +334,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
                 {"not_near", outcome->last.not_prefetched},
                 {"rate_hz", options.rate_hz},
                 {"scale", desk ? Report(workspace.scale()) : Report()},
-                {"felt_stiffness_n_per_mm", workspace.feltStiffness(scene.stiffness_n_per_mm)},
+                {"felt_stiffness_n_per_mm", workspace.feltStiffness(scene->stiffness_n_per_mm)},
                 {"missed", outcome->missed},
                 {"over_1_ms", outcome->over_1_ms},
                 {"lateness", timingOf(outcome->lateness)},

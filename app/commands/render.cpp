@@ -12,7 +12,6 @@
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
-#include "engine/io/raster/marks.h"
 #include "render/live/picture_rows.h"
 
 namespace fettle::app {
@@ -82,17 +81,14 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
 
   const auto scan = loadScan(options.scan, options.reading, job);
   if (!scan) return tl::unexpected(scan.error());
-  w.shown.versions = {scan->field};
+  auto marked = withMarks(scan->field, options.marks);
+  if (!marked) return tl::unexpected(marked.error());
+  w.shown.versions = {*std::move(marked)};
+  if (!options.marks.empty()) w.shown.marks = render::MarksOverlay::kShow;
   const auto fileName = [](const std::string& path) {
     return std::filesystem::path(shownInput(path)).filename().string();
   };
   w.input.titles = {options.title.empty() ? fileName(options.scan) : options.title};
-  if (!options.marks.empty()) {
-    auto marked = engine::importMarks(scan->field, options.marks);
-    if (!marked) return tl::unexpected(marked.error());
-    w.shown.versions = {*std::move(marked)};
-    w.shown.marks = render::MarksOverlay::kShow;
-  }
   if (!options.compare.empty()) {
     const auto other = loadScan(options.compare, options.reading, job);
     if (!other) return tl::unexpected(other.error());

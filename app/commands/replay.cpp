@@ -139,13 +139,9 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
                        options.replacing, job);
       !status)
     return tl::unexpected(status.error());
-  haptic::Scene scene = haptic::defaultScene();
-  if (!options.scene.empty()) {
-    auto loaded = haptic::loadScene(options.scene);
-    if (!loaded) return tl::unexpected(loaded.error());
-    scene = *std::move(loaded);
-  }
-  if (auto status = checkOriginal(options.original, scene.max_change.has_value(), options.out); !status)
+  const auto scene = haptic::loadSceneOrDefault(options.scene);
+  if (!scene) return tl::unexpected(scene.error());
+  if (auto status = checkOriginal(options.original, scene->max_change.has_value(), options.out); !status)
     return tl::unexpected(status.error());
   const auto strokes = haptic::readStrokes(options.strokes);
   if (!strokes) return tl::unexpected(strokes.error());
@@ -155,12 +151,9 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   if (!imported) return tl::unexpected(imported.error());
   const auto original = originalOf(*imported, options.original, options.reading, job);
   if (!original) return tl::unexpected(original.error());
-  engine::Version field = imported->field;
-  if (!options.marks.empty()) {
-    auto marked = engine::importMarks(field, options.marks);
-    if (!marked) return tl::unexpected(marked.error());
-    field = *std::move(marked);
-  }
+  auto marked = withMarks(imported->field, options.marks);
+  if (!marked) return tl::unexpected(marked.error());
+  const engine::Version field = *std::move(marked);
 
   haptic::ReplayOptions replay_options;
   if (!options.forces.empty()) replay_options.record_forces = haptic::RecordForces::kYes;
@@ -169,9 +162,9 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   // scene would be refused, so a warning is given here first.
   if (!options.scene.empty())
     if (const auto problem =
-            problemOnEveryDevice(scene, field.grid(), haptic::HapticLoop::Settings{}.rate_hz))
+            problemOnEveryDevice(*scene, field.grid(), haptic::HapticLoop::Settings{}.rate_hz))
       warn(fmt::format("{}: {}", options.scene, withoutForceText(*problem)));
-  const auto result = haptic::replay(field, *original, *strokes, scene, replay_options, job);
+  const auto result = haptic::replay(field, *original, *strokes, *scene, replay_options, job);
   if (!result) return tl::unexpected(result.error());
 
   if (auto status = saveField(result->field, options.out, job, beginningWith(*original), options.to); !status)
@@ -195,7 +188,7 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
                 {"marked", r.marked},
                 {"seconds", r.seconds},
                 {"ticks_per_second", r.ticks_per_second},
-                {"hash", fmt::format("{:016x}", engine::contentHash(result->field))}};
+                {"hash", hashOf(result->field)}};
   if (options.certify) {
     report["above_certified"] = r.above_certified;
     report["worst_excess_mm"] = r.worst_excess_mm;

@@ -6,6 +6,7 @@
 #include "app/work/outputs.h"
 #include "app/work/streams.h"
 #include "engine/formats/formats.h"
+#include "engine/io/raster/marks.h"
 
 namespace fettle::app {
 
@@ -33,6 +34,14 @@ engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOpt
   auto imported = engine::importField(input->path(), *import, job);
   if (!imported) return tl::unexpected(input->renamed(imported.error()));
   return warned(std::move(imported), shownInput(path));
+}
+
+engine::Result<engine::Version> withMarks(const engine::Version& field, const std::string& picture) {
+  return picture.empty() ? field : engine::importMarks(field, picture);
+}
+
+std::string hashOf(const engine::Version& field) {
+  return fmt::format("{:016x}", engine::contentHash(field));
 }
 
 engine::Status saveField(const engine::Version& field, const std::string& path, engine::JobControl& job,

@@ -14,6 +14,13 @@ namespace fettle::app {
 [[nodiscard]] engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
                                                         engine::JobControl& job);
 
+/// A field with the marks of a picture; without a picture, empty, the field itself.
+[[nodiscard]] engine::Result<engine::Version> withMarks(const engine::Version& field,
+                                                        const std::string& picture);
+
+/// The hash of a field's samples and marks as reports print it.
+[[nodiscard]] std::string hashOf(const engine::Version& field);
+
 /// Writes a field, to "-" in the format of the extension `to`; warnings about what the format could not store
 /// go to stderr. With `writing.original` a session begins with that.
 [[nodiscard]] engine::Status saveField(const engine::Version& field, const std::string& path,

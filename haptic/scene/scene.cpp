@@ -281,6 +281,10 @@ engine::Result<Scene> parseScene(const std::string& text, const std::string& nam
   return scene;
 }
 
+engine::Result<Scene> loadSceneOrDefault(const std::string& path) {
+  return path.empty() ? defaultScene() : loadScene(path);
+}
+
 engine::Result<Scene> loadScene(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   std::stringstream text;

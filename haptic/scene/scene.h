@@ -91,6 +91,8 @@ struct Scene {
 /// defaultScene()'s value. Errors (kInput, naming file and line): unreadable, no TOML, an unknown key or
 /// effect, a value of the wrong type or out of range. Thread: any.
 [[nodiscard]] engine::Result<Scene> loadScene(const std::string& path);
+/// The same; without a path, empty, the default scene.
+[[nodiscard]] engine::Result<Scene> loadSceneOrDefault(const std::string& path);
 /// The same from a text that calls itself `name` in errors.
 [[nodiscard]] engine::Result<Scene> parseScene(const std::string& text, const std::string& name);
 /// A scene file's text that parseScene reads back to the very same scene (in range).

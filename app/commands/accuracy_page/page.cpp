@@ -112,15 +112,12 @@ std::string accuracyPage(const std::vector<PlottedStudy>& studies, const std::st
                         escaped(s.study.question));
   page +=
       "</ul>\n<p class=how>In each plot further down is nearer the truth and further left is faster; a line "
-      "joins what "
-      "is worth choosing, hollow points are beaten in both. Numbers at points name the method. Errors below "
-      "1e-9 are "
-      "drawn on the lower edge.</p>\n";
+      "joins what is worth choosing, hollow points are beaten in both. Numbers at points name the method. "
+      "Errors below 1e-9 are drawn on the lower edge.</p>\n";
   for (const PlottedStudy& s : studies) {
     page += fmt::format(
         "<h2 id=\"{}\">{}</h2>\n<p class=ask>{}</p>\n<p class=answer>{}</p>\n{}\n<p class=how>{}</p>\n{}<p "
-        "class=how>"
-        "<b>Measured against:</b> {}</p>\n<details><summary>All figures</summary>\n{}</details>\n",
+        "class=how><b>Measured against:</b> {}</p>\n<details><summary>All figures</summary>\n{}</details>\n",
         s.study.id, escaped(s.study.title), escaped(s.study.question), escaped(s.study.answer), s.svg,
         legendOf(s.study), viewsOf(s), escaped(s.study.reference), tableOf(s.study));
   }
