@@ -91,8 +91,7 @@ engine::Result<std::vector<StiffnessRow>> stiffnessSweep(const StiffnessSweepOpt
                    [](double rate) { return inRange(rate, 100.0, 20000.0); }))
     return engine::inputError(
         "damping, mass, press or rate is out of range", "stiffness sweep",
-        "damping 1e-5 to 0.02 N s/mm, mass 0.01 to 10 kg, press 0.1 to 100 N, rates 100 to "
-        "20000 Hz");
+        "damping 1e-5 to 0.02 N s/mm, mass 0.01 to 10 kg, press 0.1 to 100 N, rates 100 to 20000 Hz");
   const engine::Version field = flatField();
   std::vector<StiffnessRow> rows;
   job.begin("sweeping stiffness", options.rates_hz.size() * kHalvings);

@@ -133,9 +133,8 @@ engine::Result<Study> automaticStudy(const AccuracyOptions& options, engine::Job
   }
   study.reference = fmt::format(
       "The simulated parts' truth, formulas in millimetres (fettle synth), with {} {} of noise each. Near "
-      "edges: "
-      "within 3 samples of a true edge; flats: further than 12. Every filter takes its range sigma from the "
-      "scan's noise as it measures it; no parameter was chosen by the part.",
+      "edges: within 3 samples of a true edge; flats: further than 12. Every filter takes its range sigma "
+      "from the scan's noise as it measures it; no parameter was chosen by the part.",
       seeds, seeds == 1 ? "seed" : "seeds");
   const AccuracyRow& bracket = rowOf(study, "bracket", "tgv");
   const AccuracyRow& plain = rowOf(study, "bracket", "tv 31");
@@ -143,10 +142,8 @@ engine::Result<Study> automaticStudy(const AccuracyOptions& options, engine::Job
   const AccuracyRow& plain_steps = rowOf(study, "steps, noise x 3", "tv 31");
   study.answer = fmt::format(
       "On the bracket tgv leaves {:.1f} um over all and {:.1f} near edges, tv {:.1f} and {:.1f}; on steps of "
-      "the "
-      "noise's own size {:.1f} and {:.1f} against {:.1f} and {:.1f}. Where scanners leave mixed pixels, tgv "
-      "leaves "
-      "{:.0f} um of the bracket's {:.0f}.",
+      "the noise's own size {:.1f} and {:.1f} against {:.1f} and {:.1f}. Where scanners leave mixed pixels, "
+      "tgv leaves {:.0f} um of the bracket's {:.0f}.",
       bracket.error, bracket.more[kNear], plain.error, plain.more[kNear], steps.error, steps.more[kNear],
       plain_steps.error, plain_steps.more[kNear], rowOf(study, "bracket, 2 % mixed pixels", "tgv").error,
       rowOf(study, "bracket, 2 % mixed pixels", "nothing").error);

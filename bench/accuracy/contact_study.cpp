@@ -77,16 +77,12 @@ engine::Result<Study> contactStudy(const AccuracyOptions& options, engine::JobCo
   }
   study.reference = fmt::format(
       "For a point, the true closest point of all cells within 16 cells (level certified, branch and bound "
-      "in "
-      "double; proved against long double brute force by ctest -R Certified). Checked here by looking at 33 "
-      "x 33 "
-      "points of every cell in that radius, for twelve ticks of each subject: none was nearer by more than "
-      "{:.1e} "
-      "mm. For a ball, the same on the field grown by the ball, 8 x 8 samples per cell, over 96 x 96 cells: "
-      "its "
-      "centres stand one radius from the surface to within {:.1e} mm of cells of 0.05 mm, so errors below "
-      "that are "
-      "the reference's own. There a ball is at the closest point when it is within 0.02 cells of it.",
+      "in double; proved against long double brute force by ctest -R Certified). Checked here by looking at "
+      "33 x 33 points of every cell in that radius, for twelve ticks of each subject: none was nearer by "
+      "more than {:.1e} mm. For a ball, the same on the field grown by the ball, 8 x 8 samples per cell, "
+      "over 96 x 96 cells: its centres stand one radius from the surface to within {:.1e} mm of cells of "
+      "0.05 mm, so errors below that are the reference's own. There a ball is at the closest point when it "
+      "is within 0.02 cells of it.",
       point_truth_error, ball_truth_error);
   const AccuracyRow& fast = rowOf(study, "noise", "paper, to rest");
   const AccuracyRow& sure = rowOf(study, "noise", "certified, 8 cells");
@@ -94,12 +90,9 @@ engine::Result<Study> contactStudy(const AccuracyOptions& options, engine::JobCo
   const AccuracyRow& ball = rowOf(study, "noise", "ball, radius 2 cells");
   study.answer = fmt::format(
       "The fast level (paper, to rest) loses nothing on smooth surfaces (flat: {:.1e} N) and rests in a "
-      "minimum "
-      "that is not the nearest in {:.1f} % of the ticks on noise of 20 um: force is off by {:.3f} N on "
-      "average, "
-      "{:.3f} N at worst, with 1 N/mm. Being certain within 8 cells costs {:.1f} times its time; a ball of 2 "
-      "cells, "
-      "which slides and never jumps, is off by {:.3f} N for {:.0f} times.",
+      "minimum that is not the nearest in {:.1f} % of the ticks on noise of 20 um: force is off by {:.3f} N "
+      "on average, {:.3f} N at worst, with 1 N/mm. Being certain within 8 cells costs {:.1f} times its time; "
+      "a ball of 2 cells, which slides and never jumps, is off by {:.3f} N for {:.0f} times.",
       flat.error, 100 * fast.wrong, fast.error, fast.error_worst, sure.cost / fast.cost, ball.error,
       ball.cost / fast.cost);
   return study;

@@ -83,8 +83,7 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
   }
   study.reference = fmt::format(
       "The picture of every sample, drawn by the same shaders on {}, 1280 x 800, from {} sides. The "
-      "geometric bound "
-      "is proved (render/detail/detail.h) and held against brute force by ctest -R Detail.",
+      "geometric bound is proved (render/detail/detail.h) and held against brute force by ctest -R Detail.",
       picture.device(), views);
   const std::string& name = subjects.front().name;
   const AccuracyRow& usual = rowOf(study, name, "64 k vertices");
@@ -92,10 +91,8 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
   const AccuracyRow& half = rowOf(study, name, "64 k vertices, half as sharp");
   study.answer = fmt::format(
       "The usual 64 k vertices draw in {:.0f} ms what takes {:.0f} ms with every sample; pixels are {:.1f} "
-      "codes of "
-      "255 off on average, {:.1f} % of them by more than 16. While the camera moves, half as sharp takes "
-      "{:.0f} ms "
-      "and is {:.1f} codes off.",
+      "codes of 255 off on average, {:.1f} % of them by more than 16. While the camera moves, half as sharp "
+      "takes {:.0f} ms and is {:.1f} codes off.",
       usual.cost, every.cost, usual.error, 100 * usual.wrong, half.cost, half.error);
   return study;
 }

@@ -141,10 +141,8 @@ engine::Result<Study> edgeLineStudy(const AccuracyOptions& options, engine::JobC
   }
   study.reference = fmt::format(
       "The true edges of simulated parts of {} x {} samples, exact to a millionth of a millimetre; strokes "
-      "with "
-      "the tremor and drift measured on surgeons along each of them. {} seeds of noise and {} of the hand: "
-      "mean "
-      "and worst run. Of the located lines only points that the program states as located count.",
+      "with the tremor and drift measured on surgeons along each of them. {} seeds of noise and {} of the "
+      "hand: mean and worst run. Of the located lines only points that the program states as located count.",
       side, side, seeds, hands);
   std::string figures;
   for (const LineSubject& subject : kLineSubjects) {

@@ -161,10 +161,8 @@ engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobCon
   }
   study.reference = fmt::format(
       "The exact filters, which state and keep 0.5 ulp (ctest -R Filter holds them against double-precision "
-      "twins). "
-      "Checked here against sums of all weights in long double, and sorted windows, at 60 samples of each "
-      "subject: off "
-      "by {:.1e} um at most, the last bit of a float.",
+      "twins). Checked here against sums of all weights in long double, and sorted windows, at 60 samples of "
+      "each subject: off by {:.1e} um at most, the last bit of a float.",
       check);
   const AccuracyRow& exact = rowOf(study, "noisy step on a slope", "Gaussian 5, exact (used)");
   const AccuracyRow& boxes = rowOf(study, "noisy step on a slope", "Gaussian 5, three boxes (used)");
@@ -172,10 +170,9 @@ engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobCon
   const AccuracyRow& coarse = rowOf(study, "noisy step on a slope", "median 11, 256 levels");
   study.answer = fmt::format(
       "Next to a 1 mm step three boxes in place of a Gaussian are off by up to {:.0f} um, a recursive "
-      "Gaussian by up to "
-      "{:.0f} um ({:.1f} times as fast as the exact one). A median of 256 levels, as 8-bit image libraries "
-      "do it, is "
-      "off by {:.1f} um on average. Fettle's filters are exact; approximations are only used on request.",
+      "Gaussian by up to {:.0f} um ({:.1f} times as fast as the exact one). A median of 256 levels, as 8-bit "
+      "image libraries do it, is off by {:.1f} um on average. Fettle's filters are exact; approximations are "
+      "only used on request.",
       boxes.error_worst, recursive.error_worst, exact.cost / recursive.cost, coarse.error);
   return study;
 }

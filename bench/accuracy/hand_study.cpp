@@ -178,17 +178,13 @@ engine::Result<Study> handStudy(const AccuracyOptions& options, engine::JobContr
   }
   study.reference = fmt::format(
       "The simulated parts' truth; parts of {} x {} samples, {} {} of noise, {} {} along all edges of each; "
-      "every "
-      "row is tgv with the range of its own measure of the noise. Near edges: within 3 samples of a true "
-      "edge. As "
-      "drawn: the hand's strokes cut as they are, 1.3 to 1.6 samples off.",
+      "every row is tgv with the range of its own measure of the noise. Near edges: within 3 samples of a "
+      "true edge. As drawn: the hand's strokes cut as they are, 1.3 to 1.6 samples off.",
       side, side, seeds, seeds == 1 ? "seed" : "seeds", hands, hands == 1 ? "hand" : "hands");
   study.answer = fmt::format(
       "Of what true lines would gain near edges, the located lines of a hand gain {}. Where the filter finds "
-      "the "
-      "edges by itself true lines gain less than a tenth, and so does the hand: {}. Over a whole part the "
-      "hand leaves "
-      "at most {:.3f} times what the filter leaves alone.",
+      "the edges by itself true lines gain less than a tenth, and so does the hand: {}. Over a whole part "
+      "the hand leaves at most {:.3f} times what the filter leaves alone.",
       shares.empty() ? "nothing" : shares, without.empty() ? "none" : without, most);
   return study;
 }

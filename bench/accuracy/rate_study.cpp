@@ -142,19 +142,16 @@ engine::Result<Study> rateStudy(const AccuracyOptions& options, engine::JobContr
   }
   study.reference = fmt::format(
       "The same hand (0.15 kg on 0.3 N/mm, closed loop, {:g} N/mm surface) at {:g} kHz. Checked on the flat "
-      "by doubling "
-      "that once more: its force moves by {:.1e} N on average.",
+      "by doubling that once more: its force moves by {:.1e} N on average.",
       kStiffness, kReferenceHz / 1000.0, check);
   const AccuracyRow& usual = rowOf(study, "flat", "1 kHz");
   const AccuracyRow& noise = rowOf(study, "noise", "1 kHz");
   const AccuracyRow& fast = rowOf(study, "noise", "10 kHz");
   study.answer = fmt::format(
       "At 1 kHz the force of the whole movement is off by {:.3f} N on average on the flat and {:.3f} N on "
-      "noise of "
-      "20 um; 10 kHz brings the latter to {:.3f} N for {:.2f} % of a processor instead of {:.2f} %. Where "
-      "hand and "
-      "noise meet, two runs part as soon as one slides into another pit: errors there do not vanish with the "
-      "rate.",
+      "noise of 20 um; 10 kHz brings the latter to {:.3f} N for {:.2f} % of a processor instead of {:.2f} %. "
+      "Where hand and noise meet, two runs part as soon as one slides into another pit: errors there do not "
+      "vanish with the rate.",
       usual.error, noise.error, fast.error, fast.cost, noise.cost);
   return study;
 }
@@ -193,12 +190,9 @@ engine::Result<Study> energyStudy(const AccuracyOptions& options, engine::JobCon
     }
   study.reference = fmt::format(
       "A spring is conservative: from free air to free air it gives nothing. The work is that of the held "
-      "force over "
-      "the hand's own steps within a tick; summed again from the recorded ticks it is the same to {:.1e} mJ. "
-      "A hand "
-      "holds its own: 0.15 kg on 0.3 N/mm with damping takes up what is given out, which is why it does not "
-      "buzz "
-      "(fettle bench stability).",
+      "force over the hand's own steps within a tick; summed again from the recorded ticks it is the same to "
+      "{:.1e} mJ. A hand holds its own: 0.15 kg on 0.3 N/mm with damping takes up what is given out, which "
+      "is why it does not buzz (fettle bench stability).",
       check);
   const AccuracyRow *slow = nullptr, *usual = nullptr;  // the worst subjects
   for (const AccuracyRow& row : study.rows) {
@@ -207,10 +201,8 @@ engine::Result<Study> energyStudy(const AccuracyOptions& options, engine::JobCon
   }
   study.answer = fmt::format(
       "Tapping, pressing and sliding on the flat, the hand gains {:.4f} mJ at 1 kHz and {:.4f} at 10 kHz: "
-      "the force of "
-      "a tick is held while the hand already leaves. Worst is the {}: {:.3f} mJ at 1 kHz, {:.3f} at 0.5 kHz "
-      "on the {}. "
-      "The effect \"passivity\" counts it and takes it out.",
+      "the force of a tick is held while the hand already leaves. Worst is the {}: {:.3f} mJ at 1 kHz, "
+      "{:.3f} at 0.5 kHz on the {}. The effect \"passivity\" counts it and takes it out.",
       rowOf(study, "flat", "1 kHz").error, rowOf(study, "flat", "10 kHz").error, usual->subject, usual->error,
       slow->error, slow->subject);
   return study;

@@ -200,9 +200,8 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
   study.reference =
       "The simulated part's truth, a formula in millimetres (fettle synth). Near edges: within 3 samples of "
       "a true edge; flats: further than 12. Bilateral, tv and tgv take their range sigma from the scan's "
-      "noise, "
-      "which their time includes. The hand is simulated (tremor and wander as measured on surgeons) and "
-      "traces the part's edges once for each thing it does.";
+      "noise, which their time includes. The hand is simulated (tremor and wander as measured on surgeons) "
+      "and traces the part's edges once for each thing it does.";
   const auto figures = [](const AccuracyRow& row) {
     return fmt::format("{:.1f} um ({}: flats {:.1f}, near edges {:.1f}, edges {:.2f} mm wide)", row.error,
                        row.method, row.more[kFlats], row.more[kNearEdges], row.more[kWidth]);

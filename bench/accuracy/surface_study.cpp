@@ -201,21 +201,17 @@ engine::Result<Study> surfaceStudy(const AccuracyOptions& options, engine::JobCo
   }
   study.reference = fmt::format(
       "Every stationary point of the bilinear patch (roots of a quintic), its edges and corners, in double. "
-      "Checked "
-      "here against coordinate descent in long double from 25 starts, a hundred cells of each subject: never "
-      "farther by more than {:.1e} mm.",
+      "Checked here against coordinate descent in long double from 25 starts, a hundred cells of each "
+      "subject: never farther by more than {:.1e} mm.",
       std::max(check, 0.0));
   const AccuracyRow& triangles = rowOf(study, "noise 20 um", "two triangles");
   const AccuracyRow& patch = rowOf(study, "noise 20 um", "bilinear, all stationary points, double");
   const AccuracyRow& floats = rowOf(study, "noise 20 um, 8 m away", "two triangles, float");
   study.answer = fmt::format(
       "Two triangles take {:.0f} ns where all stationary points of the patch take {:.0f}, but they are "
-      "another surface: "
-      "on noise of 20 um their closest point lies {:.1f} um from the patch's on average, {:.0f} um at worst, "
-      "because the "
-      "diagonal is a choice that the scan did not make. 8 m from the field's corner float is off: {}. Hence "
-      "the tick is "
-      "in double.",
+      "another surface: on noise of 20 um their closest point lies {:.1f} um from the patch's on average, "
+      "{:.0f} um at worst, because the diagonal is a choice that the scan did not make. 8 m from the field's "
+      "corner float is off: {}. Hence the tick is in double.",
       triangles.cost, patch.cost, 1e3 * triangles.error, 1e3 * triangles.error_worst, floats.note);
   return study;
 }

@@ -97,9 +97,8 @@ engine::Result<Study> uploadStudy(const AccuracyOptions& options, engine::JobCon
   const AccuracyRow& whole = rowOf(study, "milled part", "16 bits over the whole field's range");
   study.answer = fmt::format(
       "16 bits over each tile's range would move half the bytes and be off by {:.3f} um at worst, over the "
-      "whole "
-      "field's range {:.3f} um. Fettle uploads floats, so that what is seen is what is stored; where memory "
-      "is short this is what 16 bits would cost.",
+      "whole field's range {:.3f} um. Fettle uploads floats, so that what is seen is what is stored; where "
+      "memory is short this is what 16 bits would cost.",
       tiled.error_worst, whole.error_worst);
   return study;
 }

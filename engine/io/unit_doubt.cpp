@@ -147,8 +147,7 @@ void doubtSlopes(Imported& imported, const ImportOptions& options) {
   if (grid.height_per_count == 1.0) {
     warnings.push_back(
         fmt::format("counts or brightness where heights in {} are stated or assumed? They come from whole "
-                    "numbers. {}: if they "
-                    "are heights, give the height per count with --z-scale",
+                    "numbers. {}: if they are heights, give the height per count with --z-scale",
                     stated.name, found));
     return;
   }
@@ -160,9 +159,7 @@ void doubtSlopes(Imported& imported, const ImportOptions& options) {
   else
     warnings.push_back(fmt::format(
         "heights in {} where {} is stated or assumed, or a spacing that is not in {}? {}: give --z-scale "
-        "{:g} "
-        "or "
-        "--spacing",
+        "{:g} or --spacing",
         likely, stated.name, grid.lateral_unit.name, found, lengthUnitFromName(likely)->mm / stated.mm));
 }
 

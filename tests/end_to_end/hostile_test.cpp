@@ -106,11 +106,12 @@ std::string zip(const std::vector<Entry>& entries) {
 std::string mainXml(const std::string& width, const std::string& height, const std::string& heights,
                     const std::string& type = "F") {
   return fmt::format(
-      "<?xml version=\"1.0\"?><p:ISO5436_2 xmlns:p=\"x\"><Record1><FeatureType>SUR</FeatureType><Axes>"
-      "<CX><AxisType>I</AxisType><DataType>D</DataType><Increment>1e-6</Increment></CX>"
-      "<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>1e-6</Increment></CY>"
-      "<CZ><AxisType>A</AxisType><DataType>{}</DataType></CZ></Axes></Record1><Record3><MatrixDimension>"
-      "<SizeX>{}</SizeX><SizeY>{}</SizeY><SizeZ>1</SizeZ></MatrixDimension>{}",
+      "<?xml version=\"1.0\"?><p:ISO5436_2 "
+      "xmlns:p=\"x\"><Record1><FeatureType>SUR</FeatureType><Axes><CX><AxisType>I</AxisType><DataType>D</"
+      "DataType><Increment>1e-6</Increment></CX><CY><AxisType>I</AxisType><DataType>D</"
+      "DataType><Increment>1e-6</Increment></CY><CZ><AxisType>A</AxisType><DataType>{}</DataType></CZ></"
+      "Axes></Record1><Record3><MatrixDimension><SizeX>{}</SizeX><SizeY>{}</SizeY><SizeZ>1</SizeZ></"
+      "MatrixDimension>{}",
       type, width, height, heights);
 }
 const std::string kLink = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";

@@ -96,8 +96,7 @@ void unitsOfCrs(const std::string& wkt, double y, StatedUnits& units, std::vecto
     units.lateral = LengthUnit{"deg", mean * 1000.0};
     warnings.push_back(fmt::format(
         "coordinates are degrees: 1 deg taken as {:.0f} m at latitude {:.2f}, which is {:.1f} % too much "
-        "from "
-        "west to east and {:.1f} % too little from south to north, reproject to metres for true shapes",
+        "from west to east and {:.1f} % too little from south to north, reproject to metres for true shapes",
         mean, y, 100.0 * (mean / east - 1.0), 100.0 * (1.0 - mean / north)));
   } else {
     const double metres = OSRGetLinearUnits(crs.get(), &name);

@@ -182,8 +182,7 @@ void readSystem(const InputFile& file, const LasHeader& header, PointCloud& clou
   } else if (!second.empty() && !sameSystem(first, second)) {
     cloud.warnings.push_back(
         fmt::format("the file names two coordinate systems, {} in {} and {} in {}: the first was used, as "
-                    "its header's bit "
-                    "for WKT states",
+                    "its header's bit for WKT states",
                     shownSystem(first), header.wkt_holds ? "WKT" : "GeoTIFF keys", shownSystem(second),
                     header.wkt_holds ? "GeoTIFF keys" : "WKT"));
   }

@@ -158,8 +158,7 @@ Result<Imported> gridRange(PointCloud&& cloud, const RangeGrid& range, const Imp
   if (fit.camera()) {
     imported->warnings.push_back(
         fmt::format("the range grid is that of a camera, fitted to {:.2g} pixels; --cell-size grids its "
-                    "points from above "
-                    "instead",
+                    "points from above instead",
                     std::max(fit.column_by_slope.rms, fit.row_by_slope.rms)));
     placeInPerspective(*imported, cameraOf(fit, imported->field.grid()));
   } else if (x.spacing > 0.0 || y.spacing > 0.0) {

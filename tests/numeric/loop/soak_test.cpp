@@ -105,8 +105,7 @@ TEST_P(Soak, EveryLapIsTheSameToTheLastBit) {
   const std::size_t grown = mallinfo2().uordblks - held;
   std::printf(
       "%s: %lld ticks in %lld laps, %.0f s of hand, %lld contacts, %lld laps different, drift %.1e mm, %zu "
-      "bytes "
-      "more held, hash %016llx, %.2f M ticks/s\n",
+      "bytes more held, hash %016llx, %.2f M ticks/s\n",
       tests::choiceName(GetParam()).c_str(), static_cast<long long>(at), static_cast<long long>(laps),
       kPeriod_s * static_cast<double>(at), static_cast<long long>(contacts),
       static_cast<long long>(different), drift, grown, static_cast<unsigned long long>(first_hash),

@@ -130,9 +130,8 @@ TEST(RangeGrid, BinaryOnesSmallOnesAndWithoutSidesAreRead) {
   const TempFolder folder;
   std::string big =
       "ply\nformat binary_big_endian 1.0\nobj_info num_cols 2\nobj_info num_rows 2\nelement vertex "
-      "3\nproperty "
-      "float x\nproperty float y\nproperty float z\nelement range_grid 4\nproperty list uchar int "
-      "vertex_indices\nend_header\n";
+      "3\nproperty float x\nproperty float y\nproperty float z\nelement range_grid 4\nproperty list uchar "
+      "int vertex_indices\nend_header\n";
   const auto put = [&](auto value) {
     const auto raw = std::bit_cast<std::array<char, sizeof(value)>>(value);
     big.append(raw.rbegin(), raw.rend());

@@ -47,15 +47,13 @@ struct Xml {
 
   [[nodiscard]] std::string text() const {
     return fmt::format(
-        "<?xml version=\"1.0\"?><{0} xmlns:p=\"x\"><Record1><FeatureType>{1}</FeatureType><Axes>"
-        "<CX><AxisType>{2}</AxisType><DataType>D</DataType><Increment>{3}</Increment><Offset>{4}</Offset></"
-        "CX>"
-        "<CY><AxisType>I</AxisType><DataType>D</DataType><Increment>{5}</Increment><Offset>{6}</Offset></CY>"
-        "<CZ><AxisType>A</AxisType><DataType>{7}</DataType><Increment>{8}</Increment><Offset>{9}</Offset></"
-        "CZ>"
-        "</Axes></Record1><Record3><MatrixDimension><SizeX>{10}</SizeX><SizeY>{11}</SizeY><SizeZ>{12}</SizeZ>"
-        "</MatrixDimension>{13}</Record3><Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4></"
-        "{0}>",
+        "<?xml version=\"1.0\"?><{0} "
+        "xmlns:p=\"x\"><Record1><FeatureType>{1}</FeatureType><Axes><CX><AxisType>{2}</AxisType><DataType>D</"
+        "DataType><Increment>{3}</Increment><Offset>{4}</Offset></CX><CY><AxisType>I</AxisType><DataType>D</"
+        "DataType><Increment>{5}</Increment><Offset>{6}</Offset></CY><CZ><AxisType>A</"
+        "AxisType><DataType>{7}</DataType><Increment>{8}</Increment><Offset>{9}</Offset></CZ></Axes></"
+        "Record1><Record3><MatrixDimension><SizeX>{10}</SizeX><SizeY>{11}</SizeY><SizeZ>{12}</SizeZ></"
+        "MatrixDimension>{13}</Record3><Record4><ChecksumFile>md5checksum.hex</ChecksumFile></Record4></{0}>",
         root, feature, kind, sx, ox, sy, oy, type, increment, offset, width, height, layers, heights);
   }
 };
@@ -123,8 +121,8 @@ TEST_F(X3p, EveryTypeOfNumberIsRead) {
   xml.increment = "5e-7";
   xml.offset = "1e-6";
   xml.heights =
-      "<DataLink><PointDataLink>bindata/data.bin</PointDataLink><ValidPointsLink>bindata/valid.bin"
-      "</ValidPointsLink></DataLink>";
+      "<DataLink><PointDataLink>bindata/data.bin</PointDataLink><ValidPointsLink>bindata/valid.bin</"
+      "ValidPointsLink></DataLink>";
   const std::vector<std::int16_t> counts{0, 2, 0, -8, 7, -2};
   const std::vector<std::int32_t> wide(counts.begin(), counts.end());
   const std::string valid(1, '\x3b');  // all but the third
