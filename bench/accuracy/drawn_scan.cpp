@@ -20,6 +20,7 @@ engine::Result<engine::SimulatedScan> scanOf(const PartSubject& subject, std::in
   scanner.width = scanner.height = side;
   scanner.noise = subject.noise;
   scanner.outliers = subject.outliers;
+  scanner.spot = subject.spot;
   scanner.seed = static_cast<std::uint64_t>(seed);
   // Not the caller's job: its progress counts runs, not samples.
   engine::JobControl quiet;

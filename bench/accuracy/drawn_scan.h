@@ -14,6 +14,7 @@ struct PartSubject {
   const char* part;
   double noise;           ///< ScannerSpec::noise
   double outliers = 0.0;  ///< ScannerSpec::outliers
+  double spot = 0.0;      ///< ScannerSpec::spot
 };
 
 /// How often and how large a study scans each part.

@@ -14,6 +14,7 @@
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "engine/compare/compare.h"
+#include "engine/edges/corners.h"
 #include "engine/edges/locate.h"
 #include "engine/filter/noise_range.h"
 #include "engine/scanner/true_lines.h"
@@ -31,6 +32,8 @@ constexpr PartSubject kHandSubjects[] = {
     {"housing", "housing", 1.0, 0.0},
     {"bracket, 2 % mixed pixels", "bracket", 1.0, 0.02},
     {"steps, 2 % mixed pixels", "steps", 1.0, 0.02},
+    {"bracket, spot of a sample", "bracket", 1.0, 0.0, 1.0},
+    {"steps, noise x 3, spot of a sample", "steps", 3.0, 0.0, 1.0},
 };
 
 constexpr const char* kAlone = "tgv alone";
@@ -118,6 +121,7 @@ engine::Status runHands(const PartSubject& subject, std::int32_t side, int seed,
     const DrawnEdges drawn = drawnEdges(*scan, hand);
     auto lines = engine::locateEdgeLines(scan->scan.reader(), ready->range_sigma, drawn.strokes, {}, quiet);
     if (!lines) return tl::unexpected(lines.error());
+    engine::extendEnds(*lines, 0, scan->scan.grid().width, scan->scan.grid().height);
     const auto located = errorsWith(*scan, *std::move(lines), *ready);
     if (!located) return tl::unexpected(located.error());
     const auto raw = errorsWith(*scan, asDrawn(drawn.strokes), *ready);
