@@ -88,11 +88,11 @@ engine::Result<Report> accuracy(const AccuracyArguments& options, engine::JobCon
                       {"subject", row.subject},
                       {"method", row.method},
                       {"cost", row.cost},
-                      {"cost_unit", study->cost_unit},
+                      {"cost_unit", study->cost.unit},
                       {"error", row.error},
                       {"error_p99", row.error_p99},
                       {"error_worst", row.error_worst},
-                      {"error_unit", study->error_unit},
+                      {"error_unit", study->error.unit},
                       {"wrong", row.wrong},
                       {"hash", fmt::format("{:016x}", row.hash)},
                       {"note", row.note}});

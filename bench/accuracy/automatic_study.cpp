@@ -59,9 +59,7 @@ struct Figures {
       for (const double value : values) sum += value;
       return sum / static_cast<double>(values.size());
     };
-    AccuracyRow row;
-    row.subject = subject;
-    row.method = method;
+    AccuracyRow row{subject, method};
     spread(ns_per_sample, row);
     row.error = mean(all);
     row.error_p99 = row.wrong = std::numeric_limits<double>::quiet_NaN();
@@ -92,14 +90,11 @@ engine::Result<engine::Version> filteredBy(const Method& method, const engine::V
 }  // namespace
 
 engine::Result<Study> automaticStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "automatic";
-  study.title = "Automatic filters: what is left without a hand";
-  study.question = "How near the truth does a filter come by itself, on which part?";
-  study.cost_name = "time per sample, one thread";
-  study.cost_unit = "ns";
-  study.error_name = "RMSE against the truth";
-  study.error_unit = "um";
+  Study study{"automatic",
+              "Automatic filters: what is left without a hand",
+              "How near the truth does a filter come by itself, on which part?",
+              {"time per sample, one thread", "ns"},
+              {"RMSE against the truth", "um"}};
   study.columns = {"flats [um]", "near edges [um]", "near edges, worst seed [um]"};
   const int seeds = scanSizes(options.effort).seeds;
   const int shrink = options.effort >= 0.5 ? 1 : options.effort >= 0.05 ? 2 : 4;

@@ -16,9 +16,7 @@ constexpr double kCellMm = 0.05;  // of the subjects made here; others are scale
 
 AccuracyRow rowFor(const std::string& subject, const trials::ContactChoice& choice,
                    const trials::ContactFigures& figures, double newtons_a_mm) {
-  AccuracyRow row;
-  row.subject = subject;
-  row.method = choice.name;
+  AccuracyRow row{subject, choice.name};
   row.cost = figures.ns;
   row.cost_worst = figures.ns_worst;
   row.error = figures.mean_mm * newtons_a_mm;
@@ -34,14 +32,11 @@ AccuracyRow rowFor(const std::string& subject, const trials::ContactChoice& choi
 }  // namespace
 
 engine::Result<Study> contactStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "contact";
-  study.title = "Contact: which point of the surface is felt";
-  study.question = "What is the error of the fast level?";
-  study.cost_name = "time per tick";
-  study.cost_unit = "ns";
-  study.error_name = "mean force error, 1 N/mm, cells of 0.05 mm";
-  study.error_unit = "N";
+  Study study{"contact",
+              "Contact: which point of the surface is felt",
+              "What is the error of the fast level?",
+              {"time per tick", "ns"},
+              {"mean force error, 1 N/mm, cells of 0.05 mm", "N"}};
   study.wrong_name = "ticks not at the closest point";
   auto made = hardSubjects(512);
   if (!made) return tl::unexpected(made.error());

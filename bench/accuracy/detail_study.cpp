@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "bench/accuracy/drawn_scan.h"
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
-#include "engine/scanner/scanner.h"
 #include "render/live/live_picture.h"
 #include "render/trials/detail_trial.h"
 
@@ -30,29 +30,22 @@ constexpr trials::DetailChoice kDetailChoices[] = {
 }  // namespace
 
 engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "detail";
-  study.title = "Picture: level of detail";
-  study.question = "What does a faster frame leave out?";
-  study.cost_name = "time per frame";
-  study.cost_unit = "ms";
-  study.error_name = "mean difference of a pixel";
-  study.error_unit = "codes of 255";
+  Study study{"detail",
+              "Picture: level of detail",
+              "What does a faster frame leave out?",
+              {"time per frame", "ms"},
+              {"mean difference of a pixel", "codes of 255"}};
   study.wrong_name = "pixels more than 16 codes off";
-  engine::ScannerSpec spec;
-  spec.width = spec.height = 1024;
-  auto part = engine::simulateScan(spec, job);
-  if (!part) return tl::unexpected(part.error());
-  std::vector<StudiedScan> subjects{{"milled part, 1M samples", part->scan}};
-  if (options.scan) subjects.push_back(*options.scan);
+  const auto scans = partAndScan("milled part, 1M samples", options, job);
+  if (!scans) return tl::unexpected(scans.error());
   const int views = std::max(2, static_cast<int>(std::lround(12 * options.effort)));
   job.begin("level of detail",
-            subjects.size() * static_cast<std::size_t>(views) * (std::size(kDetailChoices) + 1));
+            scans->size() * static_cast<std::size_t>(views) * (std::size(kDetailChoices) + 1));
 
   auto created = render::LivePicture::create();
   if (!created) return tl::unexpected(created.error());
   render::LivePicture& picture = **created;
-  for (const StudiedScan& subject : subjects) {
+  for (const StudiedScan& subject : *scans) {
     if (auto ok = picture.update(render::Shown{{subject.field}, std::nullopt, render::MarksOverlay::kHide});
         !ok)
       return tl::unexpected(ok.error());
@@ -67,9 +60,8 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
     if (!figures) return tl::unexpected(figures.error());
     for (std::size_t k = 0; k < figures->size(); ++k) {
       const trials::DetailFigures& f = (*figures)[k];
-      AccuracyRow row;
-      row.subject = subject.name;
-      row.method = k < std::size(kDetailChoices) ? kDetailChoices[k].name : trials::everySample().name;
+      AccuracyRow row{subject.name,
+                      k < std::size(kDetailChoices) ? kDetailChoices[k].name : trials::everySample().name};
       row.cost = f.ms;
       row.cost_worst = f.ms_worst;
       row.error = f.mean_codes;
@@ -85,7 +77,7 @@ engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobCon
       "The picture of every sample, drawn by the same shaders on {}, 1280 x 800, from {} sides. The "
       "geometric bound is proved (render/detail/detail.h) and held against brute force by ctest -R Detail.",
       picture.device(), views);
-  const std::string& name = subjects.front().name;
+  const std::string& name = scans->front().name;
   const AccuracyRow& usual = rowOf(study, name, "64 k vertices");
   const AccuracyRow& every = rowOf(study, name, "every sample");
   const AccuracyRow& half = rowOf(study, name, "64 k vertices, half as sharp");

@@ -27,6 +27,17 @@ engine::Result<engine::SimulatedScan> scanOf(const PartSubject& subject, std::in
   return engine::simulateScan(scanner, quiet);
 }
 
+engine::Result<std::vector<StudiedScan>> partAndScan(const char* name, const AccuracyOptions& options,
+                                                     engine::JobControl& job) {
+  engine::ScannerSpec spec;
+  spec.width = spec.height = 1024;
+  const auto part = engine::simulateScan(spec, job);
+  if (!part) return tl::unexpected(part.error());
+  std::vector<StudiedScan> scans{{name, part->scan}};
+  if (options.scan) scans.push_back(*options.scan);
+  return scans;
+}
+
 DrawnEdges drawnEdges(const engine::SimulatedScan& scan, int seed, double roughness) {
   constexpr double kUsualSide = 1024.0;
   const engine::Grid& grid = scan.scan.grid();

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bench/accuracy/studies.h"
 #include "engine/edges/locate.h"
 #include "engine/scanner/scanner.h"
 
@@ -28,6 +29,11 @@ struct ScanSizes {
 /// A simulated scan of side x side samples.
 [[nodiscard]] engine::Result<engine::SimulatedScan> scanOf(const PartSubject& subject, std::int32_t side,
                                                            int seed);
+
+/// A scan of the milled part, 1024 x 1024 samples, as `name`, and the user's, if there is one.
+[[nodiscard]] engine::Result<std::vector<StudiedScan>> partAndScan(const char* name,
+                                                                   const AccuracyOptions& options,
+                                                                   engine::JobControl& job);
 
 /// What a person draws along all edges of a scan.
 struct DrawnEdges {

@@ -115,15 +115,12 @@ void addRows(const LineSubject& subject, const std::vector<LineRun>& runs, Study
 }  // namespace
 
 engine::Result<Study> edgeLineStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "lines";
-  study.title = "Edge lines located from strokes";
-  study.question = "How near the true edge does a line get that starts from a hand?";
-  study.cost_name = "time per 1,000 points of stroke";
-  study.cost_unit = "ms";
+  Study study{"lines",
+              "Edge lines located from strokes",
+              "How near the true edge does a line get that starts from a hand?",
+              {"time per 1,000 points of stroke", "ms"},
+              {"root mean square distance from the true edge", "samples"}};
   study.cost_from_zero = true;
-  study.error_name = "root mean square distance from the true edge";
-  study.error_unit = "samples";
   study.columns = {"share located", "error over stated deviation", "kind right"};
   const auto [seeds, hands, side] = scanSizes(options.effort);
   job.begin("edge lines", std::size(kLineSubjects) * static_cast<std::size_t>(seeds * hands));

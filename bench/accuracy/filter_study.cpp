@@ -79,14 +79,11 @@ FilterVariant ofPlane(const char* name, std::function<Plane(const Plane&)> run) 
 }  // namespace
 
 engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "filter";
-  study.title = "Filters: exact and approximate";
-  study.question = "What would a faster filter change?";
-  study.cost_name = "time per sample, one thread";
-  study.cost_unit = "ns";
-  study.error_name = "mean height error";
-  study.error_unit = "um";
+  Study study{"filter",
+              "Filters: exact and approximate",
+              "What would a faster filter change?",
+              {"time per sample, one thread", "ns"},
+              {"mean height error", "um"}};
   const auto side = static_cast<std::int32_t>(std::clamp(1024 * std::sqrt(options.effort), 192.0, 1024.0));
   auto noise = fieldOf(side, 0.05, [](int c, int r) { return 0.02 * whiteNoise(2, c, r); });
   if (!noise) return tl::unexpected(noise.error());
@@ -122,9 +119,7 @@ engine::Result<Study> filterStudy(const AccuracyOptions& options, engine::JobCon
       Plane exact;
       for (const FilterVariant& variant : variants) {
         if (job.cancelled()) return engine::cancelled();
-        AccuracyRow row;
-        row.subject = subject.name;
-        row.method = variant.name;
+        AccuracyRow row{subject.name, variant.name};
         std::vector<double> ns;
         Plane out;
         // Not the caller's job: its progress counts variants, not samples.

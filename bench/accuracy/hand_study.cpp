@@ -49,9 +49,7 @@ struct Errors {
 // A row of means over the runs. `alone` has the errors without lines of the same runs.
 AccuracyRow rowOfRuns(const char* subject, const char* method, const std::vector<Errors>& runs,
                       const std::vector<Errors>& alone, const std::vector<double>& seconds) {
-  AccuracyRow row;
-  row.subject = subject;
-  row.method = method;
+  AccuracyRow row{subject, method};
   row.error_p99 = row.wrong = std::numeric_limits<double>::quiet_NaN();
   spread(seconds, row);
   double flats = 0.0, near = 0.0, worst_near = 0.0, ratio = 0.0;
@@ -149,15 +147,12 @@ std::optional<double> shareOf(const Study& study, const char* subject) {
 }  // namespace
 
 engine::Result<Study> handStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "hand";
-  study.title = "What the lines of a hand add";
-  study.question = "How much nearer to the truth does a person's hand bring the best automatic filter?";
-  study.cost_name = "time of the hand";
-  study.cost_unit = "s";
+  Study study{"hand",
+              "What the lines of a hand add",
+              "How much nearer to the truth does a person's hand bring the best automatic filter?",
+              {"time of the hand", "s"},
+              {"RMSE against the truth", "um"}};
   study.cost_from_zero = true;
-  study.error_name = "RMSE against the truth";
-  study.error_unit = "um";
   study.columns = {"flats [um]", "near edges [um]", "near edges, worst run [um]",
                    "largest ratio to tgv alone"};
   const auto [seeds, hands, side] = scanSizes(options.effort);

@@ -85,6 +85,16 @@ std::vector<double> times(const engine::Version& field, const Pressed& pressed) 
   return ns;
 }
 
+// The row of a rate, without its error.
+AccuracyRow rowAt(double rate, const Subject& subject, const Pressed& pressed) {
+  AccuracyRow row{subject.name, fmt::format("{:g} kHz", rate / 1000.0)};
+  std::vector<double> shares = times(subject.field, pressed);
+  for (double& ns : shares) ns *= rate * 1e-9 * 100.0;
+  spread(std::move(shares), row);
+  row.wrong = std::numeric_limits<double>::quiet_NaN();
+  return row;
+}
+
 // Force between two ticks of the reference, as a hold of its last one.
 const glm::dvec3& heldAt(const Pressed& pressed, double t) {
   const auto i = static_cast<std::size_t>(std::max(0.0, t * kReferenceHz + 1e-6));
@@ -94,14 +104,11 @@ const glm::dvec3& heldAt(const Pressed& pressed, double t) {
 }  // namespace
 
 engine::Result<Study> rateStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "rate";
-  study.title = "Rate: how often the surface answers";
-  study.question = "Is 1 kHz enough?";
-  study.cost_name = "share of a processor";
-  study.cost_unit = "%";
-  study.error_name = "mean force error";
-  study.error_unit = "N";
+  Study study{"rate",
+              "Rate: how often the surface answers",
+              "Is 1 kHz enough?",
+              {"share of a processor", "%"},
+              {"mean force error", "N"}};
   auto subjects = hardSubjects(256);
   if (!subjects) return tl::unexpected(subjects.error());
   const double seconds = std::max(0.5, 4.0 * options.effort);
@@ -122,12 +129,7 @@ engine::Result<Study> rateStudy(const AccuracyOptions& options, engine::JobContr
     for (const double rate : kRates) {
       if (job.cancelled()) return engine::cancelled();
       const Pressed pressed = press(subject.field, rate, seconds);
-      AccuracyRow row;
-      row.subject = subject.name;
-      row.method = fmt::format("{:g} kHz", rate / 1000.0);
-      std::vector<double> shares = times(subject.field, pressed);
-      for (double& ns : shares) ns *= rate * 1e-9 * 100.0;
-      spread(std::move(shares), row);
+      AccuracyRow row = rowAt(rate, subject, pressed);
       std::vector<double> errors, flat;
       for (std::size_t i = 0; i < pressed.strokes.size(); ++i) {
         errors.push_back(glm::length(pressed.force_n[i] - heldAt(reference, pressed.strokes[i].t)));
@@ -135,7 +137,6 @@ engine::Result<Study> rateStudy(const AccuracyOptions& options, engine::JobContr
       }
       summarise(std::move(errors), row);
       row.hash = engine::hashOf(flat);
-      row.wrong = std::numeric_limits<double>::quiet_NaN();
       study.rows.push_back(std::move(row));
       job.advance();
     }
@@ -157,14 +158,11 @@ engine::Result<Study> rateStudy(const AccuracyOptions& options, engine::JobContr
 }
 
 engine::Result<Study> energyStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "energy";
-  study.title = "Energy: what a sampled surface gives out";
-  study.question = "Does the surface put energy into the hand, and how much less at a higher rate?";
-  study.cost_name = "share of a processor";
-  study.cost_unit = "%";
-  study.error_name = "energy gained by the hand, from free air to free air";
-  study.error_unit = "mJ";
+  Study study{"energy",
+              "Energy: what a sampled surface gives out",
+              "Does the surface put energy into the hand, and how much less at a higher rate?",
+              {"share of a processor", "%"},
+              {"energy gained by the hand, from free air to free air", "mJ"}};
   auto subjects = hardSubjects(256);
   if (!subjects) return tl::unexpected(subjects.error());
   const double seconds = std::max(0.5, 4.0 * options.effort);
@@ -175,14 +173,9 @@ engine::Result<Study> energyStudy(const AccuracyOptions& options, engine::JobCon
       if (job.cancelled()) return engine::cancelled();
       const Pressed pressed = press(subject.field, rate, seconds);
       if (subject.name == "flat") check = std::max(check, std::abs(pressed.work_mj - heldWork(pressed)));
-      AccuracyRow row;
-      row.subject = subject.name;
-      row.method = fmt::format("{:g} kHz", rate / 1000.0);
-      std::vector<double> shares = times(subject.field, pressed);
-      for (double& ns : shares) ns *= rate * 1e-9 * 100.0;
-      spread(std::move(shares), row);
+      AccuracyRow row = rowAt(rate, subject, pressed);
       row.error = std::max(0.0, pressed.work_mj);
-      row.error_p99 = row.error_worst = row.wrong = std::numeric_limits<double>::quiet_NaN();
+      row.error_p99 = row.error_worst = std::numeric_limits<double>::quiet_NaN();
       row.hash = engine::hashOf({&pressed.work_mj, 1});
       if (pressed.work_mj < 0.0) row.note = fmt::format("the surface took {:.3f} mJ", -pressed.work_mj);
       study.rows.push_back(std::move(row));

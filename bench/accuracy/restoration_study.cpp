@@ -123,11 +123,11 @@ Study effortView(const Study& study, const std::vector<Start>& starts) {
   Study view;
   view.id = "restoration_effort";
   view.title = "The same over the operator's time, best filter of each family";
-  view.cost_name = "operator's time";
-  view.cost_unit = "s";
+  view.cost.name = "operator's time";
+  view.cost.unit = "s";
   view.cost_from_zero = true;
-  view.error_name = study.error_name;
-  view.error_unit = study.error_unit;
+  view.error.name = study.error.name;
+  view.error.unit = study.error.unit;
   for (const bool edge_preserving : {false, true})
     for (const Start& start : starts) {
       AccuracyRow row = *bestOf(study, start.name, edge_preserving);
@@ -142,14 +142,11 @@ Study effortView(const Study& study, const std::vector<Start>& starts) {
 }  // namespace
 
 engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "restoration";
-  study.title = "Restoration: how near the truth, in what time";
-  study.question = "Which filter, and is marking the edges worth it?";
-  study.cost_name = "machine time";
-  study.cost_unit = "s";
-  study.error_name = "RMSE against the truth";
-  study.error_unit = "um";
+  Study study{"restoration",
+              "Restoration: how near the truth, in what time",
+              "Which filter, and is marking the edges worth it?",
+              {"machine time", "s"},
+              {"RMSE against the truth", "um"}};
   study.columns = {"flats [um]", "near edges [um]", "edge width [mm]", "by hand [s]"};
   engine::ScannerSpec scanner;
   scanner.width = scanner.height = options.effort >= 0.5 ? 1024 : options.effort >= 0.05 ? 512 : 256;
@@ -165,9 +162,7 @@ engine::Result<Study> restorationStudy(const AccuracyOptions& options, engine::J
     engine::JobControl quiet;
     const auto figures = engine::compareToTruth(field, scan.truth, scan.edges, quiet);
     if (!figures) return tl::unexpected(figures.error());
-    AccuracyRow row;
-    row.subject = subject;
-    row.method = method;
+    AccuracyRow row{subject, method};
     row.cost = row.cost_worst = seconds;
     row.error = 1e3 * figures->rmse;
     row.error_p99 = std::numeric_limits<double>::quiet_NaN();

@@ -123,14 +123,11 @@ double bruteDistance(const Case& c) {
 }  // namespace
 
 engine::Result<Study> surfaceStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "surface";
-  study.title = "Surface: what a cell is taken for";
-  study.question = "Would two triangles per cell, or float, be as good?";
-  study.cost_name = "time per cell";
-  study.cost_unit = "ns";
-  study.error_name = "mean distance from the closest point";
-  study.error_unit = "mm";
+  Study study{"surface",
+              "Surface: what a cell is taken for",
+              "Would two triangles per cell, or float, be as good?",
+              {"time per cell", "ns"},
+              {"mean distance from the closest point", "mm"}};
   const struct {
     const char* name;
     glm::dvec3 (*closest)(const haptic::Patch&, const glm::dvec3&);
@@ -173,9 +170,7 @@ engine::Result<Study> surfaceStudy(const AccuracyOptions& options, engine::JobCo
         ns.push_back(watch.ns() / static_cast<double>(count));
       }
       if (found.empty()) truth = points;  // the first method is the reference
-      AccuracyRow row;
-      row.subject = subject.name;
-      row.method = method.name;
+      AccuracyRow row{subject.name, method.name};
       spread(std::move(ns), row);
       std::vector<double> errors, flat;
       for (std::size_t i = 0; i < count; ++i) {

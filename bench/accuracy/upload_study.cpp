@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "bench/accuracy/drawn_scan.h"
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
 #include "engine/base/statistics.h"
 #include "engine/field/tile.h"
-#include "engine/scanner/scanner.h"
 
 namespace fettle::bench {
 namespace {
@@ -32,23 +32,16 @@ double half(double z) {
 }  // namespace
 
 engine::Result<Study> uploadStudy(const AccuracyOptions& options, engine::JobControl& job) {
-  Study study;
-  study.id = "upload";
-  study.title = "Upload: bits per sample for the picture";
-  study.question = "Would 16 bits per sample be enough?";
-  study.cost_name = "bytes per sample";
-  study.cost_unit = "B";
-  study.error_name = "mean height error";
-  study.error_unit = "um";
-  engine::ScannerSpec spec;
-  spec.width = spec.height = 1024;
-  auto part = engine::simulateScan(spec, job);
-  if (!part) return tl::unexpected(part.error());
-  std::vector<StudiedScan> subjects{{"milled part", part->scan}};
-  if (options.scan) subjects.push_back(*options.scan);
-  job.begin("bits per sample", subjects.size());
+  Study study{"upload",
+              "Upload: bits per sample for the picture",
+              "Would 16 bits per sample be enough?",
+              {"bytes per sample", "B"},
+              {"mean height error", "um"}};
+  const auto scans = partAndScan("milled part", options, job);
+  if (!scans) return tl::unexpected(scans.error());
+  job.begin("bits per sample", scans->size());
   constexpr double kTileBytes = engine::kTileSide * engine::kTileSide;
-  for (const StudiedScan& subject : subjects) {
+  for (const StudiedScan& subject : *scans) {
     if (job.cancelled()) return engine::cancelled();
     const engine::FieldReader reader = subject.field.reader();
     const double um = 1000.0 * reader.grid().height_unit.mm;
@@ -77,9 +70,7 @@ engine::Result<Study> uploadStudy(const AccuracyOptions& options, engine::JobCon
         }
       }
     const auto add = [&](const char* method, double bytes, std::vector<double>& errors) {
-      AccuracyRow row;
-      row.subject = subject.name;
-      row.method = method;
+      AccuracyRow row{subject.name, method};
       row.cost = row.cost_worst = bytes;
       row.hash = engine::hashOf(errors);
       row.wrong = std::numeric_limits<double>::quiet_NaN();

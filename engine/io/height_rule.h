@@ -33,6 +33,14 @@ struct HeightRule {
   std::optional<double> declared_no_data;  ///< the file's
   std::optional<double> user_no_data;      ///< ImportOptions::no_data
 
+  /// As the user wants it, where the file says nothing.
+  [[nodiscard]] static HeightRule of(const ImportOptions& options) noexcept {
+    HeightRule rule;
+    rule.scale = options.z_scale.value_or(1.0);
+    rule.user_no_data = options.no_data;
+    return rule;
+  }
+
   /// Whether a stored number means "hole".
   template <class T>
   [[nodiscard]] bool hole(T number) const noexcept {

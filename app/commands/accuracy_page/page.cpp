@@ -59,8 +59,8 @@ std::string tableOf(const bench::Study& study) {
       "<table><tr><th class=t>subject</th><th>no.</th><th class=t>method</th><th>{} "
       "[{}]</th><th>worst</th><th>{} "
       "[{}]</th><th>p99</th><th>worst</th>{}{}<th class=t>note</th><th class=t>hash</th></tr>\n",
-      escaped(study.cost_name), escaped(study.cost_unit), escaped(study.error_name),
-      escaped(study.error_unit), study.wrong_name.empty() ? "" : "<th>" + escaped(study.wrong_name) + "</th>",
+      escaped(study.cost.name), escaped(study.cost.unit), escaped(study.error.name),
+      escaped(study.error.unit), study.wrong_name.empty() ? "" : "<th>" + escaped(study.wrong_name) + "</th>",
       headings);
   for (const bench::AccuracyRow& row : study.rows) {
     std::string more;
@@ -141,8 +141,8 @@ std::string accuracyCsv(const std::vector<PlottedStudy>& studies) {
     for (const bench::AccuracyRow& row : s.study.rows) {
       text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{:016x},{}", s.study.id, csvText(row.subject),
                           methodNumber(s.study, row.method), csvText(row.method), plain(row.cost),
-                          plain(row.cost_worst), csvText(s.study.cost_unit), plain(row.error),
-                          plain(row.error_p99), plain(row.error_worst), csvText(s.study.error_unit),
+                          plain(row.cost_worst), csvText(s.study.cost.unit), plain(row.error),
+                          plain(row.error_p99), plain(row.error_worst), csvText(s.study.error.unit),
                           plain(row.wrong), row.hash, csvText(row.note));
       for (const std::string& column : columns) {
         const auto at = std::find(s.study.columns.begin(), s.study.columns.end(), column);

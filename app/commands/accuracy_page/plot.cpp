@@ -56,8 +56,8 @@ std::string scriptOf(const bench::Study& study) {
   }
   std::string script = kPlotHead;
   script += fmt::format("set xlabel {}\nset ylabel {}\n",
-                        quoted(fmt::format("{} [{}]", study.cost_name, study.cost_unit)),
-                        quoted(fmt::format("{} [{}]", study.error_name, study.error_unit)));
+                        quoted(fmt::format("{} [{}]", study.cost.name, study.cost.unit)),
+                        quoted(fmt::format("{} [{}]", study.error.name, study.error.unit)));
   const bool cost_by_factors = cost.logarithmic() && !study.cost_from_zero;
   if (study.cost_from_zero) script += fmt::format("set xrange [{}:{}]\n", -0.03 * cost.high, 1.1 * cost.high);
   if (cost_by_factors)

@@ -213,12 +213,7 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
     error.remedy = "give a larger cell with --cell-size";
     return tl::unexpected(error);
   }
-  grid.width = static_cast<std::int32_t>(width);
-  grid.height = static_cast<std::int32_t>(height);
-  grid.spacing_x = axes->x.spacing;
-  grid.spacing_y = axes->y.spacing;
-  grid.origin_x = axes->x.origin;
-  grid.origin_y = axes->y.origin;
+  placeOn(axes->x, axes->y, grid);
   if (axes->stated)
     grid.height_per_count = corners.raster->height_per_count * std::abs(options.z_scale.value_or(1.0));
 
@@ -252,9 +247,7 @@ Result<Imported> sampleMesh(TriangleMesh&& mesh, const ImportOptions& options, s
 
   Result<FieldBuilder> builder = FieldBuilder::create(grid, path);
   if (!builder) return tl::unexpected(builder.error());
-  HeightRule rule;
-  rule.scale = options.z_scale.value_or(1.0);
-  rule.user_no_data = options.no_data;
+  HeightRule rule = HeightRule::of(options);
   HeightTally tally;
   std::vector<double> row(width);
   std::vector<float> heights(width);

@@ -110,12 +110,7 @@ Result<Imported> gridPoints(PointCloud&& cloud, const ImportOptions& options, st
     error.remedy = thinOutRemedy(grid.lateral_unit.name);
     return tl::unexpected(error);
   }
-  grid.width = static_cast<std::int32_t>(width);
-  grid.height = static_cast<std::int32_t>(height);
-  grid.spacing_x = cells->x.spacing;
-  grid.spacing_y = cells->y.spacing;
-  grid.origin_x = cells->x.origin;
-  grid.origin_y = cells->y.origin;
+  placeOn(cells->x, cells->y, grid);
   if (cells->stated)
     grid.height_per_count = cloud.raster->height_per_count * std::abs(options.z_scale.value_or(1.0));
 

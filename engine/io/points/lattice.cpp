@@ -189,6 +189,15 @@ std::optional<AxisLattice> fit(const std::vector<double>& values, double guess) 
 
 }  // namespace
 
+void placeOn(const AxisLattice& x, const AxisLattice& y, Grid& grid) noexcept {
+  grid.width = static_cast<std::int32_t>(x.count);
+  grid.height = static_cast<std::int32_t>(y.count);
+  grid.spacing_x = x.spacing;
+  grid.spacing_y = y.spacing;
+  grid.origin_x = x.origin;
+  grid.origin_y = y.origin;
+}
+
 std::int64_t AxisLattice::indexOf(double value) const noexcept {
   if (spacing == 0.0) return 0;
   return std::clamp<std::int64_t>(std::llround((value - origin) / spacing), 0, count - 1);

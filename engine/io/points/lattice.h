@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "engine/field/grid.h"
+
 namespace fettle::engine {
 
 /// Evenly spaced positions along one axis: origin + k * spacing, 0 <= k < count.
@@ -17,6 +19,9 @@ struct AxisLattice {
   /// Index of the position nearest to a value within the lattice.
   [[nodiscard]] std::int64_t indexOf(double value) const noexcept;
 };
+
+/// Size, spacing and origin of a grid whose samples lie on these positions.
+void placeOn(const AxisLattice& x, const AxisLattice& y, Grid& grid) noexcept;
 
 /// Finds the evenly spaced positions of `values` (finite, any order, repetitions allowed, at least one),
 /// where positions may be missing. Each value may differ from its position by a tenth of the spacing - files

@@ -97,9 +97,7 @@ Result<Imported> gridOrganized(PointCloud&& cloud, std::uint64_t width, std::uin
   determineUnits(grid, units, options, warnings);
   Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), path);
   if (!builder) return tl::unexpected(builder.error());
-  HeightRule rule;
-  rule.scale = options.z_scale.value_or(1.0);
-  rule.user_no_data = options.no_data;
+  HeightRule rule = HeightRule::of(options);
   HeightTally tally;
   std::vector<float> heights(width);
   for (std::uint64_t r = 0; r < height; ++r) {

@@ -146,9 +146,7 @@ Result<Imported> gridRange(PointCloud&& cloud, const RangeGrid& range, const Imp
 
   Result<FieldBuilder> builder = FieldBuilder::create(grid, path);
   if (!builder) return tl::unexpected(builder.error());
-  HeightRule rule;
-  rule.scale = options.z_scale.value_or(1.0);
-  rule.user_no_data = options.no_data;
+  HeightRule rule = HeightRule::of(options);
   HeightTally tally;
   if (Status status = writePlaces(cloud, range, fit, rule, *builder, tally, job); !status)
     return tl::unexpected(status.error());

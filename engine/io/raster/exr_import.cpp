@@ -300,9 +300,7 @@ Result<Imported> readPicture(const InputFile& file, const ImportOptions& options
   grid.width = plan->width;
   grid.height = plan->height;
   determineUnits(grid, units, options, warnings);
-  HeightRule rule;
-  rule.scale = options.z_scale.value_or(1.0);
-  rule.user_no_data = options.no_data;
+  HeightRule rule = HeightRule::of(options);
   Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), path);
   if (!builder) return tl::unexpected(builder.error());
   job.begin("reading", static_cast<std::uint64_t>(plan->height));

@@ -14,6 +14,7 @@
 #include "engine/io/format.h"
 #include "engine/io/geo/sidecar.h"
 #include "engine/io/raster/png_stream.h"
+#include "engine/io/rows_down.h"
 #include "engine/io/units.h"
 
 namespace fettle::engine {
@@ -44,23 +45,6 @@ std::optional<CountRule> countRuleOf(const std::string& description) {
                    comma != std::string::npos && std::string_view(rule).substr(comma) == kHole};
 }
 
-template <class T>
-Status readRows(PngReader& reader, const HeightRule& rule, FieldBuilder& builder, HeightTally& tally,
-                JobControl& job) {
-  const std::int32_t width = builder.grid().width;
-  std::vector<T> numbers(static_cast<std::size_t>(width));
-  std::vector<float> heights(static_cast<std::size_t>(width));
-  for (std::int32_t row = builder.grid().height - 1; row >= 0; --row) {
-    if (Status status = reader.readRow(reinterpret_cast<unsigned char*>(numbers.data())); !status)
-      return status;
-    if (job.cancelled()) return cancelled();
-    rule.convert(numbers.data(), heights.data(), numbers.size(), tally);
-    builder.writeHeights(0, row, width, 1, heights.data(), width);
-    job.advance();
-  }
-  return reader.finish();
-}
-
 bool looksLikePng(std::string_view head, std::string_view) {
   return head.starts_with(std::string_view("\x89PNG\r\n\x1a\n", 8));
 }
@@ -87,9 +71,7 @@ Result<Imported> readPng(const InputFile& file, const ImportOptions& options, Jo
   grid.width = header.width;
   grid.height = header.height;
   determineUnits(grid, units, options, warnings);
-  HeightRule rule;
-  rule.scale = options.z_scale.value_or(1.0);
-  rule.user_no_data = options.no_data;
+  HeightRule rule = HeightRule::of(options);
   if (header.transparent) rule.declared_no_data = *header.transparent;
   if (const auto stated = countRuleOf(header.description)) {
     if (stated->zero_is_hole) rule.declared_no_data = 0.0;
@@ -106,9 +88,13 @@ Result<Imported> readPng(const InputFile& file, const ImportOptions& options, Jo
   if (!builder) return tl::unexpected(builder.error());
   job.begin("reading", static_cast<std::uint64_t>(header.height));
   HeightTally tally;
-  const Status status = header.bits == 16 ? readRows<std::uint16_t>(*reader, rule, *builder, tally, job)
-                                          : readRows<std::uint8_t>(*reader, rule, *builder, tally, job);
-  if (!status) return tl::unexpected(status.error());
+  const auto read = [&reader](auto* numbers) {
+    return reader->readRow(reinterpret_cast<unsigned char*>(numbers));
+  };
+  const Status rows = header.bits == 16 ? readRowsDown<std::uint16_t>(read, rule, *builder, tally, job)
+                                        : readRowsDown<std::uint8_t>(read, rule, *builder, tally, job);
+  if (!rows) return tl::unexpected(rows.error());
+  if (Status finished = reader->finish(); !finished) return tl::unexpected(finished.error());
   return finishImport(std::move(*builder), rule, tally, "PNG", std::move(warnings), file.path());
 }
 

@@ -17,6 +17,7 @@
 #include "engine/io/field_limits.h"
 #include "engine/io/files/little_endian.h"
 #include "engine/io/format.h"
+#include "engine/io/rows_down.h"
 #include "engine/io/units.h"
 
 namespace fettle::engine {
@@ -189,25 +190,6 @@ class SurBytes {
   std::vector<char> buffer_ = std::vector<char>(std::size_t{1} << 16);
 };
 
-template <class T>
-Status readRows(SurBytes& bytes, const HeightRule& rule, FieldBuilder& builder, HeightTally& tally,
-                JobControl& job) {
-  const std::int32_t width = builder.grid().width;
-  std::vector<T> numbers(static_cast<std::size_t>(width));
-  std::vector<float> heights(static_cast<std::size_t>(width));
-  // Lines are stored from the top down.
-  for (std::int32_t row = builder.grid().height - 1; row >= 0; --row) {
-    if (job.cancelled()) return cancelled();
-    if (Status status = bytes.read(reinterpret_cast<char*>(numbers.data()), numbers.size() * sizeof(T));
-        !status)
-      return status;
-    rule.convert(numbers.data(), heights.data(), numbers.size(), tally);
-    builder.writeHeights(0, row, width, 1, heights.data(), width);
-    job.advance();
-  }
-  return {};
-}
-
 bool looksLikeSur(std::string_view head, std::string_view) {
   return head.starts_with("DIGITAL SURF") || head.starts_with("DSCOMPRESSED");
 }
@@ -253,8 +235,11 @@ Result<Imported> readSur(const InputFile& file, const ImportOptions& options, Jo
   if (!builder) return tl::unexpected(builder.error());
   job.begin("reading", height);
   HeightTally tally;
-  const Status status = header->bits == 16 ? readRows<std::int16_t>(bytes, rule, *builder, tally, job)
-                                           : readRows<std::int32_t>(bytes, rule, *builder, tally, job);
+  const auto read = [&bytes, width = static_cast<std::size_t>(builder->grid().width)](auto* numbers) {
+    return bytes.read(reinterpret_cast<char*>(numbers), width * sizeof(*numbers));
+  };
+  const Status status = header->bits == 16 ? readRowsDown<std::int16_t>(read, rule, *builder, tally, job)
+                                           : readRowsDown<std::int32_t>(read, rule, *builder, tally, job);
   if (!status) return tl::unexpected(status.error());
   // As long as counts stay distinct, the float of each represents it and nothing is lost.
   if (tally.rounding < 0.5 * std::abs(rule.scale)) tally.rounding = 0.0;
