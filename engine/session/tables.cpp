@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -48,61 +49,45 @@ std::int64_t msOf(StepTime time) {
   return time.time_since_epoch().count();
 }
 
+// Of a row's values in their order.
+template <class... Values>
+std::int64_t checksumOfRow(const Values&... values) {
+  RowChecksum row;
+  const auto add = [&row](const auto& value) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_integral_v<Value>)
+      row.integer(value);
+    else if constexpr (std::is_floating_point_v<Value>)
+      row.real(value);
+    else
+      row.text(value);
+  };
+  (add(values), ...);
+  return row.value();
+}
+
 std::int64_t checksumOf(const HeadRow& h) {
-  return RowChecksum()
-      .integer(h.state)
-      .integer(h.last_state)
-      .integer(h.next_tile)
-      .integer(h.journal)
-      .integer(h.notes)
-      .value();
+  return checksumOfRow(h.state, h.last_state, h.next_tile, h.journal, h.notes);
 }
 
 std::int64_t checksumOf(const Grid& g) {
-  return RowChecksum()
-      .integer(g.width)
-      .integer(g.height)
-      .real(g.spacing_x)
-      .real(g.spacing_y)
-      .real(g.origin_x)
-      .real(g.origin_y)
-      .text(g.lateral_unit.name)
-      .real(g.lateral_unit.mm)
-      .text(g.height_unit.name)
-      .real(g.height_unit.mm)
-      .text(g.crs_wkt)
-      .real(g.height_per_count)
-      .value();
+  return checksumOfRow(g.width, g.height, g.spacing_x, g.spacing_y, g.origin_x, g.origin_y,
+                       g.lateral_unit.name, g.lateral_unit.mm, g.height_unit.name, g.height_unit.mm,
+                       g.crs_wkt, g.height_per_count);
 }
 
 std::int64_t checksumOf(const StepRow& s) {
-  return RowChecksum()
-      .integer(s.number)
-      .text(s.info.name)
-      .text(stepKindName(s.info.kind))
-      .integer(msOf(s.info.time))
-      .integer(s.sign > 0 ? 1 : -1)
-      .integer(s.info.rect.column)
-      .integer(s.info.rect.row)
-      .integer(s.info.rect.columns)
-      .integer(s.info.rect.rows)
-      .integer(s.first_tile)
-      .integer(s.tiles)
-      .value();
+  return checksumOfRow(s.number, s.info.name, stepKindName(s.info.kind), msOf(s.info.time),
+                       s.sign > 0 ? 1 : -1, s.info.rect.column, s.info.rect.row, s.info.rect.columns,
+                       s.info.rect.rows, s.first_tile, s.tiles);
 }
 
 std::int64_t checksumOf(const TilePlace& place, std::string_view data) {
-  return RowChecksum().integer(place.id).integer(place.step).integer(place.position).text(data).value();
+  return checksumOfRow(place.id, place.step, place.position, data);
 }
 
 std::int64_t checksumOf(std::int64_t id, const JournalEntry& entry, std::string_view packed) {
-  return RowChecksum()
-      .integer(id)
-      .integer(entry.state)
-      .integer(msOf(entry.time))
-      .text(entry.action)
-      .text(packed)
-      .value();
+  return checksumOfRow(id, entry.state, msOf(entry.time), entry.action, packed);
 }
 
 }  // namespace
@@ -339,7 +324,7 @@ Status SessionTables::insertLines(std::int64_t step, std::string_view packed) {
   const Result<Statement*> s = cached("INSERT INTO lines VALUES(?,?,?)");
   if (!s) return tl::unexpected(s.error());
   const std::string data = packBytes(packed);
-  (*s)->bind(1, step).bind(2, RowChecksum().integer(step).text(data).value()).bindBlob(3, data);
+  (*s)->bind(1, step).bind(2, checksumOfRow(step, data)).bindBlob(3, data);
   return (*s)->run();
 }
 
@@ -363,7 +348,7 @@ Result<std::vector<EdgeLines>> SessionTables::readLines(const std::vector<StepRo
       const std::string_view data = (*s)->bytes(2);
       std::string packed;
       if (step < 0 || step >= static_cast<std::int64_t>(steps.size()) ||
-          (*s)->integer(1) != RowChecksum().integer(step).text(data).value() || !unpackBytes(data, packed))
+          (*s)->integer(1) != checksumOfRow(step, data) || !unpackBytes(data, packed))
         return damaged(fmt::format("the lines of step {} do not fit their checksum", step), path);
       std::optional<EdgeLines> unpacked = unpackLines(packed);
       if (!unpacked) return damaged(fmt::format("the lines of step {} cannot be read", step), path);
@@ -422,7 +407,7 @@ Status SessionTables::writeNote(const std::string& key, const std::string& text,
   (*find)->reset();
   const Result<Statement*> s = cached("INSERT OR REPLACE INTO note VALUES(?,?,?)");
   if (!s) return tl::unexpected(s.error());
-  (*s)->bindText(1, key).bind(2, RowChecksum().text(key).text(text).value()).bindText(3, text);
+  (*s)->bindText(1, key).bind(2, checksumOfRow(key, text)).bindText(3, text);
   return (*s)->run();
 }
 
@@ -437,7 +422,7 @@ Result<SessionNotes> SessionTables::readNotes(const HeadRow& head) {
     if (!*row) break;
     std::string key((*s)->bytes(0));
     std::string text((*s)->bytes(2));
-    if ((*s)->integer(1) != RowChecksum().text(key).text(text).value())
+    if ((*s)->integer(1) != checksumOfRow(key, text))
       return damaged("a note does not fit its checksum", path);
     notes.emplace(std::move(key), std::move(text));
   }
