@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -25,7 +26,7 @@ namespace {
 struct LinesArguments {
   std::string scan;
   std::string lines;
-  std::vector<int> only;
+  std::vector<std::string> only;
   std::string out;
   std::string csv;
   std::string plot;
@@ -46,19 +47,24 @@ engine::Result<std::vector<engine::EdgeLine>> linesOf(const LinesArguments& opti
     return engine::inputError("it has no edge lines", shownInput(options.scan),
                               "give LINES, or a session in which edges were drawn");
   }
-  if (options.only.empty()) return lines;
-  const std::set<std::int64_t> wanted(options.only.begin(), options.only.end());
-  std::set<std::int64_t> found;
-  std::erase_if(lines, [&](const engine::EdgeLine& line) {
-    if (!wanted.contains(line.id)) return true;
-    found.insert(line.id);
-    return false;
-  });
-  for (const std::int64_t id : wanted)
-    if (!found.contains(id))
-      return engine::inputError(fmt::format("there is no line {}", id), "--only",
-                                "fettle lines without it lists them");
   return lines;
+}
+
+// The others were measured, too: they end the surfaces of their neighbours.
+engine::Status keepOnly(const std::vector<std::string>& wanted, std::vector<MeasuredLine>& lines) {
+  std::set<std::int64_t> ids;
+  for (const std::string& text : wanted) {
+    std::int64_t id = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+    if (error != std::errc() || end != text.data() + text.size() ||
+        std::ranges::none_of(lines, [id](const MeasuredLine& line) { return line.line.id == id; }))
+      return engine::inputError(fmt::format("there is no line {}", text), "--only",
+                                "fettle lines without it lists them");
+    ids.insert(id);
+  }
+  if (!ids.empty())
+    std::erase_if(lines, [&](const MeasuredLine& line) { return !ids.contains(line.line.id); });
+  return {};
 }
 
 Report reportOf(const MeasuredLine& line) {
@@ -108,15 +114,22 @@ std::string csvOf(const std::vector<MeasuredLine>& lines, const engine::Grid& gr
 }
 
 engine::Status writeFiles(const LinesArguments& options, const std::vector<MeasuredLine>& measured,
-                          const std::vector<engine::EdgeLine>& lines, const engine::Grid& grid) {
-  if (!options.out.empty())
+                          const engine::Grid& grid) {
+  // What may fail comes before what is written.
+  std::string svg;
+  if (!options.plot.empty()) {
+    auto drawn = edgePlot(measured, grid.height_unit);
+    if (!drawn) return tl::unexpected(drawn.error());
+    svg = *std::move(drawn);
+  }
+  if (!options.out.empty()) {
+    std::vector<engine::EdgeLine> lines;
+    for (const MeasuredLine& line : measured) lines.push_back(line.line);
     if (auto status = engine::exportLines(options.out, lines, grid); !status) return status;
+  }
   if (!options.csv.empty())
     if (auto status = engine::writeFileAtomically(options.csv, csvOf(measured, grid)); !status) return status;
-  if (options.plot.empty()) return {};
-  const auto svg = edgePlot(measured, grid.height_unit);
-  if (!svg) return tl::unexpected(svg.error());
-  return engine::writeFileAtomically(options.plot, *svg);
+  return options.plot.empty() ? engine::Status() : engine::writeFileAtomically(options.plot, svg);
 }
 
 engine::Result<Report> measureLines(const LinesArguments& options, engine::JobControl& job) {
@@ -133,34 +146,42 @@ engine::Result<Report> measureLines(const LinesArguments& options, engine::JobCo
   if (!lines) return tl::unexpected(lines.error());
   const auto noise = engine::estimateNoise(field, job);
   if (!noise) return tl::unexpected(noise.error());
-  auto sections = engine::measureEdges(field, noise->sigma, *lines, job);
+  // A field without any has no window to measure it in.
+  auto sections = engine::measureEdges(field, std::isnan(noise->sigma) ? 0.0 : noise->sigma, *lines, job);
   if (!sections) return tl::unexpected(sections.error());
   std::vector<MeasuredLine> measured;
   for (std::size_t i = 0; i < lines->size(); ++i) {
     const engine::EdgeMeans means = engine::meansOf((*sections)[i]);
-    measured.push_back({(*lines)[i], std::move((*sections)[i]), means});
+    measured.emplace_back((*lines)[i], std::move((*sections)[i]), means, field.grid());
   }
-  if (auto status = writeFiles(options, measured, *lines, field.grid()); !status)
+  if (auto status = keepOnly(options.only, measured); !status) return tl::unexpected(status.error());
+  if (auto status = writeFiles(options, measured, field.grid()); !status)
     return tl::unexpected(status.error());
-  Report report{{"unit", field.grid().height_unit.name}, {"noise", noise->sigma}, {"lines", Report::array()}};
+  Report report{{"unit", field.grid().height_unit.name},
+                {"noise", std::isnan(noise->sigma) ? Report() : Report(noise->sigma)},
+                {"lines", Report::array()}};
   for (const MeasuredLine& line : measured) report["lines"].push_back(reportOf(line));
   return report;
 }
 
 void printLines(const Report& report) {
+  if (!report["noise"].is_null())
+    fmt::print("noise {:.4g} {}; ", report["noise"].get<double>(), report["unit"].get<std::string>());
   fmt::print(
-      "noise {:.4g} {}; step: left surface less right one; turn: above 0 concave; +- standard deviation\n",
-      report["noise"].get<double>(), report["unit"].get<std::string>());
-  fmt::print("{:>6}{:>11}{:>8}{:>10}  {:<24}{:<22}\n", "line", "length mm", "found", "+- sample",
+      "step: left surface less right one; turn: above 0 concave; +- standard deviation, (lowest to "
+      "highest)\n");
+  fmt::print("{:>6}{:>11}{:>8}{:>10}  {:<38}{:<22}\n", "line", "length mm", "found", "+- sample",
              fmt::format("step [{}]", report["unit"].get<std::string>()), "turn [degrees]");
   for (const Report& line : report["lines"]) {
     const auto number = [&line](const char* key) { return line[key].get<double>(); };
     const bool measured = line["measured"].get<int>() > 0;
     fmt::print(
-        "{:>6}{:>11.4g}{:>6.0f} %{:>10}  {:<24}{:<22}\n", line["line"].get<std::int64_t>(),
+        "{:>6}{:>11.4g}{:>6.0f} %{:>10}  {:<38}{:<22}\n", line["line"].get<std::int64_t>(),
         number("length_mm"), 100.0 * number("located"),
         line["deviation"].is_null() ? "-" : fmt::format("{:.2f}", number("deviation")),
-        measured ? fmt::format("{:.5g} +- {:.2g}", number("step"), number("step_deviation")) : "-",
+        measured ? fmt::format("{:.5g} +- {:.2g} ({:.3g} to {:.3g})", number("step"),
+                               number("step_deviation"), number("step_low"), number("step_high"))
+                 : "-",
         measured ? fmt::format("{:.4g} +- {:.2g}", number("turn_deg"), number("turn_deviation_deg")) : "-");
   }
 }

@@ -11,15 +11,20 @@ using render::InputEvent;
 using render::InputKind;
 using render::Key;
 
+bool linesAreShown(const Parts& parts) {
+  const LoopClient* const client = parts.document.client();
+  return client != nullptr && parts.settings.display.marks && client->field().lines() != nullptr;
+}
+
 // Input that cannot wait for the next frame: the mouse as stylus.
 void toStylus(const InputEvent& event, Parts& parts) {
   LoopClient* const client = parts.document.client();
   if (client == nullptr || parts.marking.lasso().active()) return;
-  const Stylus::Hands hands =
-      parts.feedback.questions.pending() ? Stylus::Hands::kNone
-      : parts.drag.active() || parts.brush.active() || parts.line_drag.active() || LineDrag::begins(event)
-          ? Stylus::Hands::kOther
-          : Stylus::Hands::kFree;
+  const Stylus::Hands hands = parts.feedback.questions.pending() ? Stylus::Hands::kNone
+                              : parts.drag.active() || parts.brush.active() || parts.line_drag.active() ||
+                                      (LineDrag::begins(event) && linesAreShown(parts))
+                                  ? Stylus::Hands::kOther
+                                  : Stylus::Hands::kFree;
   parts.stylus.handle(event, *client, parts.picture, hands);
 }
 
@@ -101,10 +106,15 @@ Input::Request Input::handle(const InputEvent& event, Parts& parts) {
       parts.marking.handle(event,
                            {*client, parts.picture, parts.view, parts.settings.display, parts.drag.active()}))
     return {};
-  if (event.kind == InputKind::kKeyDown) return handleKey(event, parts);
+  if (event.kind == InputKind::kKeyDown) {
+    // What a key begins is not for a hand that holds a line.
+    const bool dragging = parts.line_drag.active();
+    parts.line_drag.stop();
+    return dragging && event.key == Key::kEscape ? Request{} : handleKey(event, parts);
+  }
   if (client != nullptr && !dialog && !parts.marking.lasso().active() &&
-      parts.line_drag.handle(event, {*client, parts.picture, parts.marking, parts.stylus.on(),
-                                     parts.settings.display.marks && client->field().lines() != nullptr}))
+      parts.line_drag.handle(
+          event, {*client, parts.picture, parts.marking, parts.stylus.on(), linesAreShown(parts)}))
     return {};
   const engine::Grid* const grid = parts.seenGrid();
   if (grid == nullptr || dialog) return {};

@@ -30,7 +30,10 @@ class LineDrag {
   /// Whether it used the event; a click is passed on, for it may turn the view, too.
   bool handle(const render::InputEvent& event, const Scope& scope);
   [[nodiscard]] bool active() const noexcept { return dragged_.has_value(); }
-  void stop() noexcept { dragged_.reset(); }
+  void stop() noexcept {
+    dragged_.reset();
+    click_.reset();
+  }
 
   /// Adds the thread from where the line was held to the cursor.
   void append(const engine::Version& field, render::Overlays& overlays) const;

@@ -208,7 +208,7 @@ engine::Result<Version> withLocated(const Version& base, std::vector<EdgeLine> l
   if (!line) return tl::unexpected(line.error());
   if (!isLocated(*line))
     return engine::inputError("no edge was found along the line", edit, "draw the edge instead");
-  lines.push_back(std::move(*line));
+  lines.push_back(finish(std::move(*line)));
   engine::extendEnds(lines, lines.size() - 1, base.grid().width, base.grid().height);
   return withLines(base, std::move(lines));
 }
@@ -302,22 +302,40 @@ engine::Result<Version> dragLine(const Version& base, std::int64_t id, glm::dvec
   const auto dragged = std::ranges::find(all, id, &EdgeLine::id);
   if (dragged == all.end() || dragged->points.empty())
     return engine::inputError("there is no such edge line", "drag", "choose one of the list");
-  const std::vector<EdgePoint>& points = dragged->points;
-  const auto nearest = std::ranges::min_element(
-      points, {}, [&](const EdgePoint& p) { return glm::distance(p.position, from); });
-  const double n = static_cast<double>(points.size()), held = static_cast<double>(nearest - points.begin());
+  EdgeLine line = engine::withoutExtensions(*dragged);
+  std::vector<EdgePoint>& points = line.points;
+  const auto nearest = [&] {
+    return std::ranges::min_element(points, {},
+                                    [&](const EdgePoint& p) { return glm::distance(p.position, from); });
+  };
+  // Of a closed line the held point comes to the middle.
+  if (line.closed)
+    std::ranges::rotate(points, points.begin() + (nearest() - points.begin() +
+                                                  static_cast<std::ptrdiff_t>(points.size() / 2)) %
+                                                     static_cast<std::ptrdiff_t>(points.size()));
+  const auto held = static_cast<double>(nearest() - points.begin());
   const double width = kDragWidth + glm::distance(from, to);  // points are about a sample apart
-  EdgeStroke stroke{id, {}, dragged->closed};
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    double along = std::abs(static_cast<double>(i) - held);
-    if (dragged->closed) along = std::min(along, n - along);
-    stroke.points.push_back(points[i].position +
-                            std::exp(-0.5 * along * along / (width * width)) * (to - from));
+  const auto count = static_cast<double>(points.size());
+  // What moves by less than a quarter of a sample stays as it is.
+  const double moved =
+      width * std::sqrt(2.0 * std::log(std::max(1.0, 4.0 * glm::distance(from, to)))) + kDragWidth;
+  const auto first = static_cast<std::size_t>(std::max(0.0, std::ceil(held - moved)));
+  const auto end = static_cast<std::size_t>(std::min(count, std::floor(held + moved) + 1.0));
+  EdgeStroke stroke{id, {}, line.closed && first == 0 && end == points.size()};
+  for (std::size_t i = first; i < end; ++i) {
+    const double along = (static_cast<double>(i) - held) / width;
+    stroke.points.push_back(points[i].position + std::exp(-0.5 * along * along) * (to - from));
   }
   std::vector<EdgeLine> lines;
-  for (const EdgeLine& line : all)
-    if (line.id != id) lines.push_back(line);
-  return withLocated(base, std::move(lines), stroke, options, "drag", job);
+  for (const EdgeLine& other : all)
+    if (other.id != id) lines.push_back(other);
+  return withLocated(base, std::move(lines), stroke, options, "drag", job, [&](EdgeLine piece) {
+    piece.points.insert(piece.points.begin(), points.begin(),
+                        points.begin() + static_cast<std::ptrdiff_t>(first));
+    piece.points.insert(piece.points.end(), points.begin() + static_cast<std::ptrdiff_t>(end), points.end());
+    piece.closed = line.closed;
+    return filledUp(std::move(piece));
+  });
 }
 
 engine::Result<Version> joinLine(const Version& base, std::int64_t id, const engine::LocateOptions& options,
@@ -359,7 +377,7 @@ engine::Result<Version> joinLine(const Version& base, std::int64_t id, const eng
   stroke.id = id;
   const auto append = [&](const EdgeLine& line, bool turned) {
     const auto first = static_cast<std::ptrdiff_t>(stroke.points.size());
-    for (const EdgePoint& p : line.points) stroke.points.push_back(p.position);
+    for (const EdgePoint& p : engine::withoutExtensions(line).points) stroke.points.push_back(p.position);
     if (turned) std::reverse(stroke.points.begin() + first, stroke.points.end());
   };
   append(*chosen, best.at_front);
@@ -368,7 +386,8 @@ engine::Result<Version> joinLine(const Version& base, std::int64_t id, const eng
   std::vector<EdgeLine> lines;
   for (const EdgeLine& line : all)
     if (&line != &*chosen && &line != best.other) lines.push_back(line);
-  return withLocated(base, std::move(lines), stroke, options, "join", job);
+  return withLocated(base, std::move(lines), stroke, options, "join", job,
+                     [](EdgeLine line) { return line; });
 }
 
 }  // namespace fettle::app

@@ -49,7 +49,7 @@ struct LineStroke {
 [[nodiscard]] engine::Version removeLines(const engine::Version& base, std::optional<std::int64_t> id);
 
 /// Moves the part of a line around `from` [samples], its nearest point, by to - from, less and less along the line, as a
-/// thread that is pulled, and locates the line again from there under its id. Errors: kInput where there is no such line
+/// thread that is pulled, and locates that part of it again from there. Errors: kInput where there is no such line
 /// or no edge is found; as engine::locateEdgeLines().
 [[nodiscard]] engine::Result<engine::Version> dragLine(const engine::Version& base, std::int64_t id,
                                                        glm::dvec2 from, glm::dvec2 to,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -100,19 +101,29 @@ double toBorder(const End& end, glm::dvec2 high) noexcept {
   return t;
 }
 
-// How far the end is to be extended; nothing when it meets something already or nothing is near.
-std::optional<double> extensionOf(const End& end, const Cells<Segment>& segments, const Cells<End>& ends,
-                                  glm::dvec2 high) {
-  double nearest = toBorder(end, high);
+// What an end meets straight on first.
+struct Meeting {
+  double length = HUGE_VAL;  // of the extension
+  std::size_t line = 0;      // number; kBorder
+  static constexpr std::size_t kBorder = 0;
+};
+
+// Nothing when the end meets something already or nothing is near.
+std::optional<Meeting> meetingOf(const End& end, const Cells<Segment>& segments, const Cells<End>& ends,
+                                 glm::dvec2 high) {
+  Meeting nearest{toBorder(end, high), Meeting::kBorder};
   bool meets = false;
+  const auto meet = [&nearest](double length, std::size_t line) {
+    if (length > 0.0 && length < nearest.length) nearest = {length, line};
+  };
   segments.forEachNear(end.from, [&](const Segment& other) {
     if (other.line == end.line) return;
     meets = meets || distanceToSegment(end.from, other.a, other.b) <= kMeets;
     const glm::dvec2 ab = other.b - other.a;
     const double sine = cross(end.along, ab);
     if (sine == 0.0 || std::abs(sine) < kAlong * glm::length(ab)) return;
-    const double t = cross(other.a - end.from, ab) / sine, u = cross(other.a - end.from, end.along) / sine;
-    if (t > 0.0 && u >= 0.0 && u <= 1.0) nearest = std::min(nearest, t);
+    const double u = cross(other.a - end.from, end.along) / sine;
+    if (u >= 0.0 && u <= 1.0) meet(cross(other.a - end.from, ab) / sine, other.line);
   });
   ends.forEachNear(end.from, [&](const End& other) {
     if (other.line == end.line && other.at_back == end.at_back) return;
@@ -120,10 +131,10 @@ std::optional<double> extensionOf(const End& end, const Cells<Segment>& segments
     meets = meets || glm::length(apart) <= kMeets;
     const double sine = cross(end.along, other.along);
     if (std::abs(sine) < kAlong) return;
-    const double t = cross(apart, other.along) / sine, u = cross(apart, end.along) / sine;
-    if (t > 0.0 && u > 0.0 && u <= kMostExtension) nearest = std::min(nearest, t);
+    const double u = cross(apart, end.along) / sine;
+    if (u > 0.0 && u <= kMostExtension) meet(cross(apart, other.along) / sine, other.line);
   });
-  if (meets || !(nearest > 0.0 && nearest <= kMostExtension)) return std::nullopt;
+  if (meets || !(nearest.length > 0.0 && nearest.length <= kMostExtension)) return std::nullopt;
   return nearest;
 }
 
@@ -137,12 +148,14 @@ void extendEnds(std::vector<EdgeLine>& lines, std::size_t first, std::int32_t co
     for (const bool at_back : {false, true})
       if (const auto end = endOf(lines[k], k, at_back)) {
         ends.add(end->from, *end);
-        if (k >= first) open.push_back(*end);
+        open.push_back(*end);
       }
   const glm::dvec2 high(columns - 1, rows - 1);
   std::vector<std::pair<End, double>> extensions;
   for (const End& end : open)
-    if (const auto length = extensionOf(end, segments, ends, high)) extensions.emplace_back(end, *length);
+    if (const auto meeting = meetingOf(end, segments, ends, high);
+        meeting && (end.line >= first || meeting->line >= std::max<std::size_t>(first, 1)))
+      extensions.emplace_back(end, meeting->length);
   for (const auto& [end, length] : extensions) {
     std::vector<EdgePoint>& points = lines[end.line].points;
     const EdgePoint last = end.at_back ? points.back() : points.front();
@@ -155,6 +168,21 @@ void extendEnds(std::vector<EdgeLine>& lines, std::size_t first, std::int32_t co
       points.insert(end.at_back ? points.end() : points.begin(), point);
     }
   }
+}
+
+EdgeLine withoutExtensions(const EdgeLine& line) {
+  EdgeLine bare = line;
+  if (line.closed) return bare;
+  std::vector<EdgePoint>& points = bare.points;
+  const auto copied = [](const EdgePoint& end, const EdgePoint& before) {
+    return end.located && before.located && end.step == before.step &&
+           end.step_deviation == before.step_deviation && end.slope_change == before.slope_change &&
+           end.slope_deviation == before.slope_deviation;
+  };
+  while (points.size() > 2 && copied(points.back(), points[points.size() - 2])) points.pop_back();
+  const auto first = std::ranges::adjacent_find(points, std::not_fn(copied));
+  if (first != points.end()) points.erase(points.begin(), first);
+  return bare;
 }
 
 }  // namespace fettle::engine

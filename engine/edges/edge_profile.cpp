@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <numbers>
 
 #include <tbb/blocked_range.h>
@@ -75,6 +77,61 @@ class Across {
   double d_, s_;
 };
 
+// A line with the strip of samples along it, which refers to its neighbours.
+struct MeasuredStrip {
+  const Polyline& line;
+  Strip strip;
+  std::vector<OffsetRange> ranges;
+};
+
+MeasuredStrip stripOf(const std::vector<Polyline>& lines, std::size_t number, const LineIndex& index,
+                      SampleWindow& window) {
+  const Polyline& line = lines[number];
+  MeasuredStrip measured{line, stripAlong(line, window, kSectionDepths[0], kTangentPointsHalf), {}};
+  const LineNeighbours neighbours =
+      neighboursOf(index, static_cast<int>(number), measured.strip.tangents, measured.strip.depth);
+  const std::vector<bool> known(lines.size(), true);
+  for (const Surroundings& here : surroundingsOf(line, neighbours, Stage::kRefine, false, known))
+    measured.ranges.push_back(here.range);
+  return measured;
+}
+
+// Samples that neither surface at a line explains, as mixed pixels, are not kept from now on.
+void dropMisfits(const MeasuredStrip& along, double noise, SampleWindow& window) {
+  const StripLine reach = lineOf(along.line.points.size(), kSectionDepths[0]);
+  const SideContext context{along.line, along.strip, window, along.ranges, EdgeMeans::kHalf, noise * noise};
+  for (int i = 0; i < along.line.size(); ++i) {
+    const Sides sides = sidesAt(context, reach, i, kSectionGuard);
+    if (!sides.supported()) continue;
+    for (const StripSample& sample : along.strip.at(i)) {
+      const PlaneFit& side = sample.d > 0.0 ? sides.left : sides.right;
+      SampleWindow::Sample& known = window.at(sample.index);
+      const double off = std::abs(sample.z - side.at(sample.d, sample.s));
+      // Of a surface that is no plane only what stands out of its own scatter.
+      known.misfit =
+          std::min(known.misfit, static_cast<float>(off / std::max(noise, std::sqrt(side.variance()))));
+    }
+  }
+}
+
+// The scatter of the samples about the surfaces at the points of the lines: the median of the better sides. [height_unit]
+double scatterOf(const std::vector<MeasuredStrip>& strips, const SampleWindow& window) {
+  std::vector<double> scatter;
+  for (const MeasuredStrip& along : strips) {
+    const StripLine reach = lineOf(along.line.points.size(), kSectionDepths[std::size(kSectionDepths) - 1]);
+    const SideContext context{along.line, along.strip, window, along.ranges, EdgeMeans::kHalf, 0.0};
+    for (int i = 0; i < along.line.size(); i += EdgeMeans::kHalf) {
+      const Sides sides = sidesAt(context, reach, i, kSectionGuard);
+      if (sides.supported())
+        scatter.push_back(std::sqrt(std::min(sides.left.variance(), sides.right.variance())));
+    }
+  }
+  if (scatter.empty()) return 0.0;
+  const auto middle = scatter.begin() + static_cast<std::ptrdiff_t>(scatter.size() / 2);
+  std::nth_element(scatter.begin(), middle, scatter.end());
+  return *middle;
+}
+
 class LineSections {
  public:
   LineSections(const Version& field, double variance, const EdgeLine& line, const SideContext& context)
@@ -117,38 +174,43 @@ class LineSections {
 Result<std::vector<std::vector<EdgeSection>>> measureEdges(const Version& field, double noise,
                                                            const std::vector<EdgeLine>& lines,
                                                            JobControl& job) {
-  if (!(noise > 0.0) || !std::isfinite(noise))
-    return inputError("the noise is not above 0", "measuring edges",
-                      "give its standard deviation, or add noise to an exact field");
+  if (!(noise >= 0.0) || !std::isfinite(noise))
+    return inputError("the noise is not 0 or more", "measuring edges", "give its standard deviation");
   std::vector<std::vector<EdgeSection>> all(lines.size());
   const std::int64_t points = countPoints(lines);
-  job.begin("measuring edges", static_cast<std::uint64_t>(points));
+  job.begin("measuring edges", 2 * static_cast<std::uint64_t>(points));
   if (points == 0) return all;
   const glm::dvec2 origin = lowestSample(lines);
   std::vector<Polyline> polylines;
   for (const EdgeLine& line : lines) polylines.push_back(polylineAt(line, origin));
-  SampleWindow window(field.reader(), glm::ivec2(origin), polylines, kSectionDepths[0] + 1.0, noise);
+  // Spikes are found by the surfaces: by their neighbours' heights alone steep surfaces would count as spikes.
+  constexpr double kNoSpikes = std::numeric_limits<double>::infinity();
+  SampleWindow window(field.reader(), glm::ivec2(origin), polylines, kSectionDepths[0] + 1.0, kNoSpikes);
   const LineIndex index(polylines);
-  const std::vector<bool> known(lines.size(), true);
+  std::vector<MeasuredStrip> strips;
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    if (job.cancelled()) return cancelled();
+    strips.push_back(stripOf(polylines, k, index, window));
+    job.advance(lines[k].points.size());
+  }
+  const double scatter = std::max(noise, scatterOf(strips, window));
+  for (const MeasuredStrip& along : strips) dropMisfits(along, scatter, window);
+  window.applyMisfits();
+  const double least = std::numeric_limits<double>::min();
+  const double deviation = std::max(noise, scatterOf(strips, window));
+  const double variance = std::max(least, kSharedNoise * deviation * deviation);
   const glm::dvec2 spacing(field.grid().spacingXMm(), field.grid().spacingYMm());
   for (std::size_t k = 0; k < lines.size(); ++k) {
     if (job.cancelled()) return cancelled();
     const Polyline& line = polylines[k];
-    const Strip strip = stripAlong(line, window, kSectionDepths[0], kTangentPointsHalf);
-    const LineNeighbours neighbours = neighboursOf(index, static_cast<int>(k), strip.tangents, strip.depth);
-    std::vector<OffsetRange> ranges;
-    for (const Surroundings& here : surroundingsOf(line, neighbours, Stage::kRefine, false, known))
-      ranges.push_back(here.range);
-    const double variance = kSharedNoise * noise * noise;
-    const SideContext context{line, strip, window, ranges, EdgeMeans::kHalf, variance};
+    const SideContext context{line, strips[k].strip, window, strips[k].ranges, EdgeMeans::kHalf, variance};
     const LineSections sections(field, variance, lines[k], context);
     all[k].resize(line.points.size());
     for (std::size_t i = 0; i < line.points.size(); ++i) {
-      EdgeSection& section = all[k][i];
-      section.position = lines[k].points[i].position;
-      if (i == 0) continue;
-      section.along_mm =
-          all[k][i - 1].along_mm + glm::length((line.points[i] - line.points[i - 1]) * spacing);
+      all[k][i].position = lines[k].points[i].position;
+      if (i > 0)
+        all[k][i].along_mm =
+            all[k][i - 1].along_mm + glm::length((line.points[i] - line.points[i - 1]) * spacing);
     }
     tbb::parallel_for(tbb::blocked_range<int>(0, line.size(), 16), [&](const auto& range) {
       for (int i = range.begin(); i < range.end(); ++i)
@@ -161,7 +223,8 @@ Result<std::vector<std::vector<EdgeSection>>> measureEdges(const Version& field,
 
 EdgeMeans meansOf(const std::vector<EdgeSection>& sections) noexcept {
   EdgeMeans means;
-  double step_squares = 0.0, turn_squares = 0.0;
+  double step_squares = 0.0, turn_squares = 0.0;  // of the deviations
+  double step_spread = 0.0, turn_spread = 0.0;    // squares of the values
   for (const EdgeSection& section : sections) {
     if (!section.measured) continue;
     if (means.measured++ == 0) {
@@ -178,11 +241,17 @@ EdgeMeans meansOf(const std::vector<EdgeSection>& sections) noexcept {
     turn_squares += section.turn_deviation * section.turn_deviation;
   }
   if (means.measured == 0) return means;
+  for (const EdgeSection& section : sections) {
+    if (!section.measured) continue;
+    step_spread += std::pow(section.step - means.step / means.measured, 2);
+    turn_spread += std::pow(section.turn - means.turn / means.measured, 2);
+  }
   const double n = means.measured, independent = std::max(1.0, n / (2.0 * EdgeMeans::kHalf + 1.0));
   means.step /= n;
   means.turn /= n;
-  means.step_deviation = std::sqrt(step_squares / n / independent);
-  means.turn_deviation = std::sqrt(turn_squares / n / independent);
+  // Where step or turn change along the line, by their spread.
+  means.step_deviation = std::sqrt(std::max(step_squares, step_spread) / n / independent);
+  means.turn_deviation = std::sqrt(std::max(turn_squares, turn_spread) / n / independent);
   return means;
 }
 

@@ -96,13 +96,25 @@ LineCuts::LineCuts(std::span<const EdgeLine> lines, std::int32_t columns, std::i
   const auto doubled = std::ranges::unique(samples_);
   samples_.erase(doubled.begin(), doubled.end());
   samples_.shrink_to_fit();
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const auto [row, column] = tileOfSample(samples_[i]);
+    if (tiles_.empty() || tiles_.back().row != row || tiles_.back().column != column)
+      tiles_.push_back({row, column, static_cast<std::uint32_t>(i), 0, 0xcbf29ce484222325ULL});
+    TilePart& tile = tiles_.back();
+    ++tile.count;
+    // FNV-1a, word by word.
+    tile.print = (tile.print ^ (static_cast<std::uint64_t>(samples_[i].row) << 32U |
+                                static_cast<std::uint64_t>(samples_[i].column))) *
+                 0x100000001b3ULL;
+    tile.print ^= tile.print >> 32U;
+  }
 }
 
-std::span<const LineSample> LineCuts::samplesOf(std::int32_t tile_column,
-                                                std::int32_t tile_row) const noexcept {
-  const auto first = std::ranges::lower_bound(samples_, std::pair(tile_row, tile_column), {}, tileOfSample);
-  const auto last = std::ranges::upper_bound(samples_, std::pair(tile_row, tile_column), {}, tileOfSample);
-  return {samples_.data() + (first - samples_.begin()), static_cast<std::size_t>(last - first)};
+LineCuts::TileSamples LineCuts::samplesOf(std::int32_t tile_column, std::int32_t tile_row) const noexcept {
+  const auto tile = std::ranges::lower_bound(tiles_, std::pair(tile_row, tile_column), {},
+                                             [](const TilePart& t) { return std::pair(t.row, t.column); });
+  if (tile == tiles_.end() || tile->row != tile_row || tile->column != tile_column) return {};
+  return {{samples_.data() + tile->first, tile->count}, tile->print};
 }
 
 std::span<const LineCut> LineCuts::row(std::int32_t row) const noexcept {

@@ -38,13 +38,23 @@ class LineCuts {
   /// The cuts of a row, by column.
   [[nodiscard]] std::span<const LineCut> row(std::int32_t row) const noexcept;
 
-  /// The samples of a tile that lines pass, by row, then column.
-  [[nodiscard]] std::span<const LineSample> samplesOf(std::int32_t tile_column,
-                                                      std::int32_t tile_row) const noexcept;
+  /// The samples of a tile that lines pass, with a number that two tiles of different samples hardly share; 0 without
+  /// any. In time that grows with the logarithm of the tiles with lines.
+  struct TileSamples {
+    std::span<const LineSample> samples;  ///< by row, then column
+    std::uint64_t print = 0;
+  };
+  [[nodiscard]] TileSamples samplesOf(std::int32_t tile_column, std::int32_t tile_row) const noexcept;
 
  private:
   std::vector<LineCut> cuts_;        // by row, then column
   std::vector<LineSample> samples_;  // by tile, row by row
+  struct TilePart {
+    std::int32_t row = 0, column = 0;  // of the tile
+    std::uint32_t first = 0, count = 0;
+    std::uint64_t print = 0;
+  };
+  std::vector<TilePart> tiles_;
 };
 
 }  // namespace fettle::engine

@@ -15,22 +15,19 @@ namespace {
 // Rows from a sample to the nearest mark of its column, when there is none within the reach.
 constexpr std::uint8_t kNone = 255;
 
-std::uint64_t printOf(const engine::Tile& tile, std::span<const engine::LineSample> on_lines) noexcept {
-  if (tile.marked_samples == 0 && on_lines.empty()) return 0;
-  std::uint64_t print = 0xcbf29ce484222325ULL;  // FNV-1a, word by word
-  const auto add = [&print](std::uint64_t word) {
-    print = (print ^ word) * 0x100000001b3ULL;
+std::uint64_t printOf(const engine::Tile& tile, std::uint64_t of_lines) noexcept {
+  if (tile.marked_samples == 0 && of_lines == 0) return 0;
+  std::uint64_t print = of_lines ^ 0xcbf29ce484222325ULL;  // FNV-1a, word by word
+  for (const std::uint64_t row : tile.marks) {
+    print = (print ^ row) * 0x100000001b3ULL;
     print ^= print >> 32U;
-  };
-  for (const std::uint64_t row : tile.marks) add(row);
-  for (const engine::LineSample& sample : on_lines)
-    add(static_cast<std::uint64_t>(sample.row) << 32U | static_cast<std::uint64_t>(sample.column));
+  }
   return print | 1U;
 }
 
-std::span<const engine::LineSample> samplesOf(const engine::LineCuts* lines, std::int32_t tile_column,
-                                              std::int32_t tile_row) noexcept {
-  return lines == nullptr ? std::span<const engine::LineSample>() : lines->samplesOf(tile_column, tile_row);
+engine::LineCuts::TileSamples samplesOf(const engine::LineCuts* lines, std::int32_t tile_column,
+                                        std::int32_t tile_row) noexcept {
+  return lines == nullptr ? engine::LineCuts::TileSamples() : lines->samplesOf(tile_column, tile_row);
 }
 
 }  // namespace
@@ -95,7 +92,7 @@ void MarkDistance::scanSlice(const engine::FieldReader& reader, const engine::Li
   for (; next_tile_ < end; ++next_tile_) {
     const std::int32_t tc = next_tile_ % tile_columns_;
     const std::int32_t tr = next_tile_ / tile_columns_;
-    const std::uint64_t print = printOf(reader.tile(tc, tr), samplesOf(lines, tc, tr));
+    const std::uint64_t print = printOf(reader.tile(tc, tr), samplesOf(lines, tc, tr).print);
     std::uint64_t& known = prints_[static_cast<std::size_t>(next_tile_)];
     if (print == known) continue;
     known = print;
@@ -130,7 +127,7 @@ void MarkDistance::startJob(const engine::FieldReader& reader, const engine::Lin
   std::size_t marked = 0;
   for (std::int32_t r = std::max(tr - 1, 0); r <= std::min(tr + 1, tile_rows_ - 1); ++r)
     for (std::int32_t c = std::max(tc - 1, 0); c <= std::min(tc + 1, tile_columns_ - 1); ++c)
-      marked += reader.tile(c, r).marked_samples + samplesOf(lines, c, r).size();
+      marked += reader.tile(c, r).marked_samples + samplesOf(lines, c, r).samples.size();
   if (marked == 0) finishJob();
 }
 
@@ -172,7 +169,7 @@ void MarkDistance::addLines(const engine::LineCuts& lines, const engine::SampleR
                      r1 = std::min(block.row + block.rows, height_);
   for (std::int32_t tr = std::max(block.row, 0) >> kTileShift; tr << kTileShift < r1; ++tr)
     for (std::int32_t tc = std::max(block.column, 0) >> kTileShift; tc << kTileShift < c1; ++tc)
-      for (const engine::LineSample& sample : lines.samplesOf(tc, tr)) {
+      for (const engine::LineSample& sample : lines.samplesOf(tc, tr).samples) {
         const std::int32_t c = sample.column - block.column, r = sample.row - block.row;
         if (c >= 0 && c < block.columns && r >= 0 && r < block.rows)
           marks_[static_cast<std::size_t>(r * kColumnsASlice + c)] = 1;

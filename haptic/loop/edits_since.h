@@ -17,7 +17,7 @@ class EditsSince {
   static constexpr int kMostTiles = 64;
 
   /// Starts a list for the job `id`. Returns the previous base, to be freed elsewhere.
-  engine::Version begin(engine::Version base, std::uint64_t id) noexcept {
+  [[nodiscard]] engine::Version begin(engine::Version base, std::uint64_t id) noexcept {
     id_ = id;
     valid_ = true;
     count_ = 0;
@@ -26,7 +26,7 @@ class EditsSince {
   /// The list no longer says what was edited: the state was replaced.
   void drop() noexcept { valid_ = false; }
   /// Ends the list. Returns its base, to be freed elsewhere.
-  engine::Version end() noexcept {
+  [[nodiscard]] engine::Version end() noexcept {
     valid_ = false;
     return std::move(base_);
   }

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <glm/geometric.hpp>
 
 #include "engine/base/error.h"
 #include "engine/edges/edge_profile.h"
@@ -14,13 +17,17 @@ struct MeasuredLine {
   engine::EdgeLine line;
   std::vector<engine::EdgeSection> sections;  ///< one per point
   engine::EdgeMeans means;
-  double length_mm = 0.0;
+  double length_mm = 0.0;  ///< of a closed line all around
 
-  MeasuredLine(engine::EdgeLine from, std::vector<engine::EdgeSection> at, const engine::EdgeMeans& mean)
-      : line(std::move(from)),
-        sections(std::move(at)),
-        means(mean),
-        length_mm(sections.empty() ? 0.0 : sections.back().along_mm) {}
+  MeasuredLine(engine::EdgeLine from, std::vector<engine::EdgeSection> at, const engine::EdgeMeans& mean,
+               const engine::Grid& grid)
+      : line(std::move(from)), sections(std::move(at)), means(mean) {
+    if (sections.empty()) return;
+    length_mm = sections.back().along_mm;
+    const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
+    if (line.closed)
+      length_mm += glm::length((sections.front().position - sections.back().position) * spacing);
+  }
 };
 
 /// An SVG of step height and turn over the length of the longest lines, each with a band of its standard deviation.

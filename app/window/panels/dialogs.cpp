@@ -149,7 +149,8 @@ std::optional<Choice> shortcutsDialog(Questions& questions, float scale) {
       "  Ctrl+1 .. Ctrl+9         recent files\n"
       "  left button              the stylus, while a tool is on; the wheel then sets how deep it presses\n"
       "  middle, right button     turn, move the view (Shift, Ctrl: see View > Mouse); wheel: zoom\n"
-      "  Alt + left button        turn the view");
+      "  Alt + left button        turn the view\n"
+      "  Ctrl + Shift + left      drag an edge line; a click chooses one where no tool is on");
   return button("Close", questions, Key::kEscape) ? std::optional(Choice::kBack) : std::nullopt;
 }
 

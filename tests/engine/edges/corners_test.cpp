@@ -8,7 +8,13 @@
 namespace fettle::engine {
 namespace {
 
-using tests::edgeLineOf;
+// Figures differ from point to point, as those of located ones.
+EdgeLine cornerLine(const std::vector<glm::dvec2>& corners, double deviation = 0.0) {
+  EdgeLine line = tests::edgeLineOf(corners, deviation);
+  for (std::size_t i = 0; i < line.points.size(); ++i)
+    line.points[i].step = 0.1 + 1e-4 * static_cast<double>(i);
+  return line;
+}
 
 glm::dvec2 frontOf(const EdgeLine& line) {
   return line.points.front().position;
@@ -18,8 +24,8 @@ glm::dvec2 backOf(const EdgeLine& line) {
 }
 
 TEST(Corners, TwoEndsMeetWhereTheirDirectionsDo) {
-  std::vector<EdgeLine> lines{edgeLineOf({{10.0, 20.0}, {37.5, 20.0}}, 0.3),
-                              edgeLineOf({{40.0, 50.0}, {40.0, 22.0}}, 0.3)};
+  std::vector<EdgeLine> lines{cornerLine({{10.0, 20.0}, {37.5, 20.0}}, 0.3),
+                              cornerLine({{40.0, 50.0}, {40.0, 22.0}}, 0.3)};
   lines[0].points.back().step = 0.7;
   const std::size_t before = lines[0].points.size();
   extendEnds(lines, 0, 100, 100);
@@ -32,6 +38,7 @@ TEST(Corners, TwoEndsMeetWhereTheirDirectionsDo) {
   EXPECT_EQ(corner.step, 0.7);
   EXPECT_GT(corner.deviation, 0.3);
   EXPECT_LT(corner.deviation, 0.6);
+  EXPECT_EQ(withoutExtensions(lines[0]).points.size(), before);
   // Once is enough.
   const std::vector<EdgeLine> met = lines;
   extendEnds(lines, 0, 100, 100);
@@ -39,9 +46,9 @@ TEST(Corners, TwoEndsMeetWhereTheirDirectionsDo) {
 }
 
 TEST(Corners, AnEndMeetsALineAndTheBorder) {
-  std::vector<EdgeLine> lines{edgeLineOf({{2.0, 30.25}, {97.5, 30.25}}),
-                              edgeLineOf({{50.0, 60.0}, {50.0, 33.0}}),
-                              edgeLineOf({{70.0, 60.0}, {70.0, 35.0}})};
+  std::vector<EdgeLine> lines{cornerLine({{2.0, 30.25}, {97.5, 30.25}}),
+                              cornerLine({{50.0, 60.0}, {50.0, 33.0}}),
+                              cornerLine({{70.0, 60.0}, {70.0, 35.0}})};
   extendEnds(lines, 0, 100, 100);
   EXPECT_EQ(frontOf(lines[0]), glm::dvec2(0.0, 30.25));
   EXPECT_EQ(backOf(lines[0]), glm::dvec2(99.0, 30.25));
@@ -55,10 +62,10 @@ TEST(Corners, AnEndMeetsALineAndTheBorder) {
 TEST(Corners, WhatRunsAlongOrIsNotLocatedMeetsNothing) {
   // Almost parallel; a plain mark in the way; a closed line.
   std::vector<EdgeLine> lines{
-      edgeLineOf({{10.0, 20.0}, {40.0, 20.0}}), edgeLineOf({{41.0, 20.2}, {80.0, 24.0}}),
-      edgeLineOf({{10.0, 60.0}, {40.0, 60.0}}), edgeLineOf({{42.0, 50.0}, {42.0, 70.0}})};
+      cornerLine({{10.0, 20.0}, {40.0, 20.0}}), cornerLine({{41.0, 20.2}, {80.0, 24.0}}),
+      cornerLine({{10.0, 60.0}, {40.0, 60.0}}), cornerLine({{42.0, 50.0}, {42.0, 70.0}})};
   for (EdgePoint& point : lines[3].points) point.located = false;
-  lines.push_back(edgeLineOf({{60.0, 60.0}, {70.0, 60.0}, {65.0, 70.0}, {60.0, 60.5}}));
+  lines.push_back(cornerLine({{60.0, 60.0}, {70.0, 60.0}, {65.0, 70.0}, {60.0, 60.5}}));
   lines.back().closed = true;
   lines.push_back({});
   const std::vector<EdgeLine> before = lines;
@@ -67,17 +74,21 @@ TEST(Corners, WhatRunsAlongOrIsNotLocatedMeetsNothing) {
     EXPECT_EQ(lines[k].points.size(), before[k].points.size()) << k;
 }
 
-TEST(Corners, LinesBeforeTheFirstStayAsTheyAre) {
-  std::vector<EdgeLine> lines{edgeLineOf({{10.0, 20.0}, {37.5, 20.0}}),
-                              edgeLineOf({{40.0, 50.0}, {40.0, 22.0}})};
-  extendEnds(lines, 1, 100, 100);
-  EXPECT_EQ(backOf(lines[0]), glm::dvec2(37.5, 20.0));
-  EXPECT_EQ(backOf(lines[1]), glm::dvec2(40.0, 20.0));
+TEST(Corners, LinesBeforeTheFirstAreExtendedToLaterOnesOnly) {
+  std::vector<EdgeLine> lines{
+      cornerLine({{2.0, 20.0}, {37.5, 20.0}}), cornerLine({{30.0, 80.0}, {60.0, 80.0}}),
+      cornerLine({{63.0, 70.0}, {63.0, 78.0}}), cornerLine({{40.0, 50.0}, {40.0, 22.0}})};
+  extendEnds(lines, 3, 100, 100);
+  EXPECT_EQ(frontOf(lines[0]), glm::dvec2(2.0, 20.0));  // the border was there before
+  EXPECT_EQ(backOf(lines[0]), glm::dvec2(40.0, 20.0));
+  EXPECT_EQ(backOf(lines[1]), glm::dvec2(60.0, 80.0));
+  EXPECT_EQ(backOf(lines[2]), glm::dvec2(63.0, 78.0));
+  EXPECT_EQ(backOf(lines[3]), glm::dvec2(40.0, 20.0));
 }
 
 TEST(Corners, FieldsOfOneRowAndLinesOutsideAreLeft) {
-  std::vector<EdgeLine> lines{edgeLineOf({{-30.0, -5.0}, {-12.0, -5.0}}),
-                              edgeLineOf({{1.0, 0.0}, {8.0, 0.0}}), edgeLineOf({{3.0, 0.0}, {3.0, 0.0}})};
+  std::vector<EdgeLine> lines{cornerLine({{-30.0, -5.0}, {-12.0, -5.0}}),
+                              cornerLine({{1.0, 0.0}, {8.0, 0.0}}), cornerLine({{3.0, 0.0}, {3.0, 0.0}})};
   extendEnds(lines, 0, 10, 1);
   EXPECT_EQ(backOf(lines[0]), glm::dvec2(-12.0, -5.0));
   EXPECT_EQ(backOf(lines[1]), glm::dvec2(9.0, 0.0));

@@ -155,6 +155,31 @@ TEST(EdgeProfile, NextToAnotherLineOnlyTheSurfaceBetweenCounts) {
   EXPECT_NEAR(meansOf((*both)[1]).step, 0.5, 1e-6);
 }
 
+// What a filter leaves has next to no noise, and its slopes lie at any angle to the grid.
+TEST(EdgeProfile, MeasuresSteepSurfacesWithoutNoiseAtAnyAngle) {
+  Grid grid;
+  grid.width = grid.height = 120;
+  grid.spacing_x = grid.spacing_y = 0.2;
+  for (const double angle : {0.0, 30.0, 45.0, 77.0}) {
+    const glm::dvec2 along{std::cos(angle * kDegree), std::sin(angle * kDegree)}, left{-along.y, along.x};
+    const glm::dvec2 middle{60.3, 59.6};
+    const double slope = std::tan(40.0 * kDegree);
+    // A roof with a mixed pixel here and there.
+    std::mt19937 random(9);
+    const Version field = sampledField(grid, [&](int c, int r) {
+      const double across = glm::dot(glm::dvec2(c, r) - middle, left) * 0.2;
+      return -slope * std::abs(across) + (random() % 97 == 0 ? 3.0 : 0.0);
+    });
+    for (const double noise : {0.0, 2e-3}) {
+      const EdgeMeans means =
+          meansOf(measured(field, noise, edgeLineOf({middle - 40.0 * along, middle + 40.0 * along})));
+      EXPECT_GT(means.measured, 140) << angle;
+      EXPECT_NEAR(means.turn, -80.0, 0.1) << angle;
+      EXPECT_NEAR(means.step, 0.0, 0.002) << angle;
+    }
+  }
+}
+
 TEST(EdgeProfile, HardFieldsGiveAFigureOrNone) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const glm::ivec2 size : {glm::ivec2(60, 1), {1, 50}, {2, 2}, {60, 50}})
@@ -185,7 +210,7 @@ TEST(EdgeProfile, HardFieldsGiveAFigureOrNone) {
       EXPECT_EQ(meansOf((*all)[4]).measured, 0);
     }
   JobControl job;
-  EXPECT_FALSE(measureEdges(twoPlaneField({}, 0.0, 1), 0.0, {}, job));
+  EXPECT_FALSE(measureEdges(twoPlaneField({}, 0.0, 1), std::nan(""), {}, job));
   job.cancel();
   EXPECT_FALSE(measureEdges(twoPlaneField({}, 0.0, 1), 0.01, {edgeLineOf({{29.4, 5.0}, {29.4, 44.0}})}, job));
 }

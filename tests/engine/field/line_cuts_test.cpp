@@ -139,7 +139,7 @@ TEST(LineCuts, HaveTheSamplesNearestToStepsAndCreases) {
   std::set<std::pair<int, int>> found;
   for (int tr = 0; tr < 3; ++tr)
     for (int tc = 0; tc < 3; ++tc)
-      for (const LineSample& sample : cuts.samplesOf(tc, tr)) {
+      for (const LineSample& sample : cuts.samplesOf(tc, tr).samples) {
         EXPECT_EQ(sample.column / kTileSide, tc);
         EXPECT_EQ(sample.row / kTileSide, tr);
         EXPECT_TRUE(found.emplace(sample.column, sample.row).second);
@@ -165,7 +165,7 @@ TEST(LineCuts, HaveTheSamplesNearestToStepsAndCreases) {
       near += static_cast<int>(has);
     }
   EXPECT_GT(near, 250);
-  EXPECT_TRUE(LineCuts(std::vector<EdgeLine>{}, 10, 10).samplesOf(0, 0).empty());
+  EXPECT_TRUE(LineCuts(std::vector<EdgeLine>{}, 10, 10).samplesOf(0, 0).samples.empty());
 }
 
 }  // namespace

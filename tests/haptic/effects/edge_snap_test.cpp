@@ -305,7 +305,7 @@ TEST(MarkDistance, CountsTheSamplesThatLinesPass) {
   engine::LiveField live(plain, engine::Growth::kAllowed);
   for (int tr = 0; tr < 3; ++tr)
     for (int tc = 0; tc < 4; ++tc)
-      for (const engine::LineSample& sample : with.lineCuts()->samplesOf(tc, tr))
+      for (const engine::LineSample& sample : with.lineCuts()->samplesOf(tc, tr).samples)
         ASSERT_TRUE(live.setMark(sample.column, sample.row, true));
   expectExact(distance, live.reader());
   // Lines that come and go with a version, as those of an undone stroke.
