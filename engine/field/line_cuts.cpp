@@ -93,8 +93,7 @@ LineCuts::LineCuts(std::span<const EdgeLine> lines, std::int32_t columns, std::i
     if (cut.links != 0) cuts_.push_back(cut);
   }
   std::ranges::sort(samples_, {}, orderOfSample);
-  const auto doubled = std::ranges::unique(samples_);
-  samples_.erase(doubled.begin(), doubled.end());
+  samples_.erase(std::unique(samples_.begin(), samples_.end()), samples_.end());
   samples_.shrink_to_fit();
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const auto [row, column] = tileOfSample(samples_[i]);

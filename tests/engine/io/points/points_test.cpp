@@ -35,7 +35,8 @@ TEST(Xyz, SeparatorsHeadersCommentsAndLineEndsAreUnderstood) {
         "x,y,z\n0,0,1,255\n1,0,2,255\n0,1,3,1\n1,1,4,1\n", "0;0;1\n1;0;2\n0;1;3\n1;1;4\n",
         "\t0\t0 \t1\n 1\t0\t2\n0\t1\t3\n1\t1\t4\n",
         "# a comment\n// another\n4\nX Y Z\n\n0, 0, 1\n1 , 0 , 2\n# in between\n0,1,3\n\n1,1,4\n",
-        "\xef\xbb\xbf0 0 +1\n1e0 0.0E+0 2.0\n0 1 .3e1\n+1 1 4.\n"}) {
+        "\xef\xbb\xbf"
+        "0 0 +1\n1e0 0.0E+0 2.0\n0 1 .3e1\n+1 1 4.\n"}) {
     FETTLE_LOAD_TEXT(scan, text);
     EXPECT_EQ(heightsOf(scan.field), (std::vector<float>{1, 2, 3, 4})) << text;
     EXPECT_TRUE(scan.gridding->lattice);
