@@ -197,10 +197,31 @@ engine::Result<EdgeLine> locateAmong(const Version& field, const EdgeStroke& str
   return std::move(located->front());
 }
 
-// `lines` and the line of a stroke among them.
+// With further points where two are too far apart: copies of the one before, at even distances.
+EdgeLine filledUp(EdgeLine line) {
+  std::vector<EdgePoint> points;
+  for (const EdgePoint& next : line.points) {
+    if (!points.empty()) {
+      const EdgePoint before = points.back();
+      const double apart = glm::distance(before.position, next.position);
+      const int steps = apart > EdgeLine::kMostApart ? static_cast<int>(std::ceil(apart)) : 1;
+      for (int k = 1; k < steps; ++k) {
+        points.push_back(before);
+        points.back().position =
+            before.position + static_cast<double>(k) / steps * (next.position - before.position);
+      }
+    }
+    points.push_back(next);
+  }
+  line.points = std::move(points);
+  return line;
+}
+
+// `lines` and the line of a stroke among them, as `finish` makes it of what was located.
+template <class Finish>
 engine::Result<Version> withLocated(const Version& base, std::vector<EdgeLine> lines,
                                     const EdgeStroke& stroke, const engine::LocateOptions& options,
-                                    const char* edit, engine::JobControl& job) {
+                                    const char* edit, engine::JobControl& job, Finish&& finish) {
   const Box box = boxOf(stroke.points);
   const auto noise = noiseAround(base, box, job);
   if (!noise) return tl::unexpected(noise.error());
@@ -310,9 +331,9 @@ engine::Result<Version> dragLine(const Version& base, std::int64_t id, glm::dvec
   };
   // Of a closed line the held point comes to the middle.
   if (line.closed)
-    std::ranges::rotate(points, points.begin() + (nearest() - points.begin() +
-                                                  static_cast<std::ptrdiff_t>(points.size() / 2)) %
-                                                     static_cast<std::ptrdiff_t>(points.size()));
+    std::rotate(points.begin(),
+                points.begin() + (nearest() - points.begin() + std::ssize(points) / 2) % std::ssize(points),
+                points.end());
   const auto held = static_cast<double>(nearest() - points.begin());
   const double width = kDragWidth + glm::distance(from, to);  // points are about a sample apart
   const auto count = static_cast<double>(points.size());
