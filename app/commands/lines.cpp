@@ -170,13 +170,13 @@ void printLines(const Report& report) {
   fmt::print(
       "step: left surface less right one; turn: above 0 concave; +- standard deviation, (lowest to "
       "highest)\n");
-  fmt::print("{:>6}{:>11}{:>8}{:>10}  {:<38}{:<22}\n", "line", "length mm", "found", "+- sample",
+  fmt::print("{:>6}{:>11}{:>8}{:>10}  {:<42}{:<20}\n", "line", "length mm", "found", "+- sample",
              fmt::format("step [{}]", report["unit"].get<std::string>()), "turn [degrees]");
   for (const Report& line : report["lines"]) {
     const auto number = [&line](const char* key) { return line[key].get<double>(); };
     const bool measured = line["measured"].get<int>() > 0;
     fmt::print(
-        "{:>6}{:>11.4g}{:>6.0f} %{:>10}  {:<38}{:<22}\n", line["line"].get<std::int64_t>(),
+        "{:>6}{:>11.4g}{:>6.0f} %{:>10}  {:<42}{:<20}\n", line["line"].get<std::int64_t>(),
         number("length_mm"), 100.0 * number("located"),
         line["deviation"].is_null() ? "-" : fmt::format("{:.2f}", number("deviation")),
         measured ? fmt::format("{:.5g} +- {:.2g} ({:.3g} to {:.3g})", number("step"),

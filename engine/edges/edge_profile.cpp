@@ -22,6 +22,8 @@ constexpr double kSectionDepths[] = {10.0, 7.0, 5.0,
 constexpr double kSectionGuard = 0.75;      // samples nearer to the line may lie on either side
 constexpr double kSharedNoise = 1.3;        // of the variance: neighbouring samples share some noise
 constexpr double kFitsNoPlane = 1.5;        // residual variance over that of the noise
+constexpr double kStandsOut = 3.5;          // of a surface [standard deviations]
+constexpr int kRoundsOfMisfits = 3;
 constexpr int kTangentPointsHalf = 3;
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
@@ -96,7 +98,8 @@ MeasuredStrip stripOf(const std::vector<Polyline>& lines, std::size_t number, co
   return measured;
 }
 
-// Samples that neither surface at a line explains, as mixed pixels, are not kept from now on.
+// Samples that neither surface at a line explains, as mixed pixels, are not kept from now on: those that stand out of the
+// surface's own scatter. A few of them hide others: in rounds.
 void dropMisfits(const MeasuredStrip& along, double noise, SampleWindow& window) {
   const StripLine reach = lineOf(along.line.points.size(), kSectionDepths[0]);
   const SideContext context{along.line, along.strip, window, along.ranges, EdgeMeans::kHalf, noise * noise};
@@ -107,9 +110,8 @@ void dropMisfits(const MeasuredStrip& along, double noise, SampleWindow& window)
       const PlaneFit& side = sample.d > 0.0 ? sides.left : sides.right;
       SampleWindow::Sample& known = window.at(sample.index);
       const double off = std::abs(sample.z - side.at(sample.d, sample.s));
-      // Of a surface that is no plane only what stands out of its own scatter.
-      known.misfit =
-          std::min(known.misfit, static_cast<float>(off / std::max(noise, std::sqrt(side.variance()))));
+      const double most = kStandsOut * std::max(noise, std::sqrt(side.variance()));
+      known.misfit = std::min(known.misfit, off <= most ? 1.0F : 1e3F);
     }
   }
 }
@@ -194,8 +196,11 @@ Result<std::vector<std::vector<EdgeSection>>> measureEdges(const Version& field,
     job.advance(lines[k].points.size());
   }
   const double scatter = std::max(noise, scatterOf(strips, window));
-  for (const MeasuredStrip& along : strips) dropMisfits(along, scatter, window);
-  window.applyMisfits();
+  for (int round = 0; round < kRoundsOfMisfits; ++round) {
+    if (job.cancelled()) return cancelled();
+    for (const MeasuredStrip& along : strips) dropMisfits(along, scatter, window);
+    window.applyMisfits();
+  }
   const double least = std::numeric_limits<double>::min();
   const double deviation = std::max(noise, scatterOf(strips, window));
   const double variance = std::max(least, kSharedNoise * deviation * deviation);
