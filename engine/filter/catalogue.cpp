@@ -6,6 +6,7 @@
 
 #include "engine/filter/line_windows.h"
 #include "engine/filter/median.h"
+#include "engine/filter/tgv_schedule.h"
 #include "engine/filter/window_pass.h"
 
 namespace fettle::engine {
@@ -30,10 +31,7 @@ constexpr WindowFilter kMedianWindows{makeMedianFilter, {1, 128, 512}, {1, 128, 
 constexpr WindowFilter kBilateralWindows{makeBilateralFilter};
 constexpr WindowFilter kTotalVariationWindows{makeTotalVariationFilter};
 
-// With 48 samples around a square no result is further than 0.002 of the noise from what the whole field in one
-// would give; with 32 it is 0.02, with 16 one sample at an edge may fall to the other side.
-constexpr std::int32_t kTgvSide = 256, kTgvHalo = 48;
-constexpr WindowFilter kTgvSquares{.make = makeTgvFilter, .squares = {kTgvSide, kTgvHalo}};
+constexpr WindowFilter kTgvSquares{.make = makeTgvFilter, .squares = {tgv::kSide, tgv::kHalo}};
 
 // Means and medians smooth the edges together with the noise unless these are marked.
 constexpr FilterTrial kBoxTrials[] = {{3}, {5}, {9}, {3, 2, 0, true}, {5, 2, 0, true}, {9, 2, 0, true}};
@@ -89,8 +87,8 @@ constexpr std::array kFilters{
            .range_sigma = kRange,
            .noises = 1.0,
            .pass = windowPass<kTgvSquares>,
-           .reach = [](const FilterSpec&) { return kTgvSide - 1 + kTgvHalo; },
-           .grid = kTgvSide,
+           .reach = [](const FilterSpec&) { return tgv::kSide - 1 + tgv::kHalo; },
+           .grid = tgv::kSide,
            // Synthetic samples are smoothed by filters that leave twice as much, and would judge it by that.
            .trials = {},
            .knows_lines = true},
