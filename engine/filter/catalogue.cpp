@@ -6,6 +6,7 @@
 
 #include "engine/filter/line_windows.h"
 #include "engine/filter/median.h"
+#include "engine/filter/tgv_device.h"
 #include "engine/filter/tgv_schedule.h"
 #include "engine/filter/window_pass.h"
 
@@ -91,7 +92,8 @@ constexpr std::array kFilters{
            .grid = tgv::kSide,
            // Synthetic samples are smoothed by filters that leave twice as much, and would judge it by that.
            .trials = {},
-           .knows_lines = true},
+           .knows_lines = true,
+           .on_device = tgvPassOnDevice},
 };
 
 constexpr bool inTheOrderOfTheEnum() {
@@ -141,6 +143,10 @@ bool keepsEdges(const Filter& filter) noexcept {
 
 bool knowsLines(const Filter& filter) noexcept {
   return filter.knows_lines;
+}
+
+bool runsOnDevices(const Filter& filter) noexcept {
+  return filter.on_device != nullptr;
 }
 
 std::vector<FilterKind> plainFilters() {

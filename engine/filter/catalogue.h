@@ -12,6 +12,7 @@ namespace fettle::engine {
 
 struct FilterTuning;
 struct PassResult;
+class TgvDevice;
 
 /// A number of a FilterSpec as one filter takes it.
 struct FilterParameter {
@@ -38,6 +39,10 @@ using FilterPass = Result<PassResult> (*)(const Version& input, const Version& o
                                           const FilterSpec& spec, const FilterTuning& tuning,
                                           JobControl& job);
 
+/// The same on another processor; its errors as well.
+using FilterPassOnDevice = Result<PassResult> (*)(const Version& input, const Version& original,
+                                                  const FilterSpec& spec, TgvDevice& device, JobControl& job);
+
 /// All that the program knows of a filter: command line, journal, panel, suggestion, benchmarks,
 /// demonstration and the table of docs/commands.md follow it.
 struct Filter {
@@ -62,6 +67,8 @@ struct Filter {
   std::int32_t grid = 1;
   std::span<const FilterTrial> trials;
   bool knows_lines = false;  ///< the edge lines of its input (Version::lines) have an influence
+  /// Null: it runs on this processor alone. tgv_device.h states how far results differ.
+  FilterPassOnDevice on_device = nullptr;
 };
 
 /// Every filter, in the order of FilterKind.
@@ -87,6 +94,9 @@ struct Filter {
 
 /// Filter::knows_lines, for filterWords.
 [[nodiscard]] bool knowsLines(const Filter& filter) noexcept;
+
+/// Filter::on_device, for filterWords.
+[[nodiscard]] bool runsOnDevices(const Filter& filter) noexcept;
 
 /// Those that do not keep edges.
 [[nodiscard]] std::vector<FilterKind> plainFilters();

@@ -17,6 +17,7 @@
 #include "engine/filter/catalogue.h"
 #include "engine/filter/line_windows.h"
 #include "engine/filter/pass.h"
+#include "engine/filter/tgv_device.h"
 
 namespace fettle::engine {
 
@@ -127,8 +128,12 @@ Status validate(const FilterSpec& spec) {
   return {};
 }
 
-Result<Filtered> applyFilter(const Version& input, const Version& original, const FilterSpec& spec,
-                             const FilterTuning& tuning, JobControl& job) {
+namespace {
+
+// pass_once(state) applied spec.passes times on as many threads as the spec has.
+template <class PassOnce>
+Result<Filtered> applyPasses(const Version& input, const FilterSpec& spec, JobControl& job,
+                             PassOnce&& pass_once) {
   if (Status valid = validate(spec); !valid) return tl::unexpected(valid.error());
   const Filter& filter = filterOf(spec.kind);
   if (input.lines() != nullptr && filter.knows_lines && filter.window.exists() &&
@@ -136,9 +141,6 @@ Result<Filtered> applyFilter(const Version& input, const Version& original, cons
     return inputError(fmt::format("next to edge lines a window of {} samples is too large", spec.window),
                       "window",
                       fmt::format("give {} at most, take tgv, or remove the lines", kMostLineWindow));
-  assert(input.grid().width == original.grid().width && input.grid().height == original.grid().height);
-  assert(tuning.block_side % kTileSide == 0);
-  const FilterPass pass_once = filter.pass;
   try {
     job.begin("filtering",
               static_cast<std::uint64_t>(input.grid().samples()) * static_cast<std::uint64_t>(spec.passes));
@@ -147,7 +149,7 @@ Result<Filtered> applyFilter(const Version& input, const Version& original, cons
       Version state = input;
       PassResult last;
       for (int pass = 0; pass < spec.passes; ++pass) {
-        Result<PassResult> next = pass_once(state, original, spec, tuning, job);
+        Result<PassResult> next = pass_once(state);
         if (!next) return tl::unexpected(std::move(next.error()));
         last = std::move(*next);
         state = last.field;
@@ -161,9 +163,32 @@ Result<Filtered> applyFilter(const Version& input, const Version& original, cons
   }
 }
 
+[[maybe_unused]] bool sameSize(const Version& a, const Version& b) noexcept {
+  return a.grid().width == b.grid().width && a.grid().height == b.grid().height;
+}
+
+}  // namespace
+
+Result<Filtered> applyFilter(const Version& input, const Version& original, const FilterSpec& spec,
+                             const FilterTuning& tuning, JobControl& job) {
+  assert(sameSize(input, original));
+  assert(tuning.block_side % kTileSide == 0);
+  return applyPasses(input, spec, job, [&](const Version& state) {
+    return filterOf(spec.kind).pass(state, original, spec, tuning, job);
+  });
+}
+
 Result<Filtered> applyFilter(const Version& input, const Version& original, const FilterSpec& spec,
                              JobControl& job) {
   return applyFilter(input, original, spec, FilterTuning{}, job);
+}
+
+Result<Filtered> applyFilter(const Version& input, const Version& original, const FilterSpec& spec,
+                             TgvDevice& device, JobControl& job) {
+  const FilterPassOnDevice on_device = filterOf(spec.kind).on_device;
+  assert(on_device != nullptr && sameSize(input, original));
+  return applyPasses(input, spec, job,
+                     [&](const Version& state) { return on_device(state, original, spec, device, job); });
 }
 
 }  // namespace fettle::engine
