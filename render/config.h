@@ -47,6 +47,12 @@ inline constexpr std::size_t kManyTiles = 256;
 /// cores.
 inline constexpr std::size_t kMeasuredPerFrame = 256;
 
+// Computing.
+
+/// Length of a submission that computes [ms], from half of this up to this, two at a time: shorter ones cost round trips, longer
+/// ones hold up a display that the device draws as well, and a cancel.
+inline constexpr double kLongestComputeMs = 50.0;
+
 // Memory and transfers.
 
 /// Device bytes of samples, coarse copies and marks up to which all that is shown is uploaded before the

@@ -105,11 +105,17 @@ enum class Validation {
   kOn,  ///< load VK_LAYER_KHRONOS_validation and collect its messages; an error when it is not installed
 };
 
-/// Which Vulkan device draws.
+enum class DriverKind {
+  kAny,
+  kHardware,  ///< none that runs on the processor itself, as lavapipe does
+};
+
+/// Which Vulkan device draws or computes.
 struct DeviceOptions {
   Validation validation = Validation::kOff;
   /// Use the device whose name contains this text (upper and lower case alike); empty: the best suitable one.
-  std::string device;
+  std::string device{};
+  DriverKind kind = DriverKind::kAny;
 };
 
 }  // namespace fettle::render

@@ -150,6 +150,9 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
     std::string reason = rejection(device, family, *context->surface_);
     if (reason.empty() && lower(name).find(lower(options.device)) == std::string::npos)
       reason = "is not the requested one";
+    if (reason.empty() && options.kind == DriverKind::kHardware &&
+        properties.deviceType == vk::PhysicalDeviceType::eCpu)
+      reason = "is the processor itself";
     if (!reason.empty())
       reject(name, reason);
     else
@@ -233,10 +236,20 @@ void Context::run(const std::function<void(const vk::raii::CommandBuffer&)>& rec
   (void)device_.waitForFences(*done, VK_TRUE, UINT64_MAX);
 }
 
-std::uint32_t Context::memoryType(std::uint32_t allowed_bits, vk::MemoryPropertyFlags required) const {
+std::optional<std::uint32_t> Context::findMemoryType(std::uint32_t allowed_bits,
+                                                     vk::MemoryPropertyFlags required) const noexcept {
   for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
     if ((allowed_bits >> i & 1U) != 0 && (memory_.memoryTypes[i].propertyFlags & required) == required)
       return i;
+  return std::nullopt;
+}
+
+bool Context::hasMemoryType(std::uint32_t allowed_bits, vk::MemoryPropertyFlags required) const noexcept {
+  return findMemoryType(allowed_bits, required).has_value();
+}
+
+std::uint32_t Context::memoryType(std::uint32_t allowed_bits, vk::MemoryPropertyFlags required) const {
+  if (const auto type = findMemoryType(allowed_bits, required)) return *type;
   throw vk::FeatureNotPresentError("no suitable memory type");
 }
 

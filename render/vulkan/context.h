@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -77,9 +78,13 @@ class Context {
 
   /// Index of a memory type that is in `allowed_bits` and has all of `required`; throws when there is none.
   [[nodiscard]] std::uint32_t memoryType(std::uint32_t allowed_bits, vk::MemoryPropertyFlags required) const;
+  [[nodiscard]] bool hasMemoryType(std::uint32_t allowed_bits,
+                                   vk::MemoryPropertyFlags required) const noexcept;
 
  private:
   Context() = default;
+  [[nodiscard]] std::optional<std::uint32_t> findMemoryType(std::uint32_t allowed_bits,
+                                                            vk::MemoryPropertyFlags required) const noexcept;
   /// Creates device, queue and pool; leaves none when it throws.
   void startDevice(const vk::raii::PhysicalDevice& physical, std::uint32_t family,
                    const std::vector<const char*>& extensions);

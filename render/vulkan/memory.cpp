@@ -5,15 +5,27 @@ namespace fettle::render {
 
 using Property = vk::MemoryPropertyFlagBits;
 
-Buffer::Buffer(const Context& context, vk::DeviceSize bytes, vk::BufferUsageFlags usage) : bytes_(bytes) {
+Buffer::Buffer(const Context& context, vk::DeviceSize bytes, vk::BufferUsageFlags usage, Access access)
+    : bytes_(bytes) {
   buffer_ = vk::raii::Buffer(context.device(), {{}, bytes, usage});
   const vk::MemoryRequirements needs = buffer_.getMemoryRequirements();
-  // Coherent: needs no flush. Every Vulkan device has such a type.
+  // Coherent: needs no flush. Every Vulkan device has such a type, most of them one that is cached as well.
+  const vk::MemoryPropertyFlags coherent = Property::eHostVisible | Property::eHostCoherent;
+  const bool cached = access == Access::kRead &&
+                      context.hasMemoryType(needs.memoryTypeBits, coherent | Property::eHostCached);
   const std::uint32_t type =
-      context.memoryType(needs.memoryTypeBits, Property::eHostVisible | Property::eHostCoherent);
+      context.memoryType(needs.memoryTypeBits, cached ? coherent | Property::eHostCached : coherent);
   memory_ = vk::raii::DeviceMemory(context.device(), {needs.size, type});
   buffer_.bindMemory(*memory_, 0);
   data_ = static_cast<std::byte*>(memory_.mapMemory(0, VK_WHOLE_SIZE));
+}
+
+DeviceBuffer::DeviceBuffer(const Context& context, vk::DeviceSize bytes, vk::BufferUsageFlags usage) {
+  buffer_ = vk::raii::Buffer(context.device(), {{}, bytes, usage});
+  const vk::MemoryRequirements needs = buffer_.getMemoryRequirements();
+  memory_ = vk::raii::DeviceMemory(
+      context.device(), {needs.size, context.memoryType(needs.memoryTypeBits, Property::eDeviceLocal)});
+  buffer_.bindMemory(*memory_, 0);
 }
 
 GpuImage::GpuImage(const Context& context, vk::Format format, vk::Extent2D extent, std::uint32_t layers,

@@ -10,9 +10,12 @@ namespace fettle::render {
 /// A buffer that the CPU writes or reads directly, mapped during its whole lifetime. Move-only.
 class Buffer {
  public:
+  /// What the CPU does with it. Reading from memory that is not cached takes a hundred times as long.
+  enum class Access { kWrite, kRead };
   Buffer() = default;
   /// Throws vk::SystemError. `bytes` > 0.
-  Buffer(const Context& context, vk::DeviceSize bytes, vk::BufferUsageFlags usage);
+  Buffer(const Context& context, vk::DeviceSize bytes, vk::BufferUsageFlags usage,
+         Access access = Access::kWrite);
   [[nodiscard]] const vk::raii::Buffer& handle() const noexcept { return buffer_; }
   [[nodiscard]] vk::DeviceSize bytes() const noexcept { return bytes_; }
   [[nodiscard]] std::byte* data() const noexcept { return data_; }
@@ -22,6 +25,19 @@ class Buffer {
   vk::raii::Buffer buffer_ = nullptr;
   vk::DeviceSize bytes_ = 0;
   std::byte* data_ = nullptr;
+};
+
+/// A buffer that the device alone reads and writes. Move-only.
+class DeviceBuffer {
+ public:
+  DeviceBuffer() = default;
+  /// Throws vk::SystemError. `bytes` > 0.
+  DeviceBuffer(const Context& context, vk::DeviceSize bytes, vk::BufferUsageFlags usage);
+  [[nodiscard]] vk::Buffer handle() const noexcept { return *buffer_; }
+
+ private:
+  vk::raii::DeviceMemory memory_ = nullptr;
+  vk::raii::Buffer buffer_ = nullptr;
 };
 
 /// An image on the device with a view of all of it. Move-only.

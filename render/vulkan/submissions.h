@@ -39,6 +39,8 @@ class Submissions {
   std::uint64_t done();
   /// From submission to when its completion was detected, of the last one [ms]; negative before the first.
   [[nodiscard]] double lastMs() const noexcept { return last_ms_; }
+  /// Waits until this one is completed; it was submitted, as one of the last kInFlight or earlier.
+  void waitFor(std::uint64_t number);
   /// Waits until all are completed.
   void finish();
 
@@ -50,7 +52,6 @@ class Submissions {
   };
   [[nodiscard]] const Slot& slot(std::uint64_t number) const noexcept { return slots_[number % kInFlight]; }
   [[nodiscard]] Slot& slot(std::uint64_t number) noexcept { return slots_[number % kInFlight]; }
-  void waitFor(std::uint64_t number);
 
   Context& context_;
   vk::raii::CommandPool pool_ = nullptr;
