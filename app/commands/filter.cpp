@@ -9,6 +9,7 @@
 
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
+#include "app/commands/compute_option.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
@@ -38,6 +39,7 @@ struct FilterArguments {
   std::string max_change;
   std::string original;
   int threads = 0;
+  std::string compute = "auto";
   bool suggest = false;
   std::string tolerance;
   std::optional<double> budget;
@@ -66,7 +68,7 @@ engine::Result<engine::FilterSpec> specOf(const FilterArguments& options) {
 }
 
 engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterSpec spec,
-                                 const BatchTask& task, engine::JobControl& job) {
+                                 FilterCompute& compute, const BatchTask& task, engine::JobControl& job) {
   auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const auto original = originalOf(*imported, options.original, options.reading, job);
@@ -98,7 +100,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   if (!ready) return tl::unexpected(ready.error());
   spec = *ready;
   const engine::Stopwatch watch;
-  const auto filtered = engine::applyFilter(field, *original, spec, job);
+  const auto filtered = compute.apply(field, *original, spec, job);
   const double seconds = watch.seconds();
   if (!filtered) return tl::unexpected(filtered.error());
   engine::ExportOptions writing = options.writing;
@@ -116,6 +118,8 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
     report["lines"] = lines->size();
     report["line_points"] = engine::countPoints(*lines);
   }
+  report["compute"] = compute.device().empty() ? "cpu" : "gpu";
+  if (!compute.device().empty()) report["device"] = compute.device();
   report.update({{"passes", spec.passes},
                  {"unit", field.grid().height_unit.name},
                  {"changed", filtered->report.changed},
@@ -314,8 +318,10 @@ engine::Result<Report> filter(const FilterArguments& options, engine::JobControl
     if (auto status = checkOriginal(options.original, !options.max_change.empty(), task.out); !status)
       return tl::unexpected(status.error());
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
+  auto compute = chooseCompute(options.compute, engine::filterOf(spec->kind));
+  if (!compute) return tl::unexpected(compute.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) {
-    return filterOne(options, *spec, task, j);
+    return filterOne(options, *spec, *compute, task, j);
   };
   if (options.files.many()) return runBatch(*tasks, job, one);
   const ProgressLine progress(job);
@@ -378,6 +384,7 @@ void addFilter(Command root, Chosen& chosen) {
                  "--original, else IN; in the scan's height unit, or as 20um, 0.5mm");
   addOriginalOption(command, options->original);
   command.option("--threads", options->threads, "Threads to use; 0 = one per core").showDefault();
+  addComputeOption(command, options->compute);
   command.flag(
       "--suggest", options->suggest,
       "Filter nothing: test filters on pieces of IN, print which one to use for --tolerance, why, and "

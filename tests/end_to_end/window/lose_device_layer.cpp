@@ -10,11 +10,15 @@
 //                    surface   submission that draws by dynamic rendering (the picture)
 //                    upload    submission that copies a buffer to an image (tiles)
 //                    panels    submission with a render pass (the user interface)
+//                    compute   submission with a compute shader (filters)
 //                    acquire, present   of the swap chain
 //   gone           no device starts any more
 //   refuse         the next device does not start
 //   outdated WHERE, suboptimal WHERE   the swap chain no longer fits the window, at acquire or present
-//   memory         the next image does not get its memory
+//   memory         the next image or buffer does not get its memory
+//   pass compute   a submission with a compute shader is let through
+//
+// With $FETTLE_AS_HARDWARE every device says that it is a discrete graphics card.
 //
 // $FETTLE_FRAME_GATE names a socket that says when each frame may be shown: frame_gate.h.
 //
@@ -84,13 +88,16 @@ std::mutex mutex;  // over all below
 struct Instance {
   VkInstance handle = VK_NULL_HANDLE;
   PFN_vkGetInstanceProcAddr next = nullptr;
+  // Asked for when the instance is made: later another layer may answer with this one's.
+  PFN_vkDestroyInstance destroy = nullptr;
+  PFN_vkGetPhysicalDeviceProperties properties = nullptr;
 };
 struct Device {
   VkDevice handle = VK_NULL_HANDLE;
   PFN_vkGetDeviceProcAddr next = nullptr;
   bool lost = false;
   struct Content {
-    bool draws = false, uploads = false, panels = false;
+    bool draws = false, uploads = false, panels = false, computes = false;
   };
   std::map<VkCommandBuffer, Content> recorded;
 };
@@ -154,10 +161,12 @@ VKAPI_ATTR VkResult VKAPI_CALL queueSubmit2(VkQueue queue, std::uint32_t count, 
       content.draws |= c.draws;
       content.uploads |= c.uploads;
       content.panels |= c.panels;
+      content.computes |= c.computes;
     }
   if (!device.lost &&
       ((content.draws && ordered("lose surface")) || (content.uploads && ordered("lose upload")) ||
-       (content.panels && ordered("lose panels"))))
+       (content.panels && ordered("lose panels")) ||
+       (content.computes && !ordered("pass compute") && ordered("lose compute"))))
     lose(device);
   if (device.lost) return VK_ERROR_DEVICE_LOST;
   return next<PFN_vkQueueSubmit2>(device, "vkQueueSubmit2")(queue, count, submits, fence);
@@ -261,6 +270,26 @@ VKAPI_ATTR void VKAPI_CALL copyBufferToImage(VkCommandBuffer commands, VkBuffer 
                                                                      regions);
 }
 
+VKAPI_ATTR void VKAPI_CALL dispatch(VkCommandBuffer commands, std::uint32_t x, std::uint32_t y,
+                                    std::uint32_t z) {
+  const std::scoped_lock lock(mutex);
+  Device& device = deviceOf(commands);
+  device.recorded[commands].computes = true;
+  next<PFN_vkCmdDispatch>(device, "vkCmdDispatch")(commands, x, y, z);
+}
+
+VKAPI_ATTR void VKAPI_CALL getPhysicalDeviceProperties(VkPhysicalDevice physical,
+                                                       VkPhysicalDeviceProperties* properties) {
+  PFN_vkGetPhysicalDeviceProperties down = nullptr;
+  {
+    const std::scoped_lock lock(mutex);
+    down = instances.at(keyOf(physical)).properties;
+  }
+  down(physical, properties);
+  if (std::getenv("FETTLE_AS_HARDWARE") != nullptr)
+    properties->deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+}
+
 // The loader's chain of layers: the element that is for this one.
 template <class Info>
 Info* linkIn(const void* chain, VkStructureType type) {
@@ -279,14 +308,16 @@ VKAPI_ATTR VkResult VKAPI_CALL createInstance(const VkInstanceCreateInfo* info,
   const auto create = reinterpret_cast<PFN_vkCreateInstance>(get(VK_NULL_HANDLE, "vkCreateInstance"));
   const VkResult result = create(info, allocator, instance);
   const std::scoped_lock lock(mutex);
-  if (result == VK_SUCCESS) instances[keyOf(*instance)] = {*instance, get};
+  if (result == VK_SUCCESS)
+    instances[keyOf(*instance)] = {
+        *instance, get, reinterpret_cast<PFN_vkDestroyInstance>(get(*instance, "vkDestroyInstance")),
+        reinterpret_cast<PFN_vkGetPhysicalDeviceProperties>(get(*instance, "vkGetPhysicalDeviceProperties"))};
   return result;
 }
 VKAPI_ATTR void VKAPI_CALL destroyInstance(VkInstance instance, const VkAllocationCallbacks* allocator) {
   const std::scoped_lock lock(mutex);
   const Key key = keyOf(instance);
-  reinterpret_cast<PFN_vkDestroyInstance>(instances.at(key).next(instance, "vkDestroyInstance"))(instance,
-                                                                                                 allocator);
+  instances.at(key).destroy(instance, allocator);
   instances.erase(key);
 }
 
@@ -335,6 +366,8 @@ PFN_vkVoidFunction own(const char* name) {
       {"vkCmdBeginRendering", reinterpret_cast<PFN_vkVoidFunction>(&beginRendering)},
       {"vkCmdBeginRenderPass", reinterpret_cast<PFN_vkVoidFunction>(&beginRenderPass)},
       {"vkCmdCopyBufferToImage", reinterpret_cast<PFN_vkVoidFunction>(&copyBufferToImage)},
+      {"vkCmdDispatch", reinterpret_cast<PFN_vkVoidFunction>(&dispatch)},
+      {"vkGetPhysicalDeviceProperties", reinterpret_cast<PFN_vkVoidFunction>(&getPhysicalDeviceProperties)},
   };
   const auto found = functions.find(name);
   return found != functions.end() ? found->second : nullptr;
