@@ -147,16 +147,49 @@ struct Run {
   std::uint64_t hash = 0;
 };
 
-engine::Result<Run> runOnce(const FiltersBenchRow& row, const engine::Version& field,
-                            engine::JobControl& job) {
+engine::Result<engine::Filtered> filteredBy(const FiltersBenchRow& row, const engine::Version& field,
+                                            engine::TgvDevice* device) {
   engine::JobControl own;  // applyFilter begins its own stage
+  const engine::FilterSpec spec = specOf(row);
+  return row.on_device ? engine::applyFilter(field, field, spec, *device, own)
+                       : engine::applyFilter(field, field, spec, own);
+}
+
+engine::Result<Run> runOnce(const FiltersBenchRow& row, const engine::Version& field,
+                            engine::TgvDevice* device, engine::JobControl& job) {
   engine::Result<engine::Filtered> result;
   if (job.cancelled()) return engine::cancelled();
   Run run;
-  run.seconds = timed([&] { result = engine::applyFilter(field, field, specOf(row), own); });
+  run.seconds = timed([&] { result = filteredBy(row, field, device); });
   if (!result) return tl::unexpected(result.error());
   run.hash = engine::contentHash(result->field);
   return run;
+}
+
+// Largest difference of two fields with holes at the same places.
+double mostOff(const engine::Version& a, const engine::Version& b) {
+  const engine::Grid& grid = a.grid();
+  std::vector<float> one(static_cast<std::size_t>(grid.width)), other(one.size());
+  double most = 0.0;
+  for (std::int32_t r = 0; r < grid.height; ++r) {
+    a.reader().readHeights(0, r, grid.width, 1, one.data(), grid.width);
+    b.reader().readHeights(0, r, grid.width, 1, other.data(), grid.width);
+    for (std::size_t c = 0; c < one.size(); ++c)
+      if (one[c] == one[c])
+        most = std::max(most, std::fabs(static_cast<double>(one[c]) - static_cast<double>(other[c])));
+  }
+  return most;
+}
+
+// What a device makes of a row's field against what the processor does.
+engine::Result<double> offTheProcessor(FiltersBenchRow row, const engine::Version& field,
+                                       engine::TgvDevice* device) {
+  const auto there = filteredBy(row, field, device);
+  if (!there) return tl::unexpected(there.error());
+  row.on_device = false;
+  const auto here = filteredBy(row, field, nullptr);
+  if (!here) return tl::unexpected(here.error());
+  return mostOff(there->field, here->field) / specOf(row).range_sigma;
 }
 
 engine::Status checked(const FiltersBenchOptions& options) {
@@ -181,7 +214,7 @@ engine::Result<std::int32_t> sideFor(const FiltersBenchRow& row, const FiltersBe
   const std::int32_t probe = std::min(options.side, kProbeSide);
   const auto field = grounds.get(probe, row.ground);
   if (!field) return tl::unexpected(field.error());
-  const auto run = runOnce(row, *field, job);
+  const auto run = runOnce(row, *field, options.device, job);
   if (!run) return tl::unexpected(run.error());
   std::int32_t side = options.side;
   const auto estimate = [&] {
@@ -235,8 +268,11 @@ engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& optio
   if (engine::Status valid = checked(options); !valid) return tl::unexpected(valid.error());
   FiltersBenchReport report;
   report.machine = machine();
-  for (const engine::FilterKind kind : options.kinds)
-    for (const int window : options.windows)
+  if (options.device != nullptr) report.device = options.device->name();
+  for (const engine::FilterKind kind : options.kinds) {
+    const engine::Filter& filter = engine::filterOf(kind);
+    const std::vector<int> no_window{engine::FilterSpec{}.window};
+    for (const int window : filter.window.exists() ? options.windows : no_window)
       for (const FilterGround ground : options.grounds)
         for (const int threads : options.threads) {
           FiltersBenchRow row;
@@ -245,21 +281,34 @@ engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& optio
           row.threads = threads;
           row.ground = ground;
           report.rows.push_back(row);
+          row.on_device = true;
+          if (options.device != nullptr && engine::runsOnDevices(filter)) report.rows.push_back(row);
         }
+  }
   job.begin("measuring", report.rows.size() * (static_cast<std::size_t>(options.repeats) + 1));
 
   Grounds grounds;
   std::vector<engine::Version> fields;
-  for (FiltersBenchRow& row : report.rows) {
-    const auto side = sideFor(row, options, grounds, job);
-    if (!side) return tl::unexpected(side.error());
-    row.side = *side;
+  for (std::size_t k = 0; k < report.rows.size(); ++k) {
+    FiltersBenchRow& row = report.rows[k];
+    if (row.on_device) {
+      row.side = report.rows[k - 1].side;
+    } else {
+      const auto side = sideFor(row, options, grounds, job);
+      if (!side) return tl::unexpected(side.error());
+      row.side = *side;
+    }
     const auto field = grounds.get(row.side, row.ground);
     if (!field) return tl::unexpected(field.error());
     fields.push_back(*field);
-    const auto warm_up = runOnce(row, *field, job);
+    const auto warm_up = runOnce(row, *field, options.device, job);
     if (!warm_up) return tl::unexpected(warm_up.error());
     row.hash = warm_up->hash;
+    if (row.on_device) {
+      const auto off = offTheProcessor(row, *field, options.device);
+      if (!off) return tl::unexpected(off.error());
+      row.most_off = *off;
+    }
     job.advance(1);
   }
 
@@ -275,7 +324,7 @@ engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& optio
     }
     for (std::size_t k = 0; k < report.rows.size(); ++k) {
       const FiltersBenchRow& row = report.rows[k];
-      const auto run = runOnce(row, fields[k], job);
+      const auto run = runOnce(row, fields[k], options.device, job);
       if (!run) return tl::unexpected(run.error());
       if (run->hash != row.hash)
         return engine::failure("two runs of the same filter differ",
@@ -295,14 +344,17 @@ engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& optio
     row.cpu = median(cpu[k]);
     row.copy = median(copy_wall[row.threads]);
     row.copy_cpu = median(copy_cpu[row.threads]);
+    const auto over = [&](std::size_t other) {
+      std::vector<double> ratios(wall[k].size());
+      for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = wall[k][i] / wall[other][i];
+      return median(std::move(ratios));
+    };
+    if (row.on_device) row.over_processor = over(k - 1);
     for (std::size_t one = 0; one < report.rows.size(); ++one) {
       const FiltersBenchRow& alone = report.rows[one];
-      if (alone.threads != 1 || alone.kind != row.kind || alone.window != row.window ||
-          alone.ground != row.ground)
-        continue;
-      std::vector<double> ratios(wall[k].size());
-      for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = wall[k][i] / wall[one][i];
-      row.over_one = median(std::move(ratios));
+      if (alone.threads == 1 && alone.kind == row.kind && alone.window == row.window &&
+          alone.ground == row.ground && alone.on_device == row.on_device)
+        row.over_one = over(one);
     }
   }
   return report;

@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/filter/catalogue.h"
+#include "engine/filter/tgv_device.h"
 
 namespace fettle::bench {
 
@@ -25,6 +26,8 @@ struct FiltersBenchOptions {
   std::vector<FilterGround> grounds = {FilterGround::kPlain, FilterGround::kHoles, FilterGround::kMarks};
   int repeats = 5;        ///< 1 .. 100
   double limit_s = 10.0;  ///< a row that would take longer gets a smaller field, > 0 .. 1e6
+  /// Adds a row with this device to each row of a filter that can use it (Filter::on_device); null: none.
+  engine::TgvDevice* device = nullptr;
 };
 
 /// One filter over one field: all of applyFilter, its report included. Rates in samples per second.
@@ -33,6 +36,7 @@ struct FiltersBenchRow {
   int window = 0;
   int threads = 0;
   FilterGround ground = FilterGround::kPlain;
+  bool on_device = false;
   std::int32_t side = 0;  ///< of this row's field; less than the option's where limit_s was met
   double median = 0.0, slowest = 0.0, fastest = 0.0;
   double cpu = 0.0;       ///< median of samples per second of processor time: not affected by a busy machine
@@ -40,11 +44,15 @@ struct FiltersBenchRow {
   double copy_cpu = 0.0;  ///< the same per second of processor time
   /// Rate over that of the same row with one thread, median of the ratios of each round; 0 without one.
   double over_one = 0.0;
+  /// On a device: rate over that of the row before it, the processor's, likewise; and the largest difference from its
+  /// result [range_sigma].
+  double over_processor = 0.0, most_off = 0.0;
   std::uint64_t hash = 0;  ///< of the result; the same in every repeat
 };
 
 struct FiltersBenchReport {
   std::string machine;
+  std::string device;  ///< its name; empty: none
   std::vector<FiltersBenchRow> rows;
 };
 
@@ -60,7 +68,7 @@ struct FilterTarget {
 /// copy of an array of as many floats in each round. A first run of each row, which obtains memory from the
 /// system, is not counted. Errors: kInput for options out of range, kFailed when two repeats differ in a bit,
 /// kCancelled. Memory: fields of all grounds and one result, 4.2 bytes per sample each, and two arrays to
-/// copy. Thread: any; blocks.
+/// copy. A filter without a window has one row for all of them. Thread: any; blocks.
 [[nodiscard]] engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& options,
                                                               engine::JobControl& job);
 

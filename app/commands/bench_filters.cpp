@@ -7,15 +7,24 @@
 #include <fmt/format.h>
 
 #include "bench/filters_bench.h"
+#include "render/compute/tgv_compute.h"
 
 namespace fettle::app {
 
 namespace {
 
-engine::Result<Report> measure(const bench::FiltersBenchOptions& options, engine::JobControl& job) {
+engine::Result<Report> measure(bench::FiltersBenchOptions options, bool on_device, engine::JobControl& job) {
+  std::unique_ptr<engine::TgvDevice> device;
+  if (on_device) {
+    auto made = render::TgvCompute::create({});
+    if (!made) return tl::unexpected(made.error());
+    device = *std::move(made);
+    options.device = device.get();
+  }
   const auto measured = bench::benchFilters(options, job);
   if (!measured) return tl::unexpected(measured.error());
   Report report{{"machine", measured->machine},
+                {"device", measured->device.empty() ? Report() : Report(measured->device)},
                 {"side", options.side},
                 {"repeats", options.repeats},
                 {"rows", Report::array()}};
@@ -25,6 +34,7 @@ engine::Result<Report> measure(const bench::FiltersBenchOptions& options, engine
                               {"window", row.window},
                               {"ground", bench::groundName(row.ground)},
                               {"threads", row.threads},
+                              {"compute", row.on_device ? "gpu" : "cpu"},
                               {"side", row.side},
                               {"samples_per_second", row.median},
                               {"slowest", row.slowest},
@@ -34,6 +44,8 @@ engine::Result<Report> measure(const bench::FiltersBenchOptions& options, engine
                               {"samples_per_cpu_second", row.cpu},
                               {"share_of_copy_cpu", row.cpu / row.copy_cpu},
                               {"over_one_thread", row.over_one},
+                              {"over_cpu", row.on_device ? Report(row.over_processor) : Report()},
+                              {"off_cpu_range_sigmas", row.on_device ? Report(row.most_off) : Report()},
                               {"share_target", target.share},
                               {"over_one_thread_target", target.over_one},
                               {"hash", fmt::format("{:016x}", row.hash)}});
@@ -62,13 +74,16 @@ void printBenchFilters(const Report& report) {
     const auto number = [&row](const char* key) { return row[key].get<double>(); };
     const bool several = row["threads"].get<int>() > 1;
     fmt::print(
-        "{:<12}{:>7}{:>8}{:>9}{:>7}{:>10.1f}{:>10.1f}{:>10.1f}{:>8.0f}{:>16}{:>16}{:>10.1f}{:>10.4f}  {}\n",
+        "{:<12}{:>7}{:>8}{:>9}{:>7}{:>10.2f}{:>10.2f}{:>10.2f}{:>8.0f}{:>16}{:>16}{:>10.1f}{:>10.4f}  {}\n",
         row["kind"].get<std::string>(), row["window"].get<int>(), row["ground"].get<std::string>(),
         row["threads"].get<int>(), row["side"].get<int>(), number("samples_per_second") * 1e-6,
         number("slowest") * 1e-6, number("fastest") * 1e-6, number("copy_samples_per_second") * 1e-6,
         valueAndTarget(number("share_of_copy"), number("share_target"), 4),
         valueAndTarget(several ? number("over_one_thread") : 0.0, number("over_one_thread_target"), 2),
         number("samples_per_cpu_second") * 1e-6, number("share_of_copy_cpu"), row["hash"].get<std::string>());
+    if (!row["over_cpu"].is_null())
+      fmt::print("{:<12}on {}: {:.2f} of the rate above, at most {:.2g} of the noise off its result\n", "",
+                 report["device"].get<std::string>(), number("over_cpu"), number("off_cpu_range_sigmas"));
   }
 }
 
@@ -76,10 +91,12 @@ void printBenchFilters(const Report& report) {
 
 void addBenchFilters(Command bench, Chosen& chosen) {
   auto options = std::make_shared<bench::FiltersBenchOptions>();
+  auto on_device = std::make_shared<bool>(false);
   Command command = addCommand(
       bench, chosen, "filters",
       "Samples per second of the global filters, and of plain copying in the same run",
-      [options](engine::JobControl& job) { return measure(*options, job); }, printBenchFilters);
+      [options, on_device](engine::JobControl& job) { return measure(*options, *on_device, job); },
+      printBenchFilters);
   std::map<std::string, engine::FilterKind> kinds;
   for (const engine::Filter& filter : engine::filters()) kinds[std::string(filter.word)] = filter.kind;
   std::map<std::string, bench::FilterGround> grounds;
@@ -90,6 +107,9 @@ void addBenchFilters(Command bench, Chosen& chosen) {
   command.option("--window", options->windows, "Sides of the window, samples").delimiter(',').showDefault();
   command.choices("--ground", grounds, options->grounds, "plain, holes, marks; none: all").delimiter(',');
   command.option("--threads", options->threads, "Threads").delimiter(',').showDefault();
+  command.flag("--gpu", *on_device,
+               fmt::format("Measure {} on a graphics device as well, against the processor in the same run",
+                           engine::filterWords(engine::runsOnDevices)));
   command.option("--repeats", options->repeats, "Runs of each row").showDefault();
   command
       .option("--limit", options->limit_s, "Seconds for all runs of a row; a slower one gets a smaller field")

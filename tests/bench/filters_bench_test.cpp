@@ -6,6 +6,8 @@
 #include <set>
 #include <tuple>
 
+#include "tests/engine/filter/cpu_tgv_device.h"
+
 namespace fettle::bench {
 namespace {
 
@@ -72,6 +74,34 @@ TEST(FiltersBench, MeasuresASmallerFieldWhereTheLimitLeavesNoTimeForTheWhole) {
   const auto report = benchFilters(options, job);
   ASSERT_TRUE(report) << report.error().line();
   EXPECT_EQ(report->rows.front().side, 512);
+}
+
+TEST(FiltersBench, HasARowWithADeviceBesideEachOfTheProcessorForWhatCanUseIt) {
+  engine::tests::CpuTgvDevice device;
+  FiltersBenchOptions options;
+  options.side = 128;
+  options.kinds = {FilterKind::kBox, FilterKind::kGeneralisedVariation};
+  options.windows = {3, 5};
+  options.grounds = {FilterGround::kHoles};
+  options.threads = {1};
+  options.repeats = 1;
+  options.device = &device;
+  engine::JobControl job;
+  const auto report = benchFilters(options, job);
+  ASSERT_TRUE(report) << report.error().line();
+  EXPECT_EQ(report->device, device.name());
+  // A filter without a window has one row for both.
+  ASSERT_EQ(report->rows.size(), 4U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(report->rows[i].on_device);
+  const FiltersBenchRow &here = report->rows[2], &there = report->rows[3];
+  EXPECT_TRUE(there.on_device);
+  EXPECT_EQ(there.kind, FilterKind::kGeneralisedVariation);
+  EXPECT_EQ(there.side, here.side);
+  EXPECT_EQ(there.hash, here.hash);
+  EXPECT_EQ(there.most_off, 0.0);
+  EXPECT_GT(there.over_processor, 0.0);
+  EXPECT_EQ(here.over_processor, 0.0);
+  EXPECT_GE(device.squares, 3U);
 }
 
 TEST(FiltersBench, OptionsOutOfRangeAreRefused) {
