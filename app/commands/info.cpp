@@ -17,6 +17,7 @@
 #include "app/terminal.h"
 #include "engine/inspect/histogram.h"
 #include "engine/inspect/noise.h"
+#include "engine/inspect/noise_model.h"
 #include "engine/inspect/steepest.h"
 #include "render/live/picture_rows.h"
 
@@ -36,6 +37,10 @@ struct InfoArguments {
 double shortest(double height) {
   const auto stored = static_cast<float>(height);
   return std::isnan(height) ? height : std::stod(fmt::format("{}", stored));
+}
+
+Report figure(double value) {
+  return std::isnan(value) ? Report() : Report(value);
 }
 
 // One bar per bin, the longest kLongest wide; a bin that is not empty shows at least a dot.
@@ -138,7 +143,9 @@ engine::Result<Report> infoOf(const InfoArguments& options, const std::string& s
   const engine::FieldSummary summary = engine::summarize(imported->field);
   auto samples = samplesAt(imported->field.reader(), options.at);
   if (!samples) return tl::unexpected(samples.error());
-  const auto noise = engine::estimateNoise(imported->field, job);
+  const auto finest = engine::estimateNoise(imported->field, job);
+  if (!finest) return tl::unexpected(finest.error());
+  const auto noise = engine::measureNoise(imported->field, job);
   if (!noise) return tl::unexpected(noise.error());
   const auto steep = steepest(imported->field, job);
   if (!steep) return tl::unexpected(steep.error());
@@ -162,8 +169,14 @@ engine::Result<Report> infoOf(const InfoArguments& options, const std::string& s
       {"mean", summary.mean},
       {"no_data", summary.no_data},
       {"no_data_share", static_cast<double>(summary.no_data) / static_cast<double>(grid.samples())},
-      {"noise", std::isnan(noise->sigma) ? Report() : Report(noise->sigma)},
+      {"noise", figure(noise->sigma)},
+      {"noise_uncorrelated", noise->uncorrelatedShare()},
+      {"noise_rows", std::sqrt(noise->parts.row_offset)},
+      {"noise_columns", std::sqrt(noise->parts.column_offset)},
+      {"noise_least", figure(*std::ranges::min_element(noise->map))},
+      {"noise_most", figure(*std::ranges::max_element(noise->map))},
       {"noise_windows", noise->windows},
+      {"noise_finest", figure(finest->sigma)},
       {"steepest", *steep},
       {"histogram",
        {{"low", shortest(histogram->low)},
@@ -215,12 +228,14 @@ void addInfo(Command root, Chosen& chosen) {
       [options](engine::JobControl& job) { return info(*options, job); }, printInfo, Progress::kOwn,
       batchStatus);
   command.footer(
-      "noise: standard deviation of the finest detail, in the height unit: 1.4826 median(|d|) / 6 of d, the\n"
-      "  second difference along rows and columns over 3 x 3 samples without a hole. Planes, steps along "
-      "rows\n"
-      "  or columns, single spikes and holes do not count. Right for noise that differs from sample to "
-      "sample;\n"
-      "  noise that neighbours share is not detected, a rough surface counts as noise.\n"
+      "noise: standard deviation in the height unit, in windows of 16 x 16 samples that show no edge.\n"
+      "noise_uncorrelated: share of its square that neighbours do not have in common; noise_rows, "
+      "noise_columns:\n"
+      "  offsets of whole rows and columns; noise_least, noise_most: where in the field it is least and "
+      "most, in\n"
+      "  8 x 8 parts. What is correlated along rows and columns counts as surface.\n"
+      "noise_finest: 1.4826 median(|d|) / 6 of d, the second difference along rows and columns; what range\n"
+      "  sigmas follow.\n"
       "steepest: the cell that rises most, height over distance; ROW,COLUMN of its upper left sample, and "
       "its\n"
       "  middle in the file's coordinates.");

@@ -1,0 +1,151 @@
+#include "engine/inspect/noise_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include <tbb/parallel_for.h>
+
+#include "engine/inspect/noise.h"
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr double kMostWindows = 8192.0;
+constexpr std::int32_t kLeastStep = 4;  // between windows
+constexpr double kSmallest = 0.2;
+// chi^2 with 3, 3, 21 and 100 degrees of freedom: its mean and three standard deviations over its rank of a third.
+constexpr std::array<double, 4> kMostOfSmallest{(3 + 3 * 2.449) / 1.569, (3 + 3 * 2.449) / 1.569,
+                                                (21 + 3 * 6.481) / 17.6, (100 + 3 * 14.1) / 93.0};
+constexpr double kQuiet = 0.25, kMostOfQuiet = 4.0;  // share, and variance against the loudest of them
+constexpr double kPriorWindows = 4.0;                // that the map's parts are drawn to the field's noise by
+
+struct Placed {
+  std::int32_t column, row;
+  NoiseWindow window;
+};
+
+// Evenly spread, with the same margin at both sides.
+std::vector<Placed> placesIn(const Grid& grid) {
+  std::vector<Placed> places;
+  const std::int32_t right = grid.width - kNoiseSide, top = grid.height - kNoiseSide;
+  if (right < 0 || top < 0) return places;
+  const double samples = static_cast<double>(grid.width) * static_cast<double>(grid.height);
+  const auto step =
+      std::max(kLeastStep, static_cast<std::int32_t>(std::ceil(std::sqrt(samples / kMostWindows))));
+  for (std::int32_t r = top % step / 2; r <= top; r += step)
+    for (std::int32_t c = right % step / 2; c <= right; c += step) places.push_back({c, r, {}});
+  return places;
+}
+
+// The value of rank share * (count - 1); `values` is reordered and not empty.
+double ranked(std::vector<double>& values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// Drops windows whose detail is much larger than that of the quieter ones: rough places and strong edges.
+void keepQuiet(std::vector<const Placed*>& windows) {
+  if (windows.empty()) return;
+  std::vector<double> details;
+  details.reserve(windows.size());
+  for (const Placed* p : windows) details.push_back(p->window.moments.detail());
+  const double most = kMostOfQuiet * ranked(details, kQuiet);
+  std::erase_if(windows, [most](const Placed* p) { return p->window.moments.detail() > most; });
+}
+
+// Drops windows in which a group of polynomials is larger than noise makes it. How large that is, is seen in the
+// smallest fifth: a third of the windows without an edge, if three in five are.
+void keepSmooth(std::vector<const Placed*>& windows) {
+  if (windows.empty()) return;
+  std::array<double, 4> most{};
+  for (std::size_t g = 0; g < most.size(); ++g) {
+    std::vector<double> sizes;
+    sizes.reserve(windows.size());
+    for (const Placed* p : windows) sizes.push_back(p->window.surface[g]);
+    most[g] = ranked(sizes, kSmallest) * kMostOfSmallest[g];
+  }
+  std::erase_if(windows, [&most](const Placed* p) {
+    const auto& s = p->window.surface;
+    return !(s[0] <= most[0] && s[1] <= most[1] && s[2] <= most[2] && s[3] <= most[3]);
+  });
+}
+
+std::size_t mapIndex(const Grid& grid, std::int32_t column, std::int32_t row) noexcept {
+  constexpr std::int64_t kSide = NoiseModel::kMapSide;
+  const std::int64_t x = column * kSide / grid.width, y = row * kSide / grid.height;
+  return static_cast<std::size_t>(y * kSide + x);
+}
+
+}  // namespace
+
+double NoiseModel::uncorrelatedShare() const noexcept {
+  double correlated = parts.row_offset + parts.column_offset;
+  // At lag 0 short correlation has at least what it has at lag 1.
+  correlated += std::max(0.0, parts.along_row[0]) + std::max(0.0, parts.along_column[0]);
+  return parts.variance() > 0.0 ? std::clamp(1.0 - correlated / parts.variance(), 0.0, 1.0) : 1.0;
+}
+
+double NoiseModel::sigmaAt(const Grid& grid, std::int32_t column, std::int32_t row) const noexcept {
+  return map[mapIndex(grid, column, row)];
+}
+
+Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
+  const FieldReader reader = field.reader();
+  std::vector<Placed> places = placesIn(field.grid());
+  job.begin("measuring noise", places.size());
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+    if (job.cancelled()) return;
+    Placed& place = places[i];
+    std::array<float, kNoiseSide * kNoiseSide> heights;
+    reader.readHeights(place.column, place.row, kNoiseSide, kNoiseSide, heights.data(), kNoiseSide);
+    place.window = noiseWindow(heights);
+    job.advance();
+  });
+  if (job.cancelled()) return cancelled();
+  std::vector<const Placed*> smooth;
+  for (const Placed& place : places)
+    if (place.window.usable()) smooth.push_back(&place);
+  keepQuiet(smooth);
+  keepSmooth(smooth);
+  constexpr std::size_t kCells = NoiseModel::kMapSide * NoiseModel::kMapSide;
+  NoiseModel model;
+  model.windows = static_cast<std::int64_t>(smooth.size());
+  if (smooth.empty()) {
+    const auto finest = estimateNoise(field, job);
+    if (!finest) return tl::unexpected(finest.error());
+    model.sigma = finest->sigma;
+    model.parts.uncorrelated = finest->sigma * finest->sigma;
+    model.map.assign(kCells, finest->sigma);
+    return model;
+  }
+  NoiseMoments mean;
+  std::array<NoiseMoments, kCells> cells;
+  std::array<double, kCells> counts{};
+  for (const Placed* p : smooth) {
+    mean.add(p->window.moments, 1.0 / static_cast<double>(smooth.size()));
+    const std::size_t at = mapIndex(field.grid(), p->column + kNoiseSide / 2, p->row + kNoiseSide / 2);
+    cells[at].add(p->window.moments, 1.0);
+    counts[at] += 1.0;
+  }
+  model.parts = noiseOf(mean, model.windows);
+  // Windows without edges are not equally frequent everywhere: parts of the field count equally.
+  double squares = 0.0;
+  for (std::size_t i = 0; i < kCells; ++i) {
+    // In the direction of the whole field's.
+    const double here = mean.column_detail >= mean.row_detail ? cells[i].column_detail : cells[i].row_detail;
+    const double drawn = (here + kPriorWindows * mean.detail()) / (counts[i] + kPriorWindows);
+    model.map.push_back(mean.detail() > 0.0 ? drawn / mean.detail() : 1.0);
+    squares += model.map.back() / kCells;
+  }
+  model.parts.scale(squares);
+  model.sigma = std::sqrt(model.parts.variance());
+  for (double& part : model.map) part = model.sigma * std::sqrt(part / squares);
+  return model;
+}
+
+}  // namespace fettle::engine
