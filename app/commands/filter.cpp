@@ -254,7 +254,7 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   if (!options.filter.empty()) return refused("--filter", "the filter is what is suggested");
   if (!options.only.empty()) return refused("--only", "give --keep, or nothing");
   if (!options.original.empty()) return refused("--original", "its filters have no limit of change");
-  if (!options.lines.empty()) return refused("--lines", "none of its filters knows edge lines");
+  if (!options.lines.empty()) return refused("--lines", "its filters are tried without edge lines");
   if (options.tolerance.empty())
     return engine::inputError("no tolerance is given", "--tolerance",
                               "give the allowed error, as 0.01 in the scan's unit or 10um");

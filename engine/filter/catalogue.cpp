@@ -42,6 +42,8 @@ constexpr FilterTrial kBilateralTrials[] = {{3, 1, 4}, {5, 1, 4}, {7, 1, 4}, {9,
 constexpr FilterTrial kTotalVariationTrials[] = {{7, 1, 1},  {7, 1, 1.5},  {17, 1, 1}, {17, 1, 1.5},
                                                  {31, 1, 1}, {31, 1, 1.5}, {51, 1, 2}, {17, 1, 1.5, true}};
 
+constexpr FilterTrial kTgvTrials[] = {{FilterSpec{}.window, 1, 1}, {FilterSpec{}.window, 1, 1.3}};
+
 constexpr std::array kFilters{
     Filter{.kind = FilterKind::kBox,
            .word = "box",
@@ -90,8 +92,7 @@ constexpr std::array kFilters{
            .pass = windowPass<kTgvSquares>,
            .reach = [](const FilterSpec&) { return tgv::kSide - 1 + tgv::kHalo; },
            .grid = tgv::kSide,
-           // Synthetic samples are smoothed by filters that leave twice as much, and would judge it by that.
-           .trials = {},
+           .trials = kTgvTrials,
            .knows_lines = true,
            .on_device = tgvPassOnDevice},
 };

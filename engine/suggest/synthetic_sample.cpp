@@ -9,11 +9,13 @@
 #include "engine/field/builder.h"
 #include "engine/filter/catalogue.h"
 #include "engine/marks/edge_suggestion.h"
-#include "engine/scanner/counter_random.h"
+#include "engine/suggest/noise_source.h"
 
 namespace fettle::engine {
 
 namespace {
+
+constexpr double kFaint = 0.5;  // of the noise, while edges are searched
 
 struct Samples {
   Grid grid;
@@ -59,55 +61,78 @@ std::vector<float> outliersOf(const Samples& s, double sigma, std::int64_t& coun
 }
 
 Result<Version> smoothed(const Version& field, double sigma, JobControl& job) {
-  FilterSpec first;
-  first.kind = FilterKind::kBilateral;
-  first.window = 7;
-  first.range_sigma = filterOf(first.kind).noises * sigma;
-  auto once = applyFilter(field, field, first, job);
-  if (!once) return tl::unexpected(once.error());
-  FilterSpec second;
-  second.kind = FilterKind::kTotalVariation;
-  second.window = 41;
-  second.range_sigma = filterOf(second.kind).noises * sigma;
-  auto twice = applyFilter(once->field, field, second, job);
-  if (!twice) return tl::unexpected(twice.error());
-  return std::move(twice->field);
+  FilterSpec spec;
+  spec.kind = FilterKind::kGeneralisedVariation;
+  spec.range_sigma = filterOf(spec.kind).noises * sigma;
+  auto done = applyFilter(field, field, spec, job);
+  if (!done) return tl::unexpected(done.error());
+  return std::move(done->field);
+}
+
+// Noise of the model for all pieces; 0 between them.
+std::vector<double> noiseFor(const Mosaic& pieces, const Grid& grid, const NoiseModel& noise,
+                             std::uint64_t seed) {
+  const NoiseSource source(noise.parts);
+  const std::int32_t width = pieces.field.grid().width;
+  std::vector<double> all(static_cast<std::size_t>(pieces.field.grid().samples()));
+  for (std::size_t p = 0; p < pieces.pieces.size(); ++p) {
+    const Mosaic::Piece& piece = pieces.pieces[p];
+    const SampleRect& from = piece.from;
+    const double scale =
+        noise.sigmaAt(grid, from.column + from.columns / 2, from.row + from.rows / 2) / noise.sigma;
+    const std::vector<double> made = source.make(from.columns, from.rows, seed * pieces.pieces.size() + p);
+    for (std::int32_t r = 0; r < from.rows; ++r)
+      for (std::int32_t c = 0; c < from.columns; ++c)
+        all[static_cast<std::size_t>(piece.row + r) * static_cast<std::size_t>(width) +
+            static_cast<std::size_t>(piece.column + c)] =
+            scale * made[static_cast<std::size_t>(r) * static_cast<std::size_t>(from.columns) +
+                         static_cast<std::size_t>(c)];
+  }
+  return all;
 }
 
 }  // namespace
 
-Result<SyntheticSample> makeSyntheticSample(const Version& piece, double sigma, std::uint64_t seed,
-                                            JobControl& job) {
+Result<SyntheticSample> makeSyntheticSample(const Mosaic& pieces, const Grid& grid, const NoiseModel& noise,
+                                            std::uint64_t seed, JobControl& job) {
   SyntheticSample made;
-  Samples clean = samplesOf(piece);
-  const std::vector<float> raw = clean.z;
-  const std::vector<float> instead = outliersOf(clean, sigma, made.outliers);
-  for (std::size_t i = 0; i < raw.size(); ++i)
-    if (instead[i] == instead[i]) clean.z[i] = instead[i];
+  const Samples raw = samplesOf(pieces.field);
+  const std::vector<float> instead = outliersOf(raw, noise.sigma, made.outliers);
+  std::vector<float> clean = raw.z;
+  for (std::size_t i = 0; i < clean.size(); ++i)
+    if (instead[i] == instead[i]) clean[i] = instead[i];
   // Without marks: everything is smoothed.
-  auto surface = smoothed(makeField(clean.grid, clean.z, {}), sigma, job);
+  auto surface = smoothed(makeField(raw.grid, clean, {}), noise.sigma, job);
   if (!surface) return tl::unexpected(surface.error());
   made.surface = *std::move(surface);
 
   Samples noisy = samplesOf(made.surface);
-  const CounterRandom random(seed, 0);
-  for (std::int32_t r = 0; r < noisy.grid.height; ++r)
-    for (std::int32_t c = 0; c < noisy.grid.width; ++c) {
-      const std::size_t i = static_cast<std::size_t>(r) * static_cast<std::size_t>(noisy.grid.width) +
-                            static_cast<std::size_t>(c);
-      noisy.z[i] = instead[i] == instead[i]
-                       ? raw[i]
-                       : static_cast<float>(static_cast<double>(noisy.z[i]) + sigma * random.normal(c, r));
-    }
-  made.scan = makeField(noisy.grid, noisy.z, clean.marks);
+  const std::vector<double> added = noiseFor(pieces, grid, noise, seed);
+  for (std::size_t i = 0; i < noisy.z.size(); ++i)
+    noisy.z[i] =
+        instead[i] == instead[i] ? raw.z[i] : static_cast<float>(static_cast<double>(noisy.z[i]) + added[i]);
+  made.scan = makeField(noisy.grid, noisy.z, raw.marks);
 
-  const auto map = findEdges(piece, EdgeMap::kUsualSigma, job);
+  // Edges as low as half the noise are there for who compares with the surface. With less noise the curves of the
+  // surface are edges, too.
+  Samples faint = samplesOf(made.surface);
+  for (std::size_t i = 0; i < faint.z.size(); ++i) faint.z[i] += static_cast<float>(kFaint * added[i]);
+  const auto map = findEdges(makeField(faint.grid, faint.z), EdgeMap::kUsualSigma, job);
   if (!map) return tl::unexpected(map.error());
   EdgeChoice line;
   line.thickness = 0.0;
-  auto edges = suggestMarks(makeField(clean.grid, raw, {}), *map, line, job);
+  auto edges = suggestMarks(made.surface, *map, line, job);
   if (!edges) return tl::unexpected(edges.error());
   made.edges = std::move(edges->field);
+  std::vector<float> judged(raw.z.size(), std::nanf(""));
+  for (const Mosaic::Piece& piece : pieces.pieces) {
+    const SampleRect& in = piece.judged;
+    made.surface.reader().readHeights(
+        in.column, in.row, in.columns, in.rows,
+        judged.data() + static_cast<std::ptrdiff_t>(in.row) * raw.grid.width + in.column, raw.grid.width);
+  }
+  made.surface = makeField(raw.grid, judged);
+
   return made;
 }
 

@@ -5,28 +5,33 @@
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
+#include "engine/inspect/noise_model.h"
+#include "engine/suggest/mosaic.h"
 
 namespace fettle::engine {
 
-/// A synthetic scan similar to a piece of a scan, with its surface, so that filters can be tried where the
+/// A synthetic scan similar to pieces of a scan, with its surface, so that filters can be tried where the
 /// truth is known.
 struct SyntheticSample {
-  Version surface;  ///< the piece without its noise and outliers: what a filter should find
-  Version scan;     ///< the surface with added noise of the same size, and the piece's own outliers
-  Version edges;    ///< the surface with its edge lines marked, as findEdges finds them in the piece
+  /// The pieces without their noise and outliers: what a filter should find. Holes where it is not judged
+  /// (Mosaic::Piece::judged).
+  Version surface;
+  Version scan;   ///< the surface with added noise of the same kind and size, and the pieces' own outliers
+  Version edges;  ///< the surface with its edge lines marked, as findEdges finds them with half the noise
   std::int64_t outliers = 0;
 };
 
-/// Makes a synthetic sample of a piece whose noise has the standard deviation `sigma` [height_unit, > 0].
+/// Makes a synthetic sample of the pieces of a scan of `grid` whose noise is `noise` (sigma > 0).
 ///
-///   piece --outliers out--> --bilateral 7, tv 41--> surface --white noise, outliers in--> scan
+///   pieces --outliers out--> --generalised variation--> surface --noise, outliers in--> scan
 ///
-/// An outlier is a sample that lies more than 6 sigma above or below all of its neighbours.
-/// Noise of the piece that remains after smoothing, 0.2 sigma or less on flats, counts as surface; details
-/// that the smoothing removed, small creases first, are missing from it. The added noise is white and
-/// Gaussian, which a scanner's is only approximately. Marks of the piece stay in `scan`. Bit-identical for
-/// the same seed. Errors: cancelled; memory (kFailed). Throws std::bad_alloc.
-[[nodiscard]] Result<SyntheticSample> makeSyntheticSample(const Version& piece, double sigma,
-                                                          std::uint64_t seed, JobControl& job);
+/// An outlier is a sample that lies more than 6 sigma above or below all of its neighbours. The noise is made of the
+/// parts of the model (NoiseSource), each piece as large as the model's map says. What of the pieces' noise the filter
+/// leaves, a tenth of it on flats, counts as surface; details below the noise that it removes are missing. Marks of
+/// the pieces stay in `scan`. Bit-identical for the same seed. Errors: cancelled; memory (kFailed). Throws
+/// std::bad_alloc.
+[[nodiscard]] Result<SyntheticSample> makeSyntheticSample(const Mosaic& pieces, const Grid& grid,
+                                                          const NoiseModel& noise, std::uint64_t seed,
+                                                          JobControl& job);
 
 }  // namespace fettle::engine

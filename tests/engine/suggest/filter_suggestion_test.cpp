@@ -70,10 +70,13 @@ TEST_P(FilterSuggestionOf, APartExpectsWhatIsTrulyLeftWithinItsFactor) {
     const std::string what = fmt::format("{} {} x{} flat {:.4f} true {:.4f} edge {:.4f} true {:.4f}",
                                          name(c.spec.kind), c.spec.window, c.spec.passes, c.error_flat,
                                          true_figures.rmse_flat, c.error_edge, true_figures.rmse_edge);
-    EXPECT_LT(c.error_flat, 1.8 * true_figures.rmse_flat) << what;
-    EXPECT_GT(c.error_flat, true_figures.rmse_flat / 1.4) << what;
-    EXPECT_LT(c.error_edge, 1.8 * true_figures.rmse_edge) << what;
-    EXPECT_GT(c.error_edge, true_figures.rmse_edge / 1.4) << what;
+    // The most that was found on these: total variation draws flats to surroundings whose edges it does not tell from
+    // the noise, 1.6 times as much on pieces as on the whole bracket; near the edges of the die 1.3.
+    const double most_flat = c.spec.kind == FilterKind::kTotalVariation ? 1.7 : 1.4;
+    EXPECT_LT(c.error_flat, most_flat * true_figures.rmse_flat) << what;
+    EXPECT_GT(c.error_flat, true_figures.rmse_flat / 1.25) << what;
+    EXPECT_LT(c.error_edge, 1.35 * true_figures.rmse_edge) << what;
+    EXPECT_GT(c.error_edge, true_figures.rmse_edge / 1.25) << what;
   }
   if (!found->met()) return;
   const TruthFigures left = truly(scan, found->picked());
@@ -111,7 +114,8 @@ TEST(FilterSuggestion, PicksTheFastestWithinTheTolerance) {
     if (c.within) {
       EXPECT_GE(c.seconds, usual.picked().seconds);
     }
-  EXPECT_NEAR(usual.sigma, 0.02, 0.001);
+  // What the scanner adds to this part: 0.021.
+  EXPECT_NEAR(usual.sigma, 0.021, 0.001);
   EXPECT_GT(usual.edge_share, 0.05);
 }
 
