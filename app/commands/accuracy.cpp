@@ -34,7 +34,7 @@ constexpr struct {
     {"detail", bench::detailStudy},       {"filter", bench::filterStudy},
     {"upload", bench::uploadStudy},       {"restoration", bench::restorationStudy},
     {"automatic", bench::automaticStudy}, {"lines", bench::edgeLineStudy},
-    {"hand", bench::handStudy},
+    {"hand", bench::handStudy},           {"worth", bench::worthStudy},
 };
 
 std::string studyNames() {

@@ -68,4 +68,7 @@ struct AccuracyOptions {
 /// error over all, on flats and near edges, for every part, noise and hand.
 [[nodiscard]] engine::Result<Study> handStudy(const AccuracyOptions& options, engine::JobControl& job);
 
+/// A simulated hand that follows findWorthPlaces(), and one that takes the longest edges first: error over seconds.
+[[nodiscard]] engine::Result<Study> worthStudy(const AccuracyOptions& options, engine::JobControl& job);
+
 }  // namespace fettle::bench
