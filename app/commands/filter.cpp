@@ -11,6 +11,7 @@
 #include "app/commands/command.h"
 #include "app/commands/compute_option.h"
 #include "app/commands/original_scan.h"
+#include "app/commands/place_report.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
@@ -43,6 +44,7 @@ struct FilterArguments {
   bool suggest = false;
   std::string tolerance;
   std::optional<double> budget;
+  int places = 0;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
@@ -255,7 +257,8 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   if (!options.only.empty()) return refused("--only", "give --keep, or nothing");
   if (!options.original.empty()) return refused("--original", "its filters have no limit of change");
   if (!options.lines.empty()) return refused("--lines", "its filters are tried without edge lines");
-  if (options.tolerance.empty())
+  const bool filters = !options.tolerance.empty() || options.places == 0;
+  if (filters && options.tolerance.empty())
     return engine::inputError("no tolerance is given", "--tolerance",
                               "give the allowed error, as 0.01 in the scan's unit or 10um");
   const ProgressLine progress(job);
@@ -264,6 +267,13 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   auto marked = withMarks(imported->field, options.keep);
   if (!marked) return tl::unexpected(marked.error());
   const engine::Version field = *std::move(marked);
+  Report report = Report::object();
+  if (options.places > 0) {
+    auto places = placeReport(field, options.places, options.threads, job);
+    if (!places) return tl::unexpected(places.error());
+    report = *std::move(places);
+    if (!filters) return report;
+  }
   engine::SuggestionRequest request;
   const auto tolerance = parseHeight(options.tolerance, field.grid(), "--tolerance");
   if (!tolerance) return tl::unexpected(tolerance.error());
@@ -273,17 +283,17 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   const auto found = engine::suggestFilter(field, request, job);
   if (!found) return tl::unexpected(found.error());
   const std::string& unit = field.grid().height_unit.name;
-  Report report{{"met", found->met()},
-                {"why", whyOf(*found, request, unit)},
-                {"commands", commandsFor(options, found->picked())},
-                {"unit", unit},
-                {"tolerance", request.tolerance},
-                {"budget", request.budget_s ? Report(*request.budget_s) : Report()},
-                {"noise", found->sigma},
-                {"samples", found->samples},
-                {"outlier_share", found->outlier_share},
-                {"edge_share", found->edge_share},
-                {"pick", reportOf(found->picked())}};
+  report.update({{"met", found->met()},
+                 {"why", whyOf(*found, request, unit)},
+                 {"commands", commandsFor(options, found->picked())},
+                 {"unit", unit},
+                 {"tolerance", request.tolerance},
+                 {"budget", request.budget_s ? Report(*request.budget_s) : Report()},
+                 {"noise", found->sigma},
+                 {"samples", found->samples},
+                 {"outlier_share", found->outlier_share},
+                 {"edge_share", found->edge_share},
+                 {"pick", reportOf(found->picked())}});
   report["candidates"] = Report::array();
   for (const engine::FilterCandidate& c : found->candidates) report["candidates"].push_back(reportOf(c));
   return report;
@@ -306,6 +316,7 @@ engine::Result<Report> filter(const FilterArguments& options, engine::JobControl
   if (options.suggest) return suggest(options, job);
   if (options.filter.empty())
     return engine::inputError("no filter is named", "--filter", "give one, or use --suggest");
+  if (options.places != 0) return engine::inputError("places are for --suggest", "--places", "add --suggest");
   if (!options.tolerance.empty() || options.budget)
     return engine::inputError("tolerance and budget are for --suggest",
                               options.tolerance.empty() ? "--budget" : "--tolerance", "add --suggest");
@@ -329,10 +340,11 @@ engine::Result<Report> filter(const FilterArguments& options, engine::JobControl
 }
 
 void printFilter(const Report& report) {
-  if (report.contains("commands"))
-    printSuggestion(report);
-  else
-    printBatch(report);
+  const bool suggested = report.contains("commands"), places = report.contains("places");
+  if (suggested) printSuggestion(report);
+  if (suggested && places) fmt::print("\n");
+  if (places) printPlaces(report);
+  if (!suggested && !places) printBatch(report);
 }
 
 }  // namespace
@@ -393,6 +405,12 @@ void addFilter(Command root, Chosen& chosen) {
                  "With --suggest: allowed root mean square error on flats and near edges, each "
                  "separately; in the scan's height unit, or as 20um");
   command.option("--budget", options->budget, "With --suggest: most seconds for filtering the scan");
+  command
+      .option("--places", options->places,
+              "With --suggest: name this many places, 1 to 1000, where an edge line drawn by hand would gain "
+              "tgv most; "
+              "without --tolerance, only these")
+      .check(within(1, 1000));
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
 }

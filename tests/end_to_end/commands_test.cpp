@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 #include <gtest/gtest.h>
@@ -165,6 +166,30 @@ TEST_F(Commands, SuggestedFilterTypedAsPrintedLeavesWhatWasTolerated) {
   expectRefused(fettle({"filter", file("s.tif"), "--suggest"}), "--tolerance");
   expectRefused(fettle({"filter", file("s.tif"), file("o.tif"), "--filter", "box", "--tolerance", "1"}),
                 "--suggest");
+}
+
+TEST_F(Commands, PlacesWhereALineByHandIsWorthMostAreNamedInTheScansOwnCoordinates) {
+  ASSERT_EQ(fettle({"synth", file("s.tif"), "--part", "steps", "--noise", "3", "--size", "320x320"}).status,
+            0);
+  const auto said = fettleJson({"filter", file("s.tif"), "--suggest", "--places", "3"});
+  EXPECT_FALSE(said.contains("commands")) << "no tolerance, no filter";
+  ASSERT_EQ(said["places"].size(), 3U);
+  const auto grid = fettleJson({"info", file("s.tif")});
+  double left = said["rmse_without"], rate = std::numeric_limits<double>::infinity();
+  for (const auto& place : said["places"]) {
+    EXPECT_GE(place["x"], grid["origin_x"]);
+    EXPECT_GE(place["y"], grid["origin_y"]);
+    EXPECT_LE(place["x"], 90.0);
+    EXPECT_LT(place["rmse_after"], left);
+    left = place["rmse_after"];
+    EXPECT_LE(place["gain"].get<double>() / place["seconds"].get<double>(), rate);
+    rate = place["gain"].get<double>() / place["seconds"].get<double>();
+  }
+  const Outcome printed = fettle({"filter", file("s.tif"), "--suggest", "--places", "1"});
+  EXPECT_NE(printed.out.find("x, mm"), std::string::npos) << printed.out;
+  expectRefused(fettle({"filter", file("s.tif"), file("o.tif"), "--filter", "tgv", "--places", "3"}),
+                "--suggest");
+  EXPECT_EQ(fettle({"filter", file("s.tif"), "--suggest", "--places", "0"}).status, 2);
 }
 
 TEST_F(Commands, CompareAgainstTheTruthJudgesFlatsAndEdges) {
