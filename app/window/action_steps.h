@@ -116,6 +116,8 @@ bool chosen(const Parts& p) {
 inline void navigate(Parts& p) {
   if (p.marking.edit.busy())
     p.marking.edit.cancel();
+  else if (p.marking.places.busy())
+    p.marking.places.drop();
   else if (p.marking.edges.on())
     p.marking.edges.drop();
   else if (!p.filters.variants().empty() || p.filters.computing() || p.filters.applying())
@@ -212,6 +214,23 @@ inline void clearLines(Parts& p) {
                      [](const engine::Version& base, engine::JobControl&) -> engine::Result<engine::Version> {
                        return removeLines(base, std::nullopt);
                      });
+}
+inline bool hasPlaces(const Parts& p) {
+  return hasField(p) && p.marking.places.on();
+}
+// The first time they are searched for; the view goes to one when it is come to (Workstation).
+inline void nextPlace(Parts& p) {
+  PlaceTool& places = p.marking.places;
+  if (places.busy()) return;
+  if (places.found() == nullptr)
+    places.search(clientOf(p));
+  else if (!places.next())
+    p.feedback.notices.push_back({"no place is left", "Shift+Z hides them; Z then looks for others"});
+  p.picture.requestRedraw();
+}
+inline void hidePlaces(Parts& p) {
+  p.marking.places.drop();
+  p.picture.requestRedraw();
 }
 inline void coarserEdges(Parts& p) {
   p.marking.scaleEdges(1.25, clientOf(p));

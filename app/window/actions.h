@@ -40,6 +40,8 @@ enum class Action : std::uint8_t {
   kRemoveLine,
   kJoinLine,
   kClearLines,
+  kNextPlace,
+  kHidePlaces,
   kLasso,
   kBox,
   kEdges,

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "app/window/above_surface.h"
 
 namespace fettle::app {
 
@@ -17,23 +18,6 @@ constexpr float kLine_px = 2.0F, kChosen_px = 4.0F;
 constexpr float kWidest_px = 64.0F;
 const glm::vec3 kStepColour{1.0F, 0.35F, 0.02F}, kCreaseColour{0.1F, 0.5F, 1.0F},
     kUnlocatedColour{0.35F, 0.35F, 0.35F}, kChosenColour{1.0F, 1.0F, 0.25F};
-
-// The highest of the samples around a position, a little above the surface.
-glm::dvec3 above(const engine::FieldReader& reader, glm::dvec2 at) {
-  const engine::Grid& grid = reader.grid();
-  const auto clamped = [](double v, std::int32_t side) {
-    return static_cast<std::int32_t>(std::clamp(v, 0.0, side - 1.0));
-  };
-  double height = -std::numeric_limits<double>::infinity();
-  for (const double dr : {-1.0, 0.0, 1.0, 2.0})
-    for (const double dc : {-1.0, 0.0, 1.0, 2.0}) {
-      const float z = reader.heightAt(clamped(std::floor(at.x + dc), grid.width),
-                                      clamped(std::floor(at.y + dr), grid.height));
-      if (z > height) height = static_cast<double>(z);
-    }
-  if (!std::isfinite(height)) height = 0.0;
-  return {at.x * grid.spacingXMm(), at.y * grid.spacingYMm(), height * grid.height_unit.mm};
-}
 
 const glm::vec3& colourOf(const EdgePoint& point, bool chosen) {
   return chosen                                    ? kChosenColour
@@ -70,8 +54,8 @@ void LineOverlay::append(const engine::Version& field, std::optional<std::int64_
         const std::size_t to = std::min(i + static_cast<std::size_t>(stride), end);
         const EdgePoint &a = line.points[i], &b = line.points[to % points];
         render::OverlayLine piece;
-        piece.from_mm = above(reader, a.position);
-        piece.to_mm = above(reader, b.position);
+        piece.from_mm = aboveSurface(reader, a.position);
+        piece.to_mm = aboveSurface(reader, b.position);
         piece.depth = render::OverlayLine::Depth::kInScene;
         if (a.located) {
           render::OverlayLine band = piece;

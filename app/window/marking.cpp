@@ -132,14 +132,16 @@ void Marking::scaleEdges(double factor, const LoopClient& client) {
 
 bool Marking::poll(LoopClient& client, bool draw_lines, std::vector<Notice>& notices) {
   lines.follow(client, edit, draw_lines);
-  const bool marked = edit.poll(client, notices);
-  return edges.poll(client, notices) || marked;
+  bool changed = edit.poll(client, notices);
+  changed |= edges.poll(client, notices);
+  return places.poll(client, notices) || changed;
 }
 
 void Marking::reset() {
   edit.cancel();
   leaveLasso();
   edges.drop();
+  places.drop();
   lines.choose(std::nullopt);
 }
 

@@ -7,10 +7,12 @@
 #include "app/work/lasso.h"
 #include "app/work/line_tool.h"
 #include "app/work/mark_edit.h"
+#include "app/work/place_tool.h"
 
 namespace fettle::app {
 
-/// Marks set in one step: by a lasso, by a box, by suggested edges, or all of them; and edge lines. Threading: main.
+/// Marks set in one step: by a lasso, by a box, by suggested edges, or all of them; edge lines, and the places where
+/// they are worth most. Threading: main.
 class Marking {
  public:
   /// The environment of the lasso.
@@ -43,11 +45,12 @@ class Marking {
   [[nodiscard]] bool poll(LoopClient& client, bool draw_lines, std::vector<Notice>& notices);
   /// Another field was opened.
   void reset();
-  [[nodiscard]] bool busy() const noexcept { return edit.busy() || edges.busy(); }
+  [[nodiscard]] bool busy() const noexcept { return edit.busy() || edges.busy() || places.busy(); }
 
   MarkEdit edit;
   EdgeTool edges;
   LineTool lines;
+  PlaceTool places;
 
  private:
   bool handleKey(const render::InputEvent& event, const Scope& scope);

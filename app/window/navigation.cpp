@@ -57,4 +57,12 @@ void Navigation::centreOn(render::View& view, const engine::Grid& grid, double x
   view.centre_y = y_mm / extentY(grid);
 }
 
+void Navigation::show(render::View& view, const engine::Grid& grid, double x_mm, double y_mm,
+                      double extent_mm) noexcept {
+  centreOn(view, grid, x_mm, y_mm);
+  // A zoom of 1 shows all of the field.
+  const double all_mm = std::max(extentX(grid), extentY(grid));
+  view.zoom = std::clamp(all_mm / (3.0 * std::max(extent_mm, 1e-9 * all_mm)), 1.0, kLargestZoom);
+}
+
 }  // namespace fettle::app

@@ -36,6 +36,11 @@ class Navigation {
   /// Centres the view on a point of the field [mm].
   static void centreOn(render::View& view, const engine::Grid& grid, double x_mm, double y_mm) noexcept;
 
+  /// Centres the view on a part of the field and zooms so that something of `extent_mm` takes about a third of the
+  /// picture, from the same direction.
+  static void show(render::View& view, const engine::Grid& grid, double x_mm, double y_mm,
+                   double extent_mm) noexcept;
+
   static constexpr double kLowestElevation_deg = 3.0;
   static constexpr double kLargestZoom = 1e5;
   static constexpr double kSmallestZoom = 0.1;

@@ -12,6 +12,7 @@
 #include "app/window/line_overlay.h"
 #include "app/window/marking.h"
 #include "app/window/opening.h"
+#include "app/window/place_overlay.h"
 #include "app/window/saving.h"
 #include "app/window/settings.h"
 #include "app/window/stylus.h"
@@ -47,6 +48,7 @@ struct Parts {
   render::View view = startView();
   StylusOverlay stylus_overlay;
   LineOverlay line_overlay;
+  PlaceOverlay place_overlay;
 
   glm::dvec2 cursor{0.0};  ///< pixels of the window's frame
   Stylus stylus;

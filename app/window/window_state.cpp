@@ -111,6 +111,12 @@ void addFilters(const Parts& p, Report& r) {
   r["looking_for_edges"] = edges.busy();
   const engine::EdgeLines lines = p.document.client()->newest().lines();
   r["lines"] = lines ? lines->size() : 0;
+  const PlaceTool& places = p.marking.places;
+  r["looking_for_places"] = places.busy();
+  r["places"] = places.found() != nullptr ? places.found()->places.size() : 0;
+  r["place"] = places.present() ? Report(*places.present() + 1) : Report();
+  r["places_done"] = places.count(PlaceTool::State::kDone);
+  r["places_skipped"] = places.count(PlaceTool::State::kSkipped);
   r["draws_lines"] = p.settings.draw_lines;
   r["marking"] = p.marking.edit.busy();
   r["applying"] = filters.applying();

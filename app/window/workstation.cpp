@@ -155,6 +155,10 @@ void Workstation::takeResults() {
   std::vector<Notice>& notices = p.feedback.notices;
   bool changed = p.filters.poll(client, notices);
   changed |= p.marking.poll(client, p.settings.draw_lines, notices);
+  if (const auto place = p.marking.places.takeArrival()) {
+    goToPlace(p.view, client.field().grid(), p.marking.places.found()->places[*place]);
+    changed = true;
+  }
   for (Notice& notice : client.takeNotices()) notices.push_back(std::move(notice));
   while (notices.size() > Feedback::kMostNotices) notices.erase(notices.begin());
   changed |= p.change.poll(client, p.stylus.held() || p.marking.held());

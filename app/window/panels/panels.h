@@ -21,6 +21,8 @@ struct PanelContext {
 void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking& marking,
                const Display& display);
 void edgePanel(const PanelContext& context, EdgeTool& edges);
+/// Of the places where a line is worth most.
+void placePanel(const PanelContext& context, PlaceTool& places);
 /// `draws`: whether strokes of the mark tool become edge lines.
 void linePanel(const PanelContext& context, LineTool& lines, bool draws);
 void filterPanel(const PanelContext& context, FilterPreview& filters, Display& display);

@@ -43,7 +43,10 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
   const PanelContext context{*parts.document.client(), parts.feedback.notices, act};
   if (section(settings, "Tool", true)) toolPanel(context, parts.stylus, parts.marking, settings.display);
   if (section(settings, "Edges", false)) edgePanel(context, parts.marking.edges);
-  if (section(settings, "Edge lines", false)) linePanel(context, parts.marking.lines, settings.draw_lines);
+  if (section(settings, "Edge lines", false)) {
+    placePanel(context, parts.marking.places);
+    linePanel(context, parts.marking.lines, settings.draw_lines);
+  }
   if (section(settings, "Filters", true)) filterPanel(context, parts.filters, settings.display);
   if (section(settings, "Steps", true)) historyPanel(context, parts.marking.edit);
   if (section(settings, "Change since the scan", true)) changePanel(context, parts.change);

@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "app/window/panels/panels.h"
+
+namespace fettle::app {
+
+namespace {
+
+void wrapped(const std::string& text) {
+  ImGui::PushTextWrapPos(0.0F);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
+}  // namespace
+
+void placePanel(const PanelContext& context, PlaceTool& places) {
+  using State = PlaceTool::State;
+  if (places.busy()) {
+    ImGui::ProgressBar(static_cast<float>(places.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
+                       "looking");
+    ImGui::SameLine();
+    actionButton("Cancel", Action::kHidePlaces, context.act);
+    return;
+  }
+  const engine::WorthPlaces* const found = places.found();
+  if (found == nullptr) {
+    actionButton("Where is a line worth most?", Action::kNextPlace, context.act);
+    return;
+  }
+  if (found->places.empty()) {
+    wrapped("nowhere is a line worth much: tgv finds the edges itself");
+  } else {
+    const std::string& unit = context.client.field().grid().height_unit.name;
+    const std::size_t n = found->places.size();
+    if (const auto present = places.present()) {
+      const engine::WorthPlace& place = found->places[*present];
+      const State state = places.state(*present);
+      wrapped(fmt::format("place {} of {}{}: tgv's error {:.3g} to {:.3g} {} with all up to here, {:.0f} s",
+                          *present + 1, n, state == State::kDone ? ", done" : "", found->rmseAfter(0),
+                          found->rmseAfter(*present + 1), unit, place.seconds));
+    }
+    wrapped(fmt::format("{} done, {} skipped, {} left", places.count(State::kDone),
+                        places.count(State::kSkipped), places.count(State::kOpen)));
+    actionButton("Next place", Action::kNextPlace, context.act);
+    sameLineIfFits("Hide places");
+  }
+  actionButton("Hide places", Action::kHidePlaces, context.act);
+}
+
+}  // namespace fettle::app

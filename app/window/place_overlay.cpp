@@ -1,0 +1,89 @@
+#include "app/window/place_overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <glm/common.hpp>
+
+#include "app/window/above_surface.h"
+#include "app/window/navigation.h"
+
+namespace fettle::app {
+
+namespace {
+
+using State = PlaceTool::State;
+
+constexpr double kLeastSeen = 96.0;  // [samples]; of less the surroundings show no edge
+constexpr double kPlacePiece_px = 3.0;
+// Narrow: the hand has to see the edge below.
+constexpr float kOtherPlace_px = 2.5F, kPresentPlace_px = 4.0F, kPlaceEnd_px = 9.0F;
+const glm::vec3 kOpenColour{0.75F, 0.08F, 0.75F}, kPresentColour{1.0F, 0.2F, 0.9F},
+    kDoneColour{0.08F, 0.6F, 0.15F}, kSkippedColour{0.3F, 0.3F, 0.3F};
+
+const glm::vec3& colourOfPlace(State state, bool present) {
+  return state == State::kDone      ? kDoneColour
+         : present                  ? kPresentColour
+         : state == State::kSkipped ? kSkippedColour
+                                    : kOpenColour;
+}
+
+}  // namespace
+
+void goToPlace(render::View& view, const engine::Grid& grid, const engine::WorthPlace& place) noexcept {
+  glm::dvec2 low = place.path.front(), high = low;
+  for (const glm::dvec2& p : place.path) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
+  const glm::dvec2 middle_mm = 0.5 * spacing * (low + high);
+  const glm::dvec2 extent_mm = spacing * glm::max(high - low, glm::dvec2(kLeastSeen));
+  Navigation::show(view, grid, middle_mm.x, middle_mm.y, std::max(extent_mm.x, extent_mm.y));
+}
+
+void PlaceOverlay::append(const engine::Version& field, const PlaceTool& places, double mm_per_pixel,
+                          render::Overlays& overlays) {
+  if (places.found() == nullptr) {
+    of_ = {};
+    return;
+  }
+  if (of_.empty() || !(field == of_) || places.revision() != revision_ || mm_per_pixel != mm_per_pixel_) {
+    of_ = field;
+    revision_ = places.revision();
+    mm_per_pixel_ = mm_per_pixel;
+    pieces_.clear();
+    const engine::Grid& grid = field.grid();
+    const double sample_mm = std::max(grid.spacingXMm(), grid.spacingYMm());
+    const auto stride =
+        static_cast<std::size_t>(std::clamp(kPlacePiece_px * mm_per_pixel / sample_mm, 1.0, 1e6));
+    const engine::FieldReader reader = field.reader();
+    const std::vector<engine::WorthPlace>& all = places.found()->places;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const std::vector<glm::dvec2>& path = all[k].path;
+      const bool present = places.present() == k;
+      render::OverlayLine piece;
+      piece.depth = render::OverlayLine::Depth::kInScene;
+      piece.colour = colourOfPlace(places.state(k), present);
+      piece.opacity = present ? 0.55F : 0.35F;
+      piece.width_px = present ? kPresentPlace_px : kOtherPlace_px;
+      for (std::size_t i = 0; i + 1 < path.size(); i += stride) {
+        piece.from_mm = aboveSurface(reader, path[i]);
+        piece.to_mm = aboveSurface(reader, path[std::min(i + stride, path.size() - 1)]);
+        pieces_.push_back(piece);
+      }
+      if (!present) continue;
+      piece.opacity = 1.0F;
+      piece.width_px = kPlaceEnd_px;
+      piece.depth = render::OverlayLine::Depth::kOnTop;
+      for (const glm::dvec2& end : {path.front(), path.back()}) {
+        piece.from_mm = piece.to_mm = aboveSurface(reader, end);
+        pieces_.push_back(piece);
+      }
+    }
+  }
+  overlays.lines.insert(overlays.lines.end(), pieces_.begin(), pieces_.end());
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "app/work/place_tool.h"
+#include "render/live/live_picture.h"
+
+namespace fettle::app {
+
+/// Moves the view to a place, from the same direction, so near that its edge can be followed.
+void goToPlace(render::View& view, const engine::Grid& grid, const engine::WorthPlace& place) noexcept;
+
+/// The places where a line by hand is worth most, in the picture: lines along them, the present one with discs at its
+/// ends; open, done and skipped ones each in a colour. Threading: main.
+class PlaceOverlay {
+ public:
+  /// Adds them to the overlays of the next frame, with pieces of about three pixels or longer. They are computed again
+  /// where the places, the field or that length differ from the last frame's.
+  void append(const engine::Version& field, const PlaceTool& places, double mm_per_pixel,
+              render::Overlays& overlays);
+
+ private:
+  engine::Version of_;
+  std::uint64_t revision_ = 0;
+  double mm_per_pixel_ = 0.0;
+  std::vector<render::OverlayLine> pieces_;
+};
+
+}  // namespace fettle::app
