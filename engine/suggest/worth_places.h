@@ -40,7 +40,8 @@ struct WorthPlace {
 struct WorthPlaces {
   std::vector<WorthPlace> places;  ///< the most gain per second first
   double samples = 0.0;            ///< of the field that are not holes
-  /// Sum of squared errors that the filter probably leaves without the lines [height_unit^2].
+  /// Sum of squared errors that the filter probably leaves without the lines [height_unit^2]: too small where it misses
+  /// edges that the search misses as well. Its root was 0.68 to 0.85 of the true one on simulated scans.
   double left = 0.0;
 
   /// Root mean square error over the field that is expected after the first `count` places [height_unit].
