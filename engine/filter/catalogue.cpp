@@ -6,6 +6,7 @@
 
 #include "engine/filter/line_windows.h"
 #include "engine/filter/median.h"
+#include "engine/filter/planes.h"
 #include "engine/filter/tgv_device.h"
 #include "engine/filter/tgv_schedule.h"
 #include "engine/filter/window_pass.h"
@@ -14,7 +15,7 @@ namespace fettle::engine {
 
 // Each in the source that is named after it.
 WindowFilter::Maker makeBoxFilter, makeGaussianFilter, makeBilateralFilter, makeTotalVariationFilter,
-    makeTgvFilter;
+    makeTgvFilter, makePlanesFilter;
 
 namespace {
 
@@ -33,6 +34,7 @@ constexpr WindowFilter kBilateralWindows{makeBilateralFilter};
 constexpr WindowFilter kTotalVariationWindows{makeTotalVariationFilter};
 
 constexpr WindowFilter kTgvSquares{.make = makeTgvFilter, .squares = {tgv::kSide, tgv::kHalo}};
+constexpr WindowFilter kPlaneSquares{.make = makePlanesFilter, .squares = {planes::kSide, planes::kHalo}};
 
 // Means and medians smooth the edges together with the noise unless these are marked.
 constexpr FilterTrial kBoxTrials[] = {{3}, {5}, {9}, {3, 2, 0, true}, {5, 2, 0, true}, {9, 2, 0, true}};
@@ -42,6 +44,7 @@ constexpr FilterTrial kBilateralTrials[] = {{3, 1, 4}, {5, 1, 4}, {7, 1, 4}, {9,
 constexpr FilterTrial kTotalVariationTrials[] = {{7, 1, 1},  {7, 1, 1.5},  {17, 1, 1}, {17, 1, 1.5},
                                                  {31, 1, 1}, {31, 1, 1.5}, {51, 1, 2}, {17, 1, 1.5, true}};
 
+constexpr FilterTrial kPlaneTrials[] = {{FilterSpec{}.window, 1, 1}, {FilterSpec{}.window, 1, 1.3}};
 constexpr FilterTrial kTgvTrials[] = {{FilterSpec{}.window, 1, 1}, {FilterSpec{}.window, 1, 1.3}};
 
 constexpr std::array kFilters{
@@ -95,6 +98,18 @@ constexpr std::array kFilters{
            .trials = kTgvTrials,
            .knows_lines = true,
            .on_device = tgvPassOnDevice},
+    Filter{.kind = FilterKind::kPlanes,
+           .word = "planes",
+           .title = "Planes",
+           .keeps_edges = true,
+           .window = {},
+           .range_sigma = kRange,
+           .noises = 1.1,
+           .pass = windowPass<kPlaneSquares>,
+           .reach = [](const FilterSpec&) { return planes::kSide - 1 + planes::kHalo; },
+           .grid = planes::kSide,
+           .trials = kPlaneTrials,
+           .knows_lines = true},
 };
 
 constexpr bool inTheOrderOfTheEnum() {

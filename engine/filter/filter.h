@@ -9,7 +9,7 @@
 
 namespace fettle::engine {
 
-/// The global filters; what the program knows of each is a row of catalogue.h. All but kGeneralisedVariation use a
+/// The global filters; what the program knows of each is a row of catalogue.h. All but kGeneralisedVariation and kPlanes use a
 /// window of n x n samples around each sample, n odd.
 ///
 /// Of a window only the samples that exist count: none beyond the border, no hole. A hole stays a hole; every
@@ -36,6 +36,11 @@ namespace fettle::engine {
 ///              (line_sides.h); the other filters do not know lines. Worked out in squares of 256 samples
 ///              from the field's first one, each with 48 samples around it: the squares are part of the
 ///              definition.
+///   kPlanes    the mean of the planes, each weighted with its number of samples, that are fitted by least squares to all
+///              windows of 3, 5, 7 and 11 samples on a side that cover the sample, have no hole or border in them,
+///              reach over no edge line of a step, and leave no more than noise: sum of squares over R^2 <= m + 2.5
+///              sqrt(2 m), m the samples less 3. R = range_sigma is the standard deviation of the noise. Keeps
+///              flats, slopes, steps and creases; a sample that no such window covers stays.
 /// Heights are taken with the version's sign, so filtering commutes with inverting.
 ///
 /// Accuracy, against the same formula without rounding:
@@ -54,10 +59,21 @@ namespace fettle::engine {
 ///              numbers may fall the other way at one: 4 R). From the surface that its steps go to: 0.06 R
 ///              rms, 1 R at most; from the whole field worked out in one: 0.002 R. A constant comes back
 ///              bit-identical, a plane within 0.02 R rms, a paraboloid within 0.1 R rms.
+///   kPlanes    in double, from the median of squares of 256 samples: error <= 0.5 ulp of the result + 1e-6 R where
+///              heights are within 1e6 R of it and no window is within rounding of its limit. A constant and a plane
+///              come back within that.
 /// Every result of kBox and kMedian lies between the smallest and the largest sample of its window, every one
 /// of kGaussian and kBilateral does but for that error; those of the two variations
 /// need not. A result equal to the sample keeps its very bits (-0 stays -0).
-enum class FilterKind { kBox, kGaussian, kMedian, kBilateral, kTotalVariation, kGeneralisedVariation };
+enum class FilterKind {
+  kBox,
+  kGaussian,
+  kMedian,
+  kBilateral,
+  kTotalVariation,
+  kGeneralisedVariation,
+  kPlanes
+};
 
 /// What the marks mean to a filter.
 enum class FilterScope {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/filter/lone_samples.h"
+#include "engine/filter/middle_height.h"
 #include "engine/filter/tgv_schedule.h"
 
 namespace fettle::engine {
@@ -48,17 +49,8 @@ void TgvSquare::makeRoom(int columns, int rows) {
 
 // Heights less a middle one, so that float has digits for the noise wherever the scan lies.
 void TgvSquare::takeHeights(const Block& block) {
-  std::vector<float>& known = middle_;
-  known.clear();
-  for (int r = 0; r < rows_; ++r)
-    for (int c = 0; c < columns_; ++c)
-      if (block.row(r)[c] == block.row(r)[c]) known.push_back(block.row(r)[c]);
-  if (known.empty()) return;
-  // Of an even count the mean of both middle ones: what is upside down has the same.
-  const auto high = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-  std::nth_element(known.begin(), high, known.end());
-  const float low = known.size() % 2 == 1 ? *high : *std::max_element(known.begin(), high);
-  reference_ = 0.5 * (static_cast<double>(low) + static_cast<double>(*high));
+  reference_ = middleHeight(block, middle_);
+  if (middle_.empty()) return;
   for (int r = 0; r < rows_; ++r) {
     const Row now = row(r);
     const float* heights = block.row(r);

@@ -34,7 +34,8 @@ TEST(Marks, KeepTheirExactBitsButCountAsNeighbours) {
       const Filtered result = filtered(toVersion(plain), spec);
       EXPECT_EQ(checkPass(plain, toPlain(result.field), spec), "") << name(kind) << " " << window;
       EXPECT_EQ(toPlain(result.field).marks, plain.marks);
-      EXPECT_GT(result.report.changed, 10000);
+      // Few windows of so rough a field fit a plane.
+      EXPECT_GT(result.report.changed, kind == FilterKind::kPlanes ? 30 : 10000);
     }
 }
 
@@ -46,7 +47,8 @@ TEST(Marks, AloneAreFilteredWhenTheScopeSaysSo) {
       spec.scope = FilterScope::kOnlyMarks;
       const Filtered result = filtered(toVersion(plain), spec);
       EXPECT_EQ(checkPass(plain, toPlain(result.field), spec), "") << name(kind) << " " << window;
-      EXPECT_GT(result.report.changed, 5000);
+      // Few windows of so rough a field fit a plane.
+      EXPECT_GT(result.report.changed, kind == FilterKind::kPlanes ? 30 : 5000);
     }
 }
 

@@ -208,7 +208,7 @@ std::vector<double> totalVariationTwin(const PlainField& field, const FilterSpec
 
 std::string checkWindow(const PlainField& field, int column, int row, const FilterSpec& spec, float got,
                         const std::vector<double>& twin) {
-  if (spec.kind == FilterKind::kGeneralisedVariation) return "";  // of no window
+  if (!filterOf(spec.kind).window.exists()) return "";
   const int radius = spec.window / 2;
   const int c0 = std::max(column - radius, 0);
   const int c1 = std::min(column + radius, field.width - 1);
