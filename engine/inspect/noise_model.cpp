@@ -22,10 +22,30 @@ constexpr std::array<double, 4> kMostOfSmallest{(3 + 3 * 2.449) / 1.569, (3 + 3 
 constexpr double kQuiet = 0.25, kMostOfQuiet = 4.0;  // share, and variance against the loudest of them
 constexpr double kPriorWindows = 4.0;                // that the map's parts are drawn to the field's noise by
 
+// Detail below so much of what float rounds a window's heights to is none: a mask, a fill value, a clipped range.
+constexpr double kNoDetail = 0.01;
+// Noise that neighbours share has more than its finest detail, but edges in every window have as well: beyond this the
+// finest detail counts. Of variances.
+constexpr double kMostOverFinest = 9.0;
+
 struct Placed {
   std::int32_t column, row;
+  double magnitude;  // largest |height|
   NoiseWindow window;
+
+  [[nodiscard]] bool shows() const noexcept {
+    const double rounded = kNoDetail * std::ldexp(magnitude, -23);
+    return window.usable() && window.moments.detail() > rounded * rounded;
+  }
 };
+
+double medianFinest(const std::vector<const Placed*>& windows) {
+  std::vector<double> finest;
+  for (const Placed* p : windows) finest.push_back(p->window.finest);
+  const auto middle = finest.begin() + static_cast<std::ptrdiff_t>(finest.size() / 2);
+  std::nth_element(finest.begin(), middle, finest.end());
+  return *middle;
+}
 
 // Evenly spread, with the same margin at both sides.
 std::vector<Placed> placesIn(const Grid& grid) {
@@ -36,7 +56,7 @@ std::vector<Placed> placesIn(const Grid& grid) {
   const auto step =
       std::max(kLeastStep, static_cast<std::int32_t>(std::ceil(std::sqrt(samples / kMostWindows))));
   for (std::int32_t r = top % step / 2; r <= top; r += step)
-    for (std::int32_t c = right % step / 2; c <= right; c += step) places.push_back({c, r, {}});
+    for (std::int32_t c = right % step / 2; c <= right; c += step) places.push_back({c, r, 0.0, {}});
   return places;
 }
 
@@ -104,24 +124,31 @@ Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
     std::array<float, kNoiseSide * kNoiseSide> heights;
     reader.readHeights(place.column, place.row, kNoiseSide, kNoiseSide, heights.data(), kNoiseSide);
     place.window = noiseWindow(heights);
+    for (const float z : heights) place.magnitude = std::max(place.magnitude, std::abs(double{z}));
     job.advance();
   });
   if (job.cancelled()) return cancelled();
   std::vector<const Placed*> smooth;
   for (const Placed& place : places)
-    if (place.window.usable()) smooth.push_back(&place);
+    if (place.shows()) smooth.push_back(&place);
+  const double finest_of_all = smooth.empty() ? 0.0 : medianFinest(smooth);
   keepQuiet(smooth);
   keepSmooth(smooth);
   constexpr std::size_t kCells = NoiseModel::kMapSide * NoiseModel::kMapSide;
   NoiseModel model;
   model.windows = static_cast<std::int64_t>(smooth.size());
+  const auto uncorrelated = [&](double variance) {
+    model.windows = 0;
+    model.sigma = std::sqrt(variance);
+    model.parts = {};
+    model.parts.uncorrelated = variance;
+    model.map.assign(kCells, model.sigma);
+    return model;
+  };
   if (smooth.empty()) {
     const auto finest = estimateNoise(field, job);
     if (!finest) return tl::unexpected(finest.error());
-    model.sigma = finest->sigma;
-    model.parts.uncorrelated = finest->sigma * finest->sigma;
-    model.map.assign(kCells, finest->sigma);
-    return model;
+    return uncorrelated(finest->sigma * finest->sigma);
   }
   NoiseMoments mean;
   std::array<NoiseMoments, kCells> cells;
@@ -143,6 +170,7 @@ Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
     squares += model.map.back() / kCells;
   }
   model.parts.scale(squares);
+  if (model.parts.uncorrelated > kMostOverFinest * finest_of_all) return uncorrelated(finest_of_all);
   model.sigma = std::sqrt(model.parts.variance());
   for (double& part : model.map) part = model.sigma * std::sqrt(part / squares);
   return model;

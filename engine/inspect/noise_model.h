@@ -12,7 +12,7 @@ namespace fettle::engine {
 
 /// The noise of a scan: how large it is, what of it neighbours share, and where it is larger.
 struct NoiseModel {
-  /// Standard deviation of a sample over the whole field, offsets of rows and columns included [height_unit]; NaN for
+  /// Standard deviation of a sample over the field, but for places twice as loud as its quieter quarter and more, offsets of rows and columns included [height_unit]; NaN for
   /// a field without 3 x 3 samples.
   double sigma = 0.0;
   /// What it consists of [height_unit^2]; their variance() is sigma^2.
@@ -34,7 +34,9 @@ struct NoiseModel {
 /// fitted to each and removed, and what is left in the windows that are quiet and show no edge gives the second moments
 /// of the noise (noise_moments.h). Quiet: the detail is at most 4 times (2 in standard deviations) that of the quieter
 /// ones. An edge, or another form that the fit does not follow: more of low frequency for its detail than other windows.
-/// A field without such a window has what estimateNoise (noise.h) finds, uncorrelated.
+/// A field without such a window has what estimateNoise (noise.h) finds, uncorrelated; where edges are in every window, so
+/// that more than 9 times the variance of the finest detail would come out, that detail counts, uncorrelated. Windows
+/// without any detail, as of a mask or a fill value, do not count.
 ///
 /// On all simulated parts, noise 1 and 3, 384 to 2048 samples a side, with and without mixed pixels, sigma is within
 /// 5 % of the root mean square of scan less truth; it is raised by about 1 %, since windows with more detail by chance

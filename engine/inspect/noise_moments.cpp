@@ -72,6 +72,9 @@ struct Rest {
   std::array<bool, kSide * kSide> counts{};
 };
 
+// Of the smallest three quarters of the squares of standard normal numbers.
+constexpr double kMeanOfSmallest = 0.368;
+
 // Mean of the three smallest quarters of what Immerkaer's mask (noise.h) gives, squared: the rest may be an edge.
 double finestDetail(const Rest& rest) noexcept {
   std::array<double, (kSide - 2) * (kSide - 2)> squares;
@@ -96,14 +99,13 @@ double finestDetail(const Rest& rest) noexcept {
 }
 
 // NoiseWindow::surface.
-std::array<double, 4> surfaceOf(const Rest& rest, double square) noexcept {
+std::array<double, 4> surfaceOf(const Rest& rest, double square, double detail) noexcept {
   const Coefficients sizes = coefficientsOf(rest.r, kAllDegrees);
   std::array<double, 4> squares{0.0, 0.0, 0.0, square};
   for (std::size_t e = 0; e < kAllDegrees; ++e)
     for (std::size_t d = 0; d < kAllDegrees; ++d)
       if (d >= kDegrees || e >= kDegrees) squares[e == 0 ? 0 : d == 0 ? 1 : 2] += sizes[e][d] * sizes[e][d];
   for (std::size_t g = 0; g < kNoiseGroupSizes.size(); ++g) squares[g] /= kNoiseGroupSizes[g];
-  const double detail = finestDetail(rest);
   for (double& group : squares) group = group > 0.0 ? group / detail : 0.0;
   return squares;
 }
@@ -340,7 +342,9 @@ NoiseWindow noiseWindow(const std::array<float, kNoiseSide * kNoiseSide>& height
       if (!rest.counts[i]) z[i] = fitted[i];
   }
   window.moments = momentsOf(rest);
-  window.surface = surfaceOf(rest, window.moments.square);
+  const double detail = finestDetail(rest);
+  window.surface = surfaceOf(rest, window.moments.square, detail);
+  window.finest = detail / kMeanOfSmallest;
   return window;
 }
 
@@ -381,7 +385,9 @@ NoiseParts noiseOf(const NoiseMoments& mean, std::int64_t windows) noexcept {
   const std::size_t lines = by_rows ? kRowLags : kColumnLags, across = by_rows ? kColumnLags : kRowLags;
   const double variance = std::max(mean.row_detail, mean.column_detail);
   NoiseParts parts;
-  const double offset = std::clamp(sizes[by_rows ? kRows : kColumns], 0.0, variance);
+  // What rows and columns have alike is a rough surface.
+  const double offset =
+      std::clamp(sizes[by_rows ? kRows : kColumns] - sizes[by_rows ? kColumns : kRows], 0.0, variance);
   (by_rows ? parts.row_offset : parts.column_offset) = offset;
   parts.uncorrelated = variance - offset;
   std::array<double, kNoiseLags>& along = by_rows ? parts.along_row : parts.along_column;

@@ -56,6 +56,9 @@ struct NoiseWindow {
   /// mean squares of the polynomials of degree 3 to 5 along rows alone (kNoiseGroupSizes of them), along columns alone,
   /// of both; and of everything. In noise alone each is about the same in all windows, whatever its correlation.
   std::array<double, 4> surface{};
+  /// Variance of the noise by the finest detail in both directions alone, as if it were uncorrelated. Edges raise it
+  /// hardly, noise that neighbours share lowers it.
+  double finest = 0.0;
 
   /// Whether enough samples were there: 15 of 16.
   [[nodiscard]] bool usable() const noexcept { return known >= kNoiseSide * kNoiseSide * 15 / 16; }
