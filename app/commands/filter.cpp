@@ -267,6 +267,8 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   auto marked = withMarks(imported->field, options.keep);
   if (!marked) return tl::unexpected(marked.error());
   const engine::Version field = *std::move(marked);
+  const auto tolerance = parseHeight(filters ? options.tolerance : "1", field.grid(), "--tolerance");
+  if (!tolerance) return tl::unexpected(tolerance.error());
   Report report = Report::object();
   if (options.places > 0) {
     auto places = placeReport(field, options.places, options.threads, job);
@@ -275,8 +277,6 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
     if (!filters) return report;
   }
   engine::SuggestionRequest request;
-  const auto tolerance = parseHeight(options.tolerance, field.grid(), "--tolerance");
-  if (!tolerance) return tl::unexpected(tolerance.error());
   request.tolerance = *tolerance;
   request.budget_s = options.budget;
   request.threads = options.threads;
@@ -376,7 +376,7 @@ void addFilter(Command root, Chosen& chosen) {
   command.option(
       "--range-sigma", options->range_sigma,
       fmt::format("How large a difference is noise, as 20um; without it, in standard deviations of "
-                  "the scan's noise, {}",
+                  "noise_finest of fettle info, {}",
                   fmt::join(ranges, ", ")));
   command.option("--passes", options->passes, "Number of passes").showDefault();
   const Option keep =

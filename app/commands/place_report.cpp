@@ -40,6 +40,7 @@ engine::Result<Report> placeReport(const engine::Version& field, int most, int t
                       {"seconds", place.seconds}});
   }
   return Report{{"places", places},
+                {"pieces_left_out", found->left_out},
                 {"rmse_without", found->rmseAfter(0)},
                 {"places_unit", grid.height_unit.name},
                 {"places_lateral_unit", grid.lateral_unit.name}};
@@ -49,17 +50,18 @@ void printPlaces(const Report& report) {
   const std::string unit = report["places_unit"], lateral = report["places_lateral_unit"];
   const Report& places = report["places"];
   if (places.empty()) {
-    fmt::print(
-        "An edge line drawn by hand would gain tgv next to nothing on this scan: it finds the edges "
-        "itself.\n");
+    fmt::print("No place was found where an edge line drawn by hand would gain tgv anything.\n");
     return;
   }
+  if (const auto left_out = report["pieces_left_out"].get<std::size_t>(); left_out > 0)
+    fmt::print("{} pieces of the scan with fewer edges were not searched.\n", left_out);
   double seconds = 0.0;
   for (const Report& place : places) seconds += place["seconds"].get<double>();
   fmt::print(
-      "tgv is expected to leave {:.3g} {}; with edge lines drawn by hand at these places, some {:.0f} s of "
+      "tgv is estimated to leave {:.3g} {}; with edge lines drawn by hand at these places, some {:.0f} s of "
       "work, "
-      "{:.3g} {}.\nThose of most worth for the time first (fettle view, key Z, goes from one to the "
+      "{:.3g} {} (the order is surer than the figures; docs/decisions/worth-places.md).\nThose of most worth "
+      "for the time first (fettle view, key Z, goes from one to the "
       "next):\n\n"
       "{:>4}{:>16}{:>16}{:>10}{:>8}{:>18}\n",
       report["rmse_without"].get<double>(), unit, seconds, places.back()["rmse_after"].get<double>(), unit,

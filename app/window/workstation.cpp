@@ -155,7 +155,10 @@ void Workstation::takeResults() {
   std::vector<Notice>& notices = p.feedback.notices;
   bool changed = p.filters.poll(client, notices);
   changed |= p.marking.poll(client, p.settings.draw_lines, notices);
-  if (const auto place = p.marking.places.takeArrival()) {
+  // Under a hand that presses, and behind a question, the view stays where it is.
+  const bool busy_hand =
+      p.held() || p.line_drag.active() || p.brush.active() || p.feedback.questions.pending();
+  if (const auto place = busy_hand ? std::nullopt : p.marking.places.takeArrival()) {
     goToPlace(p.view, client.field().grid(), p.marking.places.found()->places[*place]);
     changed = true;
   }

@@ -30,6 +30,7 @@ bool isDrawn(const WorthPlace& place, const std::vector<EdgeLine>& lines) {
   for (const EdgeLine& line : lines)
     for (const EdgePoint& point : line.points) {
       const glm::dvec2 at = point.position;
+      if (!point.located) continue;
       if (at.x < low.x || at.y < low.y || at.x > high.x || at.y > high.y) continue;
       for (std::size_t i = 0; i < along.size(); ++i)
         if (glm::distance(at, place.path[i]) <= kAlong) along[i] = true;

@@ -51,7 +51,10 @@ class KnownLines {
   explicit KnownLines(const EdgeLines& lines) {
     if (lines == nullptr) return;
     for (const EdgeLine& line : *lines)
-      for (const EdgePoint& point : line.points) points_[keyOf(point.position)].push_back(point.position);
+      for (const EdgePoint& point : line.points)
+        // Only these have an influence on the filter.
+        if (point.located && point.kind == LineKind::kStep)
+          points_[keyOf(point.position)].push_back(point.position);
   }
   [[nodiscard]] bool isNear(glm::dvec2 at) const {
     if (points_.empty()) return false;
@@ -92,7 +95,8 @@ std::vector<Path> keptRuns(const std::vector<Path>& paths, Keep&& keep) {
 }
 
 // Cells in the order of their rows, each with its number; those with the most edges where there are too many.
-std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> chosenCells(const std::vector<Path>& paths) {
+std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> chosenCells(const std::vector<Path>& paths,
+                                                                         std::size_t& all) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> counts;
   for (const Path& path : paths)
     for (const glm::dvec2& p : path) ++counts[cellOf(p)];
@@ -101,6 +105,7 @@ std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> chosenCells(const s
   std::ranges::sort(order, [](const Entry& a, const Entry& b) {
     return a.second != b.second ? a.second > b.second : a.first < b.first;
   });
+  all = order.size();
   if (order.size() > WorthRequest::kMostPieces) order.resize(WorthRequest::kMostPieces);
   std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> chosen;
   for (const Entry& entry : order) chosen.emplace(entry.first, 0);
@@ -228,7 +233,8 @@ EdgeLines withOthers(const EdgeLines& known, std::span<const EdgeLine> others) {
   return all;
 }
 
-Result<std::vector<EdgeLine>> candidatesOf(const Version& field, double noise, JobControl& job) {
+Result<std::vector<EdgeLine>> candidatesOf(const Version& field, double noise, std::size_t& left_out,
+                                           JobControl& job) {
   const auto map = findEdges(field, kEdgeScale, job);
   if (!map) return tl::unexpected(map.error());
   auto traces = traceEdges(field.grid(), *map, kEveryEdge, job);
@@ -240,7 +246,9 @@ Result<std::vector<EdgeLine>> candidatesOf(const Version& field, double noise, J
   }
   const KnownLines known(field.lines());
   paths = keptRuns(paths, [&](glm::dvec2 p) { return !known.isNear(p); });
-  const auto cells = chosenCells(paths);
+  std::size_t all = 0;
+  const auto cells = chosenCells(paths, all);
+  left_out = all - cells.size();
   paths = continuedPaths(keptRuns(paths, [&](glm::dvec2 p) { return cells.contains(cellOf(p)); }));
   std::vector<EdgeStroke> strokes;
   for (Path& path : paths)
@@ -260,7 +268,8 @@ Result<WorthPlaces> findWorthPlaces(const Version& field, const WorthRequest& re
   if (!(std::isfinite(request.noise) && request.noise > 0.0))
     return inputError(fmt::format("a noise of {} cannot be used", request.noise), "noise",
                       "give more than 0");
-  const auto lines = candidatesOf(field, request.noise, job);
+  WorthPlaces result;
+  const auto lines = candidatesOf(field, request.noise, result.left_out, job);
   if (!lines) return tl::unexpected(lines.error());
 
   std::vector<LineSpot> spots;
@@ -282,6 +291,11 @@ Result<WorthPlaces> findWorthPlaces(const Version& field, const WorthRequest& re
     }
   }
   begins.push_back(spots.size());
+  // Lines near their borders and over gaps lead into further ones: those with the most of them are tried.
+  while (cells.size() > WorthRequest::kMostPieces) {
+    cells.erase(std::ranges::min_element(cells, {}, [](const auto& cell) { return cell.second.size(); }));
+    ++result.left_out;
+  }
 
   const Version lined = field.withLines(withOthers(field.lines(), *lines));
   job.begin("trying lines", cells.size());
@@ -296,7 +310,6 @@ Result<WorthPlaces> findWorthPlaces(const Version& field, const WorthRequest& re
     job.advance();
   }
 
-  WorthPlaces result;
   const std::int64_t samples = grid.samples() - summarize(field).no_data;
   result.samples = static_cast<double>(samples);
   const double flat = kFlatShare * request.noise;

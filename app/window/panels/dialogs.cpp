@@ -68,9 +68,9 @@ void formatHelp(const Question& question, bool& embeds) {
       question.kind == Kind::kSaveAs
           ? fmt::format(
                 "NAME.fettle keeps everything, each step as it is made. Other formats, by extension{}, "
-                "store the field, with its marks next to it as NAME_marks.png",
+                "store the field, with marks and lines next to it as NAME_marks.png and NAME_lines.csv",
                 writtenExtensions())
-          : fmt::format("format by extension:{} .fettle; marks are written next to it as NAME_marks.png",
+          : fmt::format("format by extension:{} .fettle; marks and lines are written next to it",
                         writtenExtensions());
   ImGui::TextDisabled("%s", text.c_str());
   ImGui::PopTextWrapPos();
