@@ -41,6 +41,7 @@ struct Placed {
 
 double medianFinest(const std::vector<const Placed*>& windows) {
   std::vector<double> finest;
+  finest.reserve(windows.size());
   for (const Placed* p : windows) finest.push_back(p->window.finest);
   const auto middle = finest.begin() + static_cast<std::ptrdiff_t>(finest.size() / 2);
   std::nth_element(finest.begin(), middle, finest.end());

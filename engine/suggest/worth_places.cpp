@@ -251,6 +251,7 @@ Result<std::vector<EdgeLine>> candidatesOf(const Version& field, double noise, s
   left_out = all - cells.size();
   paths = continuedPaths(keptRuns(paths, [&](glm::dvec2 p) { return cells.contains(cellOf(p)); }));
   std::vector<EdgeStroke> strokes;
+  strokes.reserve(paths.size());
   for (Path& path : paths)
     strokes.push_back({static_cast<std::int64_t>(strokes.size()), std::move(path), false});
   return locateEdgeLines(field.reader(), noise, strokes, {}, job);
