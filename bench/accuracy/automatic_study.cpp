@@ -43,6 +43,7 @@ constexpr Method kMethods[] = {
     {"median 5, 2 passes", engine::FilterKind::kMedian, 5, 2},
     {"bilateral 7", engine::FilterKind::kBilateral, 7, 1},
     {"tv 31", engine::FilterKind::kTotalVariation, 31, 1},
+    {"planes", engine::FilterKind::kPlanes, 3, 1},
     {"tgv", engine::FilterKind::kGeneralisedVariation, 3, 1},
 };
 

@@ -17,8 +17,8 @@ inline constexpr int kLineReach = 2;
 /// field: of a window that a line crosses only the samples count to which a way within it leads from its middle, from
 /// row to row and from column to column, over no cut link (LineCuts). The others count as holes. Around the end of a line
 /// such a way exists. Lines are some tenths of a sample off: where the medians of both sides of a window differ by more
-/// than six standard deviations within each, the samples within two of the line are on the side whose median is nearer; in a window with nothing beyond the line, those
-/// eighteen from its median are left out.
+/// than six standard deviations within each, the samples within two of the line are on the side whose median is nearer;
+/// in a window with nothing beyond the line, those eighteen from its median are left out.
 ///
 /// Costs, for each sample within `radius` of a line, what `windows` takes for one output, and about 10 ns per sample of
 /// the window.

@@ -27,6 +27,8 @@ namespace {
 #define FETTLE_KERNEL "engine/filter/planes-inl.h"
 #include "engine/simd/each_cpu-inl.h"
 
+// The reference is the middle of the heights of every fourth column and row: it only has to be near them.
+constexpr int kReferenceStep = 4;
 constexpr double kTallestHeight = 1e15;  // [noises]; the sums of squares stay finite
 
 // The residual of a window of noise alone is below it in 99 of 100: its mean, and 2.5 of its standard deviations.
@@ -55,6 +57,7 @@ class PlacesInBlock {
         before_[corner(c + 1, r + 1)] +=
             before_[corner(c, r + 1)] + before_[corner(c + 1, r)] - before_[corner(c, r)];
   }
+  [[nodiscard]] bool none() const noexcept { return before_.empty(); }
   [[nodiscard]] bool any(int c0, int c1, int r0, int r1) const noexcept {
     return !before_.empty() && before_[corner(c1 + 1, r1 + 1)] - before_[corner(c0, r1 + 1)] -
                                        before_[corner(c1 + 1, r0)] + before_[corner(c0, r0)] !=
@@ -70,56 +73,75 @@ class PlacesInBlock {
   std::vector<std::int32_t> before_;  // of the places before a column and row, their number
 };
 
+// Rows of doubles with room around them for vectors, zero at first.
+class Rows {
+ public:
+  void resize(int columns, std::size_t rows) {
+    stride_ = (columns + 7) / 8 * 8 + kBefore + kBehind;
+    values_.assign(rows * static_cast<std::size_t>(stride_), 0.0);
+  }
+  [[nodiscard]] std::ptrdiff_t stride() const noexcept { return stride_; }
+  [[nodiscard]] double* row(std::size_t r) noexcept {
+    return values_.data() + kBefore + static_cast<std::ptrdiff_t>(r) * stride_;
+  }
+
+ private:
+  static constexpr std::ptrdiff_t kBefore = 8, kBehind = 24;
+  std::ptrdiff_t stride_ = 0;
+  std::vector<double> values_;
+};
+
+// Row after row goes through all stages while it is in the cache: the windows around a row are fitted as soon as the
+// last of their rows is there, and a row is gathered as soon as the last window is that covers it.
 class PlanesFilter final : public BlockFilter {
  public:
   PlanesFilter(const FilterSpec& spec, CpuLevel level) : noise_(spec.range_sigma), level_(level) {}
 
   bool run(const Block& block, const JobControl& job) override {
     take(block);
-    for (const int h : planes::kHalfWidths) {
-      if (2 * h + 1 > columns_ || 2 * h + 1 > rows_) continue;
-      findWhole(h);
-      if (!fit(h, job) || !gather(h, job)) return false;
+    const int end = block.first_row + block.out_rows;
+    for (int r = std::max(block.first_row - 2 * kReach, 0); r < end + 2 * kReach; ++r) {
+      if (job.cancelled()) return false;
+      takeRow(block, r);
+      if (r - kReach >= std::max(block.first_row - kReach, 0)) fitRow(r - kReach);
+      if (r - 2 * kReach >= block.first_row) writeRow(block, r - 2 * kReach);
     }
-    write(block);
     return true;
   }
 
  private:
-  enum Array : std::size_t {
-    kHeights,
-    kWhole,
-    kWeight,
-    kPlane,
-    kAlong,
-    kAcross,
-    kTotalWeight,
-    kTotal,
-    kArrays
-  };
+  static constexpr std::size_t kWindows = std::size(planes::kHalfWidths);
+  static constexpr int kReach = planes::kHalfWidths[kWindows - 1];
+  static constexpr std::size_t kKept = 2 * kReach + 1;  // rows at a time
+  static constexpr std::size_t kSums = 3 * kWindows, kFigures = 4 * kWindows;
+  static_assert(kReach == 5 && kWindows == 4, "as in planes-inl.h");
 
-  [[nodiscard]] double* row(Array array, int r) noexcept {
-    return arrays_[array].data() + static_cast<std::ptrdiff_t>(r) * columns_;
+  // Where a row is kept; those before the first have places, too, and hold the zeros of the beginning.
+  static std::size_t placeOf(int r) noexcept {
+    return static_cast<std::size_t>(r + 2 * static_cast<int>(kKept)) % kKept;
   }
 
   void take(const Block& block) {
     columns_ = block.columns;
     rows_ = block.rows;
-    const std::size_t samples = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-    for (std::vector<double>& array : arrays_) array.assign(samples, 0.0);
-    for (std::vector<double>& sums : sums_) sums.resize(static_cast<std::size_t>(columns_));
-    reference_ = middleHeight(block, scratch_);
+    heights_.resize(columns_, kKept);
+    sums_.resize(columns_, kSums);
+    planes_.resize(columns_, kKept * kFigures);
+    gathered_.resize(columns_, kSums);
+    counts_.resize(columns_, kWindows + 1);
+    for (std::size_t k = 0; k < kSums; ++k) {
+      sum_rows_[k] = sums_.row(k);
+      gathered_rows_[k] = gathered_.row(k);
+    }
+    for (std::size_t w = 0; w < kWindows; ++w)
+      for (int c = planes::kHalfWidths[w]; c < columns_ - planes::kHalfWidths[w]; ++c)
+        counts_.row(w)[c] = samplesOf(planes::kHalfWidths[w]);
+    reference_ = middleHeight(block, scratch_, kReferenceStep);
     holes_.clear(columns_, rows_);
-    for (int r = 0; r < rows_; ++r)
-      for (int c = 0; c < columns_; ++c) {
-        const float z = block.row(r)[c];
-        if (!(z == z)) {
-          holes_.add(c, r);
-          continue;
-        }
-        const double above = (static_cast<double>(z) - reference_) / noise_;
-        row(kHeights, r)[c] = std::clamp(above, -kTallestHeight, kTallestHeight);
-      }
+    if (block.holes)
+      for (int r = 0; r < rows_; ++r)
+        for (int c = 0; c < columns_; ++c)
+          if (std::isnan(block.row(r)[c])) holes_.add(c, r);
     holes_.sum();
     takeLines(block);
   }
@@ -138,88 +160,73 @@ class PlanesFilter final : public BlockFilter {
     cut_up_.sum();
   }
 
-  void findWhole(int h) {
-    for (int r = h; r < rows_ - h; ++r)
-      for (int c = h; c < columns_ - h; ++c) {
-        const bool whole = !holes_.any(c - h, c + h, r - h, r + h) &&
-                           !cut_right_.any(c - h, c + h - 1, r - h, r + h) &&
-                           !cut_up_.any(c - h, c + h, r - h, r + h - 1);
-        row(kWhole, r)[c] = whole ? 1.0 : 0.0;
-      }
+  static double samplesOf(int h) noexcept { return (2.0 * h + 1.0) * (2.0 * h + 1.0); }
+
+  void takeRow(const Block& block, int r) {
+    double* to = heights_.row(placeOf(r));
+    if (r >= rows_)
+      std::fill_n(to, columns_, 0.0);
+    else
+      FETTLE_AT_LEVEL(level_, heightsInNoises)
+    (block.row(r), columns_, reference_, 1.0 / noise_, kTallestHeight, to);
+    // What a vector took from beyond the last column may be anything.
+    std::fill_n(to + columns_, 8, 0.0);
   }
 
-  bool fit(int h, const JobControl& job) {
-    const auto sum_columns = FETTLE_AT_LEVEL(level_, sumColumns);
-    const auto fit_windows = FETTLE_AT_LEVEL(level_, fitWindows);
-    const double side = 2.0 * h + 1.0, most = mostOfNoise(side * side);
-    for (const Array array : {kWeight, kPlane, kAlong, kAcross}) std::ranges::fill(arrays_[array], 0.0);
-    for (int r = h; r < rows_ - h; ++r) {
-      if (job.cancelled()) return false;
-      std::array<const double*, kMostRows> rows{};
-      for (int k = -h; k <= h; ++k) rows[static_cast<std::size_t>(k + h)] = row(kHeights, r + k);
-      sum_columns(rows.data(), h, columns_, sums_[0].data(), sums_[1].data(), sums_[2].data());
-      fit_windows(sums_[0].data(), sums_[1].data(), sums_[2].data(), row(kWhole, r), h, columns_, most,
-                  row(kWeight, r), row(kPlane, r), row(kAlong, r), row(kAcross, r));
+  // The samples of each window of half-width `planes::kHalfWidths[w]` around a row, 0 where it is not whole.
+  const double* countsAt(std::size_t w, int r) noexcept {
+    if (holes_.none() && cut_right_.none() && cut_up_.none()) return counts_.row(w);
+    const int h = planes::kHalfWidths[w];
+    double* own = counts_.row(kWindows);
+    std::fill_n(own, columns_, 0.0);
+    for (int c = h; c < columns_ - h; ++c)
+      if (!holes_.any(c - h, c + h, r - h, r + h) && !cut_right_.any(c - h, c + h - 1, r - h, r + h) &&
+          !cut_up_.any(c - h, c + h, r - h, r + h - 1))
+        own[c] = samplesOf(h);
+    return own;
+  }
+
+  [[nodiscard]] double* planesOf(int r) noexcept { return planes_.row(placeOf(r) * kFigures); }
+
+  void fitRow(int r) {
+    if (r < rows_) {
+      std::array<const double*, kKept> heights{};
+      for (int k = -kReach; k <= kReach; ++k)
+        heights[static_cast<std::size_t>(k + kReach)] = heights_.row(placeOf(r + k));
+      FETTLE_AT_LEVEL(level_, sumColumns)(heights.data() + kReach, columns_, sum_rows_.data());
     }
-    return true;
-  }
-
-  bool gather(int h, const JobControl& job) {
-    const auto gather_columns = FETTLE_AT_LEVEL(level_, gatherColumns);
-    const auto gather_row = FETTLE_AT_LEVEL(level_, gatherRow);
-    // Rows and columns that fewer windows cover have them, too: beyond the block there are none.
-    const std::vector<double> none(static_cast<std::size_t>(columns_) + 2U * static_cast<std::size_t>(h),
-                                   0.0);
-    std::array<std::vector<double>, 3> wide;
-    for (std::vector<double>& sums : wide) sums.assign(none.size(), 0.0);
-    wide_total_.resize(none.size());
-    wide_weight_.resize(none.size());
-    for (int r = 0; r < rows_; ++r) {
-      if (job.cancelled()) return false;
-      std::array<std::array<const double*, kMostRows>, 4> planes{};
-      for (int k = -h; k <= h; ++k)
-        for (std::size_t a = 0; a < planes.size(); ++a)
-          planes[a][static_cast<std::size_t>(k + h)] =
-              r + k >= 0 && r + k < rows_ ? row(static_cast<Array>(kWeight + a), r + k) : none.data();
-      gather_columns(planes[0].data(), planes[1].data(), planes[2].data(), planes[3].data(), h, columns_,
-                     wide[0].data() + h, wide[1].data() + h, wide[2].data() + h);
-      std::ranges::fill(wide_total_, 0.0);
-      std::ranges::fill(wide_weight_, 0.0);
-      gather_row(wide[0].data(), wide[1].data(), wide[2].data(), h, static_cast<int>(none.size()),
-                 wide_weight_.data(), wide_total_.data());
-      for (int c = 0; c < columns_; ++c) {
-        row(kTotalWeight, r)[c] += wide_weight_[static_cast<std::size_t>(c + h)];
-        row(kTotal, r)[c] += wide_total_[static_cast<std::size_t>(c + h)];
+    for (std::size_t w = 0; w < kWindows; ++w) {
+      const int h = planes::kHalfWidths[w];
+      double* to = planesOf(r) + static_cast<std::ptrdiff_t>(4 * w) * planes_.stride();
+      const auto figure = [&](std::ptrdiff_t k) { return to + k * planes_.stride(); };
+      if (r < h || r >= rows_ - h) {
+        for (std::ptrdiff_t k = 0; k < 4; ++k) std::fill_n(figure(k), columns_, 0.0);
+        continue;
       }
-    }
-    return true;
-  }
-
-  // Through the difference to the height, which is of the order of the noise.
-  void write(const Block& block) {
-    for (int r = 0; r < block.out_rows; ++r) {
-      const int from = block.first_row + r;
-      const float* heights = block.row(from) + block.first_column;
-      float* out = block.out + r * block.out_stride;
-      for (int c = 0; c < block.out_columns; ++c) {
-        const int column = block.first_column + c;
-        const double weight = row(kTotalWeight, from)[column];
-        const double change =
-            weight > 0.0 ? row(kTotal, from)[column] / weight - row(kHeights, from)[column] : 0.0;
-        out[c] = static_cast<float>(static_cast<double>(heights[c]) + noise_ * change);
-      }
+      FETTLE_AT_LEVEL(level_, fitWindows)
+      (h, sum_rows_[3 * w], sum_rows_[3 * w + 1], sum_rows_[3 * w + 2], countsAt(w, r), columns_,
+       mostOfNoise(samplesOf(h)), figure(0), figure(1), figure(2), figure(3));
     }
   }
 
-  static constexpr std::size_t kMostRows = 2 * planes::kHalfWidths[std::size(planes::kHalfWidths) - 1] + 1;
+  void writeRow(const Block& block, int r) {
+    std::array<const double*, kKept> rows{};
+    for (int k = -kReach; k <= kReach; ++k) rows[static_cast<std::size_t>(k + kReach)] = planesOf(r + k);
+    FETTLE_AT_LEVEL(level_, gatherColumns)
+    (rows.data() + kReach, planes_.stride(), columns_, gathered_rows_.data());
+    std::array<const double*, kSums> from{};
+    for (std::size_t k = 0; k < kSums; ++k) from[k] = gathered_rows_[k] + block.first_column;
+    FETTLE_AT_LEVEL(level_, writeRow)
+    (from.data(), heights_.row(placeOf(r)) + block.first_column, block.row(r) + block.first_column,
+     block.out_columns, noise_, block.out + (r - block.first_row) * block.out_stride);
+  }
 
   double noise_;
   CpuLevel level_;
   double reference_ = 0.0;
   int columns_ = 0, rows_ = 0;
-  std::array<std::vector<double>, kArrays> arrays_;
-  std::array<std::vector<double>, 3> sums_;
-  std::vector<double> wide_total_, wide_weight_;
+  Rows heights_, sums_, planes_, gathered_, counts_;
+  std::array<double*, kSums> sum_rows_{}, gathered_rows_{};
   std::vector<float> scratch_;
   PlacesInBlock holes_, cut_right_, cut_up_;
 };

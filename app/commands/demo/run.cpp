@@ -140,6 +140,8 @@ engine::Result<DemoRun> runDemo(const DemoOptions& options, engine::JobControl& 
   }
   const auto tv = variation(engine::FilterKind::kTotalVariation, run.scan.scan, job);
   if (!tv) return tl::unexpected(tv.error());
+  const auto planes = variation(engine::FilterKind::kPlanes, run.scan.scan, job);
+  if (!planes) return tl::unexpected(planes.error());
   const auto tgv = variation(engine::FilterKind::kGeneralisedVariation, run.scan.scan, job);
   if (!tgv) return tl::unexpected(tgv.error());
   const auto lines =
@@ -153,6 +155,7 @@ engine::Result<DemoRun> runDemo(const DemoOptions& options, engine::JobControl& 
     const engine::FilterSpec& spec;
     engine::EdgeLines lines;
   } variations[] = {{"tv", "tv filter alone", *tv, nullptr},
+                    {"planes", "planes filter alone", *planes, nullptr},
                     {"tgv", "tgv filter alone", *tgv, nullptr},
                     {"tgv-hand", "tgv, lines of the hand", *tgv, *lines},
                     {"tgv-true", "tgv, true lines", *tgv, true_lines}};
