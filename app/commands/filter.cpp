@@ -20,7 +20,6 @@
 #include "engine/base/stopwatch.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
-#include "engine/io/lines/lines.h"
 #include "engine/suggest/filter_suggestion.h"
 
 namespace fettle::app {
@@ -77,15 +76,9 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   if (!original) return tl::unexpected(original.error());
   auto marked = withMarks(imported->field, options.only.empty() ? options.keep : options.only);
   if (!marked) return tl::unexpected(marked.error());
-  engine::Version field = *std::move(marked);
-  if (!options.lines.empty()) {
-    auto lines = engine::importLines(options.lines, field);
-    if (!lines) return tl::unexpected(lines.error());
-    // A number that a file uses twice is that of two lines.
-    std::int64_t id = 0;
-    for (engine::EdgeLine& line : *lines) line.id = id++;
-    field = field.withLines(std::make_shared<const std::vector<engine::EdgeLine>>(*std::move(lines)));
-  }
+  auto lined = withLines(*marked, options.lines);
+  if (!lined) return tl::unexpected(lined.error());
+  const engine::Version field = *std::move(lined);
   if (!options.max_change.empty()) {
     const auto limit = parseHeight(options.max_change, field.grid(), "--max-change");
     if (!limit) return tl::unexpected(limit.error());
@@ -116,9 +109,12 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   if (filter.window.exists()) report["window"] = spec.window;
   if (filter.sigma.exists()) report["sigma"] = spec.sigma;
   if (filter.range_sigma.exists()) report["range_sigma"] = spec.range_sigma;
-  if (const engine::EdgeLines& lines = field.lines(); lines != nullptr && filter.knows_lines) {
-    report["lines"] = lines->size();
-    report["line_points"] = engine::countPoints(*lines);
+  if (const engine::EdgeLines& lines = field.lines(); lines != nullptr) {
+    if (!filter.knows_lines)
+      warn(fmt::format("{}: {} knows no edge lines, and smooths over those of the session",
+                       shownInput(task.in), filter.word));
+    report["lines"] = filter.knows_lines ? lines->size() : 0;
+    report["line_points"] = filter.knows_lines ? engine::countPoints(*lines) : 0;
   }
   report["compute"] = compute.device().empty() ? "cpu" : "gpu";
   if (!compute.device().empty()) report["device"] = compute.device();

@@ -10,8 +10,10 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/still_picture.h"
 #include "app/commands/typed_values.h"
+#include "app/overlay/line_overlay.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
+#include "render/live/live_plan.h"
 #include "render/live/picture_rows.h"
 
 namespace fettle::app {
@@ -27,6 +29,7 @@ struct RenderArguments {
   std::string compare;
   std::string deviation;
   std::string marks;
+  std::string lines;
   std::string map = "auto";
   std::string title;
   std::string compare_title;
@@ -83,7 +86,9 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
   if (!scan) return tl::unexpected(scan.error());
   auto marked = withMarks(scan->field, options.marks);
   if (!marked) return tl::unexpected(marked.error());
-  w.shown.versions = {*std::move(marked)};
+  auto lined = withLines(*marked, options.lines);
+  if (!lined) return tl::unexpected(lined.error());
+  w.shown.versions = {*std::move(lined)};
   if (!options.marks.empty()) w.shown.marks = render::MarksOverlay::kShow;
   const auto fileName = [](const std::string& path) {
     return std::filesystem::path(shownInput(path)).filename().string();
@@ -105,13 +110,21 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
     for (engine::Version& version : w.shown.versions) version = version.inverted();
     if (w.shown.original) w.shown.original = w.shown.original->inverted();
   }
+  if (w.shown.versions.front().lines() != nullptr && !options.bare) {
+    const auto plan =
+        render::planFrame(w.input, w.shown, render::spansOf(w.shown.versions, w.shown.original));
+    if (!plan) return tl::unexpected(plan.error());
+    LineOverlay().append(w.shown.versions.front(), {}, 1.0 / plan->panels.front().camera.pixelsPerMm(),
+                         w.input.overlays);
+  }
   return w;
 }
 
 engine::Result<Report> render(const RenderArguments& options, engine::JobControl& job) {
-  if (auto status = checkOutputs({{options.png, OutputKind::kPicture, ".png"}},
-                                 {options.scan, options.compare, options.deviation, options.marks},
-                                 Replacing::kNoWork, job);
+  if (auto status =
+          checkOutputs({{options.png, OutputKind::kPicture, ".png"}},
+                       {options.scan, options.compare, options.deviation, options.marks, options.lines},
+                       Replacing::kNoWork, job);
       !status)
     return tl::unexpected(status.error());
   const auto what = wanted(options, job);
@@ -167,6 +180,8 @@ void addRender(Command root, Chosen& chosen) {
   command.option("--compare", options->compare, "Second scan, drawn at the right with the same camera");
   command.option("--deviation", options->deviation, "Colours show the deviation from this scan");
   command.option("--marks", options->marks, "Picture of marks to overlay").check(fileName());
+  command.option("--lines", options->lines, "File of edge lines to draw instead of those of a session")
+      .check(fileName());
   command.option("--map", options->map, "Colour map")
       .check(oneOf({"auto", "viridis", "cividis", "grey", "diverging"}))
       .showDefault();
@@ -191,7 +206,7 @@ void addRender(Command root, Chosen& chosen) {
       .showDefault();
   command.flag("--contours", options->contours, "Contour lines at the steps of the colour bar");
   command.flag("--dark", options->dark, "Light text on a dark background");
-  command.flag("--bare", options->bare, "Only the surface: no titles, bars or legend");
+  command.flag("--bare", options->bare, "Only the surface: no titles, bars, legend or edge lines");
   command.flag("--invert", options->invert, "Draw the field upside down");
   command.flag("--validate", options->validate, "Load the Vulkan validation layers and print their messages");
   addScanOptions(command, options->reading);

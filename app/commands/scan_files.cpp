@@ -1,11 +1,16 @@
 #include "app/commands/scan_files.h"
 
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "app/terminal.h"
 #include "app/work/outputs.h"
 #include "app/work/streams.h"
 #include "engine/formats/formats.h"
+#include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
 
 namespace fettle::app {
@@ -38,6 +43,16 @@ engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOpt
 
 engine::Result<engine::Version> withMarks(const engine::Version& field, const std::string& picture) {
   return picture.empty() ? field : engine::importMarks(field, picture);
+}
+
+engine::Result<engine::Version> withLines(const engine::Version& field, const std::string& file) {
+  if (file.empty()) return field;
+  auto lines = engine::importLines(file, field);
+  if (!lines) return tl::unexpected(lines.error());
+  // A number that a file uses twice is that of two lines.
+  std::int64_t id = 0;
+  for (engine::EdgeLine& line : *lines) line.id = id++;
+  return field.withLines(std::make_shared<const std::vector<engine::EdgeLine>>(*std::move(lines)));
 }
 
 std::string hashOf(const engine::Version& field) {

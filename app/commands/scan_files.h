@@ -18,6 +18,10 @@ namespace fettle::app {
 [[nodiscard]] engine::Result<engine::Version> withMarks(const engine::Version& field,
                                                         const std::string& picture);
 
+/// A field with the edge lines of a file, numbered from 0, instead of its own; without a file, empty, the field itself.
+[[nodiscard]] engine::Result<engine::Version> withLines(const engine::Version& field,
+                                                        const std::string& file);
+
 /// The hash of a field's samples and marks as reports print it.
 [[nodiscard]] std::string hashOf(const engine::Version& field);
 

@@ -4,12 +4,12 @@
 
 #include <glm/vec2.hpp>
 
+#include "app/overlay/line_overlay.h"
 #include "app/window/active_document.h"
 #include "app/window/brush_adjustment.h"
 #include "app/window/change_figures.h"
 #include "app/window/feedback.h"
 #include "app/window/line_drag.h"
-#include "app/window/line_overlay.h"
 #include "app/window/marking.h"
 #include "app/window/opening.h"
 #include "app/window/place_overlay.h"

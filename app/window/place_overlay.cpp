@@ -6,7 +6,7 @@
 
 #include <glm/common.hpp>
 
-#include "app/window/above_surface.h"
+#include "app/overlay/above_surface.h"
 #include "app/window/navigation.h"
 
 namespace fettle::app {

@@ -30,8 +30,8 @@ class PlaceTool {
   [[nodiscard]] std::optional<std::size_t> takeArrival() noexcept;
 
   /// Searching or showing.
-  [[nodiscard]] bool on() const noexcept { return searching_.busy() || found_.has_value(); }
-  [[nodiscard]] bool busy() const noexcept { return searching_.busy(); }
+  [[nodiscard]] bool on() const noexcept { return busy() || found_.has_value(); }
+  [[nodiscard]] bool busy() const noexcept { return searching_.busy() && !searching_.cancelling(); }
   [[nodiscard]] double progress() const noexcept { return searching_.progress(); }
   /// Null when none were searched for.
   [[nodiscard]] const engine::WorthPlaces* found() const noexcept { return found_ ? &*found_ : nullptr; }

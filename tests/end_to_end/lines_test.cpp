@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
@@ -186,6 +187,29 @@ TEST_F(Lines, steps_and_angles_along_lines_come_as_table_plot_and_csv) {
   expectRefused(fettle({"lines", scan}), "no edge lines");
   expectRefused(fettle({"lines", session, "--only", "1,999"}), "no line 999");
   expectRefused(fettle({"lines", scan, lines, "--plot", "/no/such/folder/p.svg"}), "/no/such/folder");
+}
+
+TEST_F(Lines, are_drawn_from_a_file_or_a_session_and_missed_by_a_filter_that_knows_none) {
+  ASSERT_NO_FATAL_FAILURE(drawTrueEdges());
+  const std::string lines = folder.file("lines.csv"), session = folder.file("work.fettle");
+  (void)fettleJson({"mark", scan, marks, "--strokes", strokes, "--lines-out", lines});
+  (void)fettleJson({"filter", scan, session, "--filter", "planes", "--lines", lines});
+  const auto drawn = [&](std::vector<std::string> more) {
+    more.insert(more.begin() + 1, {marks, "--size", "320x240", "--title", "t"});
+    more.insert(more.begin(), "render");
+    EXPECT_EQ(fettle(more).status, 0);
+    std::ifstream png(marks, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(png), {});
+  };
+  const std::string plain = drawn({scan});
+  EXPECT_NE(drawn({scan, "--lines", lines}), plain);
+  EXPECT_EQ(drawn({scan, "--lines", lines, "--bare"}), drawn({scan, "--bare"}));
+  (void)fettle({"filter", scan, clean, "--filter", "planes", "--lines", lines});
+  EXPECT_NE(drawn({session}), drawn({clean}));
+  EXPECT_EQ(drawn({session, "--lines", lines}), drawn({session}));
+  const auto tv = fettle({"filter", session, clean, "--filter", "tv", "--window", "3"});
+  EXPECT_EQ(tv.status, 0);
+  EXPECT_NE(tv.err.find("tv knows no edge lines"), std::string::npos) << tv.err;
 }
 
 }  // namespace

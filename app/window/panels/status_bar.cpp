@@ -64,6 +64,8 @@ void content(Parts& parts) {
     text(parts.opening.coarseText());
   } else if (parts.document.isOpen() && parts.opening.busy()) {
     if (progressBar(parts.opening.progress(), 240.0F, "opening")) parts.opening.cancel();
+  } else if (PlaceTool& places = parts.marking.places; places.busy()) {
+    if (progressBar(places.progress(), 240.0F, "looking for places")) places.drop();
   } else {
     text(documentText(parts));
   }

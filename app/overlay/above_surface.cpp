@@ -1,4 +1,4 @@
-#include "app/window/above_surface.h"
+#include "app/overlay/above_surface.h"
 
 #include <algorithm>
 #include <cmath>

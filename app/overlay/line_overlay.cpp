@@ -1,9 +1,9 @@
-#include "app/window/line_overlay.h"
+#include "app/overlay/line_overlay.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "app/window/above_surface.h"
+#include "app/overlay/above_surface.h"
 
 namespace fettle::app {
 
