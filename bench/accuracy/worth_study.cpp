@@ -28,8 +28,13 @@ namespace {
 constexpr PartSubject kWorthSubjects[] = {
     {"bracket", "bracket", 1.0, 0.0},
     {"bracket, noise x 3", "bracket", 3.0, 0.0},
+    {"steps", "steps", 1.0, 0.0},
     {"steps, noise x 3", "steps", 3.0, 0.0},
+    {"ribs", "ribs", 1.0, 0.0},
     {"ribs, noise x 3", "ribs", 3.0, 0.0},
+    {"wedges", "wedges", 1.0, 0.0},
+    {"wedges, noise x 3", "wedges", 3.0, 0.0},
+    {"housing", "housing", 1.0, 0.0},
     {"housing, noise x 3", "housing", 3.0, 0.0},
     {"bracket, 2 % mixed pixels", "bracket", 1.0, 0.02},
     {"steps, 2 % mixed pixels", "steps", 1.0, 0.02},
