@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "app/work/line_edits.h"
@@ -45,6 +46,14 @@ LineFigures figuresOf(const EdgeLine& line, const engine::Grid& grid) {
   return out;
 }
 
+// Where a stroke is, in the scan's own coordinates.
+std::string middleOf(const MarkStroke& stroke) {
+  const engine::Grid& grid = stroke.after.grid();
+  const glm::dvec2 at = stroke.points[stroke.points.size() / 2];
+  return fmt::format("at x {:.6g}, y {:.6g}", grid.origin_x + at.x * grid.spacing_x,
+                     grid.origin_y + at.y * grid.spacing_y);
+}
+
 }  // namespace
 
 void LineTool::follow(LoopClient& client, MarkEdit& edit, bool draws) {
@@ -57,7 +66,7 @@ void LineTool::follow(LoopClient& client, MarkEdit& edit, bool draws) {
                [stroke, radius, options = options](const engine::Version& base, engine::JobControl& job) {
                  return drawLine(base, {stroke->points, stroke->before, stroke->after, radius}, options, job);
                },
-               {"no edge was found along the stroke", "it stays a mark"});
+               {fmt::format("no edge was found along the stroke {}", middleOf(*stroke)), "it stays a mark"});
     else if (client.newest().lines() || edit.busy())
       edit.ask("Erase edge line",
                [stroke, radius](const engine::Version& base,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -144,7 +145,8 @@ Result<Filtered> applyPasses(const Version& input, const FilterSpec& spec, JobCo
   try {
     job.begin("filtering",
               static_cast<std::uint64_t>(input.grid().samples()) * static_cast<std::uint64_t>(spec.passes));
-    tbb::task_arena arena(spec.threads == 0 ? tbb::task_arena::automatic : spec.threads);
+    tbb::task_arena arena(spec.threads == 0 ? tbb::task_arena::automatic
+                                            : std::min(spec.threads, tbb::info::default_concurrency()));
     return arena.execute([&]() -> Result<Filtered> {
       Version state = input;
       PassResult last;

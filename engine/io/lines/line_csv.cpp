@@ -117,7 +117,10 @@ void appendLineRow(std::string& text, const EdgeLine& line, const EdgePoint& p, 
 Result<std::vector<EdgeLine>> readLineCsv(const InputFile& file, const Grid& grid) {
   TextReader reader(file);
   std::string_view text;
-  if (!reader.line(text) || text != kLineHeader)
+  const bool has_header = reader.line(text);
+  // Of programs that mark UTF-8.
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  if (!has_header || text != kLineHeader)
     return inputError(fmt::format("line 1 is not the header {}", kLineHeader), file.path(),
                       "give lines as docs/formats.md describes them");
   const LineFrame frame = LineFrame::field(grid);

@@ -97,6 +97,18 @@ Result<std::vector<EdgeLine>> LineCollector::finish() {
   std::erase_if(lines_, [](const EdgeLine& line) { return line.points.empty(); });
   if (lines_.empty())
     return inputError("there is no line in the file", path_, "give a file with at least one line");
+  const auto isInside = [this](const EdgePoint& p) {
+    return p.position.x >= -1.0 && p.position.y >= -1.0 && p.position.x <= grid_.width &&
+           p.position.y <= grid_.height;
+  };
+  if (std::ranges::none_of(
+          lines_, [&](const EdgeLine& line) { return std::ranges::any_of(line.points, isInside); })) {
+    const glm::dvec2 first = lines_.front().points.front().position;
+    return inputError(fmt::format("no point lies in the scan, which has {} x {} samples; the first one is at "
+                                  "column {:.1f}, row {:.1f}",
+                                  grid_.width, grid_.height, first.x, first.y),
+                      path_, "give the lines of this scan");
+  }
   for (EdgeLine& line : lines_)
     if (line.closed && line.points.size() > 1)
       if (Status status = insertUpTo(line, EdgePoint(line.points.front())); !status)

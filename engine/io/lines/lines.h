@@ -36,7 +36,7 @@ inline constexpr std::int64_t kMostLinePoints = std::int64_t{1} << 22;
 /// EdgeLine::kMostApart apart, others are inserted between them, at most one sample apart. A line of another program,
 /// without attributes, counts as a step that was located without deviation.
 /// Errors (kInput): unreadable or damaged file, unknown extension, no line in it, a geometry that is no line, numbers
-/// that are not finite, points farther from the field than it is long, too many points. Memory: for .csv that of the
+/// that are not finite, points farther from the field than it is long, none in it, too many points. Memory: for .csv that of the
 /// points, else some ten times the file, which may have 1 GiB. Thread: any.
 [[nodiscard]] Result<std::vector<EdgeLine>> importLines(const std::string& path, const Version& field);
 

@@ -249,6 +249,17 @@ TEST(LineCsv, WhatIsNoLineIsRefused) {
   refused("99999999999999999999,0,1,1,1,step,0,0,0,0,0\n", "line = ");
   writeBytes(path, "t,x,y,z,tool\n0,1,2,3,mark\n");
   expectRefusedLines(path, "header");
+  refused("1,0,-2.5,1,1,step,0,0,0,0,0\n1,0,-2,1,1,step,0,0,0,0,0\n", "no point lies in the scan");
+}
+
+TEST(LineCsv, AMarkOfUtf8IsPassedOver) {
+  const TempFolder folder;
+  const std::string path = folder.file("lines.csv");
+  writeBytes(path,
+             "\xEF\xBB\xBF" + std::string(kHeader) + "1,0,1,1,1,step,0,0,0,0,0\n1,0,2,1,1,step,0,0,0,0,0\n");
+  const auto lines = importLines(path, fieldOf(gridOf(8, 8)));
+  ASSERT_TRUE(lines) << lines.error().line();
+  EXPECT_EQ(lines->size(), 1U);
 }
 
 TEST(LineCsv, TooManyPointsAreRefusedBeforeTheyAreInserted) {
