@@ -4,8 +4,6 @@
 #include <bit>
 #include <span>
 
-#include <fmt/format.h>
-
 #include "bench/machine.h"
 #include "bench/repeats.h"
 #include "engine/base/stopwatch.h"

@@ -1,10 +1,7 @@
 #include "bench/growth_bench.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <functional>
-#include <optional>
 
 #include <fmt/format.h>
 

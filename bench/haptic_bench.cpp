@@ -4,8 +4,6 @@
 #include <bit>
 #include <span>
 
-#include <fmt/format.h>
-
 #include "bench/hard_grounds.h"
 #include "bench/machine.h"
 #include "bench/plain_search.h"

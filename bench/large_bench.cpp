@@ -4,10 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
-#include <optional>
-#include <span>
 #include <thread>
 #include <utility>
 

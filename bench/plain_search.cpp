@@ -1,8 +1,5 @@
 #include "bench/plain_search.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "haptic/contact/patch.h"
 
 namespace fettle::bench {

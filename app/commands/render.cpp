@@ -2,8 +2,6 @@
 #include <filesystem>
 #include <memory>
 
-#include <fmt/format.h>
-
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"

@@ -4,8 +4,6 @@
 
 #include <termios.h>
 
-#include "engine/base/error.h"
-
 namespace fettle::app {
 
 /// Source of single keys.

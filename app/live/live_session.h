@@ -11,7 +11,6 @@
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
-#include "haptic/base/strokes.h"
 #include "haptic/devices/device.h"
 #include "haptic/loop/haptic_loop.h"
 #include "haptic/scene/scene.h"

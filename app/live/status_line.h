@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "app/live/session_log.h"
 #include "haptic/loop/messages.h"
 #include "haptic/loop/timing.h"

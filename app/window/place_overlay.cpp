@@ -1,7 +1,6 @@
 #include "app/window/place_overlay.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include <glm/common.hpp>

@@ -1,7 +1,6 @@
 #include "app/work/place_tool.h"
 
 #include <algorithm>
-#include <memory>
 #include <utility>
 
 #include <glm/common.hpp>

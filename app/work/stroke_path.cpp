@@ -1,7 +1,6 @@
 #include "app/work/stroke_path.h"
 
 #include <cmath>
-#include <utility>
 
 #include <glm/geometric.hpp>
 

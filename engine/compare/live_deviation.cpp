@@ -1,7 +1,6 @@
 #include "engine/compare/live_deviation.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cmath>
 #include <new>

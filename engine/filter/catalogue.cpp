@@ -2,7 +2,6 @@
 
 #include <array>
 #include <limits>
-#include <memory>
 
 #include "engine/filter/line_windows.h"
 #include "engine/filter/median.h"

@@ -3,8 +3,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <initializer_list>
-#include <tuple>
 
 #include "engine/simd/kernel.h"
 

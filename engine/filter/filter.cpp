@@ -1,7 +1,6 @@
 #include "engine/filter/filter.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <new>

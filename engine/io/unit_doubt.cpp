@@ -1,7 +1,6 @@
 #include "engine/io/unit_doubt.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,5 @@
 #include "engine/session/database.h"
 
-#include <cerrno>
 #include <system_error>
 #include <utility>
 

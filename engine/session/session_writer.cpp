@@ -1,7 +1,6 @@
 #include "engine/session/session_writer.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <chrono>
 #include <condition_variable>

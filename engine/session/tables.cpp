@@ -1,7 +1,6 @@
 #include "engine/session/tables.h"
 
 #include <cmath>
-#include <limits>
 #include <type_traits>
 
 #include <fmt/format.h>

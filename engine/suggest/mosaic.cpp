@@ -1,7 +1,6 @@
 #include "engine/suggest/mosaic.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <utility>
 

@@ -7,7 +7,6 @@
 #include <map>
 #include <memory>
 #include <new>
-#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>

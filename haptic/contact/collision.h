@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 #include <glm/vec3.hpp>
 
 #include "haptic/contact/surface.h"

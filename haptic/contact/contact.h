@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include <glm/vec3.hpp>
 
 #include "haptic/base/tick_counters.h"

@@ -1,7 +1,6 @@
 #include "haptic/contact/sphere_tip.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 #include "render/live/live_picture.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>

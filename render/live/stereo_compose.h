@@ -2,7 +2,6 @@
 
 #include <array>
 #include <map>
-#include <optional>
 
 #include "render/plan/stereo.h"
 #include "render/vulkan/live_target.h"

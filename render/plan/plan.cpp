@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
 #include "render/config.h"
 #include "render/plan/colour_map.h"

@@ -1,7 +1,5 @@
 #include "render/plan/stereo.h"
 
-#include <cmath>
-
 #include <fmt/format.h>
 
 namespace fettle::render {

@@ -1,7 +1,5 @@
 #include "render/residency/page_set.h"
 
-#include <cstring>
-
 namespace fettle::render {
 namespace {
 

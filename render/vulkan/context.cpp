@@ -1,7 +1,6 @@
 #include "render/vulkan/context.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstring>
 

@@ -13,7 +13,6 @@
 
 #include "engine/base/stopwatch.h"
 #include "render/vulkan/barrier.h"
-#include "render/vulkan/capture.h"
 #include "render/vulkan/formats.h"
 #include "render/vulkan/live_target.h"
 #include "render/window/ui_layer.h"

@@ -1,5 +1,4 @@
 // Choice of accuracy, with the cost and the error of each choice on this scan.
-#include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"

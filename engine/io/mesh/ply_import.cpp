@@ -1,5 +1,4 @@
 #include <array>
-#include <cstring>
 #include <utility>
 
 #include <fmt/format.h>

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>

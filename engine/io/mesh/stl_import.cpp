@@ -2,7 +2,6 @@
 // three corners each, without units.
 
 #include <array>
-#include <string>
 #include <utility>
 
 #include <fmt/format.h>

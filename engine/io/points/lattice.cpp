@@ -1,12 +1,10 @@
 #include "engine/io/points/lattice.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <string>
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 #include "engine/io/points/xyz_columns.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>

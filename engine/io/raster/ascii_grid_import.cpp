@@ -2,8 +2,6 @@
 // version 3.6 refuses grids that contain `nan` and rounds through a table of its own.
 
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <utility>
 #include <vector>
 

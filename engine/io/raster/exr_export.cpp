@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <exception>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <ImfChannelList.h>

@@ -1,7 +1,6 @@
 // OpenEXR: one channel of floats, halves or integers of a flat picture, scan lines or tiles.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
 #include <string>

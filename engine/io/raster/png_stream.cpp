@@ -6,7 +6,6 @@
 #include <cstring>
 #include <string_view>
 
-#include <fmt/format.h>
 #include <png.h>
 
 #include "engine/field/grid.h"

@@ -1,8 +1,6 @@
 // x3p (ISO 25178-72:2017): a zip of main.xml, the heights in metres as one block of bytes, and checksums.
 
 #include <bit>
-#include <cmath>
-#include <cstring>
 #include <utility>
 #include <vector>
 

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <mutex>
-#include <string_view>
 
 #include "haptic/devices/codecs/wooden_codec.h"
 #include "haptic/devices/emergency_zero.h"

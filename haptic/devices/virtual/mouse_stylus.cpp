@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <glm/geometric.hpp>
-
 #include "engine/base/stopwatch.h"
 #include "haptic/base/finite.h"
 

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <limits>
 #include <numbers>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
