@@ -18,8 +18,7 @@ class InterruptGuard {
  public:
   explicit InterruptGuard(engine::JobControl& job);
   ~InterruptGuard();
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
+  InterruptGuard& operator=(InterruptGuard&&) = delete;
 };
 
 /// Progress of a command with many files. Threading: as JobControl.
@@ -38,8 +37,7 @@ class ProgressLine {
  public:
   explicit ProgressLine(const engine::JobControl& job, const BatchState* batch = nullptr);
   ~ProgressLine();
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
+  ProgressLine& operator=(ProgressLine&&) = delete;
 
  private:
   void show();

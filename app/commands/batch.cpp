@@ -53,14 +53,12 @@ class Folders {
     }
     return {};
   }
-  Folders() = default;
   ~Folders() {
     std::error_code ignored;
     // remove() leaves a folder that is not empty.
     for (auto at = made_.rbegin(); at != made_.rend(); ++at) std::filesystem::remove(*at, ignored);
   }
-  Folders(const Folders&) = delete;
-  Folders& operator=(const Folders&) = delete;
+  Folders& operator=(Folders&&) = delete;
 
  private:
   std::vector<std::filesystem::path> made_;

@@ -120,8 +120,7 @@ class CommandLine {
   /// With -h,--help for every command, and -V,--version, which shows `version`.
   CommandLine(const std::string& name, const std::string& description, const std::string& version);
   ~CommandLine();
-  CommandLine(const CommandLine&) = delete;
-  CommandLine& operator=(const CommandLine&) = delete;
+  CommandLine& operator=(CommandLine&&) = delete;
 
   [[nodiscard]] Command root();
 

@@ -19,8 +19,7 @@ class Keys {
  public:
   explicit Keys(KeySource source);
   ~Keys();
-  Keys(const Keys&) = delete;
-  Keys& operator=(const Keys&) = delete;
+  Keys& operator=(Keys&&) = delete;
 
   /// Whether keys can be read.
   [[nodiscard]] bool available() const noexcept { return available_; }

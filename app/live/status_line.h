@@ -12,8 +12,7 @@ class StatusLine {
  public:
   StatusLine();
   ~StatusLine();  ///< wipes the line
-  StatusLine(const StatusLine&) = delete;
-  StatusLine& operator=(const StatusLine&) = delete;
+  StatusLine& operator=(StatusLine&&) = delete;
 
   /// Redraws at most five times per second. `ticks_per_second` as measured.
   void show(const haptic::LoopState& state, const haptic::LoopTiming& timing, double seconds,

@@ -39,8 +39,7 @@ class Workstation {
  public:
   [[nodiscard]] static engine::Result<std::unique_ptr<Workstation>> create(const ViewOptions& options);
   ~Workstation();
-  Workstation(const Workstation&) = delete;
-  Workstation& operator=(const Workstation&) = delete;
+  Workstation& operator=(Workstation&&) = delete;
 
   /// Until the user quits, the time is over or the job is cancelled. The report: runReport.
   [[nodiscard]] engine::Result<Report> run(engine::JobControl& job);

@@ -20,10 +20,8 @@ class Background {
  public:
   using Work = std::function<engine::Result<T>(engine::JobControl&)>;
 
-  Background() = default;
   ~Background() { cancel(); }
-  Background(const Background&) = delete;
-  Background& operator=(const Background&) = delete;
+  Background& operator=(Background&&) = delete;
 
   void start(Work work) {
     cancel();

@@ -42,8 +42,7 @@ class LoopClient final {
                                                                          haptic::SessionSink* sink);
   /// As finish(), if that was not called.
   ~LoopClient();
-  LoopClient(const LoopClient&) = delete;
-  LoopClient& operator=(const LoopClient&) = delete;
+  LoopClient& operator=(LoopClient&&) = delete;
 
   /// Takes over the events and answers of the loop. Cheap; to be called often.
   void poll();

@@ -31,8 +31,7 @@ class SessionKeeper final : public haptic::SessionSink {
   explicit SessionKeeper(Document& document);
   /// As close(kKeep).
   ~SessionKeeper() override;
-  SessionKeeper(const SessionKeeper&) = delete;
-  SessionKeeper& operator=(const SessionKeeper&) = delete;
+  SessionKeeper& operator=(SessionKeeper&&) = delete;
 
   void commit(std::int64_t number, engine::Step step, std::vector<engine::JournalEntry> journal) override;
   void moveTo(std::int64_t number, std::vector<engine::JournalEntry> journal) override;

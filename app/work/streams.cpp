@@ -34,8 +34,7 @@ class Descriptor {
   ~Descriptor() {
     if (descriptor_ >= 0) close(descriptor_);
   }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  Descriptor& operator=(Descriptor&&) = delete;
   [[nodiscard]] int get() const noexcept { return descriptor_; }
 
  private:

@@ -21,8 +21,7 @@ enum class Growth {
 class LiveField {
  public:
   LiveField(Version start, Growth growth) noexcept;
-  LiveField(const LiveField&) = delete;
-  LiveField& operator=(const LiveField&) = delete;
+  LiveField& operator=(LiveField&&) = delete;
 
   [[nodiscard]] const Grid& grid() const noexcept { return state_.grid(); }
   /// Valid until the next write.

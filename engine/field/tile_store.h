@@ -29,8 +29,7 @@ class TileStore final : public SlabSource {
   [[nodiscard]] static Result<std::unique_ptr<TileStore>> create(const std::string& folder,
                                                                  std::uint64_t at_least);
   ~TileStore() override;
-  TileStore(const TileStore&) = delete;
-  TileStore& operator=(const TileStore&) = delete;
+  TileStore& operator=(TileStore&&) = delete;
 
   [[nodiscard]] void* take(std::size_t bytes) noexcept override;
 

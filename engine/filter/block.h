@@ -49,9 +49,7 @@ struct Block {
 /// Threading: one thread at a time; every thread makes its own.
 class BlockFilter {
  public:
-  BlockFilter() = default;
-  BlockFilter(const BlockFilter&) = delete;
-  BlockFilter& operator=(const BlockFilter&) = delete;
+  BlockFilter& operator=(BlockFilter&&) = delete;
   virtual ~BlockFilter() = default;
 
   /// Fills block.out. False when the job was cancelled, looked at often enough to return within 50 ms. What

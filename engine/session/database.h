@@ -67,8 +67,7 @@ class Database {
  public:
   [[nodiscard]] static Result<std::unique_ptr<Database>> open(const std::string& path, DatabaseAccess access,
                                                               const std::string& shown);
-  Database(const Database&) = delete;
-  Database& operator=(const Database&) = delete;
+  Database& operator=(Database&&) = delete;
   ~Database();
 
   [[nodiscard]] Status execute(const std::string& sql);

@@ -48,8 +48,7 @@ Status checkFile(const std::string& path) {
 struct ReadingConnection::Copies {
   fs::path folder;
   explicit Copies(fs::path made) : folder(std::move(made)) {}
-  Copies(const Copies&) = delete;
-  Copies& operator=(const Copies&) = delete;
+  Copies& operator=(Copies&&) = delete;
   ~Copies() {
     std::error_code ignored;
     fs::remove_all(folder, ignored);

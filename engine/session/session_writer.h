@@ -77,8 +77,7 @@ class SessionWriter {
                                                    const SessionWriterOptions& options,
                                                    ScanImport* import_scan, JobControl& job);
 
-  SessionWriter(const SessionWriter&) = delete;
-  SessionWriter& operator=(const SessionWriter&) = delete;
+  SessionWriter& operator=(SessionWriter&&) = delete;
   /// As close(), errors ignored; does not wait for a writer that cannot write because of an error.
   ~SessionWriter();
 

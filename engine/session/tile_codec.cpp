@@ -42,8 +42,7 @@ struct TileCodec::Contexts {
     ZSTD_freeCCtx(pack);
     ZSTD_freeDCtx(unpack);
   }
-  Contexts(const Contexts&) = delete;
-  Contexts& operator=(const Contexts&) = delete;
+  Contexts& operator=(Contexts&&) = delete;
 
   ZSTD_CCtx* pack;
   ZSTD_DCtx* unpack;

@@ -23,8 +23,7 @@ class LatestSlot {
  public:
   /// latest() is `initial` until the first take of a published value.
   explicit LatestSlot(const T& initial = T{}) noexcept { buffers_.fill({initial}); }
-  LatestSlot(const LatestSlot&) = delete;
-  LatestSlot& operator=(const LatestSlot&) = delete;
+  LatestSlot& operator=(LatestSlot&&) = delete;
 
   /// Writer thread.
   void publish(const T& value) noexcept {

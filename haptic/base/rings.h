@@ -30,8 +30,7 @@ class SpscRing {
   explicit SpscRing(std::size_t capacity) : slots_(new T[capacity]), mask_(capacity - 1) {
     assert(capacity > 0 && (capacity & mask_) == 0);
   }
-  SpscRing(const SpscRing&) = delete;
-  SpscRing& operator=(const SpscRing&) = delete;
+  SpscRing& operator=(SpscRing&&) = delete;
 
   [[nodiscard]] std::size_t capacity() const noexcept { return mask_ + 1; }
 

@@ -39,8 +39,7 @@ class RealTimeScope {
  public:
   explicit RealTimeScope(const RealTimeRequest& request);
   ~RealTimeScope();
-  RealTimeScope(const RealTimeScope&) = delete;
-  RealTimeScope& operator=(const RealTimeScope&) = delete;
+  RealTimeScope& operator=(RealTimeScope&&) = delete;
 
   [[nodiscard]] const RealTimeReport& report() const noexcept { return report_; }
 
@@ -62,8 +61,7 @@ class DenormalScope {
  public:
   DenormalScope() noexcept;
   ~DenormalScope();
-  DenormalScope(const DenormalScope&) = delete;
-  DenormalScope& operator=(const DenormalScope&) = delete;
+  DenormalScope& operator=(DenormalScope&&) = delete;
 
  private:
   unsigned long before_ = 0;

@@ -91,10 +91,8 @@ struct DeviceCounters {
 /// profile() from any thread, constant between start() and stop().
 class Device {
  public:
-  Device() = default;
   virtual ~Device() = default;
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
+  Device& operator=(Device&&) = delete;
 
   [[nodiscard]] virtual const DeviceProfile& profile() const noexcept = 0;
 

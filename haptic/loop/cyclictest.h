@@ -54,8 +54,7 @@ class BusyProcesses {
   /// Fewer than requested when the system refuses; see size().
   explicit BusyProcesses(unsigned number);
   ~BusyProcesses();
-  BusyProcesses(const BusyProcesses&) = delete;
-  BusyProcesses& operator=(const BusyProcesses&) = delete;
+  BusyProcesses& operator=(BusyProcesses&&) = delete;
 
   [[nodiscard]] std::size_t size() const noexcept { return children_.size(); }
 

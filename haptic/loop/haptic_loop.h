@@ -36,8 +36,7 @@ class HapticLoop {
                                                                           const Scene& scene, Device& device,
                                                                           const Settings& settings);
   ~HapticLoop();
-  HapticLoop(const HapticLoop&) = delete;
-  HapticLoop& operator=(const HapticLoop&) = delete;
+  HapticLoop& operator=(HapticLoop&&) = delete;
 
   /// Fills the pools, starts the thread and returns when it is about to tick. Errors: kFailed when no thread
   /// can be started. What the system did not grant the thread is no error: see realTime().

@@ -90,8 +90,7 @@ class PlainThread {
           }
         }) {}
   ~PlainThread() { static_cast<void>(stop()); }
-  PlainThread(const PlainThread&) = delete;
-  PlainThread& operator=(const PlainThread&) = delete;
+  PlainThread& operator=(PlainThread&&) = delete;
 
   RealTimeReport stop() {
     // Relaxed: seen within a tick; the join orders the report.

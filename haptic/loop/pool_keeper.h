@@ -27,8 +27,7 @@ class PoolKeeper {
   /// Fills the pools to the levels before it returns, then monitors them.
   PoolKeeper(std::shared_ptr<engine::FieldMemory> memory, const Levels& levels);
   ~PoolKeeper();
-  PoolKeeper(const PoolKeeper&) = delete;
-  PoolKeeper& operator=(const PoolKeeper&) = delete;
+  PoolKeeper& operator=(PoolKeeper&&) = delete;
 
   /// Times the pools were grown; times no memory was available.
   [[nodiscard]] std::uint64_t grown() const noexcept { return grown_.load(std::memory_order_relaxed); }

@@ -43,8 +43,7 @@ class TilePrefetcher {
 
   TilePrefetcher();
   ~TilePrefetcher();
-  TilePrefetcher(const TilePrefetcher&) = delete;
-  TilePrefetcher& operator=(const TilePrefetcher&) = delete;
+  TilePrefetcher& operator=(TilePrefetcher&&) = delete;
 
   /// Starts the thread. Once; throws std::system_error as std::thread does.
   void start();

@@ -48,8 +48,7 @@ class ZeroOnLastResort {
 
   ZeroOnLastResort(LastResort::ZeroReport report, void* device) noexcept;
   ~ZeroOnLastResort();
-  ZeroOnLastResort(const ZeroOnLastResort&) = delete;
-  ZeroOnLastResort& operator=(const ZeroOnLastResort&) = delete;
+  ZeroOnLastResort& operator=(ZeroOnLastResort&&) = delete;
 
   [[nodiscard]] bool registered() const noexcept { return slot_ >= 0; }
 
@@ -63,8 +62,7 @@ class HandlerStack {
  public:
   HandlerStack();
   ~HandlerStack();
-  HandlerStack(const HandlerStack&) = delete;
-  HandlerStack& operator=(const HandlerStack&) = delete;
+  HandlerStack& operator=(HandlerStack&&) = delete;
 
  private:
   static constexpr std::size_t kBytes = 65536;

@@ -24,8 +24,7 @@ class LivePanels {
   /// Chooses the patches as if everything were on the device. Panels unchanged since `cache` was used last
   /// reuse its trees.
   LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFields& fields, PatchTreeCache& trees);
-  LivePanels(const LivePanels&) = delete;
-  LivePanels& operator=(const LivePanels&) = delete;
+  LivePanels& operator=(LivePanels&&) = delete;
 
   /// The pages that the patches need, for submission `frame`; only on demand.
   [[nodiscard]] PageDemand demand(std::uint64_t frame);

@@ -115,8 +115,7 @@ struct LivePicture::Impl {
         colour_format(colour),
         frame(context, colour),
         fields(context, submissions, staging, options) {}
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  Impl& operator=(Impl&&) = delete;
   ~Impl();
 
   engine::Status update(const Shown& next);

@@ -239,8 +239,7 @@ class LivePicture {
                                                                            std::uint32_t colour_format,
                                                                            const LiveOptions& options = {});
   ~LivePicture();
-  LivePicture(const LivePicture&) = delete;
-  LivePicture& operator=(const LivePicture&) = delete;
+  LivePicture& operator=(LivePicture&&) = delete;
 
   /// Sets what the next frames show. The first time, or when the field is not related to the one before, its
   /// coarse copies (8 MiB) are uploaded before this returns, of a small field all of it; otherwise the

@@ -65,8 +65,7 @@ struct PngWriter::Impl {
   png_infop info = nullptr;
 
   Impl(engine::AtomicFile f, int w, int h) : file(std::move(f)), width(w), height(h) {}
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
+  Impl& operator=(Impl&&) = delete;
   ~Impl() { png_destroy_write_struct(&png, &info); }
 
   [[nodiscard]] engine::Status refused() const {

@@ -17,8 +17,7 @@ class PageSet {
   /// Levels from `fixed_from` up (0 .. kDataLevels) and the rim stay on the device permanently.
   PageSet(PagePool& pool, std::int32_t width, std::int32_t height, int fixed_from);
   ~PageSet();
-  PageSet(const PageSet&) = delete;
-  PageSet& operator=(const PageSet&) = delete;
+  PageSet& operator=(PageSet&&) = delete;
 
   /// Permanent pages of a grid.
   [[nodiscard]] static int fixedPages(const PageGrid& grid, int fixed_from) noexcept {

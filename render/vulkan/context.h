@@ -52,8 +52,7 @@ class Context {
   /// what to install; validation layers requested but not installed.
   [[nodiscard]] static engine::Result<std::unique_ptr<Context>> create(
       const DeviceOptions& options, const SurfaceRequest* request = nullptr);
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
+  Context& operator=(Context&&) = delete;
   ~Context();
 
   [[nodiscard]] const vk::raii::Device& device() const noexcept { return device_; }

@@ -22,8 +22,7 @@ class UiLayer {
   /// The state of the panels (positions, text being typed) lives as long as this, independent of devices.
   UiLayer(GLFWwindow* window, double scale, const std::string& layout_file);
   ~UiLayer();
-  UiLayer(const UiLayer&) = delete;
-  UiLayer& operator=(const UiLayer&) = delete;
+  UiLayer& operator=(UiLayer&&) = delete;
 
   /// Panels are drawn with this context from now on; one at a time.
   void enter(Context& context);

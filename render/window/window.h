@@ -112,8 +112,7 @@ class Window {
   /// as Context::create.
   [[nodiscard]] static engine::Result<std::unique_ptr<Window>> create(const WindowOptions& options);
   ~Window();
-  Window(const Window&) = delete;
-  Window& operator=(const Window&) = delete;
+  Window& operator=(Window&&) = delete;
 
   /// Collects the events since the last call; waits up to `wait_s` for one when there is none.
   void poll(double wait_s);

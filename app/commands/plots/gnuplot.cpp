@@ -33,8 +33,7 @@ class ScratchFile {
   ~ScratchFile() {
     if (!path_.empty()) std::remove(path_.c_str());
   }
-  ScratchFile(const ScratchFile&) = delete;
-  ScratchFile& operator=(const ScratchFile&) = delete;
+  ScratchFile& operator=(ScratchFile&&) = delete;
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:

@@ -15,8 +15,7 @@ class GdalSession {
  public:
   GdalSession();
   ~GdalSession();
-  GdalSession(const GdalSession&) = delete;
-  GdalSession& operator=(const GdalSession&) = delete;
+  GdalSession& operator=(GdalSession&&) = delete;
 
   /// Whether GDAL reported a failure since the last clear().
   [[nodiscard]] bool failed() const noexcept { return failed_; }

@@ -70,8 +70,7 @@ class MemoryFile {
     path_ = fmt::format("/vsimem/fettle-lines-{}{}", count++, extension);
   }
   ~MemoryFile() { VSIUnlink(path_.c_str()); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
+  MemoryFile& operator=(MemoryFile&&) = delete;
 
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::string_view bytes() const {

@@ -104,8 +104,7 @@ class SurBytes {
   ~SurBytes() {
     if (open_) inflateEnd(&stream_);
   }
-  SurBytes(const SurBytes&) = delete;
-  SurBytes& operator=(const SurBytes&) = delete;
+  SurBytes& operator=(SurBytes&&) = delete;
 
   Status begin(std::uint64_t bytes) {
     if (!packed_) {

@@ -23,10 +23,8 @@ namespace fettle::haptic {
 /// How a driver handles its device's reports; called by the threads of a ReportLink.
 class ReportHandler {
  public:
-  ReportHandler() = default;
   virtual ~ReportHandler() = default;
-  ReportHandler(const ReportHandler&) = delete;
-  ReportHandler& operator=(const ReportHandler&) = delete;
+  ReportHandler& operator=(ReportHandler&&) = delete;
 
   /// Reader thread: the device was opened; `input_bytes` as in OpenedPorts. Returns when it accepts output,
   /// as far as that is known yet (see onCaughtUp).
@@ -57,8 +55,7 @@ class ReportLink {
  public:
   ReportLink(std::unique_ptr<ReportSource> source, ReportHandler& handler, const OutputTimes& times = {});
   ~ReportLink();
-  ReportLink(const ReportLink&) = delete;
-  ReportLink& operator=(const ReportLink&) = delete;
+  ReportLink& operator=(ReportLink&&) = delete;
 
   [[nodiscard]] engine::Status start();
   /// See Device::stop().

@@ -30,10 +30,8 @@ enum class PortWrite : std::uint8_t {
 /// Threading: one thread at a time; both calls may wait.
 class ReportPort {
  public:
-  ReportPort() = default;
   virtual ~ReportPort() = default;
-  ReportPort(const ReportPort&) = delete;
-  ReportPort& operator=(const ReportPort&) = delete;
+  ReportPort& operator=(ReportPort&&) = delete;
 
   /// Waits for one report up to `timeout`; 0 = only one that has already arrived.
   [[nodiscard]] virtual ReadOutcome read(std::span<std::uint8_t> buffer,
@@ -53,10 +51,8 @@ struct OpenedPorts {
 /// Finds and opens a device; called repeatedly, which is how hot plugging works.
 class ReportSource {
  public:
-  ReportSource() = default;
   virtual ~ReportSource() = default;
-  ReportSource(const ReportSource&) = delete;
-  ReportSource& operator=(const ReportSource&) = delete;
+  ReportSource& operator=(ReportSource&&) = delete;
 
   /// Nothing when no such device is plugged in or it cannot be opened. Takes some milliseconds. One thread.
   [[nodiscard]] virtual std::optional<OpenedPorts> open() noexcept = 0;
