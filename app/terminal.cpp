@@ -4,9 +4,7 @@
 #include <cstdio>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <string>
 #include <utility>
 
 #include <fmt/format.h>

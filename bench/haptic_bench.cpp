@@ -4,11 +4,11 @@
 #include <bit>
 #include <span>
 
-#include "bench/hard_grounds.h"
 #include "bench/machine.h"
 #include "bench/plain_search.h"
 #include "bench/repeats.h"
 #include "engine/base/stopwatch.h"
+#include "engine/field/builder.h"
 #include "engine/field/live_field.h"
 #include "haptic/base/rt_thread.h"
 #include "haptic/scene/scene.h"
@@ -36,6 +36,37 @@ constexpr HapticCase kHapticCases[] = {
     {"ball r = 2 samples, to rest", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0},
     {"the same, 4 steps per tick", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0, 5},
 };
+
+// A field that is difficult for a search of the closest point.
+struct HardGround {
+  const char* name;
+  // Height of sample (column, row) [mm].
+  float (*height)(std::int32_t column, std::int32_t row) noexcept;
+};
+// Needles 1e6 mm high, cells with a twist of 10 of their sides, walls of 200 sides height eight cells apart,
+// and pits whose slopes change from 1 to 1000.
+constexpr HardGround kHardGrounds[] = {
+    {"needles",
+     [](std::int32_t c, std::int32_t r) noexcept { return c % 7 == 3 && r % 5 == 2 ? 1e6F : 0.0F; }},
+    {"twisted cells",
+     [](std::int32_t c, std::int32_t r) noexcept { return (c + r) % 2 == 0 ? -0.25F : 0.25F; }},
+    {"walls", [](std::int32_t c, std::int32_t) noexcept { return c / 8 % 2 == 0 ? 0.0F : 10.0F; }},
+    {"pits",
+     [](std::int32_t c, std::int32_t r) noexcept {
+       return (c % 4 == 0 ? -50.0F : 0.0F) + (r % 3 == 0 ? -0.05F : 0.0F);
+     }},
+};
+
+engine::Version makeGround(const HardGround& ground, std::int32_t side, double spacing_mm) {
+  engine::Grid grid;
+  grid.width = grid.height = side;
+  grid.spacing_x = grid.spacing_y = spacing_mm;
+  std::vector<float> z;
+  z.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  for (std::int32_t r = 0; r < side; ++r)
+    for (std::int32_t c = 0; c < side; ++c) z.push_back(ground.height(c, r));
+  return engine::makeField(grid, z);
+}
 
 constexpr std::size_t kTimedTicks = 100'000;
 
@@ -182,7 +213,7 @@ engine::Result<HapticBenchReport> benchHaptic(const HapticBenchOptions& options,
   const engine::Version clean = trials::workpiece(std::min(options.side, kSmallSide), kSpacingMm, 0.0);
   if (auto done = touch({"clean part", clean, kSpeed, options.ticks}, options, job, report); !done)
     return tl::unexpected(done.error());
-  for (const HardGround& ground : hardGrounds()) {
+  for (const HardGround& ground : kHardGrounds) {
     const engine::Version hard = makeGround(ground, std::min(options.side, kSmallSide), kSpacingMm);
     if (auto done = touch({ground.name, hard, kSpeed, options.ticks}, options, job, report); !done)
       return tl::unexpected(done.error());

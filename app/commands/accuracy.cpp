@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "app/commands/accuracy_page/page.h"
-#include "app/commands/accuracy_page/plot.h"
 #include "app/commands/command.h"
 #include "app/commands/plots/gnuplot.h"
 #include "app/commands/scan_files.h"

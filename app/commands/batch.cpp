@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/output_checks.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
 #include "engine/formats/formats.h"

@@ -1,12 +1,9 @@
+#include "app/commands/bench.h"
+
 #include <memory>
 
 #include <fmt/format.h>
 
-#include "app/commands/bench_filters.h"
-#include "app/commands/bench_growth.h"
-#include "app/commands/bench_import.h"
-#include "app/commands/bench_large.h"
-#include "app/commands/command.h"
 #include "bench/effects_bench.h"
 #include "bench/haptic_bench.h"
 #include "bench/machine.h"

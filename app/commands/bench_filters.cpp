@@ -1,4 +1,4 @@
-#include "app/commands/bench_filters.h"
+#include "app/commands/bench.h"
 
 #include <map>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "app/commands/bench_growth.h"
+#include "app/commands/bench.h"
 
 #include <filesystem>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include "app/commands/bench_large.h"
+#include "app/commands/bench.h"
 
 #include <memory>
 #include <string>

@@ -9,7 +9,6 @@
 #include "app/terminal.h"
 #include "app/work/streams.h"
 #include "engine/compare/compare.h"
-#include "engine/compare/deviation_field.h"
 
 namespace fettle::app {
 

@@ -5,7 +5,6 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
-#include "app/commands/write_options.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
 #include "engine/formats/formats.h"

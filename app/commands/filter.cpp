@@ -15,7 +15,6 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
-#include "app/commands/write_options.h"
 #include "app/terminal.h"
 #include "engine/base/stopwatch.h"
 #include "engine/filter/catalogue.h"

@@ -14,7 +14,6 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/command_line.h"
 #include "app/terminal.h"
 #include "app/work/spelling.h"
 

@@ -1,7 +1,6 @@
 #include "app/live/live_session.h"
 
 #include <chrono>
-#include <string_view>
 #include <thread>
 #include <utility>
 

@@ -4,10 +4,18 @@
 #include <optional>
 #include <vector>
 
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "engine/field/reader.h"
 #include "engine/field/version.h"
 #include "render/live/live_picture.h"
 
 namespace fettle::app {
+
+/// A position [samples] on the highest of the samples around it, in field coordinates [mm]: what is drawn there is
+/// not hidden by the surface's own noise. Positions outside take the height of the border, holes 0.
+[[nodiscard]] glm::dvec3 aboveSurface(const engine::FieldReader& reader, glm::dvec2 at);
 
 /// The edge lines of a field in the picture: thin lines over a band of twice their standard deviation to either side;
 /// steps, creases, what is not located and the chosen line each in a colour. They lie on the upper side of the surface

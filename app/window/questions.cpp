@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <string_view>
-#include <utility>
 
 #include <imgui.h>
 #include <imgui_internal.h>  // a popup by its number, at any level

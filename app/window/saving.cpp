@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "app/work/outputs.h"
-#include "app/work/replaced_files.h"
 #include "app/work/session_guard.h"
 #include "engine/formats/formats.h"
 #include "engine/io/lines/lines.h"

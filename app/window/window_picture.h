@@ -11,7 +11,7 @@
 #include "app/window/camera_motion.h"
 #include "app/window/refinement.h"
 #include "app/window/settings.h"
-#include "engine/field/tile_range.h"
+#include "engine/field/sample_rect.h"
 #include "haptic/loop/timing.h"
 #include "render/live/live_picture.h"
 #include "render/window/window.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "engine/base/job.h"
-#include "engine/io/preview.h"
+#include "engine/io/import.h"
 
 namespace fettle::app {
 

@@ -10,7 +10,6 @@
 
 #include "app/live/placement.h"
 #include "engine/base/stopwatch.h"
-#include "haptic/devices/enumerate.h"
 
 namespace fettle::app {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
-#include "engine/field/tile_range.h"
+#include "engine/field/sample_rect.h"
 #include "engine/filter/catalogue.h"
 #include "haptic/loop/adopt_filtered.h"
 

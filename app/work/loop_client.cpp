@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "haptic/journal/line_change.h"
 #include "haptic/journal/mark_codec.h"
 #include "haptic/loop/pacer.h"
 #include "haptic/safety/last_resort.h"

@@ -1,7 +1,5 @@
 #include "app/work/session_keeper.h"
 
-#include <utility>
-
 namespace fettle::app {
 namespace {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/field/tile_range.h"
+#include "engine/field/sample_rect.h"
 
 namespace fettle::app {
 

@@ -10,7 +10,7 @@
 #include "bench/accuracy/studies.h"
 #include "engine/base/stopwatch.h"
 #include "engine/edges/locate.h"
-#include "engine/scanner/edge_distance.h"
+#include "engine/scanner/true_lines.h"
 
 namespace fettle::bench {
 namespace {

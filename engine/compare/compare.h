@@ -1,12 +1,16 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
 
 namespace fettle::engine {
+
+/// A figure without any sample: NaN here, "-" in a table, null in JSON.
+inline constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
 
 /// How far field b is from field a: d = b - a at every sample that is valid in both, and the roughness of
 /// each. All lengths in the height unit of a (b is converted when its unit differs). NaN where there is no
@@ -73,5 +77,13 @@ struct TruthFigures {
 [[nodiscard]] Result<TruthFigures> compareToTruth(const Version& field, const Version& truth,
                                                   const Version& edges, JobControl& job,
                                                   const TruthOptions& options = {});
+
+/// The deviation of b from a as a new field: at each sample b - a, in the height unit of a (b is converted
+/// when its unit differs), computed in double and rounded once to float; a hole where either is one. Signs of
+/// the versions are applied. On the grid of a - position, spacing, units, coordinate system - but without its
+/// height_per_count: differences are not counts of the source. No marks.
+/// Errors: sizes differ (kInput), memory exhausted, cancelled. Thread: any, on all workers of the calling
+/// arena; bit-identical for any number of them.
+[[nodiscard]] Result<Version> deviationField(const Version& a, const Version& b, JobControl& job);
 
 }  // namespace fettle::engine

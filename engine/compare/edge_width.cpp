@@ -8,8 +8,6 @@
 
 #include <glm/vec2.hpp>
 
-#include "engine/compare/no_figure.h"
-
 namespace fettle::engine {
 
 namespace {

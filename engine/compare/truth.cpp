@@ -8,7 +8,6 @@
 
 #include "engine/compare/compare.h"
 #include "engine/compare/edge_width.h"
-#include "engine/compare/no_figure.h"
 #include "engine/compare/tile_sums.h"
 
 namespace fettle::engine {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "engine/field/live_field.h"
 #include "engine/filter/limit_change.h"

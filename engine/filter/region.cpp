@@ -6,7 +6,6 @@
 
 #include "engine/field/live_field.h"
 #include "engine/field/piece.h"
-#include "engine/field/sample_rect.h"
 #include "engine/filter/catalogue.h"
 
 namespace fettle::engine {

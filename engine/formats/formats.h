@@ -7,7 +7,6 @@
 
 #include "engine/io/export.h"
 #include "engine/io/import.h"
-#include "engine/io/preview.h"
 
 namespace fettle::engine {
 

@@ -8,7 +8,7 @@
 #include "engine/formats/formats.h"
 #include "engine/io/format.h"
 #include "engine/session/session.h"
-#include "engine/session/step_tiles.h"
+#include "engine/session/stored_tiles.h"
 #include "engine/session/tables.h"
 
 namespace fettle::engine {

@@ -8,7 +8,6 @@
 #include "engine/io/export.h"
 #include "engine/io/files/input_file.h"
 #include "engine/io/import.h"
-#include "engine/io/preview.h"
 
 namespace fettle::engine {
 

@@ -7,7 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
-#include "engine/field/tile_range.h"
+#include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
 
 namespace fettle::engine {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/field/grid.h"
-#include "engine/field/tile_range.h"
+#include "engine/field/sample_rect.h"
 #include "engine/marks/change_marks.h"
 
 namespace fettle::engine {

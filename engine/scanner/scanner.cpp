@@ -14,7 +14,6 @@
 #include "engine/field/live_field.h"
 #include "engine/scanner/counter_random.h"
 #include "engine/scanner/laser_effects.h"
-#include "engine/scanner/lateral_spot.h"
 #include "engine/scanner/part.h"
 
 namespace fettle::engine {

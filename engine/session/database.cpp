@@ -1,7 +1,6 @@
 #include "engine/session/database.h"
 
 #include <system_error>
-#include <utility>
 
 #include <fmt/format.h>
 #include <sqlite3.h>

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/session/step_tiles.h"
+#include "engine/session/stored_tiles.h"
 #include "engine/session/tables.h"
 
 namespace fettle::engine {

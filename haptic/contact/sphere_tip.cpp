@@ -1,12 +1,9 @@
 #include "haptic/contact/sphere_tip.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-
-#include "haptic/contact/sphere_solve.h"
 
 namespace fettle::haptic {
 

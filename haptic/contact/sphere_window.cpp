@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include "haptic/contact/normal.h"
-#include "haptic/contact/sphere_contact_lanes.h"
 
 namespace fettle::haptic {
 

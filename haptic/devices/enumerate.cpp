@@ -8,7 +8,6 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,7 +16,6 @@
 #include "haptic/devices/hid/space_mouse.h"
 #include "haptic/devices/virtual/mouse_stylus.h"
 #include "haptic/devices/virtual/replay_device.h"
-#include "haptic/devices/virtual/simulated_hand.h"
 #include "haptic/devices/wooden/serial_port.h"
 #include "haptic/devices/wooden/wooden_haptics.h"
 

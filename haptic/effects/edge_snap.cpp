@@ -1,6 +1,5 @@
 #include "haptic/effects/edge_snap.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

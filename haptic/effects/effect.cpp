@@ -1,19 +1,15 @@
 #include "haptic/effects/effect.h"
 
 #include "engine/base/rows.h"
-#include "haptic/effects/coupling.h"
 #include "haptic/effects/edge_snap.h"
 #include "haptic/effects/friction.h"
-#include "haptic/effects/gravity.h"
 #include "haptic/effects/passivity.h"
-#include "haptic/effects/spring.h"
 #include "haptic/effects/texture.h"
-#include "haptic/effects/viscosity.h"
 
 namespace fettle::haptic {
 
-// In haptic/tick.
-AddEffect addSmoothing, addMarking;
+// In spring.cpp, coupling.cpp, viscosity.cpp, gravity.cpp; in haptic/tick.
+AddEffect addSpring, addCoupling, addViscosity, addGravity, addSmoothing, addMarking;
 
 namespace {
 

@@ -30,7 +30,7 @@ namespace fettle::haptic {
 /// virtual objects" (1995): stick point, break-away by the static coefficient. Hayward and Armstrong, "A new
 /// computational model of friction applied to haptic rendering" (2000): the anchor is moved by position
 /// alone, without velocity and so without drift.
-/// Stability: the stuck tip is a wall of stiffness k along the surface: b > k T / 2 (see spring.h).
+/// Stability: the stuck tip is a wall of stiffness k along the surface: b > k T / 2 (see spring.cpp).
 /// Cost: about 30 multiplications per tick in contact. State: an anchor.
 class Friction {
  public:

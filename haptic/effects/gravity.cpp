@@ -1,4 +1,4 @@
-#include "haptic/effects/gravity.h"
+#include "haptic/effects/effect.h"
 
 namespace fettle::haptic {
 
@@ -18,6 +18,14 @@ struct Gravity {
 
 }  // namespace
 
+// Holds up the stylus: F = +m g along z, 9.80665 m/s^2, in contact and in free space, as long as there is
+// input. The clamp is on the sum of all forces, so a heavy stylus leaves less for the surface. The passivity
+// observer ignores it: the stylus' weight does the opposite work on the hand.
+//
+// Source: gravity compensation by a model of the arm, e.g. Craig, "Introduction to Robotics" (2005), section
+// 10.4, here of a point mass at the tip.
+// Stability: a constant force closes no loop. The stylus must weigh at least that much, otherwise it rises.
+// Cost: one addition.
 void addGravity(EffectList& list, const EffectSource& from) {
   const double weight_n = from.scene.params.gravity.stylus_kg * kStandardGravity;
   Gravity& gravity = addData(list, EffectKind::kGravity, std::make_shared<Gravity>(Gravity{weight_n}));

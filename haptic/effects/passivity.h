@@ -24,7 +24,7 @@ namespace fettle::haptic {
 /// series damper; Ryu, Kim, Hannaford, "Stability control of haptic interfaces with reference energy" (2004):
 /// the observer's bound is the energy that may be stored instead of zero.
 /// Jumps of the position, gaps above 20 ms and samples without time (VelocityFilter) are not counted.
-/// Stability: the controller is a sampled damper, b < 2 m / T (see viscosity.h); removing force needs no
+/// Stability: the controller is a sampled damper, b < 2 m / T (see viscosity.cpp); removing force needs no
 /// bound. What comes after the tick (ForceGuard) only lowers forces; while it does, the observer counts with
 /// more force than was applied.
 /// Cost: about 20 multiplications, a square root in ticks where it acts. State: force, position, W.

@@ -17,7 +17,7 @@ namespace fettle::haptic {
 /// A restart gives zero velocity, so forces that depend on it fade out and never jump.
 ///
 /// Source: the filtered backward difference is the common choice; its part in stability is derived in Colgate
-/// and Brown, "Factors affecting the Z-width of a haptic display" (1994), and effects/viscosity.h. Threading:
+/// and Brown, "Factors affecting the Z-width of a haptic display" (1994), and effects/viscosity.cpp. Threading:
 /// one thread; noexcept, allocates nothing.
 class VelocityFilter {
  public:

@@ -44,7 +44,7 @@ struct SceneSet {
 };
 /// A step led to state `state`: the field at that point. With `marks` it is the state before with the marks
 /// of the entry's data (mark_codec.h), set by other means than strokes; with `lines`, with its marks and edge
-/// lines (line_change.h).
+/// lines (mark_codec.h).
 struct StepMade {
   std::int64_t state = 0;
   std::string name;

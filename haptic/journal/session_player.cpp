@@ -13,7 +13,6 @@
 
 #include "engine/field/upright.h"
 #include "haptic/journal/journal.h"
-#include "haptic/journal/line_change.h"
 #include "haptic/journal/mark_codec.h"
 #include "haptic/journal/tick_codec.h"
 #include "haptic/loop/adopt_filtered.h"

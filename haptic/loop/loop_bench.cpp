@@ -7,10 +7,8 @@
 #include <fstream>
 #include <memory>
 #include <new>
-#include <string>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include <sched.h>
 #include <unistd.h>

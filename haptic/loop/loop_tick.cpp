@@ -1,6 +1,5 @@
 #include "haptic/loop/loop_tick.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -1,7 +1,6 @@
 #include "haptic/loop/pool_keeper.h"
 
 #include <chrono>
-#include <cstdint>
 
 #include <sys/mman.h>
 

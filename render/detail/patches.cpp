@@ -1,7 +1,6 @@
 #include "render/detail/patches.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>

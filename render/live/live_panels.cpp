@@ -5,9 +5,8 @@
 #include <numbers>
 
 #include "render/config.h"
-#include "render/live/live_overlay.h"
 #include "render/live/live_plan.h"
-#include "render/plan/live_view.h"
+#include "render/plan/placing.h"
 
 namespace fettle::render {
 namespace {

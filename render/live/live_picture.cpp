@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "engine/base/stopwatch.h"
-#include "render/config.h"
 #include "render/detail/pick.h"
 #include "render/live/live_fields.h"
 #include "render/live/live_frame.h"
@@ -14,7 +13,7 @@
 #include "render/live/live_plan.h"
 #include "render/live/live_redraw.h"
 #include "render/live/stereo_compose.h"
-#include "render/vulkan/capture.h"
+#include "render/vulkan/memory.h"
 
 namespace fettle::render {
 namespace {

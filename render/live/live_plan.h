@@ -4,6 +4,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "engine/field/reader.h"
 #include "render/live/live_picture.h"
 #include "render/plan/plan.h"
 #include "shaders/layout.h"
@@ -25,5 +26,9 @@ namespace fettle::render {
 /// The lines of one kind, in the layout of the shaders.
 [[nodiscard]] std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLine::Depth depth,
                                              const PanelPlan& panel);
+
+/// The pieces of a brush ring, on the surface: 96 of them; those with an end over a hole or outside the field
+/// are left out.
+void appendRing(const engine::FieldReader& reader, const Overlays::Ring& ring, std::vector<OverlayLine>& out);
 
 }  // namespace fettle::render

@@ -2,6 +2,7 @@
 
 #include "engine/field/version.h"
 #include "render/plan/camera.h"
+#include "shaders/layout.h"
 
 namespace fettle::render {
 
@@ -20,5 +21,10 @@ struct Placing {
 
 /// Size of one sample step in x and in y in the picture [px], at the middle of the field.
 [[nodiscard]] glm::dvec2 cellPixels(const Placing& placing, const Camera& camera);
+
+/// What shaders need of one eye: the transform from the scene to the picture, and from a pixel and its depth
+/// back to a position in the field. `plot`: where the camera's picture lies in the image [px]. A second eye
+/// is a second camera; everything else of a panel is the same for both.
+[[nodiscard]] gpu::ViewUniforms viewOf(const Camera& camera, const Placing& placing, const Rectangle& plot);
 
 }  // namespace fettle::render

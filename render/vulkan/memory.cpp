@@ -1,5 +1,4 @@
 #include "render/vulkan/memory.h"
-#include "render/vulkan/formats.h"
 
 namespace fettle::render {
 
@@ -63,6 +62,21 @@ GpuImage pictureImage(const Context& context, vk::Extent2D extent) {
           GpuImage::Kind::kPlane,
           Usage::eColorAttachment | Usage::eTransferSrc | Usage::eTransferDst,
           vk::ImageAspectFlagBits::eColor};
+}
+
+void copyToHost(const vk::raii::CommandBuffer& commands, const GpuImage& from, const Buffer& to) {
+  vk::BufferImageCopy copy;
+  copy.setImageSubresource({vk::ImageAspectFlagBits::eColor, 0, 0, 1})
+      .setImageExtent({from.extent().width, from.extent().height, 1});
+  commands.copyImageToBuffer(from.image(), vk::ImageLayout::eTransferSrcOptimal, *to.handle(), copy);
+  vk::MemoryBarrier2 to_host;
+  to_host.setSrcStageMask(vk::PipelineStageFlagBits2::eCopy)
+      .setSrcAccessMask(vk::AccessFlagBits2::eTransferWrite)
+      .setDstStageMask(vk::PipelineStageFlagBits2::eHost)
+      .setDstAccessMask(vk::AccessFlagBits2::eHostRead);
+  vk::DependencyInfo dependency;
+  dependency.setMemoryBarriers(to_host);
+  commands.pipelineBarrier2(dependency);
 }
 
 }  // namespace fettle::render

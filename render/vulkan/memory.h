@@ -7,6 +7,9 @@
 
 namespace fettle::render {
 
+inline constexpr vk::Format kColourFormat = vk::Format::eR8G8B8A8Srgb;  // blends and filters in linear light
+inline constexpr vk::Format kDepthFormat = vk::Format::eD32Sfloat;
+
 /// A buffer that the CPU writes or reads directly, mapped during its whole lifetime. Move-only.
 class Buffer {
  public:
@@ -68,5 +71,9 @@ class GpuImage {
 
 /// An image that a picture is drawn to and copied out of. Throws.
 [[nodiscard]] GpuImage pictureImage(const Context& context, vk::Extent2D extent);
+
+/// Records the copy of a finished colour image (in layout eTransferSrcOptimal) to a buffer of 4 bytes per
+/// pixel that the host reads once the commands are completed.
+void copyToHost(const vk::raii::CommandBuffer& commands, const GpuImage& from, const Buffer& to);
 
 }  // namespace fettle::render

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "render/vulkan/context.h"
-#include "render/vulkan/formats.h"
+#include "render/vulkan/memory.h"
 
 namespace fettle::render {
 

@@ -1,7 +1,5 @@
 #include "render/vulkan/submissions.h"
 
-#include "engine/base/stopwatch.h"
-
 namespace fettle::render {
 
 Submissions::Submissions(Context& context) : context_(context) {

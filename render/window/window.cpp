@@ -13,8 +13,8 @@
 
 #include "engine/base/stopwatch.h"
 #include "render/vulkan/barrier.h"
-#include "render/vulkan/formats.h"
 #include "render/vulkan/live_target.h"
+#include "render/vulkan/memory.h"
 #include "render/window/ui_layer.h"
 #include "render/window/ui_text.h"
 #include "render/window/window_swapchain.h"

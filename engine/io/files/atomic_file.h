@@ -67,4 +67,20 @@ class AtomicFile {
 /// Writes all of a small file: report, table, JSON, encoded picture.
 [[nodiscard]] Status writeFileAtomically(const std::string& path, std::string_view content);
 
+/// Collects text for an AtomicFile and writes it in large pieces. The caller appends to text, calls
+/// flushIfLarge() regularly (each row), and flush() at the end.
+struct TextWriter {
+  AtomicFile& file;
+  std::string text{};
+
+  [[nodiscard]] Status flushIfLarge() { return text.size() < kPiece ? Status{} : flush(); }
+  [[nodiscard]] Status flush() {
+    Status status = file.write(text);
+    text.clear();
+    return status;
+  }
+
+  static constexpr std::size_t kPiece = std::size_t{4} << 20;
+};
+
 }  // namespace fettle::engine

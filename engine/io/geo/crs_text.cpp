@@ -1,9 +1,21 @@
 #include "engine/io/geo/crs_text.h"
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+#include <gdal.h>
+
+#include "engine/io/files/gdal_session.h"
+#include "engine/io/files/little_endian.h"
+
+// GDAL reads keys only from TIFFs: they are put into one of a single pixel, in memory.
 
 namespace fettle::engine {
 
@@ -62,6 +74,117 @@ std::string prjOf(const std::string& wkt) {
     if (!text.empty() && !wktOfPrj(text).empty()) return text;
   }
   return {};
+}
+
+namespace {
+
+constexpr std::uint16_t kDirectory = 34735;
+constexpr std::uint16_t kNumbers = 34736;
+constexpr std::uint16_t kText = 34737;
+
+// Whether every key is inside the directory, and its value inside the tag that it names.
+bool keysAreSound(const GeoKeys& keys) {
+  const std::size_t shorts = keys.directory.size() / 2;
+  const auto number = [&](std::size_t i) { return little<std::uint16_t>(keys.directory.data() + 2 * i); };
+  if (shorts < 4 || number(0) != 1 || 4 + std::size_t{number(3)} * 4 > shorts) return false;
+  for (std::size_t k = 1; k <= number(3); ++k) {
+    const std::size_t tag = number(4 * k + 1), end = std::size_t{number(4 * k + 2)} + number(4 * k + 3);
+    const std::size_t room = tag == kDirectory ? shorts
+                             : tag == kNumbers ? keys.numbers.size() / 8
+                             : tag == kText    ? keys.text.size()
+                                               : SIZE_MAX;
+    if (end > room) return false;
+  }
+  return true;
+}
+
+template <class T>
+void appendNumber(std::string& bytes, T value) {
+  for (std::size_t i = 0; i < sizeof(T); ++i)
+    bytes += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i) & 0xffU);
+}
+
+// A TIFF of one black pixel with the keys. Layout: TIFF Revision 6.0 (Aldus, 1992), section 2.
+std::string tiffOf(const GeoKeys& keys) {
+  enum Type : std::uint16_t { kTypeAscii = 2, kTypeShort = 3, kTypeDouble = 12 };
+  struct Entry {
+    std::uint16_t tag;
+    Type type;
+    std::uint32_t count;
+    std::string value;
+  };
+  const auto one = [](std::uint16_t tag, std::uint16_t value) {
+    std::string bytes;
+    appendNumber(bytes, value);
+    return Entry{tag, kTypeShort, 1, bytes};
+  };
+  std::vector<Entry> entries{one(256, 1), one(257, 1), one(258, 8), one(259, 1), one(262, 1),
+                             one(273, 8), one(277, 1), one(278, 1), one(279, 1)};
+  entries.push_back(
+      {kDirectory, kTypeShort, static_cast<std::uint32_t>(keys.directory.size() / 2), keys.directory});
+  if (keys.numbers.size() >= 8)
+    entries.push_back(
+        {kNumbers, kTypeDouble, static_cast<std::uint32_t>(keys.numbers.size() / 8), keys.numbers});
+  if (!keys.text.empty()) {
+    entries.push_back({kText, kTypeAscii, static_cast<std::uint32_t>(keys.text.size() + 1), keys.text});
+    entries.back().value += '\0';
+  }
+  // Header, the pixel and a byte to align the directory, the directory, the long values.
+  constexpr std::uint32_t kFirst = 10;
+  std::string bytes("II*\0", 4), values;
+  appendNumber(bytes, kFirst);
+  bytes.append(2, '\0');
+  appendNumber(bytes, static_cast<std::uint16_t>(entries.size()));
+  const auto values_at = static_cast<std::uint32_t>(bytes.size() + 12 * entries.size() + 4);
+  for (Entry& e : entries) {
+    appendNumber(bytes, e.tag);
+    appendNumber(bytes, static_cast<std::uint16_t>(e.type));
+    appendNumber(bytes, e.count);
+    if (e.value.size() <= 4) {
+      e.value.resize(4, '\0');
+      bytes += e.value;
+    } else {
+      appendNumber(bytes, static_cast<std::uint32_t>(values_at + values.size()));
+      values += e.value;
+      values.resize((values.size() + 7) / 8 * 8, '\0');
+    }
+  }
+  appendNumber(bytes, std::uint32_t{0});
+  return bytes + values;
+}
+
+// During its lifetime, bytes as a file that GDAL can open.
+class MemoryFile {
+ public:
+  explicit MemoryFile(std::string bytes) : bytes_(std::move(bytes)) {
+    static std::atomic<std::uint64_t> number{0};
+    path_ = fmt::format("/vsimem/fettle-keys-{}.tif", number.fetch_add(1, std::memory_order_relaxed));
+    VSIFCloseL(
+        VSIFileFromMemBuffer(path_.c_str(), reinterpret_cast<GByte*>(bytes_.data()), bytes_.size(), FALSE));
+  }
+  ~MemoryFile() { VSIUnlink(path_.c_str()); }
+  MemoryFile& operator=(MemoryFile&&) = delete;
+  [[nodiscard]] const char* path() const noexcept { return path_.c_str(); }
+
+ private:
+  std::string bytes_;
+  std::string path_;
+};
+
+}  // namespace
+
+std::string wktOfGeoKeys(const GeoKeys& keys) {
+  if (!keysAreSound(keys)) return {};
+  const MemoryFile file(tiffOf(keys));
+  // GDAL ignores vertical systems in keys of version 1.0, which are those of LAS 1.2.
+  CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
+  const char* const drivers[] = {"GTiff", nullptr};
+  const DatasetPtr dataset(
+      GDALOpenEx(file.path(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr));
+  OGRSpatialReferenceH crs = dataset ? GDALGetSpatialRef(dataset.get()) : nullptr;
+  CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", nullptr);
+  if (crs == nullptr || (OSRIsProjected(crs) == 0 && OSRIsGeographic(crs) == 0)) return {};
+  return wktOf(crs);
 }
 
 }  // namespace fettle::engine

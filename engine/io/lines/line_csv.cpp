@@ -11,7 +11,6 @@
 
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/text_reader.h"
-#include "engine/io/files/text_writer.h"
 #include "engine/io/lines/line_frame.h"
 
 namespace fettle::engine {

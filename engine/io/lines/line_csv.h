@@ -15,4 +15,9 @@ namespace fettle::engine {
 [[nodiscard]] Result<std::vector<EdgeLine>> readLineCsv(const InputFile& file, const Grid& grid);
 [[nodiscard]] Status writeLineCsv(const std::string& path, std::span<const EdgeLine> lines, const Grid& grid);
 
+/// The forms of lines.h that GDAL reads and writes, by extension. May throw std::bad_alloc.
+[[nodiscard]] Result<std::vector<EdgeLine>> readLineVectors(const InputFile& file, const Grid& grid);
+[[nodiscard]] Status writeLineVectors(const std::string& path, std::span<const EdgeLine> lines,
+                                      const Grid& grid);
+
 }  // namespace fettle::engine

@@ -1,4 +1,4 @@
-#include "engine/io/lines/line_vectors.h"
+#include "engine/io/lines/line_csv.h"
 
 #include <algorithm>
 #include <array>

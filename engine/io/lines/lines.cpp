@@ -1,7 +1,6 @@
 #include "engine/io/lines/lines.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <iterator>
 #include <new>
 
@@ -10,7 +9,6 @@
 
 #include "engine/io/files/input_file.h"
 #include "engine/io/lines/line_csv.h"
-#include "engine/io/lines/line_vectors.h"
 
 namespace fettle::engine {
 

@@ -11,9 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "engine/io/files/text_writer.h"
+#include "engine/io/files/atomic_file.h"
 #include "engine/io/format.h"
-#include "engine/io/mesh/mesh_export.h"
 #include "engine/io/mesh/ply_header.h"
 #include "engine/io/mesh/surface_mesh.h"
 

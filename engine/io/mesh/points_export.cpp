@@ -10,13 +10,14 @@
 
 #include <fmt/format.h>
 
-#include "engine/io/files/text_writer.h"
+#include "engine/io/files/atomic_file.h"
 #include "engine/io/format.h"
 #include "engine/io/grid_notes.h"
-#include "engine/io/mesh/mesh_export.h"
 #include "engine/io/mesh/ply_header.h"
 
 namespace fettle::engine {
+
+FormatWriter writePlyMesh;  // mesh_export.cpp
 
 namespace {
 

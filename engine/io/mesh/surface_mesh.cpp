@@ -1,7 +1,6 @@
 #include "engine/io/mesh/surface_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 

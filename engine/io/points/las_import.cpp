@@ -15,7 +15,7 @@
 #include "engine/io/files/little_endian.h"
 #include "engine/io/files/text_reader.h"
 #include "engine/io/format.h"
-#include "engine/io/geo/geo_keys.h"
+#include "engine/io/geo/crs_text.h"
 #include "engine/io/geo/geo_reference.h"
 #include "engine/io/points/gridding.h"
 

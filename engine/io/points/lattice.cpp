@@ -4,12 +4,10 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <string>
 
 #include <fmt/format.h>
 
-#include "engine/field/grid.h"
 #include "engine/io/height_rule.h"
 
 namespace fettle::engine {

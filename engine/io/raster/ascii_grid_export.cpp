@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/io/files/atomic_file.h"
 #include "engine/io/files/gdal_session.h"
-#include "engine/io/files/text_writer.h"
 #include "engine/io/format.h"
 #include "engine/io/geo/crs_text.h"
 #include "engine/io/geo/geo_reference.h"

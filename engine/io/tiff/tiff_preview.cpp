@@ -7,7 +7,7 @@
 
 #include "engine/field/builder.h"
 #include "engine/io/format.h"
-#include "engine/io/preview.h"
+#include "engine/io/import.h"
 #include "engine/io/tiff/tiff_samples.h"
 
 namespace fettle::engine {

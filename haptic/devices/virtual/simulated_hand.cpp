@@ -32,8 +32,8 @@ SimulatedHand::SimulatedHand(std::vector<HandTarget> path, const HandSpec& spec)
   profile_.space = DeviceSpace::kField;
   profile_.workspace_radius_mm = 1e9;
   profile_.max_force_n = spec.max_force_n;
-  // K < 2 b / T of a wall, T = 1 ms, b all that damps it; b < 2 m / T of a damper (haptic/effects/spring.h,
-  // viscosity.h). Profiles state damping up to 1 N s/mm.
+  // K < 2 b / T of a wall, T = 1 ms, b all that damps it; b < 2 m / T of a damper (haptic/effects/spring.cpp,
+  // viscosity.cpp). Profiles state damping up to 1 N s/mm.
   profile_.max_stiffness_n_per_mm = 2.0 * (spec.damping_n_s_per_mm + spec.device_damping_n_s_per_mm) * 1000.0;
   profile_.max_damping_n_s_per_mm = std::min(2.0 * 1e-3 * spec.mass_kg * spec.rate_hz, 1.0);
   profile_.resolution_mm = spec.resolution_mm;

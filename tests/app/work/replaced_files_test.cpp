@@ -1,4 +1,4 @@
-#include "app/work/replaced_files.h"
+#include "app/work/session_guard.h"
 
 #include <fstream>
 

@@ -1,4 +1,3 @@
-#include "engine/compare/deviation_field.h"
 
 #include <cmath>
 #include <random>

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/edges/locate.h"
-#include "engine/scanner/edge_distance.h"
+#include "engine/scanner/true_lines.h"
 #include "haptic/operator/hand_lines.h"
 
 // Lines located from simulated strokes, against the true edges of simulated parts. The full figures:

@@ -1,4 +1,4 @@
-#include "engine/scanner/edge_distance.h"
+#include "engine/scanner/true_lines.h"
 
 #include <cmath>
 

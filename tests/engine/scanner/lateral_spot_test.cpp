@@ -1,4 +1,4 @@
-#include "engine/scanner/lateral_spot.h"
+#include "engine/scanner/laser_effects.h"
 
 #include <cmath>
 #include <limits>

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/scanner/edge_distance.h"
+#include "engine/scanner/true_lines.h"
 
 namespace fettle::haptic {
 namespace {

@@ -9,7 +9,6 @@
 #include "haptic/contact/collision.h"
 #include "haptic/contact/normal.h"
 #include "haptic/contact/patch.h"
-#include "haptic/contact/sharing.h"
 #include "tests/haptic/support/fields.h"
 
 namespace fettle::haptic {

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "app/commands/command.h"
+
+namespace fettle::app {
+
+/// `fettle bench filters`, `growth`, `import` and `large`, added to `fettle bench`.
+void addBenchFilters(Command bench, Chosen& chosen);
+void addBenchGrowth(Command bench, Chosen& chosen);
+void addBenchImport(Command bench, Chosen& chosen);
+void addBenchLarge(Command bench, Chosen& chosen);
+
+}  // namespace fettle::app
