@@ -15,15 +15,12 @@
 
 namespace fettle::engine {
 
-// Each is defined at the end of its source: engine/io/*/*_import.cpp, session_format.cpp.
-FormatRow tiffFormat, pngFormat, plyFormat, pcdFormat, lasFormat, surFormat, x3pFormat, exrFormat, stlFormat,
-    asciiGridFormat, sessionFormat, xyzFormat;
-
 namespace {
 
 // Formats with a signature first; other text is tried as points.
-constexpr FormatRow* kTable[] = {tiffFormat, pngFormat, plyFormat, pcdFormat,       lasFormat,     surFormat,
-                                 x3pFormat,  exrFormat, stlFormat, asciiGridFormat, sessionFormat, xyzFormat};
+constexpr const Format* kTable[] = {&kTiffFormat, &kPngFormat,       &kPlyFormat,    &kPcdFormat,
+                                    &kLasFormat,  &kSurFormat,       &kX3pFormat,    &kExrFormat,
+                                    &kStlFormat,  &kAsciiGridFormat, &kFettleFormat, &kXyzFormat};
 
 std::string extensionsOf(bool FormatInfo::*able) {
   std::vector<std::string_view> all;
@@ -80,12 +77,23 @@ Result<const Format*> recognised(const InputFile& file) {
   const Result<std::size_t> got = file.read(0, head.data(), head.size());
   if (!got) return tl::unexpected(got.error());
   head.resize(*got);
-  for (FormatRow* row : kTable)
-    if (row().recognises != nullptr && row().recognises(head, file.extension())) return &row();
+  for (const Format* format : kTable)
+    if (format->recognises != nullptr && format->recognises(head, file.extension())) return format;
   return nullptr;
 }
 
-Result<Imported> import(const std::string& path, const ImportOptions& options, JobControl& job) {
+}  // namespace
+
+std::span<const FormatInfo> formats() {
+  static const auto infos = [] {
+    std::array<FormatInfo, std::size(kTable)> all;
+    std::ranges::transform(kTable, all.begin(), &Format::info);
+    return all;
+  }();
+  return infos;
+}
+
+Result<Imported> importField(const std::string& path, const ImportOptions& options, JobControl& job) try {
   if (Status status = checkOptions(options); !status) return tl::unexpected(status.error());
   const Result<InputFile> file = InputFile::open(path);
   if (!file) return tl::unexpected(file.error());
@@ -98,41 +106,22 @@ Result<Imported> import(const std::string& path, const ImportOptions& options, J
                                                    : (*format)->read(*file, options, job);
   if (imported && !(*format)->units_certain) doubtUnits(*imported, options);
   return imported;
-}
-
-}  // namespace
-
-std::span<const FormatInfo> formats() {
-  static const auto infos = [] {
-    std::array<FormatInfo, std::size(kTable)> all;
-    std::ranges::transform(kTable, all.begin(), [](FormatRow* row) { return row().info; });
-    return all;
-  }();
-  return infos;
-}
-
-Result<Imported> importField(const std::string& path, const ImportOptions& options, JobControl& job) {
-  try {
-    return import(path, options, job);
-  } catch (const std::bad_alloc&) {
-    return inputError("the file needs more memory than is free", path, "cut the scan into parts");
-  }
+} catch (const std::bad_alloc&) {
+  return inputError("the file needs more memory than is free", path, "cut the scan into parts");
 }
 
 Result<std::optional<Preview>> importPreview(const std::string& path, const ImportOptions& options,
-                                             std::int64_t max_samples, JobControl& job) {
-  try {
-    if (Status status = checkOptions(options); !status) return tl::unexpected(status.error());
-    if (options.depth_camera) return std::nullopt;
-    const Result<InputFile> file = InputFile::open(path);
-    if (!file) return tl::unexpected(file.error());
-    const Result<const Format*> format = recognised(*file);
-    if (!format) return tl::unexpected(format.error());
-    if (*format == nullptr || (*format)->preview == nullptr) return std::nullopt;
-    return (*format)->preview(*file, options, max_samples, job);
-  } catch (const std::bad_alloc&) {
-    return inputError("the file needs more memory than is free", path, "cut the scan into parts");
-  }
+                                             std::int64_t max_samples, JobControl& job) try {
+  if (Status status = checkOptions(options); !status) return tl::unexpected(status.error());
+  if (options.depth_camera) return std::nullopt;
+  const Result<InputFile> file = InputFile::open(path);
+  if (!file) return tl::unexpected(file.error());
+  const Result<const Format*> format = recognised(*file);
+  if (!format) return tl::unexpected(format.error());
+  if (*format == nullptr || (*format)->preview == nullptr) return std::nullopt;
+  return (*format)->preview(*file, options, max_samples, job);
+} catch (const std::bad_alloc&) {
+  return inputError("the file needs more memory than is free", path, "cut the scan into parts");
 }
 
 Result<Exported> exportField(const Version& field, const std::string& path, const ExportOptions& options,
@@ -144,10 +133,10 @@ Result<Exported> exportField(const Version& field, const std::string& path, cons
     return inputError(fmt::format("{} is not a valid error of a mesh", *options.max_error), path);
   const std::string extension = extensionOf(path);
   const Format* format = nullptr;
-  for (FormatRow* row : kTable)
-    if (row().write != nullptr &&
-        std::ranges::find(row().info.extensions, extension) != row().info.extensions.end())
-      format = &row();
+  for (const Format* each : kTable)
+    if (each->write != nullptr &&
+        std::ranges::find(each->info.extensions, extension) != each->info.extensions.end())
+      format = each;
   if ((options.mesh || options.max_error) && !(format != nullptr && format->mesh))
     return inputError("only .ply and .stl store a mesh", path, "write one of these or omit --mesh");
   if (options.cloud_optimised && !(format != nullptr && format->tiff))

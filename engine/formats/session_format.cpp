@@ -76,16 +76,13 @@ Result<Exported> writeSession(const Version& field, const std::string& path, con
 
 }  // namespace
 
-const Format& sessionFormat() {
-  static constexpr std::string_view kExtensions[] = {".fettle"};
-  static constexpr Format kFormat{
-      .info = {"Fettle", "Fettle session", kExtensions, true, true},
-      .recognises = looksLikeSession,
-      .read = readSession,
-      .write = writeSession,
-      .units_certain = true,
-  };
-  return kFormat;
-}
+constexpr std::string_view kFettleExtensions[] = {".fettle"};
+constexpr Format kFettleFormat{
+    .info = {"Fettle", "Fettle session", kFettleExtensions, true, true},
+    .recognises = looksLikeSession,
+    .read = readSession,
+    .write = writeSession,
+    .units_certain = true,
+};
 
 }  // namespace fettle::engine

@@ -26,7 +26,7 @@ using FormatPreviewer = Result<std::optional<Preview>>(const InputFile& file, co
 using FormatWriter = Result<Exported>(const Version& field, const std::string& path,
                                       const ExportOptions& options, JobControl& job);
 
-/// One format. Its source ends with a function that returns it, which engine/formats lists.
+/// One format. Its importer's source ends with it.
 struct Format {
   FormatInfo info;
   FormatRecogniser* recognises = nullptr;  ///< null for formats that are only written
@@ -41,7 +41,8 @@ struct Format {
   static constexpr std::size_t kHeadBytes = 4096;
 };
 
-/// Function that a format's source defines, to be declared by name where formats are listed.
-using FormatRow = const Format&();
+/// All formats, for engine/formats to list. Constants from the start: no order of initialisation.
+extern const Format kTiffFormat, kPngFormat, kPlyFormat, kPcdFormat, kLasFormat, kSurFormat, kX3pFormat,
+    kExrFormat, kStlFormat, kAsciiGridFormat, kFettleFormat, kXyzFormat;
 
 }  // namespace fettle::engine

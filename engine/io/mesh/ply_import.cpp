@@ -386,16 +386,13 @@ Result<Imported> readPly(const InputFile& file, const ImportOptions& options, Jo
 
 FormatWriter writePly;  // points_export.cpp
 
-const Format& plyFormat() {
-  static constexpr std::string_view kExtensions[] = {".ply"};
-  static constexpr Format kFormat{
-      .info = {"PLY", "PLY points or mesh", kExtensions, true, true},
-      .recognises = looksLikePly,
-      .read = readPly,
-      .write = writePly,
-      .mesh = true,
-  };
-  return kFormat;
-}
+constexpr std::string_view kPlyExtensions[] = {".ply"};
+constexpr Format kPlyFormat{
+    .info = {"PLY", "PLY points or mesh", kPlyExtensions, true, true},
+    .recognises = looksLikePly,
+    .read = readPly,
+    .write = writePly,
+    .mesh = true,
+};
 
 }  // namespace fettle::engine

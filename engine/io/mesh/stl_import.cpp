@@ -113,16 +113,13 @@ Result<Imported> readStl(const InputFile& file, const ImportOptions& options, Jo
 
 FormatWriter writeStl;  // mesh_export.cpp
 
-const Format& stlFormat() {
-  static constexpr std::string_view kExtensions[] = {".stl"};
-  static constexpr Format kFormat{
-      .info = {"STL", "STL mesh", kExtensions, true, true},
-      .recognises = looksLikeStl,
-      .read = readStl,
-      .write = writeStl,
-      .mesh = true,
-  };
-  return kFormat;
-}
+constexpr std::string_view kStlExtensions[] = {".stl"};
+constexpr Format kStlFormat{
+    .info = {"STL", "STL mesh", kStlExtensions, true, true},
+    .recognises = looksLikeStl,
+    .read = readStl,
+    .write = writeStl,
+    .mesh = true,
+};
 
 }  // namespace fettle::engine

@@ -225,14 +225,11 @@ Result<Imported> readLas(const InputFile& file, const ImportOptions& options, Jo
 
 }  // namespace
 
-const Format& lasFormat() {
-  static constexpr std::string_view kExtensions[] = {".las", ".laz"};
-  static constexpr Format kFormat{
-      .info = {"LAS", "LAS points", kExtensions, true, false},
-      .recognises = looksLikeLas,
-      .read = readLas,
-  };
-  return kFormat;
-}
+constexpr std::string_view kLasExtensions[] = {".las", ".laz"};
+constexpr Format kLasFormat{
+    .info = {"LAS", "LAS points", kLasExtensions, true, false},
+    .recognises = looksLikeLas,
+    .read = readLas,
+};
 
 }  // namespace fettle::engine

@@ -316,14 +316,11 @@ Result<Imported> readPcd(const InputFile& file, const ImportOptions& options, Jo
 
 }  // namespace
 
-const Format& pcdFormat() {
-  static constexpr std::string_view kExtensions[] = {".pcd"};
-  static constexpr Format kFormat{
-      .info = {"PCD", "PCD point cloud", kExtensions, true, false},
-      .recognises = looksLikePcd,
-      .read = readPcd,
-  };
-  return kFormat;
-}
+constexpr std::string_view kPcdExtensions[] = {".pcd"};
+constexpr Format kPcdFormat{
+    .info = {"PCD", "PCD point cloud", kPcdExtensions, true, false},
+    .recognises = looksLikePcd,
+    .read = readPcd,
+};
 
 }  // namespace fettle::engine

@@ -200,15 +200,12 @@ Result<Imported> readXyz(const InputFile& file, const ImportOptions& options, Jo
 
 FormatWriter writeXyz;  // engine/io/mesh/points_export.cpp
 
-const Format& xyzFormat() {
-  static constexpr std::string_view kExtensions[] = {".xyz", ".txt", ".csv", ".pts", ".dat"};
-  static constexpr Format kFormat{
-      .info = {"XYZ", "text with x y z per line", kExtensions, true, true, true},
-      .recognises = looksLikeXyz,
-      .read = readXyz,
-      .write = writeXyz,
-  };
-  return kFormat;
-}
+constexpr std::string_view kXyzExtensions[] = {".xyz", ".txt", ".csv", ".pts", ".dat"};
+constexpr Format kXyzFormat{
+    .info = {"XYZ", "text with x y z per line", kXyzExtensions, true, true, true},
+    .recognises = looksLikeXyz,
+    .read = readXyz,
+    .write = writeXyz,
+};
 
 }  // namespace fettle::engine

@@ -196,15 +196,12 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
 
 FormatWriter writeAsciiGrid;  // ascii_grid_export.cpp
 
-const Format& asciiGridFormat() {
-  static constexpr std::string_view kExtensions[] = {".asc", ".agr", ".grd"};
-  static constexpr Format kFormat{
-      .info = {"AAIGrid", "ESRI ASCII grid", kExtensions, true, true, true},
-      .recognises = looksLikeAsciiGrid,
-      .read = readAsciiGrid,
-      .write = writeAsciiGrid,
-  };
-  return kFormat;
-}
+constexpr std::string_view kAsciiGridExtensions[] = {".asc", ".agr", ".grd"};
+constexpr Format kAsciiGridFormat{
+    .info = {"AAIGrid", "ESRI ASCII grid", kAsciiGridExtensions, true, true, true},
+    .recognises = looksLikeAsciiGrid,
+    .read = readAsciiGrid,
+    .write = writeAsciiGrid,
+};
 
 }  // namespace fettle::engine

@@ -262,7 +262,11 @@ Status readRows(Imf::InputPart& part, const Plan& plan, const HeightRule& rule, 
   return {};
 }
 
-Result<Imported> readPicture(const InputFile& file, const ImportOptions& options, JobControl& job) {
+bool looksLikeExr(std::string_view head, std::string_view) {
+  return head.starts_with("\x76\x2f\x31\x01");
+}
+
+Result<Imported> readExr(const InputFile& file, const ImportOptions& options, JobControl& job) try {
   const std::string& path = file.path();
   Imf::Header::setMaxImageSize(Grid::kMaxSide, Grid::kMaxSide);
   Imf::Header::setMaxTileSize(kLargestTile, kLargestTile);
@@ -308,36 +312,23 @@ Result<Imported> readPicture(const InputFile& file, const ImportOptions& options
   if (Status status = readRows(part, *plan, rule, *builder, tally, job); !status)
     return tl::unexpected(status.error());
   return finishImport(std::move(*builder), rule, tally, "EXR", std::move(warnings), path);
-}
-
-bool looksLikeExr(std::string_view head, std::string_view) {
-  return head.starts_with("\x76\x2f\x31\x01");
-}
-
-Result<Imported> readExr(const InputFile& file, const ImportOptions& options, JobControl& job) {
-  try {
-    return readPicture(file, options, job);
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& error) {
-    return inputError("the picture cannot be read: " + reasonOf(error), file.path(),
-                      "the file is cut short or damaged");
-  }
+} catch (const std::bad_alloc&) {
+  throw;
+} catch (const std::exception& error) {
+  return inputError("the picture cannot be read: " + reasonOf(error), file.path(),
+                    "the file is cut short or damaged");
 }
 
 }  // namespace
 
 FormatWriter writeExr;  // exr_export.cpp
 
-const Format& exrFormat() {
-  static constexpr std::string_view kExtensions[] = {".exr"};
-  static constexpr Format kFormat{
-      .info = {"EXR", "OpenEXR", kExtensions, true, true},
-      .recognises = looksLikeExr,
-      .read = readExr,
-      .write = writeExr,
-  };
-  return kFormat;
-}
+constexpr std::string_view kExrExtensions[] = {".exr"};
+constexpr Format kExrFormat{
+    .info = {"EXR", "OpenEXR", kExrExtensions, true, true},
+    .recognises = looksLikeExr,
+    .read = readExr,
+    .write = writeExr,
+};
 
 }  // namespace fettle::engine

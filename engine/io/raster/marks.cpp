@@ -19,8 +19,6 @@
 
 namespace fettle::engine {
 
-FormatRow pngFormat, tiffFormat;  // png_import.cpp, tiff_import.cpp
-
 namespace {
 
 // Sets the marks of a field one tile row at a time, from the rows of a picture from top to bottom.
@@ -188,8 +186,8 @@ Result<Version> importMarks(const Version& field, const std::string& path) {
   const Result<std::size_t> got = file->read(0, head.data(), head.size());
   if (!got) return tl::unexpected(got.error());
   try {
-    if (pngFormat().recognises({head.data(), *got}, {})) return fromPng(field, *file);
-    if (tiffFormat().recognises({head.data(), *got}, {})) return fromTiff(field, *file);
+    if (kPngFormat.recognises({head.data(), *got}, {})) return fromPng(field, *file);
+    if (kTiffFormat.recognises({head.data(), *got}, {})) return fromTiff(field, *file);
   } catch (const std::bad_alloc&) {
     return noMemory(path);
   }

@@ -100,16 +100,13 @@ Result<Imported> readPng(const InputFile& file, const ImportOptions& options, Jo
 
 FormatWriter writePng;  // png_export.cpp
 
-const Format& pngFormat() {
-  static constexpr std::string_view kExtensions[] = {".png"};
-  static constexpr Format kFormat{
-      .info = {"PNG", "16-bit grey PNG", kExtensions, true, true},
-      .recognises = looksLikePng,
-      .read = readPng,
-      .write = writePng,
-      .picture = true,
-  };
-  return kFormat;
-}
+constexpr std::string_view kPngExtensions[] = {".png"};
+constexpr Format kPngFormat{
+    .info = {"PNG", "16-bit grey PNG", kPngExtensions, true, true},
+    .recognises = looksLikePng,
+    .read = readPng,
+    .write = writePng,
+    .picture = true,
+};
 
 }  // namespace fettle::engine

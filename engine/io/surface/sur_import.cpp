@@ -247,14 +247,11 @@ Result<Imported> readSur(const InputFile& file, const ImportOptions& options, Jo
 
 }  // namespace
 
-const Format& surFormat() {
-  static constexpr std::string_view kExtensions[] = {".sur"};
-  static constexpr Format kFormat{
-      .info = {"SUR", "Digital Surf topography", kExtensions, true, false},
-      .recognises = looksLikeSur,
-      .read = readSur,
-  };
-  return kFormat;
-}
+constexpr std::string_view kSurExtensions[] = {".sur"};
+constexpr Format kSurFormat{
+    .info = {"SUR", "Digital Surf topography", kSurExtensions, true, false},
+    .recognises = looksLikeSur,
+    .read = readSur,
+};
 
 }  // namespace fettle::engine

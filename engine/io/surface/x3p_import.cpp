@@ -534,15 +534,12 @@ Result<Imported> readX3p(const InputFile& file, const ImportOptions& options, Jo
 
 FormatWriter writeX3p;  // x3p_export.cpp
 
-const Format& x3pFormat() {
-  static constexpr std::string_view kExtensions[] = {".x3p"};
-  static constexpr Format kFormat{
-      .info = {"X3P", "x3p surface (ISO 25178-72)", kExtensions, true, true},
-      .recognises = looksLikeX3p,
-      .read = readX3p,
-      .write = writeX3p,
-  };
-  return kFormat;
-}
+constexpr std::string_view kX3pExtensions[] = {".x3p"};
+constexpr Format kX3pFormat{
+    .info = {"X3P", "x3p surface (ISO 25178-72)", kX3pExtensions, true, true},
+    .recognises = looksLikeX3p,
+    .read = readX3p,
+    .write = writeX3p,
+};
 
 }  // namespace fettle::engine

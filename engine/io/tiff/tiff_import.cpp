@@ -111,18 +111,15 @@ Result<Imported> readTiff(const InputFile& file, const ImportOptions& options, J
 FormatWriter writeTiff;       // tiff_export.cpp
 FormatPreviewer previewTiff;  // tiff_preview.cpp
 
-const Format& tiffFormat() {
-  static constexpr std::string_view kExtensions[] = {".tif", ".tiff"};
-  static constexpr Format kFormat{
-      .info = {"GTiff", "GeoTIFF and TIFF", kExtensions, true, true},
-      .recognises = looksLikeTiff,
-      .read = readTiff,
-      .write = writeTiff,
-      .preview = previewTiff,
-      .picture = true,
-      .tiff = true,
-  };
-  return kFormat;
-}
+constexpr std::string_view kTiffExtensions[] = {".tif", ".tiff"};
+constexpr Format kTiffFormat{
+    .info = {"GTiff", "GeoTIFF and TIFF", kTiffExtensions, true, true},
+    .recognises = looksLikeTiff,
+    .read = readTiff,
+    .write = writeTiff,
+    .preview = previewTiff,
+    .picture = true,
+    .tiff = true,
+};
 
 }  // namespace fettle::engine
