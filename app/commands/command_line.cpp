@@ -150,23 +150,21 @@ Command CommandLine::root() {
   return Command(app_.get());
 }
 
-tl::expected<std::string, Misread> CommandLine::parse(const std::vector<std::string>& arguments) {
-  try {
-    app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - (arguments.empty() ? 0 : 1)));
-    return std::string();
-  } catch (const CLI::ParseError& error) {
-    // "fitler --help" and "bench hapitc --help" request the help of a command that does not exist, not that
-    // of the program.
-    const CLI::App* used = app_.get();
-    while (!used->get_subcommands().empty()) used = used->get_subcommands().front();
-    const bool takes_command = !used->get_subcommands([](const CLI::App*) { return true; }).empty();
-    const auto rest = used->remaining();
-    const bool misspelt = takes_command && !rest.empty() && !rest[0].starts_with("-");
-    if (error.get_exit_code() != 0 || misspelt) return tl::unexpected(misreadOf(*app_, error.what()));
-    std::ostringstream shown;  // --help and --version
-    app_->exit(error, shown, shown);
-    return shown.str();
-  }
+tl::expected<std::string, Misread> CommandLine::parse(const std::vector<std::string>& arguments) try {
+  app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - (arguments.empty() ? 0 : 1)));
+  return std::string();
+} catch (const CLI::ParseError& error) {
+  // "fitler --help" and "bench hapitc --help" request the help of a command that does not exist, not that
+  // of the program.
+  const CLI::App* used = app_.get();
+  while (!used->get_subcommands().empty()) used = used->get_subcommands().front();
+  const bool takes_command = !used->get_subcommands([](const CLI::App*) { return true; }).empty();
+  const auto rest = used->remaining();
+  const bool misspelt = takes_command && !rest.empty() && !rest[0].starts_with("-");
+  if (error.get_exit_code() != 0 || misspelt) return tl::unexpected(misreadOf(*app_, error.what()));
+  std::ostringstream shown;  // --help and --version
+  app_->exit(error, shown, shown);
+  return shown.str();
 }
 
 }  // namespace fettle::app

@@ -171,8 +171,34 @@ std::pair<std::int64_t, std::int64_t> statesToHold(const SessionIndex& index, st
   return {first, last};
 }
 
-Result<Session> read(SessionTables& tables, const SessionOpenOptions& options, ScanImport* import_scan,
-                     JobControl& job) {
+}  // namespace
+
+Result<SessionIndex> readIndex(SessionTables& tables) {
+  SessionIndex index;
+  if (Status status = tables.recognise(); !status) return tl::unexpected(status.error());
+  auto head = tables.readHead();
+  if (!head) return tl::unexpected(head.error());
+  index.head = *head;
+  auto grid = tables.readGrid();
+  if (!grid) return tl::unexpected(grid.error());
+  index.grid = std::move(*grid);
+  auto original = tables.readOriginal();
+  if (!original) return tl::unexpected(original.error());
+  index.original = std::move(*original);
+  auto steps = tables.readSteps(index.head);
+  if (!steps) return tl::unexpected(steps.error());
+  index.steps = std::move(*steps);
+  auto places = tables.readPlaces(index.steps);
+  if (!places) return tl::unexpected(places.error());
+  index.places = std::move(*places);
+  auto lines = tables.readLines(index.steps);
+  if (!lines) return tl::unexpected(lines.error());
+  index.lines = std::move(*lines);
+  return index;
+}
+
+Result<Session> readSession(SessionTables& tables, const SessionOpenOptions& options, ScanImport* import_scan,
+                            JobControl& job) try {
   const std::string& path = tables.database().shownPath();
   const Result<SessionIndex> found = readIndex(tables);
   if (!found) return tl::unexpected(found.error());
@@ -245,41 +271,8 @@ Result<Session> read(SessionTables& tables, const SessionOpenOptions& options, S
     session.journal = std::move(*journal);
   }
   return session;
-}
-
-}  // namespace
-
-Result<SessionIndex> readIndex(SessionTables& tables) {
-  SessionIndex index;
-  if (Status status = tables.recognise(); !status) return tl::unexpected(status.error());
-  auto head = tables.readHead();
-  if (!head) return tl::unexpected(head.error());
-  index.head = *head;
-  auto grid = tables.readGrid();
-  if (!grid) return tl::unexpected(grid.error());
-  index.grid = std::move(*grid);
-  auto original = tables.readOriginal();
-  if (!original) return tl::unexpected(original.error());
-  index.original = std::move(*original);
-  auto steps = tables.readSteps(index.head);
-  if (!steps) return tl::unexpected(steps.error());
-  index.steps = std::move(*steps);
-  auto places = tables.readPlaces(index.steps);
-  if (!places) return tl::unexpected(places.error());
-  index.places = std::move(*places);
-  auto lines = tables.readLines(index.steps);
-  if (!lines) return tl::unexpected(lines.error());
-  index.lines = std::move(*lines);
-  return index;
-}
-
-Result<Session> readSession(SessionTables& tables, const SessionOpenOptions& options, ScanImport* import_scan,
-                            JobControl& job) {
-  try {
-    return read(tables, options, import_scan, job);
-  } catch (const std::bad_alloc&) {
-    return failure("memory for the session could not be allocated", tables.database().shownPath());
-  }
+} catch (const std::bad_alloc&) {
+  return failure("memory for the session could not be allocated", tables.database().shownPath());
 }
 
 Result<Step> readStep(SessionTables& tables, const SessionIndex& index, std::int64_t number,

@@ -55,7 +55,20 @@ Status writeAll(SessionTables& tables, const Session& session, const OriginalRow
   return tables.writeHead(head);
 }
 
-Result<SessionSize> save(const Session& session, const std::string& path, JobControl& job) {
+}  // namespace
+
+Result<SessionLock> lockSession(const std::string& real_path, const std::string& shown) {
+  Result<std::optional<SessionLock>> lock = SessionLock::take(real_path, kLockWaitMs);
+  if (!lock) {
+    Error error = lock.error();
+    error.where = shown;
+    return tl::unexpected(error);
+  }
+  if (!*lock) return sessionInUse(real_path, shown);
+  return std::move(**lock);
+}
+
+Result<SessionSize> saveSessionLocked(const Session& session, const std::string& path, JobControl& job) try {
   const std::string real = realPath(path);
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());
@@ -80,27 +93,8 @@ Result<SessionSize> save(const Session& session, const std::string& path, JobCon
   std::error_code ignored;
   size.file_bytes = std::filesystem::file_size(real, ignored);
   return size;
-}
-
-}  // namespace
-
-Result<SessionLock> lockSession(const std::string& real_path, const std::string& shown) {
-  Result<std::optional<SessionLock>> lock = SessionLock::take(real_path, kLockWaitMs);
-  if (!lock) {
-    Error error = lock.error();
-    error.where = shown;
-    return tl::unexpected(error);
-  }
-  if (!*lock) return sessionInUse(real_path, shown);
-  return std::move(**lock);
-}
-
-Result<SessionSize> saveSessionLocked(const Session& session, const std::string& path, JobControl& job) {
-  try {
-    return save(session, path, job);
-  } catch (const std::bad_alloc&) {
-    return failure("memory for writing could not be allocated", path);
-  }
+} catch (const std::bad_alloc&) {
+  return failure("memory for writing could not be allocated", path);
 }
 
 Result<SessionSize> saveSession(const Session& session, const std::string& path, JobControl& job) {

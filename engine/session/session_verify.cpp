@@ -7,9 +7,7 @@
 
 namespace fettle::engine {
 
-namespace {
-
-Result<SessionSize> verify(const std::string& path, JobControl& job) {
+Result<SessionSize> verifySession(const std::string& path, JobControl& job) try {
   const Result<ReadingConnection> connection = ReadingConnection::open(path);
   if (!connection) return tl::unexpected(connection.error());
   Database& database = connection->database();
@@ -41,16 +39,8 @@ Result<SessionSize> verify(const std::string& path, JobControl& job) {
   std::error_code ignored;
   size.file_bytes = std::filesystem::file_size(path, ignored);
   return size;
-}
-
-}  // namespace
-
-Result<SessionSize> verifySession(const std::string& path, JobControl& job) {
-  try {
-    return verify(path, job);
-  } catch (const std::bad_alloc&) {
-    return failure("memory for the session could not be allocated", path);
-  }
+} catch (const std::bad_alloc&) {
+  return failure("memory for the session could not be allocated", path);
 }
 
 }  // namespace fettle::engine

@@ -148,16 +148,12 @@ std::string journalText(const journal::Entry& entry) {
   return out.dump();
 }
 
-engine::Result<journal::Entry> journalEntry(const std::string& text) {
-  try {
-    return entryOf(json::parse(text));
-  } catch (const json::exception& error) {
-    return engine::inputError(fmt::format("a journal entry that cannot be read: {}", error.what()),
-                              "journal");
-  } catch (const std::out_of_range& error) {
-    return engine::inputError(fmt::format("a journal entry that cannot be read: {}", error.what()),
-                              "journal");
-  }
+engine::Result<journal::Entry> journalEntry(const std::string& text) try {
+  return entryOf(json::parse(text));
+} catch (const json::exception& error) {
+  return engine::inputError(fmt::format("a journal entry that cannot be read: {}", error.what()), "journal");
+} catch (const std::out_of_range& error) {
+  return engine::inputError(fmt::format("a journal entry that cannot be read: {}", error.what()), "journal");
 }
 
 }  // namespace fettle::haptic

@@ -332,12 +332,10 @@ engine::Result<std::unique_ptr<LivePicture>> LivePicture::create(Context& contex
   }
 }
 
-engine::Status LivePicture::update(const Shown& shown) {
-  try {
-    return impl_->update(shown);
-  } catch (const std::exception& error) {
-    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
-  }
+engine::Status LivePicture::update(const Shown& shown) try {
+  return impl_->update(shown);
+} catch (const std::exception& error) {
+  return tl::unexpected(errorOf(impl_->context.name(), error.what()));
 }
 
 engine::Status LivePicture::update(const engine::Version& version) {
@@ -347,71 +345,65 @@ engine::Status LivePicture::update(const engine::Version& version) {
   return update(next);
 }
 
-engine::Result<UploadStatistics> LivePicture::uploadAll(engine::JobControl& job) {
-  try {
-    UploadStatistics all;
-    all.pending_tiles = -1;
-    while (all.pending_tiles != 0) {
-      if (job.cancelled()) return engine::cancelled();
-      (void)impl_->submissions.begin();
-      impl_->staging.release(impl_->submissions.done());
-      UploadStatistics count;
-      impl_->fields.uploadPending(count);
-      impl_->submissions.submit({});
-      if (all.pending_tiles < 0)
-        job.begin("uploading", static_cast<std::uint64_t>(count.pending_tiles));
-      else
-        job.advance(static_cast<std::uint64_t>(all.pending_tiles - count.pending_tiles));
-      all.tiles += count.tiles;
-      all.bytes += count.bytes;
-      all.changed_samples += count.changed_samples;
-      all.ms += count.ms;
-      all.pending_tiles = count.pending_tiles;
-    }
-    return all;
-  } catch (const std::exception& error) {
-    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+engine::Result<UploadStatistics> LivePicture::uploadAll(engine::JobControl& job) try {
+  UploadStatistics all;
+  all.pending_tiles = -1;
+  while (all.pending_tiles != 0) {
+    if (job.cancelled()) return engine::cancelled();
+    (void)impl_->submissions.begin();
+    impl_->staging.release(impl_->submissions.done());
+    UploadStatistics count;
+    impl_->fields.uploadPending(count);
+    impl_->submissions.submit({});
+    if (all.pending_tiles < 0)
+      job.begin("uploading", static_cast<std::uint64_t>(count.pending_tiles));
+    else
+      job.advance(static_cast<std::uint64_t>(all.pending_tiles - count.pending_tiles));
+    all.tiles += count.tiles;
+    all.bytes += count.bytes;
+    all.changed_samples += count.changed_samples;
+    all.ms += count.ms;
+    all.pending_tiles = count.pending_tiles;
   }
+  return all;
+} catch (const std::exception& error) {
+  return tl::unexpected(errorOf(impl_->context.name(), error.what()));
 }
 
-engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, LiveTarget& target) {
-  try {
-    FrameInput sized = input;
-    sized.part.reset();
-    sized.view.width = static_cast<int>(target.extent.width);
-    sized.view.height = static_cast<int>(target.extent.height);
-    return impl_->draw(sized, target);
-  } catch (const std::exception& error) {
-    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
-  }
+engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, LiveTarget& target) try {
+  FrameInput sized = input;
+  sized.part.reset();
+  sized.view.width = static_cast<int>(target.extent.width);
+  sized.view.height = static_cast<int>(target.extent.height);
+  return impl_->draw(sized, target);
+} catch (const std::exception& error) {
+  return tl::unexpected(errorOf(impl_->context.name(), error.what()));
 }
 
-engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input) {
-  try {
-    const engine::Stopwatch watch;
-    if (engine::Status ok = checkPart(input); !ok) return tl::unexpected(ok.error());
-    const vk::Extent2D extent = extentOf(input);
-    const std::uint32_t rays = input.sharpness == Sharpness::kFine ? 2 : 1;
-    const std::uint32_t most =
-        std::min<std::uint32_t>(kLargestPiece, impl_->context.limits().maxImageDimension2D) / rays;
-    if (std::min(input.view.width, input.view.height) < kSmallestPicture ||
-        std::max(extent.width, extent.height) > most)
-      return engine::inputError(
-          fmt::format("a picture of {} x {} pixels in one piece", extent.width, extent.height),
-          "picture size", fmt::format("give {} to {} pixels per side", kSmallestPicture, most));
-    if (impl_->canvas.image.extent() != extent) {
-      impl_->submissions.finish();
-      impl_->canvas.image = pictureImage(impl_->context, extent);
-    }
-    engine::Result<FrameStatistics> stats = impl_->draw(input, impl_->canvas.target());
-    if (!stats) return stats;
+engine::Result<FrameStatistics> LivePicture::drawAndWait(const FrameInput& input) try {
+  const engine::Stopwatch watch;
+  if (engine::Status ok = checkPart(input); !ok) return tl::unexpected(ok.error());
+  const vk::Extent2D extent = extentOf(input);
+  const std::uint32_t rays = input.sharpness == Sharpness::kFine ? 2 : 1;
+  const std::uint32_t most =
+      std::min<std::uint32_t>(kLargestPiece, impl_->context.limits().maxImageDimension2D) / rays;
+  if (std::min(input.view.width, input.view.height) < kSmallestPicture ||
+      std::max(extent.width, extent.height) > most)
+    return engine::inputError(
+        fmt::format("a picture of {} x {} pixels in one piece", extent.width, extent.height), "picture size",
+        fmt::format("give {} to {} pixels per side", kSmallestPicture, most));
+  if (impl_->canvas.image.extent() != extent) {
     impl_->submissions.finish();
-    stats->device_ms = impl_->submissions.lastMs();
-    stats->wait_ms = watch.ms() - stats->record_ms - stats->select_ms - stats->upload.ms;
-    return stats;
-  } catch (const std::exception& error) {
-    return tl::unexpected(errorOf(impl_->context.name(), error.what()));
+    impl_->canvas.image = pictureImage(impl_->context, extent);
   }
+  engine::Result<FrameStatistics> stats = impl_->draw(input, impl_->canvas.target());
+  if (!stats) return stats;
+  impl_->submissions.finish();
+  stats->device_ms = impl_->submissions.lastMs();
+  stats->wait_ms = watch.ms() - stats->record_ms - stats->select_ms - stats->upload.ms;
+  return stats;
+} catch (const std::exception& error) {
+  return tl::unexpected(errorOf(impl_->context.name(), error.what()));
 }
 
 engine::Result<FrameStatistics> LivePicture::draw(const FrameInput& input, Image& out) {

@@ -122,30 +122,28 @@ std::vector<SerialBoard> serialBoards(const std::string& folder) {
   return boards;
 }
 
-std::optional<OpenedPorts> SerialSource::open() noexcept {
-  try {
-    std::string path = path_;
-    if (path.empty()) {
-      const std::vector<SerialBoard> boards = serialBoards();
-      if (boards.empty()) return std::nullopt;
-      path = boards.front().path;
-    }
-    const int file = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) return std::nullopt;
-    const int twin = makeRaw(file) ? ::fcntl(file, F_DUPFD_CLOEXEC, 0) : -1;
-    if (twin < 0) {
-      ::close(file);
-      return std::nullopt;
-    }
-    OpenedPorts ports;
-    ports.reading = std::make_unique<SerialPort>(file);
-    auto writing = std::make_unique<SerialPort>(twin);
-    writing->armEmergency(path);
-    ports.writing = std::move(writing);
-    return ports;
-  } catch (const std::exception&) {
-    return std::nullopt;  // no memory, or a folder that cannot be listed: not opened; the link tries again
+std::optional<OpenedPorts> SerialSource::open() noexcept try {
+  std::string path = path_;
+  if (path.empty()) {
+    const std::vector<SerialBoard> boards = serialBoards();
+    if (boards.empty()) return std::nullopt;
+    path = boards.front().path;
   }
+  const int file = ::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (file < 0) return std::nullopt;
+  const int twin = makeRaw(file) ? ::fcntl(file, F_DUPFD_CLOEXEC, 0) : -1;
+  if (twin < 0) {
+    ::close(file);
+    return std::nullopt;
+  }
+  OpenedPorts ports;
+  ports.reading = std::make_unique<SerialPort>(file);
+  auto writing = std::make_unique<SerialPort>(twin);
+  writing->armEmergency(path);
+  ports.writing = std::move(writing);
+  return ports;
+} catch (const std::exception&) {
+  return std::nullopt;  // no memory, or a folder that cannot be listed: not opened; the link tries again
 }
 
 }  // namespace fettle::haptic
