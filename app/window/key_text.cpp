@@ -1,3 +1,5 @@
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "app/window/actions.h"
@@ -6,6 +8,33 @@ namespace fettle::app {
 
 using render::Key;
 using render::Modifiers;
+
+namespace {
+
+constexpr std::pair<Key, const char*> kKeyNames[] = {
+    {Key::kSpace, "Space"},
+    {Key::kEscape, "Esc"},
+    {Key::kEnter, "Enter"},
+    {Key::kTab, "Tab"},
+    {Key::kBackspace, "Backspace"},
+    {Key::kDelete, "Delete"},
+    {Key::kInsert, "Insert"},
+    {Key::kLeft, "Left"},
+    {Key::kRight, "Right"},
+    {Key::kUp, "Up"},
+    {Key::kDown, "Down"},
+    {Key::kHome, "Home"},
+    {Key::kEnd, "End"},
+    {Key::kPageUp, "Page up"},
+    {Key::kPageDown, "Page down"},
+    {Key::kKeypadPeriod, "keypad ."},
+    {Key::kKeypadPlus, "keypad +"},
+    {Key::kKeypadMinus, "keypad -"},
+    {Key::kKeypadEnter, "keypad Enter"},
+    {Key::kPause, "Pause"},
+};
+
+}  // namespace
 
 std::string keyText(Key key, Modifiers modifiers) {
   std::string text;
@@ -18,50 +47,9 @@ std::string keyText(Key key, Modifiers modifiers) {
     return text + fmt::format("keypad {}", code - static_cast<int>(keypadKey(0)));
   if (key >= functionKey(1) && key <= functionKey(12))
     return text + fmt::format("F{}", code - static_cast<int>(functionKey(1)) + 1);
-  switch (key) {
-    case Key::kSpace:
-      return text + "Space";
-    case Key::kEscape:
-      return text + "Esc";
-    case Key::kEnter:
-      return text + "Enter";
-    case Key::kTab:
-      return text + "Tab";
-    case Key::kBackspace:
-      return text + "Backspace";
-    case Key::kDelete:
-      return text + "Delete";
-    case Key::kInsert:
-      return text + "Insert";
-    case Key::kLeft:
-      return text + "Left";
-    case Key::kRight:
-      return text + "Right";
-    case Key::kUp:
-      return text + "Up";
-    case Key::kDown:
-      return text + "Down";
-    case Key::kHome:
-      return text + "Home";
-    case Key::kEnd:
-      return text + "End";
-    case Key::kPageUp:
-      return text + "Page up";
-    case Key::kPageDown:
-      return text + "Page down";
-    case Key::kKeypadPeriod:
-      return text + "keypad .";
-    case Key::kKeypadPlus:
-      return text + "keypad +";
-    case Key::kKeypadMinus:
-      return text + "keypad -";
-    case Key::kKeypadEnter:
-      return text + "keypad Enter";
-    case Key::kPause:
-      return text + "Pause";
-    default:
-      return text;
-  }
+  for (const auto& [named, name] : kKeyNames)
+    if (named == key) return text + name;
+  return text;
 }
 
 }  // namespace fettle::app

@@ -41,51 +41,32 @@ void noteGlfwError(int, const char* text) {
   lastGlfwError() = text != nullptr ? text : "";
 }
 
+constexpr std::pair<int, Key> kSpecialKeys[] = {
+    {GLFW_KEY_SPACE, Key::kSpace},
+    {GLFW_KEY_ESCAPE, Key::kEscape},
+    {GLFW_KEY_ENTER, Key::kEnter},
+    {GLFW_KEY_TAB, Key::kTab},
+    {GLFW_KEY_BACKSPACE, Key::kBackspace},
+    {GLFW_KEY_DELETE, Key::kDelete},
+    {GLFW_KEY_INSERT, Key::kInsert},
+    {GLFW_KEY_LEFT, Key::kLeft},
+    {GLFW_KEY_RIGHT, Key::kRight},
+    {GLFW_KEY_UP, Key::kUp},
+    {GLFW_KEY_DOWN, Key::kDown},
+    {GLFW_KEY_HOME, Key::kHome},
+    {GLFW_KEY_END, Key::kEnd},
+    {GLFW_KEY_PAGE_UP, Key::kPageUp},
+    {GLFW_KEY_PAGE_DOWN, Key::kPageDown},
+    {GLFW_KEY_KP_DECIMAL, Key::kKeypadPeriod},
+    {GLFW_KEY_KP_ADD, Key::kKeypadPlus},
+    {GLFW_KEY_KP_SUBTRACT, Key::kKeypadMinus},
+    {GLFW_KEY_KP_ENTER, Key::kKeypadEnter},
+    {GLFW_KEY_PAUSE, Key::kPause},
+};
+
 Key specialKey(int key) {
-  switch (key) {
-    case GLFW_KEY_SPACE:
-      return Key::kSpace;
-    case GLFW_KEY_ESCAPE:
-      return Key::kEscape;
-    case GLFW_KEY_ENTER:
-      return Key::kEnter;
-    case GLFW_KEY_TAB:
-      return Key::kTab;
-    case GLFW_KEY_BACKSPACE:
-      return Key::kBackspace;
-    case GLFW_KEY_DELETE:
-      return Key::kDelete;
-    case GLFW_KEY_INSERT:
-      return Key::kInsert;
-    case GLFW_KEY_LEFT:
-      return Key::kLeft;
-    case GLFW_KEY_RIGHT:
-      return Key::kRight;
-    case GLFW_KEY_UP:
-      return Key::kUp;
-    case GLFW_KEY_DOWN:
-      return Key::kDown;
-    case GLFW_KEY_HOME:
-      return Key::kHome;
-    case GLFW_KEY_END:
-      return Key::kEnd;
-    case GLFW_KEY_PAGE_UP:
-      return Key::kPageUp;
-    case GLFW_KEY_PAGE_DOWN:
-      return Key::kPageDown;
-    case GLFW_KEY_KP_DECIMAL:
-      return Key::kKeypadPeriod;
-    case GLFW_KEY_KP_ADD:
-      return Key::kKeypadPlus;
-    case GLFW_KEY_KP_SUBTRACT:
-      return Key::kKeypadMinus;
-    case GLFW_KEY_KP_ENTER:
-      return Key::kKeypadEnter;
-    case GLFW_KEY_PAUSE:
-      return Key::kPause;
-    default:
-      break;
-  }
+  for (const auto& [code, special] : kSpecialKeys)
+    if (code == key) return special;
   const auto offset = [](Key first, int by) { return static_cast<Key>(static_cast<int>(first) + by); };
   if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12) return offset(Key::kF1, key - GLFW_KEY_F1);
   if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9) return offset(Key::kKeypad0, key - GLFW_KEY_KP_0);

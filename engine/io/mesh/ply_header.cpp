@@ -1,5 +1,6 @@
 #include "engine/io/mesh/ply_header.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <string_view>
@@ -16,21 +17,34 @@ namespace {
 
 constexpr int kMostPlyHeaderLines = 1000;
 
+template <class T>
+double load(const char* bytes, bool swap) noexcept {
+  std::array<char, sizeof(T)> raw;
+  for (std::size_t i = 0; i < sizeof(T); ++i) raw[i] = bytes[swap ? sizeof(T) - 1 - i : i];
+  return static_cast<double>(std::bit_cast<T>(raw));
+}
+
+struct TypeRow {
+  PlyType type;
+  std::string_view old_name, new_name;
+  std::size_t bytes;
+  double (*load)(const char* bytes, bool swap) noexcept;
+};
+constexpr TypeRow kTypes[] = {
+    {PlyType::kInt8, "char", "int8", 1, load<std::int8_t>},
+    {PlyType::kUint8, "uchar", "uint8", 1, load<std::uint8_t>},
+    {PlyType::kInt16, "short", "int16", 2, load<std::int16_t>},
+    {PlyType::kUint16, "ushort", "uint16", 2, load<std::uint16_t>},
+    {PlyType::kInt32, "int", "int32", 4, load<std::int32_t>},
+    {PlyType::kUint32, "uint", "uint32", 4, load<std::uint32_t>},
+    {PlyType::kFloat32, "float", "float32", 4, load<float>},
+    {PlyType::kFloat64, "double", "float64", 8, load<double>},
+};
+static_assert(std::ranges::is_sorted(kTypes, {}, &TypeRow::type));  // a type is the index of its row
+
 std::optional<PlyType> typeOf(std::string_view name) {
-  struct NamedType {
-    std::string_view old_name, new_name;
-    PlyType type;
-  };
-  static constexpr std::array<NamedType, 8> kTypeNames{{{"char", "int8", PlyType::kInt8},
-                                                        {"uchar", "uint8", PlyType::kUint8},
-                                                        {"short", "int16", PlyType::kInt16},
-                                                        {"ushort", "uint16", PlyType::kUint16},
-                                                        {"int", "int32", PlyType::kInt32},
-                                                        {"uint", "uint32", PlyType::kUint32},
-                                                        {"float", "float32", PlyType::kFloat32},
-                                                        {"double", "float64", PlyType::kFloat64}}};
-  for (const NamedType& named : kTypeNames)
-    if (name == named.old_name || name == named.new_name) return named.type;
+  for (const TypeRow& row : kTypes)
+    if (name == row.old_name || name == row.new_name) return row.type;
   return std::nullopt;
 }
 
@@ -42,13 +56,6 @@ std::vector<std::string_view> wordsOf(std::string_view line) {
     at = line.find_first_not_of(" \t", end);
   }
   return words;
-}
-
-template <class T>
-T load(const char* bytes, bool swap) noexcept {
-  std::array<char, sizeof(T)> raw;
-  for (std::size_t i = 0; i < sizeof(T); ++i) raw[i] = bytes[swap ? sizeof(T) - 1 - i : i];
-  return std::bit_cast<T>(raw);
 }
 
 // "obj_info num_cols 512": texts of specific programs. Other lines are ignored.
@@ -99,31 +106,12 @@ bool takeLine(const std::vector<std::string_view>& words, PlyHeader& header, boo
 }  // namespace
 
 std::size_t bytesOf(PlyType type) noexcept {
-  static constexpr std::array<std::size_t, 8> kBytes{1, 1, 2, 2, 4, 4, 4, 8};
-  return kBytes[static_cast<std::size_t>(type)];
+  return kTypes[static_cast<std::size_t>(type)].bytes;
 }
 
 double decodePly(const char* bytes, PlyType type, PlyEncoding encoding) noexcept {
   const bool swap = (encoding == PlyEncoding::kLittleEndian) != (std::endian::native == std::endian::little);
-  switch (type) {
-    case PlyType::kInt8:
-      return load<std::int8_t>(bytes, swap);
-    case PlyType::kUint8:
-      return load<std::uint8_t>(bytes, swap);
-    case PlyType::kInt16:
-      return load<std::int16_t>(bytes, swap);
-    case PlyType::kUint16:
-      return load<std::uint16_t>(bytes, swap);
-    case PlyType::kInt32:
-      return load<std::int32_t>(bytes, swap);
-    case PlyType::kUint32:
-      return load<std::uint32_t>(bytes, swap);
-    case PlyType::kFloat32:
-      return static_cast<double>(load<float>(bytes, swap));
-    case PlyType::kFloat64:
-      return load<double>(bytes, swap);
-  }
-  return 0.0;
+  return kTypes[static_cast<std::size_t>(type)].load(bytes, swap);
 }
 
 std::optional<std::size_t> PlyElement::stride() const noexcept {

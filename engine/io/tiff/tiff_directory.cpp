@@ -28,6 +28,22 @@ enum Tag : std::uint64_t {
   kTileBytes = 325,
 };
 
+// The numbers of a directory that are taken as they are.
+struct Number {
+  Tag tag;
+  std::uint64_t TiffDirectory::*member;
+};
+constexpr Number kNumbers[] = {
+    {kWidth, &TiffDirectory::width},
+    {kHeight, &TiffDirectory::height},
+    {kBits, &TiffDirectory::bits},
+    {kCompression, &TiffDirectory::compression},
+    {kPhotometric, &TiffDirectory::photometric},
+    {kSamplesPerPixel, &TiffDirectory::samples_per_pixel},
+    {kPredictor, &TiffDirectory::predictor},
+    {kResolutionUnit, &TiffDirectory::resolution_unit},
+};
+
 struct Entry {
   std::uint64_t tag = 0;
   std::uint64_t type = 0;
@@ -35,32 +51,12 @@ struct Entry {
   std::uint64_t at = 0;  // offset of its values in the file
 };
 
-// Bytes of one value of a type; 0 for types outside the specifications, which readers must skip.
+// Bytes of one value of a type; 0 for types outside the specifications, which readers must skip. From type 1 on: BYTE,
+// ASCII, SHORT, LONG, RATIONAL, SBYTE, UNDEFINED, SSHORT, SLONG, SRATIONAL, FLOAT, DOUBLE, IFD; from 16 on: LONG8, SLONG8,
+// IFD8.
 std::size_t bytesOf(std::uint64_t type) {
-  switch (type) {
-    case 1:  // BYTE
-    case 2:  // ASCII
-    case 6:  // SBYTE
-    case 7:  // UNDEFINED
-      return 1;
-    case 3:  // SHORT
-    case 8:  // SSHORT
-      return 2;
-    case 4:   // LONG
-    case 9:   // SLONG
-    case 11:  // FLOAT
-    case 13:  // IFD
-      return 4;
-    case 5:   // RATIONAL
-    case 10:  // SRATIONAL
-    case 12:  // DOUBLE
-    case 16:  // LONG8
-    case 17:  // SLONG8
-    case 18:  // IFD8
-      return 8;
-    default:
-      return 0;
-  }
+  constexpr std::array<std::size_t, 19> kBytes{0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8};
+  return type < kBytes.size() ? kBytes[type] : 0;
 }
 
 bool isUnsignedInteger(std::uint64_t type) {
@@ -203,48 +199,12 @@ Result<TiffDirectory> readTiffDirectory(const InputFile& file) {
       one.count = std::min<std::uint64_t>(one.count, 1);
       reader.visit(one, [&](std::uint64_t, std::uint64_t value) { into = value; });
     };
-    switch (entry->tag) {
-      case kWidth:
-        scalar(directory.width);
-        break;
-      case kHeight:
-        scalar(directory.height);
-        break;
-      case kBits:
-        scalar(directory.bits);
-        break;
-      case kCompression:
-        scalar(directory.compression);
-        break;
-      case kPhotometric:
-        scalar(directory.photometric);
-        break;
-      case kSamplesPerPixel:
-        scalar(directory.samples_per_pixel);
-        break;
-      case kPredictor:
-        scalar(directory.predictor);
-        break;
-      case kResolutionUnit:
-        scalar(directory.resolution_unit);
-        break;
-      case kXResolution:
-        directory.x_per_unit = reader.rational(*entry);
-        break;
-      case kYResolution:
-        directory.y_per_unit = reader.rational(*entry);
-        break;
-      case kStripOffsets:
-      case kTileOffsets:
-        offsets = entry;
-        break;
-      case kStripBytes:
-      case kTileBytes:
-        sizes = entry;
-        break;
-      default:
-        break;
-    }
+    for (const Number& number : kNumbers)
+      if (entry->tag == number.tag) scalar(directory.*number.member);
+    if (entry->tag == kXResolution) directory.x_per_unit = reader.rational(*entry);
+    if (entry->tag == kYResolution) directory.y_per_unit = reader.rational(*entry);
+    if (entry->tag == kStripOffsets || entry->tag == kTileOffsets) offsets = entry;
+    if (entry->tag == kStripBytes || entry->tag == kTileBytes) sizes = entry;
   }
   // The next directory may hold the mask of the samples; 0: there is none.
   const auto next = reader.number(first + *count * entry_bytes, big_tiff ? 8 : 4);
