@@ -65,6 +65,23 @@ std::int64_t checksumOfRow(const Values&... values) {
   return row.value();
 }
 
+// Bytes that are no text.
+struct Blob {
+  std::string_view bytes;
+};
+
+template <class Value>
+void bindOne(Statement& statement, int place, const Value& value) {
+  if constexpr (std::is_integral_v<Value>)
+    statement.bind(place, value);
+  else if constexpr (std::is_floating_point_v<Value>)
+    statement.bindReal(place, value);
+  else if constexpr (std::is_same_v<Value, Blob>)
+    statement.bindBlob(place, value.bytes);
+  else
+    statement.bindText(place, value);
+}
+
 std::int64_t checksumOf(const HeadRow& h) {
   return checksumOfRow(h.state, h.last_state, h.next_tile, h.journal, h.notes);
 }
@@ -103,6 +120,15 @@ Result<Statement*> SessionTables::cached(const char* sql) {
   return statements_.back().second.get();
 }
 
+template <class... Values>
+Status SessionTables::run(const char* sql, const Values&... values) {
+  const Result<Statement*> s = cached(sql);
+  if (!s) return tl::unexpected(s.error());
+  int place = 0;
+  (bindOne(**s, ++place, values), ...);
+  return (*s)->run();
+}
+
 Status SessionTables::create() {
   return database_->execute(
       fmt::format("{} PRAGMA application_id={}; PRAGMA user_version=1;", kSchema, kSessionApplicationId));
@@ -125,11 +151,8 @@ Status SessionTables::recognise() {
 }
 
 Status SessionTables::writeHead(const HeadRow& head) {
-  const Result<Statement*> s = cached("INSERT OR REPLACE INTO head VALUES(1,?,?,?,?,?,?)");
-  if (!s) return tl::unexpected(s.error());
-  (*s)->bind(1, head.state).bind(2, head.last_state).bind(3, head.next_tile).bind(4, head.journal);
-  (*s)->bind(5, head.notes).bind(6, checksumOf(head));
-  return (*s)->run();
+  return run("INSERT OR REPLACE INTO head VALUES(1,?,?,?,?,?,?)", head.state, head.last_state, head.next_tile,
+             head.journal, head.notes, checksumOf(head));
 }
 
 Result<HeadRow> SessionTables::readHead() {
@@ -149,14 +172,9 @@ Result<HeadRow> SessionTables::readHead() {
 }
 
 Status SessionTables::writeGrid(const Grid& g) {
-  const Result<Statement*> s = cached("INSERT INTO grid VALUES(1,?,?,?,?,?,?,?,?,?,?,?,?,?)");
-  if (!s) return tl::unexpected(s.error());
-  (*s)->bind(1, g.width).bind(2, g.height).bindReal(3, g.spacing_x).bindReal(4, g.spacing_y);
-  (*s)->bindReal(5, g.origin_x).bindReal(6, g.origin_y);
-  (*s)->bindText(7, g.lateral_unit.name).bindReal(8, g.lateral_unit.mm);
-  (*s)->bindText(9, g.height_unit.name).bindReal(10, g.height_unit.mm);
-  (*s)->bindText(11, g.crs_wkt).bindReal(12, g.height_per_count).bind(13, checksumOf(g));
-  return (*s)->run();
+  return run("INSERT INTO grid VALUES(1,?,?,?,?,?,?,?,?,?,?,?,?,?)", g.width, g.height, g.spacing_x,
+             g.spacing_y, g.origin_x, g.origin_y, g.lateral_unit.name, g.lateral_unit.mm, g.height_unit.name,
+             g.height_unit.mm, g.crs_wkt, g.height_per_count, checksumOf(g));
 }
 
 Result<Grid> SessionTables::readGrid() {
@@ -191,14 +209,9 @@ Result<Grid> SessionTables::readGrid() {
 }
 
 Status SessionTables::insertStep(const StepRow& r) {
-  const Result<Statement*> s = cached("INSERT INTO step VALUES(?,?,?,?,?,?,?,?,?,?,?,?)");
-  if (!s) return tl::unexpected(s.error());
-  (*s)->bind(1, r.number).bindText(2, r.info.name).bindText(3, stepKindName(r.info.kind));
-  (*s)->bind(4, msOf(r.info.time)).bind(5, r.sign > 0 ? 1 : -1);
-  (*s)->bind(6, r.info.rect.column).bind(7, r.info.rect.row);
-  (*s)->bind(8, r.info.rect.columns).bind(9, r.info.rect.rows);
-  (*s)->bind(10, r.first_tile).bind(11, r.tiles).bind(12, checksumOf(r));
-  return (*s)->run();
+  return run("INSERT INTO step VALUES(?,?,?,?,?,?,?,?,?,?,?,?)", r.number, r.info.name,
+             stepKindName(r.info.kind), msOf(r.info.time), r.sign > 0 ? 1 : -1, r.info.rect.column,
+             r.info.rect.row, r.info.rect.columns, r.info.rect.rows, r.first_tile, r.tiles, checksumOf(r));
 }
 
 Result<std::vector<StepRow>> SessionTables::readSteps(const HeadRow& head) {
@@ -237,31 +250,21 @@ Result<std::vector<StepRow>> SessionTables::readSteps(const HeadRow& head) {
 Status SessionTables::truncateSteps(std::int64_t number) {
   const Result<bool> has_lines = hasLines();
   if (!has_lines) return tl::unexpected(has_lines.error());
-  if (*has_lines) {
-    const Result<Statement*> lines = cached("DELETE FROM lines WHERE step>?");
-    if (!lines) return tl::unexpected(lines.error());
-    (*lines)->bind(1, number);
-    if (Status status = (*lines)->run(); !status) return status;
-  }
+  if (*has_lines)
+    if (Status status = run("DELETE FROM lines WHERE step>?", number); !status) return status;
   // Tiles lie in the order of their steps, so theirs are the last ids: a range of the table, no search. Only
   // those of a scan that was embedded later lie among them or after them.
-  const Result<Statement*> tiles =
-      cached("DELETE FROM tile WHERE id>=(SELECT min(first_tile) FROM step WHERE number>?1) AND step>?1");
-  if (!tiles) return tl::unexpected(tiles.error());
-  (*tiles)->bind(1, number);
-  if (Status status = (*tiles)->run(); !status) return status;
-  const Result<Statement*> steps = cached("DELETE FROM step WHERE number>?");
-  if (!steps) return tl::unexpected(steps.error());
-  (*steps)->bind(1, number);
-  return (*steps)->run();
+  if (Status status =
+          run("DELETE FROM tile WHERE id>=(SELECT min(first_tile) FROM step WHERE number>?1) AND step>?1",
+              number);
+      !status)
+    return status;
+  return run("DELETE FROM step WHERE number>?", number);
 }
 
 Status SessionTables::insertTile(const TilePlace& place, std::string_view data) {
-  const Result<Statement*> s = cached("INSERT INTO tile VALUES(?,?,?,?,?)");
-  if (!s) return tl::unexpected(s.error());
-  (*s)->bind(1, place.id).bind(2, place.step).bind(3, place.position);
-  (*s)->bind(4, checksumOf(place, data)).bindBlob(5, data);
-  return (*s)->run();
+  return run("INSERT INTO tile VALUES(?,?,?,?,?)", place.id, place.step, place.position,
+             checksumOf(place, data), Blob{data});
 }
 
 Result<std::vector<TilePlace>> SessionTables::readPlaces(const std::vector<StepRow>& steps) {
@@ -320,11 +323,8 @@ Status SessionTables::insertLines(std::int64_t step, std::string_view packed) {
   if (!has_lines) return tl::unexpected(has_lines.error());
   if (!*has_lines)
     if (Status status = database_->execute(kLinesSchema); !status) return status;
-  const Result<Statement*> s = cached("INSERT INTO lines VALUES(?,?,?)");
-  if (!s) return tl::unexpected(s.error());
   const std::string data = packBytes(packed);
-  (*s)->bind(1, step).bind(2, checksumOfRow(step, data)).bindBlob(3, data);
-  return (*s)->run();
+  return run("INSERT INTO lines VALUES(?,?,?)", step, checksumOfRow(step, data), Blob{data});
 }
 
 Result<std::vector<EdgeLines>> SessionTables::readLines(const std::vector<StepRow>& steps) {
@@ -364,12 +364,9 @@ Result<std::vector<EdgeLines>> SessionTables::readLines(const std::vector<StepRo
 }
 
 Status SessionTables::appendJournal(std::int64_t id, const JournalEntry& entry) {
-  const Result<Statement*> s = cached("INSERT INTO journal VALUES(?,?,?,?,?,?)");
-  if (!s) return tl::unexpected(s.error());
   const std::string packed = packBytes(entry.data);
-  (*s)->bind(1, id).bind(2, entry.state).bind(3, msOf(entry.time));
-  (*s)->bind(4, checksumOf(id, entry, packed)).bindText(5, entry.action).bindBlob(6, packed);
-  return (*s)->run();
+  return run("INSERT INTO journal VALUES(?,?,?,?,?,?)", id, entry.state, msOf(entry.time),
+             checksumOf(id, entry, packed), entry.action, Blob{packed});
 }
 
 Result<std::vector<JournalEntry>> SessionTables::readJournal(const HeadRow& head) {
@@ -404,10 +401,7 @@ Status SessionTables::writeNote(const std::string& key, const std::string& text,
   if (!row) return tl::unexpected(row.error());
   is_new = !*row;
   (*find)->reset();
-  const Result<Statement*> s = cached("INSERT OR REPLACE INTO note VALUES(?,?,?)");
-  if (!s) return tl::unexpected(s.error());
-  (*s)->bindText(1, key).bind(2, checksumOfRow(key, text)).bindText(3, text);
-  return (*s)->run();
+  return run("INSERT OR REPLACE INTO note VALUES(?,?,?)", key, checksumOfRow(key, text), text);
 }
 
 Result<SessionNotes> SessionTables::readNotes(const HeadRow& head) {

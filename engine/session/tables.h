@@ -98,6 +98,9 @@ class SessionTables {
  private:
   // Prepared at first use and kept.
   [[nodiscard]] Result<Statement*> cached(const char* sql);
+  // Runs a statement without rows with these values in its places.
+  template <class... Values>
+  [[nodiscard]] Status run(const char* sql, const Values&... values);
   // Whether there is a table of edge lines: made when the first are stored.
   [[nodiscard]] Result<bool> hasLines();
 
