@@ -18,11 +18,7 @@
 
 namespace fettle::bench {
 
-namespace {
-
 constexpr std::int64_t kStrokeTicks = 1000;
-
-}  // namespace
 
 engine::Result<CommitTimes> commitTimes(const engine::Version& field, int strokes, engine::JobControl& job) {
   const auto folder = TemporaryFolder::create(engine::storePolicy().folder);

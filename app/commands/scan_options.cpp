@@ -10,11 +10,7 @@
 
 namespace fettle::app {
 
-namespace {
-
 constexpr const char* kReading = "Reading the scan";
-
-}  // namespace
 
 void addStoreOption(Command command) {
   command

@@ -9,8 +9,6 @@ namespace fettle::app {
 using render::Key;
 using render::Modifiers;
 
-namespace {
-
 constexpr std::pair<Key, const char*> kKeyNames[] = {
     {Key::kSpace, "Space"},
     {Key::kEscape, "Esc"},
@@ -33,8 +31,6 @@ constexpr std::pair<Key, const char*> kKeyNames[] = {
     {Key::kKeypadEnter, "keypad Enter"},
     {Key::kPause, "Pause"},
 };
-
-}  // namespace
 
 std::string keyText(Key key, Modifiers modifiers) {
   std::string text;

@@ -9,16 +9,12 @@
 #include "engine/formats/formats.h"
 
 namespace fettle::app {
-namespace {
-
 // Memory of undo; older steps are read from the session on demand.
 constexpr std::size_t kHistoryBytes = std::size_t{1} << 30;
 constexpr std::int64_t kCoarseSamples = std::int64_t{1} << 20;
 // Reading the rest uses all cores and, page by page, the lock under which the driver allocates memory:
 // drawing the coarse picture would wait for it. So reading waits for that picture, at most this long.
 constexpr std::chrono::milliseconds kShownFirst{500};
-
-}  // namespace
 
 Background<Document>::Work Opening::work(const std::string& path, Recovery recovery,
                                          const ScanOptions& reading, std::shared_ptr<CoarseSlot> slot,

@@ -87,12 +87,8 @@ void PlaceOverlay::append(const engine::Version& field, const PlaceTool& places,
   overlays.lines.insert(overlays.lines.end(), pieces_.begin(), pieces_.end());
 }
 
-namespace {
-
 constexpr std::size_t kForces = 240;
 constexpr double kLargestForce_px = 60.0;  // the arrow of the largest force
-
-}  // namespace
 
 bool StylusOverlay::moved(const haptic::LoopState& state, double mm_per_pixel) const {
   return glm::length(state.endpoint_mm - state_.endpoint_mm) > mm_per_pixel ||

@@ -5,11 +5,8 @@
 #include <utility>
 
 namespace fettle::app {
-namespace {
 
 constexpr std::chrono::milliseconds kPause{20};
-
-}  // namespace
 
 engine::Result<AdoptionMailbox::Answer> AdoptionMailbox::ask(Question question, engine::Version given) {
   std::unique_lock lock(mutex_);

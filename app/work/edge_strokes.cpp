@@ -7,11 +7,7 @@
 
 namespace fettle::app {
 
-namespace {
-
 constexpr double kMeets = 3.0, kLeastClosed = 30.0;  // [samples]
-
-}  // namespace
 
 bool isClosedStroke(std::span<const glm::dvec2> points) {
   if (points.empty()) return false;

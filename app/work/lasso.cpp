@@ -6,13 +6,10 @@
 #include <glm/geometric.hpp>
 
 namespace fettle::app {
-namespace {
 
 constexpr double kPiece_px = 8.0;     // of a straight side, between two points located on the surface
 constexpr double kApart_px = 2.0;     // between corners of a line drawn by hand
 constexpr double kSmallest_px = 3.0;  // across: less is a click
-
-}  // namespace
 
 void Lasso::begin(Shape shape, const glm::dvec2& cross) {
   active_ = true;

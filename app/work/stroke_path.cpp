@@ -6,11 +6,7 @@
 
 namespace fettle::app {
 
-namespace {
-
 constexpr double kLeastApart = 0.25, kGap = 4.0;  // [samples]
-
-}  // namespace
 
 void StrokePath::add(std::uint64_t tick, const haptic::TickRecord& record) {
   const haptic::StrokeSample& input = record.input;

@@ -3,12 +3,9 @@
 #include <algorithm>
 
 namespace fettle::app {
-namespace {
 
 constexpr std::int32_t kSmallest = 4;  // tiles along a square
 constexpr std::int32_t kMostAlong = 20;
-
-}  // namespace
 
 std::vector<engine::TileRange> visiblePart(const engine::Grid& grid, std::span<const Seen> seen,
                                            const Seen& middle) {

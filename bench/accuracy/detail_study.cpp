@@ -10,7 +10,6 @@
 #include "render/trials/detail_trial.h"
 
 namespace fettle::bench {
-namespace {
 
 constexpr std::int64_t kAllVertices = std::int64_t{1} << 24;
 constexpr render::Sharpness kFull = render::Sharpness::kFull;
@@ -26,8 +25,6 @@ constexpr trials::DetailChoice kDetailChoices[] = {
     {"64 k vertices", 1.0, 65536, kFull},
     {"64 k vertices, half as sharp", 1.0, 65536, render::Sharpness::kHalf},
 };
-
-}  // namespace
 
 engine::Result<Study> detailStudy(const AccuracyOptions& options, engine::JobControl& job) {
   Study study{"detail",

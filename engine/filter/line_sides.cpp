@@ -7,8 +7,6 @@
 
 namespace fettle::engine {
 
-namespace {
-
 constexpr int kReach = 2;
 constexpr int kSide = 2 * kReach + 1;
 constexpr int kRoundsOfSides = 3;
@@ -23,8 +21,6 @@ constexpr float kCertain = 2.0F,
                 kLeastCertain = 0.05F;  // farther from it a sample is surely on its own side,
 constexpr float kKnown = 0.42F;         // or, where the line's deviation is no larger [samples],
 constexpr int kStandsOut = 3;  // if so many more samples around it are on its own side than on the other
-
-}  // namespace
 
 // The samples within 2 of one: which of them are on its side, which on the other.
 struct LineSides::Around {

@@ -16,11 +16,7 @@
 
 namespace fettle::engine {
 
-namespace {
-
 constexpr auto kPollInterval = std::chrono::milliseconds(20);  // of a waiting call, for a cancel
-
-}  // namespace
 
 /// Two locks, always taken in this order: `file_lock_` for the file, held while it is written or used
 /// otherwise; `queue_lock_` for all data of the main thread's calls, held for a few instructions at a time.

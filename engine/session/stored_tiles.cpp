@@ -85,14 +85,10 @@ void finishTile(Tile& tile) noexcept {
       std::count_if(tile.samples.begin(), tile.samples.end(), [](float v) { return std::isnan(v); }));
 }
 
-namespace {
-
 // Packed at once and then inserted: large enough to use all threads, small enough for memory (2 MB) and to
 // cancel soon.
 constexpr std::size_t kTilesWritten = 128;
 constexpr std::size_t kParallelFrom = 16;
-
-}  // namespace
 
 std::vector<TileToStore> allTiles(const Version& version) {
   const FieldReader reader = version.reader();

@@ -5,8 +5,6 @@
 
 namespace fettle::haptic {
 
-namespace {
-
 constexpr std::array kDevices{
     KnownDevice{"touch", 35.0, 3.3, 0.4, 0.004},
     KnownDevice{"omni", 35.0, 3.3, 0.7, 0.005},
@@ -16,8 +14,6 @@ constexpr std::array kDevices{
     KnownDevice{"delta.3", 150.0, 20.0, 5.0, 0.030},
     KnownDevice{"woodenhaptics", 100.0, 5.0, 1.0, 0.008},
 };
-
-}  // namespace
 
 std::span<const KnownDevice> knownDevices() noexcept {
   return kDevices;

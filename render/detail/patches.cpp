@@ -12,15 +12,12 @@
 #include <glm/vec4.hpp>
 
 namespace fettle::render {
-namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // Reserves two seams or walls per patch: fewer exist on average, since only the finer side of two patches has
 // the seam, and four finer patches share the edges of a coarser one.
 constexpr std::int64_t kVerticesPerPatch = gpu::kPatchVertices + 2 * gpu::kSeamVertices;
-
-}  // namespace
 
 engine::HeightBounds heightsWithin(const engine::FieldReader& reader, glm::ivec2 first, glm::ivec2 last) {
   int level = 0;

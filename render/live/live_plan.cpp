@@ -126,16 +126,12 @@ std::vector<gpu::Line> linesOf(const std::vector<OverlayLine>& lines, OverlayLin
   return out;
 }
 
-namespace {
-
 // Linear light; distinguishable on viridis, grey and blue - red also by colour-blind users (Okabe and Ito
 // 2008).
 constexpr glm::vec3 kEndpoint{0.90F, 0.35F, 0.0F};
 constexpr glm::vec3 kProxy{1.0F, 1.0F, 1.0F};
 constexpr glm::vec3 kTip{0.85F, 0.85F, 0.85F};
 constexpr glm::vec3 kForce{0.88F, 0.78F, 0.05F};
-
-}  // namespace
 
 void appendStylus(const StylusState& state, double mm_per_newton, std::vector<OverlayLine>& out) {
   out.push_back({state.endpoint_mm, state.endpoint_mm, kEndpoint, 1.0F, 9.0F});

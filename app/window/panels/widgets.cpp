@@ -6,11 +6,8 @@
 #include <fmt/format.h>
 
 namespace fettle::app {
-namespace {
 
 constexpr float kNames = 0.36F;  // of a panel's width, for the names of fields and figures
-
-}  // namespace
 
 void figure(const char* name, const std::string& value) {
   const float left = ImGui::GetCursorPosX(), width = ImGui::GetContentRegionAvail().x;

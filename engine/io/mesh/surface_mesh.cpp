@@ -6,12 +6,8 @@
 
 namespace fettle::engine {
 
-namespace {
-
 constexpr std::int64_t kBlock = 256;  // cells per side, a power of two
 constexpr float kNever = std::numeric_limits<float>::infinity();
-
-}  // namespace
 
 Result<SurfaceMesh> SurfaceMesh::create(const Version& field, std::optional<double> max_error,
                                         JobControl& job) {

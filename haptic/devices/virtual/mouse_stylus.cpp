@@ -9,8 +9,6 @@
 
 namespace fettle::haptic {
 
-namespace {
-
 // Requests that may wait: a thousand cursor positions per second for eight seconds in which the loop does not
 // run.
 constexpr std::size_t kRequests = 8192;
@@ -22,8 +20,6 @@ constexpr std::size_t kSpreadTicks = 8;
 constexpr double kArrived = 0.05;
 
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 MouseStylus::MouseStylus(const MouseFeel& feel) : feel_(feel), requests_(kRequests) {
   profile_.name = "mouse";
