@@ -5,9 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/live/keys.h"
+#include "app/live/live_terminal.h"
 #include "app/live/session_log.h"
-#include "app/live/status_line.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"

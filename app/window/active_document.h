@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "app/window/feedback.h"
+#include "app/window/questions.h"
 #include "app/work/loop_client.h"
 #include "app/work/session_keeper.h"
 

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "app/work/notice.h"
 #include "engine/base/error.h"
 #include "haptic/devices/device.h"
 #include "haptic/devices/enumerate.h"
@@ -17,6 +16,12 @@
 #include "haptic/scene/scene.h"
 
 namespace fettle::app {
+
+/// Something the user should read.
+struct Notice {
+  std::string what;
+  std::string remedy;
+};
 
 struct LoopClientOptions {
   std::string device = "mouse";  ///< a word of haptic::openDevice

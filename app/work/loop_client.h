@@ -11,7 +11,6 @@
 #include "app/work/adoption_mailbox.h"
 #include "app/work/device_loop.h"
 #include "app/work/edit_latency.h"
-#include "app/work/notice.h"
 #include "app/work/step_keeper.h"
 #include "app/work/stroke_path.h"
 #include "engine/base/error.h"

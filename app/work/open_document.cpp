@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "app/work/user_folder.h"
+#include "app/work/recent_files.h"
 #include "engine/formats/formats.h"
 #include "engine/session/checksum.h"
 

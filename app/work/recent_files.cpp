@@ -1,12 +1,27 @@
 #include "app/work/recent_files.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-
-#include "app/work/user_folder.h"
+#include <system_error>
 
 namespace fettle::app {
+
+std::string userFolder(const char* variable, const char* under_home) {
+  namespace fs = std::filesystem;
+  fs::path folder;
+  if (const char* named = std::getenv(variable); named != nullptr && *named != '\0')
+    folder = named;
+  else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+    folder = fs::path(home) / under_home;
+  else
+    return {};
+  folder /= "fettle";
+  std::error_code error;
+  fs::create_directories(folder, error);
+  return error ? std::string() : folder.string();
+}
 
 std::string settingsFolder() {
   return userFolder("XDG_CONFIG_HOME", ".config");

@@ -5,6 +5,10 @@
 
 namespace fettle::app {
 
+/// The folder "fettle" in that of the environment's `variable`, else in `under_home` of the user's home (XDG Base
+/// Directory Specification); created if necessary. Empty when it cannot be created.
+[[nodiscard]] std::string userFolder(const char* variable, const char* under_home);
+
 /// Folder for the user's settings: $XDG_CONFIG_HOME/fettle, else ~/.config/fettle; created if necessary.
 /// Empty when it cannot be created: then nothing is stored.
 [[nodiscard]] std::string settingsFolder();

@@ -4,9 +4,15 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/glm.hpp>
 #include <glm/vec3.hpp>
 
 namespace fettle::haptic {
+
+/// Whether every part of a vector is a number.
+[[nodiscard]] inline bool finite(const glm::dvec3& v) noexcept {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// A force [N] cut to the limit [N] along its own direction.
 struct ClampedForce {

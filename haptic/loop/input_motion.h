@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "haptic/base/finite.h"
+#include "haptic/base/force.h"
 #include "haptic/devices/device.h"
 
 namespace fettle::haptic {

@@ -98,7 +98,7 @@ static_assert(std::atomic<std::uint64_t>::is_always_lock_free);
 /// Adoption of a job's result during a stroke, in a bounded tick:
 ///   1. main asks for a snapshot S and gets it within a tick; the loop starts a list of tiles edited since;
 ///   2. a worker makes the new version M: S with the result's tiles inserted, O(changed tiles),
-///      off the loop (mergeResult in adoption.h);
+///      off the loop (mergeResult in adopt_filtered.h);
 ///   3. the loop takes over M's root, O(1), and puts back the tiles of its list whose memory is no longer
 ///      S's: at most EditsSince::kMostTiles, half a microsecond each (measured: 29 us for 64). Nothing else can differ,
 ///      so nothing is lost.

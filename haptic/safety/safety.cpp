@@ -6,7 +6,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "haptic/base/finite.h"
 #include "haptic/base/force.h"
 
 namespace fettle::haptic {

@@ -1,6 +1,5 @@
 #include "haptic/tick/tick.h"
 
-#include "haptic/base/finite.h"
 #include "haptic/base/force.h"
 
 namespace fettle::haptic {

@@ -2,15 +2,50 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdint>
+#include <span>
 
 #include "engine/filter/tgv_schedule.h"
-#include "render/vulkan/compute_pipeline.h"
+#include "render/vulkan/context.h"
 #include "tgv_steps.comp.h"
 #include "tgv_weights.comp.h"
 
 namespace fettle::render {
 
 namespace {
+
+using Stage2 = vk::PipelineStageFlagBits2;
+using Access2 = vk::AccessFlagBits2;
+
+void order(const vk::raii::CommandBuffer& commands, const vk::MemoryBarrier2& barrier) {
+  vk::DependencyInfo dependency;
+  dependency.setMemoryBarriers(barrier);
+  commands.pipelineBarrier2(dependency);
+}
+
+// Throws vk::SystemError. `words`: SPIR-V of a compute shader.
+vk::raii::Pipeline makeComputePipeline(const Context& context, std::span<const std::uint32_t> words,
+                                       vk::PipelineLayout layout) {
+  vk::ShaderModuleCreateInfo code;
+  const vk::raii::ShaderModule module(context.device(),
+                                      code.setCodeSize(words.size_bytes()).setPCode(words.data()));
+  vk::ComputePipelineCreateInfo info;
+  info.setStage({{}, vk::ShaderStageFlagBits::eCompute, *module, "main"}).setLayout(layout);
+  return {context.device(), nullptr, info};
+}
+
+// What copies and compute shaders wrote before is seen by those after.
+void orderCompute(const vk::raii::CommandBuffer& commands) {
+  const vk::PipelineStageFlags2 stages = Stage2::eComputeShader | Stage2::eTransfer;
+  order(commands,
+        {stages, Access2::eShaderWrite | Access2::eTransferWrite, stages,
+         Access2::eShaderRead | Access2::eShaderWrite | Access2::eTransferRead | Access2::eTransferWrite});
+}
+
+// What copies wrote before is seen by the host when the commands are completed.
+void orderForHost(const vk::raii::CommandBuffer& commands) {
+  order(commands, {Stage2::eTransfer, Access2::eTransferWrite, Stage2::eHost, Access2::eHostRead});
+}
 
 namespace tgv = engine::tgv;
 using StorageUsage = vk::BufferUsageFlagBits;

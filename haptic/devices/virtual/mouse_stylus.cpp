@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "engine/base/stopwatch.h"
-#include "haptic/base/finite.h"
+#include "haptic/base/force.h"
 
 namespace fettle::haptic {
 

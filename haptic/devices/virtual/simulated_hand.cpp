@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/base/stopwatch.h"
-#include "haptic/base/finite.h"
+#include "haptic/base/force.h"
 
 namespace fettle::haptic {
 

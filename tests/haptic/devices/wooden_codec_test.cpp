@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "haptic/devices/wooden/encoder_unwrap.h"
+#include "haptic/devices/wooden/wooden_calibration.h"
 
 namespace fettle::haptic {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/field/difference.h"
-#include "haptic/loop/adoption.h"
+#include "haptic/loop/adopt_filtered.h"
 #include "haptic/tick/replay.h"
 #include "tests/haptic/loop/hand_device.h"
 #include "tests/haptic/support/fields.h"

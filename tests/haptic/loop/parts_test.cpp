@@ -16,7 +16,7 @@
 #include "engine/field/live_field.h"
 #include "haptic/base/rings.h"
 #include "haptic/base/rt_thread.h"
-#include "haptic/loop/adoption.h"
+#include "haptic/loop/adopt_filtered.h"
 #include "haptic/loop/pacer.h"
 #include "haptic/loop/timing.h"
 #include "tests/haptic/support/fields.h"
