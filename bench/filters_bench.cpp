@@ -34,8 +34,7 @@ double processorSeconds() noexcept {
   return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
 }
 
-template <class Work>
-Seconds timed(Work&& work) {
+Seconds timed(auto&& work) {
   const double cpu = processorSeconds();
   const engine::Stopwatch watch;
   work();

@@ -40,8 +40,7 @@ void append(std::string& bytes, T value) {
 }
 
 // Calls f(column, row, height [mm]) for each sample, the lowest row first.
-template <class F>
-void forEachSample(const engine::Version& field, const F& f) {
+void forEachSample(const engine::Version& field, const auto& f) {
   const engine::FieldReader reader = field.reader();
   for (std::int32_t r = 0; r < reader.height(); ++r)
     for (std::int32_t c = 0; c < reader.width(); ++c)

@@ -59,8 +59,7 @@ class Directory {
     std::uint64_t count;
     std::string bytes;
   };
-  template <class T>
-  static void append(std::string& to, T value) {
+  static void append(std::string& to, auto value) {
     to.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
 

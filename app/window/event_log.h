@@ -23,8 +23,7 @@ class EventLog {
   [[nodiscard]] bool listens() const noexcept { return file_ != nullptr; }
   /// Writes `state`, followed by `aside`, unless `state` is the same as last time. `aside` is created only
   /// when needed: for values that change all the time, or are expensive to compute.
-  template <class Aside>
-  void write(Report state, const Aside& aside) {
+  void write(Report state, const auto& aside) {
     if (!listens() || state == last_) return;
     last_ = state;
     state.update(aside());

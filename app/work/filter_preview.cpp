@@ -21,9 +21,8 @@ bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
 
 // Filters the visible part and calls `done` after each piece. Limited to about a second, since this work is
 // done twice.
-template <class Done>
 void filterSeen(const engine::Version& base, const engine::Version& original, const engine::FilterSpec& spec,
-                const std::vector<engine::TileRange>& seen, engine::JobControl& job, const Done& done) {
+                const std::vector<engine::TileRange>& seen, engine::JobControl& job, const auto& done) {
   const engine::Stopwatch watch;
   std::int64_t tiles = 0;
   for (const engine::TileRange& range : seen) tiles += range.tiles();

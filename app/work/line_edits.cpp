@@ -129,8 +129,7 @@ std::vector<EdgeStroke> strokesNear(std::span<const EdgeLine> lines, const Box& 
 }
 
 // Sets what the marks of the samples around a point are to be.
-template <class Chosen>
-bool setMarks(engine::LiveField& live, glm::dvec2 centre, double radius, Chosen&& chosen) {
+bool setMarks(engine::LiveField& live, glm::dvec2 centre, double radius, auto&& chosen) {
   const engine::Grid& grid = live.grid();
   const auto first = [](double at, double most) { return std::ceil(std::clamp(at, 0.0, most)); };
   const auto last = [](double at, double most) { return std::floor(std::clamp(at, -1.0, most)); };
@@ -148,8 +147,7 @@ bool setMarks(engine::LiveField& live, glm::dvec2 centre, double radius, Chosen&
 }
 
 // Calls visit(point) for the points that are not located, but for short runs of them. False when a call is.
-template <class Visit>
-bool forEachUnlocated(const EdgeLine& line, Visit&& visit) {
+bool forEachUnlocated(const EdgeLine& line, auto&& visit) {
   for (auto from = line.points.begin(); from != line.points.end();) {
     from = std::ranges::find(from, line.points.end(), false, &EdgePoint::located);
     const auto to = std::ranges::find(from, line.points.end(), true, &EdgePoint::located);
@@ -218,10 +216,9 @@ EdgeLine filledUp(EdgeLine line) {
 }
 
 // `lines` and the line of a stroke among them, as `finish` makes it of what was located.
-template <class Finish>
 engine::Result<Version> withLocated(const Version& base, std::vector<EdgeLine> lines,
                                     const EdgeStroke& stroke, const engine::LocateOptions& options,
-                                    const char* edit, engine::JobControl& job, Finish&& finish) {
+                                    const char* edit, engine::JobControl& job, auto&& finish) {
   const Box box = boxOf(stroke.points);
   const auto noise = noiseAround(base, box, job);
   if (!noise) return tl::unexpected(noise.error());

@@ -51,8 +51,7 @@ class NearPoints {
 
 /// The lines without the points that `covered` holds for. The first piece of a line keeps its id, the others get new ones;
 /// pieces of fewer than kLeastPoints go.
-template <class Covered>
-std::vector<engine::EdgeLine> linesWithout(std::span<const engine::EdgeLine> all, Covered&& covered) {
+std::vector<engine::EdgeLine> linesWithout(std::span<const engine::EdgeLine> all, auto&& covered) {
   std::int64_t id = nextId(all);
   std::vector<engine::EdgeLine> lines;
   for (const engine::EdgeLine& line : all) {

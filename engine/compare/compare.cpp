@@ -24,8 +24,7 @@ struct Pair {
   double b_in_a = 1.0;
 
   // Calls f(column, row, height of a, height of b); NaN for a hole.
-  template <class F>
-  void forEach(const SampleRect& rect, F&& f) const {
+  void forEach(const SampleRect& rect, auto&& f) const {
     float za[kTileSamples];
     float zb[kTileSamples];
     a.readHeights(rect.column, rect.row, rect.columns, rect.rows, za, kTileSide);

@@ -166,8 +166,7 @@ struct Lands {
 };
 
 // Calls f(place, distance to the edge, c, r) for the samples of the profile.
-template <class F>
-void forEachInReach(const Patch& patch, const LocalEdge& line, const TruthOptions& options, F&& f) {
+void forEachInReach(const Patch& patch, const LocalEdge& line, const TruthOptions& options, auto&& f) {
   const double along = options.profile_half_length * patch.sample;
   const double across = options.profile_reach * patch.sample;
   for (int r = -patch.half_rows; r <= patch.half_rows; ++r)

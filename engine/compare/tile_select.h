@@ -31,9 +31,8 @@ struct Selected {
 /// The bits of doubles >= 0 are ordered as the numbers are, so four passes determine 16 bits each by counting
 /// (radix selection; Knuth, The Art of Computer Programming 3, section 5.2.5). Counts are integers: their
 /// sum, and so the result, is the same for any number of threads.
-template <class RankOf, class Visit>
-[[nodiscard]] Selected selectFromTiles(const FieldReader& field, JobControl& job, const RankOf& rankOf,
-                                       const Visit& visit) {
+[[nodiscard]] Selected selectFromTiles(const FieldReader& field, JobControl& job, const auto& rankOf,
+                                       const auto& visit) {
   constexpr int kBits = 64 / kSelectPasses;
   // One table of counts for each strip of tiles, few and large, so that memory stays bounded.
   constexpr std::int64_t kStrips = 16;

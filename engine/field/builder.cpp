@@ -19,8 +19,7 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
 
 // f(0) to f(n - 1): on all cores where the tiles take longer than starting a worker, 17 MB and more.
-template <class F>
-void forEachIndex(std::size_t n, const F& f) {
+void forEachIndex(std::size_t n, const auto& f) {
   constexpr std::size_t kParallelFrom = 1024;
   if (n >= kParallelFrom)
     tbb::parallel_for(std::size_t{0}, n, f);

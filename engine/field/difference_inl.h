@@ -9,9 +9,8 @@ namespace fettle::engine::detail {
 /// Calls tile(column, row, before, after) for every tile that two trees of the same shape do not share,
 /// row-major within each node; `column`, `row` of the first tile below the pair. Returns how many pairs of
 /// nodes were compared. Time is proportional to the differences. Wait-free; throws only what `tile` throws.
-template <class F>
 std::int64_t walkChanges(const Node& before, const Node& after, std::int32_t column, std::int32_t row,
-                         const F& tile) {
+                         const auto& tile) {
   if (&before == &after) return 0;
   std::int64_t nodes = 1;
   const std::int32_t tiles_a_child = 1 << (3 * (before.level - 2));

@@ -82,9 +82,8 @@ namespace {
 
 // Calls f(tile, column and row within the tile, columns, rows, offset of the first sample in the rectangle)
 // for every tile that the rectangle's part inside the field touches.
-template <class F>
 void forEachPiece(const FieldReader& reader, std::int32_t column, std::int32_t row, std::int32_t columns,
-                  std::int32_t rows, F&& f) noexcept {
+                  std::int32_t rows, auto&& f) noexcept {
   const std::int32_t c0 = std::max(column, 0);
   const std::int32_t r0 = std::max(row, 0);
   const auto c1 =

@@ -131,9 +131,8 @@ Status validate(const FilterSpec& spec) {
 namespace {
 
 // pass_once(state) applied spec.passes times on as many threads as the spec has.
-template <class PassOnce>
 Result<Filtered> applyPasses(const Version& input, const FilterSpec& spec, JobControl& job,
-                             PassOnce&& pass_once) {
+                             auto&& pass_once) {
   if (Status valid = validate(spec); !valid) return tl::unexpected(valid.error());
   const Filter& filter = filterOf(spec.kind);
   if (input.lines() != nullptr && filter.knows_lines && filter.window.exists() &&

@@ -92,8 +92,7 @@ LineSides::Around LineSides::sidesAround(std::int32_t c, std::int32_t r) const n
 namespace {
 
 // Whether a height fits the samples of one side around it.
-template <class HeightAt>
-bool fits(const auto& around, std::uint8_t side, float z, HeightAt&& height) {
+bool fits(const auto& around, std::uint8_t side, float z, auto&& height) {
   const auto on = [&](std::int32_t x, std::int32_t y) {
     return std::abs(x) <= kReach && std::abs(y) <= kReach && around.side[around.place(x, y)] == side &&
            (x != 0 || y != 0);

@@ -31,8 +31,7 @@ class LineSides {
   void settle(const float* heights, std::ptrdiff_t stride, std::vector<LoneSample>& lone);
 
   /// visit(column, row, links) for each sample with a cut link, row by row.
-  template <class Visit>
-  void forEachCut(Visit&& visit) const {
+  void forEachCut(auto&& visit) const {
     for (std::int32_t r = 0; r < rows_; ++r)
       for (std::int32_t c = 0; c < columns_; ++c)
         if (const std::uint8_t links = at(c, r); links != 0) visit(c, r, links);

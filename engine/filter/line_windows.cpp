@@ -127,8 +127,7 @@ class LineWindows final : public BlockFilter {
 
   // A located line is some tenths of a sample off. Where both sides of the window differ by far more than each varies,
   // the samples next to the line are on the side whose height they are nearer to. Returns the side of the middle.
-  template <class HeightAt>
-  std::uint8_t settleSides(const Block& window, int c0, int r0, const Block& block, HeightAt&& height) {
+  std::uint8_t settleSides(const Block& window, int c0, int r0, const Block& block, auto&& height) {
     const auto isNear = [&](int c, int r) {
       for (int y = std::max(r0 + r - kLineReach, 0); y <= std::min(r0 + r + kLineReach - 1, block.rows - 1);
            ++y)

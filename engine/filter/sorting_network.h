@@ -63,8 +63,7 @@ namespace detail {
 
 // Batcher's odd-even merge of every `step`-th of n wires from `first` on; wires outside [begin, end) hold
 // infinities that stay where they are.
-template <class List>
-constexpr void oddEvenMerge(List& list, int first, int n, int step, int begin, int end) {
+constexpr void oddEvenMerge(auto& list, int first, int n, int step, int begin, int end) {
   const auto add = [&](int low, int high) {
     if (low >= begin && high < end) list.add(low - begin, high - begin);
   };

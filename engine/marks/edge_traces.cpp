@@ -52,8 +52,7 @@ class PieceGraph {
   static bool less(const EdgeSpot& a, const EdgeSpot& b) {
     return std::pair(a.row, a.column) < std::pair(b.row, b.column);
   }
-  template <class Visit>
-  void forEachNear(const EdgeSpot& at, Visit&& visit) const {
+  void forEachNear(const EdgeSpot& at, auto&& visit) const {
     for (std::int32_t r = at.row - kLineGap; r <= at.row + kLineGap; ++r) {
       auto i = static_cast<std::size_t>(
           std::ranges::lower_bound(spots_, EdgeSpot{at.column - kLineGap, r}, less) - spots_.begin());

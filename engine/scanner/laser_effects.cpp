@@ -12,8 +12,7 @@ namespace {
 
 constexpr double kDropout = std::numeric_limits<double>::quiet_NaN();
 
-template <class F>
-void forEachSample(ScanBlock& block, F&& f) {
+void forEachSample(ScanBlock& block, auto&& f) {
   for (int r = 0; r < block.rows; ++r)
     for (int c = 0; c < block.columns; ++c)
       if (!std::isnan(block.heightAt(c, r))) f(c, r);

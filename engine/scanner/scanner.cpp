@@ -60,8 +60,7 @@ struct Layout {
 };
 
 // Calls f(tile column, tile row) for all tiles, on all workers; each tile column from its highest tile down.
-template <class F>
-bool forEachTileDown(const Grid& grid, const char* stage, JobControl& job, F&& f) {
+bool forEachTileDown(const Grid& grid, const char* stage, JobControl& job, auto&& f) {
   const std::int32_t tile_columns = (grid.width + kTileSide - 1) / kTileSide;
   const std::int32_t tile_rows = (grid.height + kTileSide - 1) / kTileSide;
   job.begin(stage, static_cast<std::uint64_t>(tile_columns) * tile_rows);

@@ -15,8 +15,7 @@ namespace {
 constexpr double kFarthest = 0x1p20;  // [samples]
 constexpr std::uint8_t kLocatedBit = 1, kCreaseBit = 2;
 
-template <class Integer>
-void putInteger(std::string& out, Integer value) {
+void putInteger(std::string& out, auto value) {
   for (std::size_t i = 0; i < sizeof value; ++i)
     out += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i));
 }

@@ -7,8 +7,7 @@ namespace fettle::engine {
 namespace {
 
 // Writing and the checksum use the same pass over the columns, so that they cannot differ.
-template <class Text, class Integer, class Real>
-void eachColumn(const OriginalRow& r, Text&& text, Integer&& integer, Real&& real) {
+void eachColumn(const OriginalRow& r, auto&& text, auto&& integer, auto&& real) {
   const ImportOptions& import = r.scan.import;
   text(r.storage == OriginalStorage::kEmbedded ? std::string("embedded") : std::string("referenced"));
   text(r.scan.path);

@@ -74,8 +74,7 @@ class KnownLines {
 };
 
 // The runs of points that are kept.
-template <class Keep>
-std::vector<Path> keptRuns(const std::vector<Path>& paths, Keep&& keep) {
+std::vector<Path> keptRuns(const std::vector<Path>& paths, auto&& keep) {
   std::vector<Path> runs;
   for (const Path& path : paths) {
     Path run;
@@ -144,8 +143,7 @@ class Owners {
       }
   }
   // visit(column, row of the field, spot)
-  template <class Visit>
-  void forEach(Visit&& visit) const {
+  void forEach(auto&& visit) const {
     std::size_t i = 0;
     for (std::int32_t r = cell_.row; r < cell_.row + cell_.rows; ++r)
       for (std::int32_t c = cell_.column; c < cell_.column + cell_.columns; ++c, ++i) visit(c, r, owner_[i]);

@@ -178,8 +178,7 @@ double rootBetween(const Reduced& r, double low, double high, double h_low, doub
 // Calls f(v) near every root in [0, 1] at which h goes from below to above zero: the minima along v. May call
 // it elsewhere too. kNodes bounds the halvings: five roots need far fewer unless they coincide within
 // rounding, and then every point near them is equally good.
-template <class F>
-void forEachMinimum(const Reduced& r, F&& f) noexcept {
+void forEachMinimum(const Reduced& r, auto&& f) noexcept {
   struct Interval {
     double low, size;
     int depth;

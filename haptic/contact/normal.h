@@ -16,8 +16,7 @@ struct SharingCell {
 /// Calls f(SharingCell) for the OTHER cells of the field that share the point: none for an interior point,
 /// one for an edge, three for a vertex, fewer at the border. Holes are not tested for. Order: across u,
 /// across v, across both.
-template <class F>
-void forEachSharing(const Surface& surface, CellIndex cell, double u, double v, F&& f) noexcept {
+void forEachSharing(const Surface& surface, CellIndex cell, double u, double v, auto&& f) noexcept {
   const int across_u = u == 0.0 ? -1 : (u == 1.0 ? 1 : 0);
   const int across_v = v == 0.0 ? -1 : (v == 1.0 ? 1 : 0);
   const auto visit = [&](int du, int dv) {

@@ -67,8 +67,7 @@ class Player final : public haptic::AdoptionPort {
  private:
   // Ends the running adoption: the next filter's begin, a new loop or the journal's end mean that it was
   // cancelled there.
-  template <class Done>
-  engine::Status playUntil(const Done& done) {
+  engine::Status playUntil(const auto& done) {
     while (!done()) {
       if (next_ == journal_.size()) return engine::cancelled();
       auto entry = entryAt(next_);

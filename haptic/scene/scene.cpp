@@ -61,8 +61,7 @@ class SceneReader {
   }
 
   // Calls f(key, value) for every entry; f returns false for a key it does not know.
-  template <class F>
-  void entries(const toml::table& table, std::string_view where, F&& f) {
+  void entries(const toml::table& table, std::string_view where, auto&& f) {
     for (const auto& [key, value] : table)
       if (!f(key.str(), value))
         complain(value, fmt::format("unknown key \"{}\"{}{}", key.str(), where.empty() ? "" : " in ", where));

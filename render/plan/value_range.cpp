@@ -23,8 +23,7 @@ T percentile(std::vector<T>& values, double share) {
 
 // Each tile's share of the sample, scattered by a golden-ratio step so that it falls in no row or column
 // pattern.
-template <class Visit>
-void forSomeOf(std::int64_t tiles, std::int64_t tile_number, const Visit& visit) {
+void forSomeOf(std::int64_t tiles, std::int64_t tile_number, const auto& visit) {
   const std::int64_t n = std::clamp<std::int64_t>(kRangeSamples / tiles, 4, engine::kTileSamples);
   constexpr std::int64_t kStep = 2531;  // odd: visits every sample of a tile before repeating one
   for (std::int64_t k = 0; k < n; ++k)

@@ -65,8 +65,7 @@ class PageGrid {
   [[nodiscard]] int rimRow() const noexcept { return rim_row_; }
   [[nodiscard]] int rimSamples() const noexcept { return rim_row_ + size_.x; }
   /// Calls `visit(entry)` for the pages that contain a part of a span, clipped to its level.
-  template <class Visit>
-  void over(LevelSpan span, const Visit& visit) const {
+  void over(LevelSpan span, const auto& visit) const {
     const glm::ivec2 last = samples(span.level) - 1;
     const glm::ivec2 low = glm::clamp(span.low, glm::ivec2(0), last) >> log2_side_;
     const glm::ivec2 high = glm::clamp(span.high, glm::ivec2(0), last) >> log2_side_;

@@ -34,8 +34,7 @@ void sameLineIfFits(const char* text, ItemKind what = ItemKind::kButton);
 void beginFields();
 void endFields();
 void fieldName(const char* name);
-template <class Edit>
-bool field(const char* name, const Edit& edit) {
+bool field(const char* name, const auto& edit) {
   fieldName(name);
   return edit();
 }

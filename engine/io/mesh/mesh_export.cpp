@@ -63,9 +63,8 @@ Result<Counted> count(const SurfaceMesh& mesh, const Grid& grid, const std::stri
 }
 
 // Writes triangles from a callback into a file, piece by piece; after an error the rest is ignored.
-template <class Append>
 Status writeTriangles(const SurfaceMesh& mesh, TextWriter& out, std::uint64_t triangles, JobControl& job,
-                      Append&& append_one) {
+                      auto&& append_one) {
   constexpr std::uint64_t kLook = 65536;
   job.begin("writing", triangles);
   Status status;

@@ -34,8 +34,7 @@ std::vector<std::string> whatIsLost(const Version& field) {
 }
 
 // Calls append(x, y, z, text) for each point and writes the text.
-template <class Append>
-Status writePoints(const Version& field, TextWriter& out, JobControl& job, Append&& append) {
+Status writePoints(const Version& field, TextWriter& out, JobControl& job, auto&& append) {
   const FieldReader reader = field.reader();
   const Grid& grid = field.grid();
   std::vector<float> heights(static_cast<std::size_t>(grid.width));

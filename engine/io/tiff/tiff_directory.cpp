@@ -78,8 +78,7 @@ class Reader {
   }
 
   // Values of SHORT, LONG, LONG8 or BYTE entries, in pieces so that a false count allocates no memory.
-  template <class Visit>
-  bool visit(const Entry& entry, Visit&& each) const {
+  bool visit(const Entry& entry, auto&& each) const {
     if (!isUnsignedInteger(entry.type) || reachesPastTheEnd(entry)) return false;
     const std::size_t bytes = bytesOf(entry.type);
     std::vector<char> piece;

@@ -36,8 +36,7 @@ struct TiffScan {
                                             GdalSession& gdal);
 
 /// Calls `use` with a zero of the type of the scan's samples; false for types that are not heights.
-template <class Use>
-bool withSampleType(const TiffScan& scan, Use&& use) {
+bool withSampleType(const TiffScan& scan, auto&& use) {
   switch (scan.type) {
     case GDT_Byte:
       scan.signed_byte ? use(std::int8_t{}) : use(std::uint8_t{});
