@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -16,7 +14,6 @@
 #include "bench/machine.h"
 #include "bench/repeats.h"
 #include "bench/temporary_folder.h"
-#include "engine/base/error.h"
 #include "engine/base/stopwatch.h"
 #include "engine/field/version.h"
 #include "engine/formats/formats.h"
