@@ -41,6 +41,10 @@ struct Format {
   static constexpr std::size_t kHeadBytes = 4096;
 };
 
+/// The writers, each in the source of its name: *_export.cpp; points_export.cpp and mesh_export.cpp.
+FormatWriter writeTiff, writePng, writePly, writePlyMesh, writeX3p, writeExr, writeStl, writeAsciiGrid,
+    writeXyz;
+
 /// All formats, for engine/formats to list. Constants from the start: no order of initialisation.
 extern const Format kTiffFormat, kPngFormat, kPlyFormat, kPcdFormat, kLasFormat, kSurFormat, kX3pFormat,
     kExrFormat, kStlFormat, kAsciiGridFormat, kFettleFormat, kXyzFormat;

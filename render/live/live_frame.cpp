@@ -8,9 +8,6 @@
 namespace fettle::render {
 namespace {
 
-using ImageLayout = vk::ImageLayout;
-using Stage = vk::PipelineStageFlagBits2;
-using Access = vk::AccessFlagBits2;
 constexpr auto kGraphics = vk::PipelineBindPoint::eGraphics;
 
 vk::Rect2D rectOf(const Rectangle& r) {

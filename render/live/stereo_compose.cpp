@@ -11,9 +11,6 @@
 namespace fettle::render {
 namespace {
 
-using ImageLayout = vk::ImageLayout;
-using Stage = vk::PipelineStageFlagBits2;
-using Access = vk::AccessFlagBits2;
 using Usage = vk::ImageUsageFlagBits;
 
 }  // namespace

@@ -12,10 +12,6 @@
 namespace fettle::render {
 namespace {
 
-using Stage = vk::PipelineStageFlagBits2;
-using Access = vk::AccessFlagBits2;
-using ImageLayout = vk::ImageLayout;
-
 std::uint64_t keyOf(std::int32_t column, std::int32_t row) {
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(row)) << 32U |
          static_cast<std::uint32_t>(column);

@@ -7,9 +7,6 @@
 namespace fettle::render {
 namespace {
 
-using Stage = vk::PipelineStageFlagBits2;
-using Access = vk::AccessFlagBits2;
-using ImageLayout = vk::ImageLayout;
 constexpr auto kUsage = vk::ImageUsageFlagBits::eSampled | vk::ImageUsageFlagBits::eTransferDst |
                         vk::ImageUsageFlagBits::eTransferSrc;
 constexpr vk::ImageSubresourceLayers layer(int number) {

@@ -6,6 +6,10 @@
 
 namespace fettle::render {
 
+using ImageLayout = vk::ImageLayout;
+using Stage = vk::PipelineStageFlagBits2;
+using Access = vk::AccessFlagBits2;
+
 /// Several images whose layout changes together: earlier commands have written them, later ones may read or
 /// write. One barrier for all, because a device may stop for each (lavapipe does).
 class Barriers {

@@ -17,10 +17,6 @@
 namespace fettle::render {
 namespace {
 
-using ImageLayout = vk::ImageLayout;
-using Stage = vk::PipelineStageFlagBits2;
-using Access = vk::AccessFlagBits2;
-
 constexpr float kText_px = 15.0F;
 
 // ImGui's back end reports errors through a function without a context argument; this room throws.

@@ -28,10 +28,6 @@ extern "C" void* glfwGetX11Display();
 namespace fettle::render {
 namespace {
 
-using ImageLayout = vk::ImageLayout;
-using Stage = vk::PipelineStageFlagBits2;
-using Access = vk::AccessFlagBits2;
-
 // GLFW reports errors only through a callback.
 std::string& lastGlfwError() {
   static std::string text;

@@ -8,10 +8,6 @@
 namespace fettle::render {
 namespace {
 
-using ImageLayout = vk::ImageLayout;
-using Stage = vk::PipelineStageFlagBits2;
-using Access = vk::AccessFlagBits2;
-
 constexpr std::uint64_t kForever = UINT64_MAX;
 constexpr std::uint64_t kLook_ns = 1'000'000;
 

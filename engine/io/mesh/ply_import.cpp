@@ -384,8 +384,6 @@ Result<Imported> readPly(const InputFile& file, const ImportOptions& options, Jo
 
 }  // namespace
 
-FormatWriter writePly;  // points_export.cpp
-
 constexpr std::string_view kPlyExtensions[] = {".ply"};
 constexpr Format kPlyFormat{
     .info = {"PLY", "PLY points or mesh", kPlyExtensions, true, true},

@@ -17,8 +17,6 @@
 
 namespace fettle::engine {
 
-FormatWriter writePlyMesh;  // mesh_export.cpp
-
 namespace {
 
 std::vector<std::string> whatIsLost(const Version& field) {

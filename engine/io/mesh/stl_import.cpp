@@ -111,8 +111,6 @@ Result<Imported> readStl(const InputFile& file, const ImportOptions& options, Jo
 
 }  // namespace
 
-FormatWriter writeStl;  // mesh_export.cpp
-
 constexpr std::string_view kStlExtensions[] = {".stl"};
 constexpr Format kStlFormat{
     .info = {"STL", "STL mesh", kStlExtensions, true, true},

@@ -198,8 +198,6 @@ Result<Imported> readXyz(const InputFile& file, const ImportOptions& options, Jo
 
 }  // namespace
 
-FormatWriter writeXyz;  // engine/io/mesh/points_export.cpp
-
 constexpr std::string_view kXyzExtensions[] = {".xyz", ".txt", ".csv", ".pts", ".dat"};
 constexpr Format kXyzFormat{
     .info = {"XYZ", "text with x y z per line", kXyzExtensions, true, true, true},

@@ -194,8 +194,6 @@ Result<Imported> readAsciiGrid(const InputFile& file, const ImportOptions& optio
 
 }  // namespace
 
-FormatWriter writeAsciiGrid;  // ascii_grid_export.cpp
-
 constexpr std::string_view kAsciiGridExtensions[] = {".asc", ".agr", ".grd"};
 constexpr Format kAsciiGridFormat{
     .info = {"AAIGrid", "ESRI ASCII grid", kAsciiGridExtensions, true, true, true},

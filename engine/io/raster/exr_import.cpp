@@ -321,8 +321,6 @@ Result<Imported> readExr(const InputFile& file, const ImportOptions& options, Jo
 
 }  // namespace
 
-FormatWriter writeExr;  // exr_export.cpp
-
 constexpr std::string_view kExrExtensions[] = {".exr"};
 constexpr Format kExrFormat{
     .info = {"EXR", "OpenEXR", kExrExtensions, true, true},

@@ -98,8 +98,6 @@ Result<Imported> readPng(const InputFile& file, const ImportOptions& options, Jo
 
 }  // namespace
 
-FormatWriter writePng;  // png_export.cpp
-
 constexpr std::string_view kPngExtensions[] = {".png"};
 constexpr Format kPngFormat{
     .info = {"PNG", "16-bit grey PNG", kPngExtensions, true, true},

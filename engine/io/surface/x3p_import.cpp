@@ -532,8 +532,6 @@ Result<Imported> readX3p(const InputFile& file, const ImportOptions& options, Jo
 
 }  // namespace
 
-FormatWriter writeX3p;  // x3p_export.cpp
-
 constexpr std::string_view kX3pExtensions[] = {".x3p"};
 constexpr Format kX3pFormat{
     .info = {"X3P", "x3p surface (ISO 25178-72)", kX3pExtensions, true, true},

@@ -108,7 +108,6 @@ Result<Imported> readTiff(const InputFile& file, const ImportOptions& options, J
 
 }  // namespace
 
-FormatWriter writeTiff;       // tiff_export.cpp
 FormatPreviewer previewTiff;  // tiff_preview.cpp
 
 constexpr std::string_view kTiffExtensions[] = {".tif", ".tiff"};
