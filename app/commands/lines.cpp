@@ -4,17 +4,22 @@
 #include <iterator>
 #include <memory>
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
-#include "app/commands/plots/edge_plot.h"
 #include "app/commands/plots/gnuplot.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/work/streams.h"
+#include "engine/base/error.h"
 #include "engine/edges/edge_profile.h"
+#include "engine/field/grid.h"
 #include "engine/inspect/noise.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/lines/lines.h"
@@ -22,6 +27,70 @@
 namespace fettle::app {
 
 namespace {
+
+// A line and what was measured along it.
+struct MeasuredLine {
+  engine::EdgeLine line;
+  std::vector<engine::EdgeSection> sections;  // one per point
+  engine::EdgeMeans means;
+  double length_mm = 0.0;  // of a closed line all around
+
+  MeasuredLine(engine::EdgeLine from, std::vector<engine::EdgeSection> at, const engine::EdgeMeans& mean,
+               const engine::Grid& grid)
+      : line(std::move(from)), sections(std::move(at)), means(mean) {
+    if (sections.empty()) return;
+    length_mm = sections.back().along_mm;
+    const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
+    if (line.closed)
+      length_mm += glm::length((sections.front().position - sections.back().position) * spacing);
+  }
+};
+
+// A blank row ends a stretch of measured points: gnuplot connects nothing over it.
+std::string rowsOf(const MeasuredLine& line) {
+  std::string rows;
+  for (const engine::EdgeSection& s : line.sections) {
+    if (s.measured)
+      fmt::format_to(std::back_inserter(rows), "{:.6g} {:.6g} {:.6g} {:.6g} {:.6g}\n", s.along_mm, s.step,
+                     s.step_deviation, s.turn, s.turn_deviation);
+    else
+      rows += "\n";
+  }
+  return rows;
+}
+
+std::string panel(const std::vector<const MeasuredLine*>& lines, int value, const std::string& title) {
+  std::string bands, curves;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const char* colour = kPlotColours[i % std::size(kPlotColours)];
+    bands += fmt::format(
+        "{0}$line{1} using 1:(${2}-${3}):(${2}+${3}) with filledcurves fc rgb '{4}' fs transparent "
+        "solid 0.25 noborder notitle",
+        i == 0 ? "plot " : ", ", i, value, value + 1, colour);
+    curves += fmt::format(", $line{} using 1:{} with lines lc rgb '{}' lw 1.5 title {}", i, value, colour,
+                          quoted(fmt::format("line {}", lines[i]->line.id)));
+  }
+  return fmt::format("set ylabel {}\n", quoted(title)) + bands + curves + "\n";
+}
+
+// An SVG of step height and turn over the length of the longest lines, each with a band of its standard deviation.
+// Heights in `unit`. Errors (kFailed): as drawnByGnuplot.
+engine::Result<std::string> edgePlot(const std::vector<MeasuredLine>& lines, const engine::LengthUnit& unit) {
+  std::vector<const MeasuredLine*> longest;
+  for (const MeasuredLine& line : lines)
+    if (line.means.measured > 1) longest.push_back(&line);
+  if (longest.empty())
+    return engine::inputError("no line could be measured, so there is nothing to draw", "--plot",
+                              "leave it out, the table says what was found");
+  std::ranges::stable_sort(longest, std::greater(), &MeasuredLine::length_mm);
+  longest.resize(std::min(longest.size(), std::size(kPlotColours)));
+  std::string script = kPlotHead;
+  for (std::size_t i = 0; i < longest.size(); ++i)
+    script += fmt::format("$line{} << EOD\n{}EOD\n", i, rowsOf(*longest[i]));
+  script += "set multiplot layout 2,1\nset xlabel 'length along the line [mm]'\n";
+  script += panel(longest, 2, fmt::format("step [{}]", unit.name)) + panel(longest, 4, "turn [degrees]");
+  return drawnByGnuplot(script + "unset multiplot\n");
+}
 
 struct LinesArguments {
   std::string scan;
