@@ -19,6 +19,14 @@ termios terminal_before{};
 std::atomic<bool> terminal_changed{false};  // read by signal handlers
 static_assert(std::atomic<bool>::is_always_lock_free);
 
+constexpr double kRedraw_s = 0.2;
+
+// A closed terminal must not end the session.
+void put(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
 }  // namespace
 
 Keys::Keys(KeySource source) {
@@ -56,18 +64,6 @@ std::optional<char> Keys::next() noexcept {
   }
   return std::nullopt;
 }
-
-namespace {
-
-constexpr double kRedraw_s = 0.2;
-
-// A closed terminal must not end the session.
-void put(const std::string& text) {
-  std::fputs(text.c_str(), stderr);
-  std::fflush(stderr);
-}
-
-}  // namespace
 
 StatusLine::StatusLine() : terminal_(!voice().quiet && isatty(STDERR_FILENO) != 0) {}
 

@@ -239,10 +239,6 @@ PatchPoint closestOnEdgeU(const Patch& s, const glm::dvec3& e, double u) noexcep
   return {point.v, point.u, point.distance2_mm2};
 }
 
-}  // namespace
-
-namespace {
-
 // Descent from the point below or above the endpoint.
 PatchPoint descend(const Patch& s, const glm::dvec3& endpoint) noexcept {
   return closestOnPatch(s, endpoint, unit((endpoint.x - s.x0) / s.sx), unit((endpoint.y - s.y0) / s.sy));

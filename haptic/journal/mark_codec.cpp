@@ -27,6 +27,12 @@ std::int32_t get32(std::string_view in) {
   return static_cast<std::int32_t>(value);
 }
 
+constexpr std::size_t kLengthBytes = 8;
+
+tl::unexpected<engine::Error> unreadable() {
+  return engine::inputError("recorded lines cannot be read", "journal");
+}
+
 }  // namespace
 
 std::string packMarkChanges(const engine::Version& before, const engine::Version& after) {
@@ -77,16 +83,6 @@ engine::Result<engine::Version> applyMarkChanges(const engine::Version& before, 
   }
   return field.snapshot();
 }
-
-namespace {
-
-constexpr std::size_t kLengthBytes = 8;
-
-tl::unexpected<engine::Error> unreadable() {
-  return engine::inputError("recorded lines cannot be read", "journal");
-}
-
-}  // namespace
 
 std::string packLineChange(const engine::Version& before, const engine::Version& after) {
   const std::string marks = packMarkChanges(before, after);

@@ -61,10 +61,6 @@ struct Signs {
   friend bool operator==(const Signs&, const Signs&) = default;
 };
 
-}  // namespace
-
-namespace {
-
 bool sameSize(const engine::Version& a, const engine::Version& b) {
   return a.grid().width == b.grid().width && a.grid().height == b.grid().height;
 }

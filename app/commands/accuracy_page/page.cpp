@@ -100,23 +100,6 @@ std::string scriptOf(const bench::Study& study) {
   return script + plots + "\n";
 }
 
-}  // namespace
-
-int methodNumber(const bench::Study& study, const std::string& method) {
-  std::vector<std::string> names;
-  for (const bench::AccuracyRow& row : study.rows) {
-    if (std::find(names.begin(), names.end(), row.method) == names.end()) names.push_back(row.method);
-    if (row.method == method) break;
-  }
-  return static_cast<int>(std::find(names.begin(), names.end(), method) - names.begin()) + 1;
-}
-
-engine::Result<std::string> plotSvg(const bench::Study& study) {
-  return drawnByGnuplot(scriptOf(study));
-}
-
-namespace {
-
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -204,6 +187,19 @@ std::string viewsOf(const PlottedStudy& s) {
 }
 
 }  // namespace
+
+int methodNumber(const bench::Study& study, const std::string& method) {
+  std::vector<std::string> names;
+  for (const bench::AccuracyRow& row : study.rows) {
+    if (std::find(names.begin(), names.end(), row.method) == names.end()) names.push_back(row.method);
+    if (row.method == method) break;
+  }
+  return static_cast<int>(std::find(names.begin(), names.end(), method) - names.begin()) + 1;
+}
+
+engine::Result<std::string> plotSvg(const bench::Study& study) {
+  return drawnByGnuplot(scriptOf(study));
+}
 
 std::string accuracyPage(const std::vector<PlottedStudy>& studies, const std::string& machine,
                          const std::string& made_with) {

@@ -49,35 +49,6 @@ CrsPtr registered(OGRSpatialReferenceH crs) {
   return match;
 }
 
-}  // namespace
-
-std::string wktOf(OGRSpatialReferenceH crs) {
-  return crsAs(crs, "FORMAT=WKT2_2019");
-}
-
-std::string wktOfPrj(const std::string& text) {
-  const CrsPtr crs(OSRNewSpatialReference(nullptr));
-  char** lines = CSLTokenizeString2(text.c_str(), "\r\n", 0);
-  const bool understood = OSRImportFromESRI(crs.get(), lines) == OGRERR_NONE;
-  CSLDestroy(lines);
-  if (!understood) return {};
-  const CrsPtr known = registered(crs.get());
-  return wktOf(known ? known.get() : crs.get());
-}
-
-std::string prjOf(const std::string& wkt) {
-  const CrsPtr crs(OSRNewSpatialReference(wkt.c_str()));
-  if (!crs) return {};
-  // PROJ writes units as small as a micrometre with digits that no reader accepts: "1E-06.0".
-  for (const char* form : {"FORMAT=WKT1_ESRI", "FORMAT=WKT1_GDAL"}) {
-    std::string text = crsAs(crs.get(), form);
-    if (!text.empty() && !wktOfPrj(text).empty()) return text;
-  }
-  return {};
-}
-
-namespace {
-
 constexpr std::uint16_t kDirectory = 34735;
 constexpr std::uint16_t kNumbers = 34736;
 constexpr std::uint16_t kText = 34737;
@@ -172,6 +143,31 @@ class MemoryFile {
 };
 
 }  // namespace
+
+std::string wktOf(OGRSpatialReferenceH crs) {
+  return crsAs(crs, "FORMAT=WKT2_2019");
+}
+
+std::string wktOfPrj(const std::string& text) {
+  const CrsPtr crs(OSRNewSpatialReference(nullptr));
+  char** lines = CSLTokenizeString2(text.c_str(), "\r\n", 0);
+  const bool understood = OSRImportFromESRI(crs.get(), lines) == OGRERR_NONE;
+  CSLDestroy(lines);
+  if (!understood) return {};
+  const CrsPtr known = registered(crs.get());
+  return wktOf(known ? known.get() : crs.get());
+}
+
+std::string prjOf(const std::string& wkt) {
+  const CrsPtr crs(OSRNewSpatialReference(wkt.c_str()));
+  if (!crs) return {};
+  // PROJ writes units as small as a micrometre with digits that no reader accepts: "1E-06.0".
+  for (const char* form : {"FORMAT=WKT1_ESRI", "FORMAT=WKT1_GDAL"}) {
+    std::string text = crsAs(crs.get(), form);
+    if (!text.empty() && !wktOfPrj(text).empty()) return text;
+  }
+  return {};
+}
 
 std::string wktOfGeoKeys(const GeoKeys& keys) {
   if (!keysAreSound(keys)) return {};
