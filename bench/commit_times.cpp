@@ -18,7 +18,7 @@
 
 namespace fettle::bench {
 
-constexpr std::int64_t kStrokeTicks = 1000;
+constexpr std::int64_t kTicksOfStroke = 1000;
 
 engine::Result<CommitTimes> commitTimes(const engine::Version& field, int strokes, engine::JobControl& job) {
   const auto folder = TemporaryFolder::create(engine::storePolicy().folder);
@@ -32,7 +32,7 @@ engine::Result<CommitTimes> commitTimes(const engine::Version& field, int stroke
   haptic::Scene scene = haptic::defaultScene();
   scene.brush_radius_samples = 8.0;
   trials::HandMotion motion;
-  motion.ticks = kStrokeTicks * strokes;
+  motion.ticks = kTicksOfStroke * strokes;
   motion.tool = haptic::Tool::kSmooth;
   const std::vector<haptic::StrokeSample> ticks = trials::handStroke(field, motion);
   engine::LiveField live(field, engine::Growth::kAllowed);
@@ -43,7 +43,7 @@ engine::Result<CommitTimes> commitTimes(const engine::Version& field, int stroke
   for (std::int64_t stroke = 0; stroke < strokes; ++stroke) {
     {
       const haptic::DenormalScope as_in_the_loop;
-      for (std::int64_t i = stroke * kStrokeTicks; i < (stroke + 1) * kStrokeTicks; ++i) {
+      for (std::int64_t i = stroke * kTicksOfStroke; i < (stroke + 1) * kTicksOfStroke; ++i) {
         (void)tick.run(ticks[static_cast<std::size_t>(i)]);
         recorder.tick(ticks[static_cast<std::size_t>(i)]);
       }
@@ -57,7 +57,7 @@ engine::Result<CommitTimes> commitTimes(const engine::Version& field, int stroke
     recorder.add(haptic::journal::StepMade{number,
                                            "smoothing",
                                            engine::StepKind::kStroke,
-                                           {static_cast<std::uint64_t>((stroke + 1) * kStrokeTicks), false},
+                                           {static_cast<std::uint64_t>((stroke + 1) * kTicksOfStroke), false},
                                            false});
     (*writer)->commit(number, history.step(number), recorder.take());
     const double waited = since_end.ms();

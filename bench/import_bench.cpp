@@ -18,6 +18,7 @@
 #include "engine/field/version.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/little_endian.h"
 #include "haptic/trials/hand_stroke.h"
 
 namespace fettle::bench {
@@ -30,10 +31,6 @@ constexpr double kCountMm = 1e-5;
 template <class T>
 void put(std::string& bytes, std::size_t at, T value) {
   std::memcpy(bytes.data() + at, &value, sizeof(T));
-}
-template <class T>
-void append(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
 // Calls f(column, row, height [mm]) for each sample, the lowest row first.
@@ -59,9 +56,9 @@ engine::Status writePcd(const engine::Version& field, const std::string& path) {
   std::int64_t points = 0;
   forEachSample(field, [&](std::int32_t c, std::int32_t r, double z) {
     if (std::isnan(z)) return;
-    append(body, c * grid.spacingXMm());
-    append(body, r * grid.spacingYMm());
-    append(body, static_cast<float>(z));
+    engine::appendLittle(body, c * grid.spacingXMm());
+    engine::appendLittle(body, r * grid.spacingYMm());
+    engine::appendLittle(body, static_cast<float>(z));
     ++points;
   });
   return engine::writeFileAtomically(
@@ -80,9 +77,9 @@ engine::Status writeLas(const engine::Version& field, const std::string& path) {
   std::uint32_t points = 0;
   forEachSample(field, [&](std::int32_t c, std::int32_t r, double z) {
     if (std::isnan(z)) return;
-    append(bytes, counts(c * grid.spacingXMm()));
-    append(bytes, counts(r * grid.spacingYMm()));
-    append(bytes, counts(z));
+    engine::appendLittle(bytes, counts(c * grid.spacingXMm()));
+    engine::appendLittle(bytes, counts(r * grid.spacingYMm()));
+    engine::appendLittle(bytes, counts(z));
     bytes.append(kPoint - 12, '\0');
     ++points;
   });
@@ -129,7 +126,7 @@ engine::Status writeSur(const engine::Version& field, const std::string& path) {
   put(bytes, 470, 0.0F);
   put(bytes, 474, 0.0F);
   forEachSample(field, [&](std::int32_t, std::int32_t, double z) {
-    append(bytes, std::isnan(z) ? lowest - 2 : counts(z));
+    engine::appendLittle(bytes, std::isnan(z) ? lowest - 2 : counts(z));
   });
   return engine::writeFileAtomically(path, bytes);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/repeats.h"
+#include "engine/io/files/little_endian.h"
 
 namespace fettle::bench {
 
@@ -26,7 +27,7 @@ class Directory {
   template <class T>
   void add(std::uint16_t tag, std::uint16_t type, const std::vector<T>& values) {
     Entry entry{tag, type, values.size(), {}};
-    for (const T& value : values) append(entry.bytes, value);
+    for (const T& value : values) engine::appendLittle(entry.bytes, value);
     entries_.push_back(std::move(entry));
   }
 
@@ -34,22 +35,22 @@ class Directory {
     std::string head;
     std::string rest;
     const std::uint64_t count = entries_.size();
-    append(head, count);
+    engine::appendLittle(head, count);
     const std::uint64_t rest_at = at_ + 8 + 20 * count + 8;
     for (const Entry& entry : entries_) {
-      append(head, entry.tag);
-      append(head, entry.type);
-      append(head, entry.count);
+      engine::appendLittle(head, entry.tag);
+      engine::appendLittle(head, entry.type);
+      engine::appendLittle(head, entry.count);
       if (entry.bytes.size() <= 8) {
         head.append(entry.bytes);
         head.append(8 - entry.bytes.size(), '\0');
         continue;
       }
-      append(head, rest_at + rest.size());
+      engine::appendLittle(head, rest_at + rest.size());
       rest.append(entry.bytes);
       rest.append((8 - rest.size() % 8) % 8, '\0');
     }
-    append(head, std::uint64_t{0});  // no other directory
+    engine::appendLittle(head, std::uint64_t{0});  // no other directory
     return head + rest;
   }
 
@@ -59,9 +60,6 @@ class Directory {
     std::uint64_t count;
     std::string bytes;
   };
-  static void append(std::string& to, auto value) {
-    to.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
 
   std::uint64_t at_;
   std::vector<Entry> entries_;

@@ -8,20 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "engine/io/files/little_endian.h"
+
 namespace fettle::engine {
 
 namespace {
 
 constexpr double kFarthest = 0x1p20;  // [samples]
 constexpr std::uint8_t kLocatedBit = 1, kCreaseBit = 2;
-
-void putInteger(std::string& out, auto value) {
-  for (std::size_t i = 0; i < sizeof value; ++i)
-    out += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i));
-}
-void putReal(std::string& out, double value) {
-  putInteger(out, std::bit_cast<std::uint64_t>(value));
-}
 
 // Takes values from the front; after one that is not there all are 0 and `good` is false.
 struct LineBytes {
@@ -74,21 +68,21 @@ EdgePoint pointFrom(LineBytes& in) {
 
 std::string packLines(const EdgeLines& lines) {
   std::string out;
-  putInteger(out, static_cast<std::uint32_t>(lines ? lines->size() : 0));
+  appendLittle(out, static_cast<std::uint32_t>(lines ? lines->size() : 0));
   if (!lines) return out;
   for (const EdgeLine& line : *lines) {
-    putInteger(out, line.id);
-    putInteger(out, static_cast<std::uint8_t>(line.closed ? 1 : 0));
-    putInteger(out, static_cast<std::uint32_t>(line.points.size()));
+    appendLittle(out, line.id);
+    appendLittle(out, static_cast<std::uint8_t>(line.closed ? 1 : 0));
+    appendLittle(out, static_cast<std::uint32_t>(line.points.size()));
     for (const EdgePoint& point : line.points) {
-      putReal(out, point.position.x);
-      putReal(out, point.position.y);
-      putInteger(out, static_cast<std::uint8_t>((point.located ? kLocatedBit : 0) |
-                                                (point.kind == LineKind::kCrease ? kCreaseBit : 0)));
+      appendLittle(out, point.position.x);
+      appendLittle(out, point.position.y);
+      appendLittle(out, static_cast<std::uint8_t>((point.located ? kLocatedBit : 0) |
+                                                  (point.kind == LineKind::kCrease ? kCreaseBit : 0)));
       if (!point.located) continue;
       for (const double value :
            {point.deviation, point.step, point.step_deviation, point.slope_change, point.slope_deviation})
-        putReal(out, value);
+        appendLittle(out, value);
     }
   }
   return out;

@@ -3,10 +3,14 @@
 #include <cerrno>
 
 #include <algorithm>
+#include <atomic>
 #include <mutex>
+#include <utility>
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_vsi.h>
+#include <fmt/format.h>
 #include <gdal_frmts.h>
 #include <ogrsf_frmts.h>
 
@@ -77,6 +81,24 @@ std::string GdalSession::reason(const std::string& otherwise) const {
   }
   while (!text.empty() && (text.back() == '.' || text.back() == ' ' || text.back() == '\n')) text.pop_back();
   return text.empty() ? otherwise : text;
+}
+
+MemoryFile::MemoryFile(const std::string& extension, std::string content) : content_(std::move(content)) {
+  static std::atomic<unsigned> count{0};
+  path_ = fmt::format("/vsimem/fettle-{}{}", count++, extension);
+  if (!content_.empty())
+    VSIFCloseL(VSIFileFromMemBuffer(path_.c_str(), reinterpret_cast<GByte*>(content_.data()), content_.size(),
+                                    FALSE));
+}
+
+MemoryFile::~MemoryFile() {
+  VSIUnlink(path_.c_str());
+}
+
+std::string_view MemoryFile::bytes() const {
+  vsi_l_offset size = 0;
+  const GByte* data = VSIGetMemFileBuffer(path_.c_str(), &size, FALSE);
+  return {reinterpret_cast<const char*>(data), data == nullptr ? 0 : static_cast<std::size_t>(size)};
 }
 
 }  // namespace fettle::engine

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gdal.h>
@@ -35,6 +36,23 @@ class GdalSession {
   int disk_error_ = 0;
   std::string first_;
   std::vector<std::string> warnings_;
+};
+
+/// A file in memory, removed by the destructor. Drivers replace and rename files as they like, and what is written
+/// whole is copied once. Threading: one thread.
+class MemoryFile {
+ public:
+  /// `content`: of a file to read; without it there is none yet.
+  explicit MemoryFile(const std::string& extension, std::string content = {});
+  ~MemoryFile();
+  MemoryFile& operator=(MemoryFile&&) = delete;
+
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  /// What was written.
+  [[nodiscard]] std::string_view bytes() const;
+
+ private:
+  std::string content_, path_;
 };
 
 struct CloseDataset {

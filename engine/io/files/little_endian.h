@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <string>
 
 namespace fettle::engine {
 
@@ -13,6 +14,11 @@ template <class T>
   T value;
   std::memcpy(&value, bytes, sizeof(T));
   return value;
+}
+
+/// Appends a number, little-endian.
+void appendLittle(std::string& bytes, auto number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
 }  // namespace fettle::engine

@@ -1,15 +1,11 @@
 #include "engine/io/geo/crs_text.h"
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include <cpl_conv.h>
 #include <cpl_string.h>
-#include <cpl_vsi.h>
-#include <fmt/format.h>
 #include <gdal.h>
 
 #include "engine/io/files/gdal_session.h"
@@ -69,12 +65,6 @@ bool keysAreSound(const GeoKeys& keys) {
   return true;
 }
 
-template <class T>
-void appendNumber(std::string& bytes, T value) {
-  for (std::size_t i = 0; i < sizeof(T); ++i)
-    bytes += static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i) & 0xffU);
-}
-
 // A TIFF of one black pixel with the keys. Layout: TIFF Revision 6.0 (Aldus, 1992), section 2.
 std::string tiffOf(const GeoKeys& keys) {
   enum Type : std::uint16_t { kTypeAscii = 2, kTypeShort = 3, kTypeDouble = 12 };
@@ -86,7 +76,7 @@ std::string tiffOf(const GeoKeys& keys) {
   };
   const auto one = [](std::uint16_t tag, std::uint16_t value) {
     std::string bytes;
-    appendNumber(bytes, value);
+    appendLittle(bytes, value);
     return Entry{tag, kTypeShort, 1, bytes};
   };
   std::vector<Entry> entries{one(256, 1), one(257, 1), one(258, 8), one(259, 1), one(262, 1),
@@ -103,44 +93,26 @@ std::string tiffOf(const GeoKeys& keys) {
   // Header, the pixel and a byte to align the directory, the directory, the long values.
   constexpr std::uint32_t kFirst = 10;
   std::string bytes("II*\0", 4), values;
-  appendNumber(bytes, kFirst);
+  appendLittle(bytes, kFirst);
   bytes.append(2, '\0');
-  appendNumber(bytes, static_cast<std::uint16_t>(entries.size()));
+  appendLittle(bytes, static_cast<std::uint16_t>(entries.size()));
   const auto values_at = static_cast<std::uint32_t>(bytes.size() + 12 * entries.size() + 4);
   for (Entry& e : entries) {
-    appendNumber(bytes, e.tag);
-    appendNumber(bytes, static_cast<std::uint16_t>(e.type));
-    appendNumber(bytes, e.count);
+    appendLittle(bytes, e.tag);
+    appendLittle(bytes, static_cast<std::uint16_t>(e.type));
+    appendLittle(bytes, e.count);
     if (e.value.size() <= 4) {
       e.value.resize(4, '\0');
       bytes += e.value;
     } else {
-      appendNumber(bytes, static_cast<std::uint32_t>(values_at + values.size()));
+      appendLittle(bytes, static_cast<std::uint32_t>(values_at + values.size()));
       values += e.value;
       values.resize((values.size() + 7) / 8 * 8, '\0');
     }
   }
-  appendNumber(bytes, std::uint32_t{0});
+  appendLittle(bytes, std::uint32_t{0});
   return bytes + values;
 }
-
-// During its lifetime, bytes as a file that GDAL can open.
-class MemoryFile {
- public:
-  explicit MemoryFile(std::string bytes) : bytes_(std::move(bytes)) {
-    static std::atomic<std::uint64_t> number{0};
-    path_ = fmt::format("/vsimem/fettle-keys-{}.tif", number.fetch_add(1, std::memory_order_relaxed));
-    VSIFCloseL(
-        VSIFileFromMemBuffer(path_.c_str(), reinterpret_cast<GByte*>(bytes_.data()), bytes_.size(), FALSE));
-  }
-  ~MemoryFile() { VSIUnlink(path_.c_str()); }
-  MemoryFile& operator=(MemoryFile&&) = delete;
-  [[nodiscard]] const char* path() const noexcept { return path_.c_str(); }
-
- private:
-  std::string bytes_;
-  std::string path_;
-};
 
 }  // namespace
 
@@ -171,12 +143,12 @@ std::string prjOf(const std::string& wkt) {
 
 std::string wktOfGeoKeys(const GeoKeys& keys) {
   if (!keysAreSound(keys)) return {};
-  const MemoryFile file(tiffOf(keys));
+  const MemoryFile file(".tif", tiffOf(keys));
   // GDAL ignores vertical systems in keys of version 1.0, which are those of LAS 1.2.
   CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", "YES");
   const char* const drivers[] = {"GTiff", nullptr};
   const DatasetPtr dataset(
-      GDALOpenEx(file.path(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr));
+      GDALOpenEx(file.path().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr));
   OGRSpatialReferenceH crs = dataset ? GDALGetSpatialRef(dataset.get()) : nullptr;
   CPLSetThreadLocalConfigOption("GTIFF_REPORT_COMPD_CS", nullptr);
   if (crs == nullptr || (OSRIsProjected(crs) == 0 && OSRIsGeographic(crs) == 0)) return {};

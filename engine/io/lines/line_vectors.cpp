@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstring>
 #include <iterator>
 #include <memory>
 #include <optional>
 #include <string_view>
 
-#include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <gdal.h>
 #include <ogr_api.h>
@@ -61,27 +59,6 @@ std::vector<LineRun> runsOf(const EdgeLine& line) {
 }
 
 // ---- writing
-
-// A file in memory: drivers replace and rename files as they like, and what is written whole is copied once.
-class MemoryFile {
- public:
-  explicit MemoryFile(const std::string& extension) {
-    static std::atomic<unsigned> count{0};
-    path_ = fmt::format("/vsimem/fettle-lines-{}{}", count++, extension);
-  }
-  ~MemoryFile() { VSIUnlink(path_.c_str()); }
-  MemoryFile& operator=(MemoryFile&&) = delete;
-
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }
-  [[nodiscard]] std::string_view bytes() const {
-    vsi_l_offset size = 0;
-    const GByte* data = VSIGetMemFileBuffer(path_.c_str(), &size, FALSE);
-    return {reinterpret_cast<const char*>(data), data == nullptr ? 0 : static_cast<std::size_t>(size)};
-  }
-
- private:
-  std::string path_;
-};
 
 class LineLayer {
  public:

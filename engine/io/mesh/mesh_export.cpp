@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/little_endian.h"
 #include "engine/io/format.h"
 #include "engine/io/mesh/ply_header.h"
 #include "engine/io/mesh/surface_mesh.h"
@@ -19,14 +19,6 @@
 namespace fettle::engine {
 
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "both formats are written little-endian");
-
-template <class Number>
-void append(Number number, std::string& text) {
-  const auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
-  text.append(raw.data(), raw.size());
-}
 
 // Warnings about what the triangles leave out.
 std::vector<std::string> describe(const SurfaceMesh& mesh, const Version& field, const ExportOptions& options,
@@ -95,7 +87,7 @@ Result<Exported> writeStl(const Version& field, const std::string& path, const E
   // The header must not begin with "solid", otherwise readers take the file for text.
   out.text = fmt::format("surface of a height field, units {}", grid.lateral_unit.name);
   out.text.resize(80, ' ');
-  append(static_cast<std::uint32_t>(all->triangles), out.text);
+  appendLittle(out.text, static_cast<std::uint32_t>(all->triangles));
   const double z_unit = grid.height_unit.mm / grid.lateral_unit.mm;
   const auto width = static_cast<std::uint64_t>(grid.width);
   const Status status =
@@ -113,10 +105,10 @@ Result<Exported> writeStl(const Version& field, const std::string& path, const E
         const std::array<double, 3> n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
                                       u[0] * v[1] - u[1] * v[0]};
         const double length = std::hypot(n[0], n[1], n[2]);
-        for (const double component : n) append(static_cast<float>(component / length), text);
+        for (const double component : n) appendLittle(text, static_cast<float>(component / length));
         for (const auto& corner : p)
-          for (const double coordinate : corner) append(static_cast<float>(coordinate), text);
-        append(std::uint16_t{0}, text);
+          for (const double coordinate : corner) appendLittle(text, static_cast<float>(coordinate));
+        appendLittle(text, std::uint16_t{0});
       });
   if (!status) return tl::unexpected(status.error());
   if (Status done = file->commit(); !done) return tl::unexpected(done.error());
@@ -152,15 +144,15 @@ Result<Exported> writePlyMesh(const Version& field, const std::string& path, con
   const auto width = static_cast<std::uint64_t>(grid.width);
   for (std::uint64_t i = 0; i < number.size(); ++i) {
     if (!all->used[i]) continue;
-    append(grid.origin_x + static_cast<double>(i % width) * grid.spacing_x, out.text);
-    append(grid.origin_y + static_cast<double>(i / width) * grid.spacing_y, out.text);
-    append(mesh->height(i), out.text);
+    appendLittle(out.text, grid.origin_x + static_cast<double>(i % width) * grid.spacing_x);
+    appendLittle(out.text, grid.origin_y + static_cast<double>(i / width) * grid.spacing_y);
+    appendLittle(out.text, mesh->height(i));
     if (Status status = out.flushIfLarge(); !status) return tl::unexpected(status.error());
   }
   const Status status =
       writeTriangles(*mesh, out, all->triangles, job, [&](const SurfaceMesh::Triangle& t, std::string& text) {
-        append(std::uint8_t{3}, text);
-        for (const std::uint64_t corner : t) append(number[corner], text);
+        appendLittle(text, std::uint8_t{3});
+        for (const std::uint64_t corner : t) appendLittle(text, number[corner]);
       });
   if (!status) return tl::unexpected(status.error());
   if (Status done = file->commit(); !done) return tl::unexpected(done.error());

@@ -1,8 +1,5 @@
 // A field as points, XYZ text and PLY: every sample that is not a hole, row by row from the lowest y.
 
-#include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -11,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "engine/io/files/atomic_file.h"
+#include "engine/io/files/little_endian.h"
 #include "engine/io/format.h"
 #include "engine/io/grid_notes.h"
 #include "engine/io/mesh/ply_header.h"
@@ -48,13 +46,6 @@ Status writePoints(const Version& field, TextWriter& out, JobControl& job, auto&
     job.advance();
   }
   return out.flush();
-}
-
-template <class Number>
-void appendLittleEndian(Number number, std::string& text) {
-  auto raw = std::bit_cast<std::array<char, sizeof(Number)>>(number);
-  if constexpr (std::endian::native == std::endian::big) std::reverse(raw.begin(), raw.end());
-  text.append(raw.data(), raw.size());
 }
 
 std::int64_t pointsIn(const Version& field) {
@@ -95,9 +86,9 @@ Result<Exported> writePly(const Version& field, const std::string& path, const E
       fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty float z\nend_header\n",
                   pointsIn(field));
   const Status status = writePoints(field, out, job, [](double x, double y, float z, std::string& text) {
-    appendLittleEndian(x, text);
-    appendLittleEndian(y, text);
-    appendLittleEndian(z, text);
+    appendLittle(text, x);
+    appendLittle(text, y);
+    appendLittle(text, z);
   });
   if (!status) return tl::unexpected(status.error());
   if (Status done = file->commit(); !done) return tl::unexpected(done.error());
