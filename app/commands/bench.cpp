@@ -105,20 +105,16 @@ void printEffects(const Report& report) {
   }
 }
 
-double microsecondsBench(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-3;
-}
-
 Report rowOf(const haptic::LoopBenchRow& row) {
   return {{"name", row.name},
-          {"lateness_p50_us", microsecondsBench(row.lateness.p50_ns)},
-          {"lateness_p99_us", microsecondsBench(row.lateness.p99_ns)},
-          {"lateness_p999_us", microsecondsBench(row.lateness.p999_ns)},
-          {"lateness_p9999_us", microsecondsBench(row.lateness.p9999_ns)},
-          {"lateness_worst_us", microsecondsBench(row.lateness.worst_ns)},
-          {"compute_p50_us", microsecondsBench(row.compute.p50_ns)},
-          {"compute_p999_us", microsecondsBench(row.compute.p999_ns)},
-          {"compute_worst_us", microsecondsBench(row.compute.worst_ns)},
+          {"lateness_p50_us", haptic::microseconds(row.lateness.p50_ns)},
+          {"lateness_p99_us", haptic::microseconds(row.lateness.p99_ns)},
+          {"lateness_p999_us", haptic::microseconds(row.lateness.p999_ns)},
+          {"lateness_p9999_us", haptic::microseconds(row.lateness.p9999_ns)},
+          {"lateness_worst_us", haptic::microseconds(row.lateness.worst_ns)},
+          {"compute_p50_us", haptic::microseconds(row.compute.p50_ns)},
+          {"compute_p999_us", haptic::microseconds(row.compute.p999_ns)},
+          {"compute_worst_us", haptic::microseconds(row.compute.worst_ns)},
           {"missed", row.missed},
           {"over_1_ms", row.over_1_ms},
           {"latency_held", row.latency_held},

@@ -186,16 +186,12 @@ engine::Result<LiveSettings> settingsFor(const RecordArguments& options, const C
   return settings;
 }
 
-double microsecondsRecord(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-3;
-}
-
 Report timingOf(const haptic::TimingFigures& f) {
-  return {{"p50_us", microsecondsRecord(f.p50_ns)},
-          {"p99_us", microsecondsRecord(f.p99_ns)},
-          {"p999_us", microsecondsRecord(f.p999_ns)},
-          {"p9999_us", microsecondsRecord(f.p9999_ns)},
-          {"worst_us", microsecondsRecord(f.worst_ns)}};
+  return {{"p50_us", haptic::microseconds(f.p50_ns)},
+          {"p99_us", haptic::microseconds(f.p99_ns)},
+          {"p999_us", haptic::microseconds(f.p999_ns)},
+          {"p9999_us", haptic::microseconds(f.p9999_ns)},
+          {"worst_us", haptic::microseconds(f.worst_ns)}};
 }
 
 Report deviceOf(const haptic::Device& device, const haptic::DeviceCounters& c) {
@@ -212,7 +208,7 @@ Report deviceOf(const haptic::Device& device, const haptic::DeviceCounters& c) {
           {"faults", c.faults},
           {"connects", c.connects},
           {"disconnects", c.disconnects},
-          {"longest_output_us", microsecondsRecord(c.longest_output_ns)}};
+          {"longest_output_us", haptic::microseconds(c.longest_output_ns)}};
 }
 
 Report safetyOf(const LiveOutcome& outcome, const GivenForce& given, const haptic::SafetyLimits& limits) {

@@ -8,6 +8,10 @@
 
 namespace fettle::haptic {
 
+[[nodiscard]] constexpr double microseconds(std::int64_t ns) noexcept {
+  return 1e-3 * static_cast<double>(ns);
+}
+
 /// Figures of a histogram, in nanoseconds. A percentile is the upper end of its class: never too low, and too
 /// high by at most 1/32.
 struct TimingFigures {

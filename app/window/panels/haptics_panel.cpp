@@ -87,10 +87,10 @@ void loopFigures(LoopClient& client, const std::vector<float>& forces) {
   const haptic::TimingFigures compute = client.timing().compute.figures();
   const haptic::TimingFigures late = client.timing().lateness.figures();
   figure("ticks", fmt::format("{:.0f} of {:.0f} per second", client.measuredRate(), client.rate()));
-  figure("tick takes",
-         fmt::format("{:.1f} us, p99 {:.1f}", microseconds(compute.p50_ns), microseconds(compute.p99_ns)));
-  figure("ticks late by",
-         fmt::format("{:.0f} us, p99 {:.0f}", microseconds(late.p50_ns), microseconds(late.p99_ns)));
+  figure("tick takes", fmt::format("{:.1f} us, p99 {:.1f}", haptic::microseconds(compute.p50_ns),
+                                   haptic::microseconds(compute.p99_ns)));
+  figure("ticks late by", fmt::format("{:.0f} us, p99 {:.0f}", haptic::microseconds(late.p50_ns),
+                                      haptic::microseconds(late.p99_ns)));
   drawLateness(client.timing().lateness);
 }
 

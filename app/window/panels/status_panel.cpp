@@ -30,8 +30,8 @@ void statusPanel(const PanelContext& context, const WindowPicture& picture, cons
   const haptic::LoopState state = client.state();
   const haptic::TimingFigures edit = client.latency().histogram().figures();
   figure("loop", fmt::format("{:.0f} of {:.0f} Hz", client.measuredRate(), client.rate()));
-  figure("late p50, p99",
-         fmt::format("{:.0f}, {:.0f} us", microseconds(late.p50_ns), microseconds(late.p99_ns)));
+  figure("late p50, p99", fmt::format("{:.0f}, {:.0f} us", haptic::microseconds(late.p50_ns),
+                                      haptic::microseconds(late.p99_ns)));
   figure("missed ticks", fmt::format("{}", client.timing().missed.load(std::memory_order_relaxed)));
   figure("force", fmt::format("{:.2f} N{}", glm::length(state.force_n), state.contact ? ", touching" : ""));
   figure("frame", fmt::format("GPU {:.1f} ms, CPU {:.1f}", figures.device_ms, draw.last_ms));
@@ -43,10 +43,11 @@ void statusPanel(const PanelContext& context, const WindowPicture& picture, cons
                                     bytesText(static_cast<double>(figures.upload.bytes)), figures.upload.ms));
   figure("first picture",
          fmt::format("{:.1f} s, read in {:.1f}", 1e-3 * times.seen_ms, 1e-3 * times.read_ms));
-  figure("edit to pixel",
-         edit.count == 0 ? std::string("-")
-                         : fmt::format("{:.0f} ms; p50 {:.0f}, p99 {:.0f}", client.latency().lastMs(),
-                                       1e-3 * microseconds(edit.p50_ns), 1e-3 * microseconds(edit.p99_ns)));
+  figure("edit to pixel", edit.count == 0
+                              ? std::string("-")
+                              : fmt::format("{:.0f} ms; p50 {:.0f}, p99 {:.0f}", client.latency().lastMs(),
+                                            1e-3 * haptic::microseconds(edit.p50_ns),
+                                            1e-3 * haptic::microseconds(edit.p99_ns)));
 }
 
 }  // namespace fettle::app

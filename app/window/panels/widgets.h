@@ -50,8 +50,4 @@ bool field(const char* name, const auto& edit) {
 /// "17.2 kB".
 [[nodiscard]] std::string bytesText(double bytes);
 
-[[nodiscard]] constexpr double microseconds(std::int64_t ns) noexcept {
-  return 1e-3 * static_cast<double>(ns);
-}
-
 }  // namespace fettle::app
