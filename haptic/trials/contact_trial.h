@@ -40,7 +40,7 @@ struct ContactFigures {
 };
 
 /// A hand over a field, and the correct contact of each of its ticks: the closest point of all cells within
-/// 16 cells. For a ball, of the field grown by it (grown_surface.h), in a square of 96 cells without holes.
+/// 16 cells. For a ball, of the field grown by it, in a square of 96 cells without holes.
 ///
 /// The hand moves in units of cells on any grid: 0.4 per tick, pressed in by up to 6. Open loop, the same
 /// path whatever the force, so that choices can be compared tick by tick.
