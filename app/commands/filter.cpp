@@ -16,6 +16,7 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
+#include "engine/base/lower_case.h"
 #include "engine/base/stopwatch.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
@@ -354,8 +355,7 @@ void addFilter(Command root, Chosen& chosen) {
   std::vector<std::string> words, titles, sigmas, ranges;
   for (const engine::Filter& filter : engine::filters()) {
     words.emplace_back(filter.word);
-    const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-    if (!std::ranges::equal(filter.word, std::string_view(filter.title), {}, {}, lower))
+    if (engine::lowerCase(filter.title) != filter.word)
       titles.push_back(fmt::format("; {}: {}", filter.word, filter.title));
     if (filter.sigma.exists()) sigmas.push_back(fmt::format("{}: {}", filter.word, filter.sigma.when_zero));
     if (filter.range_sigma.exists()) ranges.push_back(fmt::format("{}: {:g}", filter.word, filter.noises));

@@ -1,13 +1,13 @@
 #include "app/work/open_document.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 #include <fmt/format.h>
 
 #include "app/work/recent_files.h"
 #include "engine/formats/formats.h"
+#include "engine/io/files/input_file.h"
 #include "engine/session/checksum.h"
 
 namespace fettle::app {
@@ -65,10 +65,7 @@ std::string recoveryPath(const std::string& scan) {
 }
 
 bool isSessionPath(const std::string& path) {
-  std::string extension = fs::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".fettle";
+  return engine::extensionOf(path) == ".fettle";
 }
 
 void removeSession(const std::string& path) {

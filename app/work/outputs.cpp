@@ -1,7 +1,6 @@
 #include "app/work/outputs.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <iterator>
 #include <map>
@@ -12,6 +11,7 @@
 
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
+#include "engine/base/lower_case.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/input_file.h"
 #include "engine/io/lines/lines.h"
@@ -26,10 +26,7 @@ std::vector<std::string> extensionsOf(bool engine::FormatInfo::*able) {
 }
 
 std::string withDot(const std::string& extension) {
-  std::string dotted = extension.starts_with('.') ? extension : "." + extension;
-  std::transform(dotted.begin(), dotted.end(), dotted.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return dotted;
+  return engine::lowerCase(extension.starts_with('.') ? extension : "." + extension);
 }
 
 namespace {

@@ -4,16 +4,11 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/lower_case.h"
+
 namespace fettle::app {
 
 namespace {
-
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
 
 // Letters wrong, missing, in excess, or swapped with their neighbour: the optimal string alignment distance.
 std::size_t distance(std::string_view a, std::string_view b) {
@@ -38,11 +33,11 @@ std::optional<std::string> nearest(std::string_view word, const std::vector<std:
   constexpr std::size_t kLongest = 64;  // longer words are not typing errors, and cost their square
   constexpr std::size_t kPrefix = 3;
   if (word.empty() || word.size() > kLongest) return std::nullopt;
-  const std::string typed = lowerCase(word);
+  const std::string typed = engine::lowerCase(word);
   const std::string *begun = nullptr, *near = nullptr;
   std::size_t begins = 0, least = std::max<std::size_t>(1, typed.size() / 3) + 1, equal = 0;
   for (const std::string& candidate : candidates) {
-    const std::string known = lowerCase(candidate);
+    const std::string known = engine::lowerCase(candidate);
     if (known == typed) return candidate;
     if (typed.size() >= kPrefix && known.starts_with(typed)) {
       begun = &candidate;

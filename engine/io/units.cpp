@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/lower_case.h"
+
 namespace fettle::engine {
 
 namespace {
@@ -44,13 +46,6 @@ constexpr std::array kNoLengths{
     "volt"sv,      "volts"sv,     "deg"sv,        "degree"sv,     "degrees"sv,     "\xc2\xb0"sv,
     "rad"sv,       "radian"sv,    "radians"sv,    "k"sv,          "kelvin"sv,      "degc"sv,
     "celsius"sv,   "s"sv,         "hz"sv};
-
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
 
 // Defaults for what neither the file nor the user states. Heights share the lateral unit unless the file
 // states another; resolution tags state lengths without a unit.

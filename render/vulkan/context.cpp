@@ -1,10 +1,11 @@
 #include "render/vulkan/context.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 
 #include <fmt/format.h>
+
+#include "engine/base/lower_case.h"
 
 namespace fettle::render {
 namespace {
@@ -25,12 +26,6 @@ vk::DebugUtilsMessengerCreateInfoEXT messengerInfo(DebugMessages* messages) {
   // "General" messages come from the loader: which drivers it found and which could not be loaded.
   return {
       {}, Severity::eWarning | Severity::eError, Type::eValidation | Type::ePerformance, &collect, messages};
-}
-
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 int preference(vk::PhysicalDeviceType type) {
@@ -147,7 +142,8 @@ engine::Result<std::unique_ptr<Context>> Context::create(const DeviceOptions& op
     const std::string name = properties.deviceName;
     std::uint32_t family = 0;
     std::string reason = rejection(device, family, *context->surface_);
-    if (reason.empty() && lower(name).find(lower(options.device)) == std::string::npos)
+    if (reason.empty() &&
+        engine::lowerCase(name).find(engine::lowerCase(options.device)) == std::string::npos)
       reason = "is not the requested one";
     if (reason.empty() && options.kind == DriverKind::kHardware &&
         properties.deviceType == vk::PhysicalDeviceType::eCpu)

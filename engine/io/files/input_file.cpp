@@ -11,13 +11,12 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/lower_case.h"
+
 namespace fettle::engine {
 
 std::string extensionOf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return extension;
+  return lowerCase(std::filesystem::path(path).extension().string());
 }
 
 InputFile::InputFile(std::string path, std::uint64_t size, int descriptor)

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/base/lower_case.h"
 #include "engine/io/field_limits.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/files/text_reader.h"
@@ -20,13 +21,6 @@ namespace fettle::engine {
 namespace {
 
 constexpr double kEsriNoData = -9999.0;  // meaning of the format when the key is missing
-
-std::string lowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return lower;
-}
 
 struct Header {
   std::optional<double> columns, rows, cell, dx, dy, no_data;

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include "engine/base/lower_case.h"
 #include "engine/io/field_limits.h"
 #include "engine/io/files/md5.h"
 #include "engine/io/files/text_reader.h"
@@ -36,12 +37,6 @@ constexpr std::size_t kLongestGap = std::size_t{1} << 16;  // between two height
 
 tl::unexpected<Error> damaged(std::string what, const InputFile& file) {
   return inputError(std::move(what), file.path(), "the file is damaged");
-}
-
-std::string lowerCase(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  return text;
 }
 
 // Folder of main.xml, with its slash: archives contain the files or a folder with them. The shallowest one
