@@ -1,8 +1,96 @@
 #include "app/work/step_keeper.h"
 
-#include <utility>
-
 namespace fettle::app {
+
+using haptic::EventKind;
+
+void LoopJournal::begin(std::int64_t state, const haptic::Scene& scene) {
+  recorder_ = haptic::Recorder();
+  recorded_ = lost_ = 0;
+  scenes_.clear();
+  if (sink_ != nullptr) recorder_.add(haptic::journal::Begin{state, scene});
+}
+
+bool LoopJournal::takeTicks(haptic::HapticLoop& loop, StrokePath& path) {
+  if (sink_ == nullptr) return false;
+  for (haptic::TickRecord record; loop.pollRecord(record); ++recorded_) {
+    recorder_.tick(record.input);
+    path.add(recorded_, record);
+  }
+  const std::uint64_t lost = loop.state().lost_records;
+  if (lost == lost_) return false;
+  recorder_.add(haptic::journal::Lost{static_cast<std::int64_t>(lost - lost_)});
+  recorded_ += lost - lost_;
+  lost_ = lost;
+  return true;
+}
+
+bool LoopJournal::reached(const haptic::LoopEvent& event) const noexcept {
+  // An event follows all ticks before it and, when it is an answer, the tick that took the command.
+  return sink_ == nullptr || recorded_ >= event.tick + (isAnswer(event.kind) ? 1 : 0);
+}
+
+void LoopJournal::sceneSent(std::uint64_t id, const haptic::Scene& scene) {
+  if (sink_ != nullptr) scenes_.emplace_back(id, scene);
+}
+
+void LoopJournal::answered(const haptic::LoopEvent& event) {
+  if (sink_ == nullptr) return;
+  const haptic::LoopPlace at{event.tick, true};
+  switch (event.kind) {
+    case EventKind::kSnapshot:
+      recorder_.add(haptic::journal::Snapshot{at});
+      break;
+    case EventKind::kAdopted:
+    case EventKind::kAdoptRefused:
+      recorder_.offerAnswered({at, event.kind == EventKind::kAdopted});
+      break;
+    case EventKind::kRestored:
+      recorder_.add(haptic::journal::Restored{event.id, at});
+      break;
+    case EventKind::kSceneChanged:
+      while (!scenes_.empty() && scenes_.front().first != event.id) scenes_.pop_front();
+      if (!scenes_.empty()) recorder_.add(haptic::journal::SceneSet{at, scenes_.front().second});
+      break;
+    case EventKind::kEdited:
+    case EventKind::kStrokeEnded:
+      break;
+  }
+}
+
+std::uint64_t LoopJournal::filterBase(const haptic::LoopPlace& place) {
+  const std::uint64_t id = ++filters_;
+  if (sink_ != nullptr) recorder_.add(haptic::journal::FilterBase{id, place});
+  return id;
+}
+
+void LoopJournal::filterBegun(std::uint64_t base, const engine::FilterSpec& spec) {
+  if (sink_ != nullptr) recorder_.beginFilter({base, spec});
+}
+
+void LoopJournal::commit(const haptic::journal::StepMade& made, const engine::Step& step, std::string data) {
+  if (sink_ == nullptr) return;
+  recorder_.add(made, std::move(data));
+  sink_->commit(made.state, step, recorder_.take());
+}
+
+void LoopJournal::moveTo(std::int64_t state) {
+  if (sink_ != nullptr) sink_->moveTo(state, {});
+}
+
+void LoopJournal::restoreRequested(std::uint64_t id, std::int64_t state) {
+  if (sink_ == nullptr) return;
+  recorder_.add(haptic::journal::RestoreRequested{id, state});
+  sink_->moveTo(state, recorder_.take());
+}
+
+void LoopJournal::flushWhenDue() {
+  if (recorder_.due()) flush();
+}
+
+void LoopJournal::flush() {
+  if (sink_ != nullptr && !recorder_.empty()) sink_->note(recorder_.take());
+}
 
 void StepKeeper::begin(const haptic::Scene& scene) {
   committed_ = history_.current();

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <optional>
-#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -13,7 +10,6 @@
 #include "engine/base/stopwatch.h"
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
-#include "engine/field/version.h"
 #include "haptic/base/rt_thread.h"
 #include "haptic/contact/certified.h"
 #include "haptic/contact/surface.h"
