@@ -5,6 +5,7 @@
 #include "engine/edges/line_round.h"
 #include "engine/edges/locate.h"
 #include "engine/edges/separate.h"
+#include "engine/edges/walls.h"
 
 namespace fettle::engine {
 
@@ -89,13 +90,15 @@ std::vector<Polyline> linesOf(std::span<const EdgeStroke> strokes, glm::ivec2 or
 }
 
 EdgeLine finished(const EdgeStroke& stroke, const Polyline& hand, const Polyline& line,
-                  const std::vector<Finding>& findings, glm::ivec2 origin) {
+                  const std::vector<Finding>& findings, const std::vector<WallPlace>& walls,
+                  glm::ivec2 origin) {
   EdgeLine result;
   result.id = stroke.id;
   result.closed = stroke.closed;
   for (std::size_t i = 0; i < line.points.size(); ++i) {
     EdgePoint point;
     if (i < findings.size() && findings[i].located) point = edgePointOf(findings[i]);
+    if (point.located && walls[i].found) point.deviation = walls[i].deviation;
     const glm::dvec2 position = point.located ? line.points[i] : pointAt(hand, line.origins[i]);
     point.position = {rounded(position.x) + origin.x, rounded(position.y) + origin.y};
     result.points.push_back(point);
@@ -158,11 +161,13 @@ Result<std::vector<EdgeLine>> locateEdgeLines(const FieldReader& field, double n
     strong = std::move(next_strong);
     window.applyMisfits();
   }
+  const std::vector<std::vector<WallPlace>> walls = settleAtWalls(lines, noise, window, job);
+  if (job.cancelled()) return cancelled();
   separate(lines);
 
   std::vector<EdgeLine> result;
   for (std::size_t k = 0; k < lines.size(); ++k)
-    result.push_back(finished(strokes[k], hands[k], lines[k], findings[k], origin));
+    result.push_back(finished(strokes[k], hands[k], lines[k], findings[k], walls[k], origin));
   return result;
 }
 

@@ -45,7 +45,8 @@ struct LocateOptions {
 /// neighbouring strokes in their order, and at further breaks at a price; the least sum of squared residuals
 /// for each offset of the own break is its cost, and a chain along the stroke picks the offsets (Viterbi 1967).
 /// A second stage assigns the samples next to the line to the surface that they fit. Lines 2 to 10 samples
-/// apart are located together: they neither take each other's edge nor cross, unless their strokes do.
+/// apart are located together: they neither take each other's edge nor cross, unless their strokes do. At walls of
+/// 24 noises or more the line then runs between the samples that are certainly of either side (walls.h).
 /// What was tried and measured: docs/decisions/edge-lines.md.
 ///
 /// A point is not located where there are too few samples on a side, neither surface is a plane, the break
