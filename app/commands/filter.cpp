@@ -168,14 +168,6 @@ std::vector<std::string> commandsFor(const FilterArguments& options, const engin
   return commands;
 }
 
-std::string methodOf(const engine::FilterCandidate& c) {
-  if (c.spec.window == 1) return "the unchanged scan";
-  return fmt::format("{}{}{}{}", engine::name(c.spec.kind),
-                     engine::filterOf(c.spec.kind).window.exists() ? fmt::format(" {}", c.spec.window) : "",
-                     c.spec.passes > 1 ? fmt::format(", {} passes", c.spec.passes) : "",
-                     c.around_edges ? " around suggested edges" : "");
-}
-
 // "7.1 um on flats and 12 um near edges".
 std::string leftBy(const engine::FilterCandidate& c, const std::string& unit) {
   const auto part = [&](double error, const char* where) {
@@ -205,23 +197,23 @@ std::string whyOf(const engine::FilterSuggestion& found, const engine::Suggestio
   if (found.met()) {
     why += fmt::format(
         "{} leaves {}, in about {:.2g} s; of all tested filters that stay within {:.3g} {}, none is faster.",
-        methodOf(pick), leftBy(pick, unit), pick.seconds, asked.tolerance, unit);
+        engine::methodOf(pick), leftBy(pick, unit), pick.seconds, asked.tolerance, unit);
   } else {
     why +=
         fmt::format("No tested filter stays within {:.3g} {}{}. Nearest is {} with {}, in about {:.2g} s.",
                     asked.tolerance, unit, asked.budget_s ? fmt::format(" in {:g} s", *asked.budget_s) : "",
-                    methodOf(pick), leftBy(pick, unit), pick.seconds);
+                    engine::methodOf(pick), leftBy(pick, unit), pick.seconds);
     if (flattest != nullptr && flattest->error_flat <= asked.tolerance)
       why += fmt::format(
           " Only flats: {} leaves {}; edges that need a smaller error must be "
           "smoothed with the stylus (fettle view) or scanned again.",
-          methodOf(*flattest), leftBy(*flattest, unit));
+          engine::methodOf(*flattest), leftBy(*flattest, unit));
     else
       why += " A scan with less noise is needed, or the mean of several.";
   }
   if (marked != nullptr && !pick.around_edges)
     why += fmt::format(" Marking edges first leaves {} ({}): marked samples keep their noise.",
-                       leftBy(*marked, unit), methodOf(*marked));
+                       leftBy(*marked, unit), engine::methodOf(*marked));
   if (found.outlier_share > 1e-4)
     why +=
         fmt::format(" {:.2g} % of the samples are single outliers: a median removes most of these, {} none.",
@@ -231,7 +223,7 @@ std::string whyOf(const engine::FilterSuggestion& found, const engine::Suggestio
 
 Report reportOf(const engine::FilterCandidate& c) {
   const auto figure = [](double value) { return std::isnan(value) ? Report() : Report(value); };
-  return {{"method", methodOf(c)},
+  return {{"method", engine::methodOf(c)},
           {"filter", c.spec.window == 1 ? Report() : Report(engine::name(c.spec.kind))},
           {"window", c.spec.window},
           {"passes", c.spec.passes},
@@ -257,6 +249,13 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   if (filters && options.tolerance.empty())
     return engine::inputError("no tolerance is given", "--tolerance",
                               "give the allowed error, as 0.01 in the scan's unit or 10um");
+  if (!filters && options.budget)
+    return refused("--budget", "give --tolerance: without it only places are named");
+  if (!filters && options.files.files.size() > 1)
+    return refused("OUT", "give --tolerance: without it only places are named, and no command for OUT");
+  if (options.compute == "gpu")
+    return refused("--compute gpu",
+                   "leave it out: filters are tried, and their time measured, on the processor");
   const ProgressLine progress(job);
   auto imported = loadScan(options.files.files[0], options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
@@ -299,12 +298,12 @@ void printSuggestion(const Report& report) {
   fmt::print("{}\n", report["why"].get<std::string>());
   for (const Report& command : report["commands"]) fmt::print("\n    {}", command.get<std::string>());
   const std::string unit = report["unit"];
-  fmt::print("\n\n{:<36}{:>14}{:>14}{:>10}\n", "expected", "flats, " + unit, "edges, " + unit, "s");
+  fmt::print("\n\n{:<48}{:>14}{:>14}{:>10}\n", "expected", "flats, " + unit, "edges, " + unit, "s");
   const auto figure = [](const Report& value) {
     return value.is_null() ? std::string("-") : fmt::format("{:.3g}", value.get<double>());
   };
   for (const Report& c : report["candidates"])
-    fmt::print("{:<36}{:>14}{:>14}{:>10}{}\n", c["method"].get<std::string>(), figure(c["error_flat"]),
+    fmt::print("{:<48}{:>14}{:>14}{:>10}{}\n", c["method"].get<std::string>(), figure(c["error_flat"]),
                figure(c["error_edge"]), figure(c["seconds"]), c["within"].get<bool>() ? "  within" : "");
 }
 

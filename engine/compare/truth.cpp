@@ -8,54 +8,12 @@
 
 #include "engine/compare/compare.h"
 #include "engine/compare/edge_width.h"
+#include "engine/compare/mark_distance.h"
 #include "engine/compare/tile_sums.h"
 
 namespace fettle::engine {
 
 namespace {
-
-// Squared distances [samples^2] of a tile's samples to the nearest mark of the field, exact up to `reach`,
-// beyond that just "far". Rows first, then columns (Felzenszwalb and Huttenlocher, Distance transforms of
-// sampled functions, 2012: the squared Euclidean distance is separable).
-class MarkDistance {
- public:
-  static constexpr int kFar = std::numeric_limits<int>::max();
-
-  explicit MarkDistance(int reach) : reach_(reach) {}
-
-  // Row-major, stride kTileSide.
-  const std::vector<int>& measure(const FieldReader& edges, const SampleRect& rect) {
-    const int side = kTileSide + 2 * reach_;
-    marks_.resize(static_cast<std::size_t>(side) * side);
-    along_.assign(static_cast<std::size_t>(side) * kTileSide, kFar);
-    squared_.assign(kTileSamples, kFar);
-    edges.readMarks(rect.column - reach_, rect.row - reach_, side, side, marks_.data(), side);
-    if (std::find(marks_.begin(), marks_.end(), 1) == marks_.end()) return squared_;
-    for (int r = 0; r < side; ++r) {
-      const std::uint8_t* marks = marks_.data() + static_cast<std::ptrdiff_t>(r) * side;
-      for (int c = 0; c < rect.columns; ++c)
-        for (int d = 0; d <= reach_; ++d)
-          if (marks[c + reach_ - d] != 0 || marks[c + reach_ + d] != 0) {
-            along_[static_cast<std::size_t>(r * kTileSide + c)] = d * d;
-            break;
-          }
-    }
-    for (int r = 0; r < rect.rows; ++r)
-      for (int dr = -reach_; dr <= reach_; ++dr)
-        for (int c = 0; c < rect.columns; ++c) {
-          const int a = along_[static_cast<std::size_t>((r + reach_ + dr) * kTileSide + c)];
-          int& best = squared_[static_cast<std::size_t>(r * kTileSide + c)];
-          if (a != kFar) best = std::min(best, a + dr * dr);
-        }
-    return squared_;
-  }
-
- private:
-  int reach_;
-  std::vector<std::uint8_t> marks_;
-  std::vector<int> along_;
-  std::vector<int> squared_;
-};
 
 struct Errors {
   std::int64_t samples = 0;

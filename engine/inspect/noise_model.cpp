@@ -112,7 +112,17 @@ double NoiseModel::uncorrelatedShare() const noexcept {
 }
 
 double NoiseModel::sigmaAt(const Grid& grid, std::int32_t column, std::int32_t row) const noexcept {
-  return map[mapIndex(grid, column, row)];
+  const auto along = [](std::int32_t at, std::int32_t side) {
+    return std::clamp((at + 0.5) * kMapSide / side - 0.5, 0.0, kMapSide - 1.0);
+  };
+  const double x = along(column, grid.width), y = along(row, grid.height);
+  const int left = std::min(static_cast<int>(x), kMapSide - 2),
+            low = std::min(static_cast<int>(y), kMapSide - 2);
+  const auto part = [&](int across, int up) {
+    return map[static_cast<std::size_t>((low + up) * kMapSide + left + across)];
+  };
+  return std::lerp(std::lerp(part(0, 0), part(1, 0), x - left), std::lerp(part(0, 1), part(1, 1), x - left),
+                   y - low);
 }
 
 Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {

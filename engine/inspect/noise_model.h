@@ -26,7 +26,7 @@ struct NoiseModel {
 
   /// That of uncorrelated noise against sigma^2, 0 .. 1.
   [[nodiscard]] double uncorrelatedShare() const noexcept;
-  /// Of the map around a sample.
+  /// At a sample: linear between the middles of the map's parts.
   [[nodiscard]] double sigmaAt(const Grid& grid, std::int32_t column, std::int32_t row) const noexcept;
 };
 

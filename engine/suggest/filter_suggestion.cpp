@@ -8,12 +8,13 @@
 #include <fmt/format.h>
 
 #include "engine/base/stopwatch.h"
-#include "engine/compare/compare.h"
 #include "engine/filter/catalogue.h"
+#include "engine/inspect/height_counts.h"
 #include "engine/inspect/noise.h"
 #include "engine/inspect/noise_model.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/suggest/mosaic.h"
+#include "engine/suggest/sample_errors.h"
 #include "engine/suggest/synthetic_sample.h"
 
 namespace fettle::engine {
@@ -30,6 +31,7 @@ std::vector<FilterCandidate> candidatesFor(double sigma, int threads) {
       c.spec.window = trial.window;
       c.spec.passes = trial.passes;
       c.spec.threads = threads;
+      if (hasRange(filter.kind)) c.noises = trial.noises;
       // Three digits: the value may be typed.
       if (hasRange(filter.kind)) c.spec.range_sigma = std::stod(fmt::format("{:.3g}", trial.noises * sigma));
       c.around_edges = trial.around_edges;
@@ -40,7 +42,7 @@ std::vector<FilterCandidate> candidatesFor(double sigma, int threads) {
 }
 
 // Runs a candidate on the sample: its errors and its time.
-Status tryOn(const SyntheticSample& sample, FilterCandidate& candidate, TruthFigures& figures) {
+Status tryOn(const SyntheticSample& sample, const SampleJudge& judge, FilterCandidate& candidate) {
   JobControl quiet;
   const Stopwatch watch;
   Version start = sample.scan;
@@ -59,11 +61,11 @@ Status tryOn(const SyntheticSample& sample, FilterCandidate& candidate, TruthFig
     start = std::move(filtered->field);
     candidate.seconds = watch.seconds();
   }
-  const auto found = compareToTruth(start, sample.surface, sample.edges, quiet);
-  if (!found) return tl::unexpected(found.error());
-  figures = *found;
-  candidate.error_flat = figures.rmse_flat;
-  candidate.error_edge = figures.rmse_edge;
+  const SampleErrors errors = judge.errorsOf(start, candidate.spec.kind == FilterKind::kGeneralisedVariation
+                                                        ? SampleJudge::Rare::kLeftOut
+                                                        : SampleJudge::Rare::kCount);
+  candidate.error_flat = errors.flat;
+  candidate.error_edge = errors.edge;
   return {};
 }
 
@@ -76,6 +78,17 @@ Status checked(double value, const char* what, const char* where) {
 
 double FilterCandidate::error() const noexcept {
   return std::fmax(error_flat, error_edge);  // NaN is ignored if the other is a number
+}
+
+std::string methodOf(const FilterCandidate& candidate) {
+  if (candidate.spec.window == 1) return "the unchanged scan";
+  const Filter& filter = filterOf(candidate.spec.kind);
+  std::string words(filter.word);
+  if (filter.window.exists()) words += fmt::format(" {}", candidate.spec.window);
+  if (candidate.spec.passes > 1) words += fmt::format(", {} passes", candidate.spec.passes);
+  if (candidate.noises != (hasRange(filter.kind) ? filter.noises : 0.0))
+    words += fmt::format(", range {:g} noises", candidate.noises);
+  return words + (candidate.around_edges ? " around suggested edges" : "");
 }
 
 Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionRequest& request,
@@ -96,21 +109,19 @@ Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionReq
   job.begin("trying filters", found.candidates.size() + 2);
   JobControl quiet;
   const Mosaic pieces = makeMosaic(field, noise->sigma);
-  const auto sample = makeSyntheticSample(pieces, field.grid(), *noise, 1, quiet);
+  const auto sample = makeSyntheticSample(pieces, field.grid(), *noise, findHeightCounts(field), 1, quiet);
   if (!sample) return tl::unexpected(sample.error());
+  const SampleJudge judge(field, pieces, *sample, noise->sigma);
   job.advance(2);
   const double scale =
       static_cast<double>(field.grid().samples()) / static_cast<double>(pieces.field.grid().samples());
   const double none = std::numeric_limits<double>::infinity();
   double best_time = none, best_error = none;
   bool met = false;
-  TruthFigures unfiltered;
   for (std::size_t i = 0; i < found.candidates.size(); ++i) {
     if (job.cancelled()) return cancelled();
     FilterCandidate& c = found.candidates[i];
-    TruthFigures figures;
-    if (auto ok = tryOn(*sample, c, figures); !ok) return tl::unexpected(ok.error());
-    if (i == 0) unfiltered = figures;
+    if (auto ok = tryOn(*sample, judge, c); !ok) return tl::unexpected(ok.error());
     job.advance();
     c.seconds *= scale;
     const bool affordable = !request.budget_s || c.seconds <= *request.budget_s;
@@ -125,8 +136,7 @@ Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionReq
   found.samples = pieces.field.grid().samples() - summarize(pieces.field).no_data;
   found.outlier_share =
       static_cast<double>(sample->outliers) / static_cast<double>(std::max<std::int64_t>(found.samples, 1));
-  found.edge_share = static_cast<double>(unfiltered.edge_samples) /
-                     static_cast<double>(std::max<std::int64_t>(unfiltered.samples, 1));
+  found.edge_share = judge.edgeShare();
   return found;
 } catch (const std::bad_alloc&) {
   return failure("memory for trying filters could not be allocated", "suggestion", "close other programs");

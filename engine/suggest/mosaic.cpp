@@ -10,7 +10,7 @@ namespace fettle::engine {
 
 namespace {
 
-constexpr int kPiecesASide = 4;
+constexpr int kPiecesASide = 5;
 constexpr double kRelief = 12.0;  // [noises]; what a tile of noise alone has is 8 to 9
 
 struct Place {
@@ -58,6 +58,10 @@ int piecesAlong(std::int32_t side) {
 }  // namespace
 
 Mosaic makeMosaic(const Version& field, double sigma) {
+  if (field.grid().samples() <= kMosaicWhole) {
+    const SampleRect whole{0, 0, field.grid().width, field.grid().height};
+    return {field, {{whole, 0, 0, whole}}};
+  }
   const double relief = kRelief * sigma;
   constexpr std::int32_t kPitch = kMosaicSide + kMosaicGap;
   const FieldReader reader = field.reader();

@@ -22,12 +22,14 @@ struct Mosaic {
   std::vector<Piece> pieces;
 };
 
-/// Up to 4 x 4 pieces of up to kMosaicSide samples a side of a scan whose noise is `sigma`, each from a part of the scan,
-/// where its edges are of middle height. Columns and
+/// The whole of a scan of up to kMosaicWhole samples as one piece. Of a larger one whose noise is `sigma`, 5 x 5 pieces of
+/// up to kMosaicSide samples a side, each from a part of the scan, where its edges are of middle height. Columns and
 /// rows of holes, kMosaicGap wide, are between them: farther than filters by windows and the search for edges see.
 /// Pieces begin at multiples of 256 samples, where the squares of generalised variation do. Throws std::bad_alloc.
 [[nodiscard]] Mosaic makeMosaic(const Version& field, double sigma);
 
 inline constexpr std::int32_t kMosaicSide = 224, kMosaicGap = 32, kMosaicMargin = 24;
+inline constexpr std::int64_t kMosaicWhole =
+    1248 * 1248;  ///< what the pieces of a larger scan have with their gaps
 
 }  // namespace fettle::engine

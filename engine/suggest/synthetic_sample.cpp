@@ -8,14 +8,18 @@
 
 #include "engine/field/builder.h"
 #include "engine/filter/catalogue.h"
-#include "engine/marks/edge_suggestion.h"
 #include "engine/suggest/noise_source.h"
+#include "engine/suggest/sample_edges.h"
 
 namespace fettle::engine {
 
 namespace {
 
-constexpr double kFaint = 0.5;  // of the noise, while edges are searched
+constexpr double kFewOutliers = 1e-4;  // of the samples
+constexpr double kFaint = 0.25;        // of the noise, for edges that are lower than it
+// Range of the filter that makes the surface, in noises. With 1 it loses more of the steps that it is tried on later,
+// with less than this it leaves too much noise.
+constexpr double kSurfaceRange = 0.92;
 
 struct Samples {
   Grid grid;
@@ -63,7 +67,7 @@ std::vector<float> outliersOf(const Samples& s, double sigma, std::int64_t& coun
 Result<Version> smoothed(const Version& field, double sigma, JobControl& job) {
   FilterSpec spec;
   spec.kind = FilterKind::kGeneralisedVariation;
-  spec.range_sigma = filterOf(spec.kind).noises * sigma;
+  spec.range_sigma = kSurfaceRange * filterOf(spec.kind).noises * sigma;
   auto done = applyFilter(field, field, spec, job);
   if (!done) return tl::unexpected(done.error());
   return std::move(done->field);
@@ -71,22 +75,24 @@ Result<Version> smoothed(const Version& field, double sigma, JobControl& job) {
 
 // Noise of the model for all pieces; 0 between them.
 std::vector<double> noiseFor(const Mosaic& pieces, const Grid& grid, const NoiseModel& noise,
-                             std::uint64_t seed) {
-  const NoiseSource source(noise.parts);
+                             const HeightCounts& counts, std::uint64_t seed) {
+  NoiseParts parts = noise.parts;
+  // Counting adds its own: the variance of a uniform distribution.
+  parts.uncorrelated = std::max(parts.uncorrelated - counts.step * counts.step / 12.0, 0.0);
+  const NoiseSource source(parts);
   const std::int32_t width = pieces.field.grid().width;
   std::vector<double> all(static_cast<std::size_t>(pieces.field.grid().samples()));
   for (std::size_t p = 0; p < pieces.pieces.size(); ++p) {
     const Mosaic::Piece& piece = pieces.pieces[p];
     const SampleRect& from = piece.from;
-    const double scale =
-        noise.sigmaAt(grid, from.column + from.columns / 2, from.row + from.rows / 2) / noise.sigma;
     const std::vector<double> made = source.make(from.columns, from.rows, seed * pieces.pieces.size() + p);
     for (std::int32_t r = 0; r < from.rows; ++r)
       for (std::int32_t c = 0; c < from.columns; ++c)
         all[static_cast<std::size_t>(piece.row + r) * static_cast<std::size_t>(width) +
             static_cast<std::size_t>(piece.column + c)] =
-            scale * made[static_cast<std::size_t>(r) * static_cast<std::size_t>(from.columns) +
-                         static_cast<std::size_t>(c)];
+            noise.sigmaAt(grid, from.column + c, from.row + r) / noise.sigma *
+            made[static_cast<std::size_t>(r) * static_cast<std::size_t>(from.columns) +
+                 static_cast<std::size_t>(c)];
   }
   return all;
 }
@@ -94,10 +100,13 @@ std::vector<double> noiseFor(const Mosaic& pieces, const Grid& grid, const Noise
 }  // namespace
 
 Result<SyntheticSample> makeSyntheticSample(const Mosaic& pieces, const Grid& grid, const NoiseModel& noise,
-                                            std::uint64_t seed, JobControl& job) {
+                                            const HeightCounts& counts, std::uint64_t seed, JobControl& job) {
   SyntheticSample made;
   const Samples raw = samplesOf(pieces.field);
-  const std::vector<float> instead = outliersOf(raw, noise.sigma, made.outliers);
+  std::vector<float> instead = outliersOf(raw, noise.sigma, made.outliers);
+  // So few are tips of ribs as likely as outliers, and one of them in the scan and not in the surface is millimetres.
+  if (static_cast<double>(made.outliers) < kFewOutliers * static_cast<double>(raw.z.size()))
+    std::ranges::fill(instead, std::nanf(""));
   std::vector<float> clean = raw.z;
   for (std::size_t i = 0; i < clean.size(); ++i)
     if (instead[i] == instead[i]) clean[i] = instead[i];
@@ -107,23 +116,19 @@ Result<SyntheticSample> makeSyntheticSample(const Mosaic& pieces, const Grid& gr
   made.surface = *std::move(surface);
 
   Samples noisy = samplesOf(made.surface);
-  const std::vector<double> added = noiseFor(pieces, grid, noise, seed);
+  const std::vector<double> added = noiseFor(pieces, grid, noise, counts, seed);
   for (std::size_t i = 0; i < noisy.z.size(); ++i)
-    noisy.z[i] =
-        instead[i] == instead[i] ? raw.z[i] : static_cast<float>(static_cast<double>(noisy.z[i]) + added[i]);
+    noisy.z[i] = instead[i] == instead[i]
+                     ? raw.z[i]
+                     : static_cast<float>(counts.nearest(static_cast<double>(noisy.z[i]) + added[i]));
   made.scan = makeField(noisy.grid, noisy.z, raw.marks);
 
-  // Edges as low as half the noise are there for who compares with the surface. With less noise the curves of the
-  // surface are edges, too.
   Samples faint = samplesOf(made.surface);
   for (std::size_t i = 0; i < faint.z.size(); ++i) faint.z[i] += static_cast<float>(kFaint * added[i]);
-  const auto map = findEdges(makeField(faint.grid, faint.z), EdgeMap::kUsualSigma, job);
-  if (!map) return tl::unexpected(map.error());
-  EdgeChoice line;
-  line.thickness = 0.0;
-  auto edges = suggestMarks(made.surface, *map, line, job);
+  auto edges = markSampleEdges(pieces.field, made.surface, makeField(faint.grid, faint.z), noise.sigma, job);
   if (!edges) return tl::unexpected(edges.error());
-  made.edges = std::move(edges->field);
+  made.edges = *std::move(edges);
+
   std::vector<float> judged(raw.z.size(), std::nanf(""));
   for (const Mosaic::Piece& piece : pieces.pieces) {
     const SampleRect& in = piece.judged;

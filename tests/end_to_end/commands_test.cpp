@@ -164,6 +164,8 @@ TEST_F(Commands, SuggestedFilterTypedAsPrintedLeavesWhatWasTolerated) {
   EXPECT_EQ(printed.status, 0) << printed.err;
   EXPECT_NE(printed.out.find("No tested filter stays within 0.001 mm"), std::string::npos) << printed.out;
   expectRefused(fettle({"filter", file("s.tif"), "--suggest"}), "--tolerance");
+  expectRefused(fettle({"filter", file("s.tif"), "--suggest", "--tolerance", "15um", "--compute", "gpu"}),
+                "--compute");
   expectRefused(fettle({"filter", file("s.tif"), file("o.tif"), "--filter", "box", "--tolerance", "1"}),
                 "--suggest");
 }
@@ -190,6 +192,8 @@ TEST_F(Commands, PlacesWhereALineByHandIsWorthMostAreNamedInTheScansOwnCoordinat
   expectRefused(fettle({"filter", file("s.tif"), file("o.tif"), "--filter", "tgv", "--places", "3"}),
                 "--suggest");
   EXPECT_EQ(fettle({"filter", file("s.tif"), "--suggest", "--places", "0"}).status, 2);
+  expectRefused(fettle({"filter", file("s.tif"), "--suggest", "--places", "1", "--budget", "5"}), "--budget");
+  expectRefused(fettle({"filter", file("s.tif"), file("o.tif"), "--suggest", "--places", "1"}), "OUT");
 }
 
 TEST_F(Commands, CompareAgainstTheTruthJudgesFlatsAndEdges) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -70,18 +71,19 @@ TEST_P(FilterSuggestionOf, APartExpectsWhatIsTrulyLeftWithinItsFactor) {
     const std::string what = fmt::format("{} {} x{} flat {:.4f} true {:.4f} edge {:.4f} true {:.4f}",
                                          name(c.spec.kind), c.spec.window, c.spec.passes, c.error_flat,
                                          true_figures.rmse_flat, c.error_edge, true_figures.rmse_edge);
-    // The most that was found on these: total variation draws flats to surroundings whose edges it does not tell from
-    // the noise, 1.6 times as much on pieces as on the whole bracket; near the edges of the die 1.3.
-    const double most_flat = c.spec.kind == FilterKind::kTotalVariation ? 1.7 : 1.4;
-    EXPECT_LT(c.error_flat, most_flat * true_figures.rmse_flat) << what;
-    EXPECT_GT(c.error_flat, true_figures.rmse_flat / 1.25) << what;
-    EXPECT_LT(c.error_edge, 1.35 * true_figures.rmse_edge) << what;
-    EXPECT_GT(c.error_edge, true_figures.rmse_edge / 1.25) << what;
+    // The most that was found on these, 384 samples a side: generalised variation and planes leave little of the noise,
+    // and the surface, which the former made, has some of it.
+    const double most =
+        c.spec.kind == FilterKind::kGeneralisedVariation || c.spec.kind == FilterKind::kPlanes ? 1.35 : 1.2;
+    EXPECT_LT(c.error_flat, most * true_figures.rmse_flat) << what;
+    EXPECT_GT(c.error_flat, true_figures.rmse_flat / 1.15) << what;
+    EXPECT_LT(c.error_edge, most * true_figures.rmse_edge) << what;
+    EXPECT_GT(c.error_edge, true_figures.rmse_edge / 1.15) << what;
   }
   if (!found->met()) return;
   const TruthFigures left = truly(scan, found->picked());
-  EXPECT_LT(left.rmse_flat, 1.2 * request.tolerance);
-  EXPECT_LT(left.rmse_edge, 1.2 * request.tolerance);
+  EXPECT_LT(left.rmse_flat, 1.1 * request.tolerance);
+  EXPECT_LT(left.rmse_edge, 1.1 * request.tolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(Parts, FilterSuggestionOf,
@@ -98,6 +100,15 @@ FilterSuggestion suggested(double tolerance, std::optional<double> budget = {}) 
   request.budget_s = budget;
   JobControl job;
   return *suggestFilter(scanOf("bracket", 1.0).scan, request, job);
+}
+
+TEST(FilterSuggestion, NamesEachCandidateDifferently) {
+  std::set<std::string> names;
+  const FilterSuggestion found = suggested(0.015);
+  for (const FilterCandidate& c : found.candidates)
+    EXPECT_TRUE(names.insert(methodOf(c)).second) << methodOf(c);
+  EXPECT_TRUE(names.contains("tgv"));
+  EXPECT_TRUE(names.contains("tgv, range 1.3 noises"));
 }
 
 TEST(FilterSuggestion, LeavesTheScanAsItIsForALooseTolerance) {

@@ -6,9 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/field/builder.h"
 #include "engine/field/piece.h"
 #include "engine/scanner/scanner.h"
 #include "engine/suggest/noise_source.h"
+#include "engine/suggest/sample_edges.h"
+#include "engine/suggest/sample_errors.h"
 
 namespace fettle::engine {
 namespace {
@@ -82,10 +85,10 @@ SimulatedScan scanOfSide(int width, int height) {
 }
 
 TEST(Mosaic, HoldsPiecesOfTheScanWithHolesBetween) {
-  const Version scan = scanOfSide(700, 300).scan;
+  const Version scan = scanOfSide(5300, 300).scan;
   const Mosaic mosaic = makeMosaic(scan, 0.02);
   const FieldReader to = mosaic.field.reader();
-  ASSERT_EQ(mosaic.pieces.size(), 8U);
+  ASSERT_EQ(mosaic.pieces.size(), 10U);
   std::vector<bool> covered(static_cast<std::size_t>(mosaic.field.grid().samples()));
   for (const Mosaic::Piece& p : mosaic.pieces) {
     EXPECT_EQ(p.column % 256, 0);
@@ -111,12 +114,123 @@ TEST(Mosaic, OfASmallScanIsTheScan) {
   EXPECT_EQ(mosaic.pieces[0].judged, (SampleRect{0, 0, 120, 90}));
 }
 
+TEST(SyntheticSample, HasTheCountsOfTheScan) {
+  const SimulatedScan scan = scanOfSide(256, 256);
+  const HeightCounts counts = findHeightCounts(scan.scan);
+  ASSERT_GT(counts.step, 0.0);
+  JobControl job;
+  const NoiseModel noise = *measureNoise(scan.scan, job);
+  const auto sample =
+      makeSyntheticSample(makeMosaic(scan.scan, noise.sigma), scan.scan.grid(), noise, counts, 3, job);
+  ASSERT_TRUE(sample);
+  const HeightCounts found = findHeightCounts(sample->scan);
+  EXPECT_NEAR(found.step, counts.step, 1e-6 * counts.step);
+}
+
+// A groove 60 samples from a rib of one sample, a step of a fifth of the rib, and a hill without edges.
+TEST(SampleEdges, AreThoseOfRibsAndStepsAndNotOfCurves) {
+  constexpr int kSide = 256;
+  constexpr double kNoise = 0.02;
+  Grid grid;
+  grid.width = grid.height = kSide;
+  std::vector<float> surface, scan, faint;
+  const auto noise = [] {
+    NoiseParts parts;
+    parts.uncorrelated = 1.0;
+    return NoiseSource(parts).make(kSide, kSide, 21);
+  }();
+  for (int r = 0; r < kSide; ++r)
+    for (int c = 0; c < kSide; ++c) {
+      double z = c >= 200 ? 0.1 : 0.0;
+      if (c == 40) z = 0.5;
+      if (r >= 100 && r <= 150) z += 2e-4 * (r - 100) * (150 - r);  // creases where it ends
+      const double n = kNoise * noise[surface.size()];
+      surface.push_back(static_cast<float>(z));
+      scan.push_back(static_cast<float>(z + n));
+      faint.push_back(static_cast<float>(z + 0.25 * n));
+    }
+  JobControl job;
+  const auto edges =
+      markSampleEdges(makeField(grid, scan), makeField(grid, surface), makeField(grid, faint), kNoise, job);
+  ASSERT_TRUE(edges);
+  const FieldReader reader = edges->reader();
+  const auto marked = [&reader](int column, int row) {
+    for (int c = column - 1; c <= column + 1; ++c)
+      if (reader.markedAt(c, row)) return true;
+    return false;
+  };
+  int rib = 0, step = 0, plain = 0;
+  for (int r = 20; r < 90; ++r) {
+    rib += marked(40, r) ? 1 : 0;
+    step += marked(200, r) ? 1 : 0;
+    for (int c = 60; c < 180; ++c) plain += reader.markedAt(c, r) ? 1 : 0;
+  }
+  EXPECT_EQ(rib, 70);
+  EXPECT_GE(step, 56);  // thinning leaves gaps
+  EXPECT_LE(plain, 10);
+  int hill = 0;
+  for (int r = 108; r < 143; ++r)
+    for (int c = 60; c < 180; ++c) hill += reader.markedAt(c, r) ? 1 : 0;
+  EXPECT_LE(hill, 10);
+}
+
+// Half of the scan is plain, its errors 1; the other half has steps, its errors 3.
+TEST(SampleJudge, CountsPlainPlacesAsOftenAsTheScanHasThem) {
+  Grid grid;
+  grid.width = 1280;
+  grid.height = 1280;
+  std::vector<float> z(static_cast<std::size_t>(grid.samples()));
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const std::size_t c = i % 1280;
+    z[i] = c < 1216 ? 0.0F : static_cast<float>((c / 32) % 2) * 10.0F;
+  }
+  const Version scan = makeField(grid, z);
+  const Mosaic pieces = makeMosaic(scan, 0.02);
+  ASSERT_EQ(pieces.pieces.size(), 25U);
+  SyntheticSample sample;
+  // No edges, so that all are flats.
+  std::vector<float> surface(static_cast<std::size_t>(pieces.field.grid().samples()), std::nanf(""));
+  std::vector<float> filtered(surface.size());
+  for (const Mosaic::Piece& piece : pieces.pieces)
+    for (int r = piece.judged.row; r < piece.judged.row + piece.judged.rows; ++r)
+      for (int c = piece.judged.column; c < piece.judged.column + piece.judged.columns; ++c) {
+        const std::size_t i =
+            static_cast<std::size_t>(r) * static_cast<std::size_t>(pieces.field.grid().width) +
+            static_cast<std::size_t>(c);
+        surface[i] = 0.0F;
+        filtered[i] = piece.from.column + c - piece.column < 1216 ? 1.0F : 3.0F;
+      }
+  sample.surface = makeField(pieces.field.grid(), surface);
+  sample.edges = sample.surface;
+  const SampleJudge judge(scan, pieces, sample, 0.02);
+  const SampleErrors errors =
+      judge.errorsOf(makeField(pieces.field.grid(), filtered), SampleJudge::Rare::kCount);
+  EXPECT_NEAR(errors.flat, std::sqrt((19.0 * 1.0 + 1.0 * 9.0) / 20.0), 0.01);
+  EXPECT_TRUE(std::isnan(errors.edge));
+  EXPECT_EQ(judge.edgeShare(), 0.0);
+}
+
+TEST(SampleJudge, LeavesOutTheLargestFewWhereAsked) {
+  Grid grid;
+  grid.width = grid.height = 200;
+  std::vector<float> z(40000);
+  const Version flat = makeField(grid, z);
+  const SyntheticSample sample{flat, flat, flat, 0};
+  const SampleJudge judge(flat, makeMosaic(flat, 0.02), sample, 0.02);
+  for (std::size_t i = 0; i < z.size(); ++i) z[i] = i % 2 == 0 ? 1.0F : -1.0F;
+  z[7] = 400.0F, z[30000] = -700.0F, z[20000] = 500.0F;
+  const Version filtered = makeField(grid, z);
+  EXPECT_NEAR(judge.errorsOf(filtered, SampleJudge::Rare::kLeftOut).flat, 1.0, 1e-12);
+  EXPECT_NEAR(judge.errorsOf(filtered, SampleJudge::Rare::kCount).flat,
+              std::sqrt((39997.0 + 160000.0 + 490000.0 + 250000.0) / 40000.0), 1e-9);
+}
+
 TEST(SyntheticSample, HasTheNoiseOfTheScanOnASurfaceNearIt) {
   const SimulatedScan scan = scanOfSide(384, 384);
   JobControl job;
   const NoiseModel noise = *measureNoise(scan.scan, job);
   const Mosaic pieces = makeMosaic(scan.scan, noise.sigma);
-  const auto sample = makeSyntheticSample(pieces, scan.scan.grid(), noise, 3, job);
+  const auto sample = makeSyntheticSample(pieces, scan.scan.grid(), noise, {}, 3, job);
   ASSERT_TRUE(sample);
   const Grid& grid = pieces.field.grid();
   double squares = 0.0;
