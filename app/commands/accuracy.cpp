@@ -22,6 +22,7 @@ struct AccuracyArguments {
   ScanOptions scan_options;
   std::vector<std::string> only;
   double effort = 1.0;
+  int seeds = 0, side = 0;  // 0: by the effort
 };
 
 constexpr struct {
@@ -34,6 +35,7 @@ constexpr struct {
     {"upload", bench::uploadStudy},       {"restoration", bench::restorationStudy},
     {"automatic", bench::automaticStudy}, {"lines", bench::edgeLineStudy},
     {"hand", bench::handStudy},           {"worth", bench::worthStudy},
+    {"suggest", bench::suggestionStudy},
 };
 
 std::string studyNames() {
@@ -49,6 +51,8 @@ engine::Result<Report> accuracy(const AccuracyArguments& options, engine::JobCon
   if (auto ready = plotsCanBeMade(); !ready) return tl::unexpected(ready.error());
   bench::AccuracyOptions studied;
   studied.effort = options.effort;
+  if (options.seeds > 0) studied.seeds = options.seeds;
+  if (options.side > 0) studied.side = options.side;
   if (!options.scan.empty()) {
     auto scan = loadScan(options.scan, options.scan_options, job);
     if (!scan) return tl::unexpected(scan.error());
@@ -142,6 +146,15 @@ void addAccuracy(Command root, Chosen& chosen) {
       .option("--effort", options->effort, "Share of the full work, 0.01 to 1; less is faster and less exact")
       .check(within(0.01, 1.0))
       .showDefault();
+  command
+      .option("--seeds", options->seeds,
+              "Of the study suggest: seeds of the noise, 1 to 100; without it, by the effort")
+      .check(within(1, 100));
+  command
+      .option(
+          "--side", options->side,
+          "Of the study suggest: samples along each side of its scans, 64 to 4096; without it, by the effort")
+      .check(within(64, 4096));
   addScanOptions(command, options->scan_options);
 }
 

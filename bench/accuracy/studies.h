@@ -21,6 +21,9 @@ struct AccuracyOptions {
   /// 1: as in docs/accuracy.md; smaller values reduce the work in proportion, for a quick run or a test. 0.01
   /// .. 1.
   double effort = 1.0;
+  /// Of suggestionStudy: seeds of the noise, 1 .. 100, and samples along each side of its scans, 64 .. 4096; none: by
+  /// the effort.
+  std::optional<int> seeds{}, side{};
 };
 
 // Each study runs on the calling thread, except the code it measures. All are deterministic apart from times.
@@ -69,5 +72,8 @@ struct AccuracyOptions {
 
 /// A simulated hand that follows findWorthPlaces(), and one that takes the longest edges first: error over seconds.
 [[nodiscard]] engine::Result<Study> worthStudy(const AccuracyOptions& options, engine::JobControl& job);
+
+/// What suggestFilter expects every filter that it tries to leave, over what it leaves: every simulated part, two noises.
+[[nodiscard]] engine::Result<Study> suggestionStudy(const AccuracyOptions& options, engine::JobControl& job);
 
 }  // namespace fettle::bench

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -183,6 +186,27 @@ TEST(AutomaticStudy, GeneralisedVariationIsNearestOnEveryPart) {
     subjects += row.method == "nothing" ? 1 : 0;
   }
   EXPECT_EQ(subjects, 7);
+}
+
+TEST(SuggestionStudy, HasEveryFilterOnEveryPartAndTheOneThatIsNamed) {
+  engine::JobControl job;
+  AccuracyOptions options;
+  options.seeds = 1;
+  options.side = 160;
+  const auto study = suggestionStudy(options, job);
+  ASSERT_TRUE(study) << study.error().line();
+  std::set<std::pair<std::string, std::string>> rows;
+  int named = 0;
+  for (const AccuracyRow& row : study->rows) {
+    EXPECT_TRUE(rows.emplace(row.subject, row.method).second) << row.subject << ", " << row.method;
+    ASSERT_EQ(row.more.size(), study->columns.size());
+    named += row.method == "the one that is named" ? 1 : 0;
+    // The unfiltered scan has its noise, and the method measures it. The ribs' flats are 40 samples here.
+    if (row.method == "the unchanged scan" && !row.subject.starts_with("ribs")) {
+      EXPECT_NEAR(row.more[0], 1.0, 0.15) << row.subject;
+    }
+  }
+  EXPECT_EQ(named, 14);
 }
 
 TEST(EdgeLineStudy, LocatedLinesAreNearerThanTheHandAndTheirDeviationsAreHonest) {
