@@ -62,7 +62,7 @@ struct FilterSuggestion {
 
 /// Tries filters for a scan. On simulated scans of 1024 x 1024 samples the expected errors are within 10 % of the true ones
 /// for nine of ten of all figures (docs/decisions/suggested-filters.md has them by part), and not where the smoothing
-/// that makes the truth loses what the scan has: near steps of the noise's own size generalised variation leaves 1.4
+/// that makes the truth loses what the scan has: near steps of the noise's own size generalised variation leaves 1.3
 /// times what is expected. Marks of the field are kept by every candidate; edge lines of the field are not used. Takes
 /// some 11 s of processor time for any size of scan from 1248 x 1248 samples on, on all cores. Errors are the same each
 /// time; times are measured, so that two filters of similar speed may change places from run to run.
