@@ -16,6 +16,7 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
+#include "app/work/streams.h"
 #include "engine/base/lower_case.h"
 #include "engine/base/stopwatch.h"
 #include "engine/filter/catalogue.h"

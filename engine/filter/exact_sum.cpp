@@ -3,6 +3,8 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <initializer_list>
+#include <tuple>
 
 #include "engine/simd/kernel.h"
 

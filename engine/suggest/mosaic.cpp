@@ -1,6 +1,7 @@
 #include "engine/suggest/mosaic.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 

@@ -6,6 +6,7 @@
 
 #include "render/config.h"
 #include "render/detail/patches.h"
+#include "render/live/live_picture.h"
 #include "render/live/resize.h"
 #include "render/plan/glyphs.h"
 #include "render/plan/plan.h"
