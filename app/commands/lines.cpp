@@ -193,6 +193,7 @@ engine::Status writeFiles(const LinesArguments& options, const std::vector<Measu
   }
   if (!options.out.empty()) {
     std::vector<engine::EdgeLine> lines;
+    lines.reserve(measured.size());
     for (const MeasuredLine& line : measured) lines.push_back(line.line);
     if (auto status = engine::exportLines(options.out, lines, grid); !status) return status;
   }
