@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -179,6 +180,14 @@ std::string leftBy(const engine::FilterCandidate& c, const std::string& unit) {
 }
 
 // The reason for the choice, from the figures.
+// Whatever time it takes; null: none is.
+const engine::FilterCandidate* fastestWithin(const engine::FilterSuggestion& found, double tolerance) {
+  const engine::FilterCandidate* fastest = nullptr;
+  for (const engine::FilterCandidate& c : found.candidates)
+    if (c.error() <= tolerance && (fastest == nullptr || c.seconds < fastest->seconds)) fastest = &c;
+  return fastest;
+}
+
 std::string whyOf(const engine::FilterSuggestion& found, const engine::SuggestionRequest& asked,
                   const std::string& unit) {
   const engine::FilterCandidate& pick = found.picked();
@@ -204,7 +213,11 @@ std::string whyOf(const engine::FilterSuggestion& found, const engine::Suggestio
         fmt::format("No tested filter stays within {:.3g} {}{}. Nearest is {} with {}, in about {:.2g} s.",
                     asked.tolerance, unit, asked.budget_s ? fmt::format(" in {:g} s", *asked.budget_s) : "",
                     engine::methodOf(pick), leftBy(pick, unit), pick.seconds);
-    if (flattest != nullptr && flattest->error_flat <= asked.tolerance)
+    const engine::FilterCandidate* slow = fastestWithin(found, asked.tolerance);
+    if (slow != nullptr)
+      why += fmt::format(" {} does, in about {:.2g} s: give a larger --budget.", engine::methodOf(*slow),
+                         slow->seconds);
+    else if (flattest != nullptr && flattest->error_flat <= asked.tolerance)
       why += fmt::format(
           " Only flats: {} leaves {}; edges that need a smaller error must be "
           "smoothed with the stylus (fettle view) or scanned again.",
@@ -246,6 +259,14 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   if (!options.only.empty()) return refused("--only", "give --keep, or nothing");
   if (!options.original.empty()) return refused("--original", "its filters have no limit of change");
   if (!options.lines.empty()) return refused("--lines", "its filters are tried without edge lines");
+  const std::pair<bool, const char*> numbers[] = {{options.window != 3, "--window"},
+                                                  {options.sigma != 0.0, "--sigma"},
+                                                  {options.passes != 1, "--passes"},
+                                                  {!options.range_sigma.empty(), "--range-sigma"}};
+  for (const auto& [given, option] : numbers)
+    if (given) return refused(option, "the numbers of the filter are suggested with it");
+  if (!options.max_change.empty())
+    return refused("--max-change", "its filters have no limit of change: add one to the command it names");
   const bool filters = !options.tolerance.empty() || options.places == 0;
   if (filters && options.tolerance.empty())
     return engine::inputError("no tolerance is given", "--tolerance",

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
@@ -108,12 +109,18 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
     for (engine::Version& version : w.shown.versions) version = version.inverted();
     if (w.shown.original) w.shown.original = w.shown.original->inverted();
   }
-  if (w.shown.versions.front().lines() != nullptr && !options.bare) {
+  const auto hasLines = [](const engine::Version& version) { return version.lines() != nullptr; };
+  if (!options.bare && std::ranges::any_of(w.shown.versions, hasLines)) {
     const auto plan =
         render::planFrame(w.input, w.shown, render::spansOf(w.shown.versions, w.shown.original));
     if (!plan) return tl::unexpected(plan.error());
-    LineOverlay().append(w.shown.versions.front(), {}, 1.0 / plan->panels.front().camera.pixelsPerMm(),
-                         w.input.overlays);
+    std::vector<render::OverlayLine>& lines = w.input.overlays.lines;
+    for (std::size_t i = 0; i < w.shown.versions.size(); ++i) {
+      const std::size_t before = lines.size();
+      LineOverlay().append(w.shown.versions[i], {}, 1.0 / plan->panels[i].camera.pixelsPerMm(),
+                           w.input.overlays);
+      for (std::size_t k = before; k < lines.size(); ++k) lines[k].panel = static_cast<int>(i);
+    }
   }
   return w;
 }

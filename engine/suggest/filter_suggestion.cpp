@@ -133,6 +133,9 @@ Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionReq
       found.pick = i;
     }
   }
+  if (std::ranges::all_of(found.candidates, [](const FilterCandidate& c) { return std::isnan(c.error()); }))
+    return inputError("no error of any filter could be expected for this scan", "suggestion",
+                      "choose a filter yourself");
   found.samples = pieces.field.grid().samples() - summarize(pieces.field).no_data;
   found.outlier_share =
       static_cast<double>(sample->outliers) / static_cast<double>(std::max<std::int64_t>(found.samples, 1));

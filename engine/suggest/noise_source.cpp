@@ -16,7 +16,7 @@ namespace {
 // the root of their spectrum. Where the lags are no covariance of anything their spectrum is negative, and 0 here.
 std::vector<double> weightsFor(const std::array<double, kNoiseLags>& lags, double own) {
   constexpr int kFrequencies = 64, kReach = 2 * kNoiseLags;
-  if (lags[0] == 0.0) return {1.0};
+  if (lags[0] == 0.0 || !(own > 0.0)) return {1.0};
   std::array<double, kFrequencies> root;
   for (int f = 0; f < kFrequencies; ++f) {
     double power = 1.0;

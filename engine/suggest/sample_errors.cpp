@@ -59,10 +59,9 @@ std::vector<float> weightsOf(const Version& scan, const Mosaic& pieces, const st
   std::array<double, kKinds> scanned{}, judged{};
   for (std::int32_t tr = 0; tr < reader.tileRows(); ++tr)
     for (std::int32_t tc = 0; tc < reader.tileColumns(); ++tc) {
-      const HeightBounds& bounds = reader.tile(tc, tr).bounds;
-      const std::int32_t columns = std::min(kTileSide, reader.width() - tc * kTileSide);
-      const std::int32_t rows = std::min(kTileSide, reader.height() - tr * kTileSide);
-      if (!bounds.empty()) scanned[kindOf(bounds, sigma)] += static_cast<double>(columns) * rows;
+      const Tile& tile = reader.tile(tc, tr);
+      if (!tile.bounds.empty())
+        scanned[kindOf(tile.bounds, sigma)] += static_cast<double>(kTileSamples) - tile.nan_samples;
     }
   // visit(index in the mosaic, kind)
   const auto each = [&](auto&& visit) {

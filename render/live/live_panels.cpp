@@ -63,7 +63,10 @@ LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFie
                                input.panel_vertices.empty()
                                    ? input.vertex_budget / static_cast<std::int64_t>(count)
                                    : input.panel_vertices[i]));
-    panels_.push_back(panelOf(i, input, plan, lines));
+    std::vector<OverlayLine> own = lines;
+    std::erase_if(
+        own, [i](const OverlayLine& line) { return line.panel >= 0 && line.panel != static_cast<int>(i); });
+    panels_.push_back(panelOf(i, input, plan, own));
     panels_.back().visible = drawnOf(split ? sideOf(p.plot, input.split, i > 0) : p.plot);
     queries_.back().shade_step = 1 << LiveTexture::shift(panels_.back().shade_level);
     trees_.push_back(empty(panels_.back().visible) ? PatchTree() : trees.tree(i, queries_.back(), p.field));

@@ -40,6 +40,7 @@ struct OverlayLine {
     kOnTop,    ///< visible through the surface
     kInScene,  ///< hidden by the surface in front of it
   } depth = Depth::kOnTop;
+  int panel = -1;  ///< the only one that shows it; -1: all do
 };
 
 /// What is drawn over every panel.

@@ -206,6 +206,12 @@ TEST_F(Lines, are_drawn_from_a_file_or_a_session_and_missed_by_a_filter_that_kno
   EXPECT_EQ(drawn({scan, "--lines", lines, "--bare"}), drawn({scan, "--bare"}));
   (void)fettle({"filter", scan, clean, "--filter", "planes", "--lines", lines});
   EXPECT_NE(drawn({session}), drawn({clean}));
+  // Next to another scan, whose lines are its own.
+  const auto beside = [&](const std::string& left, const std::string& right) {
+    return drawn({left, "--compare", right, "--compare-title", "t"});
+  };
+  EXPECT_NE(beside(clean, session), beside(clean, clean));
+  EXPECT_NE(beside(clean, session), beside(session, session));
   EXPECT_EQ(drawn({session, "--lines", lines}), drawn({session}));
   const auto tv = fettle({"filter", session, clean, "--filter", "tv", "--window", "3"});
   EXPECT_EQ(tv.status, 0);

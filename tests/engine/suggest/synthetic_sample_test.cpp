@@ -53,6 +53,14 @@ TEST(NoiseSource, MakesTheCovariancesThatItIsGiven) {
   EXPECT_NEAR(product(z, 500, 400, 0, 1), -0.2, 2.0 * kFourErrorsOfProducts);
 }
 
+// As when counting the heights has more variance than the uncorrelated part.
+TEST(NoiseSource, OfNothingUncorrelatedIsFinite) {
+  NoiseParts parts;
+  parts.along_row = {0.5, 0.2, 0.0, 0.0, 0.0, 0.0};
+  parts.row_offset = 1.0;
+  for (const double z : NoiseSource(parts).make(20, 30, 8)) ASSERT_TRUE(std::isfinite(z));
+}
+
 TEST(NoiseSource, MakesOffsetsOfRowsAndColumns) {
   NoiseParts parts;
   parts.row_offset = 1.0;
