@@ -162,8 +162,8 @@ TEST(TallWalls, TwoWallsNextToEachOtherKeepTheirs) {
 TEST(TallWalls, LowStepsAndNoiseAreLeft) {
   for (const double noises : {0.0, 3.0, 12.0}) {
     const auto low = [&](int c, int r) { return (r > slantedAt(c) ? noises : 0.0) + whiteNoise(c, r); };
-    for (const EdgePoint& p : atWalls(edgeField(200, 100, low), kAlongSlanted)[0].points)
-      EXPECT_TRUE(!p.located || p.deviation >= kUnsettled) << noises;
+    const auto lines = atWalls(edgeField(200, 100, low), kAlongSlanted);
+    for (const EdgePoint& p : lines[0].points) EXPECT_TRUE(!p.located || p.deviation >= kUnsettled) << noises;
   }
 }
 
@@ -228,12 +228,12 @@ TEST(TallWalls, BitIdenticalForAnyThreadsAndAnyCutThatHoldsTheReach) {
 
 TEST(TallWalls, OneRowOneColumnAndHugeHeights) {
   for (const auto& [width, height] : {std::pair{1, 100}, {200, 1}, {200, 3}})
-    for (const double scale : {1.0, 1e30})
-      for (const EdgePoint& p :
-           atWalls(edgeField(width, height, [&](int c, int r) { return scale * mixedWall(c, r); }),
-                   kAlongSlanted)[0]
-               .points)
+    for (const double scale : {1.0, 1e30}) {
+      const auto lines = atWalls(
+          edgeField(width, height, [&](int c, int r) { return scale * mixedWall(c, r); }), kAlongSlanted);
+      for (const EdgePoint& p : lines[0].points)
         EXPECT_TRUE(std::isfinite(p.position.x + p.position.y + p.deviation));
+    }
 }
 
 TEST(TallWalls, SpeedAtAWall) {
