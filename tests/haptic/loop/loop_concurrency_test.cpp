@@ -181,8 +181,10 @@ TEST(HapticLoop, NothingIsLostAgainstAStallingDisplayAdoptionsAndUndoWithAHandTh
   auto next_job = Clock::now();
   auto next_undo = Clock::now() + milliseconds(300);
   auto next_stall = Clock::now() + milliseconds(200);
-  const auto end = Clock::now() + milliseconds(3500);
-  while (Clock::now() < end) {
+  const auto begin = Clock::now();
+  // 3.5 s; as much longer as a machine with other work takes for what is counted below.
+  const auto enough = [&] { return adopted > 10 && restored > 5; };
+  while (Clock::now() < begin + milliseconds(enough() ? 3500 : 60'000)) {
     for (LoopEvent event; loop.poll(event);) take(event);
     const auto now = Clock::now();
     if (!job_running && now >= next_job) {
