@@ -31,6 +31,7 @@ constexpr int kFewestOfASide = 4;      // samples
 constexpr double kSharpness = 0.08;    // of the penalty [samples]
 constexpr double kWrongSide = 0.2;     // samples farther on the wrong side are left out, [samples]
 constexpr double kMostWrong = 0.05;    // if they are no more of those within a sample of the line; or one
+constexpr double kOneWall = 1.0;       // lines nearer to each other are at one wall [samples]
 constexpr double kLeastAcross = 0.05;  // deviation: what the parabola does not know [samples]
 // Half of the curvature [1 / samples]. Where a sample is left out, the line may not be so bent that it cuts a corner.
 constexpr double kMostBend = 0.06, kMostBendWithWrong = 0.035;
@@ -194,6 +195,22 @@ std::vector<WallPlace> placesOf(const SideContext& context, double noise, const 
   return places;
 }
 
+// Where lines of two strokes settle at one wall, the stroke of one is along another edge: nothing says which.
+void leaveShared(const std::vector<Polyline>& lines, const std::vector<std::vector<glm::dvec2>>& tangents,
+                 std::vector<std::vector<WallPlace>>& places) {
+  const LineIndex index(lines);
+  const std::vector<std::vector<WallPlace>> settled = places;
+  for (std::size_t k = 0; k < lines.size(); ++k)
+    for (int i = 0; i < lines[k].size(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (!settled[k][at].found) continue;
+      for (const Neighbour& other : index.around(static_cast<int>(k), i, tangents[k][at], kOneWall))
+        if (other.line != static_cast<int>(k) &&
+            settled[static_cast<std::size_t>(other.line)][static_cast<std::size_t>(other.point)].found)
+          places[k][at].found = false;
+    }
+}
+
 }  // namespace
 
 std::vector<std::vector<WallPlace>> settleAtWalls(std::vector<Polyline>& lines, double noise,
@@ -201,6 +218,7 @@ std::vector<std::vector<WallPlace>> settleAtWalls(std::vector<Polyline>& lines, 
   const LineIndex index(lines);
   const std::vector<bool> known(lines.size(), true);
   std::vector<std::vector<WallPlace>> places;
+  std::vector<std::vector<glm::dvec2>> tangents;
   std::vector<Polyline> next = lines;
   for (std::size_t k = 0; k < lines.size() && !job.cancelled(); ++k) {
     const Polyline& line = lines[k];
@@ -211,11 +229,13 @@ std::vector<std::vector<WallPlace>> settleAtWalls(std::vector<Polyline>& lines, 
       ranges.push_back(here.range);
     const SideContext context{line, strip, window, ranges, kWallSurfaceHalf, noise * noise};
     places.push_back(placesOf(context, noise, job));
+    tangents.push_back(strip.tangents);
     for (int i = 0; i < line.size(); ++i)
       next[k].points[static_cast<std::size_t>(i)] +=
           strip.normal(i) * places[k][static_cast<std::size_t>(i)].offset;
   }
   lines = std::move(next);
+  if (!job.cancelled()) leaveShared(lines, tangents, places);
   return places;
 }
 

@@ -12,7 +12,8 @@ namespace fettle::engine {
 struct WallPlace {
   double offset = 0.0;     ///< across, from the point [samples]
   double deviation = 0.0;  ///< standard deviation of the place [samples]
-  bool found = false;      ///< the wall is tall, and a smooth line divides its samples; if not, the rest is 0
+  bool found =
+      false;  ///< the wall is tall, a smooth line divides its samples, and no other line settles there
 };
 
 /// Moves located lines at tall walls to between the samples of their two sides; returns the places, by line and point.
@@ -25,7 +26,8 @@ struct WallPlace {
 /// leave: half a sample where a wall runs along a row, a tenth or less where it is slanted or curved.
 ///
 /// Nothing is found at corners, where lines are bent within 8 samples, and where a side has too few samples, as on
-/// ribs of two samples: there the line stays as it is.
+/// ribs of two samples: there the line stays as it is. Where two lines settle within a sample of each other one of
+/// them is of another edge: both lie at the wall, and keep the deviations that they had.
 ///
 /// Notes in the window which points its samples are nearest to. Deterministic. Blocks, on all workers; stops early when
 /// cancelled.
