@@ -18,5 +18,6 @@ int main(int argc, char** argv) {
     addAccuracy(root, chosen);
     addDemo(root, chosen);
     addBench(root, chosen);
+    addReference(root, chosen);
   });
 }

@@ -38,16 +38,13 @@ constexpr struct {
     {"suggest", bench::suggestionStudy},
 };
 
-std::string studyNames() {
-  std::string names;
-  for (const auto& study : kStudies) names += fmt::format("{}{}", names.empty() ? "" : ", ", study.id);
-  return names;
+std::vector<Word> studyWords() {
+  std::vector<Word> words;
+  for (const auto& study : kStudies) words.emplace_back(study.id);
+  return words;
 }
 
 engine::Result<Report> accuracy(const AccuracyArguments& options, engine::JobControl& job) {
-  for (const std::string& id : options.only)
-    if (std::none_of(std::begin(kStudies), std::end(kStudies), [&](const auto& s) { return s.id == id; }))
-      return engine::inputError("there is no study \"" + id + "\"", "--only", "name any of " + studyNames());
   if (auto ready = plotsCanBeMade(); !ready) return tl::unexpected(ready.error());
   bench::AccuracyOptions studied;
   studied.effort = options.effort;
@@ -137,25 +134,40 @@ void addAccuracy(Command root, Chosen& chosen) {
   Command command = addCommand(
       root, chosen, "accuracy", "What accuracy costs in time: a page of plots, tables and answers",
       [options](engine::JobControl& job) { return accuracy(*options, job); }, printAccuracy);
-  command.option("FOLDER", options->folder, "Folder for accuracy.html, accuracy.csv and the plots")
-      .check(folderName())
-      .required();
-  command.option("SCAN", options->scan, "A scan to study in addition to the generated fields");
-  command.option("--only", options->only, "Studies to make: " + studyNames() + "; none: all");
-  command
-      .option("--effort", options->effort, "Share of the full work, 0.01 to 1; less is faster and less exact")
-      .check(within(0.01, 1.0))
-      .showDefault();
-  command
-      .option("--seeds", options->seeds,
-              "Of the study suggest: seeds of the noise, 1 to 100; without it, by the effort")
-      .check(within(1, 100));
-  command
-      .option(
-          "--side", options->side,
-          "Of the study suggest: samples along each side of its scans, 64 to 4096; without it, by the effort")
-      .check(within(64, 4096));
+  command.add({
+      {.name = "FOLDER",
+       .to = &options->folder,
+       .text = "Folder for accuracy.html, accuracy.csv and the plots",
+       .kind = ValueKind::kFolder,
+       .required = true},
+      {.name = "SCAN",
+       .to = &options->scan,
+       .text = "A scan to study in addition to the generated fields",
+       .kind = ValueKind::kInput},
+      {.name = "--only",
+       .to = &options->only,
+       .text = "Studies to make",
+       .words = studyWords(),
+       .otherwise = "all"},
+      {.name = "--effort",
+       .to = &options->effort,
+       .text = "Share of the full work; less is faster and less exact",
+       .range = Range{0.01, 1.0}},
+      {.name = "--seeds",
+       .to = &options->seeds,
+       .text = "Of the study suggest: seeds of the noise",
+       .range = Range{1.0, 100.0},
+       .otherwise = "by the effort"},
+      {.name = "--side",
+       .to = &options->side,
+       .text = "Of the study suggest: length of each side of its scans",
+       .range = Range{64.0, 4096.0},
+       .unit = "samples",
+       .otherwise = "by the effort"},
+  });
   addScanOptions(command, options->scan_options);
+  command.examples({{"fettle accuracy report --only contact --effort 0.05",
+                     "What each level of contact costs, quickly, as a page in the folder report"}});
 }
 
 }  // namespace fettle::app

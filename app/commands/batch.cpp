@@ -70,19 +70,24 @@ std::string counted(std::size_t number, const char* what) {
 }  // namespace
 
 void addBatchOptions(Command command, BatchOptions& options) {
-  command
-      .option("FILES", options.files,
-              "IN OUT: the scan to read and the file to write, format by extension, - for standard input "
-              "and output; with --out-dir all are scans to read")
-      .required();
-  command
-      .option("--out-dir", options.out_dir,
-              "Folder for the output files, each under its scan's name, created if missing; continues "
-              "where a scan fails")
-      .check(folderName());
-  command.option("--to", options.extension,
-                 "With --out-dir, or - for OUT: format of the output, as extension; without it in a folder "
-                 "the scan's own, or tif where that cannot be written");
+  command.add({
+      {.name = "FILES",
+       .to = &options.files,
+       .text = "IN OUT: the scan to read and the file to write, format by extension, - for standard input "
+               "and output; with --out-dir all are scans to read",
+       .kind = ValueKind::kInput,
+       .required = true},
+      {.name = "--out-dir",
+       .to = &options.out_dir,
+       .text = "Folder for the output files, each under its scan's name, created if missing; continues "
+               "where a scan fails",
+       .kind = ValueKind::kFolder},
+      {.name = "--to",
+       .to = &options.extension,
+       .text = "With --out-dir, or - for OUT: format of the output, as extension; without it in a folder "
+               "the scan's own, or tif where that cannot be written",
+       .kind = ValueKind::kFormat},
+  });
   addForceOption(command, options.replacing);
 }
 

@@ -281,24 +281,40 @@ void addBench(Command root, Chosen& chosen) {
   Command bench = root.subcommand("bench", "Benchmarks: median, spread, worst, machine, hash of the result");
   bench.requireSubcommand();
 
+  constexpr Range kSides{64.0, 32768.0};
+  constexpr Range kRepeats{1.0, 100.0};
   auto haptic_options = std::make_shared<bench::HapticBenchOptions>();
   Command ticks = addCommand(
       bench, chosen, "haptic", "Ticks per second of contact, force and local smoothing",
       [haptic_options](engine::JobControl& job) { return haptic(*haptic_options, job); }, printHaptic);
-  ticks.option("--side", haptic_options->side, "Samples along each side of the field").showDefault();
-  ticks.option("--ticks", haptic_options->ticks, "Ticks of each run").showDefault();
-  ticks.option("--repeats", haptic_options->repeats, "Runs of each row").showDefault();
-  ticks.option("--speed", haptic_options->speeds_mm_s, "Speeds of the hand, mm/s")
-      .delimiter(',')
-      .showDefault();
+  ticks.add({
+      {.name = "--side",
+       .to = &haptic_options->side,
+       .text = "Length of each side of the field",
+       .range = kSides,
+       .unit = "samples"},
+      {.name = "--ticks", .to = &haptic_options->ticks, .text = "Ticks of each run"},
+      {.name = "--repeats", .to = &haptic_options->repeats, .text = "Runs of each row", .range = kRepeats},
+      {.name = "--speed",
+       .to = &haptic_options->speeds_mm_s,
+       .text = "Speeds of the hand",
+       .unit = "mm/s",
+       .between = ','},
+  });
 
   auto effects_options = std::make_shared<bench::EffectsBenchOptions>();
   Command prices = addCommand(
       bench, chosen, "effects", "What each effect of a scene costs per tick, and the memory that it takes",
       [effects_options](engine::JobControl& job) { return effects(*effects_options, job); }, printEffects);
-  prices.option("--side", effects_options->side, "Samples along each side of the field").showDefault();
-  prices.option("--ticks", effects_options->ticks, "Ticks of each run").showDefault();
-  prices.option("--repeats", effects_options->repeats, "Runs of each row").showDefault();
+  prices.add({
+      {.name = "--side",
+       .to = &effects_options->side,
+       .text = "Length of each side of the field",
+       .range = kSides,
+       .unit = "samples"},
+      {.name = "--ticks", .to = &effects_options->ticks, .text = "Ticks of each run"},
+      {.name = "--repeats", .to = &effects_options->repeats, .text = "Runs of each row", .range = kRepeats},
+  });
 
   auto loop_options = std::make_shared<haptic::LoopBenchOptions>();
   auto busy = std::make_shared<bool>(false);
@@ -310,16 +326,31 @@ void addBench(Command root, Chosen& chosen) {
         return loop(options, job);
       },
       printLoop);
-  lateness.option("--seconds", loop_options->seconds, "Seconds of measuring").showDefault();
-  lateness.option("--rate", loop_options->rate_hz, "Ticks per second").showDefault();
+  lateness.add({
+      {.name = "--seconds", .to = &loop_options->seconds, .text = "Time of measuring", .unit = "seconds"},
+      {.name = "--rate",
+       .to = &loop_options->rate_hz,
+       .text = "Rate of the loop",
+       .unit = "ticks per second"},
+      {.name = "--busy", .to = busy.get(), .text = "Keep every core busy with other processes"},
+  });
+
   auto sweep_options = std::make_shared<bench::StiffnessSweepOptions>();
   Command sweep = addCommand(
       bench, chosen, "stability", "Stiffness at which a wall becomes unstable, against b > K T / 2",
       [sweep_options](engine::JobControl& job) { return stability(*sweep_options, job); }, printStability);
-  sweep.option("--damping", sweep_options->damping_n_s_per_mm, "Damping of the device, N s/mm").showDefault();
-  sweep.option("--mass", sweep_options->mass_kg, "Moving mass, kg").showDefault();
-  sweep.option("--press", sweep_options->press_n, "Constant press, N").showDefault();
-  sweep.option("--rates", sweep_options->rates_hz, "Ticks per second, one row each");
+  sweep.add({
+      {.name = "--damping",
+       .to = &sweep_options->damping_n_s_per_mm,
+       .text = "Damping of the device",
+       .unit = "N s/mm"},
+      {.name = "--mass", .to = &sweep_options->mass_kg, .text = "Moving mass", .unit = "kg"},
+      {.name = "--press", .to = &sweep_options->press_n, .text = "Constant press", .unit = "newtons"},
+      {.name = "--rates",
+       .to = &sweep_options->rates_hz,
+       .text = "Rates, one row each",
+       .unit = "ticks per second"},
+  });
 
   addBenchGrowth(bench, chosen);
   addBenchLarge(bench, chosen);
@@ -330,22 +361,39 @@ void addBench(Command root, Chosen& chosen) {
   Command drawing = addCommand(
       bench, chosen, "render", "Frames of a field that changes: time, vertices, screen error, uploads",
       [render_options](engine::JobControl& job) { return picture(*render_options, job); }, printPicture);
-  drawing.option("--side", render_options->sides,
-                 "Samples along each side, one field each (10240: 100M, 31623: 1G)");
-  drawing.option("--loop", render_options->loop_seconds, "Seconds of drawing with a haptic loop; 0: none")
-      .showDefault();
-  drawing.option("--scene", render_options->scenes, "Rows to measure, by name; none: all");
-  drawing.onFlag(
-      "--sharp", [render_options] { render_options->in_motion = render::Sharpness::kFull; },
-      "Draw every pixel while the camera moves, too");
-  drawing.option("--frames", render_options->frames, "Frames of each row").showDefault();
-  drawing.option("--error", render_options->error_px, "Requested screen error, px").showDefault();
-  drawing.option("--vertices", render_options->vertex_budget, "Most vertices per frame").showDefault();
-  drawing.option(
-      "--device-memory", render_options->memory_budget_bytes,
-      "Bytes that samples may take on the device, the rest is loaded on demand; 0: half of its memory");
-
-  lateness.flag("--busy", *busy, "Keep every core busy with other processes");
+  drawing.add({
+      {.name = "--side",
+       .to = &render_options->sides,
+       .text = "Lengths of each side, one field each (10240: 100M, 31623: 1G)",
+       .range = kSides,
+       .unit = "samples"},
+      {.name = "--loop",
+       .to = &render_options->loop_seconds,
+       .text = "Time of drawing with a haptic loop; 0: none",
+       .range = Range{0.0, 600.0},
+       .unit = "seconds"},
+      {.name = "--scene",
+       .to = &render_options->scenes,
+       .text = "Rows to measure, by name",
+       .otherwise = "all"},
+      {.name = "--sharp",
+       .to = [render_options] { render_options->in_motion = render::Sharpness::kFull; },
+       .text = "Draw every pixel while the camera moves, too"},
+      {.name = "--frames",
+       .to = &render_options->frames,
+       .text = "Frames of each row",
+       .range = Range{10.0, 100000.0}},
+      {.name = "--error",
+       .to = &render_options->error_px,
+       .text = "Requested screen error",
+       .unit = "pixels"},
+      {.name = "--vertices", .to = &render_options->vertex_budget, .text = "Most vertices per frame"},
+      {.name = "--device-memory",
+       .to = &render_options->memory_budget_bytes,
+       .text = "Memory that samples may take on the device, the rest is loaded on demand",
+       .unit = "bytes",
+       .otherwise = "half of its memory"},
+  });
 }
 
 }  // namespace fettle::app

@@ -97,23 +97,56 @@ void addBenchFilters(Command bench, Chosen& chosen) {
       "Samples per second of the global filters, and of plain copying in the same run",
       [options, on_device](engine::JobControl& job) { return measure(*options, *on_device, job); },
       printBenchFilters);
-  std::map<std::string, engine::FilterKind> kinds;
-  for (const engine::Filter& filter : engine::filters()) kinds[std::string(filter.word)] = filter.kind;
-  std::map<std::string, bench::FilterGround> grounds;
-  for (const bench::FilterGround ground : options->grounds) grounds[bench::groundName(ground)] = ground;
-  command.option("--side", options->side, "Samples along each side of the field").showDefault();
-  command.choices("--kind", kinds, options->kinds, "Filters; none: those that do not keep edges")
-      .delimiter(',');
-  command.option("--window", options->windows, "Sides of the window, samples").delimiter(',').showDefault();
-  command.choices("--ground", grounds, options->grounds, "plain, holes, marks; none: all").delimiter(',');
-  command.option("--threads", options->threads, "Threads").delimiter(',').showDefault();
-  command.flag("--gpu", *on_device,
-               fmt::format("Measure {} on a graphics device as well, against the processor in the same run",
-                           engine::filterWords(engine::runsOnDevices)));
-  command.option("--repeats", options->repeats, "Runs of each row").showDefault();
-  command
-      .option("--limit", options->limit_s, "Seconds for all runs of a row; a slower one gets a smaller field")
-      .showDefault();
+  std::vector<Word> kinds, grounds;
+  for (const engine::Filter& filter : engine::filters()) kinds.emplace_back(std::string(filter.word));
+  std::map<std::string, bench::FilterGround> ground_named;
+  for (const bench::FilterGround ground : options->grounds) {
+    grounds.emplace_back(bench::groundName(ground));
+    ground_named[bench::groundName(ground)] = ground;
+  }
+  const auto take_kinds = [options](const std::vector<std::string>& typed) {
+    options->kinds.clear();
+    for (const std::string& word : typed) options->kinds.push_back(engine::filterNamed(word)->kind);
+  };
+  const auto take_grounds = [options, ground_named](const std::vector<std::string>& typed) {
+    options->grounds.clear();
+    for (const std::string& word : typed) options->grounds.push_back(ground_named.at(word));
+  };
+  using Words = std::function<void(const std::vector<std::string>&)>;
+  command.add({
+      {.name = "--side",
+       .to = &options->side,
+       .text = "Length of each side of the field",
+       .range = Range{64.0, 32768.0},
+       .unit = "samples"},
+      {.name = "--kind",
+       .to = Words(take_kinds),
+       .text = "Filters",
+       .words = kinds,
+       .otherwise = "those that do not keep edges",
+       .between = ','},
+      {.name = "--window",
+       .to = &options->windows,
+       .text = "Sides of the window, odd",
+       .unit = "samples",
+       .between = ','},
+      {.name = "--ground",
+       .to = Words(take_grounds),
+       .text = "Grounds",
+       .words = grounds,
+       .otherwise = "all",
+       .between = ','},
+      {.name = "--threads", .to = &options->threads, .text = "Numbers of threads", .between = ','},
+      {.name = "--gpu",
+       .to = on_device.get(),
+       .text = fmt::format("Measure {} on a graphics device as well, against the processor in the same run",
+                           engine::filterWords(engine::runsOnDevices))},
+      {.name = "--repeats", .to = &options->repeats, .text = "Runs of each row", .range = Range{1.0, 100.0}},
+      {.name = "--limit",
+       .to = &options->limit_s,
+       .text = "Time for all runs of a row; a slower one gets a smaller field",
+       .unit = "seconds"},
+  });
 }
 
 }  // namespace fettle::app

@@ -108,13 +108,23 @@ void addBenchGrowth(Command bench, Chosen& chosen) {
   Command command = addCommand(
       bench, chosen, "growth", "How costs grow with the field, the window, the brush and what changed",
       [options](engine::JobControl& job) { return measure(*options, job); }, printBenchGrowth);
-  command.option("--largest", options->bench.largest, "Samples along the sides of the largest field")
-      .showDefault();
-  command.option("--effort", options->bench.effort, "Share of the full work, 0.01 to 1").showDefault();
-  command.option("--plots", options->folder, "Folder for a picture of each").check(folderName());
-  command.onFlag(
-      "--no-picture", [options] { options->bench.picture = false; },
-      "Omit uploads: no Vulkan device is needed");
+  command.add({
+      {.name = "--largest",
+       .to = &options->bench.largest,
+       .text = "Length of the sides of the largest field",
+       .unit = "samples"},
+      {.name = "--effort",
+       .to = &options->bench.effort,
+       .text = "Share of the full work",
+       .range = Range{0.01, 1.0}},
+      {.name = "--plots",
+       .to = &options->folder,
+       .text = "Folder for a picture of each",
+       .kind = ValueKind::kFolder},
+      {.name = "--no-picture",
+       .to = [options] { options->bench.picture = false; },
+       .text = "Omit uploads: no Vulkan device is needed"},
+  });
 }
 
 }  // namespace fettle::app

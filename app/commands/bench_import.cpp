@@ -59,10 +59,18 @@ void addBenchImport(Command bench, Chosen& chosen) {
   Command command = addCommand(
       bench, chosen, "import", "Import time of each format, and of plain reading of the same file",
       [options](engine::JobControl& job) { return measure(*options, job); }, printBenchImport);
-  command.option("SCANS", options->files, "Files to read; none: one field written in every format");
-  command.option("--side", options->side, "Samples along each side of that field; above 2048: GeoTIFF alone")
-      .showDefault();
-  command.option("--repeats", options->repeats, "Imports of each file").showDefault();
+  command.add({
+      {.name = "SCANS",
+       .to = &options->files,
+       .text = "Files to read",
+       .kind = ValueKind::kInput,
+       .otherwise = "one field written in every format"},
+      {.name = "--side",
+       .to = &options->side,
+       .text = "Length of each side of that field; above 2048 GeoTIFF alone",
+       .unit = "samples"},
+      {.name = "--repeats", .to = &options->repeats, .text = "Imports of each file"},
+  });
 }
 
 }  // namespace fettle::app

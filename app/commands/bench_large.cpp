@@ -122,12 +122,18 @@ void addBenchLarge(Command bench, Chosen& chosen) {
         return reportOf(*measured);
       },
       printBenchLarge);
-  command.option("--side", options->side, "Samples along each side of the scan").showDefault();
-  command.option("--folder", options->folder, "Folder for its files; otherwise the temporary folder")
-      .check(folderName());
-  command.option("--effort", options->effort, "Share of the ticks, 0.01 to 1").showDefault();
-  command.onFlag(
-      "--no-picture", [options] { options->picture = false; }, "Omit drawing: no Vulkan device is needed");
+  command.add({
+      {.name = "--side", .to = &options->side, .text = "Length of each side of the scan", .unit = "samples"},
+      {.name = "--folder",
+       .to = &options->folder,
+       .text = "Folder for its files",
+       .kind = ValueKind::kFolder,
+       .otherwise = "the temporary folder"},
+      {.name = "--effort", .to = &options->effort, .text = "Share of the ticks", .range = Range{0.01, 1.0}},
+      {.name = "--no-picture",
+       .to = [options] { options->picture = false; },
+       .text = "Omit drawing: no Vulkan device is needed"},
+  });
   addStoreOption(command);
 }
 

@@ -71,50 +71,14 @@ void printReport(const Report& report) {
   printIndented(shown, 0);
 }
 
-Check within(double lowest, double highest) {
-  return {[lowest, highest](const std::string& typed) {
-            // Parsed like options of this type; NaN fails both comparisons.
-            char* end = nullptr;
-            const auto value = static_cast<double>(std::strtold(typed.c_str(), &end));
-            if (!typed.empty() && end == typed.c_str() + typed.size() && value >= lowest && value <= highest)
-              return std::string();
-            return fmt::format("{} is not a number from {:g} to {:g}", typed, lowest, highest);
-          },
-          fmt::format("FLOAT in [{:g} - {:g}]", lowest, highest)};
-}
-
-Check oneOf(const std::vector<std::string>& words) {
-  return {[words](const std::string& typed) {
-            if (std::find(words.begin(), words.end(), typed) != words.end()) return std::string();
-            const std::string meant = didYouMean(typed, words);
-            return fmt::format("{} is not one of {}{}{}", typed, fmt::join(words, ", "),
-                               meant.empty() ? "" : "; ", meant);
-          },
-          fmt::format("{{{}}}", fmt::join(words, ","))};
-}
-
-Check fileName() {
-  return {[](const std::string& typed) {
-    return isStream(typed) ? std::string(
-                                 "takes no -, standard input or standard output: name a file, ./- for one "
-                                 "of that name")
-                           : std::string();
-  }};
-}
-
-Check folderName() {
-  return {[](const std::string& typed) {
-    return isStream(typed) ? std::string(
-                                 "- is standard output, and no folder: name a folder, ./- for one of "
-                                 "that name")
-                           : std::string();
-  }};
-}
-
 void addOutputFlags(Command app, Chosen& chosen) {
-  app.flag("--json", chosen.json,
-           "Print one JSON object on stdout instead of text, an error as one on stderr");
-  app.flag("-q,--quiet", chosen.quiet, "Print only errors: no report, warnings or progress");
+  app.add({{.name = "--json",
+            .to = &chosen.json,
+            .text = "Print one JSON object on stdout instead of text, an error as one on stderr"},
+           {.name = "-q,--quiet",
+            .to = &chosen.quiet,
+            .text = "Print only errors: no report, warnings or progress"}},
+          kReportGroup);
 }
 
 Command addCommand(Command root, Chosen& chosen, const std::string& name, const std::string& description,

@@ -47,19 +47,6 @@ Command addCommand(Command root, Chosen& chosen, const std::string& name, const 
                    std::function<void(const Report&)> print = printReport,
                    Progress progress = Progress::kLine, std::function<int(const Report&)> status = {});
 
-/// For Option::check: a number from `lowest` to `highest`, and not NaN.
-[[nodiscard]] Check within(double lowest, double highest);
-
-/// For Option::check: one of these words. Others are refused with a suggestion.
-[[nodiscard]] Check oneOf(const std::vector<std::string>& words);
-
-/// For Option::check of a file: not "-", which does not mean standard input or output there.
-[[nodiscard]] Check fileName();
-
-/// For Option::check of a folder: not "-". A folder of that name would conflict with every command that
-/// writes to standard output.
-[[nodiscard]] Check folderName();
-
 void addInfo(Command root, Chosen& chosen);
 void addSynth(Command root, Chosen& chosen);
 void addFilter(Command root, Chosen& chosen);
@@ -75,5 +62,6 @@ void addView(Command root, Chosen& chosen);
 void addAccuracy(Command root, Chosen& chosen);
 void addBench(Command root, Chosen& chosen);
 void addDemo(Command root, Chosen& chosen);
+void addReference(Command root, Chosen& chosen);
 
 }  // namespace fettle::app

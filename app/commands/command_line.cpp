@@ -1,18 +1,18 @@
 #include "app/commands/command_line.h"
 
-#include <sstream>
+#include <algorithm>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include <CLI/CLI.hpp>
+
+#include "app/commands/value_checks.h"
+#include "app/reference/help_text.h"
 
 namespace fettle::app {
 
 namespace {
-
-Check checkOf(CLI::Validator validator) {
-  const std::string shown = validator.get_description();
-  return {[validator = std::move(validator)](const std::string& typed) { return validator(typed); }, shown};
-}
 
 Misread misreadOf(const CLI::App& root, const std::string& what) {
   Misread misread;
@@ -33,63 +33,69 @@ Misread misreadOf(const CLI::App& root, const std::string& what) {
   return misread;
 }
 
+// The kind of a row that names none.
+ValueKind kindOf(const Parameter& p) {
+  if (p.kind != ValueKind::kByTarget) return p.kind;
+  if (!p.words.empty()) return ValueKind::kWord;
+  return std::visit(
+      [](const auto& target) {
+        using T = std::decay_t<decltype(target)>;
+        if constexpr (std::is_same_v<T, std::monostate> || std::is_same_v<T, bool*> ||
+                      std::is_same_v<T, std::function<void()>>)
+          return ValueKind::kFlag;
+        else if constexpr (std::is_same_v<T, double*> || std::is_same_v<T, std::optional<double>*> ||
+                           std::is_same_v<T, std::vector<double>*>)
+          return ValueKind::kNumber;
+        else if constexpr (std::is_same_v<T, int*> || std::is_same_v<T, std::vector<int>*> ||
+                           std::is_same_v<T, std::int64_t*> || std::is_same_v<T, std::uint64_t*>)
+          return ValueKind::kWhole;
+        else
+          return ValueKind::kText;
+      },
+      p.to);
+}
+
+CLI::Option* optionFor(CLI::App& app, const Parameter& p) {
+  return std::visit(
+      [&](const auto& target) -> CLI::Option* {
+        using T = std::decay_t<decltype(target)>;
+        if constexpr (std::is_same_v<T, std::monostate>)
+          return nullptr;
+        else if constexpr (std::is_same_v<T, bool*>)
+          return app.add_flag(p.name, *target);
+        else if constexpr (std::is_same_v<T, std::function<void()>>)
+          return app.add_flag_callback(p.name, target);
+        else if constexpr (std::is_same_v<T, std::function<void(const std::string&)>>)
+          return app.add_option_function<std::string>(p.name, target);
+        else if constexpr (std::is_same_v<T, std::function<void(const std::vector<std::string>&)>>)
+          return app.add_option_function<std::vector<std::string>>(p.name, target);
+        else
+          return app.add_option(p.name, *target);
+      },
+      p.to);
+}
+
+void addToParser(CLI::App& app, const Parameter& p) {
+  CLI::Option* option = optionFor(app, p);
+  if (option == nullptr) return;
+  option->required(p.required);
+  if (p.between != '\0') option->delimiter(p.between);
+  if (p.values > 1) option->expected(p.values);
+  if (p.one_word) option->allow_extra_args(false);
+  for (const std::string& other : p.excludes) option->excludes(app.get_option(other));
+  for (const auto& problem : problemsOf(p)) option->check(problem, "");
+}
+
 }  // namespace
 
-Check inRange(int lowest, int highest) {
-  return checkOf(CLI::Range(lowest, highest));
-}
-
-Check memberOf(const std::vector<std::string>& words) {
-  return checkOf(CLI::IsMember(words));
-}
-
-Option& Option::group(const std::string& name) {
-  option_->group(name);
-  return *this;
-}
-
-Option& Option::check(Check check) {
-  option_->check(std::move(check.problem), std::move(check.shown));
-  return *this;
-}
-
-Option& Option::required() {
-  option_->required();
-  return *this;
-}
-
-Option& Option::expected(int values) {
-  option_->expected(values);
-  return *this;
-}
-
-Option& Option::delimiter(char between) {
-  option_->delimiter(between);
-  return *this;
-}
-
-Option& Option::showDefault() {
-  option_->capture_default_str();
-  return *this;
-}
-
-Option& Option::excludes(Option other) {
-  option_->excludes(other.option_);
-  return *this;
-}
-
-Option& Option::oneValueEach() {
-  option_->allow_extra_args(false);
-  return *this;
-}
-
-Option& Option::typeName(const char* shown) {
-  option_->type_name(shown);
-  return *this;
-}
-
-Command Command::subcommand(const std::string& name, const std::string& description) {
-  return Command(app_->add_subcommand(name, description));
+Command Command::subcommand(const std::string& name, const std::string& summary) {
+  CommandTable& below = table_->commands.emplace_back();
+  below.path = table_->path + " " + name;
+  below.name = name;
+  below.summary = summary;
+  Command command(app_->add_subcommand(name, summary), &below);
+  command.add({{.name = "-h,--help", .text = "Show this, and end"}}, kReportGroup);
+  return command;
 }
 
 void Command::requireSubcommand() {
@@ -100,54 +106,38 @@ void Command::onChosen(std::function<void()> f) {
   app_->callback(std::move(f));
 }
 
-void Command::footer(const std::string& text) {
-  app_->footer(text);
+void Command::notes(const std::string& text) {
+  table_->notes = text;
 }
 
-template <OptionValue T>
-Option Command::option(const std::string& name, T& variable, const std::string& help) {
-  return Option(app_->add_option(name, variable, help));
+void Command::examples(std::initializer_list<Example> examples) {
+  table_->examples = examples;
 }
 
-template Option Command::option(const std::string&, std::string&, const std::string&);
-template Option Command::option(const std::string&, std::vector<std::string>&, const std::string&);
-template Option Command::option(const std::string&, int&, const std::string&);
-template Option Command::option(const std::string&, std::vector<int>&, const std::string&);
-template Option Command::option(const std::string&, std::int64_t&, const std::string&);
-template Option Command::option(const std::string&, std::uint64_t&, const std::string&);
-template Option Command::option(const std::string&, double&, const std::string&);
-template Option Command::option(const std::string&, std::optional<double>&, const std::string&);
-template Option Command::option(const std::string&, std::vector<double>&, const std::string&);
-
-Option Command::onOption(const std::string& name, const std::function<void(const std::string&)>& take,
-                         const std::string& help) {
-  return Option(app_->add_option_function<std::string>(name, take, help));
-}
-
-Option Command::onNumbers(const std::string& name, const std::map<std::string, int>& words,
-                          const std::function<void(const std::vector<int>&)>& take, const std::string& help) {
-  CLI::Option* option = app_->add_option_function<std::vector<int>>(name, take, help);
-  option->type_name("ENUM")->transform(CLI::CheckedTransformer(words));
-  return Option(option);
-}
-
-Option Command::flag(const std::string& name, bool& variable, const std::string& help) {
-  return Option(app_->add_flag(name, variable, help));
-}
-
-Option Command::onFlag(const std::string& name, std::function<void()> f, const std::string& help) {
-  return Option(app_->add_flag_callback(name, std::move(f), help));
+void Command::add(std::initializer_list<Parameter> rows, const std::string& group) {
+  for (const Parameter& row : rows) {
+    Parameter p = row;
+    p.kind = kindOf(p);
+    if (p.group.empty()) p.group = group;
+    addToParser(*app_, p);
+    table_->parameters.push_back(std::move(p));
+  }
 }
 
 CommandLine::CommandLine(const std::string& name, const std::string& description, const std::string& version)
-    : app_(std::make_unique<CLI::App>(description, name)) {
+    : app_(std::make_unique<CLI::App>(description, name)), version_(version) {
+  table_.path = table_.name = name;
+  table_.summary = description;
   app_->set_version_flag("-V,--version", version);
+  root().add({{.name = "-h,--help", .text = "Show this, and end"},
+              {.name = "-V,--version", .text = "Show the version, and end"}},
+             kReportGroup);
 }
 
 CommandLine::~CommandLine() = default;
 
 Command CommandLine::root() {
-  return Command(app_.get());
+  return {app_.get(), &table_};
 }
 
 tl::expected<std::string, Misread> CommandLine::parse(const std::vector<std::string>& arguments) try {
@@ -157,14 +147,18 @@ tl::expected<std::string, Misread> CommandLine::parse(const std::vector<std::str
   // "fitler --help" and "bench hapitc --help" request the help of a command that does not exist, not that
   // of the program.
   const CLI::App* used = app_.get();
-  while (!used->get_subcommands().empty()) used = used->get_subcommands().front();
+  const CommandTable* table = &table_;
+  while (!used->get_subcommands().empty()) {
+    used = used->get_subcommands().front();
+    table = &*std::find_if(table->commands.begin(), table->commands.end(),
+                           [&](const CommandTable& below) { return below.name == used->get_name(); });
+  }
   const bool takes_command = !used->get_subcommands([](const CLI::App*) { return true; }).empty();
   const auto rest = used->remaining();
   const bool misspelt = takes_command && !rest.empty() && !rest[0].starts_with("-");
   if (error.get_exit_code() != 0 || misspelt) return tl::unexpected(misreadOf(*app_, error.what()));
-  std::ostringstream shown;  // --help and --version
-  app_->exit(error, shown, shown);
-  return shown.str();
+  if (dynamic_cast<const CLI::CallForVersion*>(&error) != nullptr) return version_ + "\n";
+  return helpText(*table);
 }
 
 }  // namespace fettle::app

@@ -1,108 +1,43 @@
 #pragma once
 
-#include <algorithm>
-#include <concepts>
-#include <cstdint>
 #include <functional>
-#include <map>
+#include <initializer_list>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <tl/expected.hpp>
 
+#include "app/reference/command_table.h"
+
 // CLI11 is a header that takes seconds to compile: only command_line.cpp includes it.
 namespace CLI {
 class App;
-class Option;
 }  // namespace CLI
 
 namespace fettle::app {
 
-/// A condition for the value of an option.
-struct Check {
-  std::function<std::string(const std::string&)> problem;  ///< of a value as typed; empty: none
-  std::string shown = {};                                  ///< its description in the help
-};
-
-/// A whole number from `lowest` to `highest`.
-[[nodiscard]] Check inRange(int lowest, int highest);
-
-/// One of `words`, without a suggestion for others: see oneOf().
-[[nodiscard]] Check memberOf(const std::vector<std::string>& words);
-
-/// One option of a command. Small, passed by value; valid as long as the CommandLine.
-class Option {
- public:
-  explicit Option(CLI::Option* option) : option_(option) {}
-
-  Option& group(const std::string& name);  ///< the heading under which the help lists it
-  Option& check(Check check);
-  Option& required();
-  Option& expected(int values);         ///< exactly so many values
-  Option& delimiter(char between);      ///< between values that are typed as one word
-  Option& showDefault();                ///< the help shows the current value of the variable
-  Option& excludes(Option other);       ///< only one of the two may be given
-  Option& oneValueEach();               ///< the word after the value is not another value
-  Option& typeName(const char* shown);  ///< the type shown in the help
-
- private:
-  CLI::Option* option_;
-};
-
-/// The types of an option's variable.
-template <typename T>
-concept OptionValue =
-    std::same_as<T, std::string> || std::same_as<T, std::vector<std::string>> || std::same_as<T, int> ||
-    std::same_as<T, std::vector<int>> || std::same_as<T, std::int64_t> || std::same_as<T, std::uint64_t> ||
-    std::same_as<T, double> || std::same_as<T, std::optional<double>> || std::same_as<T, std::vector<double>>;
-
 /// A command, or the whole program as the root of all commands. Small, passed by value; valid as long as the
-/// CommandLine. Options refer to the given variables, which must exist until the arguments are parsed.
+/// CommandLine. Parameters refer to variables, which must exist until the arguments are parsed.
 class Command {
  public:
-  explicit Command(CLI::App* app) : app_(app) {}
+  Command(CLI::App* app, CommandTable* table) : app_(app), table_(table) {}
 
-  Command subcommand(const std::string& name, const std::string& description);
+  Command subcommand(const std::string& name, const std::string& summary);
   void requireSubcommand();                ///< exactly one of its subcommands must be named
   void onChosen(std::function<void()> f);  ///< called when the command line names this command and is valid
-  void footer(const std::string& text);    ///< added at the end of its help
+  void notes(const std::string& text);     ///< shown after the parameters
+  void examples(std::initializer_list<Example> examples);
 
-  /// "--name", or "NAME" for a positional argument. Throws when the name exists already.
-  template <OptionValue T>
-  Option option(const std::string& name, T& variable, const std::string& help);
+  /// Adds rows to the table of its parameters, and to the parser. Throws when a name exists already.
+  void add(std::initializer_list<Parameter> rows, const std::string& group = {});
 
-  /// An option whose value is passed to `take`.
-  Option onOption(const std::string& name, const std::function<void(const std::string&)>& take,
-                  const std::string& help);
-
-  /// An option with any of some words, each of which represents a value.
-  template <typename T>
-  Option choices(const std::string& name, const std::map<std::string, T>& words, std::vector<T>& chosen,
-                 const std::string& help) {
-    std::map<std::string, int> numbers;
-    for (const auto& [word, value] : words) numbers[word] = static_cast<int>(value);
-    return onNumbers(
-        name, numbers,
-        [&chosen](const std::vector<int>& typed) {
-          chosen.resize(typed.size());
-          std::transform(typed.begin(), typed.end(), chosen.begin(), [](int n) { return static_cast<T>(n); });
-        },
-        help);
-  }
-
-  /// "--name", or "-n,--name".
-  Option flag(const std::string& name, bool& variable, const std::string& help);
-
-  /// A flag that calls `f` when it is given.
-  Option onFlag(const std::string& name, std::function<void()> f, const std::string& help);
+  /// Its rows and those of the commands below it.
+  [[nodiscard]] const CommandTable& table() const { return *table_; }
 
  private:
-  Option onNumbers(const std::string& name, const std::map<std::string, int>& words,
-                   const std::function<void(const std::vector<int>&)>& take, const std::string& help);
-
   CLI::App* app_;
+  CommandTable* table_;
 };
 
 /// A command line that could not be parsed.
@@ -130,6 +65,8 @@ class CommandLine {
 
  private:
   std::unique_ptr<CLI::App> app_;
+  std::string version_;
+  CommandTable table_;
 };
 
 }  // namespace fettle::app

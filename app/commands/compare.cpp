@@ -96,16 +96,39 @@ void addCompare(Command root, Chosen& chosen) {
   Command command = addCommand(root, chosen, "compare",
                                "How B deviates from A; against a truth, the errors of B and where they are",
                                [options](engine::JobControl& job) { return compare(*options, job); });
-  command.option("A", options->a, "The scan to compare with; A or B may be -, standard input").required();
-  command.option("B", options->b, "The scan to compare").required();
-  command.option("--truth", options->truth, "The true surface: adds RMSE overall, on flats and near edges");
-  command.option("--edges", options->edges, "Picture of the true edges, non-zero = edge: adds the edge width")
-      .check(fileName());
-  command.option("--deviation", options->deviation,
-                 "Also write B - A as a separate scan, in A's height unit, format by extension");
+  command.add({
+      {.name = "A",
+       .to = &options->a,
+       .text = "The scan to compare with; A or B may be -, standard input",
+       .kind = ValueKind::kInput,
+       .required = true},
+      {.name = "B",
+       .to = &options->b,
+       .text = "The scan to compare",
+       .kind = ValueKind::kInput,
+       .required = true},
+      {.name = "--truth",
+       .to = &options->truth,
+       .text = "The true surface: adds RMSE overall, on flats and near edges",
+       .kind = ValueKind::kInput},
+      {.name = "--edges",
+       .to = &options->edges,
+       .text = "Picture of the true edges, non-zero = edge: adds the edge width",
+       .kind = ValueKind::kFile},
+      {.name = "--deviation",
+       .to = &options->deviation,
+       .text = "Also write B - A as a separate scan, in A's height unit, format by extension",
+       .kind = ValueKind::kOutput},
+  });
   addForceOption(command, options->replacing);
-  command.option("--to", options->to, "With --deviation -, standard output: its format, as extension");
+  command.add({{.name = "--to",
+                .to = &options->to,
+                .text = "With --deviation -, standard output: its format, as extension",
+                .kind = ValueKind::kFormat}});
   addScanOptions(command, options->reading);
+  command.examples({{"fettle compare scan.tif clean.tif", "Deviation figures, Sq and Sa"},
+                    {"fettle compare scan.tif clean.tif --truth truth.tif --edges edges.png",
+                     "Errors against a known surface, on flats and near edges"}});
 }
 
 }  // namespace fettle::app

@@ -8,12 +8,12 @@
 namespace fettle::app {
 
 void addComputeOption(Command command, std::string& word) {
-  command
-      .option("--compute", word,
-              fmt::format("cpu; gpu: a graphics device computes {}; auto: one does where the machine has one",
-                          engine::filterWords(engine::runsOnDevices)))
-      .check(oneOf({"auto", "cpu", "gpu"}))
-      .showDefault();
+  command.add({{.name = "--compute",
+                .to = &word,
+                .text = fmt::format("Where {} takes its steps", engine::filterWords(engine::runsOnDevices)),
+                .words = {{"auto", "on a hardware device where the machine has one, else on the processor"},
+                          {"cpu", "on the processor"},
+                          {"gpu", "on a graphics device"}}}});
 }
 
 engine::Result<FilterCompute> chooseCompute(const std::string& word, const engine::Filter& filter) {

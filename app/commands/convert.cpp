@@ -62,18 +62,26 @@ void addConvert(Command root, Chosen& chosen) {
       [options](engine::JobControl& job) { return convert(*options, job); }, printBatch, Progress::kOwn,
       batchStatus);
   addBatchOptions(command, options->files);
-  const std::string group = "Writing";
-  command.flag("--mesh", options->writing.mesh, "PLY: triangles instead of points (STL always)").group(group);
-  command
-      .option("--max-error", options->max_error,
-              "Mesh: as few triangles as possible with every sample within this height, e.g. 0.5 or 20um")
-      .group(group);
-  command
-      .flag("--cloud-optimised", options->writing.cloud_optimised,
-            "TIFF: laid out for reading parts over a network, with overviews")
-      .group(group);
+  command.add(
+      {
+          {.name = "--mesh",
+           .to = &options->writing.mesh,
+           .text = "PLY: triangles instead of points (STL always)"},
+          {.name = "--max-error",
+           .to = &options->max_error,
+           .text = "Mesh: as few triangles as possible with every sample within this height",
+           .kind = ValueKind::kLength},
+          {.name = "--cloud-optimised",
+           .to = &options->writing.cloud_optimised,
+           .text = "TIFF: laid out for reading parts over a network, with overviews"},
+      },
+      kWriting);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
+  command.examples({{"fettle convert scan.tif scan.stl --max-error 10um",
+                     "A mesh with as few triangles as that error allows"},
+                    {"fettle convert scan.tif other.tif --out-dir packed --to tif --compress zstd",
+                     "Several scans, packed, into a folder"}});
 }
 
 }  // namespace fettle::app

@@ -111,20 +111,34 @@ void addDemo(Command root, Chosen& chosen) {
   Command command = addCommand(
       root, chosen, "demo", "The whole process on a simulated scan: pictures, table, session",
       [options](engine::JobControl& job) { return demo(*options, job); }, printDemo);
-  command.option("DIR", options->folder, "Folder for its output, created if missing")
-      .check(folderName())
-      .required();
-  command.option("--part", options->part, "The part to scan; see fettle synth --help").showDefault();
-  command.option("--side", options->side, "Samples along each side").check(inRange(64, 16384)).showDefault();
-  command.option("--noise", options->noise, "Scale of the scanner's noise").showDefault();
-  command.option("--outliers", options->outliers, "Share of mixed pixels next to steps").showDefault();
-  command.option("--dropouts", options->dropouts, "Scale of lost samples").showDefault();
-  command.option("--window", options->window, "Window of the global filters").showDefault();
-  command.option("--passes", options->passes, "Passes of the global filters").showDefault();
-  command.option("--look-at", options->look_at, "Centre of the close-ups, as fractions X,Y of the field")
-      .delimiter(',')
-      .expected(2);
-  command.option("--seed", options->seed, "Same seed, same bits").check({seedProblem}).showDefault();
+  command.add({
+      {.name = "DIR",
+       .to = &options->folder,
+       .text = "Folder for its output, created if missing",
+       .kind = ValueKind::kFolder,
+       .required = true},
+      {.name = "--part", .to = &options->part, .text = "The part to scan", .words = partWords()},
+      {.name = "--side",
+       .to = &options->side,
+       .text = "Length of each side",
+       .range = Range{64.0, 16384.0},
+       .unit = "samples"},
+      {.name = "--noise", .to = &options->noise, .text = "Scale of the scanner's noise"},
+      {.name = "--outliers", .to = &options->outliers, .text = "Share of mixed pixels next to steps"},
+      {.name = "--dropouts", .to = &options->dropouts, .text = "Scale of lost samples"},
+      {.name = "--window",
+       .to = &options->window,
+       .text = "Window of the global filters, odd",
+       .unit = "samples"},
+      {.name = "--passes", .to = &options->passes, .text = "Passes of the global filters"},
+      {.name = "--look-at",
+       .to = &options->look_at,
+       .text = "Centre of the close-ups, as fractions X,Y of the field",
+       .values = 2,
+       .between = ','},
+      {.name = "--seed", .to = &options->seed, .text = "Same seed, same bits", .problem = seedProblem},
+  });
+  command.examples({{"fettle demo out --side 256", "A small one, in the folder out"}});
 }
 
 }  // namespace fettle::app

@@ -373,62 +373,95 @@ void addFilter(Command root, Chosen& chosen) {
       [options](engine::JobControl& job) { return filter(*options, job); }, printFilter, Progress::kOwn,
       batchStatus);
   addBatchOptions(command, options->files);
-  std::vector<std::string> words, titles, sigmas, ranges;
+  std::vector<Word> filters;
+  std::vector<std::string> sigmas, ranges;
   for (const engine::Filter& filter : engine::filters()) {
-    words.emplace_back(filter.word);
-    if (engine::lowerCase(filter.title) != filter.word)
-      titles.push_back(fmt::format("; {}: {}", filter.word, filter.title));
-    if (filter.sigma.exists()) sigmas.push_back(fmt::format("{}: {}", filter.word, filter.sigma.when_zero));
-    if (filter.range_sigma.exists()) ranges.push_back(fmt::format("{}: {:g}", filter.word, filter.noises));
+    filters.emplace_back(std::string(filter.word),
+                         engine::lowerCase(filter.title) == filter.word ? "" : std::string(filter.title));
+    if (filter.sigma.exists()) sigmas.push_back(fmt::format("{} ({})", filter.sigma.when_zero, filter.word));
+    if (filter.range_sigma.exists()) ranges.push_back(fmt::format("{:g} ({})", filter.noises, filter.word));
   }
-  command
-      .option("--filter", options->filter,
-              fmt::format("{} keep edges{}", engine::filterWords(engine::keepsEdges), fmt::join(titles, "")))
-      .check(oneOf(words));
-  command.option("--window", options->window, "Side of the window in samples, odd, 1 to 1001").showDefault();
-  command.option(
-      "--sigma", options->sigma,
-      fmt::format("Standard deviation of the weights in samples; without it, {}", fmt::join(sigmas, ", ")));
-  command.option(
-      "--range-sigma", options->range_sigma,
-      fmt::format("How large a difference is noise, as 20um; without it, in standard deviations of "
-                  "noise_finest of fettle info, {}",
-                  fmt::join(ranges, ", ")));
-  command.option("--passes", options->passes, "Number of passes").showDefault();
-  const Option keep =
-      command.option("--keep", options->keep, "Picture of marks: these samples are not changed")
-          .check(fileName());
-  command.option("--only", options->only, "Picture of marks: only these samples are filtered")
-      .check(fileName())
-      .excludes(keep);
-  command
-      .option("--lines", options->lines,
-              fmt::format(
-                  "Edge lines, .csv, .geojson, .gpkg or .dxf: {} keeps the two sides of a step apart there",
-                  engine::filterWords(engine::knowsLines)))
-      .check(fileName());
-  command.option("--max-change", options->max_change,
-                 "Largest change of a sample from the original: that of a session, else "
-                 "--original, else IN; in the scan's height unit, or as 20um, 0.5mm");
+  command.add({
+      {.name = "--filter",
+       .to = &options->filter,
+       .text = fmt::format("The filter; {} keep edges", engine::filterWords(engine::keepsEdges)),
+       .words = filters},
+      {.name = "--window",
+       .to = &options->window,
+       .text = "Side of the window, odd",
+       .range = Range{1.0, engine::FilterSpec::kMaxWindow},
+       .unit = "samples"},
+      {.name = "--sigma",
+       .to = &options->sigma,
+       .text = "Standard deviation of the weights",
+       .unit = "samples",
+       .otherwise = fmt::format("{}", fmt::join(sigmas, ", "))},
+      {.name = "--range-sigma",
+       .to = &options->range_sigma,
+       .text = "How large a difference is noise",
+       .kind = ValueKind::kLength,
+       .otherwise =
+           fmt::format("{} standard deviations of noise_finest of fettle info", fmt::join(ranges, ", "))},
+      {.name = "--passes",
+       .to = &options->passes,
+       .text = "Times that the filter is applied to its own result",
+       .range = Range{1.0, engine::FilterSpec::kMaxPasses}},
+      {.name = "--keep",
+       .to = &options->keep,
+       .text = "Picture of marks: these samples are not changed",
+       .kind = ValueKind::kFile},
+      {.name = "--only",
+       .to = &options->only,
+       .text = "Picture of marks: only these samples are filtered",
+       .kind = ValueKind::kFile,
+       .excludes = {"--keep"}},
+      {.name = "--lines",
+       .to = &options->lines,
+       .text = fmt::format(
+           "Edge lines, .csv, .geojson, .gpkg or .dxf: {} keep the two sides of a step apart there",
+           engine::filterWords(engine::knowsLines)),
+       .kind = ValueKind::kFile},
+      {.name = "--max-change",
+       .to = &options->max_change,
+       .text = "Largest change of a sample from the original: that of a session, else --original, else IN",
+       .kind = ValueKind::kLength},
+  });
   addOriginalOption(command, options->original);
-  command.option("--threads", options->threads, "Threads to use; 0 = one per core").showDefault();
+  command.add({{.name = "--threads",
+                .to = &options->threads,
+                .text = "Threads to use",
+                .range = Range{0.0, engine::FilterSpec::kMaxThreads},
+                .otherwise = "0, one per core"}});
   addComputeOption(command, options->compute);
-  command.flag(
-      "--suggest", options->suggest,
-      "Filter nothing: test filters on pieces of IN, print which one to use for --tolerance, why, and "
-      "the command for it");
-  command.option("--tolerance", options->tolerance,
-                 "With --suggest: allowed root mean square error on flats and near edges, each "
-                 "separately; in the scan's height unit, or as 20um");
-  command.option("--budget", options->budget, "With --suggest: most seconds for filtering the scan");
-  command
-      .option("--places", options->places,
-              "With --suggest: name this many places, 1 to 1000, where an edge line drawn by hand would gain "
-              "tgv most; "
-              "without --tolerance, only these")
-      .check(within(1, 1000));
+  command.add(
+      {
+          {.name = "--suggest",
+           .to = &options->suggest,
+           .text = "Filter nothing: test filters on pieces of IN, print which one to use for --tolerance, "
+                   "why, and the command for it"},
+          {.name = "--tolerance",
+           .to = &options->tolerance,
+           .text = "Allowed root mean square error on flats and near edges, each separately",
+           .kind = ValueKind::kLength},
+          {.name = "--budget",
+           .to = &options->budget,
+           .text = "Longest time for filtering the scan",
+           .unit = "seconds"},
+          {.name = "--places",
+           .to = &options->places,
+           .text = "Name this many places where an edge line drawn by hand would gain tgv most; without "
+                   "--tolerance only these",
+           .range = Range{1.0, 1000.0},
+           .otherwise = "none"},
+      },
+      "Suggesting a filter");
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
+  command.examples(
+      {{"fettle filter scan.tif clean.tif --filter tgv", "The best without a hand"},
+       {"fettle filter scan.tif clean.tif --filter median --window 5 --keep marks.png --max-change 50um",
+        "A median that leaves marked samples as they are, and no sample farther than that from the scan"},
+       {"fettle filter scan.tif --suggest --tolerance 12um", "Which filter is good enough, and why"}});
 }
 
 }  // namespace fettle::app

@@ -227,31 +227,37 @@ void addInfo(Command root, Chosen& chosen) {
       "Properties of a scan: size, spacing, units, heights, holes, noise, steepest cell",
       [options](engine::JobControl& job) { return info(*options, job); }, printInfo, Progress::kOwn,
       batchStatus);
-  command.footer(
+  command.notes(
       "noise: standard deviation in the height unit, in windows of 16 x 16 samples that show no edge.\n"
       "noise_uncorrelated: share of its square that neighbours do not have in common; noise_rows, "
-      "noise_columns:\n"
-      "  offsets of whole rows and columns; noise_least, noise_most: where in the field it is least and "
-      "most, in\n"
-      "  8 x 8 parts. What is correlated along rows and columns counts as surface.\n"
-      "noise_finest: 1.4826 median(|d|) / 6 of d, the second difference along rows and columns; what range\n"
-      "  sigmas follow.\n"
+      "noise_columns: offsets of whole rows and columns; noise_least, noise_most: where in the field it is "
+      "least and most, in 8 x 8 parts. What is correlated along rows and columns counts as surface.\n"
+      "noise_finest: 1.4826 median(|d|) / 6 of d, the second difference along rows and columns; what range "
+      "sigmas follow.\n"
       "steepest: the cell that rises most, height over distance; ROW,COLUMN of its upper left sample, and "
-      "its\n"
-      "  middle in the file's coordinates.");
-  command
-      .option("SCAN", options->scans,
-              "The scan, or several, each with a report of its own; - for standard input")
-      .required();
-  command
-      .option("--at", options->at, "Also the height at ROW,COLUMN of the file, both from 0; may be repeated")
-      .oneValueEach();
-  command.option("--picture", options->picture, "Also a thumbnail, PNG of 320 x 240 pixels")
-      .check(fileName());
-  command.option("--bins", options->bins, "Bins of the histogram, from the lowest to the highest sample")
-      .check(inRange(1, engine::kMostBins))
-      .showDefault();
+      "its middle in the file's coordinates.");
+  command.add({
+      {.name = "SCAN",
+       .to = &options->scans,
+       .text = "The scan, or several, each with a report of its own; - for standard input",
+       .kind = ValueKind::kInput,
+       .required = true},
+      {.name = "--at",
+       .to = &options->at,
+       .text = "Also the height at ROW,COLUMN of the file, both from 0",
+       .one_word = true},
+      {.name = "--picture",
+       .to = &options->picture,
+       .text = "Also a thumbnail, PNG of 320 x 240 pixels",
+       .kind = ValueKind::kNewFile},
+      {.name = "--bins",
+       .to = &options->bins,
+       .text = "Bins of the histogram, from the lowest to the highest sample",
+       .range = Range{1.0, engine::kMostBins}},
+  });
   addScanOptions(command, options->reading);
+  command.examples({{"fettle info scan.tif --picture scan.png", "Its properties, and a thumbnail"},
+                    {"fettle info scan.tif --at 0,0 --at 10,20", "The heights of two samples as well"}});
 }
 
 }  // namespace fettle::app

@@ -263,22 +263,41 @@ void addLines(Command root, Chosen& chosen) {
   Command command = addCommand(
       root, chosen, "lines", "Step height and angle along edge lines, with uncertainty",
       [options](engine::JobControl& job) { return measureLines(*options, job); }, printLines);
-  command.option("SCAN", options->scan, "The scan, or a session; - for standard input").required();
-  command.option("LINES", options->lines, "File of edge lines; none: those of the session SCAN")
-      .check(fileName());
-  command.option("--only", options->only, "Only the lines of these numbers, as 3,7").delimiter(',');
-  command.option("--csv", options->csv, "Write a row per point: step and angle there, in mm and degrees")
-      .check(fileName());
-  command.option("--plot", options->plot, "Draw step and angle over the length of the longest lines, as SVG")
-      .check(fileName());
-  command.option("--out", options->out, "Write the lines: .csv (every value), .geojson, .gpkg, .dxf")
-      .check(fileName());
+  command.add({
+      {.name = "SCAN",
+       .to = &options->scan,
+       .text = "The scan, or a session; - for standard input",
+       .kind = ValueKind::kInput,
+       .required = true},
+      {.name = "LINES",
+       .to = &options->lines,
+       .text = "File of edge lines",
+       .kind = ValueKind::kFile,
+       .otherwise = "those of the session SCAN"},
+      {.name = "--only",
+       .to = &options->only,
+       .text = "Only the lines of these numbers, as 3,7",
+       .between = ','},
+      {.name = "--csv",
+       .to = &options->csv,
+       .text = "Write a row per point: step and angle there, in mm and degrees",
+       .kind = ValueKind::kNewFile},
+      {.name = "--plot",
+       .to = &options->plot,
+       .text = "Draw step and angle over the length of the longest lines, as SVG",
+       .kind = ValueKind::kNewFile},
+      {.name = "--out",
+       .to = &options->out,
+       .text = "Write the lines: .csv (every value), .geojson, .gpkg, .dxf",
+       .kind = ValueKind::kNewFile},
+  });
   addScanOptions(command, options->reading);
-  command.footer(
+  command.notes(
       "At each point of a line planes are fitted to the samples on both sides, up to 10 from the line and 5 "
-      "points\n"
-      "  along. Step: their difference in height at the line. Turn: their difference in inclination across "
-      "it.");
+      "points along. Step: their difference in height at the line. Turn: their difference in inclination "
+      "across it.");
+  command.examples({{"fettle lines scan.tif lines.csv --csv steps.csv --plot steps.svg",
+                     "A table, its values point by point, and a plot"}});
 }
 
 }  // namespace fettle::app

@@ -232,40 +232,58 @@ void addMark(Command root, Chosen& chosen) {
   auto options = std::make_shared<MarkArguments>();
   Command command = addCommand(root, chosen, "mark", "Mark samples that filters must not change",
                                [options](engine::JobControl& job) { return mark(*options, job); });
-  command.option("SCAN", options->in, "The scan to read; - for standard input").required();
-  command
-      .option("MARKS", options->out, "Picture of marks to write: .png, .tif, - for a PNG on standard output")
-      .required();
-  const Option edges = command.flag("--edges", options->edges,
-                                    "Mark the sharp edges of the part, as the window suggests them");
-  command
-      .option("--strokes", options->strokes,
-              "Strokes file: mark the edges that were drawn with the tool mark, where the scan shows them")
-      .check(fileName())
-      .excludes(edges);
-  command
-      .option("--hand", options->locating.hand_deviation,
-              "How far --strokes are off the edges, a standard deviation: 0.25 to 3 samples")
-      .showDefault();
-  command
-      .option("--lines-out", options->lines_out,
-              "Write the edge lines of --strokes or --edges: .csv (every value), .geojson, .gpkg, .dxf")
-      .check(fileName());
-  command
-      .option("--scale", options->scale,
-              "Edges: scale of the search in samples, 0.7 to 8; larger finds fainter ones")
-      .showDefault();
-  command
-      .option("--sensitivity", options->choice.sensitivity,
-              "Edges: 0 takes only the strongest, 1 all above the noise")
-      .showDefault();
-  command
-      .option("--thickness", options->choice.thickness,
-              "Edges and strokes: marked to this distance, in samples")
-      .showDefault();
-  command.option("--add", options->add, "Picture of marks to begin with").check(fileName());
-  command.flag("--invert", options->invert, "Afterwards, invert the marks");
+  command.add({
+      {.name = "SCAN",
+       .to = &options->in,
+       .text = "The scan to read; - for standard input",
+       .kind = ValueKind::kInput,
+       .required = true},
+      {.name = "MARKS",
+       .to = &options->out,
+       .text = "Picture of marks to write: .png, .tif, - for a PNG on standard output",
+       .kind = ValueKind::kOutput,
+       .required = true},
+      {.name = "--edges",
+       .to = &options->edges,
+       .text = "Mark the sharp edges of the part, as the window suggests them"},
+      {.name = "--strokes",
+       .to = &options->strokes,
+       .text = "Strokes file: mark the edges that were drawn with the tool mark, where the scan shows them",
+       .kind = ValueKind::kFile,
+       .excludes = {"--edges"}},
+      {.name = "--hand",
+       .to = &options->locating.hand_deviation,
+       .text = "How far --strokes are off the edges, a standard deviation",
+       .range = Range{engine::LocateOptions::kLeastHand, engine::LocateOptions::kMostHand},
+       .unit = "samples"},
+      {.name = "--lines-out",
+       .to = &options->lines_out,
+       .text = "Write the edge lines of --strokes or --edges: .csv (every value), .geojson, .gpkg, .dxf",
+       .kind = ValueKind::kNewFile},
+      {.name = "--scale",
+       .to = &options->scale,
+       .text = "Edges: scale of the search; larger finds fainter ones",
+       .range = Range{0.7, 8.0},
+       .unit = "samples"},
+      {.name = "--sensitivity",
+       .to = &options->choice.sensitivity,
+       .text = "Edges: 0 takes only the strongest, 1 all above the noise",
+       .range = Range{0.0, 1.0}},
+      {.name = "--thickness",
+       .to = &options->choice.thickness,
+       .text = "Edges and strokes: marked to this distance",
+       .unit = "samples"},
+      {.name = "--add",
+       .to = &options->add,
+       .text = "Picture of marks to begin with",
+       .kind = ValueKind::kFile},
+      {.name = "--invert", .to = &options->invert, .text = "Afterwards, invert the marks"},
+  });
   addScanOptions(command, options->reading);
+  command.examples({{"fettle mark scan.tif marks.png --edges --lines-out lines.csv",
+                     "The sharp edges that the program finds, as marks and as lines"},
+                    {"fettle mark scan.tif drawn.png --strokes strokes.csv --lines-out drawn.csv",
+                     "The edges that were drawn by hand"}});
 }
 
 }  // namespace fettle::app

@@ -11,9 +11,11 @@
 namespace fettle::app {
 
 void addOriginalOption(Command command, std::string& original) {
-  command.option("--original", original,
-                 "The original scan: changes are limited relative to it; without it relative to "
-                 "what is read, or to the original of a session");
+  command.add({{.name = "--original",
+                .to = &original,
+                .text = "The original scan: changes are limited relative to it",
+                .kind = ValueKind::kInput,
+                .otherwise = "what is read, or the original of a session"}});
 }
 
 namespace {

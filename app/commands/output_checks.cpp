@@ -7,8 +7,9 @@
 namespace fettle::app {
 
 void addForceOption(Command command, Replacing& replacing) {
-  command.onFlag(
-      "--force", [&replacing] { replacing = Replacing::kAnything; }, "Replace a session that has a journal");
+  command.add({{.name = "--force",
+                .to = [&replacing] { replacing = Replacing::kAnything; },
+                .text = "Replace a session that has a journal"}});
 }
 
 engine::Status checkOutputs(const std::vector<Output>& outputs, const std::vector<std::string>& inputs,

@@ -122,8 +122,7 @@ int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)
   setVoice(voice);
   if (const auto error = emptyArgument(arguments)) return report(*error);
   takeHelpForOption(arguments);
-  CommandLine line("fettle", "Fettle cleans up large scanned height fields by touch.",
-                   "fettle " FETTLE_VERSION);
+  CommandLine line("fettle", "Clean up large scanned height fields by touch", "fettle " FETTLE_VERSION);
   Command root = line.root();
   root.requireSubcommand();
   Chosen chosen;

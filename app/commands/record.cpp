@@ -341,7 +341,7 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
                 {"events", eventsOf(outcome->events)}};
 }
 
-constexpr const char* kRecordFooter =
+constexpr const char* kRecordNotes =
     R"(Safety: a force device gives no force until the user presses a, and likewise after every fault (50 ms without
 input, the device unplugged, the program delayed): the force then rises within half a second. Editing tools act
 only while there is force. Zero force is sent at every exit of the program. A scene with more stiffness or damping
@@ -357,49 +357,82 @@ void addRecord(Command root, Chosen& chosen) {
   Command command = addCommand(
       root, chosen, "record", "Touch a scan live with a device, and record the session for replay",
       [options](engine::JobControl& job) { return record(*options, job); }, printReport, Progress::kOwn);
-  command.option("SCAN", options->scan, "The scan to touch").required();
-  command.option("STROKES", options->strokes, "Output of the session: CSV t,x,y,z,tool, one row per tick")
-      .check(fileName())
-      .required();
-  command.option("OUT", options->out, "The field after it, format by extension").check(fileName());
-  command
-      .option("--device", options->device,
-              fmt::format("An id of fettle devices or one of {}", haptic::driverWords()))
-      .required();
-  command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)")
-      .check(fileName());
-  command.option("--marks", options->marks, "Picture of marks to start from").check(fileName());
-  command.option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF")
-      .check(fileName());
-  command.option("--tool", options->tool, "The tool at the start")
-      .check(oneOf({haptic::kToolWords.begin(), haptic::kToolWords.end()}))
-      .showDefault();
-  command
-      .option("--switch", options->tool_switch,
-              "When the tool acts: button, or always in contact for a device without one (W8 boards)")
-      .check(oneOf({"button", "always"}))
-      .showDefault();
-  command.option("--rate", options->rate_hz, "Ticks per second, 1000 to 10000")
-      .check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
-      .showDefault();
-  command.option("--seconds", options->seconds, "End after this time; otherwise by q or Ctrl-C")
-      .check(within(1e-3, 86400.0));
-  command
-      .option("--scale", options->scale,
-              "Millimetres of the field per millimetre of the hand; without it fitted to the scan")
-      .check(within(1e-6, 1e6));
-  command.option("--max-force", options->max_force_n, "Newtons, below what the device's profile allows")
-      .check(within(0.0, 1000.0));
-  command
-      .option("--arm", options->arm,
-              "ask: by the key a; auto: automatically, for devices without force and simulated ones, whose "
-              "default it is")
-      .check(oneOf({"ask", "auto"}));
-  command.flag("--keys", options->keys, "Read keys from standard input that is not a terminal");
+  command.add({
+      {.name = "SCAN",
+       .to = &options->scan,
+       .text = "The scan to touch",
+       .kind = ValueKind::kInput,
+       .required = true},
+      {.name = "STROKES",
+       .to = &options->strokes,
+       .text = "Output of the session: CSV t,x,y,z,tool, one row per tick",
+       .kind = ValueKind::kNewFile,
+       .required = true},
+      {.name = "OUT",
+       .to = &options->out,
+       .text = "The field after it, format by extension",
+       .kind = ValueKind::kNewFile},
+      {.name = "--device",
+       .to = &options->device,
+       .text = fmt::format("An id of fettle devices or one of {}", haptic::driverWords()),
+       .required = true},
+      {.name = "--scene",
+       .to = &options->scene,
+       .text = "Scene file: tip, stiffness, brush, effects (TOML)",
+       .kind = ValueKind::kFile},
+      {.name = "--marks",
+       .to = &options->marks,
+       .text = "Picture of marks to start from",
+       .kind = ValueKind::kFile},
+      {.name = "--marks-out",
+       .to = &options->marks_out,
+       .text = "Write the marks afterwards, 8-bit PNG or TIFF",
+       .kind = ValueKind::kNewFile},
+      {.name = "--tool",
+       .to = &options->tool,
+       .text = "The tool at the start",
+       .words = {haptic::kToolWords.begin(), haptic::kToolWords.end()}},
+      {.name = "--switch",
+       .to = &options->tool_switch,
+       .text = "When the tool acts",
+       .words = {{"button", "while the stylus' button is pressed"},
+                 {"always", "always in contact, for a device without one (W8 boards)"}}},
+      {.name = "--rate",
+       .to = &options->rate_hz,
+       .text = "Rate of the loop",
+       .range = Range{haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz},
+       .unit = "ticks per second"},
+      {.name = "--seconds",
+       .to = &options->seconds,
+       .text = "End after this time",
+       .range = Range{1e-3, 86400.0},
+       .unit = "seconds",
+       .otherwise = "it ends by q or Ctrl-C"},
+      {.name = "--scale",
+       .to = &options->scale,
+       .text = "Millimetres of the field per millimetre of the hand",
+       .range = Range{1e-6, 1e6},
+       .otherwise = "fitted to the scan"},
+      {.name = "--max-force",
+       .to = &options->max_force_n,
+       .text = "Largest force, below what the device's profile allows",
+       .range = Range{0.0, 1000.0},
+       .unit = "newtons"},
+      {.name = "--arm",
+       .to = &options->arm,
+       .text = "How a device is given force",
+       .words = {{"ask", "by the key a"},
+                 {"auto", "automatically: devices without force and simulated ones, whose default it is"}}},
+      {.name = "--keys",
+       .to = &options->keys,
+       .text = "Read keys from standard input that is not a terminal"},
+  });
   addOriginalOption(command, options->original);
   addForceOption(command, options->replacing);
   addScanOptions(command, options->reading);
-  command.footer(fmt::format(kRecordFooter, toolKeys("   ")));
+  command.notes(fmt::format(kRecordNotes, toolKeys("   ")));
+  command.examples({{"fettle record scan.tif again.csv touched.tif --device hand:strokes.csv --seconds 1",
+                     "A simulated hand that follows recorded strokes, for a second"}});
 }
 
 }  // namespace fettle::app

@@ -168,53 +168,99 @@ void addRender(Command root, Chosen& chosen) {
   auto options = std::make_shared<RenderArguments>();
   Command command = addCommand(root, chosen, "render", "Picture of a scan, without a window",
                                [options](engine::JobControl& job) { return render(*options, job); });
-  command.option("SCAN", options->scan, "The scan to draw; - for standard input").required();
-  command.option("PNG", options->png, "The picture to write; - for standard output").required();
-  command.option("--size", options->size, "Pixels, WIDTHxHEIGHT").showDefault();
-  command.option("--azimuth", options->view.azimuth_deg, "Turn of the camera in degrees; 0 looks along +y")
-      .showDefault();
-  command
-      .option("--elevation", options->view.elevation_deg, "Camera above the horizon in degrees; 90 = a map")
-      .showDefault();
-  command.option("--zoom", options->view.zoom, "1 shows the whole field").showDefault();
-  command.option("--centre", options->centre, "Middle of the picture as fractions X,Y of the field")
-      .delimiter(',')
-      .expected(2);
-  command.option("--exaggerate", options->view.vertical_exaggeration, "Factor on heights; 0 chooses one")
-      .showDefault();
-  command.option("--compare", options->compare, "Second scan, drawn at the right with the same camera");
-  command.option("--deviation", options->deviation, "Colours show the deviation from this scan");
-  command.option("--marks", options->marks, "Picture of marks to overlay").check(fileName());
-  command.option("--lines", options->lines, "File of edge lines to draw instead of those of a session")
-      .check(fileName());
-  command.option("--map", options->map, "Colour map")
-      .check(oneOf({"auto", "viridis", "cividis", "grey", "diverging"}))
-      .showDefault();
-  command.option("--range", options->range, "Heights at the ends of the colours, LOW,HIGH")
-      .delimiter(',')
-      .expected(2);
-  command.option("--title", options->title, "Title; the file's name by default");
-  command.option("--compare-title", options->compare_title, "Title of the second scan");
-  command.flag("--perspective", options->perspective, "Perspective instead of parallel projection");
-  command
-      .option("--stereo", options->stereo, "A picture for each eye: in two halves, or for red - cyan glasses")
-      .check(oneOf({"off", "side-by-side", "anaglyph"}))
-      .showDefault();
-  command
-      .option("--eye-separation", options->eyes.eye_separation,
-              "Between the eyes, as a share of their distance from the field")
-      .showDefault();
-  command
-      .option("--screen-distance", options->eyes.screen_distance,
-              "Distance of the plane without parallax, as a share of that distance; 0: at the middle of the "
-              "picture")
-      .showDefault();
-  command.flag("--contours", options->contours, "Contour lines at the steps of the colour bar");
-  command.flag("--dark", options->dark, "Light text on a dark background");
-  command.flag("--bare", options->bare, "Only the surface: no titles, bars, legend or edge lines");
-  command.flag("--invert", options->invert, "Draw the field upside down");
-  command.flag("--validate", options->validate, "Load the Vulkan validation layers and print their messages");
+  command.add({
+      {.name = "SCAN",
+       .to = &options->scan,
+       .text = "The scan to draw; - for standard input",
+       .kind = ValueKind::kInput,
+       .required = true},
+      {.name = "PNG",
+       .to = &options->png,
+       .text = "The picture to write; - for standard output",
+       .kind = ValueKind::kOutput,
+       .required = true},
+      {.name = "--size",
+       .to = &options->size,
+       .text = "Size of the picture",
+       .kind = ValueKind::kSize,
+       .unit = "pixels"},
+      {.name = "--azimuth",
+       .to = &options->view.azimuth_deg,
+       .text = "Turn of the camera; 0 looks along +y",
+       .unit = "degrees"},
+      {.name = "--elevation",
+       .to = &options->view.elevation_deg,
+       .text = "Camera above the horizon; 90 = a map",
+       .unit = "degrees"},
+      {.name = "--zoom", .to = &options->view.zoom, .text = "1 shows the whole field"},
+      {.name = "--centre",
+       .to = &options->centre,
+       .text = "Middle of the picture as fractions X,Y of the field",
+       .values = 2,
+       .between = ','},
+      {.name = "--exaggerate",
+       .to = &options->view.vertical_exaggeration,
+       .text = "Factor on heights; 0 chooses one"},
+      {.name = "--compare",
+       .to = &options->compare,
+       .text = "Second scan, drawn at the right with the same camera",
+       .kind = ValueKind::kInput},
+      {.name = "--deviation",
+       .to = &options->deviation,
+       .text = "Colours show the deviation from this scan",
+       .kind = ValueKind::kInput},
+      {.name = "--marks",
+       .to = &options->marks,
+       .text = "Picture of marks to overlay",
+       .kind = ValueKind::kFile},
+      {.name = "--lines",
+       .to = &options->lines,
+       .text = "File of edge lines to draw instead of those of a session",
+       .kind = ValueKind::kFile},
+      {.name = "--map",
+       .to = &options->map,
+       .text = "Colour map",
+       .words = {"auto", "viridis", "cividis", "grey", "diverging"}},
+      {.name = "--range",
+       .to = &options->range,
+       .text = "Heights at the ends of the colours, LOW,HIGH",
+       .values = 2,
+       .between = ','},
+      {.name = "--title", .to = &options->title, .text = "Title", .otherwise = "the file's name"},
+      {.name = "--compare-title",
+       .to = &options->compare_title,
+       .text = "Title of the second scan",
+       .otherwise = "the file's name"},
+      {.name = "--perspective",
+       .to = &options->perspective,
+       .text = "Perspective instead of parallel projection"},
+      {.name = "--stereo",
+       .to = &options->stereo,
+       .text = "A picture for each eye",
+       .words = {"off", {"side-by-side", "in two halves"}, {"anaglyph", "for red - cyan glasses"}}},
+      {.name = "--eye-separation",
+       .to = &options->eyes.eye_separation,
+       .text = "Between the eyes, as a share of their distance from the field"},
+      {.name = "--screen-distance",
+       .to = &options->eyes.screen_distance,
+       .text = "Distance of the plane without parallax, as a share of that distance; 0: at the middle of the "
+               "picture"},
+      {.name = "--contours",
+       .to = &options->contours,
+       .text = "Contour lines at the steps of the colour bar"},
+      {.name = "--dark", .to = &options->dark, .text = "Light text on a dark background"},
+      {.name = "--bare",
+       .to = &options->bare,
+       .text = "Only the surface: no titles, bars, legend or edge lines"},
+      {.name = "--invert", .to = &options->invert, .text = "Draw the field upside down"},
+      {.name = "--validate",
+       .to = &options->validate,
+       .text = "Load the Vulkan validation layers and print their messages"},
+  });
   addScanOptions(command, options->reading);
+  command.examples({{"fettle render scan.tif picture.png --compare clean.tif", "Two scans side by side"},
+                    {"fettle render clean.tif changed.png --deviation scan.tif --elevation 90",
+                     "What a filter changed, as a map"}});
 }
 
 }  // namespace fettle::app

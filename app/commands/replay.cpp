@@ -204,24 +204,50 @@ void addReplay(Command root, Chosen& chosen) {
       root, chosen, "replay",
       "Apply recorded strokes to a scan, or recompute a session from its journal: always bit-identical",
       [options](engine::JobControl& job) { return replay(*options, job); });
-  command.option("SCAN", options->scan, "The scan to touch, or a session: NAME.fettle").required();
-  command.option(
-      "STROKES", options->strokes,
-      "Strokes: CSV with header t,x,y,z,tool, one row per tick; omitted for a session's own journal");
-  command.option("OUT", options->out, "The field after it, format by extension; - for standard output");
+  command.add({
+      {.name = "SCAN",
+       .to = &options->scan,
+       .text = "The scan to touch, or a session: NAME.fettle",
+       .kind = ValueKind::kInput,
+       .required = true},
+      {.name = "STROKES",
+       .to = &options->strokes,
+       .text = "Strokes: CSV with header t,x,y,z,tool, one row per tick; omitted for a session's own journal",
+       .kind = ValueKind::kInput},
+      {.name = "OUT",
+       .to = &options->out,
+       .text = "The field after it, format by extension; - for standard output",
+       .kind = ValueKind::kOutput},
+  });
   addStreamFormat(command, options->to);
-  command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)")
-      .check(fileName());
-  command.option("--marks", options->marks, "Picture of marks to start from").check(fileName());
-  command.option("--marks-out", options->marks_out, "Write the marks afterwards, 8-bit PNG or TIFF")
-      .check(fileName());
-  command.option("--forces", options->forces, "Write proxy and force of every tick as CSV").check(fileName());
+  command.add({
+      {.name = "--scene",
+       .to = &options->scene,
+       .text = "Scene file: tip, stiffness, brush, effects (TOML)",
+       .kind = ValueKind::kFile},
+      {.name = "--marks",
+       .to = &options->marks,
+       .text = "Picture of marks to start from",
+       .kind = ValueKind::kFile},
+      {.name = "--marks-out",
+       .to = &options->marks_out,
+       .text = "Write the marks afterwards, 8-bit PNG or TIFF",
+       .kind = ValueKind::kNewFile},
+      {.name = "--forces",
+       .to = &options->forces,
+       .text = "Write proxy and force of every tick as CSV",
+       .kind = ValueKind::kNewFile},
+  });
   addOriginalOption(command, options->original);
   addForceOption(command, options->replacing);
-  command.flag(
-      "--certify", options->certify,
-      "Also count the ticks in which the chosen contact level missed the true closest point (slower)");
+  command.add(
+      {{.name = "--certify",
+        .to = &options->certify,
+        .text = "Also count the ticks in which the chosen contact level missed the true closest point "
+                "(slower)"}});
   addScanOptions(command, options->reading);
+  command.examples({{"fettle replay scan.tif strokes.csv touched.tif --forces forces.csv",
+                     "The scan after the strokes, and the force of every tick"}});
 }
 
 }  // namespace fettle::app

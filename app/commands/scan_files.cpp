@@ -16,7 +16,10 @@
 namespace fettle::app {
 
 void addStreamFormat(Command command, std::string& to) {
-  command.option("--to", to, "With - for OUT, standard output: its format, as extension");
+  command.add({{.name = "--to",
+                .to = &to,
+                .text = "With - for OUT, standard output: its format, as extension",
+                .kind = ValueKind::kFormat}});
 }
 
 namespace {

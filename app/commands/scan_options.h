@@ -10,6 +10,9 @@
 
 namespace fettle::app {
 
+/// The heading of options about what a command writes.
+inline constexpr const char* kWriting = "Writing";
+
 /// The options of ScanOptions.
 void addScanOptions(Command command, ScanOptions& options);
 

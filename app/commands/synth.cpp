@@ -57,32 +57,45 @@ void addSynth(Command root, Chosen& chosen) {
   Command command = addCommand(root, chosen, "synth",
                                "Simulate a laser scan of a machined part, with its truth and its true edges",
                                [options](engine::JobControl& job) { return synth(*options, job); });
-  std::string names;
-  std::vector<std::string> parts;
-  for (const engine::PartInfo& part : engine::parts()) {
-    parts.emplace_back(part.name);
-    names += fmt::format("\n  {}: {}", part.name, part.description);
-  }
-  command.option("OUT", options->out, "The scan to write, format by extension; - for standard output")
-      .required();
+  command.add({{.name = "OUT",
+                .to = &options->out,
+                .text = "The scan to write, format by extension; - for standard output",
+                .kind = ValueKind::kOutput,
+                .required = true}});
   addStreamFormat(command, options->to);
-  command.option("--part", options->spec.part, "The part:" + names).check(oneOf(parts)).showDefault();
-  command.option("--size", options->size, "Samples, WIDTHxHEIGHT").showDefault();
-  command.option("--noise", options->spec.noise, "Scale of the scanner's noise; 1 = realistic, 0 = none")
-      .showDefault();
-  command.option("--outliers", options->spec.outliers, "Share of samples near edges that are outliers")
-      .showDefault();
-  command.option("--dropouts", options->spec.dropouts, "Scale of dropouts by slope and shadow").showDefault();
-  command
-      .option("--spot", options->spec.spot,
-              "Spot of light that a height is the mean of, a standard deviation in samples; 0 = none, 1 = "
-              "realistic")
-      .showDefault();
-  command.option("--seed", options->spec.seed, "Same seed, same bits").check({seedProblem}).showDefault();
+  command.add({
+      {.name = "--part", .to = &options->spec.part, .text = "The part", .words = partWords()},
+      {.name = "--size",
+       .to = &options->size,
+       .text = "Size of the scan",
+       .kind = ValueKind::kSize,
+       .unit = "samples"},
+      {.name = "--noise",
+       .to = &options->spec.noise,
+       .text = "Scale of the scanner's noise; 1 = realistic, 0 = none"},
+      {.name = "--outliers",
+       .to = &options->spec.outliers,
+       .text = "Share of samples near edges that are outliers"},
+      {.name = "--dropouts", .to = &options->spec.dropouts, .text = "Scale of dropouts by slope and shadow"},
+      {.name = "--spot",
+       .to = &options->spec.spot,
+       .text = "Spot of light that a height is the mean of, a standard deviation; 0 = none, 1 = realistic",
+       .unit = "samples"},
+      {.name = "--seed", .to = &options->spec.seed, .text = "Same seed, same bits", .problem = seedProblem},
+  });
   addForceOption(command, options->replacing);
-  command.option("--truth", options->truth, "Also write the true surface").check(fileName());
-  command.option("--edges", options->edges, "Also write the true edges as a picture, non-zero = edge")
-      .check(fileName());
+  command.add({
+      {.name = "--truth",
+       .to = &options->truth,
+       .text = "Also write the true surface",
+       .kind = ValueKind::kNewFile},
+      {.name = "--edges",
+       .to = &options->edges,
+       .text = "Also write the true edges as a picture, non-zero = edge",
+       .kind = ValueKind::kNewFile},
+  });
+  command.examples({{"fettle synth scan.tif --size 256x256 --truth truth.tif --edges edges.png",
+                     "A scan of the bracket with what is true of it"}});
 }
 
 }  // namespace fettle::app

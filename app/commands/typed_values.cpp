@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "engine/io/import.h"
+#include "engine/scanner/part.h"
 
 namespace fettle::app {
 
@@ -33,6 +34,14 @@ std::string seedProblem(const std::string& text) {
   return error == std::errc{} && end == text.data() + text.size()
              ? ""
              : "give a whole number from 0 to 18446744073709551615";
+}
+
+std::vector<Word> partWords() {
+  std::vector<Word> words;
+  words.reserve(engine::parts().size());
+  for (const engine::PartInfo& part : engine::parts())
+    words.emplace_back(std::string(part.name), std::string(part.description));
+  return words;
 }
 
 engine::Result<std::pair<int, int>> parseSize(const std::string& text, const std::string& option,

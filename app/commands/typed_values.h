@@ -2,7 +2,9 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "app/reference/command_table.h"
 #include "engine/base/error.h"
 #include "engine/field/grid.h"
 #include "render/config.h"
@@ -27,7 +29,10 @@ inline constexpr SideRange kPictureSides{render::kSmallestPicture, render::kLarg
 [[nodiscard]] engine::Result<std::pair<int, int>> parseSize(const std::string& text,
                                                             const std::string& option, SideRange sides);
 
-/// The error of a seed as typed; empty when it is valid. For Option::check.
+/// The error of a seed as typed; empty when it is valid. For Parameter::problem.
 [[nodiscard]] std::string seedProblem(const std::string& text);
+
+/// The parts that the simulated scanner knows, each with its description.
+[[nodiscard]] std::vector<Word> partWords();
 
 }  // namespace fettle::app

@@ -40,11 +40,6 @@ engine::Result<Report> view(const ViewArguments& given, engine::JobControl& job)
   return report;
 }
 
-constexpr const char* kViewFooter =
-    "F1 in the window lists the keys. Without a device that gives force the mouse is the stylus: choose a "
-    "tool,\n"
-    "press with the left button, deeper with the wheel.";
-
 }  // namespace
 
 void addView(Command root, Chosen& chosen) {
@@ -52,31 +47,57 @@ void addView(Command root, Chosen& chosen) {
   Command command = addCommand(
       root, chosen, "view", "The window: view, touch and clean a scan",
       [options](engine::JobControl& job) { return view(*options, job); }, printReport, Progress::kOwn);
-  command.option("SCAN", options->view.scan, "The scan to open; without it, drop one on the window");
-  command.option("--scene", options->scene, "Scene file: tip, stiffness, brush, effects (TOML)");
-  command
-      .option("--device", options->view.client.device,
-              "An id of fettle devices or one of " + haptic::driverWords())
-      .showDefault();
-  command.option("--rate", options->view.client.rate_hz, "Ticks of the loop per second, 1000 to 10000")
-      .check(within(haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz))
-      .showDefault();
-  command.option("--size", options->size, "Pixels of the window, WIDTHxHEIGHT").showDefault();
-  command
-      .option("--ui-scale", options->view.window.scale,
-              "Factor on the size of text and panels, 0.5 to 4; without it, the display's")
-      .check(within(0.5, 4.0));
-  command.flag("--sharp-motion", options->view.sharp_motion,
-               "Draw every pixel also while the view moves; without it, every second one in each direction");
-  command.option("--seconds", options->view.seconds, "End after this time").check(within(1e-3, 86400.0));
-  command
-      .option("--events", options->view.events,
-              "Write the state of the window and its actions to it: one JSON object per line, for scripts")
-      .typeName("FILE");
-  command.option("--gpu", options->view.window.device, "Use the Vulkan device whose name contains this");
-  command.flag("--validate", options->validate, "Load the Vulkan validation layers; they must be installed");
+  command.add({
+      {.name = "SCAN",
+       .to = &options->view.scan,
+       .text = "The scan to open; without it, drop one on the window",
+       .kind = ValueKind::kInput},
+      {.name = "--scene",
+       .to = &options->scene,
+       .text = "Scene file: tip, stiffness, brush, effects (TOML)",
+       .kind = ValueKind::kFile},
+      {.name = "--device",
+       .to = &options->view.client.device,
+       .text = "An id of fettle devices or one of " + haptic::driverWords()},
+      {.name = "--rate",
+       .to = &options->view.client.rate_hz,
+       .text = "Rate of the loop",
+       .range = Range{haptic::Pacer::kLowestRate_hz, haptic::Pacer::kHighestRate_hz},
+       .unit = "ticks per second"},
+      {.name = "--size",
+       .to = &options->size,
+       .text = "Size of the window",
+       .kind = ValueKind::kSize,
+       .unit = "pixels"},
+      {.name = "--ui-scale",
+       .to = &options->view.window.scale,
+       .text = "Factor on the size of text and panels",
+       .range = Range{0.5, 4.0},
+       .otherwise = "the display's"},
+      {.name = "--sharp-motion",
+       .to = &options->view.sharp_motion,
+       .text = "Draw every pixel also while the view moves; without it, every second one in each direction"},
+      {.name = "--seconds",
+       .to = &options->view.seconds,
+       .text = "End after this time",
+       .range = Range{1e-3, 86400.0},
+       .unit = "seconds",
+       .otherwise = "the window stays until it is closed"},
+      {.name = "--events",
+       .to = &options->view.events,
+       .text = "Write the state of the window and its actions to it: one JSON object per line, for scripts",
+       .kind = ValueKind::kNewFile},
+      {.name = "--gpu",
+       .to = &options->view.window.device,
+       .text = "Use the Vulkan device whose name contains this"},
+      {.name = "--validate",
+       .to = &options->validate,
+       .text = "Load the Vulkan validation layers; they must be installed"},
+  });
   addScanOptions(command, options->view.reading);
-  command.footer(kViewFooter);
+  command.notes(
+      "F1 in the window lists the keys. Without a device that gives force the mouse is the stylus: choose a "
+      "tool, press with the left button, deeper with the wheel.");
 }
 
 }  // namespace fettle::app

@@ -1,0 +1,66 @@
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "app/commands/command.h"
+#include "app/reference/completion.h"
+#include "app/reference/man_page.h"
+#include "app/reference/reference_page.h"
+#include "engine/io/files/atomic_file.h"
+
+namespace fettle::app {
+
+namespace {
+
+// One file of the folder, by its path in it.
+engine::Status write(const std::string& folder, const std::string& name, const std::string& text) {
+  const std::filesystem::path path = std::filesystem::path(folder) / name;
+  std::error_code error;
+  std::filesystem::create_directories(path.parent_path(), error);
+  if (error)
+    return engine::inputError("the folder cannot be created: " + error.message(), path.parent_path().string(),
+                              "name a folder with write permission");
+  return engine::writeFileAtomically(path.string(), text);
+}
+
+engine::Result<Report> reference(const std::string& folder, const CommandTable& root) {
+  int pages = 0;
+  engine::Status status;
+  forEachCommand(root, [&](const CommandTable& command) {
+    if (!status) return;
+    status =
+        write(folder, "man/" + manName(command) + ".1", manPage(command, root, {"fettle " FETTLE_VERSION}));
+    ++pages;
+  });
+  const std::pair<const char*, std::string> others[] = {
+      {"completion/fettle.bash", completionScript(root, Shell::kBash)},
+      {"completion/_fettle", completionScript(root, Shell::kZsh)},
+      {"completion/fettle.fish", completionScript(root, Shell::kFish)},
+      {"reference.md", referencePage(root)},
+      {"parameters.json", tableReport(root).dump(2) + "\n"}};
+  for (const auto& [name, text] : others)
+    if (status) status = write(folder, name, text);
+  if (!status) return tl::unexpected(status.error());
+  int parameters = 0;
+  forEachCommand(root, [&](const CommandTable& c) { parameters += static_cast<int>(c.parameters.size()); });
+  return Report{{"folder", folder}, {"man_pages", pages}, {"parameters", parameters}};
+}
+
+}  // namespace
+
+void addReference(Command root, Chosen& chosen) {
+  auto folder = std::make_shared<std::string>();
+  Command command =
+      addCommand(root, chosen, "reference",
+                 "Write man pages, completions for bash, zsh and fish, and the reference of all commands",
+                 [folder, root](engine::JobControl&) { return reference(*folder, root.table()); });
+  command.add({{.name = "DIR",
+                .to = folder.get(),
+                .text = "Folder for them, created if missing",
+                .kind = ValueKind::kFolder,
+                .required = true}});
+  command.examples(
+      {{"fettle reference pages", "Then: source pages/completion/fettle.bash, man pages/man/fettle.1"}});
+}
+
+}  // namespace fettle::app

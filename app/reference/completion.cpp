@@ -1,0 +1,249 @@
+#include "app/reference/completion.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace fettle::app {
+
+namespace {
+
+enum class Completes : std::uint8_t { kNothing, kWords, kFiles, kFolders };
+
+Completes completes(const Parameter& p) {
+  if (!p.words.empty()) return Completes::kWords;
+  switch (p.kind) {
+    case ValueKind::kInput:
+    case ValueKind::kOutput:
+    case ValueKind::kFile:
+    case ValueKind::kNewFile:
+      return Completes::kFiles;
+    case ValueKind::kFolder:
+      return Completes::kFolders;
+    default:
+      return Completes::kNothing;
+  }
+}
+
+std::vector<std::string> namesOf(const Parameter& p) {
+  std::vector<std::string> names{p.longName()};
+  if (!p.shortName().empty()) names.push_back(p.shortName());
+  return names;
+}
+
+std::vector<std::string> commandNames(const CommandTable& command) {
+  std::vector<std::string> names;
+  names.reserve(command.commands.size());
+  for (const CommandTable& below : command.commands) names.push_back(below.name);
+  return names;
+}
+
+std::vector<std::string> optionNames(const CommandTable& command) {
+  std::vector<std::string> names;
+  for (const Parameter& p : command.parameters)
+    if (!p.positional())
+      for (const std::string& name : namesOf(p)) names.push_back(name);
+  return names;
+}
+
+// For '...' in a shell.
+std::string inQuotes(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+// What a command takes is listed by path; the function finds the path in the words typed so far.
+std::string bashScript(const CommandTable& root) {
+  std::string commands, options, values;
+  forEachCommand(root, [&](const CommandTable& command) {
+    if (!command.commands.empty())
+      commands += fmt::format("    [{}]={}\n", inQuotes(command.path),
+                              inQuotes(fmt::format("{}", fmt::join(commandNames(command), " "))));
+    options += fmt::format("    [{}]={}\n", inQuotes(command.path),
+                           inQuotes(fmt::format("{}", fmt::join(optionNames(command), " "))));
+    for (const Parameter& p : command.parameters) {
+      if (p.positional() || p.kind == ValueKind::kFlag) continue;
+      std::string value;
+      switch (completes(p)) {
+        case Completes::kWords:
+          value = fmt::format("words {}", fmt::join(wordsOf(p), " "));
+          break;
+        case Completes::kFiles:
+          value = "files";
+          break;
+        case Completes::kFolders:
+          value = "folders";
+          break;
+        case Completes::kNothing:
+          value = "nothing";
+      }
+      for (const std::string& name : namesOf(p))
+        values += fmt::format("    [{}]={}\n", inQuotes(command.path + " " + name), inQuotes(value));
+    }
+  });
+  return fmt::format(R"(# bash completion for fettle, made by fettle reference
+_fettle() {{
+  local -A commands=(
+{}  )
+  local -A options=(
+{}  )
+  local -A values=(
+{}  )
+  local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} path=fettle i
+  # "--name=value" comes as three words.
+  [[ $word == = ]] && word=
+  [[ $before == = ]] && before=${{COMP_WORDS[COMP_CWORD-2]}}
+  for ((i = 1; i < COMP_CWORD; ++i)); do
+    [[ " ${{commands[$path]-}} " == *" ${{COMP_WORDS[i]}} "* ]] && path+=" ${{COMP_WORDS[i]}}"
+  done
+  COMPREPLY=()
+  local takes=${{values["$path $before"]-}}
+  case $takes in
+    words\ *) mapfile -t COMPREPLY < <(compgen -W "${{takes#words }}" -- "$word") ;;
+    folders) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
+    nothing) ;;
+    *)
+      if [[ $word == -* ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "${{options[$path]}}" -- "$word")
+      elif [[ -n ${{commands[$path]-}} ]]; then
+        mapfile -t COMPREPLY < <(compgen -W "${{commands[$path]}}" -- "$word")
+      else
+        compopt -o filenames 2>/dev/null
+        mapfile -t COMPREPLY < <(compgen -f -- "$word")
+      fi ;;
+  esac
+}}
+complete -F _fettle fettle
+)",
+                     commands, options, values);
+}
+
+// In a description of zsh a bracket and a colon end it.
+std::string zshText(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '[' || c == ']' || c == ':' || c == '\\') out += '\\';
+    out += c == '\n' ? ' ' : c;
+  }
+  return out;
+}
+
+std::string zshAction(const Parameter& p) {
+  switch (completes(p)) {
+    case Completes::kWords:
+      return fmt::format("({})", fmt::join(wordsOf(p), " "));
+    case Completes::kFiles:
+      return "_files";
+    case Completes::kFolders:
+      return "_files -/";
+    case Completes::kNothing:
+      break;
+  }
+  return " ";
+}
+
+std::string zshFunction(const CommandTable& command) {
+  std::string name = command.path;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  std::string body = fmt::format("_{}() {{\n", name);
+  std::string specs;
+  for (const Parameter& p : command.parameters) {
+    const std::string text = zshText(p.text);
+    const std::string shown = zshText(std::string(infoOf(p.kind).shown));
+    if (p.positional()) {
+      specs += fmt::format(" \\\n    {}",
+                           inQuotes(fmt::format("{}:{}:{}", p.several() ? "*" : (p.required ? "" : ":"),
+                                                zshText(p.name), zshAction(p))));
+      continue;
+    }
+    for (const std::string& option : namesOf(p))
+      specs += fmt::format(
+          " \\\n    {}",
+          inQuotes(p.kind == ValueKind::kFlag
+                       ? fmt::format("{}[{}]", option, text)
+                       : fmt::format("{}{}{}[{}]:{}:{}", p.several() ? "*" : "", option,
+                                     option.starts_with("--") ? "=" : "", text, shown, zshAction(p))));
+  }
+  if (command.commands.empty()) return body + "  _arguments -s" + specs + "\n}\n";
+  body += "  local line state\n  local -a commands=(\n";
+  for (const CommandTable& below : command.commands)
+    body += fmt::format("    {}\n", inQuotes(fmt::format("{}:{}", below.name, zshText(below.summary))));
+  body += "  )\n  _arguments -C" + specs + " \\\n    '1: :->command' \\\n    '*:: :->arguments'\n";
+  body +=
+      "  case $state in\n    command) _describe command commands ;;\n    arguments)\n      case $line[1] "
+      "in\n";
+  for (const CommandTable& below : command.commands)
+    body += fmt::format("        {0}) _{1}_{0} ;;\n", below.name, name);
+  return body + "      esac ;;\n  esac\n}\n";
+}
+
+std::string zshScript(const CommandTable& root) {
+  std::string script = "#compdef fettle\n# zsh completion for fettle, made by fettle reference\n";
+  forEachCommand(root, [&](const CommandTable& command) { script += zshFunction(command); });
+  return script + "_fettle \"$@\"\n";
+}
+
+// The condition under which fish completes what a command takes: its words were typed, and none of those
+// below it.
+std::string fishCondition(const CommandTable& command) {
+  std::string condition;
+  std::string rest = command.path;
+  rest.erase(0, std::min(rest.size(), rest.find(' ') + 1));
+  if (command.path.find(' ') == std::string::npos) rest.clear();
+  while (!rest.empty()) {
+    const std::string word = rest.substr(0, rest.find(' '));
+    rest.erase(0, std::min(rest.size(), word.size() + 1));
+    condition += fmt::format("{}__fish_seen_subcommand_from {}", condition.empty() ? "" : "; and ", word);
+  }
+  if (!command.commands.empty())
+    condition += fmt::format("{}not __fish_seen_subcommand_from {}", condition.empty() ? "" : "; and ",
+                             fmt::join(commandNames(command), " "));
+  return condition;
+}
+
+std::string fishScript(const CommandTable& root) {
+  std::string script = "# fish completion for fettle, made by fettle reference\n";
+  forEachCommand(root, [&](const CommandTable& command) {
+    const std::string head = fmt::format("complete -c fettle -n {}", inQuotes(fishCondition(command)));
+    for (const CommandTable& below : command.commands)
+      script += fmt::format("{} -f -a {} -d {}\n", head, inQuotes(below.name), inQuotes(below.summary));
+    for (const Parameter& p : command.parameters) {
+      if (p.positional()) continue;
+      script += fmt::format("{} -l {}", head, p.longName().substr(2));
+      if (!p.shortName().empty()) script += fmt::format(" -s {}", p.shortName().substr(1));
+      switch (p.kind == ValueKind::kFlag ? Completes::kNothing : completes(p)) {
+        case Completes::kWords:
+          script += fmt::format(" -x -a {}", inQuotes(fmt::format("{}", fmt::join(wordsOf(p), " "))));
+          break;
+        case Completes::kFiles:
+          script += " -r -F";
+          break;
+        case Completes::kFolders:
+          script += " -x -a '(__fish_complete_directories)'";
+          break;
+        case Completes::kNothing:
+          if (p.kind != ValueKind::kFlag) script += " -x";
+      }
+      script += fmt::format(" -d {}\n", inQuotes(p.text.substr(0, p.text.find('\n'))));
+    }
+  });
+  return script;
+}
+
+}  // namespace
+
+std::string completionScript(const CommandTable& root, Shell shell) {
+  switch (shell) {
+    case Shell::kBash:
+      return bashScript(root);
+    case Shell::kZsh:
+      return zshScript(root);
+    case Shell::kFish:
+      break;
+  }
+  return fishScript(root);
+}
+
+}  // namespace fettle::app

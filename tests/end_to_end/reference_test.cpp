@@ -1,0 +1,195 @@
+// Help, man pages, completions and the reference are made of one table: they agree with each other and with the
+// program.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/program.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string textOf(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+class Reference : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    ASSERT_EQ(fettle({"reference", folder_->file("pages")}).status, 0);
+    tables_ = nlohmann::json::parse(textOf(pages() / "parameters.json"));
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+
+  static std::string file(const std::string& name) { return folder_->file(name); }
+  static fs::path pages() { return folder_->file("pages"); }
+
+  static void forEach(const std::function<void(const nlohmann::json&)>& f) { visit(tables_["program"], f); }
+
+  // What bash offers for the last of these words.
+  static std::vector<std::string> completed(const std::string& words) {
+    const std::string script = "source " + (pages() / "completion/fettle.bash").string() + "; COMP_WORDS=(" +
+                               words +
+                               "); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _fettle; "
+                               "printf '%s\\n' \"${COMPREPLY[@]}\"";
+    ProcessOptions here;
+    here.folder = folder_->path().string();
+    std::istringstream lines(runProcess({"bash", "-c", script}, here).out);
+    std::vector<std::string> offered;
+    for (std::string line; std::getline(lines, line);)
+      if (!line.empty()) offered.push_back(line);
+    return offered;
+  }
+
+ private:
+  static void visit(const nlohmann::json& command, const std::function<void(const nlohmann::json&)>& f) {
+    f(command);
+    for (const auto& below : command["commands"]) visit(below, f);
+  }
+
+  static inline TempFolder* folder_ = nullptr;
+  static inline nlohmann::json tables_;
+};
+
+using Words = std::vector<std::string>;
+
+std::string manPageOf(std::string path) {
+  std::replace(path.begin(), path.end(), ' ', '-');
+  return "man/" + path + ".1";
+}
+
+TEST_F(Reference, EveryParameterIsInTheHelpAndTheManPageAndTheReference) {
+  const std::string reference = textOf(pages() / "reference.md");
+  int commands = 0, parameters = 0;
+  forEach([&](const nlohmann::json& command) {
+    std::istringstream path(command["path"].get<std::string>());
+    Words words;
+    for (std::string word; path >> word;) words.push_back(word);
+    words.erase(words.begin());
+    words.emplace_back("--help");
+    const std::string help = fettle(words).out;
+    std::string page = textOf(pages() / manPageOf(command["path"]));
+    std::erase(page, '\\');
+    ++commands;
+    EXPECT_NE(reference.find("## " + command["path"].get<std::string>() + "\n"), std::string::npos);
+    for (const auto& parameter : command["parameters"]) {
+      const auto name = parameter["name"].get<std::string>();
+      ++parameters;
+      EXPECT_NE(help.find(name), std::string::npos) << words[0] << " " << name;
+      EXPECT_NE(page.find(name), std::string::npos) << words[0] << " " << name;
+      EXPECT_NE(reference.find(name), std::string::npos) << name;
+      EXPECT_FALSE(parameter["text"].get<std::string>().empty()) << name;
+      EXPECT_FALSE(parameter["text"].get<std::string>().ends_with('.')) << name;
+      for (const auto& word : parameter["words"])
+        EXPECT_NE(help.find(word["word"].get<std::string>()), std::string::npos) << name;
+    }
+  });
+  EXPECT_GT(commands, 20);
+  EXPECT_GT(parameters, 200);
+}
+
+TEST_F(Reference, AValueOutsideItsRangeIsRefused) {
+  int tried = 0;
+  forEach([&](const nlohmann::json& command) {
+    for (const auto& parameter : command["parameters"]) {
+      if (parameter["range"].is_null() || parameter["range"][1].is_null()) continue;
+      std::istringstream path(command["path"].get<std::string>());
+      Words words;
+      for (std::string word; path >> word;) words.push_back(word);
+      words.erase(words.begin());
+      for (const auto& other : command["parameters"])
+        if (other["positional"] == true && other["required"] == true) words.insert(words.end(), {"a", "b"});
+      words.push_back(parameter["name"].get<std::string>() + "=" +
+                      std::to_string(2.0 * parameter["range"][1].get<double>()));
+      expectRefused(fettle(words), "is not a number from");
+      ++tried;
+    }
+  });
+  EXPECT_GT(tried, 20);
+}
+
+TEST_F(Reference, ManPagesHaveNoErrorOfRoff) {
+  if (runProcess({"sh", "-c", "command -v groff"}).status != 0) GTEST_SKIP() << "groff is not installed";
+  for (const fs::directory_entry& page : fs::directory_iterator(pages() / "man")) {
+    const Outcome set = runProcess({"groff", "-man", "-Tutf8", "-ww", "-z", page.path().string()});
+    EXPECT_EQ(set.status, 0) << page.path();
+    EXPECT_EQ(set.err, "") << page.path();
+  }
+}
+
+TEST_F(Reference, BashCompletesCommandsOptionsWordsAndFiles) {
+  std::ofstream(file("scan one.tif")) << "";
+  EXPECT_EQ(completed("fettle fil"), Words{"filter"});
+  EXPECT_EQ(completed("fettle bench ef"), Words{"effects"});
+  EXPECT_EQ(completed("fettle filter --max"), Words{"--max-change"});
+  EXPECT_EQ(completed("fettle filter in.tif out.tif --filter t"), (Words{"tv", "tgv"}));
+  EXPECT_EQ(completed("fettle filter in.tif out.tif --filter = b"), (Words{"box", "bilateral"}));
+  EXPECT_EQ(completed("fettle bench filters --ground h"), Words{"holes"});
+  EXPECT_EQ(completed("fettle info scan"), Words{"scan one.tif"});
+  EXPECT_EQ(completed("fettle filter --keep sc"), Words{"scan one.tif"});
+  EXPECT_EQ(completed("fettle demo pag"), Words{"pages"});
+  EXPECT_EQ(completed("fettle render scan.tif p.png --zoom ''"), Words{});
+}
+
+TEST_F(Reference, TheScriptsOfOtherShellsAreReadByThem) {
+  int read = 0;
+  for (const auto& [shell, script] : {std::pair{"zsh", "_fettle"}, std::pair{"fish", "fettle.fish"}}) {
+    if (runProcess({"sh", "-c", std::string("command -v ") + shell}).status != 0) continue;
+    const Outcome parsed = runProcess({shell, "-n", (pages() / "completion" / script).string()});
+    EXPECT_EQ(parsed.status, 0) << parsed.err;
+    EXPECT_EQ(parsed.err, "");
+    ++read;
+  }
+  if (read == 0) GTEST_SKIP() << "neither zsh nor fish is installed";
+}
+
+TEST_F(Reference, EveryExampleRuns) {
+  const TempFolder work;  // with the files that the examples name
+  ProcessOptions here;
+  here.folder = work.path().string();
+  const fs::path program = fs::path(FETTLE_PROGRAM).parent_path();
+  const auto shell = [&](const std::string& line) {
+    return runProcess({"bash", "-c", "PATH=" + program.string() + ":$PATH; " + line}, here);
+  };
+  ASSERT_EQ(shell("fettle synth scan.tif --size 256x256 --truth truth.tif --edges edges.png && "
+                  "fettle synth other.tif --size 64x64 --seed 2 && "
+                  "fettle filter scan.tif clean.tif --filter box && "
+                  "fettle mark scan.tif marks.png --edges --lines-out lines.csv")
+                .status,
+            0);
+  std::ofstream strokes(work.file("strokes.csv"));
+  strokes << "t,x,y,z,tool\n";
+  for (int k = 0; k < 200; ++k)
+    strokes << 0.001 * k << "," << 1.0 + 0.01 * k << ",2.0,0.0," << (k % 100 < 50 ? "smooth" : "mark")
+            << "\n";
+  strokes.close();
+  int run = 0;
+  forEach([&](const nlohmann::json& command) {
+    for (const auto& example : command["examples"]) {
+      const Outcome outcome = shell(example["line"].get<std::string>());
+      EXPECT_EQ(outcome.status, 0) << example["line"] << "\n" << outcome.err;
+      ++run;
+    }
+  });
+  EXPECT_GT(run, 12);
+}
+
+}  // namespace
+}  // namespace fettle::tests
