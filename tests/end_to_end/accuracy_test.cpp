@@ -44,7 +44,7 @@ TEST(Accuracy, AStudyThatIsNoneIsRefusedBeforeAnythingIsMade) {
   const TempFolder folder;
   const Outcome outcome = fettle({"accuracy", folder.file("out"), "--only", "speed"});
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("there is no study \"speed\""), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("speed is not one of contact"), std::string::npos) << outcome.err;
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
 }
 
