@@ -10,6 +10,9 @@ int main(int argc, char** argv) {
     addLines(root, chosen);
     addReplay(root, chosen);
     addRecord(root, chosen);
+    addRecipe(root, chosen);
+    addApply(root, chosen);
+    addJournal(root, chosen);
     addRender(root, chosen);
     addCompare(root, chosen);
     addConvert(root, chosen);

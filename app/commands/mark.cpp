@@ -172,12 +172,6 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
                               "give --strokes or --edges");
   if (!options.edges && !options.invert && options.strokes.empty())
     return engine::inputError("it is not stated what to mark", "mark", "give --edges, --strokes or --invert");
-  using Locate = engine::LocateOptions;
-  if (const double hand = options.locating.hand_deviation;
-      !(hand >= Locate::kLeastHand && hand <= Locate::kMostHand))
-    return engine::inputError(fmt::format("a hand that is {} samples off the edges cannot be followed", hand),
-                              "--hand",
-                              fmt::format("give {} to {} samples", Locate::kLeastHand, Locate::kMostHand));
   if (auto status =
           checkOutputs({{options.out, OutputKind::kMarks, ".png"}, {options.lines_out, OutputKind::kLines}},
                        {options.in, options.add, options.strokes}, Replacing::kNoWork, job);

@@ -180,6 +180,7 @@ TEST_F(Reference, EveryExampleRuns) {
     strokes << 0.001 * k << "," << 1.0 + 0.01 * k << ",2.0,0.0," << (k % 100 < 50 ? "smooth" : "mark")
             << "\n";
   strokes.close();
+  std::ofstream(work.file("clean.toml")) << "recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\n";
   int run = 0;
   forEach([&](const nlohmann::json& command) {
     for (const auto& example : command["examples"]) {

@@ -1,0 +1,46 @@
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "app/commands/command.h"
+#include "app/commands/recipe_file.h"
+#include "engine/formats/formats.h"
+
+namespace fettle::app {
+
+namespace {
+
+engine::Result<Report> recipe(const std::string& path, engine::JobControl& job) {
+  engine::SessionOpenOptions open;
+  open.history_bytes = engine::History::kNoBound;
+  const auto session = engine::openSession(path, open, engine::importField, job);
+  if (!session) return tl::unexpected(session.error());
+  const auto recipe = recipeOf(*session, job);
+  if (!recipe) return tl::unexpected(recipe.error());
+  if (recipe->steps.empty())
+    return engine::inputError("no step of the session can be repeated on another scan", path,
+                              recipe->left_out.empty() ? "it has no steps" : recipe->left_out.front());
+  return Report{
+      {"recipe", recipeText(*recipe)}, {"steps", recipe->steps.size()}, {"left_out", recipe->left_out}};
+}
+
+}  // namespace
+
+void addRecipe(Command root, Chosen& chosen) {
+  auto session = std::make_shared<std::string>();
+  Command command = addCommand(
+      root, chosen, "recipe", "The steps of a session as a recipe for other scans, on standard output",
+      [session](engine::JobControl& job) { return recipe(*session, job); },
+      [](const Report& report) { fmt::print("{}", report["recipe"].get<std::string>()); });
+  command.add({{.name = "SESSION",
+                .to = session.get(),
+                .text = "The session, NAME.fettle",
+                .kind = ValueKind::kFile,
+                .required = true}});
+  command.notes(
+      "Filters and inversions are repeated; strokes, and marks and lines set by hand, belong to their scan "
+      "and are "
+      "named as left out.");
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,264 @@
+#include "app/commands/recipe_file.h"
+
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include "app/work/spelling.h"
+#include "engine/filter/catalogue.h"
+#include "engine/filter/noise_range.h"
+#include "haptic/journal/journal.h"
+
+namespace fettle::app {
+
+namespace {
+
+constexpr int kRecipeVersion = 1;
+constexpr std::string_view kFilterWord = "filter", kEdgesWord = "mark_edges", kInvertWord = "invert";
+constexpr const char* kRecipeRemedy = "docs/formats.md describes every key";
+
+// Reads one table of a recipe; the first problem is kept, and what follows it is not read.
+class StepReader {
+ public:
+  explicit StepReader(const toml::table& table) : table_(table) {}
+
+  [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
+
+  [[nodiscard]] RecipeStep read() {
+    const std::string what =
+        word("do", {std::string(kFilterWord), std::string(kEdgesWord), std::string(kInvertWord)}, "");
+    RecipeStep step = RecipeInvert{};
+    if (what == kFilterWord) step = filter();
+    if (what == kEdgesWord) step = edges();
+    for (const auto& [key, value] : table_)
+      if (!known_.contains(std::string(key.str())))
+        complain(value, fmt::format("{} has no key \"{}\"", what.empty() ? "a step" : what, key.str()));
+    return step;
+  }
+
+ private:
+  void complain(const toml::node& at, const std::string& text) {
+    if (problem_.empty()) problem_ = fmt::format("line {}: {}", at.source().begin.line, text);
+  }
+
+  const toml::node* at(const std::string& key) {
+    known_.insert(key);
+    return table_.get(key);
+  }
+
+  // One of `words`, or `usual` where the key is missing; an empty one must be there.
+  std::string word(const std::string& key, const std::vector<std::string>& words, const std::string& usual) {
+    const toml::node* node = at(key);
+    if (node == nullptr) {
+      if (usual.empty()) complain(table_, fmt::format("the step has no \"{}\"", key));
+      return usual;
+    }
+    const std::string value = node->value_or(std::string());
+    if (std::find(words.begin(), words.end(), value) == words.end()) {
+      const std::string meant = didYouMean(value, words);
+      complain(*node, fmt::format("{} is not one of {}{}{}", key, fmt::join(words, ", "),
+                                  meant.empty() ? "" : "; ", meant));
+    }
+    return value;
+  }
+
+  void number(const std::string& key, double& value, double lowest, double highest) {
+    const toml::node* node = at(key);
+    if (node == nullptr) return;
+    const std::optional<double> read = node->value<double>();
+    if (!read || !(*read >= lowest && *read <= highest))
+      complain(*node, fmt::format("{} is not a number from {:g} to {:g}", key, lowest, highest));
+    else
+      value = *read;
+  }
+
+  void whole(const std::string& key, int& value, int lowest, int highest) {
+    double read = value;
+    number(key, read, lowest, highest);
+    if (read != static_cast<int>(read))
+      complain(*table_.get(key), key + " is not a whole number");
+    else
+      value = static_cast<int>(read);
+  }
+
+  void length(const std::string& key, std::string& value) {
+    const toml::node* node = at(key);
+    if (node == nullptr) return;
+    if (node->is_string())
+      value = node->value_or(std::string());
+    else
+      complain(*node, key + R"( is not a length with its unit, such as "20um")");
+  }
+
+  RecipeFilter filter() {
+    RecipeFilter step;
+    std::vector<std::string> filters;
+    for (const engine::Filter& each : engine::filters()) filters.emplace_back(each.word);
+    const std::string name = word("filter", filters, "");
+    if (!problem_.empty()) return step;
+    step.spec.kind = engine::filterNamed(name)->kind;
+    whole("window", step.spec.window, 1, engine::FilterSpec::kMaxWindow);
+    whole("passes", step.spec.passes, 1, engine::FilterSpec::kMaxPasses);
+    number("sigma", step.spec.sigma, 0.0, 1e6);
+    if (word("marks", {"keep", "only"}, "keep") == "only") step.spec.scope = engine::FilterScope::kOnlyMarks;
+    length("range_sigma", step.range_sigma);
+    length("max_change", step.max_change);
+    engine::FilterSpec ranged = step.spec;
+    if (engine::hasRange(step.spec.kind) || !step.range_sigma.empty()) ranged.range_sigma = 1.0;
+    if (const auto valid = engine::validate(ranged); !valid) complain(table_, valid.error().what);
+    return step;
+  }
+
+  RecipeEdges edges() {
+    RecipeEdges step;
+    number("scale", step.scale, 0.7, 8.0);
+    number("sensitivity", step.choice.sensitivity, 0.0, 1.0);
+    number("thickness", step.choice.thickness, 0.0, 64.0);
+    return step;
+  }
+
+  const toml::table& table_;
+  std::set<std::string> known_;
+  std::string problem_;
+};
+
+// Numbers as they are read back to the same bits.
+std::string textOf(const RecipeFilter& step) {
+  const engine::Filter& filter = engine::filterOf(step.spec.kind);
+  const engine::FilterSpec usual;
+  std::string text = fmt::format("do = \"{}\"\nfilter = \"{}\"\n", kFilterWord, filter.word);
+  if (filter.window.exists()) text += fmt::format("window = {}\n", step.spec.window);
+  if (step.spec.passes != usual.passes) text += fmt::format("passes = {}\n", step.spec.passes);
+  if (filter.sigma.exists() && step.spec.sigma != usual.sigma)
+    text += fmt::format("sigma = {}\n", step.spec.sigma);
+  if (!step.range_sigma.empty())
+    text += fmt::format("range_sigma = \"{}\"\n", step.range_sigma);
+  else if (filter.range_sigma.exists())
+    text += "# range_sigma: from the noise of each scan\n";
+  if (step.spec.scope == engine::FilterScope::kOnlyMarks) text += "marks = \"only\"\n";
+  if (!step.max_change.empty()) text += fmt::format("max_change = \"{}\"\n", step.max_change);
+  return text;
+}
+
+std::string textOf(const RecipeEdges& step) {
+  return fmt::format("do = \"{}\"\nscale = {}\nsensitivity = {}\nthickness = {}\n", kEdgesWord, step.scale,
+                     step.choice.sensitivity, step.choice.thickness);
+}
+
+std::string textOf(const RecipeInvert&) {
+  return fmt::format("do = \"{}\"\n", kInvertWord);
+}
+
+// What led to the states of a session, as its journal says: the last entry of a number counts, since a step after an undo
+// replaces those above it.
+struct Made {
+  haptic::journal::StepMade step;
+  std::optional<engine::FilterSpec> filter;
+};
+
+std::map<std::int64_t, Made> madeBy(const engine::Session& session) {
+  std::map<std::int64_t, Made> made;
+  std::optional<engine::FilterSpec> begun;
+  for (const engine::JournalEntry& row : session.journal) {
+    const auto entry = haptic::journalEntry(row.action);
+    if (!entry) continue;
+    if (const auto* filter = std::get_if<haptic::journal::FilterBegun>(&*entry)) begun = filter->spec;
+    if (const auto* step = std::get_if<haptic::journal::StepMade>(&*entry)) {
+      made[step->state] = {*step, step->kind == engine::StepKind::kFilter ? begun : std::nullopt};
+      if (step->kind == engine::StepKind::kFilter) begun.reset();
+    }
+  }
+  return made;
+}
+
+}  // namespace
+
+engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobControl& job) {
+  const engine::History& history = session.history;
+  const std::map<std::int64_t, Made> made = madeBy(session);
+  const std::string unit = history.current().grid().height_unit.name;
+  Recipe recipe;
+  for (std::int64_t k = history.first() + 1; k <= history.number(); ++k) {
+    const engine::StepInfo& info = history.info(k);
+    const auto leave = [&](const char* why) {
+      recipe.left_out.push_back(fmt::format("step {}, {}: {}", k, info.name, why));
+    };
+    const auto entry = made.find(k);
+    if (info.kind == engine::StepKind::kInvert) {
+      recipe.steps.emplace_back(RecipeInvert{});
+    } else if (info.kind != engine::StepKind::kFilter) {
+      leave(info.kind == engine::StepKind::kImport ? "the session stores its result, not how it was made"
+                                                   : "it belongs to this scan");
+    } else if (entry == made.end() || !entry->second.filter) {
+      leave("the session stores its result, not the numbers of the filter");
+    } else {
+      RecipeFilter step;
+      step.spec = *entry->second.filter;
+      if (engine::hasRange(step.spec.kind)) {
+        engine::FilterSpec of_noise = step.spec;
+        of_noise.range_sigma = 0.0;
+        const auto measured = engine::withMeasuredRange(of_noise, history.state(k - 1), job);
+        if (!measured && measured.error().kind == engine::ErrorKind::kCancelled)
+          return tl::unexpected(measured.error());
+        if (!measured || measured->range_sigma != step.spec.range_sigma)
+          step.range_sigma = fmt::format("{}{}", step.spec.range_sigma, unit);
+        step.spec.range_sigma = 0.0;
+      }
+      if (step.spec.max_change) step.max_change = fmt::format("{}{}", *step.spec.max_change, unit);
+      step.spec.max_change.reset();
+      recipe.steps.emplace_back(step);
+    }
+  }
+  return recipe;
+}
+
+std::string recipeText(const Recipe& recipe) {
+  std::string text = fmt::format(
+      "# Steps of a session, for other scans: fettle apply RECIPE IN... --out-dir FOLDER\nrecipe = {}\n",
+      kRecipeVersion);
+  for (const std::string& step : recipe.left_out) text += fmt::format("# Left out: {}\n", step);
+  for (const RecipeStep& step : recipe.steps)
+    text += "\n[[step]]\n" + std::visit([](const auto& each) { return textOf(each); }, step);
+  return text;
+}
+
+engine::Result<Recipe> parseRecipe(const std::string& text, const std::string& name) try {
+  const toml::table file = toml::parse(text, name);
+  const auto refused = [&](const std::string& what) { return engine::inputError(what, name, kRecipeRemedy); };
+  if (file["recipe"].value_or(0) != kRecipeVersion)
+    return refused(fmt::format("this is no recipe of version {}", kRecipeVersion));
+  for (const auto& [key, value] : file)
+    if (key.str() != "recipe" && key.str() != "step")
+      return refused(
+          fmt::format("line {}: a recipe has no key \"{}\"", value.source().begin.line, key.str()));
+  Recipe recipe;
+  const toml::array* steps = file["step"].as_array();
+  if (steps == nullptr || steps->empty()) return refused("the recipe has no steps");
+  for (const toml::node& node : *steps) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return refused(fmt::format("line {}: a step is a table", node.source().begin.line));
+    StepReader reader(*table);
+    recipe.steps.push_back(reader.read());
+    if (!reader.problem().empty()) return refused(reader.problem());
+  }
+  return recipe;
+} catch (const toml::parse_error& error) {
+  return engine::inputError(fmt::format("line {}: {}", error.source().begin.line, error.description()), name,
+                            "correct the line");
+}
+
+engine::Result<Recipe> readRecipe(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) return engine::inputError("the recipe cannot be read", path, "check path and rights");
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  return parseRecipe(text, path);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/filter/filter.h"
+#include "engine/marks/edge_suggestion.h"
+#include "engine/session/session.h"
+
+namespace fettle::app {
+
+// A recipe: what was done to one scan, to be done to others. A TOML file that a person can read and change;
+// docs/formats.md describes it.
+
+/// A filter over the whole field.
+struct RecipeFilter {
+  /// Without lengths: these have units of their own, and are set when the scan is known.
+  engine::FilterSpec spec;
+  std::string range_sigma;  ///< a length as typed, "21.5um"; empty: from the noise of each scan
+  std::string max_change;   ///< a length as typed; empty: no limit
+};
+
+/// The suggested edges are marked, on top of the marks there are.
+struct RecipeEdges {
+  double scale = engine::EdgeMap::kUsualSigma;  ///< of the search [samples]
+  engine::EdgeChoice choice;
+};
+
+/// The field is turned upside down.
+struct RecipeInvert {};
+
+using RecipeStep = std::variant<RecipeFilter, RecipeEdges, RecipeInvert>;
+
+struct Recipe {
+  std::vector<RecipeStep> steps;
+  /// Steps of the session that the recipe does not repeat, and why; written as comments, empty after reading.
+  std::vector<std::string> left_out;
+};
+
+/// The steps that led to the session's present state, undone ones left out. Strokes, and marks and lines that were set by
+/// hand, belong to one scan and are left out, as are steps that a command made, whose numbers no session stores. A
+/// range sigma that is that of the noise before the step is left to each scan's noise. `session` was opened with its
+/// journal and with every step. Errors: cancelled.
+[[nodiscard]] engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobControl& job);
+
+[[nodiscard]] std::string recipeText(const Recipe& recipe);
+
+/// Errors (kInput), with the line: no TOML, another version, an unknown or missing key, a value out of range,
+/// no steps.
+[[nodiscard]] engine::Result<Recipe> parseRecipe(const std::string& text, const std::string& name);
+
+/// Errors: those of parseRecipe; the file cannot be read.
+[[nodiscard]] engine::Result<Recipe> readRecipe(const std::string& path);
+
+}  // namespace fettle::app

@@ -1,0 +1,181 @@
+// Recipes: the steps of a session as text, and that text read again.
+
+#include "app/commands/recipe_file.h"
+
+#include <variant>
+
+#include <gtest/gtest.h>
+
+#include "engine/filter/noise_range.h"
+#include "engine/scanner/scanner.h"
+#include "haptic/journal/journal.h"
+
+namespace fettle::app {
+namespace {
+
+using engine::FilterKind;
+using engine::StepKind;
+
+engine::Version scan() {
+  engine::ScannerSpec spec;
+  spec.width = spec.height = 128;
+  engine::JobControl job;
+  return engine::simulateScan(spec, job)->scan;
+}
+
+// A session that is worked on as in the window: a journal entry for each step, and a history.
+class Work {
+ public:
+  explicit Work(const engine::Version& field) {
+    session_.original = field;
+    session_.history = engine::History(field);
+  }
+
+  void filter(const engine::FilterSpec& spec, const std::string& name) {
+    engine::JobControl job;
+    note(haptic::journal::FilterBegun{1, spec});
+    step(name, StepKind::kFilter, engine::applyFilter(field(), session_.original, spec, job)->field);
+  }
+  void step(const std::string& name, StepKind kind, const engine::Version& after) {
+    engine::StepInfo info;
+    info.name = name;
+    info.kind = kind;
+    ASSERT_TRUE(session_.history.push(info, after));
+    note(haptic::journal::StepMade{session_.history.number(), name, kind, {}, false, false});
+  }
+  void withoutJournal(const std::string& name, const engine::Version& after) {
+    engine::StepInfo info;
+    info.name = name;
+    info.kind = StepKind::kFilter;
+    ASSERT_TRUE(session_.history.push(info, after));
+  }
+  void undo() { ASSERT_TRUE(session_.history.undo().has_value()); }
+
+  [[nodiscard]] const engine::Version& field() const { return session_.history.current(); }
+  [[nodiscard]] Recipe recipe() const {
+    engine::JobControl job;
+    return recipeOf(session_, job).value();
+  }
+
+ private:
+  void note(const haptic::journal::Entry& entry) {
+    engine::JournalEntry row;
+    row.action = haptic::journalText(entry);
+    session_.journal.push_back(row);
+  }
+
+  engine::Session session_;
+};
+
+engine::FilterSpec specOf(FilterKind kind, int window = 3) {
+  engine::FilterSpec spec;
+  spec.kind = kind;
+  spec.window = window;
+  return spec;
+}
+
+TEST(Recipe, HasTheFiltersThatLedToThePresentStateAndNamesWhatItLeavesOut) {
+  Work work(scan());
+  work.filter(specOf(FilterKind::kMedian, 5), "Median 5");
+  work.filter(specOf(FilterKind::kBox, 9), "Box 9");
+  work.undo();
+  engine::JobControl job;
+  engine::FilterSpec limited = specOf(FilterKind::kGaussian, 7);
+  limited.max_change = 0.05;
+  limited.passes = 2;
+  work.filter(limited, "Gaussian 7");
+  work.step("Smooth", StepKind::kStroke, work.field().inverted());
+  work.step("Upside down", StepKind::kInvert, work.field().inverted());
+
+  const Recipe recipe = work.recipe();
+  ASSERT_EQ(recipe.steps.size(), 3U);
+  EXPECT_EQ(std::get<RecipeFilter>(recipe.steps[0]).spec.kind, FilterKind::kMedian);
+  EXPECT_EQ(std::get<RecipeFilter>(recipe.steps[0]).spec.window, 5);
+  const auto& gaussian = std::get<RecipeFilter>(recipe.steps[1]);
+  EXPECT_EQ(gaussian.spec.kind, FilterKind::kGaussian);
+  EXPECT_EQ(gaussian.spec.passes, 2);
+  EXPECT_EQ(gaussian.max_change, "0.05mm");
+  EXPECT_TRUE(std::holds_alternative<RecipeInvert>(recipe.steps[2]));
+  ASSERT_EQ(recipe.left_out.size(), 1U);
+  EXPECT_EQ(recipe.left_out[0], "step 3, Smooth: it belongs to this scan");
+}
+
+TEST(Recipe, ARangeThatIsTheNoisesIsLeftToTheNoiseOfEachScan) {
+  Work work(scan());
+  engine::JobControl job;
+  work.filter(*engine::withMeasuredRange(specOf(FilterKind::kTotalVariation, 31), work.field(), job), "TV");
+  engine::FilterSpec chosen = specOf(FilterKind::kTotalVariation, 31);
+  chosen.range_sigma = 0.0625;
+  work.filter(chosen, "TV");
+  const Recipe recipe = work.recipe();
+  EXPECT_EQ(std::get<RecipeFilter>(recipe.steps.at(0)).range_sigma, "");
+  EXPECT_EQ(std::get<RecipeFilter>(recipe.steps.at(1)).range_sigma, "0.0625mm");
+}
+
+TEST(Recipe, AFilterOfACommandIsLeftOutSinceNoSessionStoresItsNumbers) {
+  Work work(scan());
+  engine::JobControl job;
+  work.withoutJournal(
+      "median", engine::applyFilter(work.field(), work.field(), specOf(FilterKind::kMedian), job)->field);
+  const Recipe recipe = work.recipe();
+  EXPECT_TRUE(recipe.steps.empty());
+  EXPECT_EQ(recipe.left_out.size(), 1U);
+}
+
+TEST(Recipe, WhatIsWrittenIsReadToTheSameText) {
+  Recipe recipe;
+  RecipeFilter filter;
+  filter.spec = specOf(FilterKind::kBilateral, 7);
+  filter.spec.sigma = 0.1 + 0.2;  // 17 digits
+  filter.spec.scope = engine::FilterScope::kOnlyMarks;
+  filter.spec.passes = 3;
+  filter.range_sigma = "20um";
+  filter.max_change = "0.5mm";
+  RecipeEdges edges;
+  edges.scale = 2.25;
+  edges.choice.thickness = 3.0;
+  recipe.steps = {filter, edges, RecipeInvert{}};
+  recipe.left_out = {"step 2, Smooth: it belongs to this scan"};
+  const std::string text = recipeText(recipe);
+  const auto read = parseRecipe(text, "clean.toml");
+  ASSERT_TRUE(read) << read.error().line();
+  EXPECT_EQ(std::get<RecipeFilter>(read->steps.at(0)).spec.sigma, filter.spec.sigma);
+  EXPECT_EQ(std::get<RecipeEdges>(read->steps.at(1)).scale, 2.25);
+  Recipe again = *read;
+  again.left_out = recipe.left_out;
+  EXPECT_EQ(recipeText(again), text);
+}
+
+TEST(Recipe, WhatIsWrongIsNamedWithItsLine) {
+  const auto problem = [](const std::string& text) {
+    const auto read = parseRecipe(text, "clean.toml");
+    return read ? std::string() : read.error().line();
+  };
+  EXPECT_NE(problem("recipe = 2").find("no recipe of version 1"), std::string::npos);
+  EXPECT_NE(problem("recipe = 1").find("has no steps"), std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"fitler\"").find("line 3: do is not one of"),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"fitler\"").find("did you mean filter?"), std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"").find("line 2: the step has no \"filter\""),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwindow = 4")
+                .find("line 2: a filter window of 4 samples"),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwindow = \"x\"")
+                .find("line 5: window is not a number from 1 to 1001"),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwidow = 3")
+                .find("line 5: filter has no key \"widow\""),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"tv\"\nrange_sigma = 20")
+                .find("line 5: range_sigma is not a length"),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = 1\nstep = 3").find("has no steps"), std::string::npos);
+  EXPECT_NE(problem("recipe = 1\nsteps = []\n[[step]]\ndo = \"invert\"").find("no key \"steps\""),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = = 1").find("line 1"), std::string::npos);
+  EXPECT_EQ(problem("recipe = 1\n[[step]]\ndo = \"invert\""), "");
+}
+
+}  // namespace
+}  // namespace fettle::app

@@ -1,0 +1,69 @@
+// A recipe does to other scans what the commands of its steps do one by one.
+
+#include <filesystem>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/program.h"
+#include "tests/support/source_tree.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+TEST(Recipes, AScanHasTheBitsOfTheStepsOneByOne) {
+  const TempFolder folder;
+  const auto file = [&](const char* name) { return folder.file(name); };
+  std::ofstream(file("clean.toml"))
+      << "recipe = 1\n"
+         "[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwindow = 5\n"
+         "[[step]]\ndo = \"mark_edges\"\n"
+         "[[step]]\ndo = \"filter\"\nfilter = \"tgv\"\nmax_change = \"40um\"\n"
+         "[[step]]\ndo = \"filter\"\nfilter = \"bilateral\"\nrange_sigma = \"20um\"\n";
+  for (const std::string seed : {"1", "2"})
+    ASSERT_EQ(
+        fettle({"synth", file(("s" + seed + ".tif").c_str()), "--size", "160x128", "--seed", seed}).status,
+        0);
+  const auto report =
+      fettleJson({"apply", file("clean.toml"), file("s1.tif"), file("s2.tif"), "--out-dir", file("out")});
+  ASSERT_EQ(report["done"], 2);
+  for (const std::string seed : {"1", "2"}) {
+    const std::string scan = file(("s" + seed + ".tif").c_str());
+    ASSERT_EQ(fettle({"filter", scan, file("a.tif"), "--filter", "median", "--window", "5"}).status, 0);
+    ASSERT_EQ(fettle({"mark", file("a.tif"), file("m.png"), "--edges"}).status, 0);
+    ASSERT_EQ(fettle({"filter", file("a.tif"), file("b.tif"), "--filter", "tgv", "--keep", file("m.png"),
+                      "--max-change", "40um", "--original", scan})
+                  .status,
+              0);
+    const auto last = fettleJson({"filter", file("b.tif"), file("c.tif"), "--filter", "bilateral",
+                                  "--range-sigma", "20um", "--keep", file("m.png")});
+    EXPECT_EQ(report["files"][seed == "1" ? 0 : 1]["hash"], last["hash"]);
+    const auto difference = fettleJson({"compare", file("c.tif"), folder.file("out/s" + seed + ".tif")});
+    EXPECT_EQ(difference["max_abs"], 0.0);
+  }
+}
+
+TEST(Recipes, AStepThatFailsIsNamedAndNoFileIsLeft) {
+  const TempFolder folder;
+  std::ofstream(folder.file("clean.toml")) << "recipe = 1\n[[step]]\ndo = \"invert\"\n[[step]]\ndo = "
+                                              "\"filter\"\nfilter = \"tv\"\nrange_sigma = \"20parsec\"\n";
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "64x64"}).status, 0);
+  expectRefused(fettle({"apply", folder.file("clean.toml"), folder.file("s.tif"), folder.file("o.tif")}),
+                "step 2 of the recipe: unknown unit parsec");
+  expectRefused(fettle({"apply", folder.file("none.toml"), folder.file("s.tif"), folder.file("o.tif")}),
+                "none.toml");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "o.tif"));
+}
+
+TEST(Recipes, ASessionWithoutStepsHasNone) {
+  const TempFolder folder;
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "64x64"}).status, 0);
+  ASSERT_EQ(fettle({"convert", folder.file("s.tif"), folder.file("s.fettle")}).status, 0);
+  expectRefused(fettle({"recipe", folder.file("s.fettle")}), "no step of the session can be repeated");
+  EXPECT_EQ(fettle({"journal", folder.file("s.fettle")}).out, "");
+  expectRefused(fettle({"journal", folder.file("s.tif")}), "s.tif");
+}
+
+}  // namespace
+}  // namespace fettle::tests
