@@ -23,6 +23,12 @@ inline constexpr double kMostSphereCells = 16.0;
 /// Steps of one tick, at most.
 inline constexpr int kSphereSteps = 128;
 
+/// How contacts are searched for: the same bits both ways.
+enum class SphereSearch : std::uint8_t {
+  kBounded,     ///< by bounds of cells, and among what was gathered around an earlier search
+  kCellByCell,  ///< every cell near, one after the other: what tests compare with
+};
+
 /// Why a ball of this radius cannot feel a field of this grid; nothing when it can.
 [[nodiscard]] std::optional<std::string> sphereProblem(double radius_mm, const engine::Grid& grid);
 
@@ -83,7 +89,8 @@ class SphereTracker {
  public:
   /// `radius_mm` > 0; over kMostSphereCells cells it is clamped to that (sphereProblem reports it before).
   /// `most_steps`, 1 .. kSphereSteps, of a tick.
-  SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps = kSphereSteps) noexcept;
+  SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps = kSphereSteps,
+                SphereSearch search = SphereSearch::kBounded) noexcept;
 
   /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt,
   /// by Surface::refreshes().
@@ -99,6 +106,8 @@ class SphereTracker {
   [[nodiscard]] const glm::dvec3& centre() const noexcept { return centre_; }
   /// The contact that carries most of the force, while touching: contact.proxy with its normal.
   [[nodiscard]] const SphereContact& pressed() const noexcept { return pressed_; }
+  /// Searches for contacts in the last tick: what its time is proportional to.
+  [[nodiscard]] int searches() const noexcept { return searches_; }
   [[nodiscard]] double toleranceMm(double height_mm) const noexcept;
 
  private:
@@ -123,6 +132,7 @@ class SphereTracker {
   static constexpr int kMostCuts = 16;
 
   int most_steps_;
+  SphereSearch search_;
   double radius_, step_, slack_, tolerance_;
   glm::dvec3 centre_{0.0};
   glm::dvec3 previous_{0.0};  // endpoint
@@ -138,6 +148,7 @@ class SphereTracker {
   std::array<HalfSpace, SphereContactList::kMost + kMostCuts> half_spaces_;
   std::array<SphereContact, kMostCuts> cuts_;
   int oldest_cut_ = 0;
+  int searches_ = 0;
 };
 
 }  // namespace fettle::haptic

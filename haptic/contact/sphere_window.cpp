@@ -26,6 +26,10 @@ std::int32_t indexWithin(double x, std::int32_t low, std::int32_t high) noexcept
       std::clamp(std::floor(x), static_cast<double>(low), static_cast<double>(high)));
 }
 
+LaneProbe laneProbe(const glm::dvec3& centre, double reach, double sx, double sy) noexcept {
+  return {centre.x, centre.y, centre.z, reach, reach * reach, kSeam * reach * sx, kSeam * reach * sy};
+}
+
 }  // namespace
 
 void SphereWindow::load(const Surface& surface, const glm::dvec3& centre, double reach_mm,
@@ -54,15 +58,44 @@ void SphereWindow::load(const Surface& surface, const glm::dvec3& centre, double
   const double unit = surface.heightUnit();
   const std::int32_t samples = columns_ * rows_;
   double highest = -HUGE_VAL;
+  double lowest = HUGE_VAL;
   double sum = 0.0;  // NaN when there is one; separate from the maximum, which ignores NaN
   for (std::int32_t k = 0; k < samples; ++k) {
     const double z = unit * static_cast<double>(raw_[static_cast<std::size_t>(k)]);
     z_[static_cast<std::size_t>(k)] = z;
     highest = z > highest ? z : highest;
+    lowest = z < lowest ? z : lowest;
     sum += z * 0.0;
   }
   highest_ = highest;
   whole_ = sum == 0.0;
+  gathered_ = false;
+  // Farther from 0 than that, roundings of a height are not small beside the bounds' room for them.
+  boundable_ = std::max(highest, -lowest) <= 1e8 * std::min(sx_, sy_);
+  sphereContactKernels().prepare(laneWindow(), rows_, boundable_ ? 0.0 : HUGE_VAL, bounds_);
+  markRims();
+}
+
+// Cells that the lanes cannot look at.
+void SphereWindow::markRims() noexcept {
+  const auto rim = [&](std::int32_t i, std::int32_t j) -> std::uint8_t& {
+    return bounds_.rim[static_cast<std::size_t>(j * columns_ + i)];
+  };
+  if (whole_) {
+    // Its border, which a ball that it holds does not reach: neighbours are missing there.
+    std::fill_n(bounds_.rim.begin(), columns_ * rows_, std::uint8_t{0});
+    for (std::int32_t i = 0; i + 1 < columns_; ++i) rim(i, 0) = rim(i, rows_ - 2) = 1;
+    for (std::int32_t j = 0; j + 1 < rows_; ++j) rim(0, j) = rim(columns_ - 2, j) = 1;
+    return;
+  }
+  for (std::int32_t j = 0; j + 1 < rows_; ++j)
+    for (std::int32_t i = 0; i + 1 < columns_; ++i) {
+      bool inner = true;
+      for (std::int32_t k = 0; k < 9 && inner; ++k) inner = valid(i + k % 3 - 1, j + k / 3 - 1);
+      rim(i, j) = inner ? 0 : 1;
+      // It has walls below its plane; only its highest sample bounds them.
+      if (!inner && valid(i, j)) bounds_.margin[static_cast<std::size_t>(j * columns_ + i)] = HUGE_VAL;
+    }
 }
 
 bool SphereWindow::holds(const glm::dvec3& centre) const noexcept {
@@ -166,10 +199,14 @@ class SphereWindow::Collector {
         reach2_(reach * reach),
         seam_x_(kSeam * reach * window.sx_),
         seam_y_(kSeam * reach * window.sy_),
-        out_(out) {}
+        out_(out) {
+    out.count = 0;
+    out.nearest_mm = HUGE_VAL;
+  }
 
   void cell(std::int32_t i, std::int32_t j) noexcept;
   void vectorised(std::int32_t i0, std::int32_t i1, std::int32_t j0, std::int32_t j1) noexcept;
+  void candidates(const LaneCandidates& some) noexcept;
 
  private:
   // Contacts are kept with squared distance first; the root is taken of those that remain.
@@ -277,6 +314,7 @@ class SphereWindow::Collector {
   void minimum(std::int32_t i, std::int32_t j, Valley& g, double low, double high, double v) noexcept;
   void minimumOfPiece(std::int32_t i, std::int32_t j, Valley& g, int piece) noexcept;
   void inside(std::int32_t i, std::int32_t j, const Corners& z) noexcept;
+  void twisted(std::int32_t i, std::int32_t j) noexcept;
   void rims(std::int32_t i, std::int32_t j) noexcept;
 
   const SphereWindow& w_;
@@ -315,6 +353,36 @@ class SphereWindow::Valley {
     return sy * (sy * v - ey) + height * q;
   }
 
+  // Whether a piece may hold a minimum nearer than the reach. u (sx^2 + p^2) = sx ex - w p, where p and w are
+  // linear along v: from their ends a range of u, from that a range of heights, all wider than any rounding.
+  [[nodiscard]] bool mayHold(int piece, double reach2) const noexcept {
+    constexpr double kWider = 1e-9;
+    const double v0 = static_cast<double>(piece) / kTwistPieces;
+    const double v1 = (piece + 1.0) / kTwistPieces;
+    const double p0 = b + d * v0;
+    const double p1 = b + d * v1;
+    const double h0 = w0 + c * v0;
+    const double h1 = w0 + c * v1;
+    const auto [least, most] = std::minmax({h0 * p0, h0 * p1, h1 * p0, h1 * p1});
+    const auto [flat, steep] = std::minmax({p0 * p0, p1 * p1});
+    const double uu_most = sx * sx + steep;
+    const double uu_least = sx * sx + (p0 * p1 > 0.0 ? flat : 0.0);
+    const double at = sx * ex;
+    const double margin = kWider * (uu_most + std::abs(at) + std::max(most, -least));
+    const double n_least = at - most - margin;
+    const double n_most = at - least + margin;
+    if (n_most < 0.0 || n_least > uu_most) return false;
+    const double u0 = std::max(n_least / uu_most - kWider, 0.0);
+    const double u1 = std::min(n_most / uu_least + kWider, 1.0);
+    const auto [lowest, highest] = std::minmax({h0 + p0 * u0, h0 + p0 * u1, h1 + p1 * u0, h1 + p1 * u1});
+    const double margin_z = kWider * (std::abs(h0) + std::abs(h1) + std::abs(p0) + std::abs(p1));
+    if (lowest > margin_z) return false;
+    const double mx = beyond(ex, sx * u0, sx * u1);
+    const double my = beyond(ey, sy * v0, sy * v1);
+    const double mz = std::max(-highest - margin_z, 0.0);
+    return mx * mx + my * my + mz * mz <= reach2 * (1.0 + 1e-6);
+  }
+
   double sx, sy, b, c, d, ex, ey, w0;
   double u = 0.0, height = 0.0, bend = 0.0;
 };
@@ -347,8 +415,6 @@ void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corne
   Valley g(w_, c_, i, j, z);
   const double sx = g.sx;
   const double sy = g.sy;
-  const double first = g.slopeAt(0.0);
-  const double last = g.slopeAt(1.0);
   // Second derivatives of the distance, halved: sx^2 + p^2, sy^2 + q^2, p q + z d.
   const double p = std::max(std::abs(g.b), std::abs(g.b + g.d));
   const double q = std::max(std::abs(g.c), std::abs(g.c + g.d));
@@ -357,15 +423,17 @@ void SphereWindow::Collector::inside(std::int32_t i, std::int32_t j, const Corne
   const double zd = std::abs(g.d) * std::max(std::abs(c_.z - high), std::abs(c_.z - low));
   if (zd * (2.0 * p * q + zd) < sx * sx * sy * sy) {
     // Convex: one minimum at most.
+    const double first = g.slopeAt(0.0);
+    const double last = g.slopeAt(1.0);
     if (first < 0.0 && last > 0.0) minimum(i, j, g, 0.0, 1.0, std::clamp(g.ey / sy, 0.0, 1.0));
     return;
   }
   // Twisted so much that the ball bridges it: no minimum inside, only saddles.
   const double bridge = std::abs(g.d) * std::max(0.0, c_.z - high) - p * q;
   if (bridge > 0.0 && bridge * bridge > (sx * sx + p * p) * (sy * sy + q * q)) return;
-  double before = first;
+  double before = g.slopeAt(0.0);
   for (int k = 1; k <= kTwistPieces; ++k) {
-    const double after = k == kTwistPieces ? last : g.slopeAt(static_cast<double>(k) / kTwistPieces);
+    const double after = g.slopeAt(static_cast<double>(k) / kTwistPieces);
     if (before < 0.0 && after > 0.0) minimumOfPiece(i, j, g, k - 1);
     before = after;
   }
@@ -437,67 +505,156 @@ void SphereWindow::Collector::cell(std::int32_t i, std::int32_t j) noexcept {
   inside(i, j, z);
 }
 
-// What cell() does, for cells without holes around them and two samples beyond each in the window.
+// What cell() does for every cell within reach.
 void SphereWindow::Collector::vectorised(std::int32_t i0, std::int32_t i1, std::int32_t j0,
                                          std::int32_t j1) noexcept {
   const SphereContactKernels& kernels = sphereContactKernels();
-  const LaneWindow window{w_.z_.data(), w_.columns_, w_.column_, w_.row_, w_.sx_, w_.sy_};
-  const LaneProbe ball{c_.x, c_.y, c_.z, reach_, reach2_, seam_x_, seam_y_};
-  std::array<LaneCell, kMostSide * kMostSide + kSphereContactLanes> cells;
-  const int count = kernels.reached(window, ball, i0, i1, j0, j1, cells.data());
+  const LaneWindow window = w_.laneWindow();
+  const LaneProbe ball = laneProbe(c_, reach_, w_.sx_, w_.sy_);
+  std::array<LaneCell, kMostLaneCells> cells;
+  const int count = kernels.reached(window, w_.bounds_, ball, i0, i1, j0, j1, cells.data());
   LaneFinds finds;
+  std::array<LaneCell, kSphereContactLanes> some;
+  std::array<std::int8_t, kSphereContactLanes> lane;
   for (int from = 0; from < count; from += kSphereContactLanes) {
-    const LaneCell* some = cells.data() + from;
-    kernels.find(window, ball, some, std::min(count - from, kSphereContactLanes), finds);
-    const auto take = [&](const LaneContacts& contacts, std::size_t k, double u, double v) {
-      if ((contacts.found >> k & 1u) != 0)
-        add(some[k].i, some[k].j, u, v, {contacts.mx[k], contacts.my[k], contacts.mz[k]}, contacts.d2[k]);
-    };
+    const int here = std::min(count - from, kSphereContactLanes);
+    int lanes = 0;
+    unsigned left = 0;  // cells to look at
+    for (int k = 0; k < here; ++k) {
+      const LaneCell cell = cells[static_cast<std::size_t>(from + k)];
+      const bool rim = w_.bounds_.rim[static_cast<std::size_t>(cell.j * w_.columns_ + cell.i)] != 0;
+      lane[static_cast<std::size_t>(k)] = static_cast<std::int8_t>(rim ? -1 : lanes);
+      left |= rim ? 1u << k : 0u;
+      if (!rim) some[static_cast<std::size_t>(lanes++)] = cell;
+    }
+    unsigned found = 0;
+    if (lanes > 0) {
+      kernels.find(window, ball, some.data(), lanes, finds);
+      found =
+          finds.sample.found | finds.edge_x.found | finds.edge_y.found | finds.inside.found | finds.twisted;
+    }
+    if (lanes == here)
+      left = found;
+    else
+      for (int k = 0; k < here; ++k)
+        if (lane[static_cast<std::size_t>(k)] >= 0)
+          left |= (found >> lane[static_cast<std::size_t>(k)] & 1u) << k;
     // In the order of cell(), which decides how ties are broken.
-    for (unsigned left = finds.sample.found | finds.edge_x.found | finds.edge_y.found | finds.inside.found |
-                         finds.twisted;
-         left != 0; left &= left - 1) {
+    for (; left != 0; left &= left - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(left));
-      take(finds.sample, k, 1.0, 1.0);
-      take(finds.edge_x, k, finds.edge_x.u[k], 1.0);
-      take(finds.edge_y, k, 1.0, finds.edge_y.v[k]);
-      take(finds.inside, k, finds.inside.u[k], finds.inside.v[k]);
-      if ((finds.twisted >> k & 1u) == 0) continue;
-      const std::int32_t i = some[k].i;
-      const std::int32_t j = some[k].j;
-      for (unsigned rises = kernels.rises(window, ball, some[k]); rises != 0; rises &= rises - 1) {
-        Valley g(w_, c_, i, j, w_.corners(i, j));
-        minimumOfPiece(i, j, g, std::countr_zero(rises));
+      const LaneCell at = cells[static_cast<std::size_t>(from) + k];
+      if (lane[k] < 0) {
+        cell(at.i, at.j);
+        continue;
       }
+      const auto n = static_cast<std::size_t>(lane[k]);
+      const auto take = [&](const LaneContacts& contacts, double u, double v) {
+        if ((contacts.found >> n & 1u) != 0)
+          add(at.i, at.j, u, v, {contacts.mx[n], contacts.my[n], contacts.mz[n]}, contacts.d2[n]);
+      };
+      take(finds.sample, 1.0, 1.0);
+      take(finds.edge_x, finds.edge_x.u[n], 1.0);
+      take(finds.edge_y, 1.0, finds.edge_y.v[n]);
+      take(finds.inside, finds.inside.u[n], finds.inside.v[n]);
+      if ((finds.twisted >> n & 1u) != 0) twisted(at.i, at.j);
     }
   }
 }
 
-void SphereWindow::contacts(const glm::dvec3& centre, double reach_mm,
-                            SphereContactList& out) const noexcept {
-  collect(centre, reach_mm, out, true);
+void SphereWindow::Collector::candidates(const LaneCandidates& some) noexcept {
+  const SphereContactKernels& kernels = sphereContactKernels();
+  const LaneProbe ball = laneProbe(c_, reach_, w_.sx_, w_.sy_);
+  LaneFinds finds;
+  int insides = 0;
+  for (int n = 0; n < some.count; ++n) {
+    const LaneCandidate& at = some.cells[static_cast<std::size_t>(n)];
+    const std::int32_t i = at.i;
+    const std::int32_t j = at.j;
+    if ((at.features & kRimFeature) != 0) {
+      cell(i, j);
+      continue;
+    }
+    if ((at.features & kSampleFeature) != 0) sample(i + 1, j + 1, i, j, 1.0, 1.0);
+    if ((at.features & kEdgeXFeature) != 0) edgeX(i, j + 1, i, j, 1.0, true, true);
+    if ((at.features & kEdgeYFeature) != 0) edgeY(i + 1, j, i, j, 1.0, true, true);
+    if ((at.features & kInsideFeature) == 0) continue;
+    const int lane = insides % kSphereContactLanes;
+    if (lane == 0) kernels.insides(some, insides, w_.sx_, w_.sy_, ball, finds);
+    ++insides;
+    const auto k = static_cast<std::size_t>(lane);
+    if ((finds.inside.found >> k & 1u) != 0)
+      add(i, j, finds.inside.u[k], finds.inside.v[k],
+          {finds.inside.mx[k], finds.inside.my[k], finds.inside.mz[k]}, finds.inside.d2[k]);
+    if ((finds.twisted >> k & 1u) != 0) twisted(i, j);
+  }
+}
+
+// A cell that may have several minima inside.
+void SphereWindow::Collector::twisted(std::int32_t i, std::int32_t j) noexcept {
+  const LaneWindow window = w_.laneWindow();
+  const LaneProbe ball = laneProbe(c_, reach_, w_.sx_, w_.sy_);
+  const LaneCell cell{static_cast<std::int16_t>(i), static_cast<std::int16_t>(j)};
+  unsigned rises = sphereContactKernels().rises(window, ball, cell);
+  if (rises == 0) return;
+  Valley g(w_, c_, i, j, w_.corners(i, j));
+  for (; rises != 0; rises &= rises - 1)
+    if (g.mayHold(std::countr_zero(rises), reach2_)) minimumOfPiece(i, j, g, std::countr_zero(rises));
+}
+
+SphereWindow::Box SphereWindow::boxAround(const glm::dvec3& centre, double reach_mm) const noexcept {
+  return {indexWithin((centre.x - reach_mm) / sx_ - column_, 0, columns_ - 2),
+          indexWithin((centre.x + reach_mm) / sx_ - column_, 0, columns_ - 2),
+          indexWithin((centre.y - reach_mm) / sy_ - row_, 0, rows_ - 2),
+          indexWithin((centre.y + reach_mm) / sy_ - row_, 0, rows_ - 2)};
+}
+
+void SphereWindow::gather(const glm::dvec3& centre, double reach_mm, double room_mm) noexcept {
+  gathered_at_ = centre;
+  gathered_reach_ = reach_mm;
+  gathered_room_ = room_mm;
+  const double room = room_mm * (1.0 + 1e-5);  // far above rounding
+  const Box box = boxAround(centre, reach_mm + room);
+  gathered_ = boundable_ && sphereContactKernels().candidates(
+                                laneWindow(), bounds_, laneProbe(centre, reach_mm + room, sx_, sy_), room,
+                                box.i0, box.i1, box.j0, box.j1, candidates_);
+}
+
+// Gathering costs about one search. It pays when the next search is near: after two that were near each other,
+// or while what was gathered before was used again.
+void SphereWindow::contacts(const glm::dvec3& centre, double reach_mm, double room_mm,
+                            SphereContactList& out) noexcept {
+  const auto near = [&](const glm::dvec3& at) {
+    const glm::dvec3 m = centre - at;
+    return m.x * m.x + m.y * m.y + m.z * m.z <= room_mm * room_mm;
+  };
+  const bool near_last = near(searched_at_);
+  searched_at_ = centre;
+  if (gathered_ && gathered_reach_ == reach_mm && gathered_room_ == room_mm && near(gathered_at_)) {
+    reused_ = true;
+  } else if (near_last || reused_) {
+    gather(centre, reach_mm, room_mm);
+    reused_ = false;
+  } else {
+    gathered_ = false;
+  }
+  if (gathered_) {
+    Collector(*this, centre, reach_mm, out).candidates(candidates_);
+    return;
+  }
+  contactsSearched(centre, reach_mm, out);
+}
+
+void SphereWindow::contactsSearched(const glm::dvec3& centre, double reach_mm,
+                                    SphereContactList& out) const noexcept {
+  const Box box = boxAround(centre, reach_mm);
+  Collector(*this, centre, reach_mm, out).vectorised(box.i0, box.i1, box.j0, box.j1);
 }
 
 void SphereWindow::contactsCellByCell(const glm::dvec3& centre, double reach_mm,
                                       SphereContactList& out) const noexcept {
-  collect(centre, reach_mm, out, false);
-}
-
-void SphereWindow::collect(const glm::dvec3& centre, double reach_mm, SphereContactList& out,
-                           bool vectorised) const noexcept {
-  out.count = 0;
-  out.nearest_mm = HUGE_VAL;
   const double reach2 = reach_mm * reach_mm;
-  const auto clampedIndex = [](double x, std::int32_t cells) { return indexWithin(x, 0, cells - 1); };
-  const std::int32_t i0 = clampedIndex((centre.x - reach_mm) / sx_ - column_, columns_ - 1);
-  const std::int32_t i1 = clampedIndex((centre.x + reach_mm) / sx_ - column_, columns_ - 1);
-  const std::int32_t j0 = clampedIndex((centre.y - reach_mm) / sy_ - row_, rows_ - 1);
-  const std::int32_t j1 = clampedIndex((centre.y + reach_mm) / sy_ - row_, rows_ - 1);
+  const auto [i0, i1, j0, j1] = boxAround(centre, reach_mm);
   Collector collector(*this, centre, reach_mm, out);
-  if (vectorised && whole_ && i1 + 2 < columns_ && j1 + 2 < rows_) [[likely]] {
-    collector.vectorised(i0, i1, j0, j1);
-    return;
-  }
   std::array<double, kMostSide> dx2;
   for (std::int32_t i = i0; i <= i1; ++i) {
     const double dx = beyond(centre.x, (column_ + i) * sx_, (column_ + i + 1) * sx_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include <glm/vec3.hpp>
@@ -44,11 +45,11 @@ struct SphereContactList {
 
 /// A copy of the samples around a ball, in millimetres.
 ///
-/// Threading: one thread; nothing allocates, locks or throws. About 25 kB.
+/// Threading: one thread; nothing allocates, locks or throws. About 135 kB, of which a ball of two cells uses 15.
 class SphereWindow {
  public:
   /// Samples along a side at most: a ball of 16 cells radius and a margin.
-  static constexpr std::int32_t kMostSide = 44;
+  static constexpr std::int32_t kMostSide = kMostLaneSide;
 
   /// Copies what a ball of radius `reach_mm` needs anywhere within `room_mm` (horizontally) of `centre`,
   /// which is finite. What does not fit kMostSide is left out: keep (reach + room) / spacing <= 20.
@@ -57,13 +58,20 @@ class SphereWindow {
   [[nodiscard]] bool holds(const glm::dvec3& centre) const noexcept;
 
   /// To be called when the field may have changed: the next centre is not held.
-  void invalidate() noexcept { low_x_ = HUGE_VAL; }
+  void invalidate() noexcept {
+    low_x_ = HUGE_VAL;
+    gathered_ = false;
+  }
 
   /// All contacts nearer than `reach_mm` (at most load()'s value); when there are more than fit, the nearest
-  /// ones.
-  void contacts(const glm::dvec3& centre, double reach_mm, SphereContactList& out) const noexcept;
-  /// Bit-identical, one cell after the other: used by contacts() at holes and rims, and the reference for its
-  /// vectorised part (sphere_contact_lanes.h) in tests.
+  /// ones. `centre` is held. What may hold a contact for any centre within `room_mm` >= 0 is kept when that
+  /// seems to pay, and looked at alone by searches nearby: the contacts are the same bits for any room.
+  void contacts(const glm::dvec3& centre, double reach_mm, double room_mm, SphereContactList& out) noexcept;
+  /// How many cells the last contacts() looked at because they were gathered; -1: all within reach.
+  [[nodiscard]] int gatheredCells() const noexcept { return gathered_ ? candidates_.count : -1; }
+  /// The same, of all cells within reach.
+  void contactsSearched(const glm::dvec3& centre, double reach_mm, SphereContactList& out) const noexcept;
+  /// The same, one cell after the other without bounds: the reference for both in tests.
   void contactsCellByCell(const glm::dvec3& centre, double reach_mm, SphereContactList& out) const noexcept;
 
   /// Height of the surface under (x, y) [mm]; -HUGE_VAL over holes and outside the field.
@@ -87,8 +95,15 @@ class SphereWindow {
     return {z[0], z[1], z[columns_], z[columns_ + 1]};
   }
   [[nodiscard]] bool valid(std::int32_t i, std::int32_t j) const noexcept;
-  void collect(const glm::dvec3& centre, double reach_mm, SphereContactList& out,
-               bool vectorised) const noexcept;
+  struct Box {
+    std::int32_t i0, i1, j0, j1;  // cells
+  };
+  [[nodiscard]] Box boxAround(const glm::dvec3& centre, double reach_mm) const noexcept;
+  [[nodiscard]] LaneWindow laneWindow() const noexcept {
+    return {z_.data(), columns_, column_, row_, sx_, sy_};
+  }
+  void markRims() noexcept;
+  void gather(const glm::dvec3& centre, double reach_mm, double room_mm) noexcept;
   class Collector;
   class Valley;
 
@@ -100,6 +115,13 @@ class SphereWindow {
   double low_x_ = 0.0, high_x_ = 0.0, low_y_ = 0.0, high_y_ = 0.0;  // centres it holds [mm]
   double highest_ = 0.0;
   bool whole_ = false;  // no NaN in it
+  bool boundable_ = false;
+  LaneBounds bounds_;
+  bool gathered_ = false;  // whether candidates_ are those around gathered_at_
+  bool reused_ = true;     // whether the last that were gathered were used twice
+  LaneCandidates candidates_;
+  glm::dvec3 gathered_at_{0.0}, searched_at_{NAN};
+  double gathered_reach_ = 0.0, gathered_room_ = 0.0;
 };
 
 }  // namespace fettle::haptic

@@ -37,7 +37,7 @@ constexpr Budget kBudgets[] = {
     {"feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 0.0, 200, 1395.0},
     {"3 x 3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 0.0, 200, 1857.0},
     {"certified, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 0.0, 40, 8075.0},
-    {"ball, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 2.0, 12, 52863.0},
+    {"ball, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 2.0, 12, 38392.0},
 };
 
 // Ticks spread over a hand's way: each counted one follows on its predecessor, as the rest do.

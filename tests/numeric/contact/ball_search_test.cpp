@@ -1,0 +1,133 @@
+// The ball's search for contacts, bounded and among what was gathered before, against every cell near, one after
+// the other: whole ticks, bit for bit, on every hard field and under edits.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/field/live_field.h"
+#include "haptic/contact/sphere_tip.h"
+#include "haptic/trials/hand_stroke.h"
+#include "tests/haptic/support/fields.h"
+#include "tests/numeric/support/hard_fields.h"
+
+namespace fettle::haptic {
+namespace {
+
+using tests::HardField;
+using tests::Jumps;
+
+// Two balls over one surface; ticks in which they differ in a bit fail.
+class TwoBalls {
+ public:
+  TwoBalls(const engine::Version& field, double radius_mm, int most_steps = kSphereSteps)
+      : surface_(field.reader()),
+        bounded_(radius_mm, field.grid(), most_steps),
+        plain_(radius_mm, field.grid(), most_steps, SphereSearch::kCellByCell) {}
+
+  // Whether they agree.
+  [[nodiscard]] bool tick(const glm::dvec3& endpoint) {
+    const Contact a = bounded_.update(surface_, endpoint, counters_[0]);
+    const Contact b = plain_.update(surface_, endpoint, counters_[1]);
+    touched_ += a.touching ? 1 : 0;
+    most_searches_ = std::max(most_searches_, bounded_.searches());
+    const bool same_contact =
+        !a.touching ||
+        (a.penetration_mm == b.penetration_mm && a.proxy.cell == b.proxy.cell && a.proxy.u == b.proxy.u &&
+         a.proxy.v == b.proxy.v && a.proxy.position_mm == b.proxy.position_mm &&
+         bounded_.pressed().normal == plain_.pressed().normal);
+    return a.touching == b.touching && same_contact && bounded_.centre() == plain_.centre() &&
+           bounded_.searches() == plain_.searches() &&
+           counters_[0].search_bound_hits == counters_[1].search_bound_hits;
+  }
+  void refresh(const engine::FieldReader& reader) { surface_.refresh(reader); }
+
+  [[nodiscard]] int touched() const { return touched_; }
+  [[nodiscard]] int mostSearches() const { return most_searches_; }
+
+ private:
+  Surface surface_;
+  SphereTracker bounded_, plain_;
+  std::array<TickCounters, 2> counters_;
+  int touched_ = 0;
+  int most_searches_ = 0;
+};
+
+TEST(BallSearch, BoundedOnEveryHardFieldGivesTheBitsOfCellByCell) {
+  int touched = 0;
+  for (const std::string& name : tests::hardFieldNames()) {
+    const HardField hard = tests::hardField(name);
+    const engine::Grid& grid = hard.field.grid();
+    const double cell = std::min(grid.spacingXMm(), grid.spacingYMm());
+    const std::vector<StrokeSample> path = tests::wander(hard, 1200, 31, Jumps::kYes);
+    for (const double cells : {0.3, 1.5, 5.0}) {
+      TwoBalls balls(hard.field, cells * cell);
+      for (std::size_t i = 0; i < path.size(); ++i)
+        ASSERT_TRUE(balls.tick(path[i].tip_mm)) << name << ", radius " << cells << " cells, tick " << i;
+      touched += balls.touched();
+    }
+  }
+  EXPECT_GT(touched, 10'000);
+}
+
+// The grounds of `fettle bench haptic`, smaller, with a hand that also rests.
+TEST(BallSearch, BoundedOnRoughPartsNeedlesTwistsWallsAndPitsGivesTheBitsOfCellByCell) {
+  constexpr double kSpacing = 0.05;
+  constexpr int kSide = 128;
+  const auto ground = [&](auto height) { return tests::fieldOf(kSide, kSide, height, kSpacing, kSpacing); };
+  const std::pair<const char*, engine::Version> grounds[] = {
+      {"noise", trials::workpiece(kSide, kSpacing)},
+      {"clean", trials::workpiece(kSide, kSpacing, 0.0)},
+      {"needles", ground([](int c, int r) { return c % 7 == 3 && r % 5 == 2 ? 1e6 : 0.0; })},
+      {"twisted cells", ground([](int c, int r) { return (c + r) % 2 == 0 ? -0.25 : 0.25; })},
+      {"walls", ground([](int c, int) { return c / 8 % 2 == 0 ? 0.0 : 10.0; })},
+      {"pits", ground([](int c, int r) { return (c % 4 == 0 ? -50.0 : 0.0) + (r % 3 == 0 ? -0.05 : 0.0); })},
+      {"holes", ground([](int c, int r) {
+         return (c * 31 + r * 17) % 37 == 0 ? std::nan("") : 0.02 * ((c * 7 + r * 13) % 11);
+       })},
+  };
+  for (const auto& [name, field] : grounds) {
+    trials::HandMotion motion;
+    motion.ticks = 3000;
+    motion.speed_mm_s = 20.0;
+    const std::vector<StrokeSample> path = trials::handStroke(field, motion);
+    TwoBalls balls(field, 2.0 * kSpacing);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      // Each second hundred of ticks at rest.
+      const glm::dvec3 at = path[i / 100 % 2 == 0 ? i : i / 100 * 100].tip_mm;
+      ASSERT_TRUE(balls.tick(at + glm::dvec3(0.0, 0.0, 2.0 * kSpacing))) << name << ", tick " << i;
+    }
+    EXPECT_GT(balls.touched(), 1000) << name;
+    RecordProperty(std::string("most searches, ") + name, balls.mostSearches());
+  }
+}
+
+TEST(BallSearch, BoundedUnderEditsGivesTheBitsOfCellByCell) {
+  constexpr double kSpacing = 0.05;
+  const engine::Version field = trials::workpiece(128, kSpacing);
+  engine::LiveField live(field, engine::Growth::kAllowed);
+  TwoBalls balls(field, 2.0 * kSpacing);
+  trials::HandMotion motion;
+  motion.ticks = 3000;
+  motion.speed_mm_s = 5.0;
+  std::mt19937_64 random(8);
+  for (const StrokeSample& sample : trials::handStroke(field, motion)) {
+    const auto column = static_cast<std::int32_t>(sample.tip_mm.x / kSpacing);
+    const auto row = static_cast<std::int32_t>(sample.tip_mm.y / kSpacing);
+    if (random() % 3 == 0 && column >= 0 && row >= 0 && column < 128 && row < 128) {
+      const float z = random() % 50 == 0 ? NAN : static_cast<float>(tests::uniform(random, -0.05, 0.05));
+      ASSERT_TRUE(live.setHeight(column, row, z));
+      balls.refresh(live.reader());
+    }
+    ASSERT_TRUE(balls.tick(sample.tip_mm + glm::dvec3(0.0, 0.0, 2.0 * kSpacing))) << "at " << sample.t;
+  }
+  EXPECT_GT(balls.touched(), 1500);
+}
+
+}  // namespace
+}  // namespace fettle::haptic
