@@ -21,6 +21,9 @@ constexpr std::array<double, 4> kMostOfSmallest{(3 + 3 * 2.449) / 1.569, (3 + 3 
                                                 (21 + 3 * 6.481) / 17.6, (100 + 3 * 14.1) / 93.0};
 constexpr double kQuiet = 0.25, kMostOfQuiet = 4.0;  // share, and variance against the loudest of them
 constexpr double kPriorWindows = 4.0;                // that the map's parts are drawn to the field's noise by
+constexpr std::size_t kFewWindows = 12;              // a part of the map with fewer does not count in sigma
+// Ranks, of the windows in a part and of the parts: what is louder counts as much as the one that has it.
+constexpr double kLoudestWindow = 0.9, kLoudestPart = 0.8;
 
 // Detail below so much of what float rounds a window's heights to is none: a mask, a fill value, a clipped range.
 constexpr double kNoDetail = 0.01;
@@ -96,6 +99,14 @@ void keepSmooth(std::vector<const Placed*>& windows) {
   });
 }
 
+// Mean of values, those above rank `share` as large as that (Winsor's mean: Tukey 1962). Not empty.
+double meanUpTo(std::vector<double> values, double share) {
+  const double most = ranked(values, share);
+  double sum = 0.0;
+  for (const double value : values) sum += std::min(value, most);
+  return sum / static_cast<double>(values.size());
+}
+
 std::size_t mapIndex(const Grid& grid, std::int32_t column, std::int32_t row) noexcept {
   constexpr std::int64_t kSide = NoiseModel::kMapSide;
   const std::int64_t x = column * kSide / grid.width, y = row * kSide / grid.height;
@@ -162,24 +173,31 @@ Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
     return uncorrelated(finest->sigma * finest->sigma);
   }
   NoiseMoments mean;
-  std::array<NoiseMoments, kCells> cells;
-  std::array<double, kCells> counts{};
-  for (const Placed* p : smooth) {
-    mean.add(p->window.moments, 1.0 / static_cast<double>(smooth.size()));
-    const std::size_t at = mapIndex(field.grid(), p->column + kNoiseSide / 2, p->row + kNoiseSide / 2);
-    cells[at].add(p->window.moments, 1.0);
-    counts[at] += 1.0;
-  }
+  for (const Placed* p : smooth) mean.add(p->window.moments, 1.0 / static_cast<double>(smooth.size()));
   model.parts = noiseOf(mean, model.windows);
-  // Windows without edges are not equally frequent everywhere: parts of the field count equally.
-  double squares = 0.0;
-  for (std::size_t i = 0; i < kCells; ++i) {
-    // In the direction of the whole field's.
-    const double here = mean.column_detail >= mean.row_detail ? cells[i].column_detail : cells[i].row_detail;
-    const double drawn = (here + kPriorWindows * mean.detail()) / (counts[i] + kPriorWindows);
-    model.map.push_back(mean.detail() > 0.0 ? drawn / mean.detail() : 1.0);
-    squares += model.map.back() / kCells;
+  // In the direction of the whole field's.
+  const bool by_rows = mean.column_detail >= mean.row_detail;
+  std::array<std::vector<double>, kCells> cells;
+  std::vector<double> all;
+  all.reserve(smooth.size());
+  for (const Placed* p : smooth) {
+    all.push_back(by_rows ? p->window.moments.column_detail : p->window.moments.row_detail);
+    cells[mapIndex(field.grid(), p->column + kNoiseSide / 2, p->row + kNoiseSide / 2)].push_back(all.back());
   }
+  // Windows without edges are not equally frequent everywhere: parts of the field count equally. In both the loudest
+  // few are bounded by rank: noise that is added to all raises all by as much, so that it raises sigma^2 by as much,
+  // and the rough windows that its detail lets pass besides change little.
+  const double middle = ranked(all, 0.5);
+  std::vector<double> counted;
+  counted.reserve(kCells);
+  for (const std::vector<double>& cell : cells) {
+    const auto count = static_cast<double>(cell.size());
+    const double here = cell.empty() ? middle : meanUpTo(cell, kLoudestWindow);
+    const double drawn = (count * here + kPriorWindows * middle) / (count + kPriorWindows);
+    model.map.push_back(mean.detail() > 0.0 ? drawn / mean.detail() : 1.0);
+    if (cell.size() >= kFewWindows) counted.push_back(model.map.back());
+  }
+  const double squares = meanUpTo(counted.empty() ? model.map : counted, kLoudestPart);
   model.parts.scale(squares);
   if (model.parts.uncorrelated > kMostOverFinest * finest_of_all) return uncorrelated(finest_of_all);
   model.sigma = std::sqrt(model.parts.variance());

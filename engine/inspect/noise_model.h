@@ -38,9 +38,10 @@ struct NoiseModel {
 /// that more than 9 times the variance of the finest detail would come out, that detail counts, uncorrelated. Windows
 /// without any detail, as of a mask or a fill value, do not count.
 ///
-/// On all simulated parts, noise 1 and 3, 384 to 2048 samples a side, with and without mixed pixels, sigma is within
-/// 5 % of the root mean square of scan less truth; it is raised by about 1 %, since windows with more detail by chance
-/// pass more often. Spikes do not count. Limits: what is correlated along rows and along columns counts as surface, as
+/// Sigma is a mean over 64 parts of the field, of the windows of each; in both what is louder than a rank counts as much
+/// as what has it, so that noise that is added to a scan adds its variance. On all simulated parts, noise 1 and 3, 384 to
+/// 2048 samples a side, with and without mixed pixels, sigma is within 5 % of the root mean square of scan less truth.
+/// Spikes do not count. Limits: what is correlated along rows and along columns counts as surface, as
 /// in a scan that was filtered; a surface that is rough from sample to sample in one direction counts as noise; along
 /// rows nothing is seen beyond kNoiseLags samples but the offset of the whole window.
 ///

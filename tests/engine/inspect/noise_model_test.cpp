@@ -1,6 +1,7 @@
 #include "engine/inspect/noise_model.h"
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
@@ -185,18 +186,42 @@ TEST(NoiseModel, IsWithinFivePerCentOnEveryPart) {
       spec.outliers = outliers;
       spec.seed = 5101 + static_cast<std::uint64_t>(side);
       JobControl job;
-      const double sigma = modelOf(simulateScan(spec, job)->scan).sigma;
-      EXPECT_NEAR(sigma / trueSigma(spec), 1.0, 0.05)
-          << fmt::format("{} {} noise {} outliers {}", part.name, side, noise, outliers);
+      const double ratio = modelOf(simulateScan(spec, job)->scan).sigma / trueSigma(spec);
+      const std::string what = fmt::format("{} {} noise {} outliers {}", part.name, side, noise, outliers);
+      fmt::print("{}: {:.3f}\n", what, ratio);
+      EXPECT_NEAR(ratio, 1.0, 0.05) << what;
     }
 }
 
-class NoiseOfScan : public testing::TestWithParam<const char*> {};
+// A seventh of the field is three times as rough, too loud to count. Added noise lets windows of it pass; of as much as
+// the field's own 20 % too much was found when they counted in full.
+TEST(NoiseModel, OfAPartlyRoughSurfaceGrowsByWhatIsAdded) {
+  const auto noise = [](int c, int r) {
+    const double rough = CounterRandom(31, 0).uniform(c / 96, r / 96) < 0.15 ? 3.0 : 1.0;
+    return 0.02 * rough * white(32, c, r) + curved(c, r);
+  };
+  const double own = modelOf(fieldOf(kModelSide, kModelSide, noise)).sigma;
+  for (const double times : {1.0, 2.0, 4.0}) {
+    const double added = times * own;
+    const double both = modelOf(fieldOf(kModelSide, kModelSide, [&](int c, int r) {
+                          return noise(c, r) + added * white(33, c, r);
+                        })).sigma;
+    EXPECT_NEAR(std::sqrt(both * both - own * own) / added, 1.0, 0.05) << times;
+  }
+}
 
-// Twice its own noise is added. Where most of what a scan calls its own is the surface in its roughest places, that is
-// no constant: cylinders_cloud_le.ply (10 % too much) and scratched_surface.sur (25 %) are left out.
-TEST_P(NoiseOfScan, IsLargerByWhatIsAddedWithinSixPerCent) {
-  FETTLE_SCAN_OR_SKIP(path, GetParam());
+struct ScanAndBound {
+  const char* file;
+  double most = 0.06;  // off, of what is added
+};
+
+class NoiseOfScan : public testing::TestWithParam<ScanAndBound> {};
+
+// Prints what is found of added noise as large as the scan's own, twice and four times that, and the windows that count
+// without it and with as much; twice is tested. Scratches are rougher than the rest by so much that it is no constant.
+// ground_surface_aniso.x3p is left out: its own noise is the finest detail alone.
+TEST_P(NoiseOfScan, IsLargerByWhatIsAdded) {
+  FETTLE_SCAN_OR_SKIP(path, GetParam().file);
   JobControl job;
   ImportOptions options;
   if (path.find("_u16") != std::string::npos) options.no_data = 0.0;  // these files cannot say so
@@ -205,27 +230,40 @@ TEST_P(NoiseOfScan, IsLargerByWhatIsAddedWithinSixPerCent) {
   const Grid grid = imported->field.grid();
   std::vector<float> z(static_cast<std::size_t>(grid.samples()));
   imported->field.reader().readHeights(0, 0, grid.width, grid.height, z.data(), grid.width);
-  const double own = modelOf(imported->field).sigma;
-  const double added = 2.0 * own;
-  for (std::size_t i = 0; i < z.size(); ++i) {
-    const auto at = static_cast<std::int32_t>(i);
-    z[i] += static_cast<float>(added * white(5203, at % grid.width, at / grid.width));
-  }
-  const double both = modelOf(makeField(grid, z)).sigma;
-  EXPECT_NEAR(std::sqrt(both * both - own * own) / added, 1.0, 0.06) << own;
+  const NoiseModel alone = modelOf(imported->field);
+  const double own = alone.sigma;
+  std::int64_t windows = 0;
+  const auto found = [&](double times) {
+    const double added = times * own;
+    std::vector<float> noisy = z;
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      const auto at = static_cast<std::int32_t>(i);
+      noisy[i] += static_cast<float>(added * white(5203, at % grid.width, at / grid.width));
+    }
+    const NoiseModel both = modelOf(makeField(grid, noisy));
+    windows = both.windows;
+    return std::sqrt(both.sigma * both.sigma - own * own) / added;
+  };
+  const double twice = found(2.0), most = found(4.0), once = found(1.0);
+  fmt::print("{}: {:.2f} {:.2f} {:.2f}, windows {} and {}\n", GetParam().file, once, twice, most,
+             alone.windows, windows);
+  EXPECT_NEAR(twice, 1.0, GetParam().most) << own;
 }
 
-INSTANTIATE_TEST_SUITE_P(Real, NoiseOfScan,
-                         testing::Values("afm_line_noise_f32.tif", "autzen_park.las", "bullet_land.x3p",
-                                         "chip_confocal_points.xyz", "dsm_ahn_buildings.tif",
-                                         "dsm_village_sjtsk.tif", "kinect_boxes_depth_u16.tif",
-                                         "lunar_ridge.exr", "shapes_plate_u16.png", "tidal_marsh.asc",
-                                         "tray_bags_aniso_u16.tif"),
-                         [](const auto& scan) {
-                           std::string text = scan.param;
-                           for (char& c : text) c = c == '.' ? '_' : c;
-                           return text;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Real, NoiseOfScan,
+    testing::Values(ScanAndBound{"afm_line_noise_f32.tif"}, ScanAndBound{"autzen_park.las"},
+                    ScanAndBound{"bullet_land.x3p"}, ScanAndBound{"chip_confocal_points.xyz"},
+                    ScanAndBound{"cylinders_cloud_le.ply"}, ScanAndBound{"dsm_ahn_buildings.tif"},
+                    ScanAndBound{"dsm_village_sjtsk.tif"}, ScanAndBound{"kinect_boxes_depth_u16.tif"},
+                    ScanAndBound{"lunar_ridge.exr"}, ScanAndBound{"shapes_plate_u16.png"},
+                    ScanAndBound{"tidal_marsh.asc"}, ScanAndBound{"tray_bags_aniso_u16.tif"},
+                    ScanAndBound{"scratched_surface.sur", 0.16}),
+    [](const auto& scan) {
+      std::string text = scan.param.file;
+      for (char& c : text) c = c == '.' ? '_' : c;
+      return text;
+    });
 
 }  // namespace
 }  // namespace fettle::engine
