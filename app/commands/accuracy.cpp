@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -9,6 +12,7 @@
 #include "app/commands/plots/gnuplot.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/typed_values.h"
 #include "bench/accuracy/studies.h"
 #include "bench/machine.h"
 #include "engine/io/files/atomic_file.h"
@@ -23,6 +27,7 @@ struct AccuracyArguments {
   std::vector<std::string> only;
   double effort = 1.0;
   int seeds = 0, side = 0;  // 0: by the effort
+  std::vector<std::string> parts, methods;
 };
 
 constexpr struct {
@@ -40,6 +45,7 @@ constexpr struct {
 
 std::vector<Word> studyWords() {
   std::vector<Word> words;
+  words.reserve(std::size(kStudies));
   for (const auto& study : kStudies) words.emplace_back(study.id);
   return words;
 }
@@ -50,6 +56,8 @@ engine::Result<Report> accuracy(const AccuracyArguments& options, engine::JobCon
   studied.effort = options.effort;
   if (options.seeds > 0) studied.seeds = options.seeds;
   if (options.side > 0) studied.side = options.side;
+  studied.parts = options.parts;
+  studied.methods = options.methods;
   if (!options.scan.empty()) {
     auto scan = loadScan(options.scan, options.scan_options, job);
     if (!scan) return tl::unexpected(scan.error());
@@ -164,6 +172,16 @@ void addAccuracy(Command root, Chosen& chosen) {
        .range = Range{64.0, 4096.0},
        .unit = "samples",
        .otherwise = "by the effort"},
+      {.name = "--parts",
+       .to = &options->parts,
+       .text = "Of the study suggest: the parts that are scanned",
+       .words = partWords(),
+       .otherwise = "all"},
+      {.name = "--methods",
+       .to = &options->methods,
+       .text = "Of the study suggest: the filters that are run on the scans besides the one that is named, as "
+               "\"tv 31\"; named: that one alone",
+       .otherwise = "all"},
   });
   addScanOptions(command, options->scan_options);
   command.examples({{"fettle accuracy report --only contact --effort 0.05",

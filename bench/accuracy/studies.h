@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bench/accuracy/study.h"
 #include "engine/base/error.h"
@@ -24,6 +25,11 @@ struct AccuracyOptions {
   /// Of suggestionStudy: seeds of the noise, 1 .. 100, and samples along each side of its scans, 64 .. 4096; none: by
   /// the effort.
   std::optional<int> seeds{}, side{};
+  /// Of suggestionStudy: parts of the catalogue; none: all.
+  std::vector<std::string> parts{};
+  /// Of suggestionStudy: the filters (engine::methodOf) that are run on the scans, besides the one that is named;
+  /// "named": that one alone; none: all.
+  std::vector<std::string> methods{};
 };
 
 // Each study runs on the calling thread, except the code it measures. All are deterministic apart from times.

@@ -25,6 +25,7 @@ constexpr double kTolerance_mm = 0.012;  // of noise 1: that of the demonstratio
 constexpr int kFirstUnseen = 21;
 constexpr double kClose = 0.1;
 constexpr const char* kNamed = "the one that is named";
+constexpr const char* kNamedAlone = "named";  // AccuracyOptions::methods
 
 // What one filter was expected to leave of a scan, and left [um]. NaN: the part has no such samples.
 struct Expectation {
@@ -67,9 +68,38 @@ engine::Result<engine::TruthFigures> leftBy(const engine::SimulatedScan& scan,
   return engine::compareToTruth(filtered->field, scan.truth, scan.edges, quiet);
 }
 
-// Adds what one scan gives to each filter's row; the last is that of the filter that is named.
+bool isIn(const std::vector<std::string>& chosen, const std::string& one) {
+  return chosen.empty() || std::ranges::find(chosen, one) != chosen.end();
+}
+
+// The parts of the catalogue that are chosen.
+engine::Result<std::vector<engine::PartInfo>> partsOf(const AccuracyOptions& options) {
+  for (const std::string& name : options.parts)
+    if (std::ranges::none_of(engine::parts(), [&](const engine::PartInfo& p) { return p.name == name; }))
+      return engine::inputError("there is no part \"" + name + "\"", "--parts",
+                                "fettle simulate --help names them");
+  std::vector<engine::PartInfo> chosen;
+  for (const engine::PartInfo& part : engine::parts())
+    if (isIn(options.parts, std::string(part.name))) chosen.push_back(part);
+  return chosen;
+}
+
+// Whether all that is chosen is tried.
+engine::Status checkMethods(const std::vector<std::string>& methods,
+                            const std::vector<engine::FilterCandidate>& tried) {
+  for (const std::string& method : methods)
+    if (method != kNamedAlone && std::ranges::none_of(tried, [&](const engine::FilterCandidate& c) {
+          return engine::methodOf(c) == method;
+        }))
+      return engine::inputError("no filter \"" + method + "\" is tried", "--methods",
+                                "name one as the study's table does");
+  return {};
+}
+
+// Adds what one scan gives to each filter's row; the last is that of the filter that is named. Of `methods` alone, and
+// the one that is named, it is found what they leave of the scan.
 engine::Status addScan(const PartSubject& subject, std::int32_t side, int seed,
-                       std::vector<ExpectedOf>& rows) {
+                       const std::vector<std::string>& methods, std::vector<ExpectedOf>& rows) {
   const auto scan = scanOf(subject, side, seed);
   if (!scan) return tl::unexpected(scan.error());
   engine::SuggestionRequest request;
@@ -77,6 +107,7 @@ engine::Status addScan(const PartSubject& subject, std::int32_t side, int seed,
   engine::JobControl quiet;
   const auto found = engine::suggestFilter(scan->scan, request, quiet);
   if (!found) return tl::unexpected(found.error());
+  if (auto ok = checkMethods(methods, found->candidates); !ok) return ok;
   if (rows.empty()) {
     for (const engine::FilterCandidate& candidate : found->candidates)
       rows.push_back({engine::methodOf(candidate), {}});
@@ -84,11 +115,13 @@ engine::Status addScan(const PartSubject& subject, std::int32_t side, int seed,
   }
   for (std::size_t i = 0; i < found->candidates.size(); ++i) {
     const engine::FilterCandidate& candidate = found->candidates[i];
+    const bool chosen = isIn(methods, rows[i].method);
+    if (!chosen && i != found->pick) continue;
     const auto left = leftBy(*scan, candidate);
     if (!left) return tl::unexpected(left.error());
     const Expectation expectation{1e3 * candidate.error_flat, 1e3 * left->rmse_flat,
                                   1e3 * candidate.error_edge, 1e3 * left->rmse_edge, candidate.seconds};
-    rows[i].seeds.push_back(expectation);
+    if (chosen) rows[i].seeds.push_back(expectation);
     if (i == found->pick) rows.back().seeds.push_back(expectation);
   }
   return {};
@@ -156,21 +189,24 @@ engine::Result<Study> suggestionStudy(const AccuracyOptions& options, engine::Jo
       study.columns.push_back(fmt::format("{}: {}", where, figure));
   const int seeds = options.seeds.value_or(scanSizes(options.effort).seeds);
   const std::int32_t side = options.side.value_or(scanSizes(options.effort).side);
-  std::vector<engine::PartInfo> parts(engine::parts().begin(), engine::parts().end());
-  job.begin("expected errors", parts.size() * std::size(kNoises) * static_cast<std::size_t>(seeds));
+  const auto parts = partsOf(options);
+  if (!parts) return tl::unexpected(parts.error());
+  job.begin("expected errors", parts->size() * std::size(kNoises) * static_cast<std::size_t>(seeds));
   Close named_flat, named_near, all_flat, all_near;
-  for (const engine::PartInfo& part : parts)
+  for (const engine::PartInfo& part : *parts)
     for (const double noise : kNoises) {
       const std::string name = fmt::format("{}, noise x {:g}", part.name, noise);
       const std::string part_name(part.name);
       std::vector<ExpectedOf> rows;
       for (int seed = kFirstUnseen; seed < kFirstUnseen + seeds; ++seed) {
         if (job.cancelled()) return engine::cancelled();
-        if (auto ok = addScan({name.c_str(), part_name.c_str(), noise}, side, seed, rows); !ok)
+        if (auto ok = addScan({name.c_str(), part_name.c_str(), noise}, side, seed, options.methods, rows);
+            !ok)
           return tl::unexpected(ok.error());
         job.advance();
       }
       for (const ExpectedOf& of : rows) {
+        if (of.seeds.empty()) continue;
         for (const Expectation& e : of.seeds) {
           const bool named = of.method == kNamed;
           (named ? named_flat : all_flat).add(e.flat, e.flat_left);
@@ -186,9 +222,13 @@ engine::Result<Study> suggestionStudy(const AccuracyOptions& options, engine::Jo
       side, side, kFirstUnseen, kFirstUnseen + seeds - 1, 1e3 * kTolerance_mm);
   study.answer = fmt::format(
       "Of the filter that is named, {:.0f} % of the expectations for flats and {:.0f} % of those near edges "
-      "are within 10 "
-      "% of what it leaves; of all that are tried, {:.0f} and {:.0f} %.",
-      named_flat.percent(), named_near.percent(), all_flat.percent(), all_near.percent());
+      "are within 10 % of what it leaves",
+      named_flat.percent(), named_near.percent());
+  if (all_flat.all + all_near.all > 0)
+    study.answer += fmt::format("; of {}, {:.0f} and {:.0f} %",
+                                options.methods.empty() ? "all that are tried" : "those that were chosen",
+                                all_flat.percent(), all_near.percent());
+  study.answer += ".";
   return study;
 }
 

@@ -209,6 +209,46 @@ TEST(SuggestionStudy, HasEveryFilterOnEveryPartAndTheOneThatIsNamed) {
   EXPECT_EQ(named, 14);
 }
 
+TEST(SuggestionStudy, HasChosenPartsAndFiltersAlone) {
+  engine::JobControl job;
+  AccuracyOptions options;
+  options.seeds = 1;
+  options.side = 128;
+  options.parts = {"plate", "steps"};
+  options.methods = {"tv 31"};
+  const auto study = suggestionStudy(options, job);
+  ASSERT_TRUE(study) << study.error().line();
+  std::multiset<std::string> methods;
+  for (const AccuracyRow& row : study->rows) {
+    EXPECT_TRUE(row.subject.starts_with("plate") || row.subject.starts_with("steps")) << row.subject;
+    methods.insert(row.method);
+  }
+  EXPECT_EQ(methods.size(), 8U);
+  EXPECT_EQ(methods.count("tv 31"), 4U);
+  EXPECT_EQ(methods.count("the one that is named"), 4U);
+  options.parts = {"plate"};
+  options.methods = {"named"};
+  const auto named = suggestionStudy(options, job);
+  ASSERT_TRUE(named) << named.error().line();
+  ASSERT_EQ(named->rows.size(), 2U);
+  for (const AccuracyRow& row : named->rows) {
+    EXPECT_EQ(row.method, "the one that is named");
+    EXPECT_GT(row.more[0], 0.0);
+  }
+}
+
+TEST(SuggestionStudy, RefusesPartsAndFiltersThatThereAreNot) {
+  engine::JobControl job;
+  AccuracyOptions options;
+  options.seeds = 1;
+  options.side = 128;
+  options.parts = {"cube"};
+  EXPECT_EQ(suggestionStudy(options, job).error().kind, engine::ErrorKind::kInput);
+  options.parts = {"plate"};
+  options.methods = {"tv 30"};
+  EXPECT_EQ(suggestionStudy(options, job).error().kind, engine::ErrorKind::kInput);
+}
+
 TEST(EdgeLineStudy, LocatedLinesAreNearerThanTheHandAndTheirDeviationsAreHonest) {
   engine::JobControl job;
   AccuracyOptions options;
