@@ -17,7 +17,7 @@ constexpr double kCoarse = 2.0 * EdgeMap::kUsualSigma;
 constexpr double kSensitivity = 0.6;
 constexpr std::int32_t kApart = 4,
                        kFaintApart = 2;  // lines of a later search from those of earlier ones [samples]
-constexpr double kJump = 6.0, kFaintJump = 1.0;  // [sigma]
+constexpr double kJump = 6.0, kFaintJump = 2.5;  // [sigma]
 
 struct EdgeSamples {
   Grid grid;

@@ -17,8 +17,8 @@ namespace {
 constexpr int kKinds = 12;
 constexpr double kPlain = 12.0;         // [sigma]; what a tile of noise alone has is 8 to 9
 constexpr double kLeastOfKind = 0.005;  // of the judged samples; fewer count with those of less relief
-constexpr std::size_t kMostRare = 3;
-constexpr std::size_t kRareOf = 10000;
+constexpr std::size_t kMostRare = 8;
+constexpr std::size_t kRareOf = 5000;
 
 std::vector<float> sampleHeights(const Version& field) {
   const Grid& grid = field.grid();

@@ -28,8 +28,9 @@ class SampleJudge {
   /// What counts as an error of the filter.
   enum class Rare : std::uint8_t {
     kCount,
-    /// The largest errors, one of 10,000 samples and at most three, do not count. A filter that looks for lone samples
-    /// takes the tip of a rib for one on one scan of twenty, and a single such sample is several millimetres off.
+    /// The largest errors, one of 5,000 samples and at most eight, do not count. A filter that looks for lone samples
+    /// takes tips of ribs for some on one scan of twenty, where it finds four of them at least, and a single such sample
+    /// is several millimetres off.
     kLeftOut
   };
   /// Of `filtered`, which has the sample's size. Any thread. Throws std::bad_alloc.
