@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -10,8 +11,8 @@
 #include "app/commands/recipe_file.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
-#include "app/commands/typed_values.h"
 #include "app/terminal.h"
+#include "app/work/streams.h"
 #include "engine/base/stopwatch.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
@@ -32,6 +33,7 @@ struct ApplyArguments {
 struct Applied {
   engine::Version field;
   const engine::Version& original;
+  std::string scan;  // as messages name it
   int threads;
   Report steps = Report::array();
 };
@@ -39,26 +41,22 @@ struct Applied {
 engine::Status take(const RecipeFilter& step, Applied& at, engine::JobControl& job) {
   engine::FilterSpec spec = step.spec;
   spec.threads = at.threads;
-  if (!step.range_sigma.empty()) {
-    const auto range = parseHeight(step.range_sigma, at.field.grid(), "range_sigma");
-    if (!range) return tl::unexpected(range.error());
-    spec.range_sigma = *range;
-  }
-  if (!step.max_change.empty()) {
-    const auto limit = parseHeight(step.max_change, at.field.grid(), "max_change");
-    if (!limit) return tl::unexpected(limit.error());
-    spec.max_change = *limit;
-  }
+  if (step.range_sigma) spec.range_sigma = step.range_sigma->in(at.field.grid());
+  if (step.max_change) spec.max_change = step.max_change->in(at.field.grid());
+  if (spec.scope == engine::FilterScope::kOnlyMarks && at.field.reader().root().marked_children == 0)
+    warn(fmt::format("{}: step {} filters marked samples only, and none is marked", at.scan,
+                     at.steps.size() + 1));
   const auto ready = engine::withMeasuredRange(spec, at.field, job);
   if (!ready) return tl::unexpected(ready.error());
   auto filtered = engine::applyFilter(at.field, at.original, *ready, job);
   if (!filtered) return tl::unexpected(filtered.error());
   at.field = std::move(filtered->field);
-  at.steps.push_back({{"do", "filter"},
-                      {"filter", engine::filterOf(spec.kind).word},
-                      {"range_sigma", ready->range_sigma},
-                      {"changed", filtered->report.changed},
-                      {"rms_change", filtered->report.rms_change}});
+  Report done{{"do", "filter"},
+              {"filter", engine::filterOf(spec.kind).word},
+              {"changed", filtered->report.changed},
+              {"rms_change", filtered->report.rms_change}};
+  if (engine::hasRange(spec.kind)) done["range_sigma"] = ready->range_sigma;
+  at.steps.push_back(std::move(done));
   return {};
 }
 
@@ -84,7 +82,7 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
   if (!imported) return tl::unexpected(imported.error());
   const engine::Version original = imported->original ? *imported->original : imported->field;
   const engine::Stopwatch watch;
-  Applied at{imported->field, original, options.threads};
+  Applied at{imported->field, original, shownInput(task.in), options.threads};
   for (std::size_t k = 0; k < recipe.steps.size(); ++k)
     if (auto done = std::visit([&](const auto& step) { return take(step, at, job); }, recipe.steps[k]);
         !done) {
@@ -102,9 +100,12 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
 }
 
 engine::Result<Report> apply(const ApplyArguments& options, engine::JobControl& job) {
+  if (isStream(options.recipe) &&
+      std::any_of(options.files.files.begin(), options.files.files.end() - 1, isStream))
+    return engine::inputError("recipe and scan cannot both be standard input", "-", "name one of them");
   const auto recipe = readRecipe(options.recipe);
   if (!recipe) return tl::unexpected(recipe.error());
-  const auto tasks = batchTasks(options.files, {options.recipe}, job);
+  const auto tasks = batchTasks(options.files, {isStream(options.recipe) ? "" : options.recipe}, job);
   if (!tasks) return tl::unexpected(tasks.error());
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) {
@@ -126,7 +127,7 @@ void addApply(Command root, Chosen& chosen) {
   command.add({{.name = "RECIPE",
                 .to = &options->recipe,
                 .text = "The recipe, as fettle recipe prints it, TOML",
-                .kind = ValueKind::kFile,
+                .kind = ValueKind::kInput,
                 .required = true}});
   addBatchOptions(command, options->files);
   command.add({{.name = "--threads",
@@ -136,7 +137,12 @@ void addApply(Command root, Chosen& chosen) {
                 .otherwise = "0, one per core"}});
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
-  command.examples({{"fettle apply clean.toml scan.tif other.tif --out-dir cleaned",
+  command.notes(
+      "docs/formats.md describes the keys of a recipe. A filter without range_sigma takes that of each "
+      "scan's own "
+      "noise.");
+  command.examples({{"fettle apply clean.toml scan.tif clean.tif", "One scan"},
+                    {"fettle apply clean.toml scan.tif other.tif --out-dir cleaned",
                      "The same steps for two scans, into a folder"}});
 }
 

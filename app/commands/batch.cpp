@@ -71,11 +71,12 @@ std::string counted(std::size_t number, const char* what) {
 
 void addBatchOptions(Command command, BatchOptions& options) {
   command.add({
-      {.name = "FILES",
+      {.name = "IN",
        .to = &options.files,
        .text = "IN OUT: the scan to read and the file to write, format by extension, - for standard input "
-               "and output; with --out-dir all are scans to read",
+               "and output; with --out-dir any number of scans to read, and no OUT",
        .kind = ValueKind::kInput,
+       .shown = "IN... OUT",
        .required = true},
       {.name = "--out-dir",
        .to = &options.out_dir,

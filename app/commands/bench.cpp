@@ -293,7 +293,10 @@ void addBench(Command root, Chosen& chosen) {
        .text = "Length of each side of the field",
        .range = kSides,
        .unit = "samples"},
-      {.name = "--ticks", .to = &haptic_options->ticks, .text = "Ticks of each run"},
+      {.name = "--ticks",
+       .to = &haptic_options->ticks,
+       .text = "Ticks of each run",
+       .range = Range{10.0, 1e8}},
       {.name = "--repeats", .to = &haptic_options->repeats, .text = "Runs of each row", .range = kRepeats},
       {.name = "--speed",
        .to = &haptic_options->speeds_mm_s,
@@ -312,7 +315,10 @@ void addBench(Command root, Chosen& chosen) {
        .text = "Length of each side of the field",
        .range = kSides,
        .unit = "samples"},
-      {.name = "--ticks", .to = &effects_options->ticks, .text = "Ticks of each run"},
+      {.name = "--ticks",
+       .to = &effects_options->ticks,
+       .text = "Ticks of each run",
+       .range = Range{1000.0, 1e8}},
       {.name = "--repeats", .to = &effects_options->repeats, .text = "Runs of each row", .range = kRepeats},
   });
 
@@ -327,10 +333,15 @@ void addBench(Command root, Chosen& chosen) {
       },
       printLoop);
   lateness.add({
-      {.name = "--seconds", .to = &loop_options->seconds, .text = "Time of measuring", .unit = "seconds"},
+      {.name = "--seconds",
+       .to = &loop_options->seconds,
+       .text = "Time of measuring",
+       .range = Range{0.0, 3600.0},
+       .unit = "seconds"},
       {.name = "--rate",
        .to = &loop_options->rate_hz,
        .text = "Rate of the loop",
+       .range = Range{1000.0, 10000.0},
        .unit = "ticks per second"},
       {.name = "--busy", .to = busy.get(), .text = "Keep every core busy with other processes"},
   });
@@ -364,7 +375,7 @@ void addBench(Command root, Chosen& chosen) {
   drawing.add({
       {.name = "--side",
        .to = &render_options->sides,
-       .text = "Lengths of each side, one field each (10240: 100M, 31623: 1G)",
+       .text = "Lengths of each side, one field each; 10240: 100M, 31623: 1G",
        .range = kSides,
        .unit = "samples"},
       {.name = "--loop",

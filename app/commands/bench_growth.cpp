@@ -112,6 +112,7 @@ void addBenchGrowth(Command bench, Chosen& chosen) {
       {.name = "--largest",
        .to = &options->bench.largest,
        .text = "Length of the sides of the largest field",
+       .range = Range{256.0, 32768.0},
        .unit = "samples"},
       {.name = "--effort",
        .to = &options->bench.effort,

@@ -68,8 +68,12 @@ void addBenchImport(Command bench, Chosen& chosen) {
       {.name = "--side",
        .to = &options->side,
        .text = "Length of each side of that field; above 2048 GeoTIFF alone",
+       .range = Range{16.0, 16384.0},
        .unit = "samples"},
-      {.name = "--repeats", .to = &options->repeats, .text = "Imports of each file"},
+      {.name = "--repeats",
+       .to = &options->repeats,
+       .text = "Imports of each file",
+       .range = Range{1.0, 100.0}},
   });
 }
 

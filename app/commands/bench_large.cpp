@@ -123,7 +123,11 @@ void addBenchLarge(Command bench, Chosen& chosen) {
       },
       printBenchLarge);
   command.add({
-      {.name = "--side", .to = &options->side, .text = "Length of each side of the scan", .unit = "samples"},
+      {.name = "--side",
+       .to = &options->side,
+       .text = "Length of each side of the scan",
+       .range = Range{256.0, 131072.0},
+       .unit = "samples"},
       {.name = "--folder",
        .to = &options->folder,
        .text = "Folder for its files",

@@ -84,16 +84,17 @@ void addOutputFlags(Command app, Chosen& chosen) {
 Command addCommand(Command root, Chosen& chosen, const std::string& name, const std::string& description,
                    std::function<engine::Result<Report>(engine::JobControl&)> run,
                    std::function<void(const Report&)> print, Progress progress,
-                   std::function<int(const Report&)> status) {
+                   std::function<int(const Report&)> status, Printing printing) {
   Command command = root.subcommand(name, description);
   addOutputFlags(command, chosen);
-  command.onChosen(
-      [&chosen, run = std::move(run), print = std::move(print), progress, status = std::move(status)] {
-        chosen.run = run;
-        chosen.print = print;
-        chosen.progress = progress;
-        chosen.status = status;
-      });
+  command.onChosen([&chosen, run = std::move(run), print = std::move(print), progress,
+                    status = std::move(status), printing] {
+    chosen.run = run;
+    chosen.print = print;
+    chosen.progress = progress;
+    chosen.status = status;
+    chosen.printing = printing;
+  });
   return command;
 }
 

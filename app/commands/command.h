@@ -19,6 +19,12 @@ enum class Progress : std::uint8_t {
   kOwn,   ///< the command itself
 };
 
+/// What a command prints as text.
+enum class Printing : std::uint8_t {
+  kReport,  ///< what it did: not with --quiet
+  kResult,  ///< what was asked for: with --quiet as well
+};
+
 /// The command that the command line chose, ready to run. `run` does the work and returns the output of
 /// --json; `print` prints it as text on stdout (printReport by default).
 struct Chosen {
@@ -26,6 +32,7 @@ struct Chosen {
   std::function<void(const Report&)> print;
   std::function<int(const Report&)> status;  ///< exit status of what `run` reported; empty: 0
   Progress progress = Progress::kLine;
+  Printing printing = Printing::kReport;
   bool json = false;
   bool quiet = false;  ///< prints only errors
 };
@@ -45,7 +52,8 @@ void addOutputFlags(Command app, Chosen& chosen);
 Command addCommand(Command root, Chosen& chosen, const std::string& name, const std::string& description,
                    std::function<engine::Result<Report>(engine::JobControl&)> run,
                    std::function<void(const Report&)> print = printReport,
-                   Progress progress = Progress::kLine, std::function<int(const Report&)> status = {});
+                   Progress progress = Progress::kLine, std::function<int(const Report&)> status = {},
+                   Printing printing = Printing::kReport);
 
 void addInfo(Command root, Chosen& chosen);
 void addSynth(Command root, Chosen& chosen);

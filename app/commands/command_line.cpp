@@ -79,6 +79,7 @@ void addToParser(CLI::App& app, const Parameter& p) {
   CLI::Option* option = optionFor(app, p);
   if (option == nullptr) return;
   option->required(p.required);
+  option->type_name(std::string(infoOf(p.kind).shown));  // in its messages
   if (p.between != '\0') option->delimiter(p.between);
   if (p.values > 1) option->expected(p.values);
   if (p.one_word) option->allow_extra_args(false);

@@ -26,9 +26,7 @@ engine::Result<Report> journal(const std::string& path, engine::JobControl& job)
     if (!action.is_object())
       return engine::inputError(fmt::format("entry {} of the journal is no JSON object", entries.size() + 1),
                                 path, "the file is damaged: take a copy");
-    for (const auto& [key, value] : action.items())
-      // What a step led to is the state of the row, too; of an undo they differ.
-      row[key == "state" ? "to_state" : key] = value;
+    row["action"] = action;
     if (!entry.data.empty()) row["data_bytes"] = entry.data.size();
     entries.push_back(std::move(row));
   }
@@ -45,16 +43,18 @@ void addJournal(Command root, Chosen& chosen) {
       [](const Report& report) {
         for (const Report& entry : report["entries"])
           fmt::print("{}\n", entry.dump(-1, ' ', false, Report::error_handler_t::replace));
-      });
+      },
+      Progress::kLine, {}, Printing::kResult);
   command.add({{.name = "SESSION",
                 .to = session.get(),
                 .text = "The session, NAME.fettle",
                 .kind = ValueKind::kFile,
                 .required = true}});
   command.notes(
-      "Each line has the number of the entry, its time (UTC), the state of the field afterwards, and the "
-      "action as "
-      "docs/formats.md describes it; data_bytes is the size of larger data, such as the ticks of a stroke.");
+      "Each line has the number of the entry, when it was stored (UTC) and the state that the field had "
+      "then, and the "
+      "action as docs/formats.md describes it; data_bytes is the size of larger data, such as the ticks of a "
+      "stroke.");
 }
 
 }  // namespace fettle::app

@@ -266,6 +266,7 @@ void addMark(Command root, Chosen& chosen) {
       {.name = "--thickness",
        .to = &options->choice.thickness,
        .text = "Edges and strokes: marked to this distance",
+       .range = Range{0.0, 64.0},
        .unit = "samples"},
       {.name = "--add",
        .to = &options->add,

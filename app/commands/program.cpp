@@ -52,7 +52,7 @@ int runChosen(const Chosen& chosen) {
     addKeptWarnings(*result);
     // A path may contain bytes that are not UTF-8: they are replaced in the report, never in the file system.
     fmt::print("{}\n", result->dump(2, ' ', false, Report::error_handler_t::replace));
-  } else if (!chosen.quiet) {
+  } else if (!chosen.quiet || chosen.printing == Printing::kResult) {
     chosen.print(*result);
   }
   return finish(chosen.status ? chosen.status(*result) : 0);
@@ -129,7 +129,11 @@ int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)
   addOutputFlags(root, chosen);
   add_commands(root, chosen);
   // Replaced by takeHelpForOption() before it can be chosen.
-  root.subcommand("help", "The help of a command, as its --help: fettle help filter");
+  std::vector<std::string> unused;
+  std::vector<Word> commands;
+  for (const CommandTable& command : root.table().commands) commands.emplace_back(command.name);
+  root.subcommand("help", "The help of a command, as its --help: fettle help filter")
+      .add({{.name = "COMMAND", .to = &unused, .text = "The command", .words = commands}});
 
   const auto text = line.parse(arguments);
   if (!text) return report(usageError(text.error()));

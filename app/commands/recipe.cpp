@@ -1,9 +1,11 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/commands/command.h"
 #include "app/commands/recipe_file.h"
+#include "app/terminal.h"
 #include "engine/formats/formats.h"
 
 namespace fettle::app {
@@ -18,8 +20,12 @@ engine::Result<Report> recipe(const std::string& path, engine::JobControl& job) 
   const auto recipe = recipeOf(*session, job);
   if (!recipe) return tl::unexpected(recipe.error());
   if (recipe->steps.empty())
-    return engine::inputError("no step of the session can be repeated on another scan", path,
-                              recipe->left_out.empty() ? "it has no steps" : recipe->left_out.front());
+    return engine::inputError(recipe->left_out.empty()
+                                  ? "the session has no steps"
+                                  : fmt::format("no step of the session can be repeated on another scan ({})",
+                                                fmt::join(recipe->left_out, "; ")),
+                              path, "write a recipe by hand: docs/formats.md");
+  for (const std::string& step : recipe->left_out) warn(fmt::format("{}: left out: {}", path, step));
   return Report{
       {"recipe", recipeText(*recipe)}, {"steps", recipe->steps.size()}, {"left_out", recipe->left_out}};
 }
@@ -31,16 +37,17 @@ void addRecipe(Command root, Chosen& chosen) {
   Command command = addCommand(
       root, chosen, "recipe", "The steps of a session as a recipe for other scans, on standard output",
       [session](engine::JobControl& job) { return recipe(*session, job); },
-      [](const Report& report) { fmt::print("{}", report["recipe"].get<std::string>()); });
+      [](const Report& report) { fmt::print("{}", report["recipe"].get<std::string>()); }, Progress::kLine,
+      {}, Printing::kResult);
   command.add({{.name = "SESSION",
                 .to = session.get(),
                 .text = "The session, NAME.fettle",
                 .kind = ValueKind::kFile,
                 .required = true}});
   command.notes(
-      "Filters and inversions are repeated; strokes, and marks and lines set by hand, belong to their scan "
-      "and are "
-      "named as left out.");
+      "Filters and inversions are repeated. Strokes, and marks and lines, drawn or suggested, belong to "
+      "their scan: a "
+      "warning and a comment name each that is left out. fettle apply does the steps.");
 }
 
 }  // namespace fettle::app

@@ -1,19 +1,26 @@
 #include "app/commands/recipe_file.h"
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <iostream>
 #include <map>
 #include <optional>
-#include <set>
 #include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 
 #include "app/work/spelling.h"
+#include "app/work/streams.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
+#include "engine/io/import.h"
 #include "haptic/journal/journal.h"
 
 namespace fettle::app {
@@ -21,7 +28,9 @@ namespace fettle::app {
 namespace {
 
 constexpr int kRecipeVersion = 1;
-constexpr std::string_view kFilterWord = "filter", kEdgesWord = "mark_edges", kInvertWord = "invert";
+constexpr const char* kFilterWord = "filter";
+constexpr const char* kEdgesWord = "mark_edges";
+constexpr const char* kInvertWord = "invert";
 constexpr const char* kRecipeRemedy = "docs/formats.md describes every key";
 
 // Reads one table of a recipe; the first problem is kept, and what follows it is not read.
@@ -32,15 +41,17 @@ class StepReader {
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
   [[nodiscard]] RecipeStep read() {
-    const std::string what =
-        word("do", {std::string(kFilterWord), std::string(kEdgesWord), std::string(kInvertWord)}, "");
-    RecipeStep step = RecipeInvert{};
-    if (what == kFilterWord) step = filter();
-    if (what == kEdgesWord) step = edges();
-    for (const auto& [key, value] : table_)
-      if (!known_.contains(std::string(key.str())))
-        complain(value, fmt::format("{} has no key \"{}\"", what.empty() ? "a step" : what, key.str()));
-    return step;
+    const std::string what = word("do", {kFilterWord, kEdgesWord, kInvertWord}, "");
+    if (what == kFilterWord) {
+      onlyKeys(what, {"do", "filter", "window", "sigma", "passes", "marks", "range_sigma", "max_change"});
+      return filter();
+    }
+    if (what == kEdgesWord) {
+      onlyKeys(what, {"do", "scale", "sensitivity", "thickness"});
+      return edges();
+    }
+    onlyKeys(what, {"do"});
+    return RecipeInvert{};
   }
 
  private:
@@ -48,14 +59,19 @@ class StepReader {
     if (problem_.empty()) problem_ = fmt::format("line {}: {}", at.source().begin.line, text);
   }
 
-  const toml::node* at(const std::string& key) {
-    known_.insert(key);
-    return table_.get(key);
+  // First of all, since a misspelt key is also one that is missing.
+  void onlyKeys(const std::string& what, const std::vector<std::string>& keys) {
+    for (const auto& [key, value] : table_) {
+      const std::string name(key.str());
+      if (std::find(keys.begin(), keys.end(), name) != keys.end()) continue;
+      const std::string meant = didYouMean(name, keys);
+      complain(value, fmt::format("{} has no key \"{}\"{}{}", what, name, meant.empty() ? "" : "; ", meant));
+    }
   }
 
   // One of `words`, or `usual` where the key is missing; an empty one must be there.
   std::string word(const std::string& key, const std::vector<std::string>& words, const std::string& usual) {
-    const toml::node* node = at(key);
+    const toml::node* node = table_.get(key);
     if (node == nullptr) {
       if (usual.empty()) complain(table_, fmt::format("the step has no \"{}\"", key));
       return usual;
@@ -70,11 +86,12 @@ class StepReader {
   }
 
   void number(const std::string& key, double& value, double lowest, double highest) {
-    const toml::node* node = at(key);
+    const toml::node* node = table_.get(key);
     if (node == nullptr) return;
     const std::optional<double> read = node->value<double>();
     if (!read || !(*read >= lowest && *read <= highest))
-      complain(*node, fmt::format("{} is not a number from {:g} to {:g}", key, lowest, highest));
+      complain(*node, fmt::format("{} is not a number from {:g} to {:g}{}", key, lowest, highest,
+                                  node->is_string() ? ": write it without quotes" : ""));
     else
       value = *read;
   }
@@ -88,13 +105,27 @@ class StepReader {
       value = static_cast<int>(read);
   }
 
-  void length(const std::string& key, std::string& value) {
-    const toml::node* node = at(key);
+  void length(const std::string& key, std::optional<RecipeLength>& value, double least) {
+    const toml::node* node = table_.get(key);
     if (node == nullptr) return;
-    if (node->is_string())
-      value = node->value_or(std::string());
+    RecipeLength read;
+    bool is_length = false;
+    if (const std::optional<double> number = node->value<double>()) {
+      read.value = *number;
+      is_length = true;
+    } else if (node->is_string()) {
+      const std::string typed = node->value_or(std::string());
+      const auto [end, error] = std::from_chars(typed.data(), typed.data() + typed.size(), read.value);
+      read.unit = engine::lengthUnitFromName(std::string(end, typed.data() + typed.size()));
+      is_length = error == std::errc{} && read.unit.has_value();
+    }
+    if (!is_length)
+      complain(*node,
+               key + R"( is no length: give one with its unit, "20um", or a number in the scan's own unit)");
+    else if (!std::isfinite(read.value) || read.value < least)
+      complain(*node, fmt::format("{} is below {:g} or not finite", key, least));
     else
-      complain(*node, key + R"( is not a length with its unit, such as "20um")");
+      value = read;
   }
 
   RecipeFilter filter() {
@@ -108,11 +139,14 @@ class StepReader {
     whole("passes", step.spec.passes, 1, engine::FilterSpec::kMaxPasses);
     number("sigma", step.spec.sigma, 0.0, 1e6);
     if (word("marks", {"keep", "only"}, "keep") == "only") step.spec.scope = engine::FilterScope::kOnlyMarks;
-    length("range_sigma", step.range_sigma);
-    length("max_change", step.max_change);
+    length("range_sigma", step.range_sigma, engine::FilterSpec::kLeastRange);
+    length("max_change", step.max_change, 0.0);
     engine::FilterSpec ranged = step.spec;
-    if (engine::hasRange(step.spec.kind) || !step.range_sigma.empty()) ranged.range_sigma = 1.0;
-    if (const auto valid = engine::validate(ranged); !valid) complain(table_, valid.error().what);
+    if (engine::hasRange(step.spec.kind) || step.range_sigma) ranged.range_sigma = 1.0;
+    if (const auto valid = engine::validate(ranged); !valid) {
+      const toml::node* named = table_.get(valid.error().where);
+      complain(named != nullptr ? *named : table_, valid.error().what);
+    }
     return step;
   }
 
@@ -125,11 +159,15 @@ class StepReader {
   }
 
   const toml::table& table_;
-  std::set<std::string> known_;
   std::string problem_;
 };
 
 // Numbers as they are read back to the same bits.
+std::string textOf(const RecipeLength& length) {
+  return length.unit ? fmt::format("\"{}{}\"", length.value, length.unit->name)
+                     : fmt::format("{}  # in the height unit of the scan", length.value);
+}
+
 std::string textOf(const RecipeFilter& step) {
   const engine::Filter& filter = engine::filterOf(step.spec.kind);
   const engine::FilterSpec usual;
@@ -138,12 +176,12 @@ std::string textOf(const RecipeFilter& step) {
   if (step.spec.passes != usual.passes) text += fmt::format("passes = {}\n", step.spec.passes);
   if (filter.sigma.exists() && step.spec.sigma != usual.sigma)
     text += fmt::format("sigma = {}\n", step.spec.sigma);
-  if (!step.range_sigma.empty())
-    text += fmt::format("range_sigma = \"{}\"\n", step.range_sigma);
+  if (step.range_sigma)
+    text += fmt::format("range_sigma = {}\n", textOf(*step.range_sigma));
   else if (filter.range_sigma.exists())
     text += "# range_sigma: from the noise of each scan\n";
   if (step.spec.scope == engine::FilterScope::kOnlyMarks) text += "marks = \"only\"\n";
-  if (!step.max_change.empty()) text += fmt::format("max_change = \"{}\"\n", step.max_change);
+  if (step.max_change) text += fmt::format("max_change = {}\n", textOf(*step.max_change));
   return text;
 }
 
@@ -180,10 +218,19 @@ std::map<std::int64_t, Made> madeBy(const engine::Session& session) {
 
 }  // namespace
 
+double RecipeLength::in(const engine::Grid& grid) const noexcept {
+  return unit ? value * unit->mm / grid.height_unit.mm : value;
+}
+
 engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobControl& job) {
   const engine::History& history = session.history;
   const std::map<std::int64_t, Made> made = madeBy(session);
-  const std::string unit = history.current().grid().height_unit.name;
+  // A unit that is no length, such as volts, is that of the scan; a recipe names only those that it can read.
+  const engine::LengthUnit& unit = history.current().grid().height_unit;
+  const auto known = engine::lengthUnitFromName(unit.name);
+  const auto length = [&](double value) {
+    return RecipeLength{value, known && known->mm == unit.mm ? known : std::nullopt};
+  };
   Recipe recipe;
   for (std::int64_t k = history.first() + 1; k <= history.number(); ++k) {
     const engine::StepInfo& info = history.info(k);
@@ -208,10 +255,10 @@ engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobContr
         if (!measured && measured.error().kind == engine::ErrorKind::kCancelled)
           return tl::unexpected(measured.error());
         if (!measured || measured->range_sigma != step.spec.range_sigma)
-          step.range_sigma = fmt::format("{}{}", step.spec.range_sigma, unit);
+          step.range_sigma = length(step.spec.range_sigma);
         step.spec.range_sigma = 0.0;
       }
-      if (step.spec.max_change) step.max_change = fmt::format("{}{}", *step.spec.max_change, unit);
+      if (step.spec.max_change) step.max_change = length(*step.spec.max_change);
       step.spec.max_change.reset();
       recipe.steps.emplace_back(step);
     }
@@ -232,7 +279,8 @@ std::string recipeText(const Recipe& recipe) {
 engine::Result<Recipe> parseRecipe(const std::string& text, const std::string& name) try {
   const toml::table file = toml::parse(text, name);
   const auto refused = [&](const std::string& what) { return engine::inputError(what, name, kRecipeRemedy); };
-  if (file["recipe"].value_or(0) != kRecipeVersion)
+  if (const auto* version = file["recipe"].as_integer();
+      version == nullptr || version->get() != kRecipeVersion)
     return refused(fmt::format("this is no recipe of version {}", kRecipeVersion));
   for (const auto& [key, value] : file)
     if (key.str() != "recipe" && key.str() != "step")
@@ -240,6 +288,8 @@ engine::Result<Recipe> parseRecipe(const std::string& text, const std::string& n
           fmt::format("line {}: a recipe has no key \"{}\"", value.source().begin.line, key.str()));
   Recipe recipe;
   const toml::array* steps = file["step"].as_array();
+  if (const toml::node* other = file.get("step"); other != nullptr && steps == nullptr)
+    return refused(fmt::format("line {}: step is no list: write [[step]]", other->source().begin.line));
   if (steps == nullptr || steps->empty()) return refused("the recipe has no steps");
   for (const toml::node& node : *steps) {
     const toml::table* table = node.as_table();
@@ -255,10 +305,20 @@ engine::Result<Recipe> parseRecipe(const std::string& text, const std::string& n
 }
 
 engine::Result<Recipe> readRecipe(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return engine::inputError("the recipe cannot be read", path, "check path and rights");
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  return parseRecipe(text, path);
+  std::ifstream file;
+  std::error_code error;
+  if (!isStream(path) && !std::filesystem::is_directory(path, error)) file.open(path, std::ios::binary);
+  std::istream& in = isStream(path) ? std::cin : file;
+  if (!isStream(path) && !file.is_open())
+    return engine::inputError("the recipe cannot be read", path, "check path and rights");
+  // A recipe is a page of text; a path given by mistake must not fill the memory.
+  constexpr std::size_t kLongest = 1U << 20U;
+  std::string text(kLongest + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() > kLongest)
+    return engine::inputError("the file is too long for a recipe", shownInput(path));
+  return parseRecipe(text, shownInput(path));
 }
 
 }  // namespace fettle::app

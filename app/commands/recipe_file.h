@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/grid.h"
 #include "engine/filter/filter.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/session/session.h"
@@ -15,12 +17,19 @@ namespace fettle::app {
 // A recipe: what was done to one scan, to be done to others. A TOML file that a person can read and change;
 // docs/formats.md describes it.
 
+/// A difference of heights.
+struct RecipeLength {
+  double value = 0.0;
+  std::optional<engine::LengthUnit> unit;  ///< none: the height unit of each scan
+
+  [[nodiscard]] double in(const engine::Grid& grid) const noexcept;  ///< [height_unit]
+};
+
 /// A filter over the whole field.
 struct RecipeFilter {
-  /// Without lengths: these have units of their own, and are set when the scan is known.
-  engine::FilterSpec spec;
-  std::string range_sigma;  ///< a length as typed, "21.5um"; empty: from the noise of each scan
-  std::string max_change;   ///< a length as typed; empty: no limit
+  engine::FilterSpec spec;                  ///< without lengths, which are set when the scan is known
+  std::optional<RecipeLength> range_sigma;  ///< above 0; none: from the noise of each scan
+  std::optional<RecipeLength> max_change;   ///< at least 0; none: no limit
 };
 
 /// The suggested edges are marked, on top of the marks there are.
@@ -52,7 +61,7 @@ struct Recipe {
 /// no steps.
 [[nodiscard]] engine::Result<Recipe> parseRecipe(const std::string& text, const std::string& name);
 
-/// Errors: those of parseRecipe; the file cannot be read.
+/// "-" is standard input. Errors: those of parseRecipe; the file cannot be read or is longer than a megabyte.
 [[nodiscard]] engine::Result<Recipe> readRecipe(const std::string& path);
 
 }  // namespace fettle::app

@@ -342,13 +342,20 @@ engine::Result<Report> record(const RecordArguments& options, engine::JobControl
 }
 
 constexpr const char* kRecordNotes =
-    R"(Safety: a force device gives no force until the user presses a, and likewise after every fault (50 ms without
-input, the device unplugged, the program delayed): the force then rises within half a second. Editing tools act
-only while there is force. Zero force is sent at every exit of the program. A scene with more stiffness or damping
-than the device can hold is refused, with the largest possible value. Keys during the session:
-  a arm   d disarm   c calibrate: the stylus is held in its home pose   {}   q end
-Ctrl-C ends and stores the session. A killed program leaves the recording, except for its last second, in
-a temporary file next to STROKES. Bit-identical: fettle replay SCAN STROKES OUT, with the same --scene and --marks.)";
+    "Safety: a force device gives no force until the user presses a, and likewise after every fault (50 ms "
+    "without "
+    "input, the device unplugged, the program delayed): the force then rises within half a second. Editing "
+    "tools act "
+    "only while there is force. Zero force is sent at every exit of the program. A scene with more stiffness "
+    "or "
+    "damping than the device can hold is refused, with the largest possible value.\n"
+    "Keys during the session: a arm, d disarm, c calibrate (the stylus is held in its home pose), {}, q "
+    "end.\n"
+    "Ctrl-C ends and stores the session. A killed program leaves the recording, except for its last second, "
+    "in a "
+    "temporary file next to STROKES. Bit-identical: fettle replay SCAN STROKES OUT, with the same --scene "
+    "and "
+    "--marks.";
 
 }  // namespace
 
@@ -430,7 +437,7 @@ void addRecord(Command root, Chosen& chosen) {
   addOriginalOption(command, options->original);
   addForceOption(command, options->replacing);
   addScanOptions(command, options->reading);
-  command.notes(fmt::format(kRecordNotes, toolKeys("   ")));
+  command.notes(fmt::format(kRecordNotes, toolKeys(", ")));
   command.examples({{"fettle record scan.tif again.csv touched.tif --device hand:strokes.csv --seconds 1",
                      "A simulated hand that follows recorded strokes, for a second"}});
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,18 +15,24 @@ namespace fettle::app {
 
 namespace {
 
-std::string outside(const std::string& typed, Range range) {
-  // Parsed like options of this type; NaN fails both comparisons.
+// The number of an option as its parser reads it; NaN where the text is none.
+double numberOf(const std::string& typed, bool whole) {
   char* end = nullptr;
-  const auto value = static_cast<double>(std::strtold(typed.c_str(), &end));
-  if (!typed.empty() && end == typed.c_str() + typed.size() && value >= range.lowest &&
-      value <= range.highest)
-    return "";
+  const auto value = whole ? static_cast<double>(std::strtoll(typed.c_str(), &end, 0))
+                           : static_cast<double>(std::strtold(typed.c_str(), &end));
+  return !typed.empty() && end == typed.c_str() + typed.size() ? value
+                                                               : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::string outside(const std::string& typed, Range range, bool whole) {
+  const double value = numberOf(typed, whole);  // NaN fails both comparisons
+  if (value >= range.lowest && value <= range.highest) return "";
+  const char* number = whole ? "whole number" : "number";
   if (std::isinf(range.highest))
-    return fmt::format("{} is not a number of at least {:g}", typed, range.lowest);
+    return fmt::format("{} is not a {} of at least {:g}", typed, number, range.lowest);
   if (std::isinf(range.lowest))
-    return fmt::format("{} is not a number of at most {:g}", typed, range.highest);
-  return fmt::format("{} is not a number from {:g} to {:g}", typed, range.lowest, range.highest);
+    return fmt::format("{} is not a {} of at most {:g}", typed, number, range.highest);
+  return fmt::format("{} is not a {} from {} to {}", typed, number, range.lowest, range.highest);
 }
 
 std::string noneOf(const std::string& typed, const std::vector<std::string>& words) {
@@ -40,7 +47,9 @@ std::string noneOf(const std::string& typed, const std::vector<std::string>& wor
 std::vector<std::function<std::string(const std::string&)>> problemsOf(const Parameter& p) {
   std::vector<std::function<std::string(const std::string&)>> problems;
   if (p.range)
-    problems.emplace_back([range = *p.range](const std::string& typed) { return outside(typed, range); });
+    problems.emplace_back([range = *p.range, whole = p.kind == ValueKind::kWhole](const std::string& typed) {
+      return outside(typed, range, whole);
+    });
   if (!p.words.empty())
     problems.emplace_back([words = wordsOf(p)](const std::string& typed) { return noneOf(typed, words); });
   if (p.kind == ValueKind::kFile || p.kind == ValueKind::kNewFile)

@@ -66,7 +66,8 @@ void addView(Command root, Chosen& chosen) {
        .unit = "ticks per second"},
       {.name = "--size",
        .to = &options->size,
-       .text = "Size of the window",
+       .text =
+           fmt::format("Size of the window, each side {} to {}", kWindowSides.smallest, kWindowSides.largest),
        .kind = ValueKind::kSize,
        .unit = "pixels"},
       {.name = "--ui-scale",

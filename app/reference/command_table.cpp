@@ -20,13 +20,13 @@ constexpr std::array<ValueKindInfo, 14> kValueKinds{{
     {ValueKind::kWhole, "whole", "N", "a whole number"},
     {ValueKind::kNumber, "number", "NUMBER", "a number"},
     {ValueKind::kLength, "length", "LENGTH",
-     "a number in the scan's own unit, or with a unit: 0.02, 20um, 0.5mm; nm, um, mm, cm, m, in, ft"},
+     "a number in the scan's own unit, or with one: 0.02, 20um, 0.5mm; nm, um, mm, cm, m, km, in, ft, ftUS"},
     {ValueKind::kSize, "size", "WIDTHxHEIGHT", "two whole numbers, as 1280x800"},
     {ValueKind::kFormat, "format", "EXTENSION", "a file format by its extension, with or without the dot"},
     {ValueKind::kInput, "input", "FILE|-", "a file to read, or - for standard input"},
     {ValueKind::kOutput, "output", "FILE|-", "a file to write, or - for standard output"},
     {ValueKind::kFile, "file", "FILE", "a file to read"},
-    {ValueKind::kNewFile, "new_file", "FILE", "a file to write"},
+    {ValueKind::kNewFile, "new_file", "FILE", "a file to write; it appears whole or not at all"},
     {ValueKind::kFolder, "folder", "FOLDER", "a folder"},
 }};
 
@@ -121,9 +121,10 @@ std::vector<const Parameter*> inGroup(const CommandTable& command, const std::st
 }
 
 std::string signatureOf(const Parameter& p) {
-  if (p.positional()) return p.several() ? p.name + "..." : p.name;
+  if (p.positional()) return !p.shown.empty() ? p.shown : p.several() ? p.name + "..." : p.name;
   const std::string_view shown = infoOf(p.kind).shown;
   std::string names = p.shortName().empty() ? p.longName() : p.shortName() + ", " + p.longName();
+  if (!p.shown.empty()) return names + " " + p.shown;
   if (shown.empty()) return names;
   std::string values(shown);
   if (p.several()) {
@@ -138,8 +139,8 @@ std::string signatureOf(const Parameter& p) {
 
 std::string usageOf(const CommandTable& command) {
   std::string usage = command.path;
-  if (!command.commands.empty()) return usage + " COMMAND";
   usage += " [OPTIONS]";
+  if (!command.commands.empty()) return usage + " COMMAND";
   for (const Parameter& p : command.parameters)
     if (p.positional()) usage += p.required ? " " + signatureOf(p) : " [" + signatureOf(p) + "]";
   return usage;
@@ -156,6 +157,7 @@ std::string factsOf(const Parameter& p) {
   std::vector<std::string> facts;
   if (!p.words.empty()) facts.push_back(fmt::format("{}", fmt::join(wordsOf(p), ", ")));
   if (const std::string range = rangeText(p); !range.empty()) facts.push_back(range);
+  if (p.kind == ValueKind::kLength) facts.emplace_back("in the scan's unit, or as 20um");
   if (p.several() && p.one_word && p.between == '\0') facts.emplace_back("may be repeated");
   if (!p.otherwise.empty())
     facts.push_back("without it: " + p.otherwise);

@@ -79,6 +79,7 @@ struct Parameter {
   std::optional<Range> range = {};
   std::string unit = {};         ///< of a number, in the plural: "samples"
   std::vector<Word> words = {};  ///< the only ones that are taken
+  std::string shown = {};        ///< its value in the help instead of that of the kind: "X[,Y]"
   /// What counts where it is not given, in words. Where this is empty, the variable's value at the time at
   /// which the row is added; nothing of an empty text or list.
   std::string otherwise = {};
@@ -109,7 +110,7 @@ struct CommandTable {
   std::string path;  ///< "fettle bench haptic"
   std::string name;  ///< "haptic"
   std::string summary;
-  std::string notes = {};  ///< paragraphs, after the parameters
+  std::string notes = {};  ///< paragraphs, after the parameters; each is one line of this text
   std::vector<Parameter> parameters = {};
   std::vector<Example> examples = {};
   std::deque<CommandTable> commands = {};

@@ -56,7 +56,7 @@ std::string inQuotes(const std::string& text) {
 
 // What a command takes is listed by path; the function finds the path in the words typed so far.
 std::string bashScript(const CommandTable& root) {
-  std::string commands, options, values;
+  std::string commands, options, values, words;
   forEachCommand(root, [&](const CommandTable& command) {
     if (!command.commands.empty())
       commands += fmt::format("    [{}]={}\n", inQuotes(command.path),
@@ -64,11 +64,14 @@ std::string bashScript(const CommandTable& root) {
     options += fmt::format("    [{}]={}\n", inQuotes(command.path),
                            inQuotes(fmt::format("{}", fmt::join(optionNames(command), " "))));
     for (const Parameter& p : command.parameters) {
+      if (p.positional() && !p.words.empty())
+        words += fmt::format("    [{}]={}\n", inQuotes(command.path),
+                             inQuotes(fmt::format("{}", fmt::join(wordsOf(p), " "))));
       if (p.positional() || p.kind == ValueKind::kFlag) continue;
       std::string value;
       switch (completes(p)) {
         case Completes::kWords:
-          value = fmt::format("words {}", fmt::join(wordsOf(p), " "));
+          value = fmt::format("{} {}", p.between == ',' ? "list" : "words", fmt::join(wordsOf(p), " "));
           break;
         case Completes::kFiles:
           value = "files";
@@ -91,24 +94,34 @@ _fettle() {{
 {}  )
   local -A values=(
 {}  )
+  local -A arguments=(
+{}  )
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} path=fettle i
   # "--name=value" comes as three words.
   [[ $word == = ]] && word=
   [[ $before == = ]] && before=${{COMP_WORDS[COMP_CWORD-2]}}
   for ((i = 1; i < COMP_CWORD; ++i)); do
-    [[ " ${{commands[$path]-}} " == *" ${{COMP_WORDS[i]}} "* ]] && path+=" ${{COMP_WORDS[i]}}"
+    [[ ${{COMP_WORDS[i]}} == -* ]] && continue
+    [[ " ${{commands[$path]-}} " == *" ${{COMP_WORDS[i]}} "* ]] || break
+    path+=" ${{COMP_WORDS[i]}}"
   done
   COMPREPLY=()
   local takes=${{values["$path $before"]-}}
   case $takes in
+    list\ *)
+      local typed=
+      [[ $word == *,* ]] && typed=${{word%,*}},
+      mapfile -t COMPREPLY < <(compgen -P "$typed" -W "${{takes#list }}" -- "${{word##*,}}") ;;
     words\ *) mapfile -t COMPREPLY < <(compgen -W "${{takes#words }}" -- "$word") ;;
     folders) compopt -o filenames 2>/dev/null; mapfile -t COMPREPLY < <(compgen -d -- "$word") ;;
     nothing) ;;
     *)
       if [[ $word == -* ]]; then
         mapfile -t COMPREPLY < <(compgen -W "${{options[$path]}}" -- "$word")
-      elif [[ -n ${{commands[$path]-}} ]]; then
-        mapfile -t COMPREPLY < <(compgen -W "${{commands[$path]}}" -- "$word")
+      elif [[ -n ${{commands[$path]-}}${{arguments[$path]-}} ]]; then
+        # A word that is no command ends the search for one.
+        ((i == COMP_CWORD)) || [[ -n ${{arguments[$path]-}} ]] || return 0
+        mapfile -t COMPREPLY < <(compgen -W "${{commands[$path]-}} ${{arguments[$path]-}}" -- "$word")
       else
         compopt -o filenames 2>/dev/null
         mapfile -t COMPREPLY < <(compgen -f -- "$word")
@@ -117,7 +130,7 @@ _fettle() {{
 }}
 complete -F _fettle fettle
 )",
-                     commands, options, values);
+                     commands, options, values, words);
 }
 
 // In a description of zsh a bracket and a colon end it.
@@ -133,7 +146,8 @@ std::string zshText(const std::string& text) {
 std::string zshAction(const Parameter& p) {
   switch (completes(p)) {
     case Completes::kWords:
-      return fmt::format("({})", fmt::join(wordsOf(p), " "));
+      return p.between == ',' ? fmt::format("_values -s , word {}", fmt::join(wordsOf(p), " "))
+                              : fmt::format("({})", fmt::join(wordsOf(p), " "));
     case Completes::kFiles:
       return "_files";
     case Completes::kFolders:
@@ -170,7 +184,7 @@ std::string zshFunction(const CommandTable& command) {
   body += "  local line state\n  local -a commands=(\n";
   for (const CommandTable& below : command.commands)
     body += fmt::format("    {}\n", inQuotes(fmt::format("{}:{}", below.name, zshText(below.summary))));
-  body += "  )\n  _arguments -C" + specs + " \\\n    '1: :->command' \\\n    '*:: :->arguments'\n";
+  body += "  )\n  _arguments -C" + specs + " \\\n    '(-): :->command' \\\n    '(-)*:: :->arguments'\n";
   body +=
       "  case $state in\n    command) _describe command commands ;;\n    arguments)\n      case $line[1] "
       "in\n";
@@ -185,37 +199,43 @@ std::string zshScript(const CommandTable& root) {
   return script + "_fettle \"$@\"\n";
 }
 
-// The condition under which fish completes what a command takes: its words were typed, and none of those
-// below it.
-std::string fishCondition(const CommandTable& command) {
-  std::string condition;
-  std::string rest = command.path;
-  rest.erase(0, std::min(rest.size(), rest.find(' ') + 1));
-  if (command.path.find(' ') == std::string::npos) rest.clear();
-  while (!rest.empty()) {
-    const std::string word = rest.substr(0, rest.find(' '));
-    rest.erase(0, std::min(rest.size(), word.size() + 1));
-    condition += fmt::format("{}__fish_seen_subcommand_from {}", condition.empty() ? "" : "; and ", word);
-  }
-  if (!command.commands.empty())
-    condition += fmt::format("{}not __fish_seen_subcommand_from {}", condition.empty() ? "" : "; and ",
-                             fmt::join(commandNames(command), " "));
-  return condition;
+// Which command the words before the cursor name: fish has only a test for a word anywhere.
+std::string fishFunction(const CommandTable& root) {
+  std::vector<std::string> paths;
+  forEachCommand(root, [&](const CommandTable& command) { paths.push_back(inQuotes(command.path)); });
+  return fmt::format(R"(function __fettle_command
+  set -l known {}
+  set -l path fettle
+  for word in (commandline -opc)[2..]
+    string match -q -- '-*' $word; and continue
+    contains -- "$path $word" $known; or break
+    set path "$path $word"
+  end
+  test "$path" = "$argv"
+end
+)",
+                     fmt::join(paths, " "));
 }
 
 std::string fishScript(const CommandTable& root) {
-  std::string script = "# fish completion for fettle, made by fettle reference\n";
+  std::string script = "# fish completion for fettle, made by fettle reference\n" + fishFunction(root);
   forEachCommand(root, [&](const CommandTable& command) {
-    const std::string head = fmt::format("complete -c fettle -n {}", inQuotes(fishCondition(command)));
+    const std::string head =
+        fmt::format("complete -c fettle -n {}", inQuotes("__fettle_command " + command.path));
     for (const CommandTable& below : command.commands)
       script += fmt::format("{} -f -a {} -d {}\n", head, inQuotes(below.name), inQuotes(below.summary));
     for (const Parameter& p : command.parameters) {
+      if (p.positional() && !p.words.empty())
+        script += fmt::format("{} -f -a {}\n", head, inQuotes(fmt::format("{}", fmt::join(wordsOf(p), " "))));
       if (p.positional()) continue;
       script += fmt::format("{} -l {}", head, p.longName().substr(2));
       if (!p.shortName().empty()) script += fmt::format(" -s {}", p.shortName().substr(1));
       switch (p.kind == ValueKind::kFlag ? Completes::kNothing : completes(p)) {
         case Completes::kWords:
-          script += fmt::format(" -x -a {}", inQuotes(fmt::format("{}", fmt::join(wordsOf(p), " "))));
+          script += fmt::format(
+              " -x -a {}",
+              inQuotes(p.between == ',' ? fmt::format("(__fish_append , {})", fmt::join(wordsOf(p), " "))
+                                        : fmt::format("{}", fmt::join(wordsOf(p), " "))));
           break;
         case Completes::kFiles:
           script += " -r -F";

@@ -23,10 +23,12 @@ std::string entry(const std::string& name, const std::string& text) {
 
 // With a line for each word that has a meaning.
 std::string entry(const Parameter& p) {
-  std::string text = describe(p);
+  std::string text = entry(signatureOf(p), describe(p));
   for (const Word& word : p.words)
-    if (!word.text.empty()) text += fmt::format("\n  {}: {}", word.word, word.text);
-  return entry(signatureOf(p), text);
+    if (!word.text.empty())
+      text += std::string(kColumn + 2, ' ') +
+              wrapped(fmt::format("{}: {}", word.word, word.text), kWidth - kColumn - 4, kColumn + 4) + "\n";
+  return text;
 }
 
 }  // namespace

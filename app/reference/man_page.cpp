@@ -19,6 +19,8 @@ std::string roff(const std::string& text) {
       out += "\\e";
     else if (c == '-')
       out += "\\-";
+    else if (c == '\n')
+      out += "\n.br\n";
     else
       out += c;
     begins = c == '\n';
@@ -57,14 +59,20 @@ std::string valuesOf(const CommandTable& root) {
   forEachCommand(root, [&](const CommandTable& command) {
     for (const Parameter& p : command.parameters) used.at(static_cast<std::size_t>(p.kind)) = true;
   });
-  std::string text = ".SH VALUES\n";
-  std::vector<std::string_view> shown;
+  // Kinds that are shown alike, a file to read and one to write, share an entry.
+  std::vector<std::pair<std::string_view, std::string>> entries;
   for (const ValueKindInfo& info : valueKinds()) {
     if (!used.at(static_cast<std::size_t>(info.kind)) || info.shown.empty()) continue;
-    if (std::find(shown.begin(), shown.end(), info.shown) != shown.end()) continue;
-    shown.push_back(info.shown);
-    text += fmt::format(".TP\n{}\n{}.\n", roff(std::string(info.shown)), roff(std::string(info.text)));
+    const auto same = std::find_if(entries.begin(), entries.end(),
+                                   [&](const auto& entry) { return entry.first == info.shown; });
+    if (same == entries.end())
+      entries.emplace_back(info.shown, info.text);
+    else
+      same->second += fmt::format("; or {}", info.text);
   }
+  std::string text = ".SH VALUES\n";
+  for (const auto& [shown, meaning] : entries)
+    text += fmt::format(".TP\n{}\n{}.\n", roff(std::string(shown)), roff(meaning));
   return text;
 }
 

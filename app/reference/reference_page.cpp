@@ -34,6 +34,14 @@ void addRow(std::string& page, const Parameter& p) {
 
 constexpr const char* kTableHead = "| parameter | does | range, default |\n|---|---|---|\n";
 
+// A number as a number; null where nothing or words stand for it.
+Report defaultOf(const Parameter& p) {
+  const std::string standard = p.standard();
+  if (standard.empty() || !p.otherwise.empty()) return {};
+  const bool number = p.kind == ValueKind::kWhole || p.kind == ValueKind::kNumber;
+  return number && !p.several() ? Report::parse(standard, nullptr, false) : Report(standard);
+}
+
 Report reportOf(const Parameter& p) {
   Report row{{"name", p.longName()},
              {"short", p.shortName().empty() ? Report() : Report(p.shortName())},
@@ -44,8 +52,10 @@ Report reportOf(const Parameter& p) {
              {"unit", p.unit.empty() ? Report() : Report(p.unit)},
              {"range", Report()},
              {"words", Report::array()},
-             {"default", p.standard().empty() || !p.otherwise.empty() ? Report() : Report(p.standard())},
+             {"default", defaultOf(p)},
              {"otherwise", p.otherwise.empty() ? Report() : Report(p.otherwise)},
+             {"between", p.between == '\0' ? Report() : Report(std::string(1, p.between))},
+             {"excludes", p.excludes},
              {"group", p.group.empty() ? Report() : Report(p.group)},
              {"text", p.text}};
   const auto bound = [](double v) { return std::isinf(v) ? Report() : Report(v); };

@@ -44,24 +44,52 @@ TEST(Recipes, AScanHasTheBitsOfTheStepsOneByOne) {
   }
 }
 
+TEST(Recipes, AWrongRecipeIsRefusedBeforeAScanIsRead) {
+  const TempFolder folder;
+  std::ofstream(folder.file("clean.toml"))
+      << "recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"tv\"\nrange_sigma = \"20parsec\"\n";
+  const std::string scan = folder.file("none.tif"), out = folder.file("o.tif");
+  expectRefused(fettle({"apply", folder.file("clean.toml"), scan, out}), "line 5: range_sigma is no length");
+  expectRefused(fettle({"apply", folder.file("none.toml"), scan, out}), "none.toml");
+  expectRefused(fettle({"apply", folder.path().string(), scan, out}), "the recipe cannot be read");
+  expectRefused(fettle({"apply", "/dev/zero", scan, out}), "too long for a recipe");
+  expectRefused(fettle({"apply", "-", "-", out}), "cannot both be standard input");
+}
+
 TEST(Recipes, AStepThatFailsIsNamedAndNoFileIsLeft) {
   const TempFolder folder;
-  std::ofstream(folder.file("clean.toml")) << "recipe = 1\n[[step]]\ndo = \"invert\"\n[[step]]\ndo = "
-                                              "\"filter\"\nfilter = \"tv\"\nrange_sigma = \"20parsec\"\n";
-  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "64x64"}).status, 0);
-  expectRefused(fettle({"apply", folder.file("clean.toml"), folder.file("s.tif"), folder.file("o.tif")}),
-                "step 2 of the recipe: unknown unit parsec");
-  expectRefused(fettle({"apply", folder.file("none.toml"), folder.file("s.tif"), folder.file("o.tif")}),
-                "none.toml");
+  std::ofstream(folder.file("clean.toml"))
+      << "recipe = 1\n[[step]]\ndo = \"invert\"\n[[step]]\ndo = \"filter\"\nfilter = \"tv\"\n";
+  // A plane: there is no noise to be seen.
+  std::ofstream(folder.file("s.asc")) << "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n"
+                                         "1 1\n1 1\n";
+  expectRefused(fettle({"apply", folder.file("clean.toml"), folder.file("s.asc"), folder.file("o.tif"),
+                        "--unit", "mm"}),
+                "step 2 of the recipe: ");
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "o.tif"));
+}
+
+TEST(Recipes, AFilterOfMarkedSamplesWarnsWhereNoneIsMarked) {
+  const TempFolder folder;
+  std::ofstream(folder.file("clean.toml"))
+      << "recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\nmarks = \"only\"\n";
+  ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "64x64"}).status, 0);
+  const Outcome done =
+      fettle({"apply", folder.file("clean.toml"), folder.file("s.tif"), folder.file("o.tif")});
+  EXPECT_EQ(done.status, 0);
+  EXPECT_NE(done.err.find("step 1 filters marked samples only, and none is marked"), std::string::npos)
+      << done.err;
 }
 
 TEST(Recipes, ASessionWithoutStepsHasNone) {
   const TempFolder folder;
   ASSERT_EQ(fettle({"synth", folder.file("s.tif"), "--size", "64x64"}).status, 0);
   ASSERT_EQ(fettle({"convert", folder.file("s.tif"), folder.file("s.fettle")}).status, 0);
-  expectRefused(fettle({"recipe", folder.file("s.fettle")}), "no step of the session can be repeated");
+  expectRefused(fettle({"recipe", folder.file("s.fettle")}), "the session has no steps");
   EXPECT_EQ(fettle({"journal", folder.file("s.fettle")}).out, "");
+  ASSERT_EQ(fettle({"filter", folder.file("s.tif"), folder.file("f.fettle"), "--filter", "median"}).status,
+            0);
+  expectRefused(fettle({"recipe", folder.file("f.fettle")}), "not how it was made");
   expectRefused(fettle({"journal", folder.file("s.tif")}), "s.tif");
 }
 

@@ -118,7 +118,7 @@ TEST_F(Reference, AValueOutsideItsRangeIsRefused) {
         if (other["positional"] == true && other["required"] == true) words.insert(words.end(), {"a", "b"});
       words.push_back(parameter["name"].get<std::string>() + "=" +
                       std::to_string(2.0 * parameter["range"][1].get<double>()));
-      expectRefused(fettle(words), "is not a number from");
+      expectRefused(fettle(words), "number from");
       ++tried;
     }
   });
@@ -142,6 +142,9 @@ TEST_F(Reference, BashCompletesCommandsOptionsWordsAndFiles) {
   EXPECT_EQ(completed("fettle filter in.tif out.tif --filter t"), (Words{"tv", "tgv"}));
   EXPECT_EQ(completed("fettle filter in.tif out.tif --filter = b"), (Words{"box", "bilateral"}));
   EXPECT_EQ(completed("fettle bench filters --ground h"), Words{"holes"});
+  EXPECT_EQ(completed("fettle bench filters --kind tgv,p"), Words{"tgv,planes"});
+  EXPECT_EQ(completed("fettle help rec"), (Words{"record", "recipe"}));
+  EXPECT_EQ(completed("fettle nope fil"), Words{});
   EXPECT_EQ(completed("fettle info scan"), Words{"scan one.tif"});
   EXPECT_EQ(completed("fettle filter --keep sc"), Words{"scan one.tif"});
   EXPECT_EQ(completed("fettle demo pag"), Words{"pages"});
@@ -158,6 +161,22 @@ TEST_F(Reference, TheScriptsOfOtherShellsAreReadByThem) {
     ++read;
   }
   if (read == 0) GTEST_SKIP() << "neither zsh nor fish is installed";
+}
+
+TEST_F(Reference, FishKnowsTheCommandByItsPlace) {
+  if (runProcess({"sh", "-c", "command -v fish"}).status != 0) GTEST_SKIP() << "fish is not installed";
+  const auto offered = [](const std::string& line) {
+    return runProcess(
+               {"fish", "--no-config", "-c",
+                "source " + (pages() / "completion/fettle.fish").string() + "; complete -C '" + line + "'"})
+        .out;
+  };
+  EXPECT_EQ(offered("fettle bench render --azi"), "");  // of fettle render
+  EXPECT_EQ(offered("fettle info render --azi"), "");
+  EXPECT_NE(offered("fettle render --azi").find("--azimuth"), std::string::npos);
+  EXPECT_NE(offered("fettle --json bench render --sce").find("--scene"), std::string::npos);
+  EXPECT_NE(offered("fettle filter a b --filter tg").find("tgv"), std::string::npos);
+  EXPECT_NE(offered("fettle bench filters --kind tgv,pl").find("tgv,planes"), std::string::npos);
 }
 
 TEST_F(Reference, EveryExampleRuns) {

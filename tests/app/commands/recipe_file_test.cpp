@@ -2,6 +2,8 @@
 
 #include "app/commands/recipe_file.h"
 
+#include <optional>
+#include <string>
 #include <variant>
 
 #include <gtest/gtest.h>
@@ -94,7 +96,8 @@ TEST(Recipe, HasTheFiltersThatLedToThePresentStateAndNamesWhatItLeavesOut) {
   const auto& gaussian = std::get<RecipeFilter>(recipe.steps[1]);
   EXPECT_EQ(gaussian.spec.kind, FilterKind::kGaussian);
   EXPECT_EQ(gaussian.spec.passes, 2);
-  EXPECT_EQ(gaussian.max_change, "0.05mm");
+  EXPECT_EQ(gaussian.max_change->value, 0.05);
+  EXPECT_EQ(gaussian.max_change->unit->name, "mm");
   EXPECT_TRUE(std::holds_alternative<RecipeInvert>(recipe.steps[2]));
   ASSERT_EQ(recipe.left_out.size(), 1U);
   EXPECT_EQ(recipe.left_out[0], "step 3, Smooth: it belongs to this scan");
@@ -108,8 +111,9 @@ TEST(Recipe, ARangeThatIsTheNoisesIsLeftToTheNoiseOfEachScan) {
   chosen.range_sigma = 0.0625;
   work.filter(chosen, "TV");
   const Recipe recipe = work.recipe();
-  EXPECT_EQ(std::get<RecipeFilter>(recipe.steps.at(0)).range_sigma, "");
-  EXPECT_EQ(std::get<RecipeFilter>(recipe.steps.at(1)).range_sigma, "0.0625mm");
+  EXPECT_FALSE(std::get<RecipeFilter>(recipe.steps.at(0)).range_sigma);
+  ASSERT_TRUE(std::get<RecipeFilter>(recipe.steps.at(1)).range_sigma);
+  EXPECT_EQ(std::get<RecipeFilter>(recipe.steps.at(1)).range_sigma->value, 0.0625);
 }
 
 TEST(Recipe, AFilterOfACommandIsLeftOutSinceNoSessionStoresItsNumbers) {
@@ -129,8 +133,8 @@ TEST(Recipe, WhatIsWrittenIsReadToTheSameText) {
   filter.spec.sigma = 0.1 + 0.2;  // 17 digits
   filter.spec.scope = engine::FilterScope::kOnlyMarks;
   filter.spec.passes = 3;
-  filter.range_sigma = "20um";
-  filter.max_change = "0.5mm";
+  filter.range_sigma = RecipeLength{20.0, engine::LengthUnit{"um", 1e-3}};
+  filter.max_change = RecipeLength{0.3, std::nullopt};
   RecipeEdges edges;
   edges.scale = 2.25;
   edges.choice.thickness = 3.0;
@@ -139,7 +143,11 @@ TEST(Recipe, WhatIsWrittenIsReadToTheSameText) {
   const std::string text = recipeText(recipe);
   const auto read = parseRecipe(text, "clean.toml");
   ASSERT_TRUE(read) << read.error().line();
-  EXPECT_EQ(std::get<RecipeFilter>(read->steps.at(0)).spec.sigma, filter.spec.sigma);
+  const auto& filtered = std::get<RecipeFilter>(read->steps.at(0));
+  EXPECT_EQ(filtered.spec.sigma, filter.spec.sigma);
+  engine::Grid grid;  // in millimetres
+  EXPECT_EQ(filtered.range_sigma->in(grid), 0.02);
+  EXPECT_EQ(filtered.max_change->in(grid), 0.3);
   EXPECT_EQ(std::get<RecipeEdges>(read->steps.at(1)).scale, 2.25);
   Recipe again = *read;
   again.left_out = recipe.left_out;
@@ -159,7 +167,7 @@ TEST(Recipe, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"").find("line 2: the step has no \"filter\""),
             std::string::npos);
   EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwindow = 4")
-                .find("line 2: a filter window of 4 samples"),
+                .find("line 5: a filter window of 4 samples"),
             std::string::npos);
   EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwindow = \"x\"")
                 .find("line 5: window is not a number from 1 to 1001"),
@@ -167,10 +175,25 @@ TEST(Recipe, WhatIsWrongIsNamedWithItsLine) {
   EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwidow = 3")
                 .find("line 5: filter has no key \"widow\""),
             std::string::npos);
-  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"tv\"\nrange_sigma = 20")
-                .find("line 5: range_sigma is not a length"),
+  const std::string tv = "recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"tv\"\n";
+  for (const char* length : {"\"20parsec\"", "\"\"", "\"0.02\"", "\"0.02 mm\"", "\"um\"", "true"})
+    EXPECT_NE(problem(tv + "range_sigma = " + length).find("line 5: range_sigma is no length"),
+              std::string::npos)
+        << length;
+  for (const char* length : {"\"-1um\"", "0", "inf", "nan", "\"infmm\""})
+    EXPECT_NE(problem(tv + "range_sigma = " + length).find("line 5: range_sigma is"), std::string::npos)
+        << length;
+  EXPECT_NE(problem(tv + "max_change = -0.1").find("line 5: max_change is below 0"), std::string::npos);
+  EXPECT_EQ(problem(tv + "max_change = 0\nrange_sigma = 0.02"), "");
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfiltr = \"median\"").find("did you mean filter?"),
             std::string::npos);
-  EXPECT_NE(problem("recipe = 1\nstep = 3").find("has no steps"), std::string::npos);
+  EXPECT_NE(problem("recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwindow = \"5\"")
+                .find("without quotes"),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = true\n[[step]]\ndo = \"invert\"").find("no recipe of version 1"),
+            std::string::npos);
+  EXPECT_NE(problem("recipe = 1\nstep = 3").find("line 2: step is no list: write [[step]]"),
+            std::string::npos);
   EXPECT_NE(problem("recipe = 1\nsteps = []\n[[step]]\ndo = \"invert\"").find("no key \"steps\""),
             std::string::npos);
   EXPECT_NE(problem("recipe = = 1").find("line 1"), std::string::npos);
