@@ -1,6 +1,8 @@
 #include "app/window/active_document.h"
 
+#include <charconv>
 #include <filesystem>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +17,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr auto kNoteEvery = std::chrono::seconds(1);
+constexpr const char* kContactNote = "contact";  // what the words of the note "scene" mean: kContactRevision
+
+// Of the scene that a session notes: none is noted by the programs that had only the first.
+int contactRevision(const Document& document) {
+  const auto noted = document.notes.find(kContactNote);
+  if (noted == document.notes.end()) return 1;
+  int revision = 0;  // parseScene refuses it
+  std::from_chars(noted->second.data(), noted->second.data() + noted->second.size(), revision);
+  return revision;
+}
 
 // The first scene for a scan or session.
 haptic::Scene firstScene(const Document& document, const std::optional<haptic::Scene>& given,
@@ -26,7 +38,8 @@ haptic::Scene firstScene(const Document& document, const std::optional<haptic::S
     // Wider than the default of one sample: as wide as the displayed brush.
     scene.brush_radius_samples = 6.0;
     scene.mark_radius_samples = 3.0;
-  } else if (const auto kept = haptic::parseScene(noted->second, "the session's scene")) {
+  } else if (const auto kept =
+                 haptic::parseScene(noted->second, "the session's scene", contactRevision(document))) {
     scene = *kept;
     options.fit_spring = false;
     // The session may come from another device, and must open with this one too.
@@ -123,6 +136,7 @@ void ActiveDocument::updateSession(const render::View& view, Feedback& feedback)
   noted_ = now;
   keeper_->setNote("camera", viewText(view));
   keeper_->setNote("scene", haptic::sceneText(loop_->scene()));
+  keeper_->setNote(kContactNote, std::to_string(haptic::kContactRevision));
 }
 
 void ActiveDocument::undo() {

@@ -79,12 +79,12 @@ engine::Result<Study> contactStudy(const AccuracyOptions& options, engine::JobCo
       "0.05 mm, so errors below that are the reference's own. There a ball is at the closest point when it "
       "is within 0.02 cells of it.",
       point_truth_error, ball_truth_error);
-  const AccuracyRow& fast = rowOf(study, "noise", "paper, to rest");
+  const AccuracyRow& fast = rowOf(study, "noise", "paper");
   const AccuracyRow& sure = rowOf(study, "noise", "certified, 8 cells");
-  const AccuracyRow& flat = rowOf(study, "flat", "paper, to rest");
+  const AccuracyRow& flat = rowOf(study, "flat", "paper");
   const AccuracyRow& ball = rowOf(study, "noise", "ball, radius 2 cells");
   study.answer = fmt::format(
-      "The fast level (paper, to rest) loses nothing on smooth surfaces (flat: {:.1e} N) and rests in a "
+      "The fast level (paper) loses nothing on smooth surfaces (flat: {:.1e} N) and rests in a "
       "minimum that is not the nearest in {:.1f} % of the ticks on noise of 20 um: force is off by {:.3f} N "
       "on average, {:.3f} N at worst, with 1 N/mm. Being certain within 8 cells costs {:.1f} times its time; "
       "a ball of 2 cells, which slides and never jumps, is off by {:.3f} N for {:.0f} times.",

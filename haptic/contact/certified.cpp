@@ -21,7 +21,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "haptic/contact/closest_point.h"
+#include "haptic/contact/descent.h"
 
 namespace fettle::haptic {
 
@@ -319,7 +319,7 @@ class CellSearch {
   void seed() noexcept {
     CellIndex own;
     if (!surface_.cellUnder(e_, own)) return;
-    const SearchResult local = searchClosest(surface_, e_, own, 0.5, 0.5);
+    const SearchResult local = searchDownhill(surface_, e_, own, 0.5, 0.5);
     if (local.end == SearchEnd::kHole || horizontal2(local.point.cell, 1) > radius2_) return;
     best_ = local.point;
   }

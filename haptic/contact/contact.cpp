@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include "haptic/contact/certified.h"
-#include "haptic/contact/closest_point.h"
 #include "haptic/contact/collision.h"
+#include "haptic/contact/descent.h"
 
 namespace fettle::haptic {
 
@@ -14,7 +14,7 @@ namespace {
 
 SearchResult countedSearch(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u, double v,
                            int most_rounds, TickCounters& counters) noexcept {
-  const SearchResult result = searchClosest(surface, endpoint, start, u, v, most_rounds);
+  const SearchResult result = searchDownhill(surface, endpoint, start, u, v, most_rounds);
   counters.search_bound_hits += result.end == SearchEnd::kBound ? 1 : 0;
   counters.longest_search = std::max<std::int64_t>(counters.longest_search, result.cells);
   return result;

@@ -64,8 +64,14 @@ engine::FilterSpec specOf(const json& in) {
   return spec;
 }
 
+void put(json& out, const Scene& scene) {
+  out["scene"] = sceneText(scene);
+  out["contact"] = kContactRevision;
+}
+
 haptic::Scene sceneOf(const json& in) {
-  auto scene = haptic::parseScene(in.at("scene").get_ref<const std::string&>(), "scene");
+  auto scene =
+      haptic::parseScene(in.at("scene").get_ref<const std::string&>(), "scene", in.value("contact", 1));
   if (!scene) throw std::out_of_range(scene.error().line());
   return *std::move(scene);
 }
@@ -101,7 +107,8 @@ std::string journalText(const journal::Entry& entry) {
   std::visit(
       Overloaded{
           [&](const journal::Begin& e) {
-            out = {{"do", "begin"}, {"state", e.state}, {"scene", haptic::sceneText(e.scene)}};
+            out = {{"do", "begin"}, {"state", e.state}};
+            put(out, e.scene);
           },
           [&](const journal::Ticks& e) {
             out = {{"do", "ticks"}, {"count", e.count}};
@@ -110,7 +117,8 @@ std::string journalText(const journal::Entry& entry) {
             out = {{"do", "lost"}, {"count", e.count}};
           },
           [&](const journal::SceneSet& e) {
-            out = {{"do", "scene"}, {"scene", haptic::sceneText(e.scene)}};
+            out = {{"do", "scene"}};
+            put(out, e.scene);
             put(out, e.at);
           },
           [&](const journal::StepMade& e) {

@@ -29,9 +29,19 @@ std::string rangeOf(const EffectNumber& number) {
                      number.low_end == LowEnd::kExcluded ? "above" : "at least", number.low, number.high);
 }
 
-constexpr std::array<std::string_view, 2> kLevelNames = {"paper", "certified"};
+constexpr std::array<std::string_view, 3> kLevelNames = {"paper", "descent", "certified"};
 
 constexpr const char* kDynamicAboveStatic = "the dynamic friction must not be above the static one";
+
+constexpr const char* kRoundsNeedDescent =
+    "fewer search_rounds than 2048 hold for the level \"descent\" and for a ball; the level \"paper\" always "
+    "searches "
+    "to the end";
+
+bool roundsWithoutUse(const Scene& scene) noexcept {
+  return scene.tip == TipShape::kPoint && scene.level == ContactLevel::kPaper &&
+         scene.search_rounds != kMaxRounds;
+}
 
 // A listed effect that comes before the spring it needs, or has none.
 std::optional<std::string> springProblem(const std::vector<EffectKind>& effects) {
@@ -52,7 +62,10 @@ bool radiusInRange(double value) noexcept {
 // Reads the tables of one scene file; the first problem stops it.
 class SceneReader {
  public:
-  SceneReader(Scene& scene, const toml::table& file) : scene_(scene) { top(file); }
+  SceneReader(Scene& scene, const toml::table& file, int contact_revision)
+      : scene_(scene), contact_revision_(contact_revision) {
+    top(file);
+  }
   [[nodiscard]] const std::optional<std::string>& problem() const noexcept { return problem_; }
 
  private:
@@ -125,6 +138,8 @@ class SceneReader {
       }
       return true;
     });
+    if (contact_revision_ < 2 && scene_.level == ContactLevel::kPaper) scene_.level = ContactLevel::kDescent;
+    if (!problem_ && roundsWithoutUse(scene_)) complain(*file.get("contact"), kRoundsNeedDescent);
     if (scene_.params.friction.dynamic_coefficient > scene_.params.friction.static_coefficient)
       complain(*file.get("friction"), kDynamicAboveStatic);
   }
@@ -226,6 +241,7 @@ class SceneReader {
   }
 
   Scene& scene_;
+  int contact_revision_;
   std::optional<std::string> problem_;
 };
 
@@ -244,6 +260,7 @@ std::optional<std::string> sceneProblem(const Scene& scene) {
     return fmt::format("the certified radius must be 1 to {} cells", kMaxCertifiedRadius);
   if (scene.search_rounds < 2 || scene.search_rounds > kMaxRounds)
     return fmt::format("the search must have 2 to {} rounds", kMaxRounds);
+  if (roundsWithoutUse(scene)) return kRoundsNeedDescent;
   if (scene.tip == TipShape::kSphere && !positiveUpTo(scene.tip_radius_mm, kMaxTipRadius))
     return fmt::format("the tip's radius must be above 0 and at most {} mm", kMaxTipRadius);
   if (!positiveUpTo(scene.stiffness_n_per_mm, kMaxStiffness))
@@ -265,11 +282,14 @@ std::optional<std::string> sceneProblem(const Scene& scene) {
   return std::nullopt;
 }
 
-engine::Result<Scene> parseScene(const std::string& text, const std::string& name) {
+engine::Result<Scene> parseScene(const std::string& text, const std::string& name, int contact_revision) {
+  if (contact_revision < 1 || contact_revision > kContactRevision)
+    return engine::inputError(fmt::format("contact revision {} is unknown", contact_revision), name,
+                              "open it with the version of the program that wrote it");
   Scene scene = defaultScene();
   try {
     const toml::table file = toml::parse(text, name);
-    const SceneReader reader(scene, file);
+    const SceneReader reader(scene, file, contact_revision);
     if (reader.problem())
       return engine::inputError(*reader.problem(), name, "assets/scenes/default.toml documents every key");
   } catch (const toml::parse_error& error) {

@@ -21,11 +21,13 @@ enum class TipShape : std::uint8_t {
 /// How the closest point of the surface is found.
 /// For the point tip; a ball has one method, sphere_tip.h.
 enum class ContactLevel : std::uint8_t {
-  kPaper,      ///< local search from the previous proxy's cell (Potter, Johnson, Cohen 2004)
+  /// Bounded closest points, cell by cell from the previous proxy's (Potter, Johnson, Cohen 2004).
+  kPaper,
+  kDescent,    ///< down from the previous proxy itself: stops at more local minima, can be cut into steps
   kCertified,  ///< the true closest point of all cells within a radius, by branch and bound
 };
 
-/// "paper", "certified".
+/// "paper", "descent", "certified".
 [[nodiscard]] std::string_view levelName(ContactLevel level) noexcept;
 
 /// Largest Scene::brush_radius_samples and mark_radius_samples.
@@ -44,9 +46,10 @@ struct Scene {
   /// larger spacing are searched, so the result is the true closest point of the whole field whenever it is
   /// nearer than that. [cells], 1 .. 64. Also the radius when a replay measures level paper.
   int certified_radius_cells = 2;
-  /// Level paper: rounds a search may take in one tick, 2 .. 2048; each evaluates a patch and takes a step,
+  /// Level descent: rounds a search may take in one tick, 2 .. 2048; each evaluates a patch and takes a step,
   /// the last one only evaluates. With the largest number every search ends at rest. Fewer bound the tick's
-  /// time and lag behind a fast hand. A ball takes one step fewer, and never more than kSphereSteps.
+  /// time and lag behind a fast hand. A ball takes one step fewer, and never more than kSphereSteps. At level paper a
+  /// search has no such rounds: only 2048 is allowed there for a point.
   int search_rounds = 2048;
 
   /// Spring: newtons per millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.
@@ -93,8 +96,13 @@ struct Scene {
 [[nodiscard]] engine::Result<Scene> loadScene(const std::string& path);
 /// The same; without a path, empty, the default scene.
 [[nodiscard]] engine::Result<Scene> loadSceneOrDefault(const std::string& path);
-/// The same from a text that calls itself `name` in errors.
-[[nodiscard]] engine::Result<Scene> parseScene(const std::string& text, const std::string& name);
+/// What the words of a scene's [contact] mean, stored beside scenes whose ticks are replayed later (journal, session).
+/// 1, and where none is stored: the level "paper" is the search that is called "descent" since 2.
+inline constexpr int kContactRevision = 2;
+/// The same from a text that calls itself `name` in errors. `contact_revision`, 1 .. kContactRevision: of the program
+/// that wrote the text; errors: a newer one.
+[[nodiscard]] engine::Result<Scene> parseScene(const std::string& text, const std::string& name,
+                                               int contact_revision = kContactRevision);
 /// A scene file's text that parseScene reads back to the very same scene (in range).
 [[nodiscard]] std::string sceneText(const Scene& scene);
 

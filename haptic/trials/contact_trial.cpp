@@ -112,11 +112,12 @@ constexpr int kFiner = 8;               // of the grown surface
 constexpr int kCheckedTicks = 12;       // ticks
 
 constexpr ContactChoice kChoices[] = {
-    {"paper, 1 Newton step per tick", ContactLevel::kPaper, 2},
-    {"paper, 2 steps per tick", ContactLevel::kPaper, 3},
-    {"paper, 4 steps per tick", ContactLevel::kPaper, 5},
-    {"paper, 8 steps per tick", ContactLevel::kPaper, 9},
-    {"paper, to rest", ContactLevel::kPaper, 2048},
+    {"descent, 1 Newton step per tick", ContactLevel::kDescent, 2},
+    {"descent, 2 steps per tick", ContactLevel::kDescent, 3},
+    {"descent, 4 steps per tick", ContactLevel::kDescent, 5},
+    {"descent, 8 steps per tick", ContactLevel::kDescent, 9},
+    {"descent, to rest", ContactLevel::kDescent, 2048},
+    {"paper", ContactLevel::kPaper},
     {"certified, 1 cell", ContactLevel::kCertified, 2048, 1},
     {"certified, 2 cells", ContactLevel::kCertified, 2048, 2},
     {"certified, 4 cells", ContactLevel::kCertified, 2048, 4},

@@ -19,7 +19,7 @@ namespace fettle::trials {
 struct ContactChoice {
   const char* name;
   haptic::ContactLevel level = haptic::ContactLevel::kPaper;
-  int search_rounds = 2048;        ///< level paper, and a ball; the last one only tests
+  int search_rounds = 2048;        ///< level descent, and a ball; the last one only tests
   int certified_radius_cells = 2;  ///< level certified
   double ball_radius_cells = 0.0;  ///< of the larger spacing; 0: a point, else level is ignored
 

@@ -83,9 +83,10 @@ bool sameChoice(const haptic::Scene& scene, const trials::ContactChoice& choice,
   if (chosen.tip != scene.tip) return false;
   if (scene.tip == haptic::TipShape::kSphere)
     return chosen.tip_radius_mm == scene.tip_radius_mm && chosen.search_rounds == scene.search_rounds;
-  return chosen.level == scene.level && (scene.level == haptic::ContactLevel::kCertified
-                                             ? chosen.certified_radius_cells == scene.certified_radius_cells
-                                             : chosen.search_rounds == scene.search_rounds);
+  if (chosen.level != scene.level) return false;
+  if (scene.level == haptic::ContactLevel::kCertified)
+    return chosen.certified_radius_cells == scene.certified_radius_cells;
+  return scene.level == haptic::ContactLevel::kPaper || chosen.search_rounds == scene.search_rounds;
 }
 
 std::string described(const haptic::Scene& scene) {
@@ -96,7 +97,9 @@ std::string described(const haptic::Scene& scene) {
                              scene.search_rounds - 1);
   if (scene.level == haptic::ContactLevel::kCertified)
     return fmt::format("certified, {} cells", scene.certified_radius_cells);
-  return fmt::format("paper, {} steps per tick", scene.search_rounds - 1);
+  if (scene.level == haptic::ContactLevel::kDescent)
+    return fmt::format("descent, {} steps per tick", scene.search_rounds - 1);
+  return std::string(haptic::levelName(scene.level));
 }
 
 }  // namespace

@@ -37,13 +37,13 @@ TEST_F(WindowTest, levels_of_contact_and_detail_are_chosen_by_what_they_cost_on_
   program->until("figures in the list",
                  [](const State& s) { return figuresIn(s, "um") + figuresIn(s, "mm") >= 12; });
   (void)user.look("contact list");
-  user.tap("paper, to rest");
+  user.tap("paper");
   program->until("paper", [](const State& s) { return s["contact_level"] == "paper"; });
   program->until("what it costs, and the list closed", [](const State& s) {
     return reads(s, "error of the contact point") && !reads(s, "ball, radius 2 cells");
   });
   (void)user.look("contact chosen");
-  user.tap("paper, to rest");
+  user.tap("paper");
   program->until("the list again", [](const State& s) { return reads(s, "ball, radius 2 cells"); });
   user.tap("ball, radius 2 cells");
   program->until("a ball", [](const State& s) { return s["contact_level"] == "ball"; });

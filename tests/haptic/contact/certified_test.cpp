@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "haptic/contact/closest_point.h"
+#include "haptic/contact/descent.h"
 #include "tests/haptic/support/fields.h"
 
 namespace fettle::haptic {
@@ -103,7 +103,7 @@ TEST(Certified, IsNeverFartherThanTheLocalSearchWithinTheRadius) {
     const glm::dvec3 e{uniform(random, 8, 21), uniform(random, 8, 21), uniform(random, -3.0, 3.0)};
     CellIndex own;
     ASSERT_TRUE(surface.cellUnder(e, own));
-    const SearchResult local = searchClosest(surface, e, own, 0.5, 0.5);
+    const SearchResult local = searchDownhill(surface, e, own, 0.5, 0.5);
     SurfacePoint point;
     ASSERT_TRUE(certifiedClosest(surface, e, 8.0, point));
     if (glm::length(local.point.position_mm - e) < 8.0) {

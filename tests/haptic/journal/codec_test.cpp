@@ -6,8 +6,10 @@
 #include <rapidcheck/gtest.h>
 
 #include "engine/field/live_field.h"
+#include "engine/formats/formats.h"
 #include "haptic/journal/journal.h"
 #include "haptic/journal/mark_codec.h"
+#include "haptic/journal/session_player.h"
 #include "haptic/journal/tick_codec.h"
 #include "tests/haptic/support/fields.h"
 
@@ -82,9 +84,10 @@ haptic::Scene anyScene(std::mt19937_64& random) {
   haptic::Scene scene;
   scene.tip = random() % 2 == 0 ? haptic::TipShape::kPoint : haptic::TipShape::kSphere;
   scene.tip_radius_mm = tests::uniform(random, 1e-9, 100);
-  scene.level = random() % 2 == 0 ? haptic::ContactLevel::kPaper : haptic::ContactLevel::kCertified;
+  scene.level = static_cast<haptic::ContactLevel>(random() % 3);
   scene.certified_radius_cells = 1 + static_cast<int>(random() % 64);
-  scene.search_rounds = 2 + static_cast<int>(random() % 2047);
+  if (scene.tip == haptic::TipShape::kSphere || scene.level != haptic::ContactLevel::kPaper)
+    scene.search_rounds = 2 + static_cast<int>(random() % 2047);
   scene.stiffness_n_per_mm = tests::uniform(random, 1e-12, 1000);
   scene.force_limit_n = tests::uniform(random, 1e-12, 1000);
   scene.brush_radius_samples = tests::uniform(random, 0, 64);
@@ -160,11 +163,49 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.range_sigma, edge_preserving.range_sigma);
 }
 
+TEST(Journal, ALevelKeepsTheSearchThatItNamedWhenItWasWritten) {
+  const auto levelOf = [](const char* text) {
+    const auto entry = haptic::journalEntry(text);
+    EXPECT_TRUE(entry) << text;
+    return entry ? std::get<haptic::journal::Begin>(*entry).scene.level : haptic::ContactLevel::kCertified;
+  };
+  const char* const fewer =
+      R"({"do":"begin","state":0,"scene":"[contact]\nlevel = \"paper\"\nsearch_rounds = 5"})";
+  EXPECT_EQ(levelOf(R"({"do":"begin","state":0,"scene":""})"), haptic::ContactLevel::kDescent);
+  EXPECT_EQ(levelOf(fewer), haptic::ContactLevel::kDescent);
+  EXPECT_EQ(levelOf(R"({"do":"begin","state":0,"contact":1,"scene":""})"), haptic::ContactLevel::kDescent);
+  EXPECT_EQ(levelOf(R"({"do":"begin","state":0,"contact":2,"scene":""})"), haptic::ContactLevel::kPaper);
+  EXPECT_EQ(levelOf(R"({"do":"begin","state":0,"scene":"contact = { level = \"certified\" }"})"),
+            haptic::ContactLevel::kCertified);
+}
+
+// Recorded on 2026-11-23 with a mouse, before "paper" named another search: two strokes that smooth, the second with
+// two steps per tick. Any other search leaves another field.
+TEST(Journal, ASessionOfTheFirstContactRevisionReplaysToTheBitsThatItHad) {
+  constexpr std::uint64_t kThen = 0x5f5ebd78124849eeU;
+  engine::JobControl job;
+  auto session = engine::openSession(FETTLE_OLD_SESSION, {}, engine::importField, job);
+  ASSERT_TRUE(session) << session.error().line();
+  EXPECT_EQ(engine::contentHash(session->history.current()), kThen);
+  const auto played = haptic::playSession(*session, job);
+  ASSERT_TRUE(played) << played.error().line();
+  EXPECT_EQ(played->ticks, 336);
+  EXPECT_EQ(played->steps, 2);
+  EXPECT_EQ(engine::contentHash(played->field), kThen);
+  for (engine::JournalEntry& entry : session->journal)
+    if (entry.action.find("\"scene\"") != std::string::npos)
+      entry.action.replace(entry.action.find("search_rounds = "), 16, "search_rounds = 2048 #");
+  const auto other = haptic::playSession(*session, job);
+  ASSERT_TRUE(other) << other.error().line();
+  EXPECT_NE(engine::contentHash(other->field), kThen);
+}
+
 TEST(Journal, WhatIsNoEntryIsRefusedByName) {
   for (const char* text :
        {"", "{", "[]", "{}", R"({"do":"dance"})", R"({"do":"ticks"})", R"({"do":"ticks","count":"x"})",
         R"({"do":"filter","id":1,"filter":"blur","window":3,"passes":1,"marks":"keep"})",
-        R"({"do":"begin","state":0,"scene":"tip = 3"})", R"({"do":7})", "3"}) {
+        R"({"do":"begin","state":0,"scene":"tip = 3"})", R"({"do":"begin","state":0,"scene":"","contact":3})",
+        R"({"do":"begin","state":0,"scene":"","contact":0})", R"({"do":7})", "3"}) {
     const auto entry = haptic::journalEntry(text);
     ASSERT_FALSE(entry) << text;
     EXPECT_EQ(entry.error().kind, engine::ErrorKind::kInput) << text;

@@ -133,6 +133,8 @@ TEST(SceneFile, RefusesUnknownKeysTypesAndRangesWithTheLine) {
                            "contact = { certified_radius_cells = 1.5 }",
                            "contact = { search_rounds = 1 }",
                            "contact = { search_rounds = 2049 }",
+                           "contact = { search_rounds = 5 }",
+                           "contact = { level = \"paper\", search_rounds = 2047 }",
                            "contact = { level = \"best\" }",
                            "brush = { max_change = -1 }",
                            "friction = { static = 3 }",

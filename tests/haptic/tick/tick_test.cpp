@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 
 #include "haptic/contact/certified.h"
-#include "haptic/contact/closest_point.h"
 #include "haptic/contact/collision.h"
+#include "haptic/contact/descent.h"
 #include "haptic/contact/normal.h"
 #include "haptic/contact/patch.h"
 #include "tests/haptic/support/fields.h"
@@ -180,10 +180,10 @@ TEST(Search, MoreRoundsNeverEndFartherAndEnoughOfThemEndWhereAllDo) {
     const glm::dvec3 e{uniform(random, 0, 7.5), uniform(random, 0, 15), uniform(random, -6, 6)};
     CellIndex own;
     ASSERT_TRUE(surface.cellUnder(e, own));
-    const SearchResult all = searchClosest(surface, e, own, 0.5, 0.5);
+    const SearchResult all = searchDownhill(surface, e, own, 0.5, 0.5);
     double before = HUGE_VAL;
     for (const int rounds : {2, 3, 5, 8, 13, 100, kMaxRounds}) {
-      const SearchResult some = searchClosest(surface, e, own, 0.5, 0.5, rounds);
+      const SearchResult some = searchDownhill(surface, e, own, 0.5, 0.5, rounds);
       // The point of the last round but one is kept where the last went astray, so equal is legal.
       EXPECT_LE(some.point.distance2_mm2, before * (1 + 1e-9));
       before = some.point.distance2_mm2;
@@ -204,7 +204,7 @@ TEST(Search, ProxyIsOnTheSurfaceAndNoSharingCellIsNearer) {
     CellIndex own;
     Patch patch;
     ASSERT_TRUE(surface.cellUnder(e, own));
-    const SearchResult found = searchClosest(surface, e, own, 0.5, 0.5);
+    const SearchResult found = searchDownhill(surface, e, own, 0.5, 0.5);
     ASSERT_EQ(found.end == SearchEnd::kHole, !surface.patch(own, patch));
     if (found.end == SearchEnd::kHole) continue;
     ASSERT_EQ(found.end, SearchEnd::kAtRest);
@@ -272,7 +272,7 @@ TEST(Search, EndsAsNearAsTheSourcesOwnOverManyNoisyStarts) {
       CellIndex start;
       ASSERT_TRUE(
           surface.cellUnder(e + glm::dvec3(uniform(random, -1, 1), uniform(random, -1, 1), 0), start));
-      const double a = std::sqrt(searchClosest(surface, e, start, 0.5, 0.5).point.distance2_mm2);
+      const double a = std::sqrt(searchDownhill(surface, e, start, 0.5, 0.5).point.distance2_mm2);
       const double b = distanceOfTheSourcesSearch(surface, e, start, 0.5, 0.5);
       SurfacePoint truth;
       ASSERT_TRUE(certifiedClosest(surface, e, 12.0, truth));

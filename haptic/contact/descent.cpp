@@ -1,4 +1,4 @@
-#include "haptic/contact/closest_point.h"
+#include "haptic/contact/descent.h"
 
 #include <cmath>
 #include <utility>
@@ -12,7 +12,7 @@ namespace {
 
 using namespace detail;
 
-// The state of one call of searchClosest. Everything is inlined into it: most of a tick's time is spent here.
+// The state of one call of searchDownhill. Everything is inlined into it: most of a tick's time is spent here.
 class Descent {
  public:
   // `patches`: room for two; outside, so that the rest can be held in registers.
@@ -207,8 +207,8 @@ SearchResult Descent::run(int most_rounds) noexcept {
 
 }  // namespace
 
-SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u, double v,
-                           int most_rounds) noexcept {
+SearchResult searchDownhill(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u, double v,
+                            int most_rounds) noexcept {
   Patch patches[2];
   return Descent(surface, patches, endpoint, start, Pair{u, v}).run(most_rounds);
 }
