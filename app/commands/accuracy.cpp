@@ -34,12 +34,19 @@ constexpr struct {
   const char* id;
   engine::Result<bench::Study> (*run)(const bench::AccuracyOptions&, engine::JobControl&);
 } kStudies[] = {
-    {"contact", bench::contactStudy},     {"surface", bench::surfaceStudy},
-    {"rate", bench::rateStudy},           {"energy", bench::energyStudy},
-    {"detail", bench::detailStudy},       {"filter", bench::filterStudy},
-    {"upload", bench::uploadStudy},       {"restoration", bench::restorationStudy},
-    {"automatic", bench::automaticStudy}, {"lines", bench::edgeLineStudy},
-    {"hand", bench::handStudy},           {"worth", bench::worthStudy},
+    {"contact", bench::contactStudy},
+    {"paper", bench::paperStudy},
+    {"surface", bench::surfaceStudy},
+    {"rate", bench::rateStudy},
+    {"energy", bench::energyStudy},
+    {"detail", bench::detailStudy},
+    {"filter", bench::filterStudy},
+    {"upload", bench::uploadStudy},
+    {"restoration", bench::restorationStudy},
+    {"automatic", bench::automaticStudy},
+    {"lines", bench::edgeLineStudy},
+    {"hand", bench::handStudy},
+    {"worth", bench::worthStudy},
     {"suggest", bench::suggestionStudy},
 };
 

@@ -39,6 +39,10 @@ struct AccuracyOptions {
 /// the true closest point, over nanoseconds per tick, with the same strokes for all of them.
 [[nodiscard]] engine::Result<Study> contactStudy(const AccuracyOptions& options, engine::JobControl& job);
 
+/// The source's search word for word beside levels paper, descent and certified, on grounds where a search goes astray:
+/// mean distance to the point felt, over nanoseconds per tick. Not on the scan.
+[[nodiscard]] engine::Result<Study> paperStudy(const AccuracyOptions& options, engine::JobControl& job);
+
 /// The surface of a cell: a bilinear patch or two triangles, in double or float, near the field's corner and
 /// 8 m away from it. Error: distance of the closest points of one cell.
 [[nodiscard]] engine::Result<Study> surfaceStudy(const AccuracyOptions& options, engine::JobControl& job);

@@ -12,10 +12,11 @@ double whiteNoise(std::uint64_t seed, int column, int row) {
 }
 
 engine::Result<engine::Version> fieldOf(std::int32_t side, double spacing_mm,
-                                        const std::function<double(int, int)>& height) {
+                                        const std::function<double(int, int)>& height, double spacing_y_mm) {
   engine::Grid grid;
   grid.width = grid.height = side;
-  grid.spacing_x = grid.spacing_y = spacing_mm;
+  grid.spacing_x = spacing_mm;
+  grid.spacing_y = spacing_y_mm > 0.0 ? spacing_y_mm : spacing_mm;
   auto builder = engine::FieldBuilder::create(grid, "accuracy study");
   if (!builder) return tl::unexpected(builder.error());
   std::vector<float> line(static_cast<std::size_t>(side));
@@ -41,6 +42,32 @@ engine::Result<std::vector<Subject>> hardSubjects(std::int32_t side) {
     auto field = fieldOf(side, kSpacingMm, height);
     if (!field) return tl::unexpected(field.error());
     subjects.push_back({name, *std::move(field)});
+  }
+  return subjects;
+}
+
+engine::Result<std::vector<Subject>> searchGrounds(std::int32_t side) {
+  const auto noise = [](int c, int r) { return 0.02 * whiteNoise(1, c, r); };
+  const auto chosen = [](int c, int r, double sigmas) { return whiteNoise(2, c, r) > sigmas; };
+  const auto wave = [](int i) { return std::abs(i % 16 - 8) / 8.0; };
+  const struct {
+    const char* name;
+    double spacing_x_mm, spacing_y_mm;
+    std::function<double(int, int)> height;
+  } grounds[] = {
+      {"noise", 0.05, 0.05, noise},
+      {"anisotropic noise", 0.03, 0.12, noise},
+      {"steps", 0.05, 0.05, [](int c, int r) { return 0.5 * ((3 * c + r) / 40 % 2); }},
+      {"saddles", 0.05, 0.05, [wave](int c, int r) { return 0.4 * wave(c) * wave(r); }},
+      {"ridges", 0.05, 0.05, [](int c, int) { return c % 16 == 8 ? 0.5 : 0.0; }},
+      {"holes", 0.05, 0.05, [=](int c, int r) { return chosen(c, r, 1.64) ? std::nan("") : noise(c, r); }},
+      {"spikes", 0.05, 0.05, [=](int c, int r) { return chosen(c, r, 2.33) ? 5.0 : noise(c, r); }},
+  };
+  std::vector<Subject> subjects;
+  for (const auto& ground : grounds) {
+    auto field = fieldOf(side, ground.spacing_x_mm, ground.height, ground.spacing_y_mm);
+    if (!field) return tl::unexpected(field.error());
+    subjects.push_back({ground.name, *std::move(field)});
   }
   return subjects;
 }

@@ -22,6 +22,7 @@
 #include <glm/geometric.hpp>
 
 #include "haptic/contact/descent.h"
+#include "haptic/contact/hull_distance.h"
 
 namespace fettle::haptic {
 
@@ -258,6 +259,8 @@ PatchPoint bestOfAll(const Patch& s, const glm::dvec3& endpoint, PatchPoint best
   return best;
 }
 
+}  // namespace
+
 // Whether no point of the patch is nearer than `rest`, where the descent ended, apart from rounding. With D =
 // (du, dv) the way from there to another point S, and a = e - S(rest),
 //   |S - e|^2 = |a|^2 - 2 (a.Su du + a.Sv dv) + (sx^2 + P^2) du^2 + (sy^2 + Q^2) dv^2 + 2 (P Q - k) du dv,
@@ -284,20 +287,6 @@ bool nothingNearer(const Patch& s, const glm::dvec3& e, const PatchPoint& rest) 
   const double sum = s.sx * s.sx * (s.sy * s.sy + q_low * q_low) + s.sy * s.sy * p_low * p_low;
   return sum + 2.0 * product - k * k > 1e-12 * (sum + 2.0 * std::abs(product) + k * k);
 }
-
-// A lower bound of the squared distance to the patch, from its extent along `away`, a direction from some
-// point to the endpoint, not zero: a patch lies in the hull of its corners, and so no nearer than the nearest
-// of their four planes across that direction. Off by a few roundings of the heights nearby.
-[[gnu::always_inline]] inline double hullDistance2(const Patch& s, const glm::dvec3& e,
-                                                   const glm::dvec3& away) noexcept {
-  const double along_u = away.x * s.sx + away.z * s.b;
-  const double along_v = away.y * s.sy + away.z * s.c;
-  const double nearest = away.x * (e.x - s.x0) + away.y * (e.y - s.y0) + away.z * (e.z - s.a) -
-                         std::max({0.0, along_u, along_v, along_u + along_v + away.z * s.d});
-  return nearest > 0.0 ? nearest * nearest / glm::dot(away, away) : 0.0;
-}
-
-}  // namespace
 
 PatchPoint closestOnWholePatch(const Patch& s, const glm::dvec3& endpoint) noexcept {
   const PatchPoint rest = descend(s, endpoint);

@@ -11,6 +11,11 @@ namespace fettle::haptic {
 /// a quintic), the closest point of each edge, and with them the vertices. [certified.cpp has the derivation]
 [[nodiscard]] PatchPoint closestOnWholePatch(const Patch& patch, const glm::dvec3& endpoint) noexcept;
 
+/// Whether certainly no point of the patch is nearer than `rest`, where a descent ended, apart from rounding. False where
+/// that cannot be told in a few operations. [certified.cpp has the derivation]
+[[nodiscard]] bool nothingNearer(const Patch& patch, const glm::dvec3& endpoint,
+                                 const PatchPoint& rest) noexcept;
+
 /// Level certified: the true closest point among all cells without holes whose horizontal distance to the
 /// endpoint is at most `radius_mm`. It is the closest point of the whole field whenever it is nearer than
 /// radius_mm, since everything left out is farther away than that. False when there is no such cell.

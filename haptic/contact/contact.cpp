@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 
 #include "haptic/contact/certified.h"
+#include "haptic/contact/closest_point.h"
 #include "haptic/contact/collision.h"
 #include "haptic/contact/descent.h"
 
@@ -12,9 +13,7 @@ namespace fettle::haptic {
 
 namespace {
 
-SearchResult countedSearch(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u, double v,
-                           int most_rounds, TickCounters& counters) noexcept {
-  const SearchResult result = searchDownhill(surface, endpoint, start, u, v, most_rounds);
+SearchResult counted(const SearchResult& result, TickCounters& counters) noexcept {
   counters.search_bound_hits += result.end == SearchEnd::kBound ? 1 : 0;
   counters.longest_search = std::max<std::int64_t>(counters.longest_search, result.cells);
   return result;
@@ -33,6 +32,14 @@ bool touchesAt(Surface& surface, const SearchResult& found, const glm::dvec3& en
 
 }  // namespace
 
+SearchResult ContactTracker::search(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u,
+                                    double v, TickCounters& counters) const noexcept {
+  return counted(level_ == ContactLevel::kDescent
+                     ? searchDownhill(surface, endpoint, start, u, v, search_rounds_)
+                     : searchClosest(surface, endpoint, start, u, v),
+                 counters);
+}
+
 bool contactTest(Surface& surface, const SurfacePoint& proxy, const glm::dvec3& endpoint,
                  TickCounters& counters, Contact& out) noexcept {
   const SurfaceNormal normal = surfaceNormal(surface, proxy);
@@ -49,7 +56,7 @@ bool contactTest(Surface& surface, const SurfacePoint& proxy, const glm::dvec3& 
 
 bool ContactTracker::track(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters,
                            Contact& out) noexcept {
-  const SearchResult found = countedSearch(surface, endpoint, cell_, u_, v_, search_rounds_, counters);
+  const SearchResult found = search(surface, endpoint, cell_, u_, v_, counters);
   if (found.end == SearchEnd::kHole) {
     ++counters.lost_cell;
     return false;
@@ -63,7 +70,7 @@ bool ContactTracker::collide(Surface& surface, const glm::dvec3& endpoint, bool 
   const auto searchFrom = [&](CellIndex cell, const glm::dvec3& above) {
     const double u = std::clamp(above.x / surface.spacingX() - cell.column, 0.0, 1.0);
     const double v = std::clamp(above.y / surface.spacingY() - cell.row, 0.0, 1.0);
-    const SearchResult found = countedSearch(surface, endpoint, cell, u, v, search_rounds_, counters);
+    const SearchResult found = search(surface, endpoint, cell, u, v, counters);
     return touchesAt(surface, found, endpoint, counters, out);
   };
 

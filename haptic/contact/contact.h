@@ -4,6 +4,7 @@
 
 #include "haptic/base/tick_counters.h"
 #include "haptic/contact/normal.h"
+#include "haptic/contact/search_result.h"
 #include "haptic/contact/surface.h"
 #include "haptic/scene/scene.h"
 
@@ -29,7 +30,7 @@ struct Contact {
 /// Test: dot(proxy - endpoint, normal) > 0. Exactly zero, for example with an endpoint on the surface, is no
 /// contact; its force would be zero.
 ///
-/// Level paper. In contact, the search for the local closest point starts at the previous proxy. Free, or
+/// Levels paper and descent. In contact, the search for the local closest point starts at the previous proxy. Free, or
 /// when that finds no contact, it starts from the cells under the haptic ray (previous to current endpoint),
 /// one after the other until the test is positive. All below the surface is material: an endpoint that is
 /// below the surface of its own cell is found whatever the ray was, because its own cell is the ray's last.
@@ -40,7 +41,7 @@ struct Contact {
 /// Level certified. Has no memory but the endpoint: the tip touches when it is below the surface of its own
 /// cell, and the proxy is the true closest point within the radius.
 ///
-/// At both levels the tip touches only over a cell without holes: outside the field and over holes nothing is
+/// At all levels the tip touches only over a cell without holes: outside the field and over holes nothing is
 /// felt (counted). The sides of the field and the walls of holes are no surface; a tip that enters the
 /// material through them is in contact immediately (counted).
 ///
@@ -68,6 +69,9 @@ class ContactTracker {
   }
 
  private:
+  /// The search of the level, counted.
+  [[nodiscard]] SearchResult search(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u,
+                                    double v, TickCounters& counters) const noexcept;
   [[nodiscard]] bool track(Surface& surface, const glm::dvec3& endpoint, TickCounters& counters,
                            Contact& out) noexcept;
   [[nodiscard]] bool collide(Surface& surface, const glm::dvec3& endpoint, bool below, CellIndex own,

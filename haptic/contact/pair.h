@@ -36,13 +36,20 @@ using PairMask = __m128d;
 [[nodiscard]] inline PairMask either(PairMask a, PairMask b) noexcept {
   return _mm_or_pd(a, b);
 }
-/// a where b is false.
-[[nodiscard]] inline PairMask butNot(PairMask a, PairMask b) noexcept {
-  return _mm_andnot_pd(b, a);
-}
 /// Lane by lane a where the mask is true, else b.
 [[nodiscard]] inline Pair chosen(PairMask mask, Pair a, Pair b) noexcept {
   return _mm_or_pd(_mm_and_pd(mask, a), _mm_andnot_pd(mask, b));
+}
+/// std::min(b, a) and std::max(b, a) in both lanes; b where one is NaN.
+[[nodiscard]] inline Pair smaller(Pair a, Pair b) noexcept {
+  return _mm_min_pd(a, b);
+}
+[[nodiscard]] inline Pair larger(Pair a, Pair b) noexcept {
+  return _mm_max_pd(a, b);
+}
+/// a where the mask is false, else 0.
+[[nodiscard]] inline Pair butNot(Pair a, PairMask mask) noexcept {
+  return _mm_andnot_pd(mask, a);
 }
 /// std::clamp(x, 0.0, 1.0) in both lanes, NaN and -0 included, and no branch.
 [[nodiscard]] inline Pair unit(Pair x) noexcept {
@@ -79,11 +86,17 @@ using PairMask = int;  // as lanes() returns it
 [[nodiscard]] inline PairMask either(PairMask a, PairMask b) noexcept {
   return a | b;
 }
-[[nodiscard]] inline PairMask butNot(PairMask a, PairMask b) noexcept {
-  return a & ~b;
-}
 [[nodiscard]] inline Pair chosen(PairMask mask, Pair a, Pair b) noexcept {
   return Pair{(mask & 1) != 0 ? a[0] : b[0], (mask & 2) != 0 ? a[1] : b[1]};
+}
+[[nodiscard]] inline Pair smaller(Pair a, Pair b) noexcept {
+  return Pair{std::min(b[0], a[0]), std::min(b[1], a[1])};
+}
+[[nodiscard]] inline Pair larger(Pair a, Pair b) noexcept {
+  return Pair{std::max(b[0], a[0]), std::max(b[1], a[1])};
+}
+[[nodiscard]] inline Pair butNot(Pair a, PairMask mask) noexcept {
+  return chosen(mask, Pair{0.0, 0.0}, a);
 }
 [[nodiscard]] inline Pair unit(Pair x) noexcept {
   return Pair{std::clamp(x[0], 0.0, 1.0), std::clamp(x[1], 0.0, 1.0)};

@@ -34,8 +34,9 @@ struct Budget {
 };
 
 constexpr Budget kBudgets[] = {
-    {"feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 0.0, 200, 1395.0},
-    {"3 x 3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 0.0, 200, 1857.0},
+    {"feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 0.0, 200, 2674.0},
+    {"descent", haptic::Tool::kFeel, haptic::ContactLevel::kDescent, 0.0, 200, 1395.0},
+    {"3 x 3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 0.0, 200, 2975.0},
     {"certified, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 0.0, 40, 8075.0},
     {"ball, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 2.0, 12, 38392.0},
 };

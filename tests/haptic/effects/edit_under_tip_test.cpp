@@ -42,7 +42,9 @@ TEST(EditUnderTheTip, TheProxyIsOnTheSurfaceAtTheVeryNextTickInAMillionTicksOfSm
   for (int stroke = 0; stroke < kStrokes; ++stroke) {
     Scene scene;
     scene.brush_radius_samples = stroke % 4 == 0 ? 0.0 : uniform(random, 0.0, 6.0);
-    scene.level = stroke % 8 == 5 ? ContactLevel::kCertified : ContactLevel::kPaper;
+    scene.level = stroke % 8 == 5   ? ContactLevel::kCertified
+                  : stroke % 8 == 6 ? ContactLevel::kDescent
+                                    : ContactLevel::kPaper;
     if (stroke % 2 == 1)
       for (const EffectKind kind : {EffectKind::kFriction, EffectKind::kCoupling, EffectKind::kPassivity})
         scene.effects.push_back(kind);

@@ -76,7 +76,7 @@ TEST(MillionTicks, NoneAllocatesWhateverToolBrushLevelEffectOrCommand) {
     if (i % 20000 == 10) {
       Scene scene = defaultScene();
       const auto k = i / 20000;
-      scene.level = k % 2 == 0 ? ContactLevel::kPaper : ContactLevel::kCertified;
+      scene.level = static_cast<ContactLevel>(k % 3);
       scene.brush_radius_samples = static_cast<double>(k % 5) * 1.7;
       scene.mark_radius_samples = static_cast<double>(k % 4);
       scene.invert = k % 7 == 3;

@@ -70,7 +70,7 @@ TEST(NeverAllocate, ATickDoesNotWithAnyToolLevelOrEffect) {
     if (i % 7001 == 3000) strokes[i].tip_mm.z = -1e6;
   }
   long ticks = 0;
-  for (const ContactLevel level : {ContactLevel::kPaper, ContactLevel::kCertified})
+  for (const ContactLevel level : {ContactLevel::kPaper, ContactLevel::kDescent, ContactLevel::kCertified})
     for (int listed = 1; listed <= kEffectKinds; ++listed) {
       Scene scene;
       scene.level = level;

@@ -329,7 +329,8 @@ TEST(Collision, NeverMissesWhatBruteForceSees) {
 TEST(Tick, AHandBelowTheSurfaceIsAlwaysInContactAndItsProxyOnTheSurface) {
   std::mt19937_64 random(31);
   for (int i = 0; i < 60; ++i)
-    for (const ContactLevel level : {ContactLevel::kPaper, ContactLevel::kCertified}) {
+    for (const ContactLevel level :
+         {ContactLevel::kPaper, ContactLevel::kDescent, ContactLevel::kCertified}) {
       const engine::Version field = randomField(random, 40, 40, i, 0.3, 0.4);
       Scene scene;
       scene.level = level;

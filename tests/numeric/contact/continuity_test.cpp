@@ -185,7 +185,7 @@ TEST(Resting, OnAVertexAnEdgeAndARidgeTheProxyIsTheFeatureItself) {
   const engine::Version pit =
       tests::fieldOf(25, 25, [](int c, int r) { return std::abs(c - 12.0) + std::abs(r - 12.0); });
   const engine::Version groove = tests::fieldOf(25, 25, [](int c, int) { return std::abs(c - 12.0); });
-  for (const Choice choice : {Choice::kPaper, Choice::kCertified}) {
+  for (const Choice choice : {Choice::kPaper, Choice::kDescent, Choice::kCertified}) {
     engine::LiveField in_pit(pit, engine::Growth::kAllowed);
     Tick at_pit(tests::sceneFor(choice, pit.grid()), in_pit, pit);
     engine::LiveField in_groove(groove, engine::Growth::kAllowed);

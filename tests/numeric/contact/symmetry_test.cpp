@@ -107,9 +107,9 @@ TEST_P(Symmetry, MirrorsAndQuarterTurnsTurnTheForce) {
       }
     }
     EXPECT_GT(contacts, 3000);
-    // The local search takes the diagonal neighbour before the others and u before v: in noise a fork may
+    // Descent takes the diagonal neighbour before the others and u before v: in noise a fork may
     // lead the mirrored one into another minimum, which it then keeps.
-    const bool forks = GetParam() == Choice::kPaper && std::string_view(name) == "noise";
+    const bool forks = GetParam() == Choice::kDescent && std::string_view(name) == "noise";
     EXPECT_LE(other, forks ? contacts / 10 : 0) << name;
     tests::tellRare(
         std::string(name) + " " + tests::choiceName(GetParam()), counters,

@@ -143,7 +143,8 @@ HardField hardField(const std::string& name) {
 }
 
 std::string choiceName(Choice choice) {
-  return choice == Choice::kPaper ? "paper" : (choice == Choice::kCertified ? "certified" : "sphere");
+  constexpr const char* kNames[] = {"paper", "descent", "certified", "sphere"};
+  return kNames[static_cast<std::size_t>(choice)];
 }
 
 haptic::Scene sceneFor(Choice choice, const engine::Grid& grid) {
@@ -151,6 +152,7 @@ haptic::Scene sceneFor(Choice choice, const engine::Grid& grid) {
   scene.effects = {haptic::EffectKind::kSpring};
   scene.force_limit_n = 1000.0;
   scene.certified_radius_cells = 40;
+  if (choice == Choice::kDescent) scene.level = haptic::ContactLevel::kDescent;
   if (choice == Choice::kCertified) scene.level = haptic::ContactLevel::kCertified;
   if (choice == Choice::kSphere) {
     scene.tip = haptic::TipShape::kSphere;

@@ -30,8 +30,12 @@ struct HardField {
 [[nodiscard]] HardField asHardField(std::string name, engine::Version field);
 
 /// The three ways to touch.
-enum class Choice : std::uint8_t { kPaper, kCertified, kSphere };
-inline constexpr Choice kChoices[] = {Choice::kPaper, Choice::kCertified, Choice::kSphere};
+enum class Choice : std::uint8_t { kPaper, kDescent, kCertified, kSphere };
+/// A tip that such a search loses may be handed to a farther point.
+[[nodiscard]] constexpr bool searchesLocally(Choice choice) noexcept {
+  return choice == Choice::kPaper || choice == Choice::kDescent;
+}
+inline constexpr Choice kChoices[] = {Choice::kPaper, Choice::kDescent, Choice::kCertified, Choice::kSphere};
 [[nodiscard]] std::string choiceName(Choice choice);
 /// A spring of 1 N/mm whose limit does not bite (1000 N), no tool. The certified radius, 40 cells, holds the
 /// whole of these fields; the ball is 1.5 of the smaller spacing.

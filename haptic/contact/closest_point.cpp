@@ -1,0 +1,131 @@
+#include "haptic/contact/closest_point.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "haptic/base/search_limits.h"
+#include "haptic/contact/closest_on_cell.h"
+#include "haptic/contact/hull_distance.h"
+#include "haptic/contact/normal.h"
+
+namespace fettle::haptic {
+
+namespace {
+
+// The state of one call of searchClosest.
+class CellByCell {
+ public:
+  CellByCell(Surface& surface, const glm::dvec3& endpoint) noexcept : surface_(surface), e_(endpoint) {}
+
+  [[gnu::always_inline]] inline SearchResult run(CellIndex start, double u, double v) noexcept {
+    SearchResult result;
+    if (!surface_.patch(start, here_)) return result;
+    cell_ = start;
+    result.cells = 1;
+    result.end = SearchEnd::kAtRest;
+    look(u, v);
+    // A hand that moves little leaves its proxy at the same vertex.
+    if (atVertex(u, v) && highestRise(here_, away_, u, v) <= 0.0 && starLiesBehind(u, v)) {
+      at_ = {u, v, away2_};
+      result.ringed = true;
+    } else {
+      at_ = closestOnCell(here_, e_, u, v);
+      moveOn(result);
+    }
+    const glm::dvec3 point = here_.at(at_.u, at_.v);
+    const glm::dvec3 d = point - e_;
+    result.point = {cell_, at_.u, at_.v, point, d.x * d.x + d.y * d.y + d.z * d.z};
+    return result;
+  }
+
+ private:
+  [[nodiscard]] static bool onLine(double x) noexcept { return x == 0.0 || x == 1.0; }
+  [[nodiscard]] static bool atVertex(double u, double v) noexcept { return onLine(u) && onLine(v); }
+
+  // From a point of the present cell to the endpoint.
+  void look(double u, double v) noexcept {
+    away_ = e_ - here_.at(u, v);
+    away2_ = away_.x * away_.x + away_.y * away_.y + away_.z * away_.z;
+  }
+
+  // At a vertex of the present cell, of which look() was called: whether the three other cells exist and none is nearer.
+  // They have five corners that the present cell has not.
+  [[gnu::always_inline]] inline bool starLiesBehind(double u, double v) noexcept {
+    const int dc = u == 1.0 ? 1 : -1;
+    const int dr = v == 1.0 ? 1 : -1;
+    const Surface::Star star =
+        surface_.star(cell_.column + (u == 1.0 ? 1 : 0), cell_.row + (v == 1.0 ? 1 : 0), dc, dr);
+    const double height = e_.z - away_.z;
+    const double step_x = dc * here_.sx * away_.x;
+    const double step_y = dr * here_.sy * away_.y;
+    const auto rise = [&](double along, double to) { return along + away_.z * (to - height); };
+    // Where a sample is a hole the comparison is false.
+    const double limit = 0.25 * (1.0 - kShorter) * away2_;
+    return (rise(step_x, star.across_u) <= limit) & (rise(step_y, star.across_v) <= limit) &
+           (rise(step_x - step_y, star.corners[0]) <= limit) &
+           (rise(step_y - step_x, star.corners[1]) <= limit) &
+           (rise(step_x + step_y, star.corners[2]) <= limit);
+  }
+
+  // From the bounded closest point of the present cell to that of the cell where the search rests.
+  void moveOn(SearchResult& result) noexcept {
+    for (;;) {
+      if (!onLine(at_.u) && !onLine(at_.v)) {
+        result.ringed = true;
+        return;
+      }
+      look(at_.u, at_.v);
+      if (atVertex(at_.u, at_.v) && starLiesBehind(at_.u, at_.v)) {
+        result.ringed = true;
+        return;
+      }
+      int missing = atVertex(at_.u, at_.v) ? 3 : 1;
+      bool moves = false;
+      PatchPoint nearest = at_;
+      CellIndex nearest_cell;
+      Patch nearest_patch;
+      forEachSharing(surface_, cell_, at_.u, at_.v, [&](const SharingCell& other) {
+        Patch patch;
+        if (!surface_.patch(other.cell, patch)) return;
+        --missing;
+        // What is left of the distance at the cell's highest corner bounds the distance of all of it.
+        const double left = away2_ - highestRise(patch, away_, other.u, other.v);
+        if (left > 0.0 && left * left >= nearest.distance2_mm2 * kShorter * away2_) return;
+        const PatchPoint point = closestOnCell(patch, e_, other.u, other.v);
+        if (!(point.distance2_mm2 < nearest.distance2_mm2 * kShorter)) return;
+        nearest = point;
+        nearest_cell = other.cell;
+        nearest_patch = patch;
+        moves = true;
+      });
+      if (!moves) {
+        result.ringed = missing == 0;
+        return;
+      }
+      at_ = nearest;
+      cell_ = nearest_cell;
+      here_ = nearest_patch;
+      if (++result.cells >= kMaxCellsVisited) {
+        result.end = SearchEnd::kBound;
+        return;
+      }
+    }
+  }
+
+  Surface& surface_;
+  const glm::dvec3& e_;
+  Patch here_;
+  CellIndex cell_;
+  PatchPoint at_;
+  glm::dvec3 away_{0.0};
+  double away2_ = 0.0;
+};
+
+}  // namespace
+
+SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellIndex start, double u,
+                           double v) noexcept {
+  return CellByCell(surface, endpoint).run(start, u, v);
+}
+
+}  // namespace fettle::haptic
