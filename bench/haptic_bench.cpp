@@ -4,6 +4,7 @@
 #include <bit>
 #include <span>
 
+#include "bench/least_search.h"
 #include "bench/machine.h"
 #include "bench/plain_search.h"
 #include "bench/repeats.h"
@@ -31,6 +32,7 @@ struct HapticCase {
 
 constexpr HapticCase kHapticCases[] = {
     {"paper, feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 1, 0.0},
+    {"descent, feel", haptic::Tool::kFeel, haptic::ContactLevel::kDescent, 1, 0.0},
     {"paper, 3x3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 1, 0.0},
     {"certified radius 2, feel", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 10, 0.0},
     {"ball r = 2 samples, to rest", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 10, 2.0},
@@ -165,6 +167,30 @@ engine::Result<HapticBenchRow> runPlain(const engine::Version& field,
   return row;
 }
 
+// The lower bound of level paper over the same strokes: rates of all ticks, though only those in contact are computed.
+HapticBenchRow runLeast(const engine::Version& field, std::span<const haptic::StrokeSample> strokes,
+                        const HapticBenchOptions& options) {
+  HapticBenchRow row;
+  row.name = "plain array, the least of level paper";
+  row.ticks = static_cast<std::int64_t>(strokes.size());
+  const LeastSearch least(field, strokes);
+  row.contact_ticks = least.contacts();
+  row.cells = least.cells();
+  row.newton_cells = least.newtonCells();
+  row.bytes = least.bytes();
+  std::vector<double> rates;
+  for (int i = 0; i < options.repeats; ++i) {
+    const engine::Stopwatch watch;
+    row.hash = std::bit_cast<std::uint64_t>(least.run());
+    rates.push_back(static_cast<double>(strokes.size()) / watch.seconds());
+  }
+  std::sort(rates.begin(), rates.end());
+  row.slowest = rates.front();
+  row.median = rates[rates.size() / 2];
+  row.fastest = rates.back();
+  return row;
+}
+
 struct Touched {
   const char* ground;
   const engine::Version& field;
@@ -186,6 +212,7 @@ engine::Status touch(const Touched& what, const HapticBenchOptions& options, eng
     return {};
   };
   if (auto done = add(runPlain(what.field, strokes, options, job)); !done) return done;
+  if (auto done = add(runLeast(what.field, strokes, options)); !done) return done;
   double raised_mm = 0.0;  // a ball's endpoint is its centre: for the same press it is one radius higher
   for (const HapticCase& test_case : kHapticCases)
     if (auto done = add(run(test_case, what.field, strokes, raised_mm, options, job)); !done) return done;

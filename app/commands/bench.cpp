@@ -37,6 +37,9 @@ engine::Result<Report> haptic(const bench::HapticBenchOptions& options, engine::
                               {"tick_p999_ns", row.p999_ns},
                               {"tick_p9999_ns", row.p9999_ns},
                               {"tick_worst_ns", row.worst_ns},
+                              {"cells_per_contact", row.cells},
+                              {"newton_cells_per_contact", row.newton_cells},
+                              {"bytes_per_contact", row.bytes},
                               {"hash", fmt::format("{:016x}", row.hash)}});
   return report;
 }
@@ -61,6 +64,10 @@ void printHaptic(const Report& report) {
     else
       fmt::print("{:45}", "");
     fmt::print("  {}\n", row["hash"].get<std::string>());
+    if (row["cells_per_contact"] > 0.0)
+      fmt::print("    of a contact: {:.2f} cells, {:.2f} of them by Newton's method, {:.0f} bytes\n",
+                 row["cells_per_contact"].get<double>(), row["newton_cells_per_contact"].get<double>(),
+                 row["bytes_per_contact"].get<double>());
   }
 }
 

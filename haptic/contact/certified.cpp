@@ -245,18 +245,26 @@ PatchPoint descend(const Patch& s, const glm::dvec3& endpoint) noexcept {
   return closestOnPatch(s, endpoint, unit((endpoint.x - s.x0) / s.sx), unit((endpoint.y - s.y0) / s.sy));
 }
 
-// For the case that the descent ended in another minimum: all edges and all stationary points.
-PatchPoint bestOfAll(const Patch& s, const glm::dvec3& endpoint, PatchPoint best) noexcept {
-  for (const double side : {0.0, 1.0}) {
-    keepNearer(best, closestOnEdgeV(s, endpoint, side));
-    keepNearer(best, closestOnEdgeU(s, endpoint, side));
-  }
+}  // namespace
+
+PatchPoint nearestInside(const Patch& s, const glm::dvec3& endpoint, PatchPoint best) noexcept {
   const Reduced r{s.sx, s.sy, endpoint.x - s.x0, endpoint.y - s.y0, s.b, s.c, s.d, s.a - endpoint.z};
   forEachMinimum(r, [&](double v) {
     keepNearer(best, closestOnEdgeV(s, endpoint, unit(v)));  // exact along u at any v
     keepNearer(best, closestOnPatch(s, endpoint, unit(r.u(v)), unit(v)));
   });
   return best;
+}
+
+namespace {
+
+// For the case that the descent ended in another minimum: all edges and all stationary points.
+PatchPoint bestOfAll(const Patch& s, const glm::dvec3& endpoint, PatchPoint best) noexcept {
+  for (const double side : {0.0, 1.0}) {
+    keepNearer(best, closestOnEdgeV(s, endpoint, side));
+    keepNearer(best, closestOnEdgeU(s, endpoint, side));
+  }
+  return nearestInside(s, endpoint, best);
 }
 
 }  // namespace

@@ -11,6 +11,10 @@ namespace fettle::haptic {
 /// a quintic), the closest point of each edge, and with them the vertices. [certified.cpp has the derivation]
 [[nodiscard]] PatchPoint closestOnWholePatch(const Patch& patch, const glm::dvec3& endpoint) noexcept;
 
+/// `best`, a point of the patch, or a nearer one of its stationary points.
+[[nodiscard]] PatchPoint nearestInside(const Patch& patch, const glm::dvec3& endpoint,
+                                       PatchPoint best) noexcept;
+
 /// Whether certainly no point of the patch is nearer than `rest`, where a descent ended, apart from rounding. False where
 /// that cannot be told in a few operations. [certified.cpp has the derivation]
 [[nodiscard]] bool nothingNearer(const Patch& patch, const glm::dvec3& endpoint,

@@ -3,29 +3,27 @@
 //   (sx (sx u - ex) + z p, sy (sy v - ey) + z q),   p = b + d v,   q = c + d u,
 // and half its Hessian
 //   (sx^2 + p^2, k; k, sy^2 + q^2),   k = p q + z d = b c - d w + 2 d z.
-// On a box of parameters p, q, z and k, which is linear in z, lie between their values at its corners. So the corners
-// mostly show that the box has no minimum inside: the gradient vanishes nowhere or the Hessian is indefinite everywhere;
-// or at most one: the Hessian is positive definite everywhere. A box of which they show nothing is divided.
+// Over the cell p, q, z and k, which is linear in z, lie between their values at its corners. So the corners mostly show
+// that there is no minimum inside: the gradient vanishes nowhere or the Hessian is indefinite everywhere; or one at most:
+// the Hessian is positive definite everywhere.
 
 #include "haptic/contact/closest_on_cell.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "haptic/contact/certified.h"
-#include "haptic/contact/hull_distance.h"
 #include "haptic/contact/pair.h"
 
 namespace fettle::haptic {
 
 namespace {
 
-// Far more than rounding, far less than what would leave many boxes undecided.
+// Far more than rounding, far less than what would leave many cells undecided.
 constexpr double kShapeMargin = 1.0 + 1e-9;
 
-// What the corners of a part of a patch show.
+// What the corners of a patch show.
 enum class Inside : std::uint8_t {
   kNoMinimum,
   kOneAtMost,  // squared distance is convex
@@ -34,21 +32,6 @@ enum class Inside : std::uint8_t {
 
 void keepNearer(PatchPoint& best, const PatchPoint& point) noexcept {
   if (point.distance2_mm2 < best.distance2_mm2) best = point;
-}
-
-// The part of a patch over the parameters from (u, v), `side` long: the two are powers of 1/2 and multiples of them.
-struct Box {
-  double u, v, side;
-};
-Patch partOf(const Patch& s, const Box& box) noexcept {
-  return {s.x0 + box.u * s.sx,
-          s.y0 + box.v * s.sy,
-          box.side * s.sx,
-          box.side * s.sy,
-          s.heightAt(box.u, box.v),
-          box.side * (s.b + s.d * box.v),
-          box.side * (s.c + s.d * box.u),
-          box.side * box.side * s.d};
 }
 
 // Lane by lane 0 where the range between two numbers, whose squares these are, holds 0, else the smaller square.
@@ -98,37 +81,6 @@ Patch partOf(const Patch& s, const Box& box) noexcept {
   return std::max(k0_2, k1_2) * kShapeMargin < least[0] * least[1] ? Inside::kOneAtMost : Inside::kUnknown;
 }
 
-// The nearest of `best` and of all minima inside the patch, about whose number nothing is known.
-PatchPoint bestInside(const Patch& s, const glm::dvec3& e, PatchPoint best) noexcept {
-  // Next to a spike the ranges are wide, and the general solution takes less time than more boxes.
-  constexpr int kMostBoxes = 40;
-  constexpr double kSmallest = 1.0 / 64;
-  std::array<Box, 3 * 7 + 1> waiting;
-  int top = 0;
-  const auto divide = [&](const Box& box) {
-    const double half = 0.5 * box.side;
-    for (const double dv : {half, 0.0})
-      for (const double du : {half, 0.0})
-        waiting[static_cast<std::size_t>(top++)] = {box.u + du, box.v + dv, half};
-  };
-  divide({0.0, 0.0, 1.0});
-  for (int looked = 0; top > 0; ++looked) {
-    if (looked == kMostBoxes) return closestOnWholePatch(s, e);
-    const Box box = waiting[static_cast<std::size_t>(--top)];
-    const Patch part = partOf(s, box);
-    const Inside inside = minimaInside(part, e);
-    if (inside == Inside::kNoMinimum) continue;
-    if (hullDistance2(part, e, e - part.at(0.5, 0.5)) >= best.distance2_mm2) continue;
-    if (inside == Inside::kUnknown && box.side > kSmallest) {
-      divide(box);
-      continue;
-    }
-    const PatchPoint rest = closestOnPatch(part, e, 0.5, 0.5);
-    keepNearer(best, {box.u + box.side * rest.u, box.v + box.side * rest.v, rest.distance2_mm2});
-  }
-  return best;
-}
-
 }  // namespace
 
 PatchPoint closestOnEdges(const Patch& s, const glm::dvec3& e) noexcept {
@@ -165,7 +117,6 @@ PatchPoint closestOnCell(const Patch& s, const glm::dvec3& e, double u0, double 
   }
   PatchPoint best = closestOnEdges(s, e);
   if (inside == Inside::kNoMinimum) return best;
-  if (highestRise(s, e - s.at(best.u, best.v), best.u, best.v) <= kNoRise * best.distance2_mm2) return best;
   if (!from_inside) {
     inside = minimaInside(s, e);
     if (inside == Inside::kNoMinimum) return best;
@@ -175,7 +126,7 @@ PatchPoint closestOnCell(const Patch& s, const glm::dvec3& e, double u0, double 
   const PatchPoint rest = closestOnPatch(s, e, u0, v0);
   if (inside == Inside::kOneAtMost) return rest;
   keepNearer(best, rest);
-  return nothingNearer(s, e, best) ? best : bestInside(s, e, best);
+  return nothingNearer(s, e, best) ? best : nearestInside(s, e, best);
 }
 
 }  // namespace fettle::haptic

@@ -25,7 +25,7 @@ class CellByCell {
     result.end = SearchEnd::kAtRest;
     look(u, v);
     // A hand that moves little leaves its proxy at the same vertex.
-    if (atVertex(u, v) && highestRise(here_, away_, u, v) <= 0.0 && starLiesBehind(u, v)) {
+    if (atVertex(u, v) && highestRise(here_, away_, u, v) <= 0.0 && around(u, v).rising == 0) {
       at_ = {u, v, away2_};
       result.ringed = true;
     } else {
@@ -48,9 +48,14 @@ class CellByCell {
     away2_ = away_.x * away_.x + away_.y * away_.y + away_.z * away_.z;
   }
 
-  // At a vertex of the present cell, of which look() was called: whether the three other cells exist and none is nearer.
-  // They have five corners that the present cell has not.
-  [[gnu::always_inline]] inline bool starLiesBehind(double u, double v) noexcept {
+  // The cells around a vertex of the present one: 1 across u, 2 across v, 4 across both.
+  struct Around {
+    int rising = 0;  // cells with a corner that may be nearer, or that is a hole
+    bool complete = false;
+  };
+  // At a vertex of the present cell, of which look() was called. The three other cells have five corners that the present
+  // cell has not; its own are not nearer.
+  [[gnu::always_inline]] inline Around around(double u, double v) noexcept {
     const int dc = u == 1.0 ? 1 : -1;
     const int dr = v == 1.0 ? 1 : -1;
     const Surface::Star star =
@@ -58,13 +63,17 @@ class CellByCell {
     const double height = e_.z - away_.z;
     const double step_x = dc * here_.sx * away_.x;
     const double step_y = dr * here_.sy * away_.y;
-    const auto rise = [&](double along, double to) { return along + away_.z * (to - height); };
     // Where a sample is a hole the comparison is false.
     const double limit = 0.25 * (1.0 - kShorter) * away2_;
-    return (rise(step_x, star.across_u) <= limit) & (rise(step_y, star.across_v) <= limit) &
-           (rise(step_x - step_y, star.corners[0]) <= limit) &
-           (rise(step_y - step_x, star.corners[1]) <= limit) &
-           (rise(step_x + step_y, star.corners[2]) <= limit);
+    const auto behind = [&](double along, double to) {
+      return along + away_.z * (to - height) <= limit ? 1 : 0;
+    };
+    const int across_u = behind(step_x, star.across_u);
+    const int across_v = behind(step_y, star.across_v);
+    const int all_u = across_u & behind(step_x - step_y, star.corners[0]);
+    const int all_v = across_v & behind(step_y - step_x, star.corners[1]);
+    const int all_both = across_u & across_v & behind(step_x + step_y, star.corners[2]);
+    return {7 & ~(all_u | all_v << 1 | all_both << 2), star.complete()};
   }
 
   // From the bounded closest point of the present cell to that of the cell where the search rests.
@@ -75,19 +84,20 @@ class CellByCell {
         return;
       }
       look(at_.u, at_.v);
-      if (atVertex(at_.u, at_.v) && starLiesBehind(at_.u, at_.v)) {
-        result.ringed = true;
-        return;
-      }
-      int missing = atVertex(at_.u, at_.v) ? 3 : 1;
+      const bool vertex = atVertex(at_.u, at_.v);
+      const Around near = vertex ? around(at_.u, at_.v) : Around{7, true};
+      int missing = vertex ? 0 : 1;
       bool moves = false;
       PatchPoint nearest = at_;
       CellIndex nearest_cell;
       Patch nearest_patch;
       forEachSharing(surface_, cell_, at_.u, at_.v, [&](const SharingCell& other) {
+        const int across =
+            (other.cell.column != cell_.column ? 1 : 0) + (other.cell.row != cell_.row ? 2 : 0);
         Patch patch;
-        if (!surface_.patch(other.cell, patch)) return;
-        --missing;
+        if ((near.rising >> (across == 3 ? 2 : across - 1) & 1) == 0 || !surface_.patch(other.cell, patch))
+          return;
+        missing = 0;
         // What is left of the distance at the cell's highest corner bounds the distance of all of it.
         const double left = away2_ - highestRise(patch, away_, other.u, other.v);
         if (left > 0.0 && left * left >= nearest.distance2_mm2 * kShorter * away2_) return;
@@ -99,7 +109,7 @@ class CellByCell {
         moves = true;
       });
       if (!moves) {
-        result.ringed = missing == 0;
+        result.ringed = missing == 0 && near.complete;
         return;
       }
       at_ = nearest;

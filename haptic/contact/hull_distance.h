@@ -31,9 +31,4 @@ namespace fettle::haptic {
          (u * along_u + v * along_v + u * v * twist);
 }
 
-/// No point of a patch is nearer to the endpoint, by more than 1e-12 of the squared distance, than one from which no corner
-/// of the patch rises along the line to the endpoint by more than this many squared distances: the patch lies in the
-/// hull of its corners.
-inline constexpr double kNoRise = 4e-13;
-
 }  // namespace fettle::haptic
