@@ -57,7 +57,7 @@ LeastSearch::LeastSearch(const engine::Version& field, std::span<const haptic::S
         haptic::forEachSharing(surface, cell, at.u, at.v, [&](const haptic::SharingCell& other) {
           const PatchPoint point = haptic::closestOnCell(patch(other.cell.column, other.cell.row),
                                                          sample.tip_mm, other.u, other.v);
-          if (!(point.distance2_mm2 < at.distance2_mm2 * haptic::kShorter)) return;
+          if (!(point.distance2_mm2 < haptic::shorterThan(at.distance2_mm2, sample.tip_mm))) return;
           at = point;
           next = other.cell;
           u = other.u;

@@ -13,7 +13,11 @@ using haptic::CellIndex;
 
 namespace {
 
-constexpr double kNoNearer = 1.0 - 1e-9;
+// As level paper has it: a shorter distance is shorter by more than rounding.
+double shorter(double distance2, const glm::dvec3& e) {
+  return distance2 -
+         4e-15 * (distance2 + std::sqrt(distance2) * (std::abs(e.x) + std::abs(e.y) + std::abs(e.z)));
+}
 
 // A cell with its endpoint; `turned` exchanges u and v.
 struct LiteralCell {
@@ -111,7 +115,7 @@ bool LiteralSearch::bounded(CellIndex cell, const glm::dvec3& e, LiteralPoint& o
   // What rounding left beside an edge lies on it.
   const auto onEdge = [](double x) { return std::abs(x - std::round(x)) <= 1e-9 ? std::round(x) : x; };
   const double u = onEdge(best.u), v = onEdge(best.v);
-  if (s.distance2(u, v) * kNoNearer <= best.distance2) best = {u, v, s.distance2(u, v)};
+  if (s.distance2(u, v) * (1.0 - 1e-9) <= best.distance2) best = {u, v, s.distance2(u, v)};
   out.cell = cell;
   out.u = best.u;
   out.v = best.v;
@@ -139,7 +143,7 @@ LiteralPoint LiteralSearch::from(CellIndex start, const glm::dvec3& e) const {
         all = false;
         continue;
       }
-      if (!(other.distance2_mm2 < nearest.distance2_mm2 * kNoNearer)) continue;
+      if (!(other.distance2_mm2 < shorter(nearest.distance2_mm2, e))) continue;
       nearest = other;
       moved = true;
     }

@@ -24,7 +24,7 @@ struct LiteralPoint {
 /// closest point of the cell, then of all cells that share its edge or vertex; the shortest distance is kept. The
 /// reference of level paper (haptic/contact/closest_point.h), thirty times slower: a bounded closest point is looked for
 /// at 65 places along each parameter, where the other has its minimum in closed form, and refined. Of distances equal
-/// within 1e-9 of their squares the first is kept.
+/// within rounding the first is kept.
 ///
 /// Source: Potter, Johnson, Cohen, DETC2004-57539, "Haptic Rendering". Threading: one thread.
 class LiteralSearch {

@@ -64,7 +64,7 @@ class CellByCell {
     const double step_x = dc * here_.sx * away_.x;
     const double step_y = dr * here_.sy * away_.y;
     // Where a sample is a hole the comparison is false.
-    const double limit = 0.25 * (1.0 - kShorter) * away2_;
+    const double limit = 0.25 * (away2_ - shorterThan(away2_, e_));
     const auto behind = [&](double along, double to) {
       return along + away_.z * (to - height) <= limit ? 1 : 0;
     };
@@ -89,6 +89,7 @@ class CellByCell {
       int missing = vertex ? 0 : 1;
       bool moves = false;
       PatchPoint nearest = at_;
+      double shorter = shorterThan(nearest.distance2_mm2, e_);
       CellIndex nearest_cell;
       Patch nearest_patch;
       forEachSharing(surface_, cell_, at_.u, at_.v, [&](const SharingCell& other) {
@@ -100,10 +101,11 @@ class CellByCell {
         missing = 0;
         // What is left of the distance at the cell's highest corner bounds the distance of all of it.
         const double left = away2_ - highestRise(patch, away_, other.u, other.v);
-        if (left > 0.0 && left * left >= nearest.distance2_mm2 * kShorter * away2_) return;
+        if (left > 0.0 && left * left >= shorter * away2_) return;
         const PatchPoint point = closestOnCell(patch, e_, other.u, other.v);
-        if (!(point.distance2_mm2 < nearest.distance2_mm2 * kShorter)) return;
+        if (!(point.distance2_mm2 < shorter)) return;
         nearest = point;
+        shorter = shorterThan(nearest.distance2_mm2, e_);
         nearest_cell = other.cell;
         nearest_patch = patch;
         moves = true;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <glm/vec3.hpp>
 
 #include "haptic/contact/search_result.h"
@@ -13,8 +15,7 @@ namespace fettle::haptic {
 /// rest. A bounded closest point is the nearest of the whole cell (closestOnCell), so that the result depends on the
 /// start cell alone; (u, v), where it probably is, decides only the time.
 ///
-/// "Shorter" means by more than rounding, kShorter, so that a point that several cells share keeps its cell: of a contact
-/// as shallow as a ten-thousandth of a cell, coordinates of a metre round to 1e-10 of its distance. Distance
+/// "Shorter" means by more than rounding, shorterThan(), so that a point that several cells share keeps its cell. Distance
 /// falls with every move, and at most kMaxCellsVisited cells are moved through (SearchEnd::kBound).
 ///
 /// Neighbours that cannot be nearer are not solved: a patch lies in the hull of its corners, and mostly all of them lie
@@ -25,7 +26,12 @@ namespace fettle::haptic {
 [[nodiscard]] SearchResult searchClosest(Surface& surface, const glm::dvec3& endpoint, CellIndex start,
                                          double u, double v) noexcept;
 
-/// A squared distance below this many times another is shorter.
-inline constexpr double kShorter = 1.0 - 1e-9;
+/// A squared distance to the endpoint below this is shorter than `distance2_mm2` by more than rounding: of the squares, and
+/// of coordinates as large as the endpoint's, which moves a point by some 4e-15 of them. A factor of the distance
+/// alone does not do: it would hold a point aside on a flat by its root times the distance.
+[[nodiscard]] inline double shorterThan(double distance2_mm2, const glm::dvec3& endpoint) noexcept {
+  const double size_mm = std::abs(endpoint.x) + std::abs(endpoint.y) + std::abs(endpoint.z);
+  return distance2_mm2 - 4e-15 * (distance2_mm2 + std::sqrt(distance2_mm2) * size_mm);
+}
 
 }  // namespace fettle::haptic
