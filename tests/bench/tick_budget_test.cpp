@@ -38,9 +38,9 @@ struct Budget {
 };
 
 constexpr Budget kBudgets[] = {
-    {"feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 0.0, 200, 2404.0},
+    {"feel", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 0.0, 200, 2444.0},
     {"descent", haptic::Tool::kFeel, haptic::ContactLevel::kDescent, 0.0, 200, 1366.0},
-    {"3 x 3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 0.0, 200, 2865.0},
+    {"3 x 3 smoothing", haptic::Tool::kSmooth, haptic::ContactLevel::kPaper, 0.0, 200, 2906.0},
     {"certified, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kCertified, 0.0, 40, 8075.0},
     {"ball, 2 cells", haptic::Tool::kFeel, haptic::ContactLevel::kPaper, 2.0, 12, 38392.0},
 };
