@@ -74,6 +74,8 @@ std::string Parameter::shortName() const {
 }
 
 std::string Parameter::standard() const {
+  // Its variable has the value of this run by the time that a reference is written.
+  if (required) return "";
   const std::string separator(1, between == '\0' ? ' ' : between);
   return std::visit(
       [&](const auto& target) -> std::string {

@@ -96,7 +96,7 @@ struct Parameter {
   [[nodiscard]] bool several() const;           ///< takes more than one value
   [[nodiscard]] std::string longName() const;   ///< "--quiet" of "-q,--quiet"; "SCAN"
   [[nodiscard]] std::string shortName() const;  ///< "-q" of "-q,--quiet"; empty: none
-  [[nodiscard]] std::string standard() const;   ///< the value of the variable, as text
+  [[nodiscard]] std::string standard() const;   ///< value of the variable, as text; of a required one none
 };
 
 /// A command line to try, and what it does.

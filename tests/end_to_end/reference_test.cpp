@@ -125,6 +125,14 @@ TEST_F(Reference, AValueOutsideItsRangeIsRefused) {
   EXPECT_GT(tried, 20);
 }
 
+TEST_F(Reference, IsTheSameInEveryFolder) {
+  const std::string other = file("other");
+  ASSERT_EQ(fettle({"reference", other}).status, 0);
+  for (const char* name :
+       {"reference.md", "parameters.json", "man/fettle-reference.1", "completion/fettle.bash"})
+    EXPECT_EQ(textOf(fs::path(other) / name), textOf(pages() / name)) << name;
+}
+
 TEST_F(Reference, ManPagesHaveNoErrorOfRoff) {
   if (runProcess({"sh", "-c", "command -v groff"}).status != 0) GTEST_SKIP() << "groff is not installed";
   for (const fs::directory_entry& page : fs::directory_iterator(pages() / "man")) {
