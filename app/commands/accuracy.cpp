@@ -186,8 +186,9 @@ void addAccuracy(Command root, Chosen& chosen) {
        .otherwise = "all"},
       {.name = "--methods",
        .to = &options->methods,
-       .text = "Of the study suggest: the filters that are run on the scans besides the one that is named, as "
-               "\"tv 31\"; named: that one alone",
+       .text =
+           "Of the study suggest: the filters that are run on the scans besides the one that is named, as "
+           "\"tv 31\"; named: that one alone",
        .otherwise = "all"},
   });
   addScanOptions(command, options->scan_options);

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <memory>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
