@@ -33,7 +33,7 @@ TEST(Accuracy, WritesAPageThatNeedsNothingBesideItAndTheSameFiguresAsCsv) {
   EXPECT_EQ(page.find("part & co.tif"), std::string::npos);
   EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org")) << "something is fetched";
   // Levels on five made fields and the scan; ways to keep a sample on the part and the scan.
-  EXPECT_EQ(report["rows"].size(), 13U * 6U + 4U * 2U);
+  EXPECT_EQ(report["rows"].size(), 14U * 6U + 4U * 2U);
   EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), report["rows"].size() + 1);
   for (const char* file : {"contact.svg", "upload.svg"})
     EXPECT_GT(std::filesystem::file_size(folder.path() / "out" / file), 3000U) << file;

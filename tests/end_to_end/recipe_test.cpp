@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -91,6 +93,22 @@ TEST(Recipes, ASessionWithoutStepsHasNone) {
             0);
   expectRefused(fettle({"recipe", folder.file("f.fettle")}), "not how it was made");
   expectRefused(fettle({"journal", folder.file("s.tif")}), "s.tif");
+}
+
+TEST(Recipes, AJournalIsAJsonObjectPerLineAlsoWithQuiet) {
+  const TempFolder folder;  // opening a session may write beside it
+  const std::string session = folder.file("work.fettle");
+  std::filesystem::copy_file(inSourceTree("tests/haptic/journal/sessions/contact_revision_1.fettle"),
+                             session);
+  const auto report = fettleJson({"journal", session});
+  std::istringstream lines(fettle({"journal", session, "--quiet"}).out);
+  std::size_t read = 0;
+  for (std::string line; std::getline(lines, line); ++read)
+    EXPECT_EQ(nlohmann::json::parse(line), report["entries"].at(read));
+  EXPECT_EQ(read, report["entries"].size());
+  EXPECT_EQ(report["entries"].at(0)["action"]["do"], "begin");
+  EXPECT_GT(read, 5U);
+  expectRefused(fettle({"recipe", session}), "it belongs to this scan");
 }
 
 }  // namespace
