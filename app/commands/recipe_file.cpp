@@ -76,7 +76,7 @@ class StepReader {
       if (usual.empty()) complain(table_, fmt::format("the step has no \"{}\"", key));
       return usual;
     }
-    const std::string value = node->value_or(std::string());
+    std::string value = node->value_or(std::string());
     if (std::find(words.begin(), words.end(), value) == words.end()) {
       const std::string meant = didYouMean(value, words);
       complain(*node, fmt::format("{} is not one of {}{}{}", key, fmt::join(words, ", "),

@@ -3,6 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "app/commands/command.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"

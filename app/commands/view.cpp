@@ -1,4 +1,7 @@
 #include <memory>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "app/commands/command.h"
 #include "app/commands/scan_options.h"

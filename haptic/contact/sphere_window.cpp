@@ -547,7 +547,7 @@ void SphereWindow::Collector::vectorised(std::int32_t i0, std::int32_t i1, std::
         cell(at.i, at.j);
         continue;
       }
-      const auto n = static_cast<std::size_t>(lane[k]);
+      const auto n = static_cast<std::size_t>(static_cast<unsigned char>(lane[k]));
       const auto take = [&](const LaneContacts& contacts, double u, double v) {
         if ((contacts.found >> n & 1u) != 0)
           add(at.i, at.j, u, v, {contacts.mx[n], contacts.my[n], contacts.mz[n]}, contacts.d2[n]);
