@@ -1,8 +1,6 @@
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,8 +8,8 @@
 #include "bench/accuracy/drawn_scan.h"
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
+#include "bench/accuracy/truth_errors.h"
 #include "engine/base/stopwatch.h"
-#include "engine/compare/compare.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
 
@@ -50,24 +48,8 @@ constexpr std::size_t kNear = 1;  // of the columns
 
 // What one method left of all seeds of a scan.
 struct Figures {
-  std::vector<double> all, flats, near, ns_per_sample;
-  std::uint64_t hash = 0;  // of the first seed's result
-
-  [[nodiscard]] AccuracyRow row(const char* subject, const char* method) const {
-    const auto mean = [](const std::vector<double>& values) {
-      double sum = 0.0;
-      for (const double value : values) sum += value;
-      return sum / static_cast<double>(values.size());
-    };
-    AccuracyRow row{subject, method};
-    spread(ns_per_sample, row);
-    row.error = mean(all);
-    row.error_p99 = row.wrong = std::numeric_limits<double>::quiet_NaN();
-    row.error_worst = *std::ranges::max_element(all);
-    row.hash = hash;
-    row.more = {mean(flats), mean(near), *std::ranges::max_element(near)};
-    return row;
-  }
+  std::vector<TruthErrors> errors;
+  std::vector<double> ns_per_sample;
 };
 
 // With one thread and the range that the filter's own measure of the noise gives.
@@ -105,26 +87,22 @@ engine::Result<Study> automaticStudy(const AccuracyOptions& options, engine::Job
     for (int seed = 1; seed <= seeds; ++seed) {
       const auto scan = scanOf(scanned.part, scanned.side / shrink, seed);
       if (!scan) return tl::unexpected(scan.error());
-      engine::JobControl quiet;
       for (std::size_t m = 0; m < found.size(); ++m) {
         if (job.cancelled()) return engine::cancelled();
         double ns = 0.0;
         engine::Result<engine::Version> result = scan->scan;
         if (m > 0) result = filteredBy(kMethods[m - 1], scan->scan, ns);
         if (!result) return tl::unexpected(result.error());
-        const auto figures = engine::compareToTruth(*result, scan->truth, scan->edges, quiet);
-        if (!figures) return tl::unexpected(figures.error());
-        found[m].all.push_back(1e3 * figures->rmse);
-        found[m].flats.push_back(1e3 * figures->rmse_flat);
-        found[m].near.push_back(1e3 * figures->rmse_edge);
+        const auto errors = truthErrors(*result, *scan);
+        if (!errors) return tl::unexpected(errors.error());
+        found[m].errors.push_back(*errors);
         found[m].ns_per_sample.push_back(ns);
-        if (seed == 1) found[m].hash = engine::contentHash(*result);
         job.advance();
       }
     }
-    study.rows.push_back(found[0].row(scanned.part.name, "nothing"));
-    for (std::size_t m = 1; m < found.size(); ++m)
-      study.rows.push_back(found[m].row(scanned.part.name, kMethods[m - 1].name));
+    for (std::size_t m = 0; m < found.size(); ++m)
+      study.rows.push_back(rowOfErrors(scanned.part.name, m == 0 ? "nothing" : kMethods[m - 1].name,
+                                       found[m].errors, found[m].ns_per_sample));
   }
   study.reference = fmt::format(
       "The simulated parts' truth, formulas in millimetres (fettle synth), with {} {} of noise each. Near "

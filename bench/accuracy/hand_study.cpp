@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,7 +11,7 @@
 #include "bench/accuracy/drawn_scan.h"
 #include "bench/accuracy/measure.h"
 #include "bench/accuracy/studies.h"
-#include "engine/compare/compare.h"
+#include "bench/accuracy/truth_errors.h"
 #include "engine/edges/corners.h"
 #include "engine/edges/locate.h"
 #include "engine/filter/noise_range.h"
@@ -42,41 +40,22 @@ constexpr const char* kLocated = "tgv, lines located";
 constexpr const char* kTrue = "tgv, true lines";
 constexpr std::size_t kNearColumn = 1, kRatioColumn = 3;
 
-struct Errors {
-  double all = 0.0, flats = 0.0, near = 0.0;  // [um]
-};
-
-// A row of means over the runs. `alone` has the errors without lines of the same runs.
-AccuracyRow rowOfRuns(const char* subject, const char* method, const std::vector<Errors>& runs,
-                      const std::vector<Errors>& alone, const std::vector<double>& seconds) {
-  AccuracyRow row{subject, method};
-  row.error_p99 = row.wrong = std::numeric_limits<double>::quiet_NaN();
-  spread(seconds, row);
-  double flats = 0.0, near = 0.0, worst_near = 0.0, ratio = 0.0;
-  const auto n = static_cast<double>(runs.size());
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    row.error += runs[i].all / n;
-    row.error_worst = std::max(row.error_worst, runs[i].all);
-    flats += runs[i].flats / n;
-    near += runs[i].near / n;
-    worst_near = std::max(worst_near, runs[i].near);
-    ratio = std::max(ratio, runs[i].all / alone[i].all);
-  }
-  row.more = {flats, near, worst_near, ratio};
+// `alone` has the errors without lines of the same runs.
+AccuracyRow rowOfRuns(const char* subject, const char* method, const std::vector<TruthErrors>& runs,
+                      const std::vector<TruthErrors>& alone, const std::vector<double>& seconds) {
+  AccuracyRow row = rowOfErrors(subject, method, runs, seconds);
+  double ratio = 0.0;
+  for (std::size_t i = 0; i < runs.size(); ++i) ratio = std::max(ratio, runs[i].all / alone[i].all);
+  row.more.push_back(ratio);
   return row;
 }
 
-engine::Result<Errors> errorsWith(const engine::SimulatedScan& scan, std::vector<engine::EdgeLine> lines,
+engine::Result<TruthErrors> errorsWith(const engine::SimulatedScan& scan, std::vector<engine::EdgeLine> lines,
                                   const engine::FilterSpec& spec) {
-  engine::JobControl quiet;
   engine::Version field = scan.scan;
   if (!lines.empty())
     field = field.withLines(std::make_shared<const std::vector<engine::EdgeLine>>(std::move(lines)));
-  const auto filtered = engine::applyFilter(field, field, spec, quiet);
-  if (!filtered) return tl::unexpected(filtered.error());
-  const auto figures = engine::compareToTruth(filtered->field, scan.truth, scan.edges, quiet);
-  if (!figures) return tl::unexpected(figures.error());
-  return Errors{1e3 * figures->rmse, 1e3 * figures->rmse_flat, 1e3 * figures->rmse_edge};
+  return errorsAfter(spec, field, scan);
 }
 
 // Strokes taken for lines as they are.
@@ -97,7 +76,7 @@ std::vector<engine::EdgeLine> asDrawn(const std::vector<engine::EdgeStroke>& str
 
 // All runs of a subject; `alone` and `ceiling` are repeated for each hand.
 struct HandRuns {
-  std::vector<Errors> alone, raw, located, ceiling;
+  std::vector<TruthErrors> alone, raw, located, ceiling;
   std::vector<double> seconds;
 };
 

@@ -25,7 +25,7 @@ struct AccuracyOptions {
   /// Of suggestionStudy: seeds of the noise, 1 .. 100, and samples along each side of its scans, 64 .. 4096; none: by
   /// the effort.
   std::optional<int> seeds{}, side{};
-  /// Of suggestionStudy: parts of the catalogue; none: all.
+  /// Of suggestionStudy and processStudy: parts of the catalogue; none: all.
   std::vector<std::string> parts{};
   /// Of suggestionStudy: the filters (engine::methodOf) that are run on the scans, besides the one that is named;
   /// "named": that one alone; none: all.
@@ -71,6 +71,10 @@ struct AccuracyOptions {
 
 /// Filters alone on several simulated parts, noises and seeds: error over all, on flats and near edges.
 [[nodiscard]] engine::Result<Study> automaticStudy(const AccuracyOptions& options, engine::JobControl& job);
+
+/// The paper's process with box and median, total and generalised variation, each with and without a hand, and with true
+/// lines: error over all, on flats and near edges, over the hand's seconds, for several parts, noises and hands.
+[[nodiscard]] engine::Result<Study> processStudy(const AccuracyOptions& options, engine::JobControl& job);
 
 /// Lines located from a simulated hand's strokes along the true edges of simulated scans: distance from the edges,
 /// over time per stroke length.

@@ -188,6 +188,35 @@ TEST(AutomaticStudy, GeneralisedVariationIsNearestOnEveryPart) {
   EXPECT_EQ(subjects, 7);
 }
 
+TEST(ProcessStudy, MarksKeepTheNoiseOfTheScanAndLinesLoseNothing) {
+  engine::JobControl job;
+  AccuracyOptions options;
+  options.effort = 0.01;
+  options.parts = {"steps"};
+  const auto study = processStudy(options, job);
+  ASSERT_TRUE(study) << study.error().line();
+  std::set<std::string> subjects;
+  for (const AccuracyRow& row : study->rows) {
+    ASSERT_EQ(row.more.size(), study->columns.size()) << row.method;
+    subjects.insert(row.subject);
+  }
+  EXPECT_EQ(subjects.size(), 2U);
+  EXPECT_EQ(study->rows.size(), 9 * subjects.size());
+  for (const std::string& subject : subjects) {
+    const auto near = [&](const char* method) { return rowOf(*study, subject, method).more[1]; };
+    // Nearly every sample near an edge is marked.
+    EXPECT_NEAR(near("HEG with box"), near("nothing"), 0.02 * near("nothing")) << subject;
+    EXPECT_LT(near("HEG with box"), 0.5 * near("box alone")) << subject;
+    EXPECT_LT(near("tgv alone"), near("HEG with median")) << subject;
+    const double alone = rowOf(*study, subject, "tgv alone").error;
+    EXPECT_LE(rowOf(*study, subject, "tgv, lines of the hand").error, 1.02 * alone) << subject;
+    EXPECT_LE(rowOf(*study, subject, "tgv, true lines").error, 1.02 * alone) << subject;
+    EXPECT_GT(rowOf(*study, subject, "HEG with box").cost, 60.0) << subject;
+  }
+  options.parts = {"plate"};
+  EXPECT_EQ(processStudy(options, job).error().kind, engine::ErrorKind::kInput);
+}
+
 TEST(SuggestionStudy, HasEveryFilterOnEveryPartAndTheOneThatIsNamed) {
   engine::JobControl job;
   AccuracyOptions options;
