@@ -51,7 +51,7 @@ AccuracyRow rowOfRuns(const char* subject, const char* method, const std::vector
 }
 
 engine::Result<TruthErrors> errorsWith(const engine::SimulatedScan& scan, std::vector<engine::EdgeLine> lines,
-                                  const engine::FilterSpec& spec) {
+                                       const engine::FilterSpec& spec) {
   engine::Version field = scan.scan;
   if (!lines.empty())
     field = field.withLines(std::make_shared<const std::vector<engine::EdgeLine>>(std::move(lines)));
