@@ -6,6 +6,8 @@ int main(int argc, char** argv) {
     addInfo(root, chosen);
     addSynth(root, chosen);
     addFilter(root, chosen);
+    addLevel(root, chosen);
+    addMeasure(root, chosen);
     addMark(root, chosen);
     addLines(root, chosen);
     addReplay(root, chosen);

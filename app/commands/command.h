@@ -58,6 +58,8 @@ Command addCommand(Command root, Chosen& chosen, const std::string& name, const 
 void addInfo(Command root, Chosen& chosen);
 void addSynth(Command root, Chosen& chosen);
 void addFilter(Command root, Chosen& chosen);
+void addLevel(Command root, Chosen& chosen);
+void addMeasure(Command root, Chosen& chosen);
 void addMark(Command root, Chosen& chosen);
 void addLines(Command root, Chosen& chosen);
 void addRecipe(Command root, Chosen& chosen);

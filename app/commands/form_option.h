@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "engine/base/error.h"
+#include "engine/field/version.h"
+#include "engine/measure/form.h"
+
+namespace fettle::app {
+
+/// What is taken out of a surface before it is measured, and the samples that count.
+struct FormArguments {
+  std::string form = "plane";  ///< a word of formWords()
+  bool robust = false;
+  std::string region = "all";
+  std::string marks;  ///< a picture of marks instead of the scan's own; empty: none
+};
+
+/// "none", "mean", "plane", "poly2" to "poly5".
+[[nodiscard]] std::vector<Word> formWords();
+
+/// --form, --robust, --region, --marks.
+void addFormOptions(Command command, FormArguments& arguments);
+
+/// What the arguments mean, as typed and checked by their rows.
+[[nodiscard]] engine::FormOptions formOptionsOf(const FormArguments& arguments);
+
+/// The form of a field; of "none" the form whose height is 0 everywhere. Errors: as engine::fitForm.
+[[nodiscard]] engine::Result<engine::FormFit> formOf(const engine::Version& field,
+                                                     const FormArguments& arguments, engine::JobControl& job);
+
+/// The form as keys of a report: form, robust, region, and of a plane and more tilt_x, tilt_y [degrees], tilted up to
+/// higher x and y.
+void addForm(Report& report, const FormArguments& arguments, const engine::FormFit& fit,
+             const engine::Grid& grid);
+
+}  // namespace fettle::app

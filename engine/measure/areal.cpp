@@ -1,0 +1,197 @@
+#include "engine/measure/areal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <vector>
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include "engine/compare/tile_sums.h"
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr int kHaloSide = kTileSide + 1;
+
+// The region's samples of a rectangle less the form; NaN elsewhere.
+void readResiduals(const FieldReader& field, const PolynomialForm& form, Region region,
+                   const SampleRect& rect, double* out) noexcept {
+  float z[kHaloSide * kHaloSide];
+  readRegion(field, region, rect, z, kHaloSide);
+  form.readHeights(rect, out, kHaloSide);
+  for (int r = 0; r < rect.rows; ++r)
+    for (int i = r * kHaloSide; i < r * kHaloSide + rect.columns; ++i) out[i] = z[i] - out[i];
+}
+
+struct MeanPart {
+  std::int64_t samples = 0;
+  CompensatedSum sum;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+};
+
+struct PowerPart {
+  CompensatedSum absolute, second, third, fourth;
+
+  void add(double z) noexcept {
+    const double square = z * z;
+    absolute.add(std::abs(z));
+    second.add(square);
+    third.add(square * z);
+    fourth.add(square * square);
+  }
+  void add(const PowerPart& other) noexcept {
+    absolute.add(other.absolute);
+    second.add(other.second);
+    third.add(other.third);
+    fourth.add(other.fourth);
+  }
+};
+
+// Of a cell with corners a b (lower row) and c d, sides of sx and sy, heights and sides in millimetres.
+struct Cell {
+  double a, b, c, d, sx, sy;
+
+  // Mean square of the gradient: along a side the slope is linear in the other direction.
+  [[nodiscard]] double gradientSquare() const noexcept {
+    const double lower = (b - a) / sx, upper = (d - c) / sx;
+    const double left = (c - a) / sy, right = (d - b) / sy;
+    return (lower * lower + lower * upper + upper * upper + left * left + left * right + right * right) / 3.0;
+  }
+  // Area over that of its projection, less 1, without cancellation where it is nearly flat.
+  [[nodiscard]] double areaExcess() const noexcept {
+    constexpr double kPlaces[] = {0.1127016653792583, 0.5, 0.8872983346207417};  // (1 -+ sqrt(0.6)) / 2
+    constexpr double kWeights[] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+    const double lower = (b - a) / sx, upper = (d - c) / sx;
+    const double left = (c - a) / sy, right = (d - b) / sy;
+    double sum = 0.0;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const double gx = lower + kPlaces[i] * (upper - lower), gy = left + kPlaces[j] * (right - left);
+        const double square = gx * gx + gy * gy;
+        sum += kWeights[i] * kWeights[j] * square / (1.0 + std::sqrt(1.0 + square));
+      }
+    return sum;
+  }
+};
+
+struct SlopePart {
+  std::int64_t cells = 0;
+  CompensatedSum gradient, excess;
+};
+
+SlopePart slopesOf(const FieldReader& field, const PolynomialForm& form, Region region, JobControl& job) {
+  const Grid& grid = field.grid();
+  const double mm = grid.height_unit.mm, sx = grid.spacingXMm(), sy = grid.spacingYMm();
+  job.begin("measuring slopes", tileCount(field));
+  const auto parts = forEachTile<SlopePart>(field, job, [&](SampleRect rect, SlopePart& part) {
+    rect.columns = std::min(kHaloSide, field.width() - rect.column);
+    rect.rows = std::min(kHaloSide, field.height() - rect.row);
+    double z[kHaloSide * kHaloSide];
+    readResiduals(field, form, region, rect, z);
+    for (int r = 0; r + 1 < rect.rows; ++r)
+      for (int c = 0; c + 1 < rect.columns; ++c) {
+        const double* const low = z + r * kHaloSide + c;
+        const double* const up = low + kHaloSide;
+        const Cell cell{mm * low[0], mm * low[1], mm * up[0], mm * up[1], sx, sy};
+        const double gradient = cell.gradientSquare();
+        if (std::isnan(gradient)) continue;
+        ++part.cells;
+        part.gradient.add(gradient);
+        part.excess.add(cell.areaExcess());
+      }
+  });
+  SlopePart all;
+  for (const SlopePart& part : parts) {
+    all.cells += part.cells;
+    all.gradient.add(part.gradient);
+    all.excess.add(part.excess);
+  }
+  return all;
+}
+
+}  // namespace
+
+Result<ArealParameters> measureAreal(const Version& field, const PolynomialForm& form, Region region,
+                                     JobControl& job) try {
+  const FieldReader reader = field.reader();
+  const auto forEachHeight = [&](const SampleRect& rect, auto&& take) {
+    double z[kHaloSide * kHaloSide];
+    readResiduals(reader, form, region, rect, z);
+    for (int r = 0; r < rect.rows; ++r)
+      for (int i = r * kHaloSide; i < r * kHaloSide + rect.columns; ++i)
+        if (!std::isnan(z[i])) take(z[i]);
+  };
+
+  job.begin("measuring heights", 3 * tileCount(reader));
+  const auto means = forEachTile<MeanPart>(reader, job, [&](const SampleRect& rect, MeanPart& part) {
+    forEachHeight(rect, [&](double z) {
+      ++part.samples;
+      part.sum.add(z);
+      part.low = std::min(part.low, z);
+      part.high = std::max(part.high, z);
+    });
+  });
+  if (job.cancelled()) return cancelled();
+  MeanPart all;
+  std::vector<std::int64_t> first;  // sample of each tile among all
+  first.reserve(means.size());
+  for (const MeanPart& part : means) {
+    first.push_back(all.samples);
+    all.samples += part.samples;
+    all.sum.add(part.sum);
+    all.low = std::min(all.low, part.low);
+    all.high = std::max(all.high, part.high);
+  }
+  if (all.samples == 0)
+    return inputError("there is no sample to measure", "measure",
+                      region == Region::kAll ? "" : "mark some, or measure all samples");
+  const auto n = static_cast<double>(all.samples);
+  ArealParameters result;
+  result.samples = all.samples;
+  result.mean = all.sum.value() / n;
+  result.sp = all.high - result.mean;
+  result.sv = result.mean - all.low;
+  result.sz = all.high - all.low;
+
+  const auto powers = forEachTile<PowerPart>(reader, job, [&](const SampleRect& rect, PowerPart& part) {
+    forEachHeight(rect, [&](double z) { part.add(z - result.mean); });
+  });
+  if (job.cancelled()) return cancelled();
+  PowerPart power;
+  for (const PowerPart& part : powers) power.add(part);
+  const double variance = power.second.value() / n;
+  result.sq = std::sqrt(variance);
+  result.sa = power.absolute.value() / n;
+  result.ssk = variance > 0.0 ? power.third.value() / n / (variance * result.sq) : std::nan("");
+  result.sku = variance > 0.0 ? power.fourth.value() / n / (variance * variance) : std::nan("");
+
+  std::vector<float> heights(static_cast<std::size_t>(all.samples));
+  tbb::parallel_for(std::size_t{0}, first.size(), [&](std::size_t tile) {
+    if (job.cancelled()) return;
+    float* out = heights.data() + first[tile];
+    forEachHeight(tileRect(reader, static_cast<std::int64_t>(tile)),
+                  [&](double z) { *out++ = static_cast<float>(z - result.mean); });
+    job.advance();
+  });
+  if (job.cancelled()) return cancelled();
+  tbb::parallel_sort(heights.begin(), heights.end());
+  if (job.cancelled()) return cancelled();
+  result.ratio = materialRatio(heights);
+
+  const SlopePart slopes = slopesOf(reader, form, region, job);
+  if (job.cancelled()) return cancelled();
+  result.cells = slopes.cells;
+  const auto cells = static_cast<double>(slopes.cells);
+  result.sdq = slopes.cells > 0 ? std::sqrt(slopes.gradient.value() / cells) : std::nan("");
+  result.sdr = slopes.cells > 0 ? slopes.excess.value() / cells : std::nan("");
+  return result;
+} catch (const std::bad_alloc&) {
+  return failure("memory is exhausted", "measuring", "measure a smaller field or region");
+}
+
+}  // namespace fettle::engine

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/version.h"
+#include "engine/measure/form.h"
+#include "engine/measure/material_ratio.h"
+
+namespace fettle::engine {
+
+/// Areal surface texture parameters of ISO 25178-2:2021 over the samples of a region, heights about their mean after
+/// the form is taken out. No S- or L-filter is applied: filter the field before. NaN where the samples do not
+/// determine a figure (skewness of a flat surface, slopes without a cell).
+struct ArealParameters {
+  std::int64_t samples = 0;
+  std::int64_t cells = 0;  ///< with four samples of the region: those of sdq and sdr
+  double mean = 0.0;       ///< of the heights less the form, from which the others are measured [height_unit]
+  // Height, 4.2 [height_unit].
+  double sq = 0.0;   ///< root mean square height
+  double ssk = 0.0;  ///< skewness
+  double sku = 0.0;  ///< kurtosis
+  double sp = 0.0;   ///< maximum peak height
+  double sv = 0.0;   ///< maximum pit depth
+  double sz = 0.0;   ///< maximum height
+  double sa = 0.0;   ///< arithmetical mean height
+  // Hybrid, 4.3.
+  double sdq = 0.0;  ///< root mean square gradient [mm/mm]
+  double sdr = 0.0;  ///< developed interfacial area ratio [1], 0 for a plane
+  // Functional, 4.4.
+  MaterialRatio ratio;
+};
+
+/// Measures them. The surface between four samples is the bilinear patch through them, as everywhere in Fettle: the
+/// gradient's mean square over it is exact, its area is integrated by 3 x 3 Gauss-Legendre points. On a sine of
+/// wavelength L sampled every h both are lower than the sine's by (2 pi h / L)^2 / 12 of the gradient's square.
+///
+/// Sums in double, compensated over the tiles; order statistics exact. Bit-identical for any number of threads. Memory:
+/// 4 bytes a sample while heights are sorted. Errors: kInput for a region without samples; kFailed without memory;
+/// kCancelled. Thread: any; a long job on all workers of the calling arena.
+[[nodiscard]] Result<ArealParameters> measureAreal(const Version& field, const PolynomialForm& form,
+                                                   Region region, JobControl& job);
+
+}  // namespace fettle::engine

@@ -1,0 +1,433 @@
+#include "engine/measure/form.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <Eigen/Dense>
+
+#include "engine/compare/tile_select.h"
+#include "engine/compare/tile_sums.h"
+#include "engine/field/builder.h"
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr int kMost = PolynomialForm::kMostDegree;
+constexpr int kMostTerms = PolynomialForm::terms(kMost);
+// The product of two polynomials of the basis is half the sum of those of the sum and the difference of their degrees.
+constexpr int kProducts = 2 * kMost + 1;
+
+// Place of a sample in -1 .. 1.
+double scaled(double index, std::int32_t count) noexcept {
+  return count > 1 ? 2.0 * index / (count - 1) - 1.0 : 0.0;
+}
+
+// T_0(x) .. T_last(x).
+void chebyshev(double x, int last, double* out) noexcept {
+  out[0] = 1.0;
+  if (last > 0) out[1] = x;
+  for (int k = 2; k <= last; ++k) out[k] = 2.0 * x * out[k - 1] - out[k - 2];
+}
+
+// Sums over samples of weight T_a(u) T_b(v), a and b to twice the degree, and of weight height T_a(u) T_b(v).
+struct FormSums {
+  std::array<std::array<CompensatedSum, kProducts>, kProducts> weight;
+  std::array<std::array<CompensatedSum, kMost + 1>, kMost + 1> height;
+  std::int64_t samples = 0;
+  CompensatedSum square;  // of residuals
+
+  void add(const FormSums& other) noexcept {
+    for (std::size_t a = 0; a < weight.size(); ++a)
+      for (std::size_t b = 0; b < weight.size(); ++b) weight[a][b].add(other.weight[a][b]);
+    for (std::size_t a = 0; a < height.size(); ++a)
+      for (std::size_t b = 0; b < height.size(); ++b) height[a][b].add(other.height[a][b]);
+    samples += other.samples;
+    square.add(other.square);
+  }
+};
+
+// How much a sample counts by its distance from the last form: all the same, or Tukey's biweight.
+struct Weighting {
+  double scale = 0.0;  // [height_unit]; 0: all the same
+
+  double operator()(double residual) const noexcept {
+    if (scale == 0.0) return 1.0;
+    constexpr double kReach = 4.685;  // 95 % of the efficiency of least squares on Gaussian noise
+    const double x = residual / (kReach * scale);
+    return std::abs(x) < 1.0 ? (1.0 - x * x) * (1.0 - x * x) : 0.0;
+  }
+};
+
+// The sums of one row of tiles, columns side by side so that they go through vector registers.
+class TileRowSums {
+ public:
+  TileRowSums(const Version& field, const FormOptions& options, const PolynomialForm& last,
+              Weighting weighting)
+      : field_(field.reader()), options_(options), last_(last), weighting_(weighting) {}
+
+  void add(const SampleRect& rect, FormSums& sums) const noexcept {
+    float z[kTileSamples];
+    double form[kTileSamples];
+    readRegion(field_, options_.region, rect, z, kTileSide);
+    last_.readHeights(rect, form, kTileSide);
+    const int degree = options_.degree, products = 2 * degree + 1;
+    double weight[kProducts][kTileSide] = {};
+    double height[kMost + 1][kTileSide] = {};
+    for (int r = 0; r < rect.rows; ++r) {
+      double w[kTileSide], wz[kTileSide], square = 0.0;
+      for (int c = 0; c < rect.columns; ++c) {
+        const double h = z[r * kTileSide + c];
+        const bool counts = !std::isnan(h);
+        const double residual = counts ? h - form[r * kTileSide + c] : 0.0;
+        w[c] = counts ? weighting_(residual) : 0.0;
+        wz[c] = counts ? w[c] * (h - last_.base) : 0.0;
+        sums.samples += counts ? 1 : 0;
+        square += residual * residual;
+      }
+      sums.square.add(square);
+      double t[kProducts];
+      chebyshev(scaled(rect.row + r, field_.height()), products - 1, t);
+      for (int b = 0; b < products; ++b)
+        for (int c = 0; c < rect.columns; ++c) weight[b][c] += t[b] * w[c];
+      for (int b = 0; b <= degree; ++b)
+        for (int c = 0; c < rect.columns; ++c) height[b][c] += t[b] * wz[c];
+    }
+    double weights[kProducts][kProducts] = {};
+    double heights[kMost + 1][kMost + 1] = {};
+    for (int c = 0; c < rect.columns; ++c) {
+      double t[kProducts];
+      chebyshev(scaled(rect.column + c, field_.width()), products - 1, t);
+      for (int a = 0; a < products; ++a)
+        for (int b = 0; b < products; ++b) weights[a][b] += t[a] * weight[b][c];
+      for (int a = 0; a <= degree; ++a)
+        for (int b = 0; b <= degree; ++b) heights[a][b] += t[a] * height[b][c];
+    }
+    for (std::size_t a = 0; a < static_cast<std::size_t>(products); ++a)
+      for (std::size_t b = 0; b < static_cast<std::size_t>(products); ++b)
+        sums.weight[a][b].add(weights[a][b]);
+    for (std::size_t a = 0; a <= static_cast<std::size_t>(degree); ++a)
+      for (std::size_t b = 0; b <= static_cast<std::size_t>(degree); ++b)
+        sums.height[a][b].add(heights[a][b]);
+  }
+
+ private:
+  FieldReader field_;
+  FormOptions options_;
+  const PolynomialForm& last_;
+  Weighting weighting_;
+};
+
+// Over all tiles, in an order that does not depend on the number of threads.
+Result<FormSums> sumsOf(const Version& field, const FormOptions& options, const PolynomialForm& last,
+                        Weighting weighting, JobControl& job) {
+  const FieldReader reader = field.reader();
+  const TileRowSums tiles(field, options, last, weighting);
+  job.begin("fitting the form", tileCount(reader));
+  std::vector<FormSums> rows(static_cast<std::size_t>(reader.tileRows()));
+  tbb::parallel_for(std::int32_t{0}, reader.tileRows(), [&](std::int32_t tr) {
+    for (std::int32_t tc = 0; tc < reader.tileColumns() && !job.cancelled(); ++tc) {
+      tiles.add(tileRect(reader, std::int64_t{tr} * reader.tileColumns() + tc),
+                rows[static_cast<std::size_t>(tr)]);
+      job.advance();
+    }
+  });
+  if (job.cancelled()) return cancelled();
+  FormSums all;
+  for (const FormSums& row : rows) all.add(row);
+  return all;
+}
+
+// The terms' coefficients from the normal equations; of least size where they do not determine them.
+std::vector<double> solved(const FormSums& sums, int degree) {
+  const int n = PolynomialForm::terms(degree);
+  std::array<std::pair<int, int>, kMostTerms> term;
+  int count = 0;
+  for (int i = 0; i <= degree; ++i)
+    for (int j = 0; i + j <= degree; ++j) term[static_cast<std::size_t>(count++)] = {i, j};
+  const auto product = [&](int a, int b) {
+    return sums.weight[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)].value();
+  };
+  Eigen::MatrixXd normal(n, n);
+  Eigen::VectorXd right(n);
+  for (int p = 0; p < n; ++p) {
+    const auto [i, j] = term[static_cast<std::size_t>(p)];
+    for (int q = 0; q < n; ++q) {
+      const auto [k, l] = term[static_cast<std::size_t>(q)];
+      normal(p, q) = 0.25 * (product(i + k, j + l) + product(std::abs(i - k), j + l) +
+                             product(i + k, std::abs(j - l)) + product(std::abs(i - k), std::abs(j - l)));
+    }
+    right(p) = sums.height[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)].value();
+  }
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  decomposition.setThreshold(1e-13);
+  decomposition.compute(normal);
+  const Eigen::VectorXd solution = decomposition.solve(right);
+  return {solution.data(), solution.data() + n};
+}
+
+// The normalised median distance of the region's samples from a form.
+double medianDistance(const Version& field, Region region, const PolynomialForm& form, JobControl& job) {
+  constexpr double kOfGaussian = 1.4826;
+  const FieldReader reader = field.reader();
+  job.begin("fitting the form", kSelectPasses * tileCount(reader));
+  return kOfGaussian * selectFromTiles(
+                           reader, job, [](std::int64_t n) { return (n - 1) / 2; },
+                           [&](const SampleRect& rect, auto&& take) {
+                             float z[kTileSamples];
+                             double heights[kTileSamples];
+                             readRegion(reader, region, rect, z, kTileSide);
+                             form.readHeights(rect, heights, kTileSide);
+                             for (int r = 0; r < rect.rows; ++r)
+                               for (int i = r * kTileSide; i < r * kTileSide + rect.columns; ++i)
+                                 take(std::abs(z[i] - heights[i]));
+                           })
+                           .value;
+}
+
+// Up to some kSpread x kSpread samples of a region, evenly spread.
+struct Sample {
+  double column, row, z;
+};
+std::vector<Sample> spreadSamples(const Version& field, Region region) {
+  constexpr int kSpread = 64;
+  const FieldReader reader = field.reader();
+  const std::int32_t columns = std::max(1, reader.width() / kSpread),
+                     rows = std::max(1, reader.height() / kSpread);
+  std::vector<Sample> samples;
+  for (std::int32_t r = rows / 2; r < reader.height(); r += rows)
+    for (std::int32_t c = columns / 2; c < reader.width(); c += columns) {
+      float z = 0.0F;
+      readRegion(reader, region, {c, r, 1, 1}, &z, 1);
+      if (!std::isnan(z)) samples.push_back({static_cast<double>(c), static_cast<double>(r), z});
+    }
+  return samples;
+}
+
+// The plane with the least median distance of all that go through three of the samples tried, as height, slope by
+// column and slope by row; nothing where no three of them span one.
+std::optional<std::array<double, 3>> leastMedianPlane(const std::vector<Sample>& samples) {
+  // With half of the samples on the plane all of 300 triples miss it once in 1e17 times.
+  constexpr int kTrials = 300;
+  if (samples.size() < 3) return std::nullopt;
+  std::mt19937_64 random(1);  // its numbers are the standard's: the same on every machine
+  std::optional<std::array<double, 3>> best;
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<double> distances(samples.size());
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Sample& p = samples[random() % samples.size()];
+    const Sample& q = samples[random() % samples.size()];
+    const Sample& s = samples[random() % samples.size()];
+    const double area = (q.column - p.column) * (s.row - p.row) - (s.column - p.column) * (q.row - p.row);
+    if (area == 0.0) continue;
+    const double by_column = ((q.z - p.z) * (s.row - p.row) - (s.z - p.z) * (q.row - p.row)) / area;
+    const double by_row = ((s.z - p.z) * (q.column - p.column) - (q.z - p.z) * (s.column - p.column)) / area;
+    const double height = p.z - by_column * p.column - by_row * p.row;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      distances[i] =
+          std::abs(samples[i].z - height - by_column * samples[i].column - by_row * samples[i].row);
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    if (*middle < least) {
+      least = *middle;
+      best = {height, by_column, by_row};
+    }
+  }
+  return best;
+}
+
+// The same for the mean height: the sample with the least median distance from all others is near the middle of the
+// shorter half; the median is near enough.
+double medianHeight(std::vector<Sample> samples) {
+  const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
+  std::ranges::nth_element(samples, middle, {}, &Sample::z);
+  return middle->z;
+}
+
+// Coefficients of a lower degree as those of a higher one.
+std::vector<double> raised(const std::vector<double>& coefficients, int degree, int higher) {
+  std::vector<double> result;
+  std::size_t k = 0;
+  for (int i = 0; i <= higher; ++i)
+    for (int j = 0; i + j <= higher; ++j) result.push_back(i + j <= degree ? coefficients[k++] : 0.0);
+  return result;
+}
+
+double largestChange(const std::vector<double>& a, const std::vector<double>& b) noexcept {
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+// Weighted fits of one degree until the coefficients rest; `scale` from the median distance before.
+Status refine(const Version& field, const FormOptions& options, double least, FormFit& fit, JobControl& job) {
+  constexpr int kMostRounds = 20;
+  constexpr double kRest = 1e-6;  // of the scale
+  const double scale = std::max(medianDistance(field, options.region, fit.form, job), least);
+  if (job.cancelled()) return cancelled();
+  for (int round = 0; round < kMostRounds; ++round) {
+    const auto sums = sumsOf(field, options, fit.form, {scale}, job);
+    if (!sums) return tl::unexpected(sums.error());
+    std::vector<double> better = solved(*sums, options.degree);
+    const double change = largestChange(better, fit.form.coefficients);
+    fit.form.coefficients = std::move(better);
+    ++fit.rounds;
+    if (change <= kRest * scale) break;
+  }
+  return {};
+}
+
+// From the plane with the least median distance to the degree asked for, one degree after the other: what the lower one
+// leaves decides which samples the next one sees.
+Status fitRobustly(const Version& field, const FormOptions& options, double range, FormFit& fit,
+                   JobControl& job) {
+  const double least = std::numeric_limits<float>::epsilon() * range;  // the rounding of heights
+  const std::vector<Sample> samples = spreadSamples(field, options.region);
+  PolynomialForm& form = fit.form;
+  const int first = std::min(options.degree, 1);
+  form.degree = first;
+  if (const auto plane = first == 1 ? leastMedianPlane(samples) : std::nullopt; plane) {
+    const auto [height, by_column, by_row] = *plane;
+    const double half_width = 0.5 * (form.width - 1), half_height = 0.5 * (form.height - 1);
+    form.coefficients = {height + by_column * half_width + by_row * half_height - form.base,
+                         by_row * half_height, by_column * half_width};
+  } else if (!samples.empty()) {
+    form.coefficients.assign(static_cast<std::size_t>(PolynomialForm::terms(first)), 0.0);
+    form.coefficients.front() = medianHeight(samples) - form.base;
+  } else {
+    // A region between the spread samples: equal weights have to do.
+    form.coefficients = raised(form.coefficients, options.degree, options.degree);
+    form.degree = options.degree;
+  }
+  for (int degree = form.degree; degree <= options.degree; ++degree) {
+    form.coefficients = raised(form.coefficients, form.degree, degree);
+    form.degree = degree;
+    FormOptions now = options;
+    now.degree = degree;
+    // Twice: the scale after the first is that of samples on the form.
+    for (int pass = 0; pass < 2; ++pass)
+      if (auto done = refine(field, now, least, fit, job); !done) return done;
+  }
+  return {};
+}
+
+}  // namespace
+
+double PolynomialForm::heightAt(double column, double row) const noexcept {
+  double t[kMost + 1], s[kMost + 1];
+  chebyshev(scaled(column, width), degree, t);
+  chebyshev(scaled(row, height), degree, s);
+  double sum = 0.0;
+  std::size_t k = 0;
+  for (int i = 0; i <= degree; ++i)
+    for (int j = 0; i + j <= degree; ++j) sum += coefficients[k++] * t[i] * s[j];
+  return base + sum;
+}
+
+void PolynomialForm::readHeights(const SampleRect& rect, double* out, std::ptrdiff_t stride) const noexcept {
+  constexpr int kMostColumns = kTileSide + 1;
+  assert(rect.columns <= kMostColumns);
+  double t[kMost + 1][kMostColumns];
+  for (int c = 0; c < rect.columns; ++c) {
+    double here[kMost + 1];
+    chebyshev(scaled(rect.column + c, width), degree, here);
+    for (int i = 0; i <= degree; ++i) t[i][c] = here[i];
+  }
+  for (int r = 0; r < rect.rows; ++r) {
+    double s[kMost + 1];
+    chebyshev(scaled(rect.row + r, height), degree, s);
+    double* const line = out + r * stride;
+    std::fill_n(line, rect.columns, base);
+    std::size_t k = 0;
+    for (int i = 0; i <= degree; ++i) {
+      double factor = 0.0;
+      for (int j = 0; i + j <= degree; ++j) factor += coefficients[k++] * s[j];
+      for (int c = 0; c < rect.columns; ++c) line[c] += factor * t[i][c];
+    }
+  }
+}
+
+PolynomialForm::Gradient PolynomialForm::gradient() const noexcept {
+  // T_k'(0) = k sin(k pi / 2), T_k(0) = cos(k pi / 2).
+  constexpr double kValue[] = {1.0, 0.0, -1.0, 0.0, 1.0, 0.0};
+  constexpr double kSlope[] = {0.0, 1.0, 0.0, -3.0, 0.0, 5.0};
+  Gradient gradient;
+  std::size_t k = 0;
+  for (int i = 0; i <= degree; ++i)
+    for (int j = 0; i + j <= degree; ++j, ++k) {
+      gradient.by_column += coefficients[k] * kSlope[i] * kValue[j];
+      gradient.by_row += coefficients[k] * kValue[i] * kSlope[j];
+    }
+  gradient.by_column *= width > 1 ? 2.0 / (width - 1) : 0.0;
+  gradient.by_row *= height > 1 ? 2.0 / (height - 1) : 0.0;
+  return gradient;
+}
+
+Result<FormFit> fitForm(const Version& field, const FormOptions& options, JobControl& job) {
+  if (options.degree < 0 || options.degree > kMost)
+    return inputError(fmt::format("a form of degree {} is not possible", options.degree), "form",
+                      fmt::format("take 0 to {}", kMost));
+  const Grid& grid = field.grid();
+  FormFit fit;
+  fit.form.degree = options.degree;
+  fit.form.width = grid.width;
+  fit.form.height = grid.height;
+  fit.form.coefficients.assign(static_cast<std::size_t>(PolynomialForm::terms(options.degree)), 0.0);
+  const HeightBounds bounds = field.reader().bounds();
+  const double range = bounds.empty() ? 0.0 : double{bounds.max} - bounds.min;
+  fit.form.base = bounds.empty() ? 0.0 : bounds.min + 0.5 * range;
+
+  auto sums = sumsOf(field, options, fit.form, {}, job);
+  if (!sums) return tl::unexpected(sums.error());
+  if (sums->samples == 0)
+    return inputError("there is no sample that a form could be fitted to", "form",
+                      options.region == Region::kAll ? "" : "mark some, or fit it to all samples");
+  fit.form.coefficients = solved(*sums, options.degree);
+  if (options.robust && range > 0.0)
+    if (auto done = fitRobustly(field, options, range, fit, job); !done) return tl::unexpected(done.error());
+  sums = sumsOf(field, options, fit.form, {}, job);
+  if (!sums) return tl::unexpected(sums.error());
+  fit.samples = sums->samples;
+  fit.rms = std::sqrt(sums->square.value() / static_cast<double>(sums->samples));
+  return fit;
+}
+
+Result<Version> withoutForm(const Version& field, const PolynomialForm& form, JobControl& job) {
+  Grid grid = field.grid();
+  assert(form.width == grid.width && form.height == grid.height);
+  grid.height_per_count = 0.0;
+  Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), "the levelled field");
+  if (!builder) return tl::unexpected(builder.error());
+  const FieldReader from = field.reader();
+  const auto tiles = static_cast<std::int64_t>(tileCount(from));
+  job.begin("removing the form", static_cast<std::uint64_t>(tiles));
+  tbb::parallel_for(std::int64_t{0}, tiles, [&](std::int64_t i) {
+    if (job.cancelled()) return;
+    const SampleRect rect = tileRect(from, i);
+    float z[kTileSamples];
+    double heights[kTileSamples];
+    std::uint8_t marks[kTileSamples];
+    from.readHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide);
+    from.readMarks(rect.column, rect.row, rect.columns, rect.rows, marks, kTileSide);
+    form.readHeights(rect, heights, kTileSide);
+    for (int r = 0; r < rect.rows; ++r)
+      for (int k = r * kTileSide; k < r * kTileSide + rect.columns; ++k)
+        z[k] = static_cast<float>(z[k] - heights[k]);
+    builder->writeHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide);
+    builder->writeMarks(rect.column, rect.row, rect.columns, rect.rows, marks, kTileSide);
+    job.advance();
+  });
+  if (job.cancelled()) return cancelled();
+  return std::move(*builder).build().withLines(field.lines());
+}
+
+}  // namespace fettle::engine

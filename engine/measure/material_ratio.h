@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+
+namespace fettle::engine {
+
+/// Functional parameters of a surface by its material ratio (Abbott) curve: ISO 25178-2:2021, 4.4, and for the
+/// equivalent straight line ISO 13565-2. Heights [height_unit], volumes per area [height_unit], ratios 0 .. 1.
+struct MaterialRatio {
+  double sk = 0.0;     ///< core height
+  double spk = 0.0;    ///< reduced peak height
+  double svk = 0.0;    ///< reduced dale height
+  double smrk1 = 0.0;  ///< material ratio where the peaks end
+  double smrk2 = 0.0;  ///< where the dales begin
+  double vmp = 0.0;    ///< material volume of the peaks, above 10 %
+  double vmc = 0.0;    ///< of the core, 10 to 80 %
+  double vvc = 0.0;    ///< void volume of the core, 10 to 80 %
+  double vvv = 0.0;    ///< of the dales, below 80 %
+  double sxp = 0.0;    ///< peak extreme height: from 2.5 to 50 %
+};
+
+/// `sorted`: heights from the lowest to the highest, at least one. The curve goes through the middles of the samples'
+/// shares and is straight between them; it begins at the highest and ends at the lowest height. The equivalent
+/// line is fitted by least squares of heights to the 40 % with the smallest difference of heights, the first from the
+/// top of equal ones. Linear time; any thread.
+[[nodiscard]] MaterialRatio materialRatio(std::span<const float> sorted) noexcept;
+
+}  // namespace fettle::engine

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/field/reader.h"
+#include "engine/field/sample_rect.h"
+
+namespace fettle::engine {
+
+/// The samples that a form is fitted to, or that a parameter is taken over. Holes belong to none.
+enum class Region : std::uint8_t {
+  kAll,
+  kMarked,
+  kUnmarked,
+};
+
+/// As FieldReader::readHeights, with NaN where a sample is not in the region. The rectangle may reach over the field's
+/// border; it has at most (kTileSide + 1) x (kTileSide + 1) samples. Any thread; no allocation.
+void readRegion(const FieldReader& field, Region region, const SampleRect& rect, float* out,
+                std::ptrdiff_t stride) noexcept;
+
+}  // namespace fettle::engine

@@ -1,0 +1,94 @@
+// fettle level and fettle measure, as a metrologist types them.
+
+#include <cmath>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/program.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+// A tilted plate of 60 x 50 samples, 0.1 mm apart, with a wave of 2 um along x, even about its middle so that no plane
+// follows it. ESRI ASCII, in millimetres.
+void writeWave(const std::string& path) {
+  std::ofstream out(path);
+  out << "ncols 60\nnrows 50\nxllcenter 0\nyllcenter 0\ncellsize 0.1\n";
+  for (int r = 49; r >= 0; --r) {
+    for (int c = 0; c < 60; ++c)
+      out << 0.01 * c - 0.005 * r + 0.002 * std::cos(2.0 * 3.14159265358979 * (c - 29.5) / 12.0) << ' ';
+    out << '\n';
+  }
+}
+
+TEST(Measure, OfATiltedWaveIsTheWave) {
+  const TempFolder folder;
+  const std::string scan = folder.file("wave.asc");
+  writeWave(scan);
+  const auto report = fettleJson({"measure", scan, "--unit", "mm"});
+  EXPECT_EQ(report["samples"], 3000);
+  // Heights in the file have six digits: 1e-6 of up to 0.6.
+  EXPECT_NEAR(report["sq"], 0.002 / std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(report["sku"], 1.5, 0.005);
+  EXPECT_NEAR(report["tilt_x"], std::atan(0.1) * 180.0 / 3.14159265, 0.05);
+  EXPECT_NEAR(report["tilt_y"], -std::atan(0.05) * 180.0 / 3.14159265, 0.05);
+  const Outcome text = fettle({"measure", scan, "--unit", "mm"});
+  EXPECT_NE(text.out.find("Sq           1.4"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find(" um "), std::string::npos) << text.out;
+}
+
+TEST(Measure, OfALevelledScanIsThatOfTheScan) {
+  const TempFolder folder;
+  const std::string scan = folder.file("wave.asc"), level = folder.file("level.tif");
+  writeWave(scan);
+  const auto levelled = fettleJson({"level", scan, level, "--unit", "mm"});
+  const auto before = fettleJson({"measure", scan, "--unit", "mm"});
+  const auto after = fettleJson({"measure", level, "--form", "none"});
+  for (const char* key : {"sq", "sa", "sz", "sdq", "sk", "vvc"})
+    EXPECT_NEAR(after[key], before[key], 1e-5 * before[key].get<double>()) << key;
+  EXPECT_NEAR(levelled["rms"], before["sq"], 1e-9);
+  EXPECT_NEAR(after["mean"], 0.0, 1e-8);
+  EXPECT_FALSE(after.contains("tilt_x"));
+}
+
+TEST(Measure, RobustFormIgnoresAStepAndMarksChooseTheRegion) {
+  const TempFolder folder;
+  const std::string scan = folder.file("steps.tif"), marks = folder.file("marks.png");
+  ASSERT_EQ(fettle({"synth", scan, "--part", "steps", "--size", "256x256"}).status, 0);
+  ASSERT_EQ(fettle({"mark", scan, marks, "--edges"}).status, 0);
+  const auto all = fettleJson({"measure", scan});
+  const auto marked = fettleJson({"measure", scan, "--region", "marked", "--marks", marks});
+  const auto rest = fettleJson({"measure", scan, "--region", "unmarked", "--marks", marks});
+  EXPECT_EQ(marked["samples"].get<int>() + rest["samples"].get<int>(), all["samples"].get<int>());
+  EXPECT_GT(marked["samples"].get<int>(), 0);
+  const auto robust = fettleJson({"measure", scan, "--robust"});
+  EXPECT_NE(robust["sq"], all["sq"]);
+}
+
+TEST(Measure, SeveralScansHaveAReportEachAndABadOneFailsAlone) {
+  const TempFolder folder;
+  const std::string scan = folder.file("wave.asc");
+  writeWave(scan);
+  const Outcome outcome = fettle({"measure", scan, folder.file("none.tif"), "--json", "--unit", "mm"});
+  EXPECT_EQ(outcome.status, 1);
+  const auto report = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(report["done"], 1);
+  EXPECT_EQ(report["failed"], 1);
+  EXPECT_TRUE(report["files"][0].contains("sq"));
+  EXPECT_TRUE(report["files"][1].contains("error"));
+}
+
+TEST(Measure, RefusesWhatHasNoSample) {
+  const TempFolder folder;
+  const std::string scan = folder.file("wave.asc");
+  writeWave(scan);
+  expectRefused(fettle({"measure", scan, "--unit", "mm", "--region", "marked"}), "no sample");
+  expectRefused(fettle({"level", scan, folder.file("out.tif"), "--unit", "mm", "--form", "none"}), "--form");
+  expectRefused(fettle({"measure", scan, "--form", "poly6"}), "poly6");
+}
+
+}  // namespace
+}  // namespace fettle::tests

@@ -1,0 +1,213 @@
+#include "engine/measure/areal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include "engine/field/builder.h"
+
+namespace fettle::engine {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kPi = std::numbers::pi;
+
+struct Made {
+  Grid grid;
+  std::vector<float> heights;
+  std::vector<std::uint8_t> marks;
+
+  Made(std::int32_t width, std::int32_t height, const std::function<double(int, int)>& z) {
+    grid.width = width;
+    grid.height = height;
+    for (int r = 0; r < height; ++r)
+      for (int c = 0; c < width; ++c) heights.push_back(static_cast<float>(z(c, r)));
+  }
+  [[nodiscard]] Version field() const { return makeField(grid, heights, marks); }
+};
+
+PolynomialForm zeroForm(const Grid& grid) {
+  return {0, grid.width, grid.height, 0.0, {0.0}};
+}
+
+ArealParameters measured(const Made& made, Region region = Region::kAll) {
+  JobControl job;
+  const auto result = measureAreal(made.field(), zeroForm(made.grid), region, job);
+  EXPECT_TRUE(result) << result.error().line();
+  return result ? *result : ArealParameters{};
+}
+
+// Forty whole waves along x: every height of the closed formulas, slopes as the chords between samples have them.
+TEST(Areal, OfASineIsTheClosedFormula) {
+  constexpr double kAmplitude = 0.3, kWave = 25.0;
+  Made made(1001, 40, [](int c, int) { return kAmplitude * std::sin(2.0 * kPi * (c + 0.25) / kWave); });
+  made.grid.spacing_x = 0.02;
+  made.grid.spacing_y = 0.05;
+  const ArealParameters p = measured(made);
+  // 1001 columns: one sample more than whole waves.
+  EXPECT_NEAR(p.sq, kAmplitude / std::sqrt(2.0), 2e-3 * kAmplitude);
+  EXPECT_NEAR(p.sa, 2.0 * kAmplitude / kPi, 3e-3 * kAmplitude);
+  EXPECT_NEAR(p.ssk, 0.0, 5e-3);
+  EXPECT_NEAR(p.sku, 1.5, 5e-3);
+  EXPECT_NEAR(p.sp, kAmplitude, 5e-3 * kAmplitude);
+  // No sample lies on a crest: at most half a sample off.
+  EXPECT_NEAR(p.sz, 2.0 * kAmplitude, 2.0 * kAmplitude * (1.0 - std::cos(kPi / kWave)));
+  const double k = 2.0 * kPi / (kWave * 0.02);
+  const double sinc = std::sin(kPi / kWave) / (kPi / kWave);
+  EXPECT_NEAR(p.sdq, kAmplitude * k / std::sqrt(2.0) * sinc, 1e-5 * k);
+  EXPECT_EQ(p.cells, 1000 * 39);
+}
+
+TEST(Areal, OfAHalfRaisedFieldIsItsStep) {
+  const ArealParameters p = measured(Made(64, 64, [](int c, int) { return c < 32 ? 0.0 : 2.0; }));
+  EXPECT_DOUBLE_EQ(p.sq, 1.0);
+  EXPECT_DOUBLE_EQ(p.sa, 1.0);
+  EXPECT_DOUBLE_EQ(p.ssk, 0.0);
+  EXPECT_DOUBLE_EQ(p.sku, 1.0);
+  EXPECT_DOUBLE_EQ(p.sp, 1.0);
+  EXPECT_DOUBLE_EQ(p.sv, 1.0);
+}
+
+TEST(Areal, OfATiltedPlaneIsAUniformDistribution) {
+  Made made(400, 400, [](int c, int) { return 0.5 * c; });
+  const ArealParameters p = measured(made);
+  const double range = 0.5 * 400;
+  EXPECT_NEAR(p.sq, range / std::sqrt(12.0), 1e-3);
+  EXPECT_NEAR(p.sku, 1.8, 1e-4);
+  EXPECT_NEAR(p.sa, range / 4.0, 1e-3);
+  EXPECT_NEAR(p.sdq, 0.5, 1e-9);
+  EXPECT_NEAR(p.sdr, std::sqrt(1.25) - 1.0, 1e-9);
+  EXPECT_NEAR(p.ratio.sk, range, 0.01 * range);
+}
+
+TEST(Areal, OfGaussianNoiseHasItsMoments) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  const ArealParameters p = measured(Made(700, 600, [&](int, int) { return noise(random); }));
+  // 420,000 samples: standard errors of sq 0.0011, ssk 0.0038, sku 0.0076; four of each.
+  EXPECT_NEAR(p.sq / 0.02, 1.0, 0.0044);
+  EXPECT_NEAR(p.sa / 0.02, std::sqrt(2.0 / kPi), 0.0044);
+  EXPECT_NEAR(p.ssk, 0.0, 0.016);
+  EXPECT_NEAR(p.sku, 3.0, 0.031);
+  // Chords of white noise: variance 2 sigma^2 / h^2; over a patch (2 + 2 + 2 * 1 ...) / 3 of it in each direction.
+  EXPECT_NEAR(p.sdq / 0.02, std::sqrt(2.0 * 4.0 / 3.0), 0.02);
+}
+
+// Every figure by the plainest loops in long double, over holes, marks, unequal spacing and a form.
+TEST(Areal, IsWhatPlainLoopsFind) {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> noise(0.0, 0.4);
+  Made made(131, 77, [&](int c, int r) {
+    return (c * 5 + r * 3) % 17 == 0 ? kNothing : 40.0 + 0.02 * c + noise(random);
+  });
+  made.grid.spacing_x = 0.25;
+  made.grid.spacing_y = 1.0;
+  made.grid.height_unit = {"um", 1e-3};
+  for (int i = 0; i < 131 * 77; ++i) made.marks.push_back(i % 5 < 3 ? 1 : 0);
+  JobControl job;
+  const auto fit = fitForm(made.field(), {1, Region::kMarked, false}, job);
+  ASSERT_TRUE(fit);
+  const auto result = measureAreal(made.field(), fit->form, Region::kMarked, job);
+  ASSERT_TRUE(result);
+  const auto at = [&](int c, int r) -> long double {
+    const auto i = static_cast<std::size_t>(r * 131 + c);
+    if (made.marks[i] == 0) return std::nanl("");
+    return static_cast<long double>(made.heights[i]) - fit->form.heightAt(c, r);
+  };
+  long double n = 0, mean = 0;
+  std::vector<long double> all;
+  for (int r = 0; r < 77; ++r)
+    for (int c = 0; c < 131; ++c)
+      if (const long double z = at(c, r); !std::isnan(z)) n += 1, mean += z, all.push_back(z);
+  mean /= n;
+  long double a = 0, s2 = 0, s3 = 0, s4 = 0;
+  for (const long double z : all) {
+    const long double d = z - mean;
+    a += std::abs(d), s2 += d * d, s3 += d * d * d, s4 += d * d * d * d;
+  }
+  const long double sq = std::sqrt(s2 / n);
+  const auto near = [](double seen, long double wanted) {
+    EXPECT_NEAR(seen, static_cast<double>(wanted), 1e-12 * (1.0 + std::abs(static_cast<double>(wanted))));
+  };
+  near(result->sq, sq);
+  near(result->sa, a / n);
+  near(result->ssk, s3 / n / (sq * sq * sq));
+  near(result->sku, s4 / n / (sq * sq * sq * sq));
+  near(result->sp, *std::ranges::max_element(all) - mean);
+  near(result->sv, mean - *std::ranges::min_element(all));
+  // The gradient and the area of every patch by many small pieces.
+  long double gradient = 0, area = 0, cells = 0;
+  for (int r = 0; r + 1 < 77; ++r)
+    for (int c = 0; c + 1 < 131; ++c) {
+      const long double z00 = at(c, r), z10 = at(c + 1, r), z01 = at(c, r + 1), z11 = at(c + 1, r + 1);
+      if (std::isnan(z00 + z10 + z01 + z11)) continue;
+      cells += 1;
+      constexpr int kPieces = 40;
+      for (int i = 0; i < kPieces; ++i)
+        for (int j = 0; j < kPieces; ++j) {
+          const long double u = (i + 0.5L) / kPieces, v = (j + 0.5L) / kPieces;
+          const long double gx = 1e-3L * ((1 - v) * (z10 - z00) + v * (z11 - z01)) / 0.25L;
+          const long double gy = 1e-3L * ((1 - u) * (z01 - z00) + u * (z11 - z10)) / 1.0L;
+          gradient += (gx * gx + gy * gy) / (kPieces * kPieces);
+          area += (std::sqrt(1 + gx * gx + gy * gy) - 1) / (kPieces * kPieces);
+        }
+    }
+  EXPECT_EQ(result->cells, static_cast<std::int64_t>(cells));
+  EXPECT_NEAR(result->sdq, static_cast<double>(std::sqrt(gradient / cells)), 2e-4 * result->sdq);
+  EXPECT_NEAR(result->sdr, static_cast<double>(area / cells), 4e-4 * result->sdr);
+}
+
+TEST(Areal, OfHardFieldsIsAFigureOrNone) {
+  const ArealParameters one = measured(Made(1, 1, [](int, int) { return 4.0; }));
+  EXPECT_EQ(one.sq, 0.0);
+  EXPECT_TRUE(std::isnan(one.ssk));
+  EXPECT_TRUE(std::isnan(one.sdq));
+  const ArealParameters flat = measured(Made(70, 65, [](int, int) { return 4.0; }));
+  EXPECT_EQ(flat.sz, 0.0);
+  EXPECT_EQ(flat.sdq, 0.0);
+  EXPECT_EQ(flat.sdr, 0.0);
+  const ArealParameters row = measured(Made(70, 1, [](int c, int) { return c % 2; }));
+  EXPECT_DOUBLE_EQ(row.sq, 0.5);
+  EXPECT_EQ(row.cells, 0);
+  const ArealParameters spike =
+      measured(Made(80, 80, [](int c, int r) { return c == 40 && r == 40 ? 1e6 : 0.0; }));
+  EXPECT_NEAR(spike.sz, 1e6, 1e-3);
+  for (const double value :
+       {spike.sq, spike.ssk, spike.sku, spike.sdq, spike.sdr, spike.ratio.sk, spike.ratio.spk})
+    EXPECT_TRUE(std::isfinite(value));
+  const ArealParameters small = measured(Made(80, 80, [](int c, int r) { return 1e-41 * (c + r); }));
+  EXPECT_GT(small.sq, 0.0);
+  JobControl job;
+  const Made holes(9, 9, [](int, int) { return kNothing; });
+  EXPECT_EQ(measureAreal(holes.field(), zeroForm(holes.grid), Region::kAll, job).error().kind,
+            ErrorKind::kInput);
+  job.cancel();
+  const Made any(9, 9, [](int c, int) { return c; });
+  EXPECT_EQ(measureAreal(any.field(), zeroForm(any.grid), Region::kAll, job).error().kind,
+            ErrorKind::kCancelled);
+}
+
+TEST(Areal, IsBitIdenticalForAnyNumberOfThreads) {
+  std::mt19937_64 random(2);
+  std::normal_distribution<double> noise;
+  const Made made(333, 290, [&](int, int) { return noise(random); });
+  const auto with = [&](int threads) {
+    ArealParameters p;
+    tbb::task_arena arena(threads);
+    arena.execute([&] { p = measured(made); });
+    return std::vector<double>{p.sq, p.ssk, p.sku, p.sa, p.sdq, p.sdr, p.ratio.sk, p.ratio.spk, p.ratio.vvc};
+  };
+  const auto one = with(1);
+  for (const int threads : {2, 4}) EXPECT_EQ(with(threads), one);
+}
+
+}  // namespace
+}  // namespace fettle::engine
