@@ -1,6 +1,7 @@
 // Level paper against the source's search word for word, tick by tick.
 #include "bench/accuracy/literal_search.h"
 
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -65,6 +66,45 @@ TEST(LiteralSearch, LevelPaperFindsTheSamePointInTheSameCellInEveryTickOnEveryGr
     }
   // The comparison sees a search of another rule.
   EXPECT_GT(descent_elsewhere, 10'000);
+}
+
+// On the flank of a needle the nearest point is level with the endpoint but for the distance over the slope: with needles
+// 1e6 mm high that is less than a rounding of the heights there, which then decides on which side the endpoint is. Both
+// searches find the same point in the same cell; where only one of the two touches, the heights of point and endpoint
+// differ by roundings alone, so that no scan of more places would make the flags the same.
+TEST(LiteralSearch, OnNeedlesOnlyARoundingOfTheirHeightsDecidesWhichOfTheTwoTouches) {
+  for (const double needle_mm : {1e3, 1e5, 1e6}) {
+    const auto field = fieldOf(
+        256, 0.05, [&](int column, int row) { return column % 7 == 3 && row % 5 == 2 ? needle_mm : 0.0; });
+    ASSERT_TRUE(field);
+    engine::LiveField live(*field, engine::Growth::kAllowed);
+    haptic::Tick tick(haptic::defaultScene(), live, *field);
+    LiteralTracker literal(*field);
+    trials::HandMotion motion;
+    motion.ticks = 20'000;
+    motion.speed_mm_s = 20.0;
+    int contacts = 0, flags = 0;
+    for (const haptic::StrokeSample& s : trials::handStroke(*field, motion)) {
+      const bool felt = tick.run(s).contact;
+      LiteralPoint point;
+      const bool touches = literal.update(s.tip_mm, point);
+      const haptic::SurfacePoint& proxy = tick.contact().proxy;
+      if (felt && touches) {
+        ++contacts;
+        EXPECT_EQ(proxy.cell, point.cell) << needle_mm << " at " << s.t;
+        EXPECT_LE(glm::length(proxy.position_mm - point.position_mm), kAsideMm) << needle_mm << " at " << s.t;
+      } else if (felt != touches) {
+        ++flags;
+        // Of the height: a sum of four products of numbers as large as the needle, each rounded twice.
+        const double z = felt ? proxy.position_mm.z : point.position_mm.z;
+        EXPECT_LE(std::abs(z - s.tip_mm.z), 8 * 1.2e-16 * needle_mm) << needle_mm << " at " << s.t;
+        // No force that could be felt: 1e-6 mm.
+        EXPECT_LE(felt ? proxy.distance2_mm2 : point.distance2_mm2, 1e-12) << needle_mm << " at " << s.t;
+      }
+    }
+    EXPECT_GT(contacts, 15'000);
+    EXPECT_LE(flags, needle_mm > 1e3 ? 100 : 0) << needle_mm;
+  }
 }
 
 // Of single cells, convex and twisted, with endpoints on every side of them.
