@@ -8,4 +8,9 @@ namespace fettle::haptic {
 inline constexpr int kMaxCellsVisited = 512;
 inline constexpr int kMaxRounds = 2048;
 
+/// Searches for contacts after which a ball's tick takes no further step: the default, and the largest. A step tries up to
+/// twenty, and without this bound a tick takes up to 128 steps (docs/decisions/ball-tip.md).
+inline constexpr int kBallSearches = 64;
+inline constexpr int kMostBallSearches = 4096;
+
 }  // namespace fettle::haptic

@@ -1,6 +1,7 @@
 #include "haptic/contact/sphere_tip.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -37,9 +38,11 @@ std::optional<std::string> sphereProblem(double radius_mm, const engine::Grid& g
                      most, kMostSphereCells);
 }
 
-SphereTracker::SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps,
-                             SphereSearch search) noexcept
-    : most_steps_(std::clamp(most_steps, 1, kSphereSteps)), search_(search) {
+SphereTracker::SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps, SphereSearch search,
+                             int most_searches) noexcept
+    : most_steps_(std::clamp(most_steps, 1, kSphereSteps)),
+      most_searches_(std::clamp(most_searches, 0, kMostBallSearches)),
+      search_(search) {
   const double cell = smallerSpacing(grid);
   radius_ = std::min(radius_mm, kMostSphereCells * cell);
   // The lens that a step s cuts from a ball is s^2 / (8 r) deep: cell / 16 in the middle of the range.
@@ -265,7 +268,8 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
   glm::dvec3 last{0.0};  // the step before
   double longest = step_;
   Arrival arrival = Arrival::kBound;
-  for (; steps < most_steps_ && arrival == Arrival::kBound; ++steps) {
+  const int last_search = most_searches_ > 0 ? searches_ + most_searches_ : std::numeric_limits<int>::max();
+  for (; steps < most_steps_ && searches_ < last_search && arrival == Arrival::kBound; ++steps) {
     const glm::dvec3 goal = endpoint - centre_;
     made_from = here_;
     const auto takeHalfSpaces = [&] {
@@ -347,6 +351,7 @@ SphereTracker::Arrival SphereTracker::walk(const Surface& surface, const glm::dv
     centre_ = endpoint;
     return arrival;
   }
+  if (arrival == Arrival::kBound && step.count == 0 && most_searches_ > 0) return Arrival::kUnheldOnItsWay;
   int most = 0;
   for (int k = 1; k < step.count; ++k)
     if (step.share[static_cast<std::size_t>(k)] > step.share[static_cast<std::size_t>(most)]) most = k;
@@ -371,7 +376,8 @@ Contact SphereTracker::update(Surface& surface, const glm::dvec3& endpoint, Tick
     counters.outside += surface.cellUnder(endpoint, cell) ? 0 : 1;
     return contact;
   }
-  const double farthest = kSphereSteps * step_;
+  const int steps = most_searches_ > 0 ? std::min(kSphereSteps, most_searches_) : kSphereSteps;
+  const double farthest = steps * step_;
   discardEdited(surface);
   if (!was_placed || !(length2(moved) <= farthest * farthest)) {
     centre_ = endpoint;
@@ -386,6 +392,11 @@ Contact SphereTracker::update(Surface& surface, const glm::dvec3& endpoint, Tick
   if (lists_[here_].nearest_mm < radius_ - toleranceMm(centre_.z)) lift(surface);  // raised by an edit
   touching_ = arrival != Arrival::kFree;
   if (!touching_) return contact;
+  if (arrival == Arrival::kUnheldOnItsWay) {
+    SphereContactList& there = lists_[1 - here_];
+    findContacts(surface, endpoint, there);
+    if (!there.below && there.nearest_mm >= radius_) return contact;
+  }
 
   contact.touching = true;
   contact.penetration_mm = centre_ - endpoint;

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "engine/field/grid.h"
+#include "haptic/base/search_limits.h"
 #include "haptic/base/tick_counters.h"
 #include "haptic/contact/contact.h"
 #include "haptic/contact/sphere_solve.h"
@@ -57,10 +58,10 @@ enum class SphereSearch : std::uint8_t {
 /// step is taken, and what rises into the ball on its path (concave parts) is added as a further half-space
 /// and the step is computed again. Every step makes the centre's distance to the endpoint smaller, so the
 /// ball comes to rest on both walls of a groove and does not jump between them. It ends when a step is
-/// shorter than the tolerance, or after the largest number of steps (counted in search_bound_hits; the centre
-/// is free of the material and continues in the next tick). Fewer than kSphereSteps bound the tick's time: a
-/// ball that rolls into another hollow needs a few ticks for it, and one that is moved through free space
-/// faster than that lags behind.
+/// shorter than the tolerance, or after the largest number of steps or searches (counted in search_bound_hits; the
+/// centre is free of the material and continues in the next tick). They bound the tick's time: a ball that rolls into
+/// another hollow needs a few ticks for it, and one that is moved through free space faster than that lags behind. On
+/// its way, where nothing holds it, it touches when a ball at the endpoint would: so a tip at rest keeps its contact.
 ///
 /// The samples around the ball, and the contacts where it rests, are kept from tick to tick until the surface
 /// is refreshed.
@@ -74,7 +75,7 @@ enum class SphereSearch : std::uint8_t {
 /// spacing, plus roundings of the heights. At rest no step longer than 1e-4 of that size makes it nearer.
 /// Continuity: steps are between a quarter of a cell and a cell, and both ends are free of
 /// the material. A ball cannot step over anything that would lift its centre by more than s^2 / (8 r) for a
-/// step s: 1/16 of a cell for r = 2 cells. A hand that moves more than kSphereSteps steps in one tick is
+/// step s: 1/16 of a cell for r = 2 cells. A hand that moves more steps in one tick than a tick may take or search is
 /// placed again, lifted out vertically, as at the first tick; so is a centre that an edit left inside the
 /// material.
 ///
@@ -88,9 +89,10 @@ enum class SphereSearch : std::uint8_t {
 class SphereTracker {
  public:
   /// `radius_mm` > 0; over kMostSphereCells cells it is clamped to that (sphereProblem reports it before).
-  /// `most_steps`, 1 .. kSphereSteps, of a tick.
+  /// `most_steps`, 1 .. kSphereSteps, of a tick. `most_searches`, 1 .. kMostBallSearches, after which no step begins;
+  /// 0: no such bound, and a ball on its way counts as touching, as before contact revision 3 (scene.h).
   SphereTracker(double radius_mm, const engine::Grid& grid, int most_steps = kSphereSteps,
-                SphereSearch search = SphereSearch::kBounded) noexcept;
+                SphereSearch search = SphereSearch::kBounded, int most_searches = kBallSearches) noexcept;
 
   /// One tick. `endpoint` is finite. `surface` is the field as it now is: edits since the last tick are felt,
   /// by Surface::refreshes().
@@ -111,7 +113,7 @@ class SphereTracker {
   [[nodiscard]] double toleranceMm(double height_mm) const noexcept;
 
  private:
-  enum class Arrival : std::uint8_t { kFree, kTouching, kBound };
+  enum class Arrival : std::uint8_t { kFree, kTouching, kBound, kUnheldOnItsWay };
 
   [[nodiscard]] bool clearOfAll(const Surface& surface, const glm::dvec3& a,
                                 const glm::dvec3& b) const noexcept;
@@ -132,6 +134,7 @@ class SphereTracker {
   static constexpr int kMostCuts = 16;
 
   int most_steps_;
+  int most_searches_;
   SphereSearch search_;
   double radius_, step_, slack_, tolerance_;
   glm::dvec3 centre_{0.0};

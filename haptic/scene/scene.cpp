@@ -173,6 +173,11 @@ class SceneReader {
         require(value, rounds >= 2 && rounds <= kMaxRounds,
                 "search_rounds must be a whole number from 2 to 2048");
         if (!problem_) scene_.search_rounds = static_cast<int>(rounds);
+      } else if (key == "ball_searches") {
+        const auto searches = value.is_integer() ? *value.value<std::int64_t>() : -1;
+        require(value, searches >= 0 && searches <= kMostBallSearches,
+                "ball_searches must be a whole number from 0 to 4096");
+        if (!problem_) scene_.ball_searches = static_cast<int>(searches);
       } else {
         return false;
       }
@@ -260,6 +265,8 @@ std::optional<std::string> sceneProblem(const Scene& scene) {
     return fmt::format("the certified radius must be 1 to {} cells", kMaxCertifiedRadius);
   if (scene.search_rounds < 2 || scene.search_rounds > kMaxRounds)
     return fmt::format("the search must have 2 to {} rounds", kMaxRounds);
+  if (scene.ball_searches < 0 || scene.ball_searches > kMostBallSearches)
+    return fmt::format("a ball must have 0 to {} searches", kMostBallSearches);
   if (roundsWithoutUse(scene)) return kRoundsNeedDescent;
   if (scene.tip == TipShape::kSphere && !positiveUpTo(scene.tip_radius_mm, kMaxTipRadius))
     return fmt::format("the tip's radius must be above 0 and at most {} mm", kMaxTipRadius);
@@ -287,6 +294,7 @@ engine::Result<Scene> parseScene(const std::string& text, const std::string& nam
     return engine::inputError(fmt::format("contact revision {} is unknown", contact_revision), name,
                               "open it with the version of the program that wrote it");
   Scene scene = defaultScene();
+  if (contact_revision < 3) scene.ball_searches = 0;
   try {
     const toml::table file = toml::parse(text, name);
     const SceneReader reader(scene, file, contact_revision);
@@ -317,13 +325,13 @@ std::string sceneText(const Scene& scene) {
   for (const EffectKind effect : scene.effects) effects.push_back(effectName(effect));
   std::string text = fmt::format(
       "tip = \"{}\"\ntip_radius_mm = {}\ninvert = {}\neffects = [{}{}{}]\n"
-      "[contact]\nlevel = \"{}\"\ncertified_radius_cells = {}\nsearch_rounds = {}\n"
+      "[contact]\nlevel = \"{}\"\ncertified_radius_cells = {}\nsearch_rounds = {}\nball_searches = {}\n"
       "[force]\nstiffness_n_per_mm = {}\nlimit_n = {}\n"
       "[brush]\nradius_samples = {}\nmark_radius_samples = {}\n",
       scene.tip == TipShape::kSphere ? "sphere" : "point", scene.tip_radius_mm, scene.invert,
       effects.empty() ? "" : "\"", fmt::join(effects, "\", \""), effects.empty() ? "" : "\"",
-      levelName(scene.level), scene.certified_radius_cells, scene.search_rounds, scene.stiffness_n_per_mm,
-      scene.force_limit_n, scene.brush_radius_samples, scene.mark_radius_samples);
+      levelName(scene.level), scene.certified_radius_cells, scene.search_rounds, scene.ball_searches,
+      scene.stiffness_n_per_mm, scene.force_limit_n, scene.brush_radius_samples, scene.mark_radius_samples);
   if (scene.max_change) text += fmt::format("max_change = {}\n", *scene.max_change);
   EffectParams params = scene.params;
   std::string_view table;

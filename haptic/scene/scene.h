@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "haptic/base/search_limits.h"
 #include "haptic/base/tools.h"
 #include "haptic/scene/effects.h"
 
@@ -51,6 +52,9 @@ struct Scene {
   /// time and lag behind a fast hand. A ball takes one step fewer, and never more than kSphereSteps. At level paper a
   /// search has no such rounds: only 2048 is allowed there for a point.
   int search_rounds = 2048;
+  /// A ball: searches for contacts after which a tick takes no further step, so that the tick's time is bounded; 1 ..
+  /// 4096, or 0 for no bound, as before contact revision 3 (SphereTracker).
+  int ball_searches = kBallSearches;
 
   /// Spring: newtons per millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.
   double stiffness_n_per_mm = 1.0;
@@ -97,8 +101,9 @@ struct Scene {
 /// The same; without a path, empty, the default scene.
 [[nodiscard]] engine::Result<Scene> loadSceneOrDefault(const std::string& path);
 /// What the words of a scene's [contact] mean, stored beside scenes whose ticks are replayed later (journal, session).
-/// 1, and where none is stored: the level "paper" is the search that is called "descent" since 2.
-inline constexpr int kContactRevision = 2;
+/// 1, and where none is stored: the level "paper" is the search that is called "descent" since 2. Below 3: a ball's searches
+/// are not bounded.
+inline constexpr int kContactRevision = 3;
 /// The same from a text that calls itself `name` in errors. `contact_revision`, 1 .. kContactRevision: of the program
 /// that wrote the text; errors: a newer one.
 [[nodiscard]] engine::Result<Scene> parseScene(const std::string& text, const std::string& name,

@@ -10,7 +10,8 @@ Tick::Tick(const Scene& scene, engine::LiveField& field, const engine::Version& 
       tracker_(scene.level, scene.certified_radius_cells, scene.search_rounds),
       sphere_(scene.tip == TipShape::kSphere
                   ? std::make_unique<SphereTracker>(scene.tip_radius_mm, field.reader().grid(),
-                                                    scene.search_rounds - 1)
+                                                    scene.search_rounds - 1, SphereSearch::kBounded,
+                                                    scene.ball_searches)
                   : nullptr),
       effects_(composeEffects(scene, original, field.snapshot())),
       force_limit_n_(scene.force_limit_n) {}

@@ -88,6 +88,7 @@ haptic::Scene anyScene(std::mt19937_64& random) {
   scene.certified_radius_cells = 1 + static_cast<int>(random() % 64);
   if (scene.tip == haptic::TipShape::kSphere || scene.level != haptic::ContactLevel::kPaper)
     scene.search_rounds = 2 + static_cast<int>(random() % 2047);
+  scene.ball_searches = static_cast<int>(random() % 4097);
   scene.stiffness_n_per_mm = tests::uniform(random, 1e-12, 1000);
   scene.force_limit_n = tests::uniform(random, 1e-12, 1000);
   scene.brush_radius_samples = tests::uniform(random, 0, 64);
@@ -179,6 +180,21 @@ TEST(Journal, ALevelKeepsTheSearchThatItNamedWhenItWasWritten) {
             haptic::ContactLevel::kCertified);
 }
 
+TEST(Journal, ABallHasNoBoundOfItsSearchesWhereThereWasNoneWhenItWasWritten) {
+  const auto searchesOf = [](const char* text) {
+    const auto entry = haptic::journalEntry(text);
+    EXPECT_TRUE(entry) << text;
+    return entry ? std::get<haptic::journal::Begin>(*entry).scene.ball_searches : -1;
+  };
+  EXPECT_EQ(searchesOf(R"({"do":"begin","state":0,"scene":"tip = \"sphere\""})"), 0);
+  EXPECT_EQ(searchesOf(R"({"do":"begin","state":0,"contact":2,"scene":"tip = \"sphere\""})"), 0);
+  EXPECT_EQ(searchesOf(R"({"do":"begin","state":0,"contact":3,"scene":"tip = \"sphere\""})"), 64);
+  // Written again by this version, it still has none.
+  haptic::Scene scene;
+  scene.ball_searches = 0;
+  EXPECT_EQ(haptic::parseScene(haptic::sceneText(scene), "again")->ball_searches, 0);
+}
+
 // Recorded on 2026-11-23 with a mouse, before "paper" named another search: two strokes that smooth, the second with
 // two steps per tick. Any other search leaves another field.
 TEST(Journal, ASessionOfTheFirstContactRevisionReplaysToTheBitsThatItHad) {
@@ -204,7 +220,7 @@ TEST(Journal, WhatIsNoEntryIsRefusedByName) {
   for (const char* text :
        {"", "{", "[]", "{}", R"({"do":"dance"})", R"({"do":"ticks"})", R"({"do":"ticks","count":"x"})",
         R"({"do":"filter","id":1,"filter":"blur","window":3,"passes":1,"marks":"keep"})",
-        R"({"do":"begin","state":0,"scene":"tip = 3"})", R"({"do":"begin","state":0,"scene":"","contact":3})",
+        R"({"do":"begin","state":0,"scene":"tip = 3"})", R"({"do":"begin","state":0,"scene":"","contact":4})",
         R"({"do":"begin","state":0,"scene":"","contact":0})", R"({"do":7})", "3"}) {
     const auto entry = haptic::journalEntry(text);
     ASSERT_FALSE(entry) << text;

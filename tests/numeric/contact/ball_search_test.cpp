@@ -2,7 +2,10 @@
 // the other: whole ticks, bit for bit, on every hard field and under edits.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <random>
 #include <string>
 #include <utility>
@@ -12,6 +15,8 @@
 
 #include "engine/field/live_field.h"
 #include "haptic/contact/sphere_tip.h"
+#include "haptic/scene/scene.h"
+#include "haptic/tick/tick.h"
 #include "haptic/trials/hand_stroke.h"
 #include "tests/haptic/support/fields.h"
 #include "tests/numeric/support/hard_fields.h"
@@ -105,6 +110,68 @@ TEST(BallSearch, BoundedOnRoughPartsNeedlesTwistsWallsAndPitsGivesTheBitsOfCellB
     EXPECT_GT(balls.touched(), 1000) << name;
     RecordProperty(std::string("most searches, ") + name, balls.mostSearches());
   }
+}
+
+// A step tries up to six cuts and twelve halvings, and a bent step twice; a ball that is placed is lifted by halvings from
+// needles of 1e6 mm to a tolerance of 5e-8 mm, log2(1e6 / 2.5e-8) = 46 searches. Where nothing holds a ball on its way, the
+// endpoint is looked at.
+TEST(BallSearch, ATickOnNeedlesDoesNotSearchMoreThanItsBoundAndTheStepThatReachesIt) {
+  constexpr int kOfOneStep = 6 + 12 + 2;
+  constexpr int kOfPlacing = 46 + 3;
+  constexpr double kSpacing = 0.05;
+  const engine::Version field = tests::fieldOf(
+      128, 128, [](int c, int r) { return c % 7 == 3 && r % 5 == 2 ? 1e6 : 0.0; }, kSpacing, kSpacing);
+  trials::HandMotion motion;
+  motion.ticks = 4000;
+  motion.speed_mm_s = 20.0;
+  const auto mostOf = [&](int searches) {
+    Surface surface(field.reader());
+    SphereTracker ball(2.0 * kSpacing, field.grid(), kSphereSteps, SphereSearch::kBounded, searches);
+    TickCounters counters;
+    int most = 0;
+    for (const StrokeSample& sample : trials::handStroke(field, motion)) {
+      (void)ball.update(surface, sample.tip_mm + glm::dvec3(0.0, 0.0, 2.0 * kSpacing), counters);
+      most = std::max(most, ball.searches());
+    }
+    return most;
+  };
+  const int bounded = mostOf(kBallSearches);
+  const int unbounded = mostOf(0);
+  std::printf("most searches of a tick on needles: %d bounded, %d without a bound\n", bounded, unbounded);
+  EXPECT_LE(bounded, kBallSearches + kOfOneStep + kOfPlacing);
+  EXPECT_LE(mostOf(32), 32 + kOfOneStep + kOfPlacing);
+  EXPECT_GT(unbounded, kBallSearches + kOfOneStep + kOfPlacing);
+}
+
+// Recordings made before contact revision 3: the hash is that of the ticks at commit 0da33cf, on needles, where 320 searches
+// were made in one.
+TEST(BallSearch, WithoutABoundTicksHaveTheBitsThatTheyHadBeforeThereWasOne) {
+  constexpr double kSpacing = 0.05;
+  const engine::Version field = tests::fieldOf(
+      128, 128, [](int c, int r) { return c % 7 == 3 && r % 5 == 2 ? 1e6 : 0.0; }, kSpacing, kSpacing);
+  trials::HandMotion motion;
+  motion.ticks = 4000;
+  motion.speed_mm_s = 20.0;
+  const auto hashOf = [&](int searches) {
+    Scene scene = defaultScene();
+    scene.tip = TipShape::kSphere;
+    scene.tip_radius_mm = 2.0 * kSpacing;
+    scene.ball_searches = searches;
+    engine::LiveField live(field, engine::Growth::kAllowed);
+    Tick tick(scene, live, field);
+    std::uint64_t hash = 0;
+    for (StrokeSample sample : trials::handStroke(field, motion)) {
+      sample.tip_mm.z += scene.tip_radius_mm;
+      const ForceSample felt = tick.run(sample);
+      for (const double x :
+           {felt.force_n.x, felt.force_n.y, felt.force_n.z, felt.proxy_mm.x, felt.proxy_mm.z})
+        hash = std::rotl(hash, 7) ^ std::bit_cast<std::uint64_t>(x);
+    }
+    return hash;
+  };
+  constexpr std::uint64_t kBefore = 0x75ac79016260d51eU;
+  EXPECT_EQ(hashOf(0), kBefore);
+  EXPECT_NE(hashOf(kBallSearches), kBefore);
 }
 
 TEST(BallSearch, BoundedUnderEditsGivesTheBitsOfCellByCell) {
