@@ -13,6 +13,7 @@
 #include "app/commands/compute_option.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/place_report.h"
+#include "app/commands/resume_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
@@ -46,6 +47,7 @@ struct FilterArguments {
   std::string tolerance;
   std::optional<double> budget;
   int places = 0;
+  ResumeOptions resume;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
@@ -96,14 +98,17 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   const auto ready = engine::withMeasuredRange(spec, field, job);
   if (!ready) return tl::unexpected(ready.error());
   spec = *ready;
+  auto kept = openKeptWork(options.resume, task.out, field, *original, spec, compute.device());
+  if (!kept) return tl::unexpected(kept.error());
   const engine::Stopwatch watch;
-  const auto filtered = compute.apply(field, *original, spec, job);
+  const auto filtered = compute.apply(field, *original, spec, job, kept->get());
   const double seconds = watch.seconds();
-  if (!filtered) return tl::unexpected(filtered.error());
+  if (!filtered) return tl::unexpected(continued(filtered.error(), task.out, *std::move(kept)));
   engine::ExportOptions writing = options.writing;
   writing.original = *original;
   if (auto status = saveField(filtered->field, task.out, job, writing, task.to); !status)
-    return tl::unexpected(status.error());
+    return tl::unexpected(continued(status.error(), task.out, *std::move(kept)));
+  if (*kept) (*kept)->finish();
 
   const double samples = static_cast<double>(field.grid().samples()) * spec.passes;
   const engine::Filter& filter = engine::filterOf(spec.kind);
@@ -128,6 +133,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
                  {"seconds", seconds},
                  {"samples_per_second", samples / seconds},
                  {"hash", hashOf(filtered->field)}});
+  addKept(report, kept->get(), spec.passes);
   return report;
 }
 
@@ -257,6 +263,7 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
     return refused("several scans", "give one scan, and optionally OUT, which is only named");
   if (!options.filter.empty()) return refused("--filter", "the filter is what is suggested");
   if (!options.only.empty()) return refused("--only", "give --keep, or nothing");
+  if (options.resume.resume) return refused("--resume", "nothing is filtered that could be kept");
   if (!options.original.empty()) return refused("--original", "its filters have no limit of change");
   if (!options.lines.empty()) return refused("--lines", "its filters are tried without edge lines");
   const std::pair<bool, const char*> numbers[] = {{options.window != 3, "--window"},
@@ -346,6 +353,7 @@ engine::Result<Report> filter(const FilterArguments& options, engine::JobControl
     if (auto status = checkOriginal(options.original, !options.max_change.empty(), task.out); !status)
       return tl::unexpected(status.error());
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
+  if (auto status = checkResume(options.resume, *tasks); !status) return tl::unexpected(status.error());
   auto compute = chooseCompute(options.compute, engine::filterOf(spec->kind));
   if (!compute) return tl::unexpected(compute.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) {
@@ -455,6 +463,7 @@ void addFilter(Command root, Chosen& chosen) {
            .otherwise = "none"},
       },
       "Suggesting a filter");
+  addResumeOptions(command, options->resume);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
   command.examples(

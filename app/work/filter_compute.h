@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/filter/filter_work.h"
 #include "engine/filter/tgv_device.h"
 
 namespace fettle::app {
@@ -24,11 +25,13 @@ class FilterCompute {
       : where_(where), device_(std::move(device)) {}
 
   /// engine::applyFilter. A device that fails meanwhile is an error with kGpu; with kAuto a warning, and the whole filter
-  /// runs on the processor instead, for this field and all that follow: no result is of both.
+  /// runs on the processor instead, for this field and all that follow: no result is of both. `work`
+  /// (engine::FilterTuning::work) belongs to one of them: with it a device that fails is an error.
   [[nodiscard]] engine::Result<engine::Filtered> apply(const engine::Version& input,
                                                        const engine::Version& original,
                                                        const engine::FilterSpec& spec,
-                                                       engine::JobControl& job);
+                                                       engine::JobControl& job,
+                                                       engine::FilterWork* work = nullptr);
 
   /// That the last result is of; empty: the processor.
   [[nodiscard]] const std::string& device() const noexcept;

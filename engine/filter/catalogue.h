@@ -10,6 +10,7 @@
 
 namespace fettle::engine {
 
+class FilterWork;
 struct FilterTuning;
 struct PassResult;
 class TgvDevice;
@@ -39,9 +40,10 @@ using FilterPass = Result<PassResult> (*)(const Version& input, const Version& o
                                           const FilterSpec& spec, const FilterTuning& tuning,
                                           JobControl& job);
 
-/// The same on another processor; its errors as well.
+/// The same on another processor; its errors as well. `work` as FilterTuning::work.
 using FilterPassOnDevice = Result<PassResult> (*)(const Version& input, const Version& original,
-                                                  const FilterSpec& spec, TgvDevice& device, JobControl& job);
+                                                  const FilterSpec& spec, TgvDevice& device, FilterWork* work,
+                                                  JobControl& job);
 
 /// All that the program knows of a filter: command line, journal, panel, suggestion, benchmarks,
 /// demonstration and the table of docs/commands.md follow it.

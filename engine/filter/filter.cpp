@@ -15,6 +15,7 @@
 #include "engine/field/difference.h"
 #include "engine/field/live_field.h"
 #include "engine/filter/catalogue.h"
+#include "engine/filter/filter_work.h"
 #include "engine/filter/line_windows.h"
 #include "engine/filter/pass.h"
 #include "engine/filter/tgv_device.h"
@@ -130,8 +131,8 @@ Status validate(const FilterSpec& spec) {
 
 namespace {
 
-// pass_once(state) applied spec.passes times on as many threads as the spec has.
-Result<Filtered> applyPasses(const Version& input, const FilterSpec& spec, JobControl& job,
+// pass_once(state) applied spec.passes times on as many threads as the spec has. `work` may be null.
+Result<Filtered> applyPasses(const Version& input, const FilterSpec& spec, FilterWork* work, JobControl& job,
                              auto&& pass_once) {
   if (Status valid = validate(spec); !valid) return tl::unexpected(valid.error());
   const Filter& filter = filterOf(spec.kind);
@@ -146,16 +147,25 @@ Result<Filtered> applyPasses(const Version& input, const FilterSpec& spec, JobCo
     tbb::task_arena arena(spec.threads == 0 ? tbb::task_arena::automatic
                                             : std::min(spec.threads, tbb::info::default_concurrency()));
     return arena.execute([&]() -> Result<Filtered> {
-      Version state = input;
+      FilterWork::State state{0, input};
+      if (work != nullptr) {
+        Result<FilterWork::State> begun = work->begin(input);
+        if (!begun) return tl::unexpected(std::move(begun.error()));
+        state = std::move(*begun);
+        job.advance(static_cast<std::uint64_t>(input.grid().samples()) *
+                    static_cast<std::uint64_t>(state.passes));
+      }
       PassResult last;
-      for (int pass = 0; pass < spec.passes; ++pass) {
-        Result<PassResult> next = pass_once(state);
+      for (; state.passes < spec.passes; ++state.passes) {
+        if (work != nullptr)
+          if (Status begun = work->beginPass(state); !begun) return tl::unexpected(std::move(begun.error()));
+        Result<PassResult> next = pass_once(state.field);
         if (!next) return tl::unexpected(std::move(next.error()));
         last = std::move(*next);
-        state = last.field;
+        state.field = last.field;
       }
-      if (spec.passes > 1) return compared(input, std::move(state));
-      return Filtered{std::move(state), total(last.reports, samplesThatAreNotHoles(input))};
+      if (spec.passes > 1) return compared(input, std::move(state.field));
+      return Filtered{std::move(state.field), total(last.reports, samplesThatAreNotHoles(input))};
     });
   } catch (const std::bad_alloc&) {
     return failure("memory for filtering could not be had", "filter",
@@ -173,7 +183,7 @@ Result<Filtered> applyFilter(const Version& input, const Version& original, cons
                              const FilterTuning& tuning, JobControl& job) {
   assert(sameSize(input, original));
   assert(tuning.block_side % kTileSide == 0);
-  return applyPasses(input, spec, job, [&](const Version& state) {
+  return applyPasses(input, spec, tuning.work, job, [&](const Version& state) {
     return filterOf(spec.kind).pass(state, original, spec, tuning, job);
   });
 }
@@ -184,11 +194,12 @@ Result<Filtered> applyFilter(const Version& input, const Version& original, cons
 }
 
 Result<Filtered> applyFilter(const Version& input, const Version& original, const FilterSpec& spec,
-                             TgvDevice& device, JobControl& job) {
+                             TgvDevice& device, JobControl& job, FilterWork* work) {
   const FilterPassOnDevice on_device = filterOf(spec.kind).on_device;
   assert(on_device != nullptr && sameSize(input, original));
-  return applyPasses(input, spec, job,
-                     [&](const Version& state) { return on_device(state, original, spec, device, job); });
+  return applyPasses(input, spec, work, job, [&](const Version& state) {
+    return on_device(state, original, spec, device, work, job);
+  });
 }
 
 }  // namespace fettle::engine

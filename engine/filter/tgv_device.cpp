@@ -17,6 +17,7 @@
 #include <tbb/task_arena.h>
 
 #include "engine/filter/block_pass.h"
+#include "engine/filter/filter_work.h"
 #include "engine/filter/tgv_schedule.h"
 
 namespace fettle::engine {
@@ -39,17 +40,23 @@ struct SquareOnItsWay {
 class OnDevice {
  public:
   OnDevice(const Version& input, const Version& original, const FilterSpec& spec, TgvDevice& device,
-           JobControl& job)
+           FilterWork* work, JobControl& job)
       : device_(device),
+        work_(work),
         job_(job),
         noise_(spec.range_sigma),
         blocks_(input, original, spec, tgv::kHalo, tgv::kHalo, bestCpuLevel()) {
     constexpr std::int32_t kTiles = tgv::kSide / kTileSide;
     const FieldReader& reader = blocks_.reader();
     for (std::int32_t r = 0; r < reader.tileRows(); r += kTiles)
-      for (std::int32_t c = 0; c < reader.tileColumns(); c += kTiles)
-        squares_.push_back(
-            {c, r, std::min(c + kTiles, reader.tileColumns()), std::min(r + kTiles, reader.tileRows())});
+      for (std::int32_t c = 0; c < reader.tileColumns(); c += kTiles) {
+        const TileRect square{c, r, std::min(c + kTiles, reader.tileColumns()),
+                              std::min(r + kTiles, reader.tileRows())};
+        if (work_ != nullptr && work_->isDone(square))
+          job_.advance(static_cast<std::uint64_t>(blocks_.samplesOf(square)));
+        else
+          squares_.push_back(square);
+      }
   }
 
   Result<PassResult> run() {
@@ -74,6 +81,7 @@ class OnDevice {
     std::vector<NewTile> tiles;
     for (std::vector<NewTile>& some : made)
       tiles.insert(tiles.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
+    if (work_ != nullptr) work_->addMade(tiles);
     return blocks_.finish(std::move(tiles));
   }
 
@@ -147,6 +155,8 @@ class OnDevice {
       one.block = blocks_.gather(tiles, one.scratch);
       one.square.prepare(one.block);
     } else {
+      std::vector<NewTile> none;
+      if (work_ != nullptr) work_->done(tiles, none, 0);
       job_.advance(static_cast<std::uint64_t>(blocks_.samplesOf(tiles)));
     }
     const std::lock_guard lock(mutex_);
@@ -159,7 +169,9 @@ class OnDevice {
 
   bool write(SquareOnItsWay& one, std::vector<NewTile>& made) {
     one.square.write(one.block);
+    const std::size_t first = made.size();
     if (!blocks_.merge(one.tiles, blocks_.reader().sign(), 0, one.scratch, made)) return false;
+    if (work_ != nullptr) work_->done(one.tiles, made, first);
     job_.advance(static_cast<std::uint64_t>(blocks_.samplesOf(one.tiles)));
     const std::lock_guard lock(mutex_);
     free_.push_back(&one);
@@ -228,6 +240,7 @@ class OnDevice {
   }
 
   TgvDevice& device_;
+  FilterWork* work_;  // may be null
   JobControl& job_;
   double noise_;
   BlockPass blocks_;
@@ -251,8 +264,8 @@ class OnDevice {
 }  // namespace
 
 Result<PassResult> tgvPassOnDevice(const Version& input, const Version& original, const FilterSpec& spec,
-                                   TgvDevice& device, JobControl& job) {
-  return OnDevice(input, original, spec, device, job).run();
+                                   TgvDevice& device, FilterWork* work, JobControl& job) {
+  return OnDevice(input, original, spec, device, work, job).run();
 }
 
 }  // namespace fettle::engine

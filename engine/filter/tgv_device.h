@@ -59,10 +59,12 @@ class TgvDevice {
 /// seen within about 100 ms. Errors as applyFilter, and those of the device: no part of a result then.
 /// Memory: as applyFilter, and 9 MB for each square on its way, 3 mostTogether() + spec.threads at most.
 [[nodiscard]] Result<Filtered> applyFilter(const Version& input, const Version& original,
-                                           const FilterSpec& spec, TgvDevice& device, JobControl& job);
+                                           const FilterSpec& spec, TgvDevice& device, JobControl& job,
+                                           FilterWork* work = nullptr);
 
 /// Filter::on_device of kGeneralisedVariation.
 [[nodiscard]] Result<PassResult> tgvPassOnDevice(const Version& input, const Version& original,
-                                                 const FilterSpec& spec, TgvDevice& device, JobControl& job);
+                                                 const FilterSpec& spec, TgvDevice& device, FilterWork* work,
+                                                 JobControl& job);
 
 }  // namespace fettle::engine

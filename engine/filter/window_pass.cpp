@@ -14,6 +14,7 @@
 
 #include "engine/filter/block_pass.h"
 #include "engine/filter/catalogue.h"
+#include "engine/filter/filter_work.h"
 #include "engine/filter/line_windows.h"
 
 namespace fettle::engine {
@@ -148,7 +149,12 @@ Result<PassResult> passInBlocks(const WindowFilter& filter, const Version& input
           const auto br = static_cast<std::int32_t>(i / across);
           const TileRect rect{bc * wide, br * high, std::min((bc + 1) * wide, reader.tileColumns()),
                               std::min((br + 1) * high, reader.tileRows())};
-          if (!pass.run(rect, scratches.local(), job, made.local())) return;
+          if (tuning.work == nullptr || !tuning.work->isDone(rect)) {
+            std::vector<NewTile>& mine = made.local();
+            const std::size_t first = mine.size();
+            if (!pass.run(rect, scratches.local(), job, mine)) return;
+            if (tuning.work != nullptr) tuning.work->done(rect, mine, first);
+          }
           job.advance(static_cast<std::uint64_t>(pass.blocks().samplesOf(rect)));
         }
       },
@@ -158,6 +164,7 @@ Result<PassResult> passInBlocks(const WindowFilter& filter, const Version& input
   std::vector<NewTile> tiles;
   for (std::vector<NewTile>& some : made)
     tiles.insert(tiles.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
+  if (tuning.work != nullptr) tuning.work->addMade(tiles);
   return pass.blocks().finish(std::move(tiles));
 }
 

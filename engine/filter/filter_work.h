@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/field/version.h"
+#include "engine/filter/block_pass.h"
+
+namespace fettle::engine {
+
+/// Goes along with one applyFilter, block by block: what of its work is there already, and what it has worked out. It
+/// decides what is done, never what comes out.
+///
+/// isDone() and done() are called by the workers of a pass, any number at a time; the rest on the thread of applyFilter,
+/// while none works.
+class FilterWork {
+ public:
+  FilterWork() = default;
+  FilterWork& operator=(FilterWork&&) = delete;
+  virtual ~FilterWork() = default;
+
+  /// A field after some of the passes.
+  struct State {
+    int passes = 0;
+    Version field;
+  };
+  /// Where to begin: `input` and no pass, or later.
+  [[nodiscard]] virtual Result<State> begin(const Version& input) = 0;
+
+  /// The next pass begins, from this state.
+  [[nodiscard]] virtual Status beginPass(const State& before) = 0;
+
+  /// Whether the tiles of a block need not be worked out. Where it is false, done() or a cancel follows on this thread.
+  [[nodiscard]] virtual bool isDone(const TileRect& block) = 0;
+
+  /// A block was worked out: those of its tiles that changed, from made[first] on. Removes of these the ones that
+  /// addMade() will append. Throws std::bad_alloc.
+  virtual void done(const TileRect& block, std::vector<NewTile>& made, std::size_t first) = 0;
+
+  /// At the end of a pass: appends its tiles that were there already and changed.
+  virtual void addMade(std::vector<NewTile>& made) = 0;
+};
+
+}  // namespace fettle::engine
