@@ -12,6 +12,7 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/terminal.h"
+#include "app/work/line_edits.h"
 #include "app/work/streams.h"
 #include "engine/base/stopwatch.h"
 #include "engine/filter/catalogue.h"
@@ -63,6 +64,13 @@ engine::Status take(const RecipeFilter& step, Applied& at, engine::JobControl& j
 engine::Status take(const RecipeEdges& step, Applied& at, engine::JobControl& job) {
   const auto map = engine::findEdges(at.field, step.scale, job);
   if (!map) return tl::unexpected(map.error());
+  if (step.become == EdgesBecome::kLines) {
+    auto lined = drawSuggestion(at.field, *map, step.choice, job);
+    if (!lined) return tl::unexpected(lined.error());
+    at.field = *std::move(lined);
+    at.steps.push_back({{"do", "locate_edges"}, {"lines", at.field.lines() ? at.field.lines()->size() : 0}});
+    return {};
+  }
   auto marked = engine::suggestMarks(at.field, *map, step.choice, job);
   if (!marked) return tl::unexpected(marked.error());
   at.field = std::move(marked->field);

@@ -12,6 +12,7 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/work/edge_strokes.h"
+#include "app/work/line_edits.h"
 #include "app/work/streams.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
@@ -106,6 +107,7 @@ struct MarkArguments {
   std::string out;
   std::string add;
   bool edges = false;
+  bool as_lines = false;
   std::string strokes;
   std::string lines_out;
   engine::LocateOptions locating;
@@ -166,10 +168,50 @@ engine::Status writeEdgeLines(const engine::Version& field, const engine::EdgeMa
   return engine::exportLines(options.lines_out, *lines, field.grid());
 }
 
+// The suggested edges as lines, and marks where one cannot be located, as a recipe's locate_edges.
+engine::Result<engine::Version> markAsLines(const engine::Version& field, const engine::EdgeMap& map,
+                                            const MarkArguments& options, Report& report,
+                                            engine::JobControl& job) {
+  auto lined = drawSuggestion(field, map, options.choice, job);
+  if (!lined) return lined;
+  if (!lined->lines())
+    return engine::inputError("no edges could be located, so there are no lines", options.lines_out,
+                              "give a larger --sensitivity");
+  reportLines(*lined->lines(), report);
+  if (auto status = engine::exportLines(options.lines_out, *lined->lines(), lined->grid()); !status)
+    return tl::unexpected(status.error());
+  return lined;
+}
+
+// Marks the suggested edges and writes their lines if asked.
+engine::Result<engine::Version> markEdges(const engine::Version& scan, const engine::Version& field,
+                                          const MarkArguments& options, Report& report,
+                                          engine::JobControl& job) {
+  const auto map = engine::findEdges(field, options.scale, job);
+  if (!map) return tl::unexpected(map.error());
+  report["scale"] = options.scale;
+  report["sensitivity"] = options.choice.sensitivity;
+  report["thickness"] = options.choice.thickness;
+  report["step_noise"] = map->step_noise;
+  report["crease_noise"] = map->crease_noise;
+  if (options.as_lines) return markAsLines(field, *map, options, report, job);
+  auto found = engine::suggestMarks(field, *map, options.choice, job);
+  if (!found) return tl::unexpected(found.error());
+  report["lines"] = found->lines;
+  report["line_samples"] = found->samples;
+  if (!options.lines_out.empty())
+    if (auto status = writeEdgeLines(scan, *map, options, report, job); !status)
+      return tl::unexpected(status.error());
+  return std::move(found->field);
+}
+
 engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& job) {
   if (!options.lines_out.empty() && options.strokes.empty() && !options.edges)
     return engine::inputError("lines are located from strokes or edges", "--lines-out",
                               "give --strokes or --edges");
+  if (options.as_lines && (!options.edges || options.lines_out.empty()))
+    return engine::inputError("edges become lines where both are named", "--as-lines",
+                              "give --edges and --lines-out as well");
   if (!options.edges && !options.invert && options.strokes.empty())
     return engine::inputError("it is not stated what to mark", "mark", "give --edges, --strokes or --invert");
   if (auto status =
@@ -185,21 +227,9 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
   const engine::Stopwatch watch;
   Report report;
   if (options.edges) {
-    const auto map = engine::findEdges(field, options.scale, job);
-    if (!map) return tl::unexpected(map.error());
-    auto found = engine::suggestMarks(field, *map, options.choice, job);
-    if (!found) return tl::unexpected(found.error());
-    field = std::move(found->field);
-    report["scale"] = options.scale;
-    report["sensitivity"] = options.choice.sensitivity;
-    report["thickness"] = options.choice.thickness;
-    report["lines"] = found->lines;
-    report["line_samples"] = found->samples;
-    report["step_noise"] = map->step_noise;
-    report["crease_noise"] = map->crease_noise;
-    if (!options.lines_out.empty())
-      if (auto status = writeEdgeLines(imported->field, *map, options, report, job); !status)
-        return tl::unexpected(status.error());
+    auto edges = markEdges(imported->field, field, options, report, job);
+    if (!edges) return tl::unexpected(edges.error());
+    field = *std::move(edges);
   }
   if (!options.strokes.empty()) {
     auto along = markStrokes(field, options, report, job);
@@ -240,6 +270,9 @@ void addMark(Command root, Chosen& chosen) {
       {.name = "--edges",
        .to = &options->edges,
        .text = "Mark the sharp edges of the part, as the window suggests them"},
+      {.name = "--as-lines",
+       .to = &options->as_lines,
+       .text = "With --edges and --lines-out: an edge that can be located is a line alone, and only the rest is marked"},
       {.name = "--strokes",
        .to = &options->strokes,
        .text = "Strokes file: mark the edges that were drawn with the tool mark, where the scan shows them",

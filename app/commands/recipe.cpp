@@ -45,9 +45,8 @@ void addRecipe(Command root, Chosen& chosen) {
                 .kind = ValueKind::kFile,
                 .required = true}});
   command.notes(
-      "Filters and inversions are repeated. Strokes, and marks and lines, drawn or suggested, belong to "
-      "their scan: a "
-      "warning and a comment name each that is left out. fettle apply does the steps.");
+      "Filters, suggested edges and inversions are repeated. Strokes, and marks and lines that a hand drew, "
+      "belong to their scan: a warning and a comment name each that is left out. fettle apply does the steps.");
 }
 
 }  // namespace fettle::app

@@ -30,6 +30,7 @@ namespace {
 constexpr int kRecipeVersion = 1;
 constexpr const char* kFilterWord = "filter";
 constexpr const char* kEdgesWord = "mark_edges";
+constexpr const char* kLinesWord = "locate_edges";
 constexpr const char* kInvertWord = "invert";
 constexpr const char* kRecipeRemedy = "docs/formats.md describes every key";
 
@@ -41,14 +42,14 @@ class StepReader {
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
   [[nodiscard]] RecipeStep read() {
-    const std::string what = word("do", {kFilterWord, kEdgesWord, kInvertWord}, "");
+    const std::string what = word("do", {kFilterWord, kEdgesWord, kLinesWord, kInvertWord}, "");
     if (what == kFilterWord) {
       onlyKeys(what, {"do", "filter", "window", "sigma", "passes", "marks", "range_sigma", "max_change"});
       return filter();
     }
-    if (what == kEdgesWord) {
+    if (what == kEdgesWord || what == kLinesWord) {
       onlyKeys(what, {"do", "scale", "sensitivity", "thickness"});
-      return edges();
+      return edges(what == kLinesWord ? EdgesBecome::kLines : EdgesBecome::kMarks);
     }
     onlyKeys(what, {"do"});
     return RecipeInvert{};
@@ -150,8 +151,9 @@ class StepReader {
     return step;
   }
 
-  RecipeEdges edges() {
+  RecipeEdges edges(EdgesBecome become) {
     RecipeEdges step;
+    step.become = become;
     number("scale", step.scale, 0.7, 8.0);
     number("sensitivity", step.choice.sensitivity, 0.0, 1.0);
     number("thickness", step.choice.thickness, 0.0, 64.0);
@@ -186,7 +188,8 @@ std::string textOf(const RecipeFilter& step) {
 }
 
 std::string textOf(const RecipeEdges& step) {
-  return fmt::format("do = \"{}\"\nscale = {}\nsensitivity = {}\nthickness = {}\n", kEdgesWord, step.scale,
+  return fmt::format("do = \"{}\"\nscale = {}\nsensitivity = {}\nthickness = {}\n",
+                     step.become == EdgesBecome::kLines ? kLinesWord : kEdgesWord, step.scale,
                      step.choice.sensitivity, step.choice.thickness);
 }
 
@@ -240,6 +243,14 @@ engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobContr
     const auto entry = made.find(k);
     if (info.kind == engine::StepKind::kInvert) {
       recipe.steps.emplace_back(RecipeInvert{});
+    } else if (entry != made.end() && entry->second.step.suggested) {
+      const haptic::journal::EdgesSuggested& numbers = *entry->second.step.suggested;
+      RecipeEdges step;
+      step.become = info.kind == engine::StepKind::kLines ? EdgesBecome::kLines : EdgesBecome::kMarks;
+      step.scale = numbers.scale;
+      step.choice.sensitivity = numbers.sensitivity;
+      step.choice.thickness = numbers.thickness;
+      recipe.steps.emplace_back(step);
     } else if (info.kind != engine::StepKind::kFilter) {
       leave(info.kind == engine::StepKind::kImport ? "the session stores its result, not how it was made"
                                                    : "it belongs to this scan");

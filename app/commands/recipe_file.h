@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -32,8 +33,14 @@ struct RecipeFilter {
   std::optional<RecipeLength> max_change;   ///< at least 0; none: no limit
 };
 
-/// The suggested edges are marked, on top of the marks there are.
+/// What the suggested edges become.
+enum class EdgesBecome : std::uint8_t {
+  kMarks,  ///< on top of the marks there are
+  kLines,  ///< edge lines, and marks where an edge cannot be located (drawSuggestion)
+};
+
 struct RecipeEdges {
+  EdgesBecome become = EdgesBecome::kMarks;
   double scale = engine::EdgeMap::kUsualSigma;  ///< of the search [samples]
   engine::EdgeChoice choice;
 };
@@ -50,8 +57,8 @@ struct Recipe {
 };
 
 /// The steps that led to the session's present state, undone ones left out. Strokes, and marks and lines that were set by
-/// hand, belong to one scan and are left out, as are steps that a command made, whose numbers no session stores. A
-/// range sigma that is that of the noise before the step is left to each scan's noise. `session` was opened with its
+/// hand, belong to one scan and are left out, as are steps whose numbers the session does not store: those of a command,
+/// and suggested edges that were searched in other heights than those of the step before. A range sigma that is that of the noise before the step is left to each scan's noise. `session` was opened with its
 /// journal and with every step. Errors: cancelled.
 [[nodiscard]] engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobControl& job);
 

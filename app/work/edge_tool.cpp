@@ -8,27 +8,28 @@ namespace fettle::app {
 
 void EdgeTool::search(const LoopClient& client) {
   drop();
-  using Found = std::shared_ptr<const engine::EdgeMap>;
+  using Shared = std::shared_ptr<const Found>;
   searching_.start(
-      [field = client.newest(), scale = sigma](engine::JobControl& job) -> engine::Result<Found> {
+      [field = client.newest(), scale = sigma](engine::JobControl& job) -> engine::Result<Shared> {
         auto map = engine::findEdges(field, scale, job);
         if (!map) return tl::unexpected(map.error());
-        return std::make_shared<const engine::EdgeMap>(std::move(*map));
+        return std::make_shared<const Found>(Found{field, std::move(*map)});
       });
 }
 
 void EdgeTool::redraw(const LoopClient& client) {
-  if (!map_) return;
+  if (!found_) return;
   if (drawing_.busy()) {
     draw_again_ = true;
     return;
   }
   draw_again_ = false;
   drawing_.start(
-      [base = client.newest(), map = map_, what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
-        auto suggestion = engine::suggestMarks(base, *map, what, job);
+      [base = client.newest(), found = found_,
+       what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
+        auto suggestion = engine::suggestMarks(base, found->map, what, job);
         if (!suggestion) return tl::unexpected(suggestion.error());
-        return Drawn{base, std::move(*suggestion)};
+        return Drawn{what, base, std::move(*suggestion)};
       });
 }
 
@@ -36,14 +37,19 @@ void EdgeTool::drop() {
   searching_.cancel();
   drawing_.cancel();
   draw_again_ = false;
-  map_.reset();
+  found_.reset();
   shown_.reset();
   base_ = under_ = over_ = {};
 }
 
+TakenEdges EdgeTool::taken() const {
+  return {{found_->map.sigma, drawn_.sensitivity, drawn_.thickness}, found_->field};
+}
+
 bool EdgeTool::accept(LoopClient& client) {
   if (!shown_) return false;
-  if (!(shown_->field == base_)) static_cast<void>(client.change(base_, shown_->field, "Edge suggestion"));
+  if (!(shown_->field == base_))
+    static_cast<void>(client.change(base_, shown_->field, "Edge suggestion", taken()));
   drop();
   return true;
 }
@@ -51,10 +57,10 @@ bool EdgeTool::accept(LoopClient& client) {
 bool EdgeTool::acceptAsLines(MarkEdit& edit) {
   if (!shown_) return false;
   edit.ask("Edge lines",
-           [map = map_, what = choice](const engine::Version& base, engine::JobControl& job) {
-             return drawSuggestion(base, *map, what, job);
+           [found = found_, what = drawn_](const engine::Version& base, engine::JobControl& job) {
+             return drawSuggestion(base, found->map, what, job);
            },
-           {"none of the suggested edges could be located", "take them as marks (Shift+E)"});
+           {"none of the suggested edges could be located", "take them as marks (Shift+E)"}, taken());
   drop();
   return true;
 }
@@ -69,7 +75,7 @@ bool EdgeTool::poll(LoopClient& client, std::vector<Notice>& notices) {
   if (auto found = searching_.take(); found && !search_dropped) {
     changed = true;
     if (*found) {
-      map_ = std::move(**found);
+      found_ = std::move(**found);
       redraw(client);
     } else {
       refused(found->error());
@@ -79,6 +85,7 @@ bool EdgeTool::poll(LoopClient& client, std::vector<Notice>& notices) {
     changed = true;
     if (*drawn) {
       base_ = (*drawn)->base;
+      drawn_ = (*drawn)->choice;
       shown_ = std::move((*drawn)->suggestion);
       under_ = base_;
       over_ = shown_->field;

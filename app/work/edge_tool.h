@@ -38,22 +38,32 @@ class EdgeTool {
   [[nodiscard]] const engine::EdgeSuggestion* suggestion() const noexcept {
     return shown_ ? &*shown_ : nullptr;
   }
-  [[nodiscard]] const engine::EdgeMap* map() const noexcept { return map_.get(); }
+  [[nodiscard]] const engine::EdgeMap* map() const noexcept {
+    return found_ ? &found_->map : nullptr;
+  }
 
   /// `live` with the suggested marks on it, to be drawn instead; `live` itself when there are none. Cost
   /// proportional to the tiles that changed since the last call.
   [[nodiscard]] engine::Version over(const engine::Version& live);
 
  private:
+  struct Found {
+    engine::Version field;  // upright
+    engine::EdgeMap map;
+  };
   struct Drawn {
+    engine::EdgeChoice choice;
     engine::Version base;
     engine::EdgeSuggestion suggestion;
   };
-  Background<std::shared_ptr<const engine::EdgeMap>> searching_;
+  [[nodiscard]] TakenEdges taken() const;
+
+  Background<std::shared_ptr<const Found>> searching_;
   Background<Drawn> drawing_;
   bool draw_again_ = false;
-  std::shared_ptr<const engine::EdgeMap> map_;
-  engine::Version base_;  // upright: what shown_ was drawn on
+  std::shared_ptr<const Found> found_;
+  engine::Version base_;       // upright: what shown_ was drawn on
+  engine::EdgeChoice drawn_;  // what shown_ was drawn with
   std::optional<engine::EdgeSuggestion> shown_;
   // over(): under_ with the marks is over_.
   engine::Version under_, over_;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/field/difference.h"
 #include "haptic/journal/mark_codec.h"
 #include "haptic/loop/pacer.h"
 #include "haptic/safety/last_resort.h"
@@ -240,7 +241,8 @@ void LoopClient::goTo(std::int64_t state) {
   if (const auto version = steps_.goTo(state)) restore(*version);
 }
 
-bool LoopClient::change(const engine::Version& base, const engine::Version& changed, std::string name) {
+bool LoopClient::change(const engine::Version& base, const engine::Version& changed, std::string name,
+                        const std::optional<TakenEdges>& edges) {
   poll();
   keepStroke();
   const engine::Version& now = history().current();  // field() may lag behind an undo
@@ -254,8 +256,10 @@ bool LoopClient::change(const engine::Version& base, const engine::Version& chan
     notices_.push_back({after.error().what, after.error().remedy});
     return true;
   }
+  StepKeeper::MarksChange change{std::move(data), {}};
+  if (edges && engine::sameHeights(edges->searched, now)) change.suggested = edges->numbers;
   steps_.change(std::move(name), lines ? engine::StepKind::kLines : engine::StepKind::kMark, *after, place_,
-                std::move(data));
+                std::move(change));
   restore(*after);
   return true;
 }

@@ -20,6 +20,12 @@
 
 namespace fettle::app {
 
+/// Edges that were suggested and taken as they were.
+struct TakenEdges {
+  haptic::journal::EdgesSuggested numbers;
+  engine::Version searched;  ///< upright: where they were found
+};
+
 /// The window's interface to the live loop: field, tools, undo, device. poll() takes over what the loop
 /// published; the newest published version is shown.
 ///
@@ -88,8 +94,10 @@ class LoopClient final {
   /// Changes marks, or marks and edge lines, as one step of kind kMark or kLines: `changed` is `base`, a version of the
   /// newest field (upright(), the same memory), with marks set and cleared and with other lines. Strokes made since
   /// `base` was taken are kept. False, and no step: the lines are no longer those of `base`, `changed` is to be made
-  /// again.
-  [[nodiscard]] bool change(const engine::Version& base, const engine::Version& changed, std::string name);
+  /// again. The numbers of `edges` are recorded with the step where the heights are still those searched, so that the
+  /// same search after the steps before it finds them again.
+  [[nodiscard]] bool change(const engine::Version& base, const engine::Version& changed, std::string name,
+                            const std::optional<TakenEdges>& edges = {});
   /// The strokes of tools that edit marks which ended since the last call, in their order; only where the session is
   /// recorded.
   [[nodiscard]] std::vector<MarkStroke> takeMarkStrokes() { return std::exchange(mark_strokes_, {}); }

@@ -2,8 +2,8 @@
 
 namespace fettle::app {
 
-void MarkEdit::ask(std::string name, Change change, Notice unchanged) {
-  waiting_.push_back({std::move(name), std::move(change), std::move(unchanged)});
+void MarkEdit::ask(std::string name, Change change, Notice unchanged, std::optional<TakenEdges> edges) {
+  waiting_.push_back({std::move(name), std::move(change), std::move(unchanged), std::move(edges)});
 }
 
 void MarkEdit::cancel() {
@@ -43,7 +43,7 @@ bool MarkEdit::poll(LoopClient& client, std::vector<Notice>& notices) {
   }
   // A line that comes while the next edge is drawn would divide that stroke.
   if (done_ && (done_->base.lines() == done_->changed.lines() || !client.strokeIsUnderWay())) {
-    if (!client.change(done_->base, done_->changed, running_.name)) waiting_.push_front(std::move(running_));
+    if (!client.change(done_->base, done_->changed, running_.name, running_.edges)) waiting_.push_front(std::move(running_));
     done_.reset();
     changed = true;
   }

@@ -20,8 +20,9 @@ class MarkEdit {
   /// Makes the new marks and edge lines of a version: the same heights.
   using Change = std::function<engine::Result<engine::Version>(const engine::Version&, engine::JobControl&)>;
 
-  /// `unchanged`: the notice for a change that turns out to change nothing; none if empty.
-  void ask(std::string name, Change change, Notice unchanged = {});
+  /// `unchanged`: the notice for a change that turns out to change nothing; none if empty. `edges`: the suggestion that
+  /// the change takes whole.
+  void ask(std::string name, Change change, Notice unchanged = {}, std::optional<TakenEdges> edges = {});
   /// Cancels waiting and running changes.
   void cancel();
   /// Cancels the one asked for last; its name, or nothing when none waits or runs.
@@ -37,6 +38,7 @@ class MarkEdit {
     std::string name;
     Change change;
     Notice unchanged;
+    std::optional<TakenEdges> edges;
   };
   struct Done {
     engine::Version base, changed;

@@ -122,8 +122,8 @@ void StepKeeper::adopted(const engine::Version& field, const haptic::LoopPlace& 
 }
 
 void StepKeeper::change(std::string name, engine::StepKind kind, const engine::Version& field,
-                        const haptic::LoopPlace& at, std::string changes) {
-  push(std::move(name), kind, field, at, Source::kChange, std::move(changes));
+                        const haptic::LoopPlace& at, MarksChange change) {
+  push(std::move(name), kind, field, at, std::move(change));
 }
 
 void StepKeeper::restoreRequested(std::uint64_t id) {
@@ -132,21 +132,25 @@ void StepKeeper::restoreRequested(std::uint64_t id) {
 }
 
 void StepKeeper::push(std::string name, engine::StepKind kind, const engine::Version& after,
-                      const haptic::LoopPlace& at, Source source, std::string data) {
+                      const haptic::LoopPlace& at, std::optional<MarksChange> change) {
   engine::StepInfo info;
   info.name = name;
   info.kind = kind;
   info.time = engine::stepTimeNow();
-  const bool made = history_.push(std::move(info), after);
+  const bool pushed = history_.push(std::move(info), after);
   committed_ = after;
-  if (!made) return;
+  if (!pushed) return;
   const std::int64_t state = history_.number();
-  if (kind == engine::StepKind::kFilter || source == Source::kChange) last_rect_ = history_.info(state).rect;
+  if (kind == engine::StepKind::kFilter || change) last_rect_ = history_.info(state).rect;
   if (!journal_.records()) return;
-  const bool changed = source == Source::kChange;
-  const bool lines = changed && kind == engine::StepKind::kLines;
-  journal_.commit({state, std::move(name), kind, at, changed && !lines, lines}, history_.step(state),
-                  std::move(data));
+  haptic::journal::StepMade made{state, std::move(name), kind, at};
+  if (!change) {
+    journal_.commit(made, history_.step(state), {});
+    return;
+  }
+  (kind == engine::StepKind::kLines ? made.lines : made.marks) = true;
+  made.suggested = change->suggested;
+  journal_.commit(made, history_.step(state), std::move(change->data));
 }
 
 }  // namespace fettle::app

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -100,10 +101,14 @@ class StepKeeper {
   void endAdoption() noexcept { adopting_ = false; }
   [[nodiscard]] bool adopting() const noexcept { return adopting_; }
 
-  /// Changes the marks (kMark) or the edge lines and marks (kLines) of the newest step's field; `changes` as of
-  /// haptic::packMarkChanges or haptic::packLineChange.
+  /// A change of marks or lines that no tick made.
+  struct MarksChange {
+    std::string data;  ///< as of haptic::packMarkChanges or haptic::packLineChange
+    std::optional<haptic::journal::EdgesSuggested> suggested;
+  };
+  /// Changes the marks (kMark) or the edge lines and marks (kLines) of the newest step's field.
   void change(std::string name, engine::StepKind kind, const engine::Version& field,
-              const haptic::LoopPlace& at, std::string changes);
+              const haptic::LoopPlace& at, MarksChange change);
 
   /// Move in the history; return the version to be restored, if there is such a state.
   std::optional<engine::Version> undo() { return history_.undo(); }
@@ -114,10 +119,9 @@ class StepKeeper {
   void restored(const engine::Version& field) { committed_ = field; }
 
  private:
-  // Whether a step was made by ticks and filters, or by changing marks and lines.
-  enum class Source : std::uint8_t { kLoop, kChange };
+  // Without a change the step was made by ticks and filters.
   void push(std::string name, engine::StepKind kind, const engine::Version& after,
-            const haptic::LoopPlace& at, Source source = Source::kLoop, std::string data = {});
+            const haptic::LoopPlace& at, std::optional<MarksChange> change = {});
 
   engine::History history_;
   engine::Version committed_;  // the last step's, the reference for a running stroke

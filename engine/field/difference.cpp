@@ -1,6 +1,8 @@
 #include "engine/field/difference.h"
 
 #include <cassert>
+#include <cstdint>
+#include <cstring>
 
 #include "engine/field/difference_inl.h"
 
@@ -14,6 +16,16 @@ std::vector<TileChange> changedTiles(const Version& before, const Version& after
                         changes.push_back({column, row, TileRef::share(&a), TileRef::share(&b)});
                       });
   return changes;
+}
+
+bool sameHeights(const Version& before, const Version& after) {
+  assert(before.grid().width == after.grid().width && before.grid().height == after.grid().height);
+  bool same = true;
+  detail::walkChanges(before.reader().root(), after.reader().root(), 0, 0,
+                      [&](std::int32_t, std::int32_t, const Tile& a, const Tile& b) {
+                        same = same && std::memcmp(&a.samples, &b.samples, sizeof(a.samples)) == 0;
+                      });
+  return same;
 }
 
 bool undo(LiveField& field, const std::vector<TileChange>& changes) noexcept {

@@ -21,6 +21,10 @@ struct TileChange {
 /// ignored.
 [[nodiscard]] std::vector<TileChange> changedTiles(const Version& before, const Version& after);
 
+/// Whether two versions of one grid have the same heights, bit by bit, whatever their marks, lines and sign. Reads the
+/// tiles alone that they do not share.
+[[nodiscard]] bool sameHeights(const Version& before, const Version& after);
+
 /// Swaps the tiles of `changes` to their `before` state (undo) or to their `after` state (redo), in place.
 /// False, with the rest unchanged, when a node could not be allocated (see LiveField).
 [[nodiscard]] bool undo(LiveField& field, const std::vector<TileChange>& changes) noexcept;

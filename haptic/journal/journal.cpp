@@ -1,6 +1,8 @@
 #include "haptic/journal/journal.h"
 
 #include <array>
+#include <optional>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -76,6 +78,13 @@ haptic::Scene sceneOf(const json& in) {
   return *std::move(scene);
 }
 
+std::optional<journal::EdgesSuggested> suggestedOf(const json& in) {
+  const auto found = in.find("suggested");
+  if (found == in.end()) return std::nullopt;
+  return journal::EdgesSuggested{found->at("scale").get<double>(), found->at("sensitivity").get<double>(),
+                                 found->at("thickness").get<double>()};
+}
+
 journal::Entry entryOf(const json& in) {
   const auto& what = in.at("do").get_ref<const std::string&>();
   const auto id = [&] { return in.at("id").get<std::uint64_t>(); };
@@ -89,7 +98,8 @@ journal::Entry entryOf(const json& in) {
     const auto kind = engine::stepKindFromName(in.at("kind").get_ref<const std::string&>());
     if (!kind) throw std::out_of_range("an unknown kind of step");
     return journal::StepMade{state(),     in.at("name").get<std::string>(), *kind,
-                             placeOf(in), in.value("marks", false),         in.value("lines", false)};
+                             placeOf(in), in.value("marks", false),         in.value("lines", false),
+                             suggestedOf(in)};
   }
   if (what == "restore") return journal::RestoreRequested{id(), state()};
   if (what == "restored") return journal::Restored{id(), placeOf(in)};
@@ -126,6 +136,10 @@ std::string journalText(const journal::Entry& entry) {
                 {"do", "step"}, {"state", e.state}, {"name", e.name}, {"kind", engine::stepKindName(e.kind)}};
             if (e.marks) out["marks"] = true;
             if (e.lines) out["lines"] = true;
+            if (e.suggested)
+              out["suggested"] = {{"scale", e.suggested->scale},
+                                  {"sensitivity", e.suggested->sensitivity},
+                                  {"thickness", e.suggested->thickness}};
             put(out, e.at);
           },
           [&](const journal::RestoreRequested& e) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -42,9 +43,16 @@ struct SceneSet {
   LoopPlace at;
   haptic::Scene scene;
 };
+/// The numbers of a suggestion of edges (fettle::engine::findEdges, EdgeChoice), as a step took it whole.
+struct EdgesSuggested {
+  double scale = 0.0;  ///< of the search [samples]
+  double sensitivity = 0.0;
+  double thickness = 0.0;  ///< [samples]
+};
 /// A step led to state `state`: the field at that point. With `marks` it is the state before with the marks
 /// of the entry's data (mark_codec.h), set by other means than strokes; with `lines`, with its marks and edge
-/// lines (mark_codec.h).
+/// lines (mark_codec.h). With `suggested` these were the suggested edges of the heights before the step: a replay
+/// takes them from the data, a recipe suggests them again on another scan.
 struct StepMade {
   std::int64_t state = 0;
   std::string name;
@@ -52,6 +60,7 @@ struct StepMade {
   LoopPlace at;
   bool marks = false;
   bool lines = false;
+  std::optional<EdgesSuggested> suggested = {};
 };
 /// The restoring of state `state` was requested ...
 struct RestoreRequested {

@@ -46,6 +46,31 @@ TEST(Recipes, AScanHasTheBitsOfTheStepsOneByOne) {
   }
 }
 
+TEST(Recipes, SuggestedLinesHaveTheBitsOfTheCommandsOneByOne) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), recipe = folder.file("clean.toml");
+  std::ofstream(recipe) << "recipe = 1\n"
+                           "[[step]]\ndo = \"locate_edges\"\nsensitivity = 0.6\n"
+                           "[[step]]\ndo = \"filter\"\nfilter = \"tgv\"\n"
+                           "[[step]]\ndo = \"filter\"\nfilter = \"median\"\nwindow = 5\n";
+  ASSERT_EQ(fettle({"synth", scan, "--size", "200x160", "--seed", "4"}).status, 0);
+  const auto report = fettleJson({"apply", recipe, scan, folder.file("o.tif")});
+  const std::string lines = folder.file("l.csv"), marks = folder.file("m.png");
+  const auto marked = fettleJson(
+      {"mark", scan, marks, "--edges", "--sensitivity", "0.6", "--as-lines", "--lines-out", lines});
+  EXPECT_GT(marked["lines"], 2);
+  EXPECT_EQ(report["steps"][0]["lines"], marked["lines"]);
+  ASSERT_EQ(fettle({"filter", scan, folder.file("a.tif"), "--filter", "tgv", "--lines", lines, "--keep", marks})
+                .status,
+            0);
+  const auto last = fettleJson({"filter", folder.file("a.tif"), folder.file("b.tif"), "--filter", "median",
+                                "--window", "5", "--lines", lines, "--keep", marks});
+  EXPECT_EQ(report["hash"], last["hash"]);
+  const auto plain = fettleJson({"filter", scan, folder.file("p.tif"), "--filter", "tgv"});
+  EXPECT_NE(report["hash"], plain["hash"]);
+  expectRefused(fettle({"mark", scan, marks, "--edges", "--as-lines"}), "give --edges and --lines-out");
+}
+
 TEST(Recipes, AWrongRecipeIsRefusedBeforeAScanIsRead) {
   const TempFolder folder;
   std::ofstream(folder.file("clean.toml"))

@@ -2,12 +2,14 @@
 
 #include "app/commands/recipe_file.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
 
 #include <gtest/gtest.h>
 
+#include "engine/field/live_field.h"
 #include "engine/filter/noise_range.h"
 #include "engine/scanner/scanner.h"
 #include "haptic/journal/journal.h"
@@ -38,12 +40,13 @@ class Work {
     note(haptic::journal::FilterBegun{1, spec});
     step(name, StepKind::kFilter, engine::applyFilter(field(), session_.original, spec, job)->field);
   }
-  void step(const std::string& name, StepKind kind, const engine::Version& after) {
+  void step(const std::string& name, StepKind kind, const engine::Version& after,
+            std::optional<haptic::journal::EdgesSuggested> suggested = {}) {
     engine::StepInfo info;
     info.name = name;
     info.kind = kind;
     ASSERT_TRUE(session_.history.push(info, after));
-    note(haptic::journal::StepMade{session_.history.number(), name, kind, {}, false, false});
+    note(haptic::journal::StepMade{session_.history.number(), name, kind, {}, false, false, suggested});
   }
   void withoutJournal(const std::string& name, const engine::Version& after) {
     engine::StepInfo info;
@@ -103,6 +106,29 @@ TEST(Recipe, HasTheFiltersThatLedToThePresentStateAndNamesWhatItLeavesOut) {
   EXPECT_EQ(recipe.left_out[0], "step 3, Smooth: it belongs to this scan");
 }
 
+TEST(Recipe, HasTheSuggestedEdgesAndLeavesOutThoseOfAHand) {
+  Work work(scan());
+  const auto marked = [&](std::int32_t column) {
+    engine::LiveField live(work.field(), engine::Growth::kAllowed);
+    EXPECT_TRUE(live.setMark(column, 7, true));
+    return live.snapshot();
+  };
+  const haptic::journal::EdgesSuggested numbers{2.25, 0.1 + 0.2, 3.0};
+  work.step("Edge suggestion", StepKind::kMark, marked(3), numbers);
+  work.step("Lasso", StepKind::kMark, marked(4));
+  work.step("Edge lines", StepKind::kLines, marked(5), numbers);
+  const Recipe recipe = work.recipe();
+  ASSERT_EQ(recipe.steps.size(), 2U);
+  for (const std::size_t k : {0U, 1U}) {
+    const auto& edges = std::get<RecipeEdges>(recipe.steps[k]);
+    EXPECT_EQ(edges.become, k == 0 ? EdgesBecome::kMarks : EdgesBecome::kLines);
+    EXPECT_EQ(edges.scale, numbers.scale);
+    EXPECT_EQ(edges.choice.sensitivity, numbers.sensitivity);
+    EXPECT_EQ(edges.choice.thickness, numbers.thickness);
+  }
+  EXPECT_EQ(recipe.left_out, std::vector<std::string>{"step 2, Lasso: it belongs to this scan"});
+}
+
 TEST(Recipe, ARangeThatIsTheNoisesIsLeftToTheNoiseOfEachScan) {
   Work work(scan());
   engine::JobControl job;
@@ -138,7 +164,10 @@ TEST(Recipe, WhatIsWrittenIsReadToTheSameText) {
   RecipeEdges edges;
   edges.scale = 2.25;
   edges.choice.thickness = 3.0;
-  recipe.steps = {filter, edges, RecipeInvert{}};
+  RecipeEdges lines = edges;
+  lines.become = EdgesBecome::kLines;
+  lines.choice.sensitivity = 0.1 + 0.7;
+  recipe.steps = {filter, edges, RecipeInvert{}, lines};
   recipe.left_out = {"step 2, Smooth: it belongs to this scan"};
   const std::string text = recipeText(recipe);
   const auto read = parseRecipe(text, "clean.toml");
@@ -149,6 +178,8 @@ TEST(Recipe, WhatIsWrittenIsReadToTheSameText) {
   EXPECT_EQ(filtered.range_sigma->in(grid), 0.02);
   EXPECT_EQ(filtered.max_change->in(grid), 0.3);
   EXPECT_EQ(std::get<RecipeEdges>(read->steps.at(1)).scale, 2.25);
+  EXPECT_EQ(std::get<RecipeEdges>(read->steps.at(3)).become, EdgesBecome::kLines);
+  EXPECT_EQ(std::get<RecipeEdges>(read->steps.at(3)).choice.sensitivity, lines.choice.sensitivity);
   Recipe again = *read;
   again.left_out = recipe.left_out;
   EXPECT_EQ(recipeText(again), text);

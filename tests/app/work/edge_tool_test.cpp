@@ -1,8 +1,15 @@
 #include "app/work/edge_tool.h"
 
 #include <cmath>
+#include <cstdint>
+#include <variant>
+#include <vector>
 
+#include "app/work/line_edits.h"
 #include "engine/marks/change_marks.h"
+#include "engine/session/line_codec.h"
+#include "haptic/journal/journal.h"
+#include "haptic/journal/session_sink.h"
 #include "tests/app/work/loop_client_bench.h"
 #include "tests/haptic/support/fields.h"
 
@@ -25,6 +32,27 @@ engine::Version stepped() {
       0.1);
 }
 
+// The steps of a session, as their journal has them.
+class StepsMade final : public haptic::SessionSink {
+ public:
+  void commit(std::int64_t, engine::Step, std::vector<engine::JournalEntry> journal) override { take(journal); }
+  void moveTo(std::int64_t, std::vector<engine::JournalEntry> journal) override { take(journal); }
+  void note(std::vector<engine::JournalEntry> journal) override { take(journal); }
+
+  [[nodiscard]] const std::vector<haptic::journal::StepMade>& steps() const { return steps_; }
+
+ private:
+  void take(const std::vector<engine::JournalEntry>& journal) {
+    for (const engine::JournalEntry& row : journal) {
+      const auto entry = haptic::journalEntry(row.action);
+      ASSERT_TRUE(entry) << entry.error().line();
+      if (const auto* step = std::get_if<haptic::journal::StepMade>(&*entry)) steps_.push_back(*step);
+    }
+  }
+
+  std::vector<haptic::journal::StepMade> steps_;
+};
+
 class EdgeToolTest : public ::testing::Test {
  protected:
   bool shown() {
@@ -35,7 +63,8 @@ class EdgeToolTest : public ::testing::Test {
   }
   engine::Version seen() { return tool.over(bench.client().field()); }
 
-  LoopClientBench bench{stepped()};
+  StepsMade made;
+  LoopClientBench bench{stepped(), haptic::defaultScene(), &made};
   EdgeTool tool;
 };
 
@@ -131,6 +160,68 @@ TEST_F(EdgeToolTest, work_goes_on_under_it_and_is_in_what_is_seen_and_taken) {
   bench.client().undo();
   ASSERT_TRUE(bench.settled());
   EXPECT_TRUE(bench.client().upright() == smoothed);
+}
+
+TEST_F(EdgeToolTest, what_is_taken_is_recorded_with_the_numbers_that_find_it_again) {
+  tool.sigma = 2.0;
+  tool.search(bench.client());
+  ASSERT_TRUE(shown());
+  tool.choice.thickness = 2.5;
+  tool.redraw(bench.client());
+  ASSERT_TRUE(shown());
+  tool.choice.sensitivity = 0.9;  // not drawn yet: what is seen is taken
+  const engine::Version before = bench.client().upright();
+  ASSERT_TRUE(tool.accept(bench.client()));
+  ASSERT_TRUE(bench.settled());
+  ASSERT_EQ(made.steps().size(), 1U);
+  const auto numbers = made.steps()[0].suggested;
+  ASSERT_TRUE(numbers);
+  EXPECT_TRUE(made.steps()[0].marks);
+  engine::JobControl job;
+  const auto map = engine::findEdges(before, numbers->scale, job);
+  ASSERT_TRUE(map);
+  const auto again = engine::suggestMarks(before, *map, {numbers->sensitivity, numbers->thickness, 0}, job);
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(sameMarks(again->field, bench.client().upright()));
+}
+
+TEST_F(EdgeToolTest, lines_of_a_suggestion_are_recorded_with_the_numbers_that_find_them_again) {
+  tool.search(bench.client());
+  ASSERT_TRUE(shown());
+  // Marks of a hand meanwhile change nothing of what is found.
+  ASSERT_TRUE(bench.stroke(Tool::kMark, {3.0, 5.0, 0.0}));
+  const engine::Version before = bench.client().upright();
+  MarkEdit edit;
+  ASSERT_TRUE(tool.acceptAsLines(edit));
+  ASSERT_TRUE(bench.until([&] {
+    (void)edit.poll(bench.client(), bench.noticesToFill());
+    return !edit.busy();
+  }));
+  ASSERT_TRUE(bench.settled());
+  ASSERT_EQ(made.steps().size(), 2U);
+  EXPECT_FALSE(made.steps()[0].suggested);
+  const auto numbers = made.steps()[1].suggested;
+  ASSERT_TRUE(numbers);
+  EXPECT_TRUE(made.steps()[1].lines);
+  engine::JobControl job;
+  const auto map = engine::findEdges(before, numbers->scale, job);
+  ASSERT_TRUE(map);
+  const auto again = drawSuggestion(before, *map, {numbers->sensitivity, numbers->thickness, 0}, job);
+  ASSERT_TRUE(again);
+  ASSERT_TRUE(again->lines());
+  EXPECT_EQ(engine::packLines(again->lines()), engine::packLines(bench.client().upright().lines()));
+  EXPECT_TRUE(sameMarks(*again, bench.client().upright()));
+}
+
+TEST_F(EdgeToolTest, numbers_that_would_not_find_it_again_are_not_recorded) {
+  tool.search(bench.client());
+  ASSERT_TRUE(shown());
+  ASSERT_TRUE(bench.stroke(Tool::kSmooth, {9.0, 5.0, 0.5}));
+  ASSERT_TRUE(tool.accept(bench.client()));
+  ASSERT_TRUE(bench.settled());
+  ASSERT_EQ(made.steps().size(), 2U);
+  EXPECT_TRUE(made.steps()[1].marks);
+  EXPECT_FALSE(made.steps()[1].suggested);
 }
 
 TEST_F(EdgeToolTest, it_is_seen_upside_down_as_well) {

@@ -17,10 +17,11 @@ namespace fettle::tests {
 class LoopClientBench {
  public:
   /// The test fails when there is no loop.
-  explicit LoopClientBench(const engine::Version& field, haptic::Scene scene = haptic::defaultScene()) {
+  explicit LoopClientBench(const engine::Version& field, haptic::Scene scene = haptic::defaultScene(),
+                           haptic::SessionSink* sink = nullptr) {
     scene.brush_radius_samples = 3.0;
     auto started =
-        app::LoopClient::start(engine::History(field, std::size_t{64} << 20), field, scene, {}, nullptr);
+        app::LoopClient::start(engine::History(field, std::size_t{64} << 20), field, scene, {}, sink);
     EXPECT_TRUE(started) << (started ? "" : started.error().line());
     if (started) client_ = std::move(*started);
   }

@@ -222,6 +222,18 @@ TEST(Versions, EdgeLinesGoWithTheStatesThatComeFromAFieldAndDifferentOnesAreAnot
   EXPECT_EQ(field.withLines(nullptr), plain);
 }
 
+TEST(Versions, HaveTheSameHeightsWhateverTheirMarksLinesAndSign) {
+  const Version before = toVersion(somePlain(500, 300, 5));
+  LiveField live(before, Growth::kAllowed);
+  ASSERT_TRUE(live.setMark(499, 299, !before.reader().markedAt(499, 299)));
+  const Version marked = live.snapshot();
+  EXPECT_FALSE(marked == before);
+  EXPECT_TRUE(sameHeights(before, marked));
+  EXPECT_TRUE(sameHeights(before, marked.inverted()));
+  ASSERT_TRUE(live.setHeight(499, 299, 12345.0F));
+  EXPECT_FALSE(sameHeights(before, live.snapshot()));
+}
+
 TEST(Versions, DroppingVersionsGivesEveryTileBack) {
   std::shared_ptr<FieldMemory> memory;
   {

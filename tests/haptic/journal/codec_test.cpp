@@ -138,6 +138,9 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
       haptic::journal::StepMade{5, "Median \"5 x 5\"", engine::StepKind::kFilter, before, false},
       haptic::journal::StepMade{6, "Lasso", engine::StepKind::kMark, there, true},
       haptic::journal::StepMade{7, "Edge line", engine::StepKind::kLines, there, false, true},
+      haptic::journal::StepMade{
+          8, "Edge suggestion", engine::StepKind::kMark, there, true, false,
+          haptic::journal::EdgesSuggested{0.1 + 0.2, 1.0 / 3.0, 2.0}},
       haptic::journal::RestoreRequested{8, 2},
       haptic::journal::Restored{8, there},
       haptic::journal::FilterBase{1, before},
@@ -154,7 +157,7 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
     EXPECT_EQ(back->index(), entry.index());
     EXPECT_EQ(haptic::journalText(*back), text);
   }
-  const auto back = haptic::journalEntry(haptic::journalText(all[10]));
+  const auto back = haptic::journalEntry(haptic::journalText(all[11]));
   ASSERT_TRUE(back);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*back).spec.sigma, spec.sigma);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*back).spec.max_change, spec.max_change);
@@ -162,6 +165,18 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
   ASSERT_TRUE(other);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.kind, edge_preserving.kind);
   EXPECT_EQ(std::get<haptic::journal::FilterBegun>(*other).spec.range_sigma, edge_preserving.range_sigma);
+}
+
+TEST(Journal, AStepOfBeforeHasNoNumbersOfASuggestionAndKeepsItsText) {
+  const std::string old =
+      R"({"answered":true,"do":"step","kind":"mark","marks":true,"name":"Edge suggestion","state":2,"tick":71})";
+  const auto entry = haptic::journalEntry(old);
+  ASSERT_TRUE(entry) << entry.error().line();
+  EXPECT_FALSE(std::get<haptic::journal::StepMade>(*entry).suggested);
+  EXPECT_EQ(haptic::journalText(*entry), old);
+  std::string half = old;
+  half.insert(1, R"("suggested":{"scale":1.5},)");
+  EXPECT_FALSE(haptic::journalEntry(half));
 }
 
 TEST(Journal, ALevelKeepsTheSearchThatItNamedWhenItWasWritten) {
