@@ -272,7 +272,8 @@ void addMark(Command root, Chosen& chosen) {
        .text = "Mark the sharp edges of the part, as the window suggests them"},
       {.name = "--as-lines",
        .to = &options->as_lines,
-       .text = "With --edges and --lines-out: an edge that can be located is a line alone, and only the rest is marked"},
+       .text = "With --edges and --lines-out: an edge that can be located is a line alone, and only the rest "
+               "is marked"},
       {.name = "--strokes",
        .to = &options->strokes,
        .text = "Strokes file: mark the edges that were drawn with the tool mark, where the scan shows them",

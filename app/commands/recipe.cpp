@@ -46,7 +46,8 @@ void addRecipe(Command root, Chosen& chosen) {
                 .required = true}});
   command.notes(
       "Filters, suggested edges and inversions are repeated. Strokes, and marks and lines that a hand drew, "
-      "belong to their scan: a warning and a comment name each that is left out. fettle apply does the steps.");
+      "belong to their scan: a warning and a comment name each that is left out. fettle apply does the "
+      "steps.");
 }
 
 }  // namespace fettle::app

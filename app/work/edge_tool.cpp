@@ -24,13 +24,12 @@ void EdgeTool::redraw(const LoopClient& client) {
     return;
   }
   draw_again_ = false;
-  drawing_.start(
-      [base = client.newest(), found = found_,
-       what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
-        auto suggestion = engine::suggestMarks(base, found->map, what, job);
-        if (!suggestion) return tl::unexpected(suggestion.error());
-        return Drawn{what, base, std::move(*suggestion)};
-      });
+  drawing_.start([base = client.newest(), found = found_,
+                  what = choice](engine::JobControl& job) -> engine::Result<Drawn> {
+    auto suggestion = engine::suggestMarks(base, found->map, what, job);
+    if (!suggestion) return tl::unexpected(suggestion.error());
+    return Drawn{what, base, std::move(*suggestion)};
+  });
 }
 
 void EdgeTool::drop() {
@@ -56,11 +55,12 @@ bool EdgeTool::accept(LoopClient& client) {
 
 bool EdgeTool::acceptAsLines(MarkEdit& edit) {
   if (!shown_) return false;
-  edit.ask("Edge lines",
-           [found = found_, what = drawn_](const engine::Version& base, engine::JobControl& job) {
-             return drawSuggestion(base, found->map, what, job);
-           },
-           {"none of the suggested edges could be located", "take them as marks (Shift+E)"}, taken());
+  edit.ask(
+      "Edge lines",
+      [found = found_, what = drawn_](const engine::Version& base, engine::JobControl& job) {
+        return drawSuggestion(base, found->map, what, job);
+      },
+      {"none of the suggested edges could be located", "take them as marks (Shift+E)"}, taken());
   drop();
   return true;
 }

@@ -38,9 +38,7 @@ class EdgeTool {
   [[nodiscard]] const engine::EdgeSuggestion* suggestion() const noexcept {
     return shown_ ? &*shown_ : nullptr;
   }
-  [[nodiscard]] const engine::EdgeMap* map() const noexcept {
-    return found_ ? &found_->map : nullptr;
-  }
+  [[nodiscard]] const engine::EdgeMap* map() const noexcept { return found_ ? &found_->map : nullptr; }
 
   /// `live` with the suggested marks on it, to be drawn instead; `live` itself when there are none. Cost
   /// proportional to the tiles that changed since the last call.
@@ -62,7 +60,7 @@ class EdgeTool {
   Background<Drawn> drawing_;
   bool draw_again_ = false;
   std::shared_ptr<const Found> found_;
-  engine::Version base_;       // upright: what shown_ was drawn on
+  engine::Version base_;      // upright: what shown_ was drawn on
   engine::EdgeChoice drawn_;  // what shown_ was drawn with
   std::optional<engine::EdgeSuggestion> shown_;
   // over(): under_ with the marks is over_.

@@ -43,7 +43,8 @@ bool MarkEdit::poll(LoopClient& client, std::vector<Notice>& notices) {
   }
   // A line that comes while the next edge is drawn would divide that stroke.
   if (done_ && (done_->base.lines() == done_->changed.lines() || !client.strokeIsUnderWay())) {
-    if (!client.change(done_->base, done_->changed, running_.name, running_.edges)) waiting_.push_front(std::move(running_));
+    if (!client.change(done_->base, done_->changed, running_.name, running_.edges))
+      waiting_.push_front(std::move(running_));
     done_.reset();
     changed = true;
   }

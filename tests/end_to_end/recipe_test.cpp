@@ -60,9 +60,10 @@ TEST(Recipes, SuggestedLinesHaveTheBitsOfTheCommandsOneByOne) {
       {"mark", scan, marks, "--edges", "--sensitivity", "0.6", "--as-lines", "--lines-out", lines});
   EXPECT_GT(marked["lines"], 2);
   EXPECT_EQ(report["steps"][0]["lines"], marked["lines"]);
-  ASSERT_EQ(fettle({"filter", scan, folder.file("a.tif"), "--filter", "tgv", "--lines", lines, "--keep", marks})
-                .status,
-            0);
+  ASSERT_EQ(
+      fettle({"filter", scan, folder.file("a.tif"), "--filter", "tgv", "--lines", lines, "--keep", marks})
+          .status,
+      0);
   const auto last = fettleJson({"filter", folder.file("a.tif"), folder.file("b.tif"), "--filter", "median",
                                 "--window", "5", "--lines", lines, "--keep", marks});
   EXPECT_EQ(report["hash"], last["hash"]);

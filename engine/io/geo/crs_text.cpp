@@ -120,6 +120,23 @@ std::string wktOf(OGRSpatialReferenceH crs) {
   return crsAs(crs, "FORMAT=WKT2_2019");
 }
 
+bool sameHorizontalCrs(const std::string& a, const std::string& b) {
+  if (a.empty() || b.empty()) return true;
+  const CrsPtr first(OSRNewSpatialReference(a.c_str())), second(OSRNewSpatialReference(b.c_str()));
+  if (!first || !second) return true;
+  for (const CrsPtr* crs : {&first, &second}) OSRStripVertical(crs->get());
+  // A program may list the axes in another order: files keep x before y all the same.
+  const char* const options[] = {"CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS",
+                                 "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
+  return OSRIsSameEx(first.get(), second.get(), options) != 0;
+}
+
+std::string crsName(const std::string& wkt) {
+  const CrsPtr crs(wkt.empty() ? nullptr : OSRNewSpatialReference(wkt.c_str()));
+  const char* const name = crs ? OSRGetName(crs.get()) : nullptr;
+  return name != nullptr && *name != '\0' ? name : "no coordinate system";
+}
+
 std::string wktOfPrj(const std::string& text) {
   const CrsPtr crs(OSRNewSpatialReference(nullptr));
   char** lines = CSLTokenizeString2(text.c_str(), "\r\n", 0);

@@ -18,6 +18,14 @@ namespace fettle::engine {
 /// empty where neither is. Call during the lifetime of a GdalSession.
 [[nodiscard]] std::string prjOf(const std::string& wkt);
 
+/// Whether two systems place the same numbers at the same points of the plane: a vertical system counts for nothing, nor
+/// do names. Empty ones, and such as cannot be parsed, are equal to every other. Call during the lifetime of a
+/// GdalSession.
+[[nodiscard]] bool sameHorizontalCrs(const std::string& a, const std::string& b);
+
+/// The name of a system, "WGS 84 / UTM zone 33N"; "no coordinate system" for an empty text.
+[[nodiscard]] std::string crsName(const std::string& wkt);
+
 /// GeoTIFF keys (OGC 19-008) outside a TIFF, as LAS keeps them: the bytes of three tags, little-endian.
 struct GeoKeys {
   std::string directory;  ///< 34735: 16-bit numbers

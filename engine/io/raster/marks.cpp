@@ -3,17 +3,25 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 #include <new>
+#include <optional>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <gdal.h>
+#include <ogr_srs_api.h>
 
 #include "engine/field/live_field.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/format.h"
+#include "engine/io/geo/crs_text.h"
+#include "engine/io/geo/geo_reference.h"
+#include "engine/io/geo/sidecar.h"
+#include "engine/io/raster/marks_fit.h"
 #include "engine/io/raster/png_stream.h"
 #include "engine/io/tiff/tiff_directory.h"
 
@@ -66,13 +74,6 @@ class MarkSetter {
   std::vector<unsigned char> strip_;  // one tile row, lowest row first
 };
 
-Status checkSize(const Version& field, std::int64_t width, std::int64_t height, const std::string& path) {
-  if (width == field.grid().width && height == field.grid().height) return {};
-  return inputError(fmt::format("the marks are {} x {}, the field is {} x {}", width, height,
-                                field.grid().width, field.grid().height),
-                    path, "take the marks that belong to this field");
-}
-
 Result<Version> noMemory(const std::string& path) {
   return failure("there is not enough memory for the marks", path);
 }
@@ -83,8 +84,8 @@ Result<Version> fromPng(const Version& field, const InputFile& file) {
   const PngHeader& header = reader->header();
   if (header.bits > 8)
     return inputError("the PNG has 16 bits, marks have 8", file.path(), "is this the scan itself?");
-  if (Status s = checkSize(field, header.width, header.height, file.path()); !s)
-    return tl::unexpected(s.error());
+  const auto part = partOfMarks(field.grid(), {header.width, header.height, {}, {}}, file.path());
+  if (!part) return tl::unexpected(part.error());
   MarkSetter setter(field);
   std::vector<unsigned char> row(static_cast<std::size_t>(header.width));
   for (std::int32_t r = header.height - 1; r >= 0; --r) {
@@ -95,13 +96,80 @@ Result<Version> fromPng(const Version& field, const InputFile& file) {
   return setter.result();
 }
 
+// What a TIFF states about its place, also in NAME.tif.aux.xml.
+MarksPlace placeOf(GDALDatasetH dataset, const Sidecar& sidecar) {
+  MarksPlace place;
+  place.width = GDALGetRasterXSize(dataset);
+  place.height = GDALGetRasterYSize(dataset);
+  GeoTransform gt{};
+  if (GDALGetGeoTransform(dataset, gt.data()) == CE_None) place.transform = gt;
+  if (OGRSpatialReferenceH crs = GDALGetSpatialRef(dataset); crs != nullptr) place.crs_wkt = wktOf(crs);
+  if (place.crs_wkt.empty()) place.crs_wkt = sidecar.crs_wkt;
+  return place;
+}
+
+// The rows of a band of integers as marks.
+class MarkBand {
+ public:
+  // `columns` pixels of each row, from `first` on.
+  MarkBand(GDALRasterBandH band, std::int32_t first, std::int32_t columns, const Sidecar& sidecar)
+      : band_(band),
+        first_(first),
+        numbers_(static_cast<std::size_t>(columns)),
+        type_(GDALGetRasterDataType(band)) {
+    const char* const pixels = GDALGetMetadataItem(band, "PIXELTYPE", "IMAGE_STRUCTURE");
+    signed_byte_ = pixels != nullptr && std::strcmp(pixels, "SIGNEDBYTE") == 0;
+    int has = 0;
+    double none = 0.0;
+    if (type_ == GDT_Int64)
+      none = static_cast<double>(GDALGetRasterNoDataValueAsInt64(band, &has));
+    else if (type_ == GDT_UInt64)
+      none = static_cast<double>(GDALGetRasterNoDataValueAsUInt64(band, &has));
+    else
+      none = GDALGetRasterNoDataValue(band, &has);
+    std::vector<std::string> ignored;
+    no_data_ = chooseNoData(has != 0 ? std::optional(none) : std::nullopt, sidecar, ignored);
+  }
+
+  [[nodiscard]] bool holdsIntegers() const noexcept {
+    return type_ != GDT_Unknown && GDALDataTypeIsInteger(type_) != 0 && GDALDataTypeIsComplex(type_) == 0;
+  }
+  // A stored row; false where it cannot be read.
+  [[nodiscard]] bool read(std::int32_t row) {
+    const auto columns = static_cast<int>(numbers_.size());
+    // A double has every number of 32 bits; of 64 it still tells 0 from others.
+    if (GDALRasterIO(band_, GF_Read, first_, row, columns, 1, numbers_.data(), columns, 1, GDT_Float64, 0,
+                     0) != CE_None)
+      return false;
+    if (type_ != GDT_Byte && values_.size() <= kMostMarkValues) {
+      double before = std::numeric_limits<double>::quiet_NaN();
+      for (const double number : numbers_)
+        if (number != before) values_.insert(before = number);
+    }
+    return true;
+  }
+  [[nodiscard]] bool looksLikeScan() const noexcept { return values_.size() > kMostMarkValues; }
+  // The marks of the row that was read, 0 or 1.
+  void marks(std::vector<unsigned char>& row) const {
+    std::ranges::transform(numbers_, row.begin(), [&](double number) {
+      if (signed_byte_ && number > 127.0) number -= 256.0;
+      return static_cast<unsigned char>(number != 0.0 && !(no_data_ && number == *no_data_));
+    });
+  }
+
+ private:
+  GDALRasterBandH band_;
+  std::int32_t first_;
+  std::vector<double> numbers_;
+  GDALDataType type_;
+  bool signed_byte_ = false;  // GDAL 3.6 has no type of its own for these
+  std::optional<double> no_data_;
+  std::unordered_set<double> values_;  // of more than 8 bits; not all once they are too many
+};
+
 Result<Version> fromTiff(const Version& field, const InputFile& file) {
   const Result<TiffDirectory> directory = readTiffDirectory(file);
   if (!directory) return tl::unexpected(directory.error());
-  if (Status s = checkSize(field, static_cast<std::int64_t>(directory->width),
-                           static_cast<std::int64_t>(directory->height), file.path());
-      !s)
-    return tl::unexpected(s.error());
   if (directory->photometric == 0)
     return inputError("0 is white in these marks (MINISWHITE): what is kept, white or black?", file.path(),
                       "write them with 0 as black, e.g. as PNG");
@@ -112,18 +180,25 @@ Result<Version> fromTiff(const Version& field, const InputFile& file) {
   const DatasetPtr dataset(GDALOpenEx(file.pathForGdal().c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY,
                                       drivers.data(), nullptr, nullptr));
   if (!dataset) return inputError("the TIFF cannot be opened: " + gdal.reason("damaged header"), file.path());
-  GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
-  if (GDALGetRasterCount(dataset.get()) != 1 || GDALGetRasterDataType(band) != GDT_Byte)
-    return inputError("marks are one band of 8 bits", file.path(), "is this the scan itself?");
+  std::vector<std::string> ignored;
+  const Sidecar sidecar = readAuxXml(file.path(), ignored);
+  const auto part = partOfMarks(field.grid(), placeOf(dataset.get(), sidecar), file.path());
+  if (!part) return tl::unexpected(part.error());
+  const std::int32_t width = field.grid().width, height = field.grid().height;
+  MarkBand band(GDALGetRasterBand(dataset.get(), 1), part->first_column, width, sidecar);
+  if (GDALGetRasterCount(dataset.get()) != 1 || !band.holdsIntegers())
+    return inputError("marks are one band of integers", file.path(), "is this the scan itself?");
   MarkSetter setter(field);
-  const std::int32_t width = field.grid().width;
   std::vector<unsigned char> row(static_cast<std::size_t>(width));
-  for (std::int32_t r = field.grid().height - 1; r >= 0; --r) {
-    if (GDALRasterIO(band, GF_Read, 0, field.grid().height - 1 - r, width, 1, row.data(), width, 1, GDT_Byte,
-                     0, 0) != CE_None ||
-        gdal.failed())
+  for (std::int32_t r = height - 1; r >= 0; --r) {
+    if (!band.read(part->first_row + (part->top_down ? height - 1 - r : r)) || gdal.failed())
       return inputError("the marks cannot be read: " + gdal.reason("the file is damaged"), file.path(),
                         "the file is cut short or damaged");
+    if (band.looksLikeScan())
+      return inputError(fmt::format("marks have at most {} different numbers", kMostMarkValues), file.path(),
+                        "is this the scan itself?");
+    band.marks(row);
+    if (part->right_to_left) std::ranges::reverse(row);
     if (!setter.take(r, row.data())) return noMemory(file.path());
   }
   return setter.result();
@@ -164,6 +239,15 @@ Status toTiff(const Version& field, const AtomicFile& file) {
   DatasetPtr dataset(GDALCreate(GDALGetDriverByName("GTiff"), file.temporaryPath().c_str(), width, height, 1,
                                 GDT_Byte, options.data()));
   if (!dataset) return full();
+  GeoTransform gt = geoTransformOf(field.grid());
+  if (GDALSetGeoTransform(dataset.get(), gt.data()) != CE_None) return full();
+  if (const std::string& wkt = field.grid().crs_wkt; !wkt.empty())
+    if (OGRSpatialReferenceH crs = OSRNewSpatialReference(wkt.c_str()); crs != nullptr) {
+      OSRSetAxisMappingStrategy(crs, OAMS_TRADITIONAL_GIS_ORDER);
+      const bool set = GDALSetSpatialRef(dataset.get(), crs) == CE_None;
+      OSRDestroySpatialReference(crs);
+      if (!set) return full();
+    }
   GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
   std::vector<std::uint8_t> row(static_cast<std::size_t>(width));
   for (std::int32_t r = height - 1; r >= 0; --r) {

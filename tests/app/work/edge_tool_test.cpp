@@ -35,7 +35,9 @@ engine::Version stepped() {
 // The steps of a session, as their journal has them.
 class StepsMade final : public haptic::SessionSink {
  public:
-  void commit(std::int64_t, engine::Step, std::vector<engine::JournalEntry> journal) override { take(journal); }
+  void commit(std::int64_t, engine::Step, std::vector<engine::JournalEntry> journal) override {
+    take(journal);
+  }
   void moveTo(std::int64_t, std::vector<engine::JournalEntry> journal) override { take(journal); }
   void note(std::vector<engine::JournalEntry> journal) override { take(journal); }
 

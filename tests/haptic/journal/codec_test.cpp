@@ -138,9 +138,8 @@ TEST(Journal, EveryEntryReadsBackToTheSameText) {
       haptic::journal::StepMade{5, "Median \"5 x 5\"", engine::StepKind::kFilter, before, false},
       haptic::journal::StepMade{6, "Lasso", engine::StepKind::kMark, there, true},
       haptic::journal::StepMade{7, "Edge line", engine::StepKind::kLines, there, false, true},
-      haptic::journal::StepMade{
-          8, "Edge suggestion", engine::StepKind::kMark, there, true, false,
-          haptic::journal::EdgesSuggested{0.1 + 0.2, 1.0 / 3.0, 2.0}},
+      haptic::journal::StepMade{8, "Edge suggestion", engine::StepKind::kMark, there, true, false,
+                                haptic::journal::EdgesSuggested{0.1 + 0.2, 1.0 / 3.0, 2.0}},
       haptic::journal::RestoreRequested{8, 2},
       haptic::journal::Restored{8, there},
       haptic::journal::FilterBase{1, before},
