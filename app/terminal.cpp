@@ -125,10 +125,10 @@ const Voice& voice() noexcept {
 int report(const engine::Error& error) {
   const int status = error.kind == engine::ErrorKind::kInput ? 2 : 1;
   if (voice().json) {
-    const nlohmann::ordered_json object{{"error", error.line()},     {"kind", nameOf(error.kind)},
-                                        {"what", error.what},        {"where", error.where},
-                                        {"remedy", error.remedy},    {"status", status},
-                                        {"warnings", takeWarnings()}};
+    const nlohmann::ordered_json object{{"schema", "fettle.error/1"}, {"error", error.line()},
+                                        {"kind", nameOf(error.kind)}, {"what", error.what},
+                                        {"where", error.where},       {"remedy", error.remedy},
+                                        {"status", status},           {"warnings", takeWarnings()}};
     lineToStderr(object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   } else {
     lineToStderr("fettle: error: " + error.line());

@@ -59,7 +59,7 @@ void setVoice(const Voice& voice);
 [[nodiscard]] const Voice& voice() noexcept;
 
 /// Prints "fettle: error: what, where, remedy" on stderr and returns the exit status that belongs to it:
-/// 2 for bad usage or input, 1 for everything else. With Voice::json one line with one object: `error` (the
+/// 2 for bad usage or input, 1 for everything else. With Voice::json one line with one object: `schema`, `error` (the
 /// line without its head), `kind` (input, failed, cancelled), `what`, `where`, `remedy`, `status`,
 /// `warnings`.
 int report(const engine::Error& error);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "app/reference/report_schema.h"
 #include "app/terminal.h"
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
@@ -87,9 +88,10 @@ Command addCommand(Command root, Chosen& chosen, const std::string& name, const 
                    std::function<int(const Report&)> status, Printing printing) {
   Command command = root.subcommand(name, description);
   addOutputFlags(command, chosen);
-  command.onChosen([&chosen, run = std::move(run), print = std::move(print), progress,
-                    status = std::move(status), printing] {
+  command.onChosen([&chosen, schema = schemaName(command.table().path), run = std::move(run),
+                    print = std::move(print), progress, status = std::move(status), printing] {
     chosen.run = run;
+    chosen.schema = schema;
     chosen.print = print;
     chosen.progress = progress;
     chosen.status = status;

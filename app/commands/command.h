@@ -31,6 +31,7 @@ struct Chosen {
   std::function<engine::Result<Report>(engine::JobControl&)> run;
   std::function<void(const Report&)> print;
   std::function<int(const Report&)> status;  ///< exit status of what `run` reported; empty: 0
+  std::string schema;                        ///< of the report (schemaName)
   Progress progress = Progress::kLine;
   Printing printing = Printing::kReport;
   bool json = false;

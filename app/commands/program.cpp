@@ -50,8 +50,10 @@ int runChosen(const Chosen& chosen) {
   // Printing throws when standard output is full or closed; the work is done then, as its files show.
   if (chosen.json) {
     addKeptWarnings(*result);
+    Report object{{"schema", chosen.schema}};
+    object.update(*result);
     // A path may contain bytes that are not UTF-8: they are replaced in the report, never in the file system.
-    fmt::print("{}\n", result->dump(2, ' ', false, Report::error_handler_t::replace));
+    fmt::print("{}\n", object.dump(2, ' ', false, Report::error_handler_t::replace));
   } else if (!chosen.quiet || chosen.printing == Printing::kResult) {
     chosen.print(*result);
   }

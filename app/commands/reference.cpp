@@ -1,11 +1,14 @@
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "app/commands/command.h"
 #include "app/reference/completion.h"
 #include "app/reference/man_page.h"
 #include "app/reference/reference_page.h"
+#include "app/reference/report_schema.h"
 #include "engine/io/files/atomic_file.h"
 
 namespace fettle::app {
@@ -32,18 +35,23 @@ engine::Result<Report> reference(const std::string& folder, const CommandTable& 
         write(folder, "man/" + manName(command) + ".1", manPage(command, root, {"fettle " FETTLE_VERSION}));
     ++pages;
   });
-  const std::pair<const char*, std::string> others[] = {
+  std::vector<std::pair<std::string, std::string>> others = {
       {"completion/fettle.bash", completionScript(root, Shell::kBash)},
       {"completion/_fettle", completionScript(root, Shell::kZsh)},
       {"completion/fettle.fish", completionScript(root, Shell::kFish)},
       {"reference.md", referencePage(root)},
       {"parameters.json", tableReport(root).dump(2) + "\n"}};
+  for (const ReportSchema& schema : reportSchemas())
+    others.emplace_back("schema/" + schemaFile(schema), schemaReport(schema).dump(2) + "\n");
   for (const auto& [name, text] : others)
     if (status) status = write(folder, name, text);
   if (!status) return tl::unexpected(status.error());
   int parameters = 0;
   forEachCommand(root, [&](const CommandTable& c) { parameters += static_cast<int>(c.parameters.size()); });
-  return Report{{"folder", folder}, {"man_pages", pages}, {"parameters", parameters}};
+  return Report{{"folder", folder},
+                {"man_pages", pages},
+                {"parameters", parameters},
+                {"schemas", reportSchemas().size()}};
 }
 
 }  // namespace
@@ -52,7 +60,9 @@ void addReference(Command root, Chosen& chosen) {
   auto folder = std::make_shared<std::string>();
   Command command =
       addCommand(root, chosen, "reference",
-                 "Write man pages, completions for bash, zsh and fish, and the reference of all commands",
+                 "Write man pages, completions for bash, zsh and fish, the reference of all commands, and "
+                 "the schemas of "
+                 "--json",
                  [folder, root](engine::JobControl&) { return reference(*folder, root.table()); });
   command.add({{.name = "DIR",
                 .to = folder.get(),

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/end_to_end/report_check.h"
+
 namespace fettle::tests {
 
 Outcome fettle(std::vector<std::string> arguments, const ProcessOptions& options) {
@@ -16,7 +18,9 @@ nlohmann::json fettleJson(std::vector<std::string> arguments) {
   const Outcome outcome = fettle(arguments);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   if (outcome.status != 0) return nlohmann::json::object();
-  return nlohmann::json::parse(outcome.out);
+  auto report = nlohmann::json::parse(outcome.out);
+  EXPECT_EQ(problemOf(report), "");
+  return report;
 }
 
 namespace {

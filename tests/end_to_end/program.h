@@ -12,7 +12,7 @@ namespace fettle::tests {
 /// Runs the built fettle with these arguments.
 [[nodiscard]] Outcome fettle(std::vector<std::string> arguments, const ProcessOptions& options = {});
 
-/// The same with --json; the object it printed. A failure is a failed test and an empty object.
+/// The same with --json; the object it printed, which must be as its schema states (report_check.h). A failure is a failed test and an empty object.
 [[nodiscard]] nlohmann::json fettleJson(std::vector<std::string> arguments);
 
 /// Expects the outcome of what the machine could not do: exit status 1, nothing on stdout, one line

@@ -2,11 +2,17 @@
 
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <sstream>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "engine/formats/formats.h"
+#include "engine/filter/filter.h"
+#include "engine/marks/edge_suggestion.h"
+#include "engine/session/session.h"
 #include "tests/end_to_end/program.h"
 #include "tests/support/source_tree.h"
 #include "tests/support/temp_folder.h"
@@ -70,6 +76,56 @@ TEST(Recipes, SuggestedLinesHaveTheBitsOfTheCommandsOneByOne) {
   const auto plain = fettleJson({"filter", scan, folder.file("p.tif"), "--filter", "tgv"});
   EXPECT_NE(report["hash"], plain["hash"]);
   expectRefused(fettle({"mark", scan, marks, "--edges", "--as-lines"}), "give --edges and --lines-out");
+}
+
+// The next state of a session, with the entries of the journal that made it.
+void addStep(engine::Session& session, engine::StepKind kind, const engine::Version& after,
+             std::initializer_list<const char*> actions) {
+  engine::StepInfo info;
+  info.name = "step";
+  info.kind = kind;
+  ASSERT_TRUE(session.history.push(info, after));
+  for (const char* action : actions) {
+    engine::JournalEntry entry;
+    entry.action = action;
+    entry.state = session.history.number();
+    session.journal.push_back(entry);
+  }
+}
+
+TEST(Recipes, OfASessionDoesItsSuggestedEdgesAndFiltersAgain) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), session = folder.file("work.fettle");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "160x128"}).status, 0);
+  engine::JobControl job;
+  const auto imported = engine::importField(scan, {}, job);
+  ASSERT_TRUE(imported) << imported.error().line();
+  engine::Session made;
+  made.original = imported->field;
+  made.history = engine::History(imported->field);
+  const auto map = engine::findEdges(imported->field, 2.0, job);
+  ASSERT_TRUE(map);
+  const auto marked = engine::suggestMarks(imported->field, *map, {0.6, 1.5, 0}, job);
+  ASSERT_TRUE(marked);
+  addStep(made, engine::StepKind::kMark, marked->field,
+          {R"({"do":"step","kind":"mark","marks":true,"name":"Edge suggestion","state":1,"tick":7,)"
+           R"("suggested":{"scale":2.0,"sensitivity":0.6,"thickness":1.5}})"});
+  engine::FilterSpec spec;
+  spec.kind = engine::FilterKind::kMedian;
+  spec.window = 5;
+  const auto filtered = engine::applyFilter(marked->field, imported->field, spec, job);
+  ASSERT_TRUE(filtered);
+  addStep(made, engine::StepKind::kFilter, filtered->field,
+          {R"({"do":"filter","id":1,"filter":"median","window":5,"passes":1,"marks":"keep"})",
+           R"({"do":"step","kind":"filter","name":"Median 5 x 5","state":2,"tick":9})"});
+  ASSERT_TRUE(engine::saveSession(made, session, job));
+
+  const auto report = fettleJson({"recipe", session});
+  EXPECT_EQ(report["steps"], 2);
+  EXPECT_EQ(report["left_out"].size(), 0U);
+  std::ofstream(folder.file("clean.toml")) << fettle({"recipe", session, "-q"}).out;
+  const auto applied = fettleJson({"apply", folder.file("clean.toml"), scan, folder.file("o.fettle")});
+  EXPECT_EQ(applied["hash"], fmt::format("{:016x}", engine::contentHash(filtered->field)));
 }
 
 TEST(Recipes, AWrongRecipeIsRefusedBeforeAScanIsRead) {

@@ -12,6 +12,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/end_to_end/report_check.h"
+
 namespace fettle::tests {
 namespace {
 
@@ -145,7 +147,9 @@ int ViewProgram::wait() {
 }
 
 ViewProgram::State ViewProgram::report() const {
-  return out_.empty() ? State::object() : State::parse(out_);
+  if (out_.empty()) return State::object();
+  EXPECT_EQ(problemOf(nlohmann::json::parse(out_)), "");
+  return State::parse(out_);
 }
 
 }  // namespace fettle::tests
