@@ -1,5 +1,10 @@
 # Options that every room shares. A room is one static library; it sees only what it links.
 
+# Hidden symbols, and the promise that no definition is replaced at load time (-fno-semantic-interposition), keep calls
+# and inlining of position-independent code as they are in a program: docs/decisions/python-module.md has the figures.
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+
 add_library(fettle_options INTERFACE)
 target_compile_features(fettle_options INTERFACE cxx_std_20)
 target_include_directories(fettle_options INTERFACE ${CMAKE_SOURCE_DIR})
@@ -8,7 +13,9 @@ target_compile_options(fettle_options INTERFACE
   -Wnon-virtual-dtor -Woverloaded-virtual -Werror
   # Same bits on every compiler and optimisation level: a fused multiply-add rounds once where
   # the written code rounds twice, so contraction is never left to the compiler.
-  -ffp-contract=off)
+  -ffp-contract=off
+  # One set of objects for the program and for the Python module, a shared library.
+  -fPIC -fno-semantic-interposition)
 
 set(FETTLE_SANITIZE "" CACHE STRING "address,undefined or thread; empty for none")
 if(FETTLE_SANITIZE)
