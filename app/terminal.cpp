@@ -1,5 +1,6 @@
 #include "app/terminal.h"
 
+#include <cassert>
 #include <csignal>
 #include <cstdio>
 
@@ -26,6 +27,8 @@ void onSignal(int signal) {
 }
 
 Voice chosen_voice;
+
+thread_local KeptMessages* thread_messages = nullptr;
 
 std::mutex kept_mutex;
 std::vector<std::string> kept_warnings;  // guarded by kept_mutex
@@ -89,7 +92,8 @@ std::string progressText(const engine::JobControl& job, const BatchState* batch)
 
 ProgressLine::ProgressLine(const engine::JobControl& job, const BatchState* batch)
     : job_(job), batch_(batch) {
-  if (!voice().quiet && isatty(STDERR_FILENO) != 0) thread_ = std::thread([this] { show(); });
+  if (thread_messages == nullptr && !voice().quiet && isatty(STDERR_FILENO) != 0)
+    thread_ = std::thread([this] { show(); });
 }
 
 ProgressLine::~ProgressLine() {
@@ -136,8 +140,19 @@ int report(const engine::Error& error) {
   return status;
 }
 
+KeptMessages::KeptMessages() {
+  assert(thread_messages == nullptr);
+  thread_messages = this;
+}
+
+KeptMessages::~KeptMessages() {
+  thread_messages = nullptr;
+}
+
 void warn(const std::string& text) {
-  if (voice().json) {
+  if (thread_messages != nullptr) {
+    thread_messages->warnings.push_back(text);
+  } else if (voice().json) {
     const std::scoped_lock lock(kept_mutex);
     kept_warnings.push_back(text);
   } else if (!voice().quiet) {

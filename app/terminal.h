@@ -58,6 +58,17 @@ struct Voice {
 void setVoice(const Voice& voice);
 [[nodiscard]] const Voice& voice() noexcept;
 
+/// For its lifetime, what this thread would write to stderr is kept here instead, and no progress line is shown: for a
+/// program that calls commands (python/). Threading: the thread that made it, which has one of them at a time.
+class KeptMessages {
+ public:
+  KeptMessages();
+  ~KeptMessages();
+  KeptMessages& operator=(KeptMessages&&) = delete;
+
+  std::vector<std::string> warnings;  ///< of warn(), in their order
+};
+
 /// Prints "fettle: error: what, where, remedy" on stderr and returns the exit status that belongs to it:
 /// 2 for bad usage or input, 1 for everything else. With Voice::json one line with one object: `schema`, `error` (the
 /// line without its head), `kind` (input, failed, cancelled), `what`, `where`, `remedy`, `status`,

@@ -56,6 +56,10 @@ Command addCommand(Command root, Chosen& chosen, const std::string& name, const 
                    Progress progress = Progress::kLine, std::function<int(const Report&)> status = {},
                    Printing printing = Printing::kReport);
 
+/// The commands that read scans, compute and write files: those that the Python module has too. A command that opens a
+/// window or a device, measures this program or writes its pages is main()'s alone.
+void addScanCommands(Command root, Chosen& chosen);
+
 void addInfo(Command root, Chosen& chosen);
 void addSynth(Command root, Chosen& chosen);
 void addFilter(Command root, Chosen& chosen);

@@ -114,7 +114,7 @@ void addCompare(Command root, Chosen& chosen) {
       {.name = "--edges",
        .to = &options->edges,
        .text = "Picture of the true edges, non-zero = edge: adds the edge width",
-       .kind = ValueKind::kFile},
+       .kind = ValueKind::kMarks},
       {.name = "--deviation",
        .to = &options->deviation,
        .text = "Also write B - A as a separate scan, in A's height unit, format by extension",

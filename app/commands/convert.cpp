@@ -6,6 +6,7 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
+#include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "engine/formats/formats.h"
 
@@ -24,6 +25,10 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
                                   engine::JobControl& job) {
   const auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
+  if (MemoryPlace* place = memoryPlace(task.out)) {
+    place->scan = *imported;
+    return Report{{"format", ""}, {"from", imported->format}, {"warnings", imported->warnings}};
+  }
   engine::ExportOptions writing = options.writing;
   writing.original = imported->original;
   if (!options.max_error.empty()) {

@@ -107,7 +107,7 @@ engine::Result<std::vector<engine::EdgeLine>> linesOf(const LinesArguments& opti
                                                       const engine::Version& field) {
   std::vector<engine::EdgeLine> lines;
   if (!options.lines.empty()) {
-    auto read = engine::importLines(options.lines, field);
+    auto read = readLines(options.lines, field);
     if (!read) return read;
     lines = *std::move(read);
   } else if (field.lines() != nullptr) {
@@ -195,7 +195,7 @@ engine::Status writeFiles(const LinesArguments& options, const std::vector<Measu
     std::vector<engine::EdgeLine> lines;
     lines.reserve(measured.size());
     for (const MeasuredLine& line : measured) lines.push_back(line.line);
-    if (auto status = engine::exportLines(options.out, lines, grid); !status) return status;
+    if (auto status = saveLines(options.out, lines, grid); !status) return status;
   }
   if (!options.csv.empty())
     if (auto status = engine::writeFileAtomically(options.csv, csvOf(measured, grid)); !status) return status;
@@ -272,7 +272,7 @@ void addLines(Command root, Chosen& chosen) {
       {.name = "LINES",
        .to = &options->lines,
        .text = "File of edge lines",
-       .kind = ValueKind::kFile,
+       .kind = ValueKind::kLines,
        .otherwise = "those of the session SCAN"},
       {.name = "--only",
        .to = &options->only,
@@ -290,7 +290,7 @@ void addLines(Command root, Chosen& chosen) {
       {.name = "--out",
        .to = &options->out,
        .text = "Write the lines: .csv (every value), .geojson, .gpkg, .dxf",
-       .kind = ValueKind::kNewFile},
+       .kind = ValueKind::kNewLines},
   });
   addScanOptions(command, options->reading);
   command.notes(

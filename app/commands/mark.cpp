@@ -22,8 +22,6 @@
 #include "engine/field/live_field.h"
 #include "engine/field/version.h"
 #include "engine/inspect/noise.h"
-#include "engine/io/lines/lines.h"
-#include "engine/io/raster/marks.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/marks/edge_traces.h"
 #include "haptic/base/strokes.h"
@@ -144,7 +142,7 @@ engine::Result<engine::Version> markStrokes(const engine::Version& field, const 
   auto marked = markLines(field, *lines, options.choice.thickness, job);
   if (!marked) return marked;
   if (!options.lines_out.empty())
-    if (auto status = engine::exportLines(options.lines_out, *lines, field.grid()); !status)
+    if (auto status = saveLines(options.lines_out, *lines, field.grid()); !status)
       return tl::unexpected(status.error());
   report["thickness"] = options.choice.thickness;
   reportLines(*lines, report);
@@ -165,7 +163,7 @@ engine::Status writeEdgeLines(const engine::Version& field, const engine::EdgeMa
   const auto lines = locateLines(field, strokes, options.locating, job);
   if (!lines) return tl::unexpected(lines.error());
   reportLines(*lines, report);
-  return engine::exportLines(options.lines_out, *lines, field.grid());
+  return saveLines(options.lines_out, *lines, field.grid());
 }
 
 // The suggested edges as lines, and marks where one cannot be located, as a recipe's locate_edges.
@@ -242,8 +240,8 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     field = *std::move(inverted);
   }
   const double seconds = watch.seconds();
-  const auto written = writeTo(options.out, ".png", job,
-                               [&](const std::string& file) { return engine::exportMarks(field, file); });
+  const auto written =
+      writeTo(options.out, ".png", job, [&](const std::string& file) { return saveMarks(field, file); });
   if (!written) return tl::unexpected(written.error());
   report["marked"] = engine::summarize(field).marked;
   report["seconds"] = seconds;
@@ -287,7 +285,7 @@ void addMark(Command root, Chosen& chosen) {
       {.name = "--lines-out",
        .to = &options->lines_out,
        .text = "Write the edge lines of --strokes or --edges: .csv (every value), .geojson, .gpkg, .dxf",
-       .kind = ValueKind::kNewFile},
+       .kind = ValueKind::kNewLines},
       {.name = "--scale",
        .to = &options->scale,
        .text = "Edges: scale of the search; larger finds fainter ones",
@@ -305,7 +303,7 @@ void addMark(Command root, Chosen& chosen) {
       {.name = "--add",
        .to = &options->add,
        .text = "Picture of marks to begin with",
-       .kind = ValueKind::kFile},
+       .kind = ValueKind::kMarks},
       {.name = "--invert", .to = &options->invert, .text = "Afterwards, invert the marks"},
   });
   addScanOptions(command, options->reading);

@@ -1,5 +1,6 @@
 #include "app/commands/output_checks.h"
 
+#include "app/work/memory_places.h"
 #include "app/work/open_document.h"
 #include "app/work/session_guard.h"
 #include "app/work/streams.h"
@@ -21,7 +22,7 @@ engine::Status checkOutputs(const std::vector<Output>& outputs, const std::vecto
         if (auto status = refuseToLoseWork(output.path); !status) return status;
   ScanGuard guard;
   for (const Output& output : outputs)
-    if (!output.path.empty() && !isStream(output.path))
+    if (!output.path.empty() && !isStream(output.path) && memoryPlace(output.path) == nullptr)
       if (auto status = guard.protectSessions(output.path, job); !status) return status;
   return {};
 }

@@ -14,8 +14,8 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/usage_error.h"
 #include "app/terminal.h"
-#include "app/work/spelling.h"
 
 namespace fettle::app {
 
@@ -60,16 +60,6 @@ int runChosen(const Chosen& chosen) {
   return finish(chosen.status ? chosen.status(*result) : 0);
 }
 
-// `--keep "$MARKS"` with MARKS unset would mean "no marks": the requested protection would be lost without a
-// message. Only a title may be empty.
-std::optional<Error> emptyArgument(const std::vector<std::string>& arguments) {
-  for (std::size_t i = 1; i < arguments.size(); ++i)
-    if (arguments[i].empty() && !arguments[i - 1].ends_with("title"))
-      return Error{ErrorKind::kInput, fmt::format("argument {} is empty", i), arguments[i - 1],
-                   "is a shell variable unset?"};
-  return std::nullopt;
-}
-
 // "help filter" is "filter --help", and "help" is "--help"; also with --json and --quiet, which do not change
 // it.
 void takeHelpForOption(std::vector<std::string>& arguments) {
@@ -80,34 +70,6 @@ void takeHelpForOption(std::vector<std::string>& arguments) {
   arguments.erase(help);
   std::erase_if(arguments, [](const std::string& a) { return a.starts_with("-"); });
   arguments.emplace_back("--help");
-}
-
-// The error of a command line that could not be parsed: the wrong word, and a suggestion.
-Error usageError(const Misread& misread) {
-  const std::string help = fmt::format("see fettle {}--help", misread.command);
-  const auto refused = [&](std::string what, const std::string& meant) {
-    return Error{ErrorKind::kInput, std::move(what), "",
-                 meant.empty() ? help : fmt::format("{} {}", meant, help)};
-  };
-  const std::vector<std::string>& rest = misread.rest;
-  // A word in the place of a command comes first: everything after it belongs to it.
-  const auto word = std::find_if(rest.begin(), rest.end(), [](const auto& w) { return !w.starts_with("-"); });
-  if (!misread.known_commands.empty() && word != rest.end())
-    return refused(fmt::format("there is no command {}{}", misread.command, *word),
-                   didYouMean(*word, misread.known_commands));
-  // Then options: a misspelt one leaves the value of another missing, or its own value unused.
-  for (const std::string& option : rest) {
-    if (!option.starts_with("-") || option == "-") continue;
-    const std::string name = option.substr(0, option.find('='));
-    // It is a valid option, but before the command.
-    if (!misread.command.empty() &&
-        std::ranges::find(misread.known_options, name) != misread.known_options.end())
-      return Error{ErrorKind::kInput, fmt::format("{} is before the command that takes it", name), "",
-                   fmt::format("put it after: fettle {}{}", misread.command, name)};
-    return refused(fmt::format("there is no option {}", name),
-                   didYouMean(name.starts_with("--") ? name : "-" + name, misread.known_options));
-  }
-  return refused(misread.what, "");
 }
 
 }  // namespace
@@ -138,7 +100,8 @@ int runProgram(int argc, char** argv, const std::function<void(Command, Chosen&)
       .add({{.name = "COMMAND", .to = &unused, .text = "The command", .words = commands}});
 
   const auto text = line.parse(arguments);
-  if (!text) return report(usageError(text.error()));
+  if (!text)
+    return report(usageError(text.error(), fmt::format("see fettle {}--help", text.error().command)));
   if (!text->empty()) {
     std::fputs(text->c_str(), stdout);
     return finish(0);

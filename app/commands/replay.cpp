@@ -16,7 +16,6 @@
 #include "app/work/streams.h"
 #include "engine/base/stopwatch.h"
 #include "engine/formats/formats.h"
-#include "engine/io/raster/marks.h"
 #include "engine/session/line_codec.h"
 #include "engine/session/session.h"
 #include "haptic/base/strokes.h"
@@ -86,7 +85,7 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
       !status)
     return tl::unexpected(status.error());
   if (!options.marks_out.empty())
-    if (auto status = engine::exportMarks(played->field, options.marks_out); !status)
+    if (auto status = saveMarks(played->field, options.marks_out); !status)
       return tl::unexpected(status.error());
   return Report{{"ticks", played->ticks},     {"steps", played->steps},
                 {"filters", played->filters}, {"loops", played->loops},
@@ -170,7 +169,7 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   if (auto status = saveField(result->field, options.out, job, beginningWith(*original), options.to); !status)
     return tl::unexpected(status.error());
   if (!options.marks_out.empty())
-    if (auto status = engine::exportMarks(result->field, options.marks_out); !status)
+    if (auto status = saveMarks(result->field, options.marks_out); !status)
       return tl::unexpected(status.error());
   if (!options.forces.empty())
     if (auto status = haptic::writeForces(options.forces, result->forces); !status)
@@ -228,11 +227,11 @@ void addReplay(Command root, Chosen& chosen) {
       {.name = "--marks",
        .to = &options->marks,
        .text = "Picture of marks to start from",
-       .kind = ValueKind::kFile},
+       .kind = ValueKind::kMarks},
       {.name = "--marks-out",
        .to = &options->marks_out,
        .text = "Write the marks afterwards, 8-bit PNG or TIFF",
-       .kind = ValueKind::kNewFile},
+       .kind = ValueKind::kNewMarks},
       {.name = "--forces",
        .to = &options->forces,
        .text = "Write proxy and force of every tick as CSV",

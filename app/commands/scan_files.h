@@ -1,14 +1,19 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "app/commands/command.h"
 #include "app/work/scan_reading.h"
+#include "engine/field/edge_line.h"
 #include "engine/field/version.h"
 #include "engine/io/export.h"
 #include "engine/io/import.h"
 
 namespace fettle::app {
+
+// A path may be the name of a place in memory (app/work/memory_places.h) wherever these read or write.
 
 /// Imports a scan, "-" from standard input; warnings of the importer go to stderr, each line naming the file.
 [[nodiscard]] engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
@@ -17,6 +22,10 @@ namespace fettle::app {
 /// A field with the marks of a picture; without a picture, empty, the field itself.
 [[nodiscard]] engine::Result<engine::Version> withMarks(const engine::Version& field,
                                                         const std::string& picture);
+
+/// The edge lines of a file, for `field`. Errors: those of engine::importLines.
+[[nodiscard]] engine::Result<std::vector<engine::EdgeLine>> readLines(const std::string& file,
+                                                                      const engine::Version& field);
 
 /// A field with the edge lines of a file, numbered from 0, instead of its own; without a file, empty, the field itself.
 [[nodiscard]] engine::Result<engine::Version> withLines(const engine::Version& field,
@@ -30,6 +39,13 @@ namespace fettle::app {
 [[nodiscard]] engine::Status saveField(const engine::Version& field, const std::string& path,
                                        engine::JobControl& job, const engine::ExportOptions& writing = {},
                                        const std::string& to = {});
+
+/// Writes the marks of a field, to a place in memory the field with them. Errors: those of engine::exportMarks.
+[[nodiscard]] engine::Status saveMarks(const engine::Version& field, const std::string& path);
+
+/// Writes edge lines of a field with `grid`. Errors: those of engine::exportLines.
+[[nodiscard]] engine::Status saveLines(const std::string& path, std::span<const engine::EdgeLine> lines,
+                                       const engine::Grid& grid);
 
 /// --to EXT for a command whose OUT may be "-".
 void addStreamFormat(Command command, std::string& to);

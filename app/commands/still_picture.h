@@ -8,7 +8,8 @@
 
 namespace fettle::app {
 
-/// Draws `shown` into a PNG of any size, row by row, completely or not at all. Texts that did not fit are
+/// Draws `shown` into a PNG of any size, row by row, completely or not at all, or into a place in memory
+/// (app/work/memory_places.h). Texts that did not fit are
 /// reported on stderr, each line begun with `name` unless that is empty.
 ///
 /// Errors: those of LivePicture::update, drawRows and PngWriter.

@@ -6,7 +6,6 @@
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/typed_values.h"
-#include "engine/io/raster/marks.h"
 #include "engine/scanner/scanner.h"
 
 namespace fettle::app {
@@ -42,8 +41,7 @@ engine::Result<Report> synth(SynthArguments options, engine::JobControl& job) {
     if (auto status = saveField(scan->truth, options.truth, job); !status)
       return tl::unexpected(status.error());
   if (!options.edges.empty())
-    if (auto status = engine::exportMarks(scan->edges, options.edges); !status)
-      return tl::unexpected(status.error());
+    if (auto status = saveMarks(scan->edges, options.edges); !status) return tl::unexpected(status.error());
   const engine::FieldSummary summary = engine::summarize(scan->scan);
   return Report{{"width", options.spec.width}, {"height", options.spec.height}, {"part", options.spec.part},
                 {"noise", options.spec.noise}, {"seed", options.spec.seed},     {"sigma_mm", scan->sigma_mm},
@@ -94,11 +92,11 @@ void addSynth(Command root, Chosen& chosen) {
       {.name = "--truth",
        .to = &options->truth,
        .text = "Also write the true surface",
-       .kind = ValueKind::kNewFile},
+       .kind = ValueKind::kNewScan},
       {.name = "--edges",
        .to = &options->edges,
        .text = "Also write the true edges as a picture, non-zero = edge",
-       .kind = ValueKind::kNewFile},
+       .kind = ValueKind::kNewMarks},
   });
   command.examples({{"fettle synth scan.tif --size 256x256 --truth truth.tif --edges edges.png",
                      "A scan of the bracket with what is true of it"}});

@@ -1,6 +1,7 @@
 #include "app/commands/value_checks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -52,7 +53,10 @@ std::vector<std::function<std::string(const std::string&)>> problemsOf(const Par
     });
   if (!p.words.empty())
     problems.emplace_back([words = wordsOf(p)](const std::string& typed) { return noneOf(typed, words); });
-  if (p.kind == ValueKind::kFile || p.kind == ValueKind::kNewFile)
+  constexpr std::array kFiles{ValueKind::kFile,    ValueKind::kMarks,   ValueKind::kLines,
+                              ValueKind::kNewFile, ValueKind::kNewScan, ValueKind::kNewMarks,
+                              ValueKind::kNewLines};
+  if (std::ranges::find(kFiles, p.kind) != kFiles.end())
     problems.emplace_back([](const std::string& typed) {
       return isStream(typed)
                  ? std::string(

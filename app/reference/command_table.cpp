@@ -12,7 +12,7 @@ namespace fettle::app {
 
 namespace {
 
-constexpr std::array<ValueKindInfo, 14> kValueKinds{{
+constexpr std::array<ValueKindInfo, 19> kValueKinds{{
     {ValueKind::kByTarget, "", "", ""},
     {ValueKind::kFlag, "flag", "", "nothing: it is on when it is given"},
     {ValueKind::kText, "text", "TEXT", "any text"},
@@ -26,7 +26,12 @@ constexpr std::array<ValueKindInfo, 14> kValueKinds{{
     {ValueKind::kInput, "input", "FILE|-", "a file to read, or - for standard input"},
     {ValueKind::kOutput, "output", "FILE|-", "a file to write, or - for standard output"},
     {ValueKind::kFile, "file", "FILE", "a file to read"},
+    {ValueKind::kMarks, "marks", "FILE", "a picture of marks to read"},
+    {ValueKind::kLines, "lines", "FILE", "a file of edge lines to read"},
     {ValueKind::kNewFile, "new_file", "FILE", "a file to write; it appears whole or not at all"},
+    {ValueKind::kNewScan, "new_scan", "FILE", "a scan to write, format by extension"},
+    {ValueKind::kNewMarks, "new_marks", "FILE", "a picture of marks to write: png, tif"},
+    {ValueKind::kNewLines, "new_lines", "FILE", "a file of edge lines to write: csv, geojson, gpkg, dxf"},
     {ValueKind::kFolder, "folder", "FOLDER", "a folder"},
 }};
 

@@ -27,7 +27,12 @@ enum class ValueKind : std::uint8_t {
   kInput,
   kOutput,
   kFile,
+  kMarks,  ///< a file to read: a picture of marks
+  kLines,  ///< a file to read: edge lines
   kNewFile,
+  kNewScan,
+  kNewMarks,
+  kNewLines,
   kFolder,
 };
 

@@ -17,7 +17,12 @@ Completes completes(const Parameter& p) {
     case ValueKind::kInput:
     case ValueKind::kOutput:
     case ValueKind::kFile:
+    case ValueKind::kMarks:
+    case ValueKind::kLines:
     case ValueKind::kNewFile:
+    case ValueKind::kNewScan:
+    case ValueKind::kNewMarks:
+    case ValueKind::kNewLines:
       return Completes::kFiles;
     case ValueKind::kFolder:
       return Completes::kFolders;

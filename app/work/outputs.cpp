@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include "app/work/memory_places.h"
 #include "app/work/spelling.h"
 #include "app/work/streams.h"
 #include "engine/base/lower_case.h"
@@ -109,9 +110,10 @@ engine::Status checkPlaces(const std::vector<Output>& outputs, const std::vector
   enum class Use : std::uint8_t { kInput, kOutput };
   std::map<std::filesystem::path, Use> taken;
   for (const std::string& input : inputs)
-    if (!input.empty() && !isStream(input)) taken.emplace(placeOf(input), Use::kInput);
+    if (!input.empty() && !isStream(input) && memoryPlace(input) == nullptr)
+      taken.emplace(placeOf(input), Use::kInput);
   for (const Output& output : outputs) {
-    if (output.path.empty()) continue;
+    if (output.path.empty() || memoryPlace(output.path) != nullptr) continue;
     if (auto status = checkOutput(output); !status) return status;
     // A file or folder of that name is not standard output.
     const auto place = isStream(output.path) ? std::filesystem::path() : placeOf(output.path);

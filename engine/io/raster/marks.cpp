@@ -1,8 +1,6 @@
 #include "engine/io/raster/marks.h"
 
-#include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 #include <new>
 #include <optional>
@@ -14,7 +12,7 @@
 #include <gdal.h>
 #include <ogr_srs_api.h>
 
-#include "engine/field/live_field.h"
+#include "engine/field/mark_setter.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/gdal_session.h"
 #include "engine/io/format.h"
@@ -28,51 +26,6 @@
 namespace fettle::engine {
 
 namespace {
-
-// Sets the marks of a field one tile row at a time, from the rows of a picture from top to bottom.
-class MarkSetter {
- public:
-  explicit MarkSetter(const Version& field)
-      : live_(field, Growth::kAllowed), width_(field.grid().width), height_(field.grid().height) {
-    strip_.resize(static_cast<std::size_t>(width_) * kTileSide);
-  }
-
-  // `row` counts from the bottom, and decreases from call to call. False when memory ran out.
-  [[nodiscard]] bool take(std::int32_t row, const unsigned char* pixels) {
-    std::memcpy(strip_.data() + static_cast<std::size_t>(row % kTileSide) * width_, pixels,
-                static_cast<std::size_t>(width_));
-    return row % kTileSide != 0 || applyTileRow(row / kTileSide);
-  }
-  [[nodiscard]] Version result() { return live_.snapshot(); }
-
- private:
-  [[nodiscard]] bool applyTileRow(std::int32_t tr) {
-    const std::int32_t rows = std::min(kTileSide, height_ - tr * kTileSide);
-    for (std::int32_t tc = 0; tc * kTileSide < width_; ++tc) {
-      const std::int32_t columns = std::min(kTileSide, width_ - tc * kTileSide);
-      std::array<std::uint64_t, kTileSide> marks{};
-      for (std::int32_t r = 0; r < rows; ++r) {
-        const unsigned char* from = strip_.data() + static_cast<std::size_t>(r) * width_ + tc * kTileSide;
-        for (std::int32_t c = 0; c < columns; ++c)
-          marks[static_cast<std::size_t>(r)] |= std::uint64_t{from[c] != 0} << c;
-      }
-      const Tile& old = live_.reader().tile(tc, tr);
-      if (old.marks == marks) continue;
-      TileRef fresh = live_.newTile();
-      if (!fresh) return false;
-      *fresh = old;
-      fresh->marks = marks;
-      refreshMarks(*fresh);
-      if (!live_.replaceTile(tc, tr, std::move(fresh))) return false;
-    }
-    return true;
-  }
-
-  LiveField live_;
-  std::int32_t width_;
-  std::int32_t height_;
-  std::vector<unsigned char> strip_;  // one tile row, lowest row first
-};
 
 Result<Version> noMemory(const std::string& path) {
   return failure("there is not enough memory for the marks", path);

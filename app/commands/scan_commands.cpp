@@ -1,0 +1,22 @@
+#include "app/commands/command.h"
+
+namespace fettle::app {
+
+void addScanCommands(Command root, Chosen& chosen) {
+  addInfo(root, chosen);
+  addSynth(root, chosen);
+  addFilter(root, chosen);
+  addLevel(root, chosen);
+  addMeasure(root, chosen);
+  addMark(root, chosen);
+  addLines(root, chosen);
+  addReplay(root, chosen);
+  addRecipe(root, chosen);
+  addApply(root, chosen);
+  addJournal(root, chosen);
+  addRender(root, chosen);
+  addCompare(root, chosen);
+  addConvert(root, chosen);
+}
+
+}  // namespace fettle::app
