@@ -31,6 +31,11 @@ set(FETTLE_METAINFO io.github.fettle.fettle.metainfo.xml)
 configure_file(assets/desktop/${FETTLE_METAINFO}.in ${CMAKE_BINARY_DIR}/${FETTLE_METAINFO} @ONLY)
 
 install(TARGETS fettle RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+# The Python package, where Debian's interpreter looks. A component of its own: a package of its own.
+if(FETTLE_PYTHON_MODULE)
+  install(DIRECTORY ${CMAKE_BINARY_DIR}/python/fettle DESTINATION lib/python3/dist-packages COMPONENT python
+    FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "_fettle.*.so" PATTERN "__pycache__" EXCLUDE)
+endif()
 install(DIRECTORY ${FETTLE_REFERENCE}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES ${FETTLE_REFERENCE}/completion/fettle.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME fettle)

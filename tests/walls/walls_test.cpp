@@ -30,7 +30,7 @@ const std::map<std::string, std::string>& product() {
   static const std::map<std::string, std::string> files = [] {
     std::map<std::string, std::string> found;
     const fs::path top = inSourceTree("");
-    for (const char* folder : {"engine", "haptic", "shaders", "render", "bench", "app"})
+    for (const char* folder : {"engine", "haptic", "shaders", "render", "bench", "app", "python"})
       for (const auto& entry : fs::recursive_directory_iterator(top / folder))
         if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
           found[fs::relative(entry.path(), top).generic_string()] = contentOf(entry.path());

@@ -1,0 +1,340 @@
+"""Python functions made of the tables that `fettle --help` is made of.
+
+Every command has a table of its parameters: name, kind, range, unit, words, default, text. A function of this package
+takes its signature, its documentation and its checks from that table, so a command that gets a row has a new
+parameter here, and a new command a new function.
+"""
+
+import collections
+import inspect
+import json
+import operator
+import os
+import textwrap
+import typing
+import warnings
+
+from . import _fettle
+from ._errors import FettleWarning
+
+REPORTS = "Report and help"
+READING = "Reading the scan"
+WRITING = "Writing"
+
+_NEW = {"new_scan", "new_marks", "new_lines"}
+_TYPES = {
+    "flag": "bool",
+    "text": "str",
+    "whole": "int",
+    "number": "float",
+    "length": "float | str",
+    "size": "tuple[int, int]",
+    "format": "str",
+    "input": "Field | str | os.PathLike",
+    "file": "str | os.PathLike",
+    "marks": "numpy.ndarray | Field | str | os.PathLike",
+    "lines": "list[Line] | Field | str | os.PathLike",
+    "output": "bool | str | os.PathLike",
+    "new_file": "str | os.PathLike",
+    "new_scan": "bool | str | os.PathLike",
+    "new_marks": "bool | str | os.PathLike",
+    "new_lines": "bool | str | os.PathLike",
+    "folder": "str | os.PathLike",
+}
+
+
+def _tables():
+    program = json.loads(_fettle.tables())["program"]
+    return {command["name"]: command for command in program["commands"]}
+
+
+TABLES = _tables()
+
+
+def identifier(row):
+    """The Python name of a row: "--max-change" is max_change, "STROKES" is strokes."""
+    name = row["name"].lstrip("-").replace("-", "_").lower()
+    return name + "_" if name in ("from", "in", "lambda", "global") else name
+
+
+def type_of(row):
+    """The type of a row's values, as it stands in a stub."""
+    if row["kind"] == "word":
+        one = "Literal[" + ", ".join(repr(word["word"]) for word in row["words"]) + "]"
+    else:
+        one = _TYPES[row["kind"]]
+    if row["values"] == 1:
+        return one
+    return f"{one} | Sequence[{one}]" if row["values"] == "any" else f"Sequence[{one}]"
+
+
+def default_of(row):
+    """The default as a Python value; None where nothing stands for it."""
+    if row["kind"] == "flag":
+        return False
+    value = row["default"]
+    if value is None or value == "":
+        return None
+    if row["values"] != 1:
+        return None
+    if row["kind"] == "size":
+        return tuple(int(side) for side in value.split("x"))
+    if row["kind"] == "whole":
+        return int(value)
+    return value
+
+
+class _Call:
+    """One call of a command: its arguments, and what stands in memory."""
+
+    def __init__(self, command):
+        self.arguments = [command]
+        self.given = {}
+        self.made = []
+        self.source = ""
+
+    def scan(self, value, name):
+        """The word for a scan: a place in memory for a Field, else a path."""
+        from ._field import Field
+
+        if isinstance(value, Field):
+            place = f"<{name}>"
+            self.given[place] = value._scan
+            self.source = self.source or place
+            return place
+        return path_word(value)
+
+    def marks(self, value, name, like):
+        from ._field import Field
+
+        if value is True:
+            value = like
+        if isinstance(value, Field):
+            return self.scan(value, name)
+        if isinstance(value, (str, os.PathLike)):
+            return path_word(value)
+        if like is None:
+            raise TypeError(f"{name}: give a Field or a path")
+        place = f"<{name}>"
+        self.given[place] = like.with_marks(value)._scan
+        return place
+
+    def lines(self, value, name):
+        from . import _lines
+        from ._field import Field
+
+        if isinstance(value, (str, os.PathLike)):
+            return path_word(value)
+        if isinstance(value, Field):
+            value = value.lines
+        place = f"<{name}>"
+        self.given[place] = _lines.rows_of(value)
+        return place
+
+    def result(self, name):
+        place = f"<{name}>"
+        self.made.append(place)
+        return place
+
+    def run(self, help_text, progress, stacklevel):
+        report, written, told = _fettle.call(
+            self.arguments, self.given, self.made, self.source, help_text, progress
+        )
+        for text in told:
+            warnings.warn(text, FettleWarning, stacklevel=stacklevel + 1)
+        return json.loads(report), written
+
+
+def path_word(value):
+    """A path as an argument. A name that would count as something else gets its folder."""
+    path = os.fsdecode(value)
+    if not path:
+        from ._errors import InputError
+
+        raise InputError("a path is empty", "", "name a file")
+    return "./" + path if path[0] in "-<" else path
+
+
+def _word(row, value):
+    """One value as typed on the command line."""
+    kind = row["kind"]
+    if kind == "whole":
+        return str(operator.index(value))
+    if kind == "number":
+        return repr(float(value))
+    if kind == "length":
+        return value if isinstance(value, str) else repr(float(value))
+    if kind == "size":
+        return value if isinstance(value, str) else "{}x{}".format(*(operator.index(side) for side in value))
+    if kind in ("file", "input", "output", "folder") or kind.startswith("new_"):
+        return path_word(value)
+    if isinstance(value, (tuple, list)):  # ROW,COLUMN
+        return ",".join(str(part) for part in value)
+    return str(value)
+
+
+class Command:
+    """A Python function that runs a command.
+
+    name: of the function. command: the command's name. first: options that are positional parameters here.
+    fixed: words that are always given. hidden: names of rows that have no meaning here. groups: only rows under these
+    headings, and those in `also`; hides: none under these.
+    """
+
+    def __init__(self, name, command, *, first=(), fixed=(), hidden=(), hides=(), groups=None, also=()):
+        self.name = name
+        self.table = TABLES[command]
+        self.fixed = list(fixed)
+        rows = [row for row in self.table["parameters"] if row["group"] != REPORTS]
+        self.positional = [row for row in rows if row["positional"]]
+        self.rows = collections.OrderedDict()
+        for row in rows:
+            heading = row["group"] or "Options"
+            named = row["name"].lstrip("-")
+            if row["positional"] or named in hidden or named in first:
+                continue
+            if heading in hides or (groups is not None and heading not in groups and named not in also):
+                continue
+            self.rows[identifier(row)] = row
+        self.first = [next(row for row in rows if row["name"].lstrip("-") == name) for name in first]
+
+    def signature(self, before=()):
+        """`before`: parameters in front, those that the function handles itself."""
+        parameters = list(before)
+        kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
+        for row in self.first:
+            parameters.append(inspect.Parameter(identifier(row), kind))
+        kind = inspect.Parameter.KEYWORD_ONLY
+        for name, row in self.rows.items():
+            parameters.append(inspect.Parameter(name, kind, default=default_of(row)))
+        parameters.append(inspect.Parameter("progress", kind, default=None))
+        return inspect.Signature(parameters)
+
+    def documentation(self, returns, example=""):
+        """The command's summary and a line for each parameter, with its range, unit and default."""
+        text = self.table["summary"] + ".\n"
+        rows = [(identifier(row), row) for row in self.first] + list(self.rows.items())
+        if rows:
+            text += "\nParameters:\n"
+        for name, row in rows:
+            entry = f"{name} ({type_of(row)}): {row['text']}"
+            facts = facts_of(row)
+            text += textwrap.fill(
+                entry + (f" ({facts})." if facts else "."),
+                width=96,
+                initial_indent="    ",
+                subsequent_indent="        ",
+                break_long_words=False,
+                break_on_hyphens=False,
+            )
+            text += "\n"
+            for word in row["words"]:
+                if word["text"]:
+                    text += textwrap.fill(
+                        f"{word['word']}: {word['text']}.",
+                        width=96,
+                        initial_indent=" " * 8,
+                        subsequent_indent=" " * 12,
+                        break_on_hyphens=False,
+                    )
+                    text += "\n"
+        text += "    progress (Callable[[str, float], object]): Called about ten times a second with what is being done\n"
+        text += "        and how much of that is done, 0 to 1. An exception in it ends the work, and is raised.\n"
+        text += f"\nReturns:\n{textwrap.indent(textwrap.fill(returns, width=92), '    ')}\n"
+        if self.table["notes"]:
+            text += "\nNotes:\n"
+            for note in self.table["notes"].split("\n"):
+                text += textwrap.fill(note, width=96, initial_indent="    ", subsequent_indent="    ") + "\n"
+        if example:
+            text += "\n" + textwrap.dedent(example).strip() + "\n"
+        return text
+
+    def begin(self):
+        return _Call(self.table["name"])
+
+    def options(self, call, values, like=None):
+        """Adds the arguments of `values`, by Python name. What has its default is not given. Returns what is made in
+        memory: Python name -> place."""
+        made = {}
+        rows = dict(self.rows, **{identifier(row): row for row in self.first})
+        for name, value in values.items():
+            if name not in rows:
+                meant = [each for each in rows if each.startswith(name[:3])]
+                hint = f"; did you mean {', '.join(meant)}?" if meant else ""
+                raise TypeError(f"{self.name}() got an unexpected keyword argument {name!r}{hint}")
+            row = rows[name]
+            option = row["name"]
+            kind = row["kind"]
+            if value is None or value is False:
+                continue
+            if kind == "flag":
+                call.arguments.append(option)
+            elif (kind in _NEW or kind == "output") and value is True:
+                made[name] = call.result(name)
+                call.arguments += [option, made[name]]
+            elif kind == "input":
+                call.arguments += [option, call.scan(value, name)]
+            elif kind == "marks":
+                call.arguments += [option, call.marks(value, name, like)]
+            elif kind == "lines":
+                call.arguments += [option, call.lines(value, name)]
+            elif row["values"] == 1:
+                call.arguments.append(f"{option}={_word(row, value)}")
+            else:
+                many = list(value) if isinstance(value, (list, tuple)) or hasattr(value, "__array__") else [value]
+                words = [_word(row, each) for each in many]
+                if row["between"]:
+                    call.arguments.append(f"{option}={row['between'].join(words)}")
+                else:
+                    for word in words:
+                        call.arguments.append(f"{option}={word}")
+        call.arguments += self.fixed
+        return made
+
+
+def facts_of(row):
+    """Words, range, unit and default of a row: "1 to 1001 samples; default 3"."""
+    facts = []
+    unit = f" {row['unit']}" if row["unit"] else ""
+    if row["range"]:
+        low, high = row["range"]
+        if high is None:
+            facts.append(f"at least {low:g}{unit}")
+        elif low is None:
+            facts.append(f"at most {high:g}{unit}")
+        else:
+            facts.append(f"{low:.10g} to {high:.10g}{unit}")
+    elif unit:
+        facts.append(f"in{unit}")
+    if row["kind"] == "length":
+        facts.append('in the scan\'s unit, or as "20um"')
+    if row["kind"] in _NEW or row["kind"] == "output":
+        facts.append("True returns it in the report instead of writing a file")
+    if row["otherwise"]:
+        facts.append(f"without it: {row['otherwise']}")
+    elif default_of(row) not in (None, False):
+        facts.append(f"default {default_of(row)!r}")
+    excludes = [identifier({"name": name}) for name in row["excludes"]]
+    if excludes:
+        facts.append(f"not with {', '.join(excludes)}")
+    return "; ".join(facts)
+
+
+def documented(command, returns, *, before=(), example=""):
+    """A decorator: gives a function the signature and documentation of a command."""
+
+    def decorate(function):
+        function.__signature__ = command.signature(before)
+        function.__doc__ = command.documentation(returns, example)
+        function.__name__ = command.name
+        function._command = command
+        return function
+
+    return decorate
+
+
+SELF = inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD)
+
+
+def parameter(name, default=inspect.Parameter.empty):
+    return inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD, default=default)

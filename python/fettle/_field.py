@@ -1,0 +1,564 @@
+"""Height fields."""
+
+import os
+import struct
+import warnings
+import zlib
+
+import numpy as np
+
+from . import _fettle, _lines
+from ._commands import READING, SELF, WRITING, Command, documented, parameter, path_word
+from ._errors import Error, FettleWarning
+
+_FILTER = Command(
+    "filter",
+    "filter",
+    first=("filter",),
+    hidden=("suggest", "out-dir", "to", "force"),
+    hides=(READING, WRITING, "Suggesting a filter"),
+)
+_SUGGEST = Command(
+    "suggest",
+    "filter",
+    first=("tolerance",),
+    groups=("Suggesting a filter",),
+    also=("keep", "threads"),
+    hidden=("suggest",),
+    fixed=("--suggest",),
+)
+_MARK = Command("mark", "mark", hides=(READING,))
+_MEASURE_LINES = Command("measure_lines", "lines", hides=(READING,))
+_INFO = Command("info", "info", hides=(READING,))
+_COMPARE = Command("compare", "compare", hidden=("to", "force"), hides=(READING,))
+_RENDER = Command("render", "render", hides=(READING,))
+_APPLY = Command("apply", "apply", hidden=("out-dir", "to", "force"), hides=(READING, WRITING))
+_REPLAY = Command("replay", "replay", hidden=("to", "force"), hides=(READING,))
+_WRITE = Command("write", "convert", hidden=("out-dir", "to"), hides=(READING,))
+
+_FIELD = "Field: the result. Its `report` holds the figures that the command prints with --json."
+
+
+def field_of(scan, name="", report=None):
+    """A Field of a compiled Scan."""
+    field = object.__new__(Field)
+    field._scan = scan
+    field.name = name
+    field.report = report if report is not None else {}
+    return field
+
+
+def _pair(value, what):
+    """One number, or two: x, y."""
+    if np.isscalar(value):
+        return float(value), float(value)
+    pair = tuple(float(each) for each in value)
+    if len(pair) != 2:
+        raise ValueError(f"{what} is one number, or two: x, y")
+    return pair
+
+
+def _value(written):
+    """What a command left in memory, as users of the package see it."""
+    if isinstance(written, _fettle.Scan):
+        return field_of(written)
+    return _lines.lines_of(written) if isinstance(written, list) else written
+
+
+class Field:
+    """A height field: rows x columns of heights, with holes, marks and edge lines. It is never changed: methods return new
+    fields, which share what is the same in both.
+
+    Parameters:
+        heights: array, rows x columns, of numbers; kept as float32. NaN is a hole, and so is what a masked array masks.
+            Row 0 is the row with the LOWEST y, as in a plot, unlike in a picture.
+        spacing: distance between samples, one number or (x, y), in `unit`.
+        unit: of spacing and origin, and of the heights unless `height_unit` says otherwise: nm, um, mm, cm, m, km, in, ft,
+            ftUS.
+        height_unit: of the heights.
+        origin: (x, y) of the sample in column 0 of the lowest row, in `unit`.
+        crs: coordinate reference system as WKT; empty: none.
+        marks: bool array of the same shape: samples that filters leave as they are.
+        lines: edge lines: Line objects, or arrays n x 2 of column and row.
+        top_down: the first row of `heights` and `marks` is the one with the highest y, as in pictures and in rasterio.
+        name: shown in pictures.
+
+    >>> import numpy as np, fettle
+    >>> f = Field([[0.0, 1.0, 2.0], [0.5, np.nan, 2.5]], spacing=0.1, unit="mm")
+    >>> f
+    <fettle.Field 3 x 2 samples, spacing 0.1 x 0.1 mm, heights in mm, 1 hole>
+    >>> np.asarray(f)
+    array([[0. , 1. , 2. ],
+           [0.5, nan, 2.5]], dtype=float32)
+    >>> f.shape, f.spacing, f.unit
+    ((2, 3), (0.1, 0.1), 'mm')
+    """
+
+    __slots__ = ("_scan", "name", "report")
+
+    def __init__(
+        self,
+        heights,
+        spacing=1.0,
+        unit="mm",
+        *,
+        height_unit=None,
+        origin=(0.0, 0.0),
+        crs="",
+        marks=None,
+        lines=None,
+        top_down=False,
+        name="",
+    ):
+        if np.ma.isMaskedArray(heights):
+            heights = heights.astype(np.float32).filled(np.nan)
+        heights = np.asarray(heights, dtype=np.float32)
+        if top_down:
+            heights = heights[::-1]
+        if heights.ndim == 2 and heights.shape[1] > 1 and heights.strides[1] != heights.itemsize:
+            heights = np.ascontiguousarray(heights)
+        self._scan = _fettle.Scan(
+            heights, _pair(spacing, "spacing"), _pair(origin, "origin"), unit, height_unit or unit, crs or ""
+        )
+        for text in self._scan.warnings:
+            warnings.warn(text, FettleWarning, stacklevel=2)
+        self.name = name
+        self.report = {}
+        if marks is not None:
+            self._scan = self.with_marks(marks, top_down=top_down)._scan
+        if lines is not None:
+            self._scan = self.with_lines(lines)._scan
+
+    def _made(self, scan, report=None):
+        return field_of(scan, self.name, report)
+
+    # What it holds.
+
+    @property
+    def shape(self):
+        """(rows, columns)."""
+        return (self._scan.rows, self._scan.columns)
+
+    @property
+    def size(self):
+        """Number of samples, holes included."""
+        return self._scan.rows * self._scan.columns
+
+    @property
+    def spacing(self):
+        """(x, y) between neighbouring samples, in `unit`."""
+        return self._scan.spacing
+
+    @property
+    def origin(self):
+        """(x, y) of the sample in column 0 of row 0, in `unit`."""
+        return self._scan.origin
+
+    @property
+    def unit(self):
+        """Unit of spacing and origin."""
+        return self._scan.unit
+
+    @property
+    def height_unit(self):
+        """Unit of the heights."""
+        return self._scan.height_unit
+
+    @property
+    def crs(self):
+        """Coordinate reference system as WKT; None: none."""
+        return self._scan.crs or None
+
+    @property
+    def x(self):
+        """float64 array, columns: x of each column, in `unit`."""
+        return self.origin[0] + self.spacing[0] * np.arange(self._scan.columns)
+
+    @property
+    def y(self):
+        """float64 array, rows: y of each row, in `unit`; rises with the row."""
+        return self.origin[1] + self.spacing[1] * np.arange(self._scan.rows)
+
+    @property
+    def transform(self):
+        """(a, b, c, d, e, f) of rasterio's Affine for `array(top_down=True)`: x = a column + b row + c, y = d column +
+        e row + f, of the upper left corner of a pixel."""
+        (sx, sy), (x, y) = self.spacing, self.origin
+        top = y + sy * (self._scan.rows - 1)
+        return (sx, 0.0, x - 0.5 * sx, 0.0, -sy, top + 0.5 * sy)
+
+    @property
+    def holes(self):
+        """Number of samples without a height."""
+        return self._scan.holes()
+
+    @property
+    def hash(self):
+        """Hash over size, heights and marks, as 16 hexadecimal digits: what the commands report as `hash`."""
+        return self._scan.hash()
+
+    @property
+    def original(self):
+        """The field as it was read, before any step: what `max_change` limits changes relative to, and what a session
+        begins with."""
+        return field_of(self._scan.original(), self.name)
+
+    @property
+    def format(self):
+        """The format it was read from; empty where there was none."""
+        return self._scan.format
+
+    @property
+    def gridding(self):
+        """Of a point cloud, how it became a grid, as a dict; else None."""
+        return self._scan.gridding
+
+    def array(self, top_down=False):
+        """The heights as a new float32 array, rows x columns, NaN where there is a hole, in `height_unit`. Row 0 is the
+        lowest one, with `top_down` the highest one."""
+        heights = self._scan.heights()
+        return heights[::-1] if top_down else heights
+
+    def __array__(self, dtype=None, copy=None):
+        heights = self._scan.heights()
+        return heights if dtype is None else heights.astype(dtype, copy=False)
+
+    def masked(self):
+        """The heights as a masked array, holes masked."""
+        return np.ma.masked_invalid(self._scan.heights(), copy=False)
+
+    @property
+    def marks(self):
+        """bool array in the field's shape: samples that filters leave as they are. Row 0 is the lowest one."""
+        return self._scan.marks()
+
+    def with_marks(self, marks, *, top_down=False):
+        """The field with exactly these marks: bool array of its shape, or another Field whose marks are taken.
+
+        >>> f = Field([[0.0, 1.0], [2.0, 3.0]]).with_marks([[True, False], [False, False]])
+        >>> f.marks
+        array([[ True, False],
+               [False, False]])
+        """
+        marks = marks.marks if isinstance(marks, Field) else np.asarray(marks) != 0
+        return self._made(self._scan.with_marks(marks[::-1] if top_down else marks))
+
+    @property
+    def lines(self):
+        """The edge lines, a list of Line."""
+        return _lines.lines_of(self._scan.lines())
+
+    def with_lines(self, lines):
+        """The field with exactly these edge lines: Line objects, or arrays n x 2 of column and row [samples]. Where points
+        are more than two samples apart, others are inserted between them. An empty list leaves none."""
+        return self._made(self._scan.with_lines(_lines.rows_of(lines)))
+
+    def with_heights(self, heights, *, top_down=False):
+        """A field at the same place with other heights, an array of its shape, and the same marks.
+
+        >>> f = Field([[1.0, 2.0]], spacing=0.5, unit="um")
+        >>> f.with_heights(np.asarray(f) - 1.0)
+        <fettle.Field 2 x 1 samples, spacing 0.5 x 0.5 um, heights in um, no holes>
+        """
+        if np.shape(heights) != self.shape:
+            raise ValueError(f"the heights have the shape {np.shape(heights)}, the field {self.shape}")
+        marks = self.marks
+        made = Field(
+            heights,
+            self.spacing,
+            self.unit,
+            height_unit=self.height_unit,
+            origin=self.origin,
+            crs=self.crs,
+            marks=None,
+            top_down=top_down,
+            name=self.name,
+        )
+        return made.with_marks(marks) if marks.any() else made
+
+    def inverted(self):
+        """The field upside down: heights change their signs."""
+        return self._made(self._scan.inverted())
+
+    def __repr__(self):
+        (sx, sy), holes = self.spacing, self.holes
+        hole = "no holes" if holes == 0 else "1 hole" if holes == 1 else f"{holes} holes"
+        return (
+            f"<fettle.Field {self._scan.columns} x {self._scan.rows} samples, spacing {sx:.6g} x {sy:.6g} {self.unit}, "
+            f"heights in {self.height_unit}, {hole}>"
+        )
+
+    def __copy__(self):
+        return self
+
+    def __deepcopy__(self, memo):
+        return self
+
+    # What is done with it: commands.
+
+    def _run(self, command, values, *, before=(), after=(), out=None, progress=None):
+        """Runs a command on this field. `before`, `after`: positional arguments around it; `out`: the name under which it
+        writes its result, or None. Returns its report, and the result."""
+        call = command.begin()
+        made = command.options(call, values, like=self)
+        call.arguments += before
+        call.arguments.append(call.scan(self, "field"))
+        call.source = "<field>"
+        call.arguments += [word(call) if callable(word) else word for word in after]
+        if out is not None:
+            call.arguments.append(call.result(out))
+        report, written = call.run(f"see help(fettle.Field.{command.name})", progress, 3)
+        for name, place in made.items():
+            report[name] = _value(written[place])
+        return report, None if out is None else written[f"<{out}>"]
+
+    @documented(_FILTER, _FIELD, before=(SELF,), example='''
+        >>> f = fettle.synth(size=(96, 64), seed=7)
+        >>> g = f.filter("median", window=5).filter("tgv", max_change="50um")
+        >>> g.report["filter"], g.shape
+        ('tgv', (64, 96))
+    ''')
+    def filter(self, filter, *, progress=None, **options):
+        report, made = self._run(
+            _FILTER, {"filter": filter, **options}, out="result", progress=progress
+        )
+        return self._made(made, report)
+
+    @documented(
+        _SUGGEST,
+        "Suggestion: a dict of what was found: `why` as a sentence, `pick`, `candidates`, `noise`. `apply()` returns "
+        "the field after what was picked.",
+        before=(SELF,),
+        example='''
+        >>> f = fettle.synth(size=(96, 64), seed=7)
+        >>> found = f.suggest("30um")
+        >>> sorted(found["pick"])[:3]
+        ['around_edges', 'error_edge', 'error_flat']
+        >>> g = found.apply()
+    ''',
+    )
+    def suggest(self, tolerance=None, *, progress=None, **options):
+        report, _ = self._run(_SUGGEST, {"tolerance": tolerance, **options}, progress=progress)
+        return Suggestion(self, report, {name: options[name] for name in ("keep", "threads") if name in options})
+
+    @documented(_MARK, "Field: the field with the marks, and with the lines of `lines_out=True`.", before=(SELF,), example='''
+        >>> f = fettle.synth(size=(128, 96), seed=7)
+        >>> g = f.mark(edges=True, lines_out=True)
+        >>> bool(g.marks.any()), len(g.lines) > 0
+        (True, True)
+    ''')
+    def mark(self, *, progress=None, **options):
+        report, made = self._run(_MARK, options, out="marks", progress=progress)
+        field = self._made(made, report)
+        if options.get("lines_out") is True:
+            field = field.with_lines(report.pop("lines_out"))
+            field.report = report
+        return field
+
+    @documented(
+        _MEASURE_LINES,
+        "dict: for each line its length, step and angle with their standard deviations, in `lines`.",
+        before=(SELF, parameter("lines", None)),
+    )
+    def measure_lines(self, lines=None, *, progress=None, **options):
+        after = [] if lines is None else [lambda call: call.lines(lines, "lines")]
+        report, _ = self._run(_MEASURE_LINES, options, after=after, progress=progress)
+        return report
+
+    @documented(_INFO, "dict: the properties, as `fettle info --json` prints them.", before=(SELF,), example='''
+        >>> f = Field([[0.0, 1.0], [2.0, 3.0]], spacing=0.5)
+        >>> info = f.info()
+        >>> info["width"], info["spacing_x"], info["mean"]
+        (2, 0.5, 1.5)
+    ''')
+    def info(self, *, progress=None, **options):
+        report, _ = self._run(_INFO, options, progress=progress)
+        return report
+
+    @documented(
+        _COMPARE,
+        "dict: the figures, lengths in this field's height unit.",
+        before=(SELF, parameter("other")),
+        example='''
+        >>> f = Field([[0.0, 1.0], [2.0, 3.0]])
+        >>> f.compare(f.with_heights(np.asarray(f) + 1))["mean"]
+        1.0
+    ''',
+    )
+    def compare(self, other, *, progress=None, **options):
+        report, _ = self._run(
+            _COMPARE, options, after=[lambda call: call.scan(other, "other")], progress=progress
+        )
+        return report
+
+    @documented(
+        _RENDER,
+        "uint8 array, height x width x 4: red, green, blue and opacity, row 0 at the TOP, as pictures are.",
+        before=(SELF,),
+    )
+    def render(self, *, progress=None, **options):
+        options.setdefault("title", self.name or "field")
+        if isinstance(options.get("compare"), Field):
+            options.setdefault("compare_title", options["compare"].name or "other")
+        _, picture = self._run(_RENDER, options, out="picture", progress=progress)
+        return picture
+
+    @documented(_APPLY, _FIELD, before=(SELF, parameter("recipe")))
+    def apply(self, recipe, *, progress=None, **options):
+        report, made = self._run(_APPLY, options, before=[path_word(recipe)], out="result", progress=progress)
+        return self._made(made, report)
+
+    @documented(_REPLAY, _FIELD, before=(SELF, parameter("strokes")))
+    def replay(self, strokes, *, progress=None, **options):
+        report, made = self._run(
+            _REPLAY, options, after=[path_word(strokes)], out="result", progress=progress
+        )
+        return self._made(made, report)
+
+    @documented(_WRITE, "Field: this one, so that calls chain.", before=(SELF, parameter("path")), example='''
+        >>> import os, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "ramp.tif")
+        ...     _ = Field([[0.0, 1.0], [2.0, 3.0]], spacing=0.5).write(path, compress="zstd")
+        ...     np.asarray(fettle.read(path))
+        array([[0., 1.],
+               [2., 3.]], dtype=float32)
+    ''')
+    def write(self, path, *, progress=None, **options):
+        self._run(_WRITE, options, after=[path_word(path)], progress=progress)
+        return self
+
+    def _repr_png_(self):
+        """The shaded picture, for notebooks; None where no device can draw."""
+        try:
+            return png_of(self.render(size=(640, 400)))
+        except Error:
+            return None
+
+    # Beside other packages.
+
+    @classmethod
+    def from_rasterio(cls, dataset, band=1):
+        """A band of an open rasterio dataset, with its place. What its mask hides is a hole. Its transform must have no
+        rotation. Heights count as in the unit of the coordinate system unless the band names another."""
+        a, b, c, d, e, f = tuple(dataset.transform)[:6]
+        if b != 0 or d != 0:
+            raise ValueError("the dataset is rotated: warp it first")
+        heights = dataset.read(band, masked=True)
+        if a < 0:
+            heights, a, c = heights[:, ::-1], -a, c + a * heights.shape[1]
+        rows = heights.shape[0]
+        low, down = (f + e * rows, True) if e < 0 else (f, False)
+        unit = _unit_named(dataset.crs.linear_units) if dataset.crs and not dataset.crs.is_geographic else None
+        if unit is None and dataset.crs:
+            raise ValueError("the dataset has no lengths in its coordinates: read its file with fettle.read")
+        return cls(
+            heights,
+            (a, abs(e)),
+            unit or "mm",
+            height_unit=_unit_named(dataset.units[band - 1] or "") or unit or "mm",
+            origin=(c + 0.5 * a, low + 0.5 * abs(e)),
+            crs=dataset.crs.to_wkt() if dataset.crs else "",
+            top_down=down,
+            name=os.path.basename(dataset.name or ""),
+        )
+
+    @classmethod
+    def from_xarray(cls, array, unit=None):
+        """A DataArray of two dimensions, y before x, with evenly spaced coordinates. The unit is that of the attribute
+        `units` of x, else `unit`, else mm; that of the heights is the attribute `units` of the array, else the same."""
+        if array.ndim != 2:
+            raise ValueError(f"the array has {array.ndim} dimensions, not y and x")
+        rows, columns = (_axis(array, name) for name in array.dims)
+        unit = _unit_named(array.coords[array.dims[1]].attrs.get("units", "")) or unit or "mm"
+        heights = np.asarray(array)
+        if columns[1] < 0:
+            heights = heights[:, ::-1]
+        return cls(
+            heights,
+            (abs(columns[1]), abs(rows[1])),
+            unit,
+            height_unit=_unit_named(array.attrs.get("units", "")) or unit,
+            origin=(columns[0], rows[0]),
+            top_down=rows[1] < 0,
+            name=str(array.name or ""),
+        )
+
+    def to_xarray(self):
+        """A DataArray with the dimensions y, x, their coordinates in `unit`, marks as the coordinate `marks`. Row 0 has the
+        lowest y."""
+        import xarray
+
+        return xarray.DataArray(
+            self.array(),
+            dims=("y", "x"),
+            coords={
+                "y": ("y", self.y, {"units": self.unit}),
+                "x": ("x", self.x, {"units": self.unit}),
+                "marks": (("y", "x"), self.marks),
+            },
+            name=self.name or "height",
+            attrs={"units": self.height_unit, **({"crs": self.crs} if self.crs else {})},
+        )
+
+
+class Suggestion(dict):
+    """What `Field.suggest` found, as a dict."""
+
+    def __init__(self, field, report, options):
+        super().__init__(report)
+        self._field = field
+        self._options = options
+
+    def apply(self, *, progress=None):
+        """The field after the filter that was picked, around marked edges where that was picked, too. The same field
+        where no filter is needed."""
+        pick = self["pick"]
+        if pick["filter"] is None:
+            return self._field
+        field, options = self._field, dict(self._options)
+        if pick["around_edges"]:
+            keep = options.pop("keep", None)
+            field = field.mark(edges=True, thickness=pick["thickness"], add=keep, progress=progress)
+        for name in ("window", "passes", "range_sigma"):
+            options[name] = pick[name]
+        return field.filter(pick["filter"], progress=progress, **options)
+
+
+_UNITS = {"metre": "m", "meter": "m", "metres": "m", "meters": "m", "millimetre": "mm", "millimeter": "mm",
+          "micrometre": "um", "micrometer": "um", "µm": "um", "foot": "ft", "feet": "ft", "us survey foot": "ftUS"}
+
+
+def _unit_named(name):
+    name = str(name or "").strip()
+    short = _UNITS.get(name.lower(), name)
+    return short if short in ("nm", "um", "mm", "cm", "m", "km", "in", "ft", "ftUS") else None
+
+
+def _axis(array, name):
+    """(lowest coordinate, step with its sign) of an evenly spaced axis."""
+    values = np.asarray(array.coords[name], dtype=np.float64)
+    if len(values) < 2:
+        return float(values[0]), 1.0
+    step = (values[-1] - values[0]) / (len(values) - 1)
+    if step == 0 or np.max(np.abs(values - (values[0] + step * np.arange(len(values))))) > 0.01 * abs(step):
+        raise ValueError(f"the coordinates of {name} are not evenly spaced")
+    return float(min(values[0], values[-1])), float(step)
+
+
+def png_of(picture):
+    """A picture, uint8, height x width x 4, as bytes of a PNG."""
+    height, width, channels = picture.shape
+    rows = np.zeros((height, 1 + channels * width), dtype=np.uint8)  # a row begins with its filter: 0, none
+    rows[:, 1:] = picture.reshape(height, -1)
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 6, 0, 0, 0)
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + chunk(b"IDAT", zlib.compress(rows.tobytes(), 6))
+        + chunk(b"IEND", b"")
+    )

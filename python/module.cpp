@@ -1,0 +1,136 @@
+// The compiled part of the package fettle: scans, calls of commands, sessions. The package itself is written in Python
+// (python/fettle), where its signatures and documentation are.
+
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "engine/field/version.h"
+#include "engine/formats/formats.h"
+#include "python/calls.h"
+#include "python/scan.h"
+#include "python/session_reader.h"
+
+namespace fettle::python {
+
+namespace py = pybind11;
+
+namespace {
+
+py::list formats() {
+  py::list all;
+  for (const engine::FormatInfo& format : engine::formats()) {
+    py::list extensions;
+    for (const std::string_view extension : format.extensions) extensions.append(std::string(extension));
+    all.append(py::make_tuple(std::string(format.name), std::string(format.description), extensions,
+                              format.reads, format.writes));
+  }
+  return all;
+}
+
+engine::FieldSummary summaryOf(const Scan& scan) {
+  const py::gil_scoped_release released;
+  return engine::summarize(scan.data.field);
+}
+
+std::string hashOf(const Scan& scan) {
+  const py::gil_scoped_release released;
+  return fmt::format("{:016x}", engine::contentHash(scan.data.field));
+}
+
+void addScan(py::module_& module) {
+  py::class_<Scan>(module, "Scan")
+      .def(py::init([](const py::array_t<float>& heights, std::pair<double, double> spacing,
+                       std::pair<double, double> origin, std::string unit, std::string height_unit,
+                       std::string crs) {
+        return scanOf(heights, {spacing, origin, std::move(unit), std::move(height_unit), std::move(crs)});
+      }))
+      .def("heights", heightsOf)
+      .def("marks", marksOf)
+      .def("with_marks", withMarks)
+      .def("lines",
+           [](const Scan& scan) {
+             const engine::EdgeLines& lines = scan.data.field.lines();
+             return lines == nullptr ? std::vector<LineRow>() : rowsOf(*lines);
+           })
+      .def("with_lines", withLines)
+      .def("inverted",
+           [](const Scan& scan) {
+             Scan made = scan;
+             made.data.field = scan.data.field.inverted();
+             made.data.original = scan.original().inverted();
+             return made;
+           })
+      .def("hash", hashOf)
+      .def("holes", [](const Scan& scan) { return summaryOf(scan).no_data; })
+      .def("marked", [](const Scan& scan) { return summaryOf(scan).marked; })
+      .def("range",
+           [](const Scan& scan) {
+             const engine::HeightBounds bounds = scan.data.field.reader().bounds();
+             return std::pair(bounds.min, bounds.max);
+           })
+      .def("original",
+           [](const Scan& scan) {
+             Scan made;
+             made.data.field = scan.original();
+             made.data.format = scan.data.format;
+             return made;
+           })
+      .def_property_readonly("rows", [](const Scan& scan) { return scan.grid().height; })
+      .def_property_readonly("columns", [](const Scan& scan) { return scan.grid().width; })
+      .def_property_readonly(
+          "spacing", [](const Scan& scan) { return std::pair(scan.grid().spacing_x, scan.grid().spacing_y); })
+      .def_property_readonly(
+          "origin", [](const Scan& scan) { return std::pair(scan.grid().origin_x, scan.grid().origin_y); })
+      .def_property_readonly("unit", [](const Scan& scan) { return scan.grid().lateral_unit.name; })
+      .def_property_readonly("height_unit", [](const Scan& scan) { return scan.grid().height_unit.name; })
+      .def_property_readonly("crs", [](const Scan& scan) { return scan.grid().crs_wkt; })
+      .def_property_readonly("format", [](const Scan& scan) { return scan.data.format; })
+      .def_property_readonly("warnings", [](const Scan& scan) { return scan.data.warnings; })
+      .def_property_readonly("gridding", [](const Scan& scan) -> py::object {
+        if (!scan.data.gridding) return py::none();
+        py::dict report;
+        report["points"] = scan.data.gridding->points;
+        report["cells"] = scan.data.gridding->cells;
+        report["empty_cells"] = scan.data.gridding->empty_cells;
+        report["multiple_cells"] = scan.data.gridding->multiple_cells;
+        report["lattice"] = scan.data.gridding->lattice;
+        return report;
+      });
+}
+
+void addSession(py::module_& module) {
+  py::class_<SessionReader>(module, "SessionReader")
+      .def(py::init(&SessionReader::open))
+      .def("steps",
+           [](const SessionReader& session) {
+             py::list steps;
+             for (const SessionStep& step : session.steps())
+               steps.append(py::make_tuple(step.number, step.name, step.kind, step.time));
+             return steps;
+           })
+      .def("field", &SessionReader::field)
+      .def("original", &SessionReader::original)
+      .def_property_readonly("state", &SessionReader::state)
+      .def_property_readonly("first", &SessionReader::first)
+      .def_property_readonly("last", &SessionReader::last)
+      .def_property_readonly("scan_path", &SessionReader::scanPath);
+}
+
+}  // namespace
+
+}  // namespace fettle::python
+
+PYBIND11_MODULE(_fettle, module) {
+  using namespace fettle::python;
+  module.attr("version") = FETTLE_VERSION;
+  addScan(module);
+  addSession(module);
+  module.def("formats", formats);
+  module.def("tables", commandTables);
+  module.def("call", callCommand);
+}

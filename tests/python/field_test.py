@@ -1,0 +1,202 @@
+"""Fields as arrays: what goes in comes out, and what cannot go in is refused with its reason."""
+
+import os
+import tempfile
+import unittest
+import warnings
+
+import numpy as np
+
+import fettle
+
+
+def wave(rows=70, columns=131):
+    """Heights with holes, not a multiple of a tile in either direction."""
+    y, x = np.mgrid[0:rows, 0:columns]
+    heights = (np.sin(x / 9.0) + 0.1 * y).astype(np.float32)
+    heights[3:5, 60:70] = np.nan
+    heights[rows - 1, columns - 1] = np.nan
+    return heights
+
+
+class Arrays(unittest.TestCase):
+    def test_heights_come_out_as_they_went_in(self):
+        heights = wave()
+        np.testing.assert_array_equal(np.asarray(fettle.Field(heights)), heights)
+
+    def test_every_small_size_comes_out_as_it_went_in(self):
+        for rows in (1, 2, 63, 64, 65):
+            for columns in (1, 2, 63, 64, 65, 129):
+                heights = np.arange(rows * columns, dtype=np.float32).reshape(rows, columns)
+                np.testing.assert_array_equal(np.asarray(fettle.Field(heights)), heights)
+
+    def test_views_of_any_strides_are_taken_as_numpy_sees_them(self):
+        heights = wave()
+        for view in (heights[::-1], heights[:, ::-1], heights[::2, ::3], heights.T, np.asfortranarray(heights)):
+            np.testing.assert_array_equal(np.asarray(fettle.Field(view)), view)
+
+    def test_other_types_become_float32(self):
+        for kind in (np.uint16, np.int32, np.float64, bool):
+            heights = np.array([[0, 1, 1], [1, 0, 1]], dtype=kind)
+            out = np.asarray(fettle.Field(heights))
+            self.assertEqual(out.dtype, np.float32)
+            np.testing.assert_array_equal(out, heights.astype(np.float32))
+
+    def test_top_down_turns_rows_over_on_the_way_in_and_out(self):
+        heights = wave()
+        field = fettle.Field(heights, top_down=True)
+        np.testing.assert_array_equal(np.asarray(field), heights[::-1])
+        np.testing.assert_array_equal(field.array(top_down=True), heights)
+
+    def test_masked_samples_are_holes(self):
+        heights = np.ma.masked_array([[1.0, 2.0], [3.0, 4.0]], mask=[[False, True], [False, False]])
+        field = fettle.Field(heights)
+        self.assertEqual(field.holes, 1)
+        np.testing.assert_array_equal(field.masked().mask, heights.mask)
+
+    def test_an_infinity_becomes_a_hole_with_a_warning(self):
+        with self.assertWarnsRegex(fettle.FettleWarning, "1 infinite"):
+            field = fettle.Field([[1.0, np.inf]])
+        self.assertEqual(field.holes, 1)
+
+    def test_holes_are_counted_without_the_borders_of_tiles(self):
+        heights = wave()
+        self.assertEqual(fettle.Field(heights).holes, int(np.isnan(heights).sum()))
+
+    def test_arrays_that_come_out_are_copies(self):
+        field = fettle.Field(wave())
+        before = field.hash
+        np.asarray(field)[:] = 0.0
+        field.marks[:] = True
+        self.assertEqual(field.hash, before)
+
+    def test_what_is_no_height_field_is_refused(self):
+        for heights in (np.zeros(3), np.zeros((2, 2, 2)), np.zeros((0, 4))):
+            with self.assertRaises(fettle.InputError):
+                fettle.Field(heights)
+        for wrong in ({"spacing": 0.0}, {"spacing": np.nan}, {"unit": "furlong"}, {"origin": (np.nan, 0.0)}):
+            with self.assertRaises(fettle.InputError, msg=str(wrong)) as refused:
+                fettle.Field([[1.0]], **wrong)
+            self.assertIsInstance(refused.exception, ValueError)
+            self.assertTrue(refused.exception.remedy)
+
+    def test_place_and_units_are_kept(self):
+        field = fettle.Field(wave(), (0.5, 0.25), "um", height_unit="nm", origin=(5e6, -2.0))
+        self.assertEqual(field.spacing, (0.5, 0.25))
+        self.assertEqual(field.origin, (5e6, -2.0))
+        self.assertEqual((field.unit, field.height_unit, field.crs), ("um", "nm", None))
+        self.assertEqual(field.x[1] - field.x[0], 0.5)
+        self.assertEqual(field.y[-1], -2.0 + 0.25 * 69)
+        self.assertEqual(field.transform, (0.5, 0.0, 5e6 - 0.25, 0.0, -0.25, -2.0 + 0.25 * 69 + 0.125))
+
+
+class Marks(unittest.TestCase):
+    def test_marks_come_out_as_they_went_in(self):
+        field = fettle.Field(wave())
+        mask = np.random.default_rng(1).random(field.shape) < 0.3
+        np.testing.assert_array_equal(field.with_marks(mask).marks, mask)
+        np.testing.assert_array_equal(field.with_marks(mask[::-1], top_down=True).marks, mask)
+        np.testing.assert_array_equal(field.with_marks(field.with_marks(mask)).marks, mask)
+        self.assertFalse(field.marks.any())
+
+    def test_marks_of_another_shape_are_refused(self):
+        with self.assertRaises(fettle.InputError):
+            fettle.Field(wave()).with_marks([[True]])
+
+    def test_a_filter_leaves_marked_samples_as_they_are(self):
+        field = fettle.Field(wave())
+        mask = np.zeros(field.shape, dtype=bool)
+        mask[:, :60] = True
+        for made in (field.with_marks(mask).filter("median", window=5), field.filter("median", window=5, keep=mask)):
+            np.testing.assert_array_equal(np.asarray(made)[mask], np.asarray(field)[mask])
+            self.assertGreater(made.report["changed"], 0)
+        only = field.filter("median", window=5, only=mask)
+        np.testing.assert_array_equal(np.asarray(only)[~mask], np.asarray(field)[~mask])
+
+
+class Lines(unittest.TestCase):
+    def test_lines_come_out_as_they_went_in_with_points_between(self):
+        field = fettle.Field(wave()).with_lines([[[3.0, 4.0], [9.0, 4.0]], fettle.Line([[1.5, 1.5]], id=8)])
+        first, second = field.lines
+        np.testing.assert_array_equal(first.points, [[3 + k, 4] for k in range(7)])
+        np.testing.assert_array_equal(second.points, [[1.5, 1.5]])
+        self.assertEqual((first.id, second.id), (0, 8))
+        again = field.with_lines(field.lines)
+        np.testing.assert_array_equal(again.lines[0].points, first.points)
+        self.assertEqual(field.with_lines([]).lines, [])
+
+    def test_lines_far_from_the_field_or_without_numbers_are_refused(self):
+        for points in ([[1e7, 0.0]], [[np.nan, 0.0]]):
+            with self.assertRaises(fettle.InputError):
+                fettle.Field(wave()).with_lines([points])
+        with self.assertRaises(ValueError):
+            fettle.Line([1.0, 2.0])
+
+
+class Calls(unittest.TestCase):
+    def test_a_misspelt_parameter_is_a_type_error_with_a_suggestion(self):
+        with self.assertRaisesRegex(TypeError, "window"):
+            fettle.Field(wave()).filter("median", windows=5)
+
+    def test_a_value_out_of_range_is_an_input_error(self):
+        with self.assertRaisesRegex(fettle.InputError, "1 to 1001"):
+            fettle.Field(wave()).filter("median", window=5000)
+        with self.assertRaisesRegex(fettle.InputError, "median"):
+            fettle.Field(wave()).filter("medain")
+
+    def test_errors_have_what_where_and_remedy(self):
+        with self.assertRaises(fettle.InputError) as refused:
+            fettle.read("/there/is/no.tif")
+        self.assertEqual(refused.exception.where, "/there/is/no.tif")
+        self.assertIn(refused.exception.what, str(refused.exception))
+
+    def test_a_path_that_looks_like_something_else_is_a_path(self):
+        for name in ("-", "<field>", "--help"):
+            with self.assertRaises(fettle.InputError) as refused:
+                fettle.read(name)
+            self.assertEqual(refused.exception.where, "./" + name)
+
+    def test_what_a_file_does_not_state_is_a_warning(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "plain.xyz")
+            with open(path, "w", encoding="ascii") as file:
+                file.writelines(f"{x} {y} {x * y}\n" for y in range(4) for x in range(5))
+            with self.assertWarns(fettle.FettleWarning) as told:
+                field = fettle.read(path)
+            self.assertEqual(field.shape, (4, 5))
+            self.assertEqual(field.name, "plain.xyz")
+            self.assertEqual(told.filename, __file__)
+            with warnings.catch_warnings():
+                warnings.simplefilter("error")
+                fettle.read(path, unit="mm", spacing=(1.0, 1.0))
+
+    def test_limits_of_change_are_relative_to_the_field_as_it_was_read(self):
+        field = fettle.Field(wave() + np.random.default_rng(2).normal(0.0, 0.3, (70, 131)))
+        made = field.filter("median", window=7).filter("gaussian", window=9, max_change=0.05)
+        change = np.nanmax(np.abs(np.asarray(made) - np.asarray(field)))
+        self.assertLessEqual(change, np.float32(0.05) + 1e-6)
+        np.testing.assert_array_equal(np.asarray(made.original), np.asarray(field))
+
+    def test_inverting_twice_is_the_same(self):
+        field = fettle.Field(wave())
+        self.assertEqual(field.inverted().inverted().hash, field.hash)
+        np.testing.assert_array_equal(np.asarray(field.inverted()), -np.asarray(field))
+
+
+class Xarray(unittest.TestCase):
+    def test_a_data_array_comes_back_the_same(self):
+        try:
+            import xarray
+        except ImportError:
+            self.skipTest("python3-xarray is not installed")
+        field = fettle.Field(wave(), (0.5, 0.25), "um", height_unit="nm", origin=(3.0, 4.0))
+        array = field.to_xarray()
+        for turned in (array, array[::-1], array[:, ::-1]):
+            back = fettle.Field.from_xarray(turned)
+            self.assertEqual(back.hash, field.hash)
+            self.assertEqual((back.unit, back.height_unit, back.origin), ("um", "nm", (3.0, 4.0)))
+            np.testing.assert_allclose(back.spacing, field.spacing, rtol=1e-12)
+
+
+if __name__ == "__main__":
+    unittest.main()
