@@ -16,7 +16,7 @@ fettle.InputError and fettle.Error.
 import os as _os
 
 from . import _commands, _fettle, _field
-from ._commands import READING, Command, documented, parameter, path_word
+from ._commands import PATH, READING, Command, documented, parameter, path_word
 from ._errors import Error, FettleWarning, InputError
 from ._field import Field, Suggestion
 from ._lines import Line
@@ -43,7 +43,7 @@ _SYNTH = Command("synth", "synth", hidden=("to", "force"))
 _REPLAY = Command("replay", "replay", hidden=("to", "force"), hides=(READING,))
 
 
-@documented(_READ, "Field: of a session its present state, marks and edge lines included.", before=(parameter("path"),))
+@documented(_READ, "Field: of a session its present state, marks and edge lines included.", before=(parameter("path", PATH),),)
 def read(path, *, progress=None, **options):
     call = _READ.begin()
     call.arguments.append(path_word(path))
@@ -76,7 +76,7 @@ def synth(*, progress=None, **options):
 @documented(
     _REPLAY,
     "Field: the scan after the strokes; of a session alone what its journal leads to.",
-    before=(parameter("scan"), parameter("strokes", None)),
+    before=(parameter("scan", "Field | str | os.PathLike"), parameter("strokes", "str | os.PathLike | None", None)),
 )
 def replay(scan, strokes=None, *, progress=None, **options):
     if strokes is None:
@@ -84,7 +84,7 @@ def replay(scan, strokes=None, *, progress=None, **options):
     return (scan if isinstance(scan, Field) else read(scan)).replay(strokes, progress=progress, **options)
 
 
-def formats():
+def formats() -> list[tuple[str, str, list[str], bool, bool]]:
     """list of tuples: name, description, extensions, whether it can be read and whether it can be written.
 
     >>> [name for name, _, extensions, _, writes in fettle.formats() if ".tif" in extensions]

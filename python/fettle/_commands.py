@@ -10,13 +10,16 @@ import inspect
 import json
 import operator
 import os
+import re
 import textwrap
-import typing
 import warnings
 
 from . import _fettle
 from ._errors import FettleWarning
 
+PROGRESS = """    progress (Callable[[str, float], object]): Called about ten times a second with what is being
+        done, and how much of that is done, 0 to 1. An exception in it ends the work, and is raised.
+"""
 REPORTS = "Report and help"
 READING = "Reading the scan"
 WRITING = "Writing"
@@ -32,7 +35,7 @@ _TYPES = {
     "format": "str",
     "input": "Field | str | os.PathLike",
     "file": "str | os.PathLike",
-    "marks": "numpy.ndarray | Field | str | os.PathLike",
+    "marks": "bool | numpy.ndarray | Field | str | os.PathLike",
     "lines": "list[Line] | Field | str | os.PathLike",
     "output": "bool | str | os.PathLike",
     "new_file": "str | os.PathLike",
@@ -55,6 +58,11 @@ def identifier(row):
     """The Python name of a row: "--max-change" is max_change, "STROKES" is strokes."""
     name = row["name"].lstrip("-").replace("-", "_").lower()
     return name + "_" if name in ("from", "in", "lambda", "global") else name
+
+
+def in_python(text):
+    """A text of the table with the names that parameters have here: --max-change is `max_change`."""
+    return re.sub(r"(?<![\w-])--([a-z][a-z-]*)", lambda m: f"`{identifier({'name': m.group(1)})}`", text)
 
 
 def type_of(row):
@@ -203,7 +211,8 @@ class Command:
         parameters = list(before)
         kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
         for row in self.first:
-            parameters.append(inspect.Parameter(identifier(row), kind))
+            default = inspect.Parameter.empty if identifier(row) == "filter" else None
+            parameters.append(inspect.Parameter(identifier(row), kind, default=default))
         kind = inspect.Parameter.KEYWORD_ONLY
         for name, row in self.rows.items():
             parameters.append(inspect.Parameter(name, kind, default=default_of(row)))
@@ -212,12 +221,12 @@ class Command:
 
     def documentation(self, returns, example=""):
         """The command's summary and a line for each parameter, with its range, unit and default."""
-        text = self.table["summary"] + ".\n"
+        text = textwrap.fill(self.table["summary"] + ".", width=96) + "\n"
         rows = [(identifier(row), row) for row in self.first] + list(self.rows.items())
         if rows:
             text += "\nParameters:\n"
         for name, row in rows:
-            entry = f"{name} ({type_of(row)}): {row['text']}"
+            entry = f"{name} ({type_of(row)}): {in_python(row['text'])}"
             facts = facts_of(row)
             text += textwrap.fill(
                 entry + (f" ({facts})." if facts else "."),
@@ -238,13 +247,12 @@ class Command:
                         break_on_hyphens=False,
                     )
                     text += "\n"
-        text += "    progress (Callable[[str, float], object]): Called about ten times a second with what is being done\n"
-        text += "        and how much of that is done, 0 to 1. An exception in it ends the work, and is raised.\n"
+        text += PROGRESS
         text += f"\nReturns:\n{textwrap.indent(textwrap.fill(returns, width=92), '    ')}\n"
         if self.table["notes"]:
             text += "\nNotes:\n"
             for note in self.table["notes"].split("\n"):
-                text += textwrap.fill(note, width=96, initial_indent="    ", subsequent_indent="    ") + "\n"
+                text += textwrap.fill(in_python(note), 96, initial_indent="    ", subsequent_indent="    ") + "\n"
         if example:
             text += "\n" + textwrap.dedent(example).strip() + "\n"
         return text
@@ -308,10 +316,14 @@ def facts_of(row):
         facts.append(f"in{unit}")
     if row["kind"] == "length":
         facts.append('in the scan\'s unit, or as "20um"')
+    if row["kind"] == "marks":
+        facts.append("or a bool array, a Field, True for the field's own")
+    if row["kind"] == "lines":
+        facts.append("or a list of Line")
     if row["kind"] in _NEW or row["kind"] == "output":
         facts.append("True returns it in the report instead of writing a file")
     if row["otherwise"]:
-        facts.append(f"without it: {row['otherwise']}")
+        facts.append(f"without it: {in_python(row['otherwise'])}")
     elif default_of(row) not in (None, False):
         facts.append(f"default {default_of(row)!r}")
     excludes = [identifier({"name": name}) for name in row["excludes"]]
@@ -321,13 +333,15 @@ def facts_of(row):
 
 
 def documented(command, returns, *, before=(), example=""):
-    """A decorator: gives a function the signature and documentation of a command."""
+    """A decorator: gives a function the signature and documentation of a command. `returns` begins with the type."""
 
     def decorate(function):
         function.__signature__ = command.signature(before)
         function.__doc__ = command.documentation(returns, example)
         function.__name__ = command.name
         function._command = command
+        function._before = before
+        function._returns = returns.split(":")[0].split(",")[0].split(" ")[-1]
         return function
 
     return decorate
@@ -336,5 +350,9 @@ def documented(command, returns, *, before=(), example=""):
 SELF = inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD)
 
 
-def parameter(name, default=inspect.Parameter.empty):
-    return inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD, default=default)
+def parameter(name, kind, default=inspect.Parameter.empty):
+    """A parameter of the type `kind` that a function handles itself."""
+    return inspect.Parameter(name, inspect.Parameter.POSITIONAL_OR_KEYWORD, default=default, annotation=kind)
+
+
+PATH = "str | os.PathLike"

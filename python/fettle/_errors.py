@@ -10,13 +10,13 @@ class Error(Exception):
         remedy: what to do about it; may be empty.
     """
 
-    def __init__(self, what, where="", remedy=""):
+    def __init__(self, what: str, where: str = "", remedy: str = "") -> None:
         super().__init__(what, where, remedy)
         self.what = what
         self.where = where
         self.remedy = remedy
 
-    def __str__(self):
+    def __str__(self) -> str:
         return ", ".join(text for text in (self.what, self.where, self.remedy) if text)
 
 

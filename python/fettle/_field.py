@@ -1,15 +1,22 @@
 """Height fields."""
 
+from __future__ import annotations
+
 import os
 import struct
 import warnings
 import zlib
+from collections.abc import Callable, Sequence
+from typing import Any
 
+import numpy
 import numpy as np
+from numpy.typing import ArrayLike, DTypeLike
 
 from . import _fettle, _lines
-from ._commands import READING, SELF, WRITING, Command, documented, parameter, path_word
-from ._errors import Error, FettleWarning
+from ._commands import PATH, READING, SELF, TABLES, WRITING, Command, documented, identifier, parameter, path_word
+from ._errors import Error, FettleWarning, InputError
+from ._lines import Line
 
 _FILTER = Command(
     "filter",
@@ -98,18 +105,18 @@ class Field:
 
     def __init__(
         self,
-        heights,
-        spacing=1.0,
-        unit="mm",
+        heights: ArrayLike,
+        spacing: float | tuple[float, float] = 1.0,
+        unit: str = "mm",
         *,
-        height_unit=None,
-        origin=(0.0, 0.0),
-        crs="",
-        marks=None,
-        lines=None,
-        top_down=False,
-        name="",
-    ):
+        height_unit: str | None = None,
+        origin: tuple[float, float] = (0.0, 0.0),
+        crs: str = "",
+        marks: ArrayLike | Field | None = None,
+        lines: Sequence[Line | ArrayLike] | None = None,
+        top_down: bool = False,
+        name: str = "",
+    ) -> None:
         if np.ma.isMaskedArray(heights):
             heights = heights.astype(np.float32).filled(np.nan)
         heights = np.asarray(heights, dtype=np.float32)
@@ -135,52 +142,52 @@ class Field:
     # What it holds.
 
     @property
-    def shape(self):
+    def shape(self) -> tuple[int, int]:
         """(rows, columns)."""
         return (self._scan.rows, self._scan.columns)
 
     @property
-    def size(self):
+    def size(self) -> int:
         """Number of samples, holes included."""
         return self._scan.rows * self._scan.columns
 
     @property
-    def spacing(self):
+    def spacing(self) -> tuple[float, float]:
         """(x, y) between neighbouring samples, in `unit`."""
         return self._scan.spacing
 
     @property
-    def origin(self):
+    def origin(self) -> tuple[float, float]:
         """(x, y) of the sample in column 0 of row 0, in `unit`."""
         return self._scan.origin
 
     @property
-    def unit(self):
+    def unit(self) -> str:
         """Unit of spacing and origin."""
         return self._scan.unit
 
     @property
-    def height_unit(self):
+    def height_unit(self) -> str:
         """Unit of the heights."""
         return self._scan.height_unit
 
     @property
-    def crs(self):
+    def crs(self) -> str | None:
         """Coordinate reference system as WKT; None: none."""
         return self._scan.crs or None
 
     @property
-    def x(self):
+    def x(self) -> numpy.ndarray:
         """float64 array, columns: x of each column, in `unit`."""
         return self.origin[0] + self.spacing[0] * np.arange(self._scan.columns)
 
     @property
-    def y(self):
+    def y(self) -> numpy.ndarray:
         """float64 array, rows: y of each row, in `unit`; rises with the row."""
         return self.origin[1] + self.spacing[1] * np.arange(self._scan.rows)
 
     @property
-    def transform(self):
+    def transform(self) -> tuple[float, float, float, float, float, float]:
         """(a, b, c, d, e, f) of rasterio's Affine for `array(top_down=True)`: x = a column + b row + c, y = d column +
         e row + f, of the upper left corner of a pixel."""
         (sx, sy), (x, y) = self.spacing, self.origin
@@ -188,51 +195,51 @@ class Field:
         return (sx, 0.0, x - 0.5 * sx, 0.0, -sy, top + 0.5 * sy)
 
     @property
-    def holes(self):
+    def holes(self) -> int:
         """Number of samples without a height."""
         return self._scan.holes()
 
     @property
-    def hash(self):
+    def hash(self) -> str:
         """Hash over size, heights and marks, as 16 hexadecimal digits: what the commands report as `hash`."""
         return self._scan.hash()
 
     @property
-    def original(self):
+    def original(self) -> Field:
         """The field as it was read, before any step: what `max_change` limits changes relative to, and what a session
         begins with."""
         return field_of(self._scan.original(), self.name)
 
     @property
-    def format(self):
+    def format(self) -> str:
         """The format it was read from; empty where there was none."""
         return self._scan.format
 
     @property
-    def gridding(self):
+    def gridding(self) -> dict | None:
         """Of a point cloud, how it became a grid, as a dict; else None."""
         return self._scan.gridding
 
-    def array(self, top_down=False):
+    def array(self, top_down: bool = False) -> numpy.ndarray:
         """The heights as a new float32 array, rows x columns, NaN where there is a hole, in `height_unit`. Row 0 is the
         lowest one, with `top_down` the highest one."""
         heights = self._scan.heights()
         return heights[::-1] if top_down else heights
 
-    def __array__(self, dtype=None, copy=None):
+    def __array__(self, dtype: DTypeLike = None, copy: bool | None = None) -> numpy.ndarray:
         heights = self._scan.heights()
         return heights if dtype is None else heights.astype(dtype, copy=False)
 
-    def masked(self):
+    def masked(self) -> numpy.ma.MaskedArray:
         """The heights as a masked array, holes masked."""
         return np.ma.masked_invalid(self._scan.heights(), copy=False)
 
     @property
-    def marks(self):
+    def marks(self) -> numpy.ndarray:
         """bool array in the field's shape: samples that filters leave as they are. Row 0 is the lowest one."""
         return self._scan.marks()
 
-    def with_marks(self, marks, *, top_down=False):
+    def with_marks(self, marks: ArrayLike | Field, *, top_down: bool = False) -> Field:
         """The field with exactly these marks: bool array of its shape, or another Field whose marks are taken.
 
         >>> f = Field([[0.0, 1.0], [2.0, 3.0]]).with_marks([[True, False], [False, False]])
@@ -244,16 +251,16 @@ class Field:
         return self._made(self._scan.with_marks(marks[::-1] if top_down else marks))
 
     @property
-    def lines(self):
+    def lines(self) -> list[Line]:
         """The edge lines, a list of Line."""
         return _lines.lines_of(self._scan.lines())
 
-    def with_lines(self, lines):
+    def with_lines(self, lines: Sequence[Line | ArrayLike]) -> Field:
         """The field with exactly these edge lines: Line objects, or arrays n x 2 of column and row [samples]. Where points
         are more than two samples apart, others are inserted between them. An empty list leaves none."""
         return self._made(self._scan.with_lines(_lines.rows_of(lines)))
 
-    def with_heights(self, heights, *, top_down=False):
+    def with_heights(self, heights: ArrayLike, *, top_down: bool = False) -> Field:
         """A field at the same place with other heights, an array of its shape, and the same marks.
 
         >>> f = Field([[1.0, 2.0]], spacing=0.5, unit="um")
@@ -276,11 +283,11 @@ class Field:
         )
         return made.with_marks(marks) if marks.any() else made
 
-    def inverted(self):
+    def inverted(self) -> Field:
         """The field upside down: heights change their signs."""
         return self._made(self._scan.inverted())
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         (sx, sy), holes = self.spacing, self.holes
         hole = "no holes" if holes == 0 else "1 hole" if holes == 1 else f"{holes} holes"
         return (
@@ -358,7 +365,7 @@ class Field:
     @documented(
         _MEASURE_LINES,
         "dict: for each line its length, step and angle with their standard deviations, in `lines`.",
-        before=(SELF, parameter("lines", None)),
+        before=(SELF, parameter("lines", "list[Line] | Field | str | os.PathLike | None", None)),
     )
     def measure_lines(self, lines=None, *, progress=None, **options):
         after = [] if lines is None else [lambda call: call.lines(lines, "lines")]
@@ -378,7 +385,7 @@ class Field:
     @documented(
         _COMPARE,
         "dict: the figures, lengths in this field's height unit.",
-        before=(SELF, parameter("other")),
+        before=(SELF, parameter("other", "Field | str | os.PathLike")),
         example='''
         >>> f = Field([[0.0, 1.0], [2.0, 3.0]])
         >>> f.compare(f.with_heights(np.asarray(f) + 1))["mean"]
@@ -393,7 +400,7 @@ class Field:
 
     @documented(
         _RENDER,
-        "uint8 array, height x width x 4: red, green, blue and opacity, row 0 at the TOP, as pictures are.",
+        "numpy.ndarray: uint8, height x width x 4: red, green, blue and opacity, row 0 at the TOP, as pictures are.",
         before=(SELF,),
     )
     def render(self, *, progress=None, **options):
@@ -403,19 +410,19 @@ class Field:
         _, picture = self._run(_RENDER, options, out="picture", progress=progress)
         return picture
 
-    @documented(_APPLY, _FIELD, before=(SELF, parameter("recipe")))
+    @documented(_APPLY, _FIELD, before=(SELF, parameter("recipe", PATH)))
     def apply(self, recipe, *, progress=None, **options):
         report, made = self._run(_APPLY, options, before=[path_word(recipe)], out="result", progress=progress)
         return self._made(made, report)
 
-    @documented(_REPLAY, _FIELD, before=(SELF, parameter("strokes")))
+    @documented(_REPLAY, _FIELD, before=(SELF, parameter("strokes", PATH)))
     def replay(self, strokes, *, progress=None, **options):
         report, made = self._run(
             _REPLAY, options, after=[path_word(strokes)], out="result", progress=progress
         )
         return self._made(made, report)
 
-    @documented(_WRITE, "Field: this one, so that calls chain.", before=(SELF, parameter("path")), example='''
+    @documented(_WRITE, "Field: this one, so that calls chain.", before=(SELF, parameter("path", PATH)), example='''
         >>> import os, tempfile
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     path = os.path.join(folder, "ramp.tif")
@@ -428,7 +435,7 @@ class Field:
         self._run(_WRITE, options, after=[path_word(path)], progress=progress)
         return self
 
-    def _repr_png_(self):
+    def _repr_png_(self) -> bytes | None:
         """The shaded picture, for notebooks; None where no device can draw."""
         try:
             return png_of(self.render(size=(640, 400)))
@@ -438,7 +445,7 @@ class Field:
     # Beside other packages.
 
     @classmethod
-    def from_rasterio(cls, dataset, band=1):
+    def from_rasterio(cls, dataset: Any, band: int = 1) -> Field:
         """A band of an open rasterio dataset, with its place. What its mask hides is a hole. Its transform must have no
         rotation. Heights count as in the unit of the coordinate system unless the band names another."""
         a, b, c, d, e, f = tuple(dataset.transform)[:6]
@@ -464,7 +471,7 @@ class Field:
         )
 
     @classmethod
-    def from_xarray(cls, array, unit=None):
+    def from_xarray(cls, array: Any, unit: str | None = None) -> Field:
         """A DataArray of two dimensions, y before x, with evenly spaced coordinates. The unit is that of the attribute
         `units` of x, else `unit`, else mm; that of the heights is the attribute `units` of the array, else the same."""
         if array.ndim != 2:
@@ -484,7 +491,7 @@ class Field:
             name=str(array.name or ""),
         )
 
-    def to_xarray(self):
+    def to_xarray(self) -> Any:
         """A DataArray with the dimensions y, x, their coordinates in `unit`, marks as the coordinate `marks`. Row 0 has the
         lowest y."""
         import xarray
@@ -502,6 +509,41 @@ class Field:
         )
 
 
+def method_of(name):
+    """The method for a command that has no function of its own: the field is its first scan. It returns a Field where the
+    command writes a scan, else what the command reports."""
+    parameters = TABLES[name]["parameters"]
+    batch = any(row["name"] == "--out-dir" for row in parameters)
+    command = Command(
+        name, name, hidden=("out-dir", "to", "force"), hides=(READING, WRITING) if batch else (READING,)
+    )
+    scan, *others = command.positional
+    out = batch or (others and others[-1]["kind"] == "output")
+    if out and not batch:
+        others.pop()
+    before = [SELF]
+    for row in others:
+        before.append(parameter(identifier(row), "Field | " + PATH, *(() if row["required"] else (None,))))
+
+    def method(self, *given, progress=None, **options):
+        words = []
+        for row, value in zip(others, given):
+            words.append(lambda call, row=row, value=value: call.scan(value, identifier(row)))
+        report, made = self._run(command, options, after=words, out="result" if out else None, progress=progress)
+        return self._made(made, report) if isinstance(made, _fettle.Scan) else report if made is None else made
+
+    assert scan["kind"] == "input", name
+    returns = _FIELD if out else "dict: what the command prints with --json."
+    return documented(command, returns, before=tuple(before))(method)
+
+
+#: Commands with functions of their own.
+OWN = {"filter", "mark", "lines", "info", "compare", "render", "apply", "replay", "convert", "synth", "recipe", "journal"}
+for _name in TABLES:
+    if _name not in OWN:
+        setattr(Field, _name, method_of(_name))
+
+
 class Suggestion(dict):
     """What `Field.suggest` found, as a dict."""
 
@@ -510,10 +552,12 @@ class Suggestion(dict):
         self._field = field
         self._options = options
 
-    def apply(self, *, progress=None):
+    def apply(self, *, progress: Callable[[str, float], object] | None = None) -> Field:
         """The field after the filter that was picked, around marked edges where that was picked, too. The same field
         where no filter is needed."""
-        pick = self["pick"]
+        pick = self.get("pick")
+        if pick is None:
+            raise InputError("no filter was suggested, only places", "tolerance", "give a tolerance")
         if pick["filter"] is None:
             return self._field
         field, options = self._field, dict(self._options)

@@ -1,6 +1,10 @@
 """Edge lines: where two surfaces of a part meet."""
 
+from __future__ import annotations
+
+import numpy
 import numpy as np
+from numpy.typing import ArrayLike
 
 
 class Line:
@@ -28,7 +32,7 @@ class Line:
 
     __slots__ = ("id", "closed", "_rows")
 
-    def __init__(self, points, *, id=0, closed=False):
+    def __init__(self, points: ArrayLike, *, id: int = 0, closed: bool = False) -> None:
         rows = np.array(points, dtype=np.float64)
         if rows.ndim != 2 or rows.shape[1] not in (2, 9):
             raise ValueError("the points of a line are rows of column and row: give an array of n x 2")
@@ -41,41 +45,41 @@ class Line:
         return self._rows[:, k] if self._rows.shape[1] > k else np.zeros(len(self._rows))
 
     @property
-    def points(self):
+    def points(self) -> numpy.ndarray:
         return self._rows[:, :2]
 
     @property
-    def located(self):
+    def located(self) -> numpy.ndarray:
         return self._column(2) != 0 if self._rows.shape[1] > 2 else np.ones(len(self._rows), dtype=bool)
 
     @property
-    def crease(self):
+    def crease(self) -> numpy.ndarray:
         return self._column(3) != 0
 
     @property
-    def deviation(self):
+    def deviation(self) -> numpy.ndarray:
         return self._column(4)
 
     @property
-    def step(self):
+    def step(self) -> numpy.ndarray:
         return self._column(5)
 
     @property
-    def step_deviation(self):
+    def step_deviation(self) -> numpy.ndarray:
         return self._column(6)
 
     @property
-    def slope_change(self):
+    def slope_change(self) -> numpy.ndarray:
         return self._column(7)
 
     @property
-    def slope_deviation(self):
+    def slope_deviation(self) -> numpy.ndarray:
         return self._column(8)
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self._rows)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<Line {self.id}: {len(self)} points{', closed' if self.closed else ''}>"
 
 
