@@ -69,7 +69,8 @@ py::tuple callCommand(const std::vector<std::string>& arguments, const Given& gi
   const app::Report done = valueOf(*std::move(report));
   py::dict written;
   for (const std::string& name : made) written[py::str(name)] = writtenTo(places[name], origin);
-  return py::make_tuple(done.dump(-1, ' ', false, app::Report::error_handler_t::replace), written, warnings);
+  return py::make_tuple(done.dump(-1, ' ', false, app::Report::error_handler_t::replace), written,
+                        textsOf(warnings));
 }
 
 std::string commandTables() {

@@ -12,6 +12,7 @@
 #include "engine/field/version.h"
 #include "engine/formats/formats.h"
 #include "python/calls.h"
+#include "python/errors.h"
 #include "python/scan.h"
 #include "python/session_reader.h"
 
@@ -32,9 +33,9 @@ py::list formats() {
   return all;
 }
 
-engine::FieldSummary summaryOf(const Scan& scan) {
+std::int64_t holesOf(const Scan& scan) {
   const py::gil_scoped_release released;
-  return engine::summarize(scan.data.field);
+  return engine::summarize(scan.data.field).no_data;
 }
 
 std::string hashOf(const Scan& scan) {
@@ -66,13 +67,7 @@ void addScan(py::module_& module) {
              return made;
            })
       .def("hash", hashOf)
-      .def("holes", [](const Scan& scan) { return summaryOf(scan).no_data; })
-      .def("marked", [](const Scan& scan) { return summaryOf(scan).marked; })
-      .def("range",
-           [](const Scan& scan) {
-             const engine::HeightBounds bounds = scan.data.field.reader().bounds();
-             return std::pair(bounds.min, bounds.max);
-           })
+      .def("holes", holesOf)
       .def("original",
            [](const Scan& scan) {
              Scan made;
@@ -90,7 +85,7 @@ void addScan(py::module_& module) {
       .def_property_readonly("height_unit", [](const Scan& scan) { return scan.grid().height_unit.name; })
       .def_property_readonly("crs", [](const Scan& scan) { return scan.grid().crs_wkt; })
       .def_property_readonly("format", [](const Scan& scan) { return scan.data.format; })
-      .def_property_readonly("warnings", [](const Scan& scan) { return scan.data.warnings; })
+      .def_property_readonly("warnings", [](const Scan& scan) { return textsOf(scan.data.warnings); })
       .def_property_readonly("gridding", [](const Scan& scan) -> py::object {
         if (!scan.data.gridding) return py::none();
         py::dict report;
@@ -118,7 +113,8 @@ void addSession(py::module_& module) {
       .def_property_readonly("state", &SessionReader::state)
       .def_property_readonly("first", &SessionReader::first)
       .def_property_readonly("last", &SessionReader::last)
-      .def_property_readonly("scan_path", &SessionReader::scanPath);
+      .def_property_readonly("scan_path",
+                             [](const SessionReader& session) { return textOf(session.scanPath()); });
 }
 
 }  // namespace

@@ -146,7 +146,7 @@ class _Call:
 
     def run(self, help_text, progress, stacklevel):
         report, written, told = _fettle.call(
-            self.arguments, self.given, self.made, self.source, help_text, progress
+            [os.fsencode(each) for each in self.arguments], self.given, self.made, self.source, help_text, progress
         )
         for text in told:
             warnings.warn(text, FettleWarning, stacklevel=stacklevel + 1)

@@ -227,6 +227,8 @@ class Field:
         return heights[::-1] if top_down else heights
 
     def __array__(self, dtype: DTypeLike = None, copy: bool | None = None) -> numpy.ndarray:
+        if copy is False:
+            raise ValueError("the heights of a field lie in tiles: an array of them is a copy")
         heights = self._scan.heights()
         return heights if dtype is None else heights.astype(dtype, copy=False)
 

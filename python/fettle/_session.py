@@ -50,8 +50,8 @@ class Session:
     ) -> None:
         self._path = os.fspath(path)
         self._name = os.path.basename(os.fsdecode(path))
-        scan = "" if scan is None else os.fsdecode(scan)
-        self._session = _fettle.SessionReader(os.fsdecode(path), scan, progress)
+        scan = b"" if scan is None else os.fsencode(scan)
+        self._session = _fettle.SessionReader(os.fsencode(path), scan, progress)
 
     @property
     def path(self) -> str:

@@ -151,7 +151,7 @@ TEST_F(Reference, BashCompletesCommandsOptionsWordsAndFiles) {
   EXPECT_EQ(completed("fettle filter in.tif out.tif --filter = b"), (Words{"box", "bilateral"}));
   EXPECT_EQ(completed("fettle bench filters --ground h"), Words{"holes"});
   EXPECT_EQ(completed("fettle bench filters --kind tgv,p"), Words{"tgv,planes"});
-  EXPECT_EQ(completed("fettle help rec"), (Words{"record", "recipe"}));
+  EXPECT_EQ(completed("fettle help rec"), (Words{"recipe", "record"}));
   EXPECT_EQ(completed("fettle nope fil"), Words{});
   EXPECT_EQ(completed("fettle info scan"), Words{"scan one.tif"});
   EXPECT_EQ(completed("fettle filter --keep sc"), Words{"scan one.tif"});

@@ -156,6 +156,17 @@ class Calls(unittest.TestCase):
                 fettle.read(name)
             self.assertEqual(refused.exception.where, "./" + name)
 
+    def test_names_of_files_that_are_not_utf_8_are_read_written_and_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(os.fsencode(folder), b"sc\xe4n.tif")
+            fettle.Field(wave()).write(path)
+            self.assertEqual(fettle.read(path).hash, fettle.Field(wave()).hash)
+            self.assertTrue(os.path.exists(path))
+            missing = os.path.join(os.fsencode(folder), b"m\xe4.tif")
+            with self.assertRaises(fettle.InputError) as refused:
+                fettle.read(missing)
+            self.assertEqual(os.fsencode(refused.exception.where), missing)
+
     def test_what_a_file_does_not_state_is_a_warning(self):
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "plain.xyz")
@@ -181,6 +192,31 @@ class Calls(unittest.TestCase):
         field = fettle.Field(wave())
         self.assertEqual(field.inverted().inverted().hash, field.hash)
         np.testing.assert_array_equal(np.asarray(field.inverted()), -np.asarray(field))
+
+
+class Rasterio(unittest.TestCase):
+    def test_a_band_is_read_as_the_program_reads_its_file(self):
+        try:
+            import rasterio
+        except ImportError:
+            self.skipTest("python3-rasterio is not installed")
+        with tempfile.TemporaryDirectory() as folder:
+            path, back = os.path.join(folder, "scan.tif"), os.path.join(folder, "back.tif")
+            field = fettle.Field(wave(), (0.5, 0.25), "m", origin=(5e5, 4e6), crs=rasterio.crs.CRS.from_epsg(32633).to_wkt())
+            field.write(path)
+            with rasterio.open(path) as dataset:
+                made = fettle.Field.from_rasterio(dataset)
+                profile = dataset.profile
+                self.assertEqual(tuple(dataset.transform)[:6], made.transform)
+            read = fettle.read(path)
+            self.assertEqual(made.hash, read.hash)
+            self.assertEqual((made.spacing, made.origin, made.unit), (read.spacing, read.origin, read.unit))
+            profile.update(transform=rasterio.Affine(*read.transform), crs=read.crs)
+            with rasterio.open(back, "w", **profile) as dataset:
+                dataset.write(read.array(top_down=True), 1)
+            again = fettle.read(back)
+            self.assertEqual(again.hash, field.hash)
+            self.assertEqual((again.spacing, again.origin), (field.spacing, field.origin))
 
 
 class Xarray(unittest.TestCase):
