@@ -52,8 +52,8 @@ struct Scene {
   /// time and lag behind a fast hand. A ball takes one step fewer, and never more than kSphereSteps. At level paper a
   /// search has no such rounds: only 2048 is allowed there for a point.
   int search_rounds = 2048;
-  /// A ball: searches for contacts after which a tick takes no further step, so that the tick's time is bounded; 1 ..
-  /// 4096, or 0 for no bound, as before contact revision 3 (SphereTracker).
+  /// A ball: searches for contacts after which a tick takes no further step, so that the tick's time is bounded; from 1
+  /// to 4096, or 0 for no bound, as before contact revision 3 (SphereTracker).
   int ball_searches = kBallSearches;
 
   /// Spring: newtons per millimetre of penetration. > 0 .. 1000; a hand device holds about 1 to 3.
