@@ -21,7 +21,6 @@ namespace fettle::app {
 
 namespace {
 
-using engine::Error;
 using engine::ErrorKind;
 using engine::JobControl;
 

@@ -38,7 +38,10 @@ __all__ = [
     "synth",
 ]
 
-_READ = Command("read", "convert", groups=(READING,), hidden=("from", "store"))
+_READ = Command(
+    "read", "convert", groups=(READING,), hidden=("from", "store"),
+    summary="Read a scan of any format: rasters, point clouds, meshes, files of instruments, sessions",
+)
 _SYNTH = Command("synth", "synth", hidden=("to", "force"))
 _REPLAY = Command("replay", "replay", hidden=("to", "force"), hides=(READING,))
 

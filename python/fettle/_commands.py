@@ -20,6 +20,14 @@ from ._errors import FettleWarning
 PROGRESS = """    progress (Callable[[str, float], object]): Called about ten times a second with what is being
         done, and how much of that is done, 0 to 1. An exception in it ends the work, and is raised.
 """
+# Of parameters that functions handle themselves.
+PARAMETERS = {
+    "path": "The file",
+    "scan": "The scan to touch, a Field or a file; or a session, NAME.fettle",
+    "other": "The scan to compare with this one",
+    "recipe": "The recipe, a TOML file",
+    "lines": "Edge lines; without them those of the field",
+}
 REPORTS = "Report and help"
 READING = "Reading the scan"
 WRITING = "Writing"
@@ -186,13 +194,14 @@ class Command:
 
     name: of the function. command: the command's name. first: options that are positional parameters here.
     fixed: words that are always given. hidden: names of rows that have no meaning here. groups: only rows under these
-    headings, and those in `also`; hides: none under these.
+    headings, and those in `also`; hides: none under these. summary: instead of the command's.
     """
 
-    def __init__(self, name, command, *, first=(), fixed=(), hidden=(), hides=(), groups=None, also=()):
+    def __init__(self, name, command, *, first=(), fixed=(), hidden=(), hides=(), groups=None, also=(), summary=""):
         self.name = name
         self.table = TABLES[command]
         self.fixed = list(fixed)
+        self.summary = summary or self.table["summary"]
         rows = [row for row in self.table["parameters"] if row["group"] != REPORTS]
         self.positional = [row for row in rows if row["positional"]]
         self.rows = collections.OrderedDict()
@@ -204,6 +213,8 @@ class Command:
             if heading in hides or (groups is not None and heading not in groups and named not in also):
                 continue
             self.rows[identifier(row)] = row
+        self.texts = {identifier(row): in_python(row["text"]) for row in self.positional}
+        self.texts.update(PARAMETERS)
         self.first = [next(row for row in rows if row["name"].lstrip("-") == name) for name in first]
 
     def signature(self, before=()):
@@ -219,12 +230,15 @@ class Command:
         parameters.append(inspect.Parameter("progress", kind, default=None))
         return inspect.Signature(parameters)
 
-    def documentation(self, returns, example=""):
+    def documentation(self, returns, example="", before=()):
         """The command's summary and a line for each parameter, with its range, unit and default."""
-        text = textwrap.fill(self.table["summary"] + ".", width=96) + "\n"
+        text = textwrap.fill(self.summary + ".", width=96) + "\n"
         rows = [(identifier(row), row) for row in self.first] + list(self.rows.items())
-        if rows:
-            text += "\nParameters:\n"
+        text += "\nParameters:\n"
+        for each in before:
+            if each.name in self.texts:
+                entry = f"{each.name} ({each.annotation}): {self.texts[each.name]}."
+                text += textwrap.fill(entry, 96, initial_indent="    ", subsequent_indent="        ") + "\n"
         for name, row in rows:
             entry = f"{name} ({type_of(row)}): {in_python(row['text'])}"
             facts = facts_of(row)
@@ -337,7 +351,7 @@ def documented(command, returns, *, before=(), example=""):
 
     def decorate(function):
         function.__signature__ = command.signature(before)
-        function.__doc__ = command.documentation(returns, example)
+        function.__doc__ = command.documentation(returns, example, before)
         function.__name__ = command.name
         function._command = command
         function._before = before

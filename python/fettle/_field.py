@@ -33,15 +33,28 @@ _SUGGEST = Command(
     also=("keep", "threads"),
     hidden=("suggest",),
     fixed=("--suggest",),
+    summary="Which filter is good enough for a tolerance, and why",
 )
 _MARK = Command("mark", "mark", hides=(READING,))
 _MEASURE_LINES = Command("measure_lines", "lines", hides=(READING,))
 _INFO = Command("info", "info", hides=(READING,))
-_COMPARE = Command("compare", "compare", hidden=("to", "force"), hides=(READING,))
+_COMPARE = Command(
+    "compare",
+    "compare",
+    hidden=("to", "force"),
+    hides=(READING,),
+    summary="How another scan deviates from this one; against a truth, the errors of the other and where they are",
+)
 _RENDER = Command("render", "render", hides=(READING,))
 _APPLY = Command("apply", "apply", hidden=("out-dir", "to", "force"), hides=(READING, WRITING))
 _REPLAY = Command("replay", "replay", hidden=("to", "force"), hides=(READING,))
-_WRITE = Command("write", "convert", hidden=("out-dir", "to"), hides=(READING,))
+_WRITE = Command(
+    "write",
+    "convert",
+    hidden=("out-dir", "to"),
+    hides=(READING,),
+    summary="Write the field to a file; its extension names the format",
+)
 
 _FIELD = "Field: the result. Its `report` holds the figures that the command prints with --json."
 
