@@ -69,8 +69,8 @@ void waitFor(const std::function<void()>& work, engine::JobControl& job, const p
           show(job, progress);
           next_show = std::chrono::steady_clock::now() + kShow;
         }
-      } catch (py::error_already_set& error) {
-        stopped_by.emplace(std::move(error));
+      } catch (const py::error_already_set& error) {
+        stopped_by.emplace(error);
         job.cancel();
       }
     }

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "render/live/picture_rows.h"
@@ -15,7 +17,8 @@ engine::Result<render::FrameStatistics> drawPicture(render::LivePicture& picture
   if (auto status = picture.update(shown); !status) return tl::unexpected(status.error());
   picture.refreshRanges();
   const auto warned = [&](const render::FrameStatistics& frame) {
-    for (const std::string& warning : frame.warnings) warn(name.empty() ? warning : name + ": " + warning);
+    for (const std::string& warning : frame.warnings)
+      warn(name.empty() ? warning : fmt::format("{}: {}", name, warning));
   };
   if (MemoryPlace* place = memoryPlace(path)) {
     render::Image whole{input.view.width, input.view.height, {}};
