@@ -111,7 +111,7 @@ engine::Result<Report> apply(const ApplyArguments& options, engine::JobControl& 
   if (isStream(options.recipe) &&
       std::any_of(options.files.files.begin(), options.files.files.end() - 1, isStream))
     return engine::inputError("recipe and scan cannot both be standard input", "-", "name one of them");
-  const auto recipe = readRecipe(options.recipe);
+  const auto recipe = readRecipe(options.recipe, job);
   if (!recipe) return tl::unexpected(recipe.error());
   const auto tasks = batchTasks(options.files, {isStream(options.recipe) ? "" : options.recipe}, job);
   if (!tasks) return tl::unexpected(tasks.error());

@@ -78,7 +78,7 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
 
   const auto truth = loadScan(options.truth, options.reading, job);
   if (!truth) return tl::unexpected(truth.error());
-  const auto edges = withMarks(truth->field, options.edges);
+  const auto edges = withMarks(truth->field, options.edges, job);
   if (!edges) return tl::unexpected(edges.error());
   const auto figures = engine::compareToTruth(b->field, truth->field, *edges, job);
   if (!figures) return tl::unexpected(figures.error());

@@ -78,9 +78,9 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   if (!imported) return tl::unexpected(imported.error());
   const auto original = originalOf(*imported, options.original, options.reading, job);
   if (!original) return tl::unexpected(original.error());
-  auto marked = withMarks(imported->field, options.only.empty() ? options.keep : options.only);
+  auto marked = withMarks(imported->field, options.only.empty() ? options.keep : options.only, job);
   if (!marked) return tl::unexpected(marked.error());
-  auto lined = withLines(*marked, options.lines);
+  auto lined = withLines(*marked, options.lines, job);
   if (!lined) return tl::unexpected(lined.error());
   const engine::Version field = *std::move(lined);
   if (!options.max_change.empty()) {
@@ -289,7 +289,7 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   const ProgressLine progress(job);
   auto imported = loadScan(options.files.files[0], options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  auto marked = withMarks(imported->field, options.keep);
+  auto marked = withMarks(imported->field, options.keep, job);
   if (!marked) return tl::unexpected(marked.error());
   const engine::Version field = *std::move(marked);
   const auto tolerance = parseHeight(filters ? options.tolerance : "1", field.grid(), "--tolerance");

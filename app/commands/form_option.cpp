@@ -52,7 +52,7 @@ void addFormOptions(Command command, FormArguments& arguments) {
       {.name = "--marks",
        .to = &arguments.marks,
        .text = "Picture of marks for --region, instead of the marks of a session",
-       .kind = ValueKind::kFile},
+       .kind = ValueKind::kMarks},
   });
 }
 

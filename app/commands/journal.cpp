@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/scan_files.h"
 #include "engine/formats/formats.h"
 #include "engine/session/session.h"
 
@@ -15,7 +16,7 @@ namespace {
 engine::Result<Report> journal(const std::string& path, engine::JobControl& job) {
   engine::SessionOpenOptions open;
   open.history_bytes = 0;
-  const auto session = engine::openSession(path, open, engine::importField, job);
+  const auto session = loadSession(path, open, job);
   if (!session) return tl::unexpected(session.error());
   Report entries = Report::array();
   for (const engine::JournalEntry& entry : session->journal) {
@@ -47,8 +48,8 @@ void addJournal(Command root, Chosen& chosen) {
       Progress::kLine, {}, Printing::kResult);
   command.add({{.name = "SESSION",
                 .to = session.get(),
-                .text = "The session, NAME.fettle",
-                .kind = ValueKind::kFile,
+                .text = "The session, NAME.fettle; - for standard input",
+                .kind = ValueKind::kInput,
                 .required = true}});
   command.notes(
       "Each line has the number of the entry, when it was stored (UTC) and the state that the field had "

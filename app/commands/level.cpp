@@ -22,7 +22,7 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
                                 engine::JobControl& job) {
   const auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  const auto marked = withMarks(imported->field, options.form.marks);
+  const auto marked = withMarks(imported->field, options.form.marks, job);
   if (!marked) return tl::unexpected(marked.error());
   const auto fit = formOf(*marked, options.form, job);
   if (!fit) return tl::unexpected(fit.error());

@@ -104,10 +104,10 @@ struct LinesArguments {
 
 // The lines of a file, else those of the scan itself, which a session has.
 engine::Result<std::vector<engine::EdgeLine>> linesOf(const LinesArguments& options,
-                                                      const engine::Version& field) {
+                                                      const engine::Version& field, engine::JobControl& job) {
   std::vector<engine::EdgeLine> lines;
   if (!options.lines.empty()) {
-    auto read = readLines(options.lines, field);
+    auto read = readLines(options.lines, field, job);
     if (!read) return read;
     lines = *std::move(read);
   } else if (field.lines() != nullptr) {
@@ -183,7 +183,7 @@ std::string csvOf(const std::vector<MeasuredLine>& lines, const engine::Grid& gr
 }
 
 engine::Status writeFiles(const LinesArguments& options, const std::vector<MeasuredLine>& measured,
-                          const engine::Grid& grid) {
+                          const engine::Grid& grid, engine::JobControl& job) {
   // What may fail comes before what is written.
   std::string svg;
   if (!options.plot.empty()) {
@@ -195,15 +195,22 @@ engine::Status writeFiles(const LinesArguments& options, const std::vector<Measu
     std::vector<engine::EdgeLine> lines;
     lines.reserve(measured.size());
     for (const MeasuredLine& line : measured) lines.push_back(line.line);
-    if (auto status = saveLines(options.out, lines, grid); !status) return status;
+    if (auto status = saveLines(lines, grid, options.out, job); !status) return status;
   }
   if (!options.csv.empty())
-    if (auto status = engine::writeFileAtomically(options.csv, csvOf(measured, grid)); !status) return status;
+    if (auto status = writeTo(options.csv, kLinesStream, job,
+                              [&](const std::string& file) {
+                                return engine::writeFileAtomically(file, csvOf(measured, grid));
+                              });
+        !status)
+      return status;
   return options.plot.empty() ? engine::Status() : engine::writeFileAtomically(options.plot, svg);
 }
 
 engine::Result<Report> measureLines(const LinesArguments& options, engine::JobControl& job) {
-  if (auto status = checkOutputs({{options.out, OutputKind::kLines}, {options.csv}, {options.plot}},
+  if (auto status = checkOutputs({{options.out, OutputKind::kLines, kLinesStream},
+                                  {options.csv, OutputKind::kText, kLinesStream},
+                                  {options.plot}},
                                  {options.scan, options.lines}, Replacing::kNoWork, job);
       !status)
     return tl::unexpected(status.error());
@@ -212,7 +219,7 @@ engine::Result<Report> measureLines(const LinesArguments& options, engine::JobCo
   const auto imported = loadScan(options.scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const engine::Version& field = imported->field;
-  const auto lines = linesOf(options, field);
+  const auto lines = linesOf(options, field, job);
   if (!lines) return tl::unexpected(lines.error());
   const auto noise = engine::estimateNoise(field, job);
   if (!noise) return tl::unexpected(noise.error());
@@ -225,7 +232,7 @@ engine::Result<Report> measureLines(const LinesArguments& options, engine::JobCo
     measured.emplace_back((*lines)[i], std::move((*sections)[i]), means, field.grid());
   }
   if (auto status = keepOnly(options.only, measured); !status) return tl::unexpected(status.error());
-  if (auto status = writeFiles(options, measured, field.grid()); !status)
+  if (auto status = writeFiles(options, measured, field.grid(), job); !status)
     return tl::unexpected(status.error());
   Report report{{"unit", field.grid().height_unit.name},
                 {"noise", std::isnan(noise->sigma) ? Report() : Report(noise->sigma)},
@@ -282,7 +289,7 @@ void addLines(Command root, Chosen& chosen) {
       {.name = "--csv",
        .to = &options->csv,
        .text = "Write a row per point: step and angle there, in mm and degrees",
-       .kind = ValueKind::kNewFile},
+       .kind = ValueKind::kOutput},
       {.name = "--plot",
        .to = &options->plot,
        .text = "Draw step and angle over the length of the longest lines, as SVG",

@@ -63,6 +63,15 @@ engine::Result<std::vector<engine::EdgeStroke>> markedStrokes(const std::string&
   if (strokes.empty())
     return engine::inputError("the strokes have no stroke of the tool mark", path,
                               "draw along edges with it");
+  // Lines of them would be lines of no sample.
+  const bool inside = std::ranges::any_of(strokes, [&](const engine::EdgeStroke& stroke) {
+    return std::ranges::any_of(stroke.points, [&](const glm::dvec2& p) {
+      return p.x > -1.0 && p.y > -1.0 && p.x < grid.width && p.y < grid.height;
+    });
+  });
+  if (!inside)
+    return engine::inputError("all strokes of the tool mark lie outside the scan", path,
+                              "give strokes of this scan, in millimetres from its lower left sample");
   return strokes;
 }
 
@@ -103,6 +112,7 @@ engine::Result<engine::Version> markLines(const engine::Version& field,
 struct MarkArguments {
   std::string in;
   std::string out;
+  std::string to = kMarksStream;
   std::string add;
   bool edges = false;
   bool as_lines = false;
@@ -142,7 +152,7 @@ engine::Result<engine::Version> markStrokes(const engine::Version& field, const 
   auto marked = markLines(field, *lines, options.choice.thickness, job);
   if (!marked) return marked;
   if (!options.lines_out.empty())
-    if (auto status = saveLines(options.lines_out, *lines, field.grid()); !status)
+    if (auto status = saveLines(*lines, field.grid(), options.lines_out, job); !status)
       return tl::unexpected(status.error());
   report["thickness"] = options.choice.thickness;
   reportLines(*lines, report);
@@ -163,7 +173,7 @@ engine::Status writeEdgeLines(const engine::Version& field, const engine::EdgeMa
   const auto lines = locateLines(field, strokes, options.locating, job);
   if (!lines) return tl::unexpected(lines.error());
   reportLines(*lines, report);
-  return saveLines(options.lines_out, *lines, field.grid());
+  return saveLines(*lines, field.grid(), options.lines_out, job);
 }
 
 // The suggested edges as lines, and marks where one cannot be located, as a recipe's locate_edges.
@@ -176,7 +186,7 @@ engine::Result<engine::Version> markAsLines(const engine::Version& field, const 
     return engine::inputError("no edges could be located, so there are no lines", options.lines_out,
                               "give a larger --sensitivity");
   reportLines(*lined->lines(), report);
-  if (auto status = engine::exportLines(options.lines_out, *lined->lines(), lined->grid()); !status)
+  if (auto status = saveLines(*lined->lines(), lined->grid(), options.lines_out, job); !status)
     return tl::unexpected(status.error());
   return lined;
 }
@@ -212,14 +222,14 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
                               "give --edges and --lines-out as well");
   if (!options.edges && !options.invert && options.strokes.empty())
     return engine::inputError("it is not stated what to mark", "mark", "give --edges, --strokes or --invert");
-  if (auto status =
-          checkOutputs({{options.out, OutputKind::kMarks, ".png"}, {options.lines_out, OutputKind::kLines}},
-                       {options.in, options.add, options.strokes}, Replacing::kNoWork, job);
+  if (auto status = checkOutputs({{options.out, OutputKind::kMarks, options.to},
+                                  {options.lines_out, OutputKind::kLines, kLinesStream}},
+                                 {options.in, options.add, options.strokes}, Replacing::kNoWork, job);
       !status)
     return tl::unexpected(status.error());
   auto imported = loadScan(options.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  auto marked = withMarks(imported->field, options.add);
+  auto marked = withMarks(imported->field, options.add, job);
   if (!marked) return tl::unexpected(marked.error());
   engine::Version field = *std::move(marked);
   const engine::Stopwatch watch;
@@ -240,9 +250,8 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     field = *std::move(inverted);
   }
   const double seconds = watch.seconds();
-  const auto written =
-      writeTo(options.out, ".png", job, [&](const std::string& file) { return saveMarks(field, file); });
-  if (!written) return tl::unexpected(written.error());
+  if (auto status = saveMarks(field, options.out, job, options.to); !status)
+    return tl::unexpected(status.error());
   report["marked"] = engine::summarize(field).marked;
   report["seconds"] = seconds;
   return report;
@@ -262,7 +271,7 @@ void addMark(Command root, Chosen& chosen) {
        .required = true},
       {.name = "MARKS",
        .to = &options->out,
-       .text = "Picture of marks to write: .png, .tif, - for a PNG on standard output",
+       .text = "Picture of marks to write: .png, .tif, a GeoTIFF; - for standard output",
        .kind = ValueKind::kOutput,
        .required = true},
       {.name = "--edges",
@@ -306,6 +315,10 @@ void addMark(Command root, Chosen& chosen) {
        .kind = ValueKind::kMarks},
       {.name = "--invert", .to = &options->invert, .text = "Afterwards, invert the marks"},
   });
+  command.add({{.name = "--to",
+                .to = &options->to,
+                .text = "With - for MARKS, standard output: its format, png or tif, a GeoTIFF",
+                .kind = ValueKind::kText}});
   addScanOptions(command, options->reading);
   command.examples({{"fettle mark scan.tif marks.png --edges --lines-out lines.csv",
                      "The sharp edges that the program finds, as marks and as lines"},

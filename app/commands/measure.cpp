@@ -7,6 +7,7 @@
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/form_option.h"
+#include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/terminal.h"
@@ -69,7 +70,7 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
                                   engine::JobControl& job) {
   const auto imported = loadScan(scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  const auto marked = withMarks(imported->field, options.form.marks);
+  const auto marked = withMarks(imported->field, options.form.marks, job);
   if (!marked) return tl::unexpected(marked.error());
   const auto fit = formOf(*marked, options.form, job);
   if (!fit) return tl::unexpected(fit.error());
@@ -87,6 +88,11 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
 }
 
 engine::Result<Report> measure(const MeasureArguments& options, engine::JobControl& job) {
+  // Two inputs cannot both be standard input.
+  std::vector<std::string> inputs = options.scans;
+  inputs.push_back(options.form.marks);
+  if (auto status = checkOutputs({}, inputs, Replacing::kNoWork, job); !status)
+    return tl::unexpected(status.error());
   if (options.scans.size() == 1) {
     const ProgressLine progress(job);
     return measureOne(options, options.scans.front(), job);

@@ -5,6 +5,7 @@
 
 #include "app/commands/command.h"
 #include "app/commands/recipe_file.h"
+#include "app/commands/scan_files.h"
 #include "app/terminal.h"
 #include "engine/formats/formats.h"
 
@@ -15,7 +16,7 @@ namespace {
 engine::Result<Report> recipe(const std::string& path, engine::JobControl& job) {
   engine::SessionOpenOptions open;
   open.history_bytes = engine::History::kNoBound;
-  const auto session = engine::openSession(path, open, engine::importField, job);
+  const auto session = loadSession(path, open, job);
   if (!session) return tl::unexpected(session.error());
   const auto recipe = recipeOf(*session, job);
   if (!recipe) return tl::unexpected(recipe.error());
@@ -41,8 +42,8 @@ void addRecipe(Command root, Chosen& chosen) {
       {}, Printing::kResult);
   command.add({{.name = "SESSION",
                 .to = session.get(),
-                .text = "The session, NAME.fettle",
-                .kind = ValueKind::kFile,
+                .text = "The session, NAME.fettle; - for standard input",
+                .kind = ValueKind::kInput,
                 .required = true}});
   command.notes(
       "Filters, suggested edges and inversions are repeated. Strokes, and marks and lines that a hand drew, "

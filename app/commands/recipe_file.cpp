@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -315,18 +314,23 @@ engine::Result<Recipe> parseRecipe(const std::string& text, const std::string& n
                             "correct the line");
 }
 
-engine::Result<Recipe> readRecipe(const std::string& path) {
+engine::Result<Recipe> readRecipe(const std::string& path, engine::JobControl& job) {
+  std::optional<StandardInput> input;
+  if (isStream(path)) {
+    auto read = StandardInput::read("", job);
+    if (!read) return tl::unexpected(read.error());
+    input.emplace(*std::move(read));
+  }
   std::ifstream file;
   std::error_code error;
-  if (!isStream(path) && !std::filesystem::is_directory(path, error)) file.open(path, std::ios::binary);
-  std::istream& in = isStream(path) ? std::cin : file;
-  if (!isStream(path) && !file.is_open())
-    return engine::inputError("the recipe cannot be read", path, "check path and rights");
+  if (!std::filesystem::is_directory(path, error)) file.open(input ? input->path() : path, std::ios::binary);
+  if (!file.is_open())
+    return engine::inputError("the recipe cannot be read", shownInput(path), "check path and rights");
   // A recipe is a page of text; a path given by mistake must not fill the memory.
   constexpr std::size_t kLongest = 1U << 20U;
   std::string text(kLongest + 1, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(in.gcount()));
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
   if (text.size() > kLongest)
     return engine::inputError("the file is too long for a recipe", shownInput(path));
   return parseRecipe(text, shownInput(path));

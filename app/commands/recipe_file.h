@@ -69,6 +69,6 @@ struct Recipe {
 [[nodiscard]] engine::Result<Recipe> parseRecipe(const std::string& text, const std::string& name);
 
 /// "-" is standard input. Errors: those of parseRecipe; the file cannot be read or is longer than a megabyte.
-[[nodiscard]] engine::Result<Recipe> readRecipe(const std::string& path);
+[[nodiscard]] engine::Result<Recipe> readRecipe(const std::string& path, engine::JobControl& job);
 
 }  // namespace fettle::app

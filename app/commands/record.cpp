@@ -10,6 +10,7 @@
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/value_checks.h"
 #include "app/live/live_session.h"
 #include "app/live/placement.h"
 #include "app/terminal.h"
@@ -246,7 +247,7 @@ engine::Result<Field> load(const RecordArguments& options, engine::JobControl& j
   if (!imported) return tl::unexpected(imported.error());
   auto original = originalOf(*imported, options.original, options.reading, job);
   if (!original) return tl::unexpected(original.error());
-  auto marked = withMarks(imported->field, options.marks);
+  auto marked = withMarks(imported->field, options.marks, job);
   if (!marked) return tl::unexpected(marked.error());
   return Field{*std::move(original), *std::move(marked)};
 }
@@ -394,7 +395,8 @@ void addRecord(Command root, Chosen& chosen) {
       {.name = "--marks-out",
        .to = &options->marks_out,
        .text = "Write the marks afterwards, 8-bit PNG or TIFF",
-       .kind = ValueKind::kNewMarks},
+       .kind = ValueKind::kNewMarks,
+       .problem = streamProblem},
       {.name = "--tool",
        .to = &options->tool,
        .text = "The tool at the start",

@@ -85,9 +85,9 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
 
   const auto scan = loadScan(options.scan, options.reading, job);
   if (!scan) return tl::unexpected(scan.error());
-  auto marked = withMarks(scan->field, options.marks);
+  auto marked = withMarks(scan->field, options.marks, job);
   if (!marked) return tl::unexpected(marked.error());
-  auto lined = withLines(*marked, options.lines);
+  auto lined = withLines(*marked, options.lines, job);
   if (!lined) return tl::unexpected(lined.error());
   w.shown.versions = {*std::move(lined)};
   if (!options.marks.empty()) w.shown.marks = render::MarksOverlay::kShow;

@@ -49,19 +49,19 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
       !options.original.empty())
     return engine::inputError("a session has its own original, scenes and marks, and its journal no forces",
                               options.scan, "omit --original, --scene, --marks, --forces and --certify");
-  if (auto status = checkOutputs(
-          {{options.out, OutputKind::kField, options.to}, {options.marks_out, OutputKind::kMarks}},
-          {options.scan}, options.replacing, job);
+  if (auto status = checkOutputs({{options.out, OutputKind::kField, options.to},
+                                  {options.marks_out, OutputKind::kMarks, kMarksStream}},
+                                 {options.scan}, options.replacing, job);
       !status)
     return tl::unexpected(status.error());
   engine::SessionOpenOptions open;
   open.history_bytes = 0;
-  auto session = engine::openSession(options.scan, open, engine::importField, job);
+  auto session = loadSession(options.scan, open, job);
   if (!session) return tl::unexpected(session.error());
   if (const std::int64_t start = haptic::journalStart(*session);
       start > 0 && (session->history.first() > 1 || session->history.last() < start)) {
     open.history_bytes = engine::History::kNoBound;
-    session = engine::openSession(options.scan, open, engine::importField, job);
+    session = loadSession(options.scan, open, job);
     if (!session) return tl::unexpected(session.error());
   }
   if (session->journal.empty() && session->history.number() > 0)
@@ -85,7 +85,7 @@ engine::Result<Report> replayJournal(const ReplayArguments& options, engine::Job
       !status)
     return tl::unexpected(status.error());
   if (!options.marks_out.empty())
-    if (auto status = saveMarks(played->field, options.marks_out); !status)
+    if (auto status = saveMarks(played->field, options.marks_out, job); !status)
       return tl::unexpected(status.error());
   return Report{{"ticks", played->ticks},     {"steps", played->steps},
                 {"filters", played->filters}, {"loops", played->loops},
@@ -105,7 +105,8 @@ bool holdsStrokes(const std::string& path) {
 engine::Status settleNames(ReplayArguments& options) {
   constexpr const char* kUsage = "give SCAN STROKES OUT, or SESSION OUT for a session's own journal";
   if (!options.out.empty()) return {};
-  if (!isSessionPath(options.scan)) {
+  const std::string named = isStream(options.scan) ? "stdin" + withDot(options.reading.from) : options.scan;
+  if (!isSessionPath(named)) {
     if (!options.strokes.empty() && !holdsStrokes(options.strokes))
       return engine::inputError("a scan needs strokes to be replayed, and an output file", options.scan,
                                 kUsage);
@@ -132,7 +133,7 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
                               "name a file, ./- for one of that name");
   if (auto status =
           checkOutputs({{options.out, OutputKind::kField, options.to},
-                        {options.marks_out, OutputKind::kMarks},
+                        {options.marks_out, OutputKind::kMarks, kMarksStream},
                         {options.forces, OutputKind::kText}},
                        {options.scan, options.strokes, options.scene, options.marks, options.original},
                        options.replacing, job);
@@ -150,7 +151,7 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   if (!imported) return tl::unexpected(imported.error());
   const auto original = originalOf(*imported, options.original, options.reading, job);
   if (!original) return tl::unexpected(original.error());
-  auto marked = withMarks(imported->field, options.marks);
+  auto marked = withMarks(imported->field, options.marks, job);
   if (!marked) return tl::unexpected(marked.error());
   const engine::Version field = *std::move(marked);
 
@@ -169,7 +170,7 @@ engine::Result<Report> replay(const ReplayArguments& given, engine::JobControl& 
   if (auto status = saveField(result->field, options.out, job, beginningWith(*original), options.to); !status)
     return tl::unexpected(status.error());
   if (!options.marks_out.empty())
-    if (auto status = saveMarks(result->field, options.marks_out); !status)
+    if (auto status = saveMarks(result->field, options.marks_out, job); !status)
       return tl::unexpected(status.error());
   if (!options.forces.empty())
     if (auto status = haptic::writeForces(options.forces, result->forces); !status)
@@ -206,7 +207,8 @@ void addReplay(Command root, Chosen& chosen) {
   command.add({
       {.name = "SCAN",
        .to = &options->scan,
-       .text = "The scan to touch, or a session: NAME.fettle",
+       .text =
+           "The scan to touch, or a session: NAME.fettle; - for standard input, with --from fettle a session",
        .kind = ValueKind::kInput,
        .required = true},
       {.name = "STROKES",

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -10,6 +9,7 @@
 #include "engine/field/version.h"
 #include "engine/io/export.h"
 #include "engine/io/import.h"
+#include "engine/session/session.h"
 
 namespace fettle::app {
 
@@ -19,17 +19,37 @@ namespace fettle::app {
 [[nodiscard]] engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
                                                         engine::JobControl& job);
 
-/// A field with the marks of a picture; without a picture, empty, the field itself.
+/// A field with the marks of a picture; without a picture, empty, the field itself. "-" is standard input, read once
+/// for all scans of a command.
 [[nodiscard]] engine::Result<engine::Version> withMarks(const engine::Version& field,
-                                                        const std::string& picture);
+                                                        const std::string& picture, engine::JobControl& job);
 
-/// The edge lines of a file, for `field`. Errors: those of engine::importLines.
+/// The edge lines of a file. "-" as of withMarks; its format is recognised by its content.
 [[nodiscard]] engine::Result<std::vector<engine::EdgeLine>> readLines(const std::string& file,
-                                                                      const engine::Version& field);
+                                                                      const engine::Version& field,
+                                                                      engine::JobControl& job);
 
 /// A field with the edge lines of a file, numbered from 0, instead of its own; without a file, empty, the field itself.
-[[nodiscard]] engine::Result<engine::Version> withLines(const engine::Version& field,
-                                                        const std::string& file);
+[[nodiscard]] engine::Result<engine::Version> withLines(const engine::Version& field, const std::string& file,
+                                                        engine::JobControl& job);
+
+/// openSession() of a session that may be "-".
+[[nodiscard]] engine::Result<engine::Session> loadSession(const std::string& path,
+                                                          const engine::SessionOpenOptions& options,
+                                                          engine::JobControl& job);
+
+/// Writes the marks of a field as engine::exportMarks(), to "-" in the format of the extension `to`, to a place in memory
+/// the field with them.
+[[nodiscard]] engine::Status saveMarks(const engine::Version& field, const std::string& path,
+                                       engine::JobControl& job, const std::string& to = ".png");
+
+/// Writes lines as engine::exportLines(), to "-" as CSV.
+[[nodiscard]] engine::Status saveLines(const std::vector<engine::EdgeLine>& lines, const engine::Grid& grid,
+                                       const std::string& path, engine::JobControl& job);
+
+/// What marks and lines are written as to "-", where nothing else is given.
+inline constexpr const char* kMarksStream = ".png";
+inline constexpr const char* kLinesStream = ".csv";
 
 /// The hash of a field's samples and marks as reports print it.
 [[nodiscard]] std::string hashOf(const engine::Version& field);
@@ -39,13 +59,6 @@ namespace fettle::app {
 [[nodiscard]] engine::Status saveField(const engine::Version& field, const std::string& path,
                                        engine::JobControl& job, const engine::ExportOptions& writing = {},
                                        const std::string& to = {});
-
-/// Writes the marks of a field, to a place in memory the field with them. Errors: those of engine::exportMarks.
-[[nodiscard]] engine::Status saveMarks(const engine::Version& field, const std::string& path);
-
-/// Writes edge lines of a field with `grid`. Errors: those of engine::exportLines.
-[[nodiscard]] engine::Status saveLines(const std::string& path, std::span<const engine::EdgeLine> lines,
-                                       const engine::Grid& grid);
 
 /// --to EXT for a command whose OUT may be "-".
 void addStreamFormat(Command command, std::string& to);

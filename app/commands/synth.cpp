@@ -6,6 +6,7 @@
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/typed_values.h"
+#include "app/commands/value_checks.h"
 #include "engine/scanner/scanner.h"
 
 namespace fettle::app {
@@ -41,7 +42,7 @@ engine::Result<Report> synth(SynthArguments options, engine::JobControl& job) {
     if (auto status = saveField(scan->truth, options.truth, job); !status)
       return tl::unexpected(status.error());
   if (!options.edges.empty())
-    if (auto status = saveMarks(scan->edges, options.edges); !status) return tl::unexpected(status.error());
+    if (auto status = saveMarks(scan->edges, options.edges, job); !status) return tl::unexpected(status.error());
   const engine::FieldSummary summary = engine::summarize(scan->scan);
   return Report{{"width", options.spec.width}, {"height", options.spec.height}, {"part", options.spec.part},
                 {"noise", options.spec.noise}, {"seed", options.spec.seed},     {"sigma_mm", scan->sigma_mm},
@@ -96,7 +97,8 @@ void addSynth(Command root, Chosen& chosen) {
       {.name = "--edges",
        .to = &options->edges,
        .text = "Also write the true edges as a picture, non-zero = edge",
-       .kind = ValueKind::kNewMarks},
+       .kind = ValueKind::kNewMarks,
+       .problem = streamProblem},
   });
   command.examples({{"fettle synth scan.tif --size 256x256 --truth truth.tif --edges edges.png",
                      "A scan of the bracket with what is true of it"}});

@@ -45,6 +45,11 @@ std::string noneOf(const std::string& typed, const std::vector<std::string>& wor
 
 }  // namespace
 
+std::string streamProblem(const std::string& typed) {
+  if (!isStream(typed)) return {};
+  return "takes no -, standard input or standard output: name a file, ./- for one of that name";
+}
+
 std::vector<std::function<std::string(const std::string&)>> problemsOf(const Parameter& p) {
   std::vector<std::function<std::string(const std::string&)>> problems;
   if (p.range)
@@ -53,17 +58,8 @@ std::vector<std::function<std::string(const std::string&)>> problemsOf(const Par
     });
   if (!p.words.empty())
     problems.emplace_back([words = wordsOf(p)](const std::string& typed) { return noneOf(typed, words); });
-  constexpr std::array kFiles{ValueKind::kFile,    ValueKind::kMarks,   ValueKind::kLines,
-                              ValueKind::kNewFile, ValueKind::kNewScan, ValueKind::kNewMarks,
-                              ValueKind::kNewLines};
-  if (std::ranges::find(kFiles, p.kind) != kFiles.end())
-    problems.emplace_back([](const std::string& typed) {
-      return isStream(typed)
-                 ? std::string(
-                       "takes no -, standard input or standard output: name a file, ./- for one of "
-                       "that name")
-                 : std::string();
-    });
+  constexpr std::array kFiles{ValueKind::kFile, ValueKind::kNewFile, ValueKind::kNewScan};
+  if (std::ranges::find(kFiles, p.kind) != kFiles.end()) problems.emplace_back(streamProblem);
   // A folder of that name would conflict with every command that writes to standard output.
   if (p.kind == ValueKind::kFolder)
     problems.emplace_back([](const std::string& typed) {

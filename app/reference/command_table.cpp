@@ -26,12 +26,12 @@ constexpr std::array<ValueKindInfo, 19> kValueKinds{{
     {ValueKind::kInput, "input", "FILE|-", "a file to read, or - for standard input"},
     {ValueKind::kOutput, "output", "FILE|-", "a file to write, or - for standard output"},
     {ValueKind::kFile, "file", "FILE", "a file to read"},
-    {ValueKind::kMarks, "marks", "FILE", "a picture of marks to read"},
-    {ValueKind::kLines, "lines", "FILE", "a file of edge lines to read"},
+    {ValueKind::kMarks, "marks", "FILE", "a picture of marks to read, or - for standard input"},
+    {ValueKind::kLines, "lines", "FILE", "a file of edge lines to read, or - for standard input"},
     {ValueKind::kNewFile, "new_file", "FILE", "a file to write; it appears whole or not at all"},
     {ValueKind::kNewScan, "new_scan", "FILE", "a scan to write, format by extension"},
-    {ValueKind::kNewMarks, "new_marks", "FILE", "a picture of marks to write: png, tif"},
-    {ValueKind::kNewLines, "new_lines", "FILE", "a file of edge lines to write: csv, geojson, gpkg, dxf"},
+    {ValueKind::kNewMarks, "new_marks", "FILE", "a picture of marks to write: png, tif; or - for standard output"},
+    {ValueKind::kNewLines, "new_lines", "FILE", "a file of edge lines to write: csv, geojson, gpkg, dxf; or - for standard output"},
     {ValueKind::kFolder, "folder", "FOLDER", "a folder"},
 }};
 

@@ -73,7 +73,7 @@ engine::Status checkStream(const Output& output) {
                               "give it as extension: --to xyz");
   const std::string extension = withDot(*output.stream);
   if (auto known = checkExtension(extension, output.kind, "--to"); !known) return known;
-  const bool text = output.kind == OutputKind::kField && isText(extension);
+  const bool text = extension == ".csv" || (output.kind == OutputKind::kField && isText(extension));
   if (!text && isatty(STDOUT_FILENO) != 0)
     return engine::inputError(fmt::format("standard output is a terminal, and {} is not text", extension),
                               "-", "send it into a file or another program, with > or |");
@@ -120,6 +120,7 @@ engine::Status checkPlaces(const std::vector<Output>& outputs, const std::vector
     const auto [earlier, fresh] = taken.emplace(place, Use::kOutput);
     if (!fresh)
       return engine::inputError(earlier->second == Use::kInput ? "the output would replace an input"
+                                : isStream(output.path)        ? "two outputs are standard output"
                                                                : "two outputs are in the same place",
                                 output.path, "name another file");
   }

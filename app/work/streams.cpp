@@ -152,6 +152,16 @@ engine::Result<StandardInput> StandardInput::read(const std::string& extension, 
   return StandardInput(*std::move(folder), std::move(path));
 }
 
+engine::Status StandardInput::nameAs(const std::string& extension) {
+  std::error_code error;
+  std::filesystem::rename(path_, path_ + extension, error);
+  if (error)
+    return engine::failure("standard input cannot be kept while it is read: " + error.message(), path_,
+                           "set TMPDIR to another folder");
+  path_ += extension;
+  return {};
+}
+
 engine::Error StandardInput::renamed(engine::Error error) const {
   for (std::string* text : {&error.what, &error.where, &error.remedy})
     for (std::size_t at; (at = text->find(path_)) != std::string::npos;)

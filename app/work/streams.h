@@ -41,6 +41,8 @@ class StandardInput {
   [[nodiscard]] static engine::Result<StandardInput> read(const std::string& extension,
                                                           engine::JobControl& job);
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
+  /// Gives the file this extension, with its dot: a format that was recognised by the content. Errors: kFailed.
+  [[nodiscard]] engine::Status nameAs(const std::string& extension);
 
   /// The error with "standard input" in the place of the file's path.
   [[nodiscard]] engine::Error renamed(engine::Error error) const;

@@ -1,3 +1,6 @@
+#include <filesystem>
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "engine/formats/formats.h"
@@ -42,6 +45,18 @@ TEST_F(MarkCommand, edges_are_those_that_the_window_suggests) {
   EXPECT_EQ(engine::contentHash(read(marks)), engine::contentHash(expected->field));
   EXPECT_EQ(report["lines"], expected->lines);
   EXPECT_EQ(report["marked"], engine::summarize(expected->field).marked);
+}
+
+TEST_F(MarkCommand, strokes_outside_the_scan_are_refused_before_anything_is_written) {
+  const std::string strokes = folder.file("strokes.csv"), lines = folder.file("lines.csv");
+  std::ofstream file(strokes);
+  file << "t,x,y,z,tool\n";
+  for (int i = 0; i < 40; ++i) file << 0.001 * i << ',' << -900.0 + 0.05 * i << ",5,0,mark\n";
+  file.close();
+  expectRefused(fettle({"mark", scan, marks, "--strokes", strokes, "--lines-out", lines}),
+                "all strokes of the tool mark lie outside the scan");
+  EXPECT_FALSE(std::filesystem::exists(lines));
+  EXPECT_FALSE(std::filesystem::exists(marks));
 }
 
 TEST_F(MarkCommand, marks_can_be_added_to_and_inverted) {

@@ -4,10 +4,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
 #include "tests/end_to_end/program.h"
+#include "tests/support/source_tree.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::tests {
@@ -68,6 +70,106 @@ TEST_F(Streams, PipesOfCommandsCarryDataAloneAndTheReportIsOnStderr) {
   EXPECT_TRUE(fettle({"render", "-", "-", "--size", "64x64", "-q"}, from(folder.file("s.tif")))
                   .out.starts_with("\x89PNG"));
   EXPECT_TRUE(fettle({"synth", "-", "--to", ".XYZ", "--size", "16x16", "-q"}).out.starts_with("//X Y Z"));
+}
+
+TEST_F(Streams, MarksGoThroughPipes) {
+  const std::string program = FETTLE_PROGRAM, scan = folder.file("part.tif"), out = folder.file("o.tif");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "160x128", "-q"}).status, 0);
+  const auto piped = [&](const std::string& to, const std::string& command) {
+    const Outcome done = runProcess(
+        {"sh", "-c",
+         program + " mark " + scan + " - --edges -q " + to + " | " + program + " " + command + " --json"});
+    EXPECT_EQ(done.status, 0) << command << done.err;
+    return nlohmann::json::parse(done.out, nullptr, false);
+  };
+  const std::string marks = folder.file("m.png");
+  ASSERT_EQ(fettle({"mark", scan, marks, "--edges"}).status, 0);
+  const auto hash = fettleJson({"filter", scan, out, "--filter", "box", "--keep", marks})["hash"];
+  EXPECT_NE(hash, fettleJson({"filter", scan, out, "--filter", "box"})["hash"]);
+  EXPECT_EQ(piped("", "filter " + scan + " " + out + " --filter box --keep -")["hash"], hash);
+  EXPECT_EQ(piped("--to tif", "filter " + scan + " " + out + " --filter box --keep -")["hash"], hash);
+  const auto only = fettleJson({"filter", scan, out, "--filter", "box", "--only", marks})["hash"];
+  EXPECT_EQ(piped("", "filter " + scan + " " + out + " --filter box --only -")["hash"], only);
+  // The same ones for each of several scans.
+  std::filesystem::copy_file(scan, folder.file("s2.tif"));
+  const auto batch = piped("", "filter " + scan + " " + folder.file("s2.tif") + " --out-dir " +
+                                   folder.file("d") + " --filter box --keep -");
+  EXPECT_EQ(batch["files"][0]["hash"], hash);
+  EXPECT_EQ(batch["files"][1]["hash"], hash);
+  const auto marked = fettleJson({"mark", scan, folder.file("i.png"), "--add", marks, "--invert"})["marked"];
+  EXPECT_EQ(piped("", "mark " + scan + " " + folder.file("i.png") + " --add - --invert")["marked"], marked);
+  piped("", "render " + scan + " " + folder.file("p.png") + " --size 64x64 --marks -");
+  EXPECT_TRUE(
+      piped("", "compare " + scan + " " + out + " --truth " + scan + " --edges -")["rmse_edge"].is_number());
+  std::ofstream(folder.file("strokes.csv")) << "t,x,y,z,tool\n0,0.1,0.1,-1,mark\n0.001,0.1,0.1,-1,mark\n";
+  EXPECT_GT(
+      piped("", "replay " + scan + " " + folder.file("strokes.csv") + " " + out + " --marks -")["marked"], 0);
+  EXPECT_TRUE(fettle({"replay", scan, folder.file("strokes.csv"), out, "--marks-out", "-", "-q"})
+                  .out.starts_with("\x89PNG"));
+  expectRefused(fettle({"filter", scan, out, "--filter", "box", "--keep", "-"}, from("/dev/null")),
+                "standard input");
+  expectRefused(fettle({"filter", "-", out, "--filter", "box", "--keep", "-"}, from(scan)),
+                "can only be read once");
+}
+
+TEST_F(Streams, LinesGoThroughPipesInEveryFormat) {
+  const std::string scan = folder.file("part.tif"), out = folder.file("o.tif"), csv = folder.file("l.csv");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "160x128", "-q"}).status, 0);
+  ASSERT_EQ(fettle({"mark", scan, folder.file("m.png"), "--edges", "--lines-out", csv}).status, 0);
+  std::ifstream file(csv);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(fettle({"mark", scan, folder.file("m.png"), "--edges", "--lines-out", "-", "-q"}).out, text);
+  EXPECT_EQ(fettle({"lines", scan, csv, "--out", "-", "-q"}).out, text);
+  EXPECT_TRUE(fettle({"lines", scan, csv, "--csv", "-", "-q"}).out.starts_with("line,along_mm"));
+  for (const std::string format : {"csv", "geojson", "gpkg", "dxf"}) {
+    const std::string path = folder.file("lines." + format);
+    ASSERT_EQ(fettle({"lines", scan, csv, "--out", path}).status, 0);
+    const auto hash = fettleJson({"filter", scan, out, "--filter", "tgv", "--lines", path})["hash"];
+    const Outcome piped =
+        fettle({"filter", scan, out, "--filter", "tgv", "--lines", "-", "--json"}, from(path));
+    ASSERT_EQ(piped.status, 0) << format << piped.err;
+    EXPECT_EQ(nlohmann::json::parse(piped.out)["hash"], hash) << format;
+    EXPECT_EQ(fettle({"lines", scan, "-"}, from(path)).status, 0) << format;
+    EXPECT_EQ(
+        fettle({"render", scan, folder.file("p.png"), "--size", "64x64", "--lines", "-"}, from(path)).status,
+        0);
+  }
+  expectRefused(fettle({"lines", scan, "-"}, from(scan)), "its format cannot be recognised");
+  expectRefused(fettle({"lines", "-", "-"}, from(scan)), "can only be read once");
+  expectRefused(fettle({"lines", scan, csv, "--out", "-", "--csv", "-"}), "two outputs are standard output");
+  expectRefused(fettle({"mark", scan, "-", "--edges", "--lines-out", "-"}),
+                "two outputs are standard output");
+}
+
+TEST_F(Streams, SessionsAndRecipesGoThroughPipes) {
+  const std::string session = inSourceTree("tests/haptic/journal/sessions/contact_revision_1.fettle");
+  const std::string copy = folder.file("j.fettle");
+  std::filesystem::copy_file(session, copy);
+  EXPECT_EQ(fettle({"journal", "-"}, from(copy)).out, fettle({"journal", copy}).out);
+  expectRefused(fettle({"recipe", "-"}, from(copy)), "it belongs to this scan");
+  const auto hash = fettleJson({"replay", copy, folder.file("o.tif")})["hash"];
+  const Outcome replayed =
+      fettle({"replay", "-", folder.file("o.tif"), "--from", "fettle", "--json"}, from(copy));
+  ASSERT_EQ(replayed.status, 0) << replayed.err;
+  EXPECT_EQ(nlohmann::json::parse(replayed.out)["hash"], hash);
+  std::ofstream(folder.file("c.toml")) << "recipe = 1\n[[step]]\ndo = \"invert\"\n";
+  EXPECT_EQ(
+      fettle({"apply", "-", folder.file("s.tif"), folder.file("o.tif")}, from(folder.file("c.toml"))).status,
+      0);
+  expectRefused(fettle({"apply", "-", "-", folder.file("o.tif")}, from(folder.file("c.toml"))),
+                "cannot both be standard input");
+}
+
+TEST_F(Streams, DataThatIsNoTextIsNotWrittenToATerminal) {
+  const std::string program = FETTLE_PROGRAM, scan = folder.file("s.tif");
+  for (const std::string& command :
+       {"convert " + scan + " - --to tif", "mark " + scan + " - --edges",
+        "render " + scan + " - --size 64x64", "filter " + scan + " - --to exr --filter box"}) {
+    // util-linux's script runs it on a terminal of its own.
+    const Outcome shown = runProcess({"script", "-qec", program + " " + command, "/dev/null"});
+    EXPECT_EQ(shown.status, 2) << command;
+    EXPECT_NE(shown.out.find("standard output is a terminal"), std::string::npos) << command << shown.out;
+  }
 }
 
 TEST_F(Streams, WhatCannotBeIsRefusedBeforeAnythingIsWritten) {
@@ -162,7 +264,7 @@ TEST_F(Streams, ArgumentsThatTakeNoneSaySo) {
         {std::vector<std::string>{"replay", scan, "strokes.csv", out, "--scene", "-"}, "--scene"},
         {std::vector<std::string>{"record", scan, "-", "--device", "hand:x"}, "STROKES"},
         {std::vector<std::string>{"info", scan, "--picture", "-"}, "--picture"},
-        {std::vector<std::string>{"filter", scan, out, "--filter", "box", "--keep", "-"}, "--keep"},
+        {std::vector<std::string>{"mark", scan, out, "--strokes", "-"}, "--strokes"},
         {std::vector<std::string>{"synth", out, "--truth", "-"}, "--truth"}}) {
     const Outcome printed = fettle(arguments);
     expectRefused(printed, "takes no -");

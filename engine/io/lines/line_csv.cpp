@@ -1,5 +1,6 @@
 #include "engine/io/lines/line_csv.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
@@ -29,14 +30,14 @@ struct LineRow {
 // The cells of a row from the left; remembers the first one that is not what was asked for.
 class LineCells {
  public:
-  explicit LineCells(std::string_view row) : rest_(row) {}
+  LineCells(std::string_view row, char separator) : rest_(row), separator_(separator) {}
 
   [[nodiscard]] std::string_view word() {
     if (ended_) lacking_ = true;
-    const std::size_t comma = rest_.find(',');
-    const std::string_view cell = rest_.substr(0, comma);
-    ended_ = comma == std::string_view::npos;
-    rest_.remove_prefix(ended_ ? rest_.size() : comma + 1);
+    const std::size_t end = rest_.find(separator_);
+    const std::string_view cell = rest_.substr(0, end);
+    ended_ = end == std::string_view::npos;
+    rest_.remove_prefix(ended_ ? rest_.size() : end + 1);
     return cell;
   }
   template <class Number>
@@ -64,13 +65,15 @@ class LineCells {
   }
 
   std::string_view rest_;
+  char separator_;
   bool ended_ = false, lacking_ = false;
   std::optional<std::string> problem_;
 };
 
-std::optional<std::string> parseLineRow(std::string_view text, const LineFrame& frame, LineRow& row) {
+std::optional<std::string> parseLineRow(std::string_view text, char separator, const LineFrame& frame,
+                                        LineRow& row) {
   using Real = LineFrame::Real;
-  LineCells cells(text);
+  LineCells cells(text, separator);
   row.id = cells.number<std::int64_t>("line");
   row.closed = cells.either("closed", "0", "1");
   const Real x = cells.number<Real>("x");
@@ -119,7 +122,11 @@ Result<std::vector<EdgeLine>> readLineCsv(const InputFile& file, const Grid& gri
   const bool has_header = reader.line(text);
   // Of programs that mark UTF-8.
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  if (!has_header || text != kLineHeader)
+  // Spreadsheets write semicolons where the comma is the decimal sign; numbers have points here all the same.
+  const char separator = text.starts_with("line;") ? ';' : ',';
+  std::string header(text);
+  std::ranges::replace(header, separator, ',');
+  if (!has_header || header != kLineHeader)
     return inputError(fmt::format("line 1 is not the header {}", kLineHeader), file.path(),
                       "give lines as docs/formats.md describes them");
   const LineFrame frame = LineFrame::field(grid);
@@ -135,7 +142,7 @@ Result<std::vector<EdgeLine>> readLineCsv(const InputFile& file, const Grid& gri
     if (reader.lastLineIsOpen())
       return inputError(where + " has no end", file.path(), "the file is cut short: write it again");
     LineRow row;
-    if (const auto problem = parseLineRow(text, frame, row))
+    if (const auto problem = parseLineRow(text, separator, frame, row))
       return inputError(fmt::format("{}: {}", where, *problem), file.path(), "correct or remove the line");
     if (fresh || lines.last().id != row.id || lines.last().closed != row.closed)
       lines.begin(row.id, row.closed);

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 
 #include "engine/io/files/atomic_file.h"
 #include "engine/io/files/gdal_session.h"
+#include "engine/io/geo/crs_text.h"
 #include "engine/io/lines/line_frame.h"
 #include "engine/io/lines/lines.h"
 
@@ -157,6 +159,15 @@ bool writeLineDataset(const MemoryFile& file, const std::string& extension, std:
 
 // ---- reading
 
+// Whether a file names the coordinate system that GDAL gives its layers: a GeoJSON without one counts as WGS 84 there,
+// but here as numbers of the scan.
+bool statesCrs(const InputFile& file) {
+  if (std::string_view(driverOf(file.extension())) != "GeoJSON") return true;
+  std::string head(std::size_t{1} << 16, '\0');
+  const Result<std::size_t> got = file.read(0, head.data(), head.size());
+  return got && std::string_view(head).substr(0, *got).find("\"crs\"") != std::string_view::npos;
+}
+
 class LineLayerReader {
  public:
   LineLayerReader(const InputFile& file, const Grid& grid, GdalSession& gdal)
@@ -297,6 +308,11 @@ Result<std::vector<EdgeLine>> readLineVectors(const InputFile& file, const Grid&
     OGRLayerH layer = GDALDatasetGetLayer(dataset.get(), i);
     // Definitions of a DXF; where one is used there is a point among the entities.
     if (layer == nullptr || std::string_view(OGR_L_GetName(layer)) == "blocks") continue;
+    if (const OGRSpatialReferenceH crs = OGR_L_GetSpatialRef(layer); crs != nullptr && statesCrs(file))
+      if (const std::string wkt = wktOf(crs); !sameHorizontalCrs(wkt, grid.crs_wkt))
+        return inputError(
+            fmt::format("the lines are in {}, the scan is in {}", crsName(wkt), crsName(grid.crs_wkt)),
+            file.path(), "transform them first: ogr2ogr -t_srs");
     if (Status status = reader.read(layer); !status) return tl::unexpected(status.error());
   }
   return reader.finish();

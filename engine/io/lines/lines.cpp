@@ -26,6 +26,19 @@ Status checkLineExtension(const std::string& path) {
 
 }  // namespace
 
+std::string_view lineExtensionOf(std::string_view head) noexcept {
+  if (head.starts_with("SQLite format 3")) return ".gpkg";
+  if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
+  if (head.starts_with("line,") || head.starts_with("line;")) return ".csv";
+  const std::size_t first = head.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return {};
+  head.remove_prefix(first);
+  if (head.front() == '{') return ".geojson";
+  // A DXF begins with a group code, 0 or the 999 of a comment, on a line of its own.
+  const std::string_view code = head.substr(0, head.find_first_of("\r\n"));
+  return code == "0" || code == "999" ? ".dxf" : std::string_view();
+}
+
 Result<std::vector<EdgeLine>> importLines(const std::string& path, const Version& field) {
   if (Status status = checkLineExtension(path); !status) return tl::unexpected(status.error());
   const Result<InputFile> file = InputFile::open(path);

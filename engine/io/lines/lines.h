@@ -32,6 +32,10 @@ inline constexpr std::string_view kLineExtensions[] = {".csv", ".dxf", ".geojson
 /// Most points of a file of lines, also after points were inserted.
 inline constexpr std::int64_t kMostLinePoints = std::int64_t{1} << 22;
 
+/// The extension of the format that the first bytes of a file of lines are of, with its dot; empty where they are of
+/// none.
+[[nodiscard]] std::string_view lineExtensionOf(std::string_view head) noexcept;
+
 /// Reads edge lines for `field`. Positions are rounded to multiples of 2^-20 samples. Where located points lie more than
 /// EdgeLine::kMostApart apart, others are inserted between them, at most one sample apart. A line of another program,
 /// without attributes, counts as a step that was located without deviation.

@@ -1,7 +1,9 @@
 #include "engine/io/lines/lines.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -15,6 +17,9 @@ using tests::TempFolder;
 
 constexpr const char* kHeader =
     "line,closed,x,y,located,kind,deviation,step,step_deviation,slope_change,slope_deviation\n";
+
+constexpr const char* kUtm32 =
+    R"(PROJCS["UTM 32N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","32632"]])";
 
 Version fieldOf(const Grid& grid) {
   return makeField(grid, std::vector<float>(static_cast<std::size_t>(grid.samples()), 0.0F));
@@ -142,8 +147,7 @@ TEST_P(LineFormats, CoordinateSystemsArePlaces) {
   grid.spacing_x = grid.spacing_y = 0.5;
   grid.origin_x = 412345.5;
   grid.origin_y = 5311234.25;
-  grid.crs_wkt =
-      R"(PROJCS["UTM 32N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1],AUTHORITY["EPSG","32632"]])";
+  grid.crs_wkt = kUtm32;
   const std::vector<EdgeLine> lines = sampleLines();
   const auto before = positionsOf(lines), after = positionsOf(thereAndBack(lines, grid));
   ASSERT_EQ(after.size(), before.size());
@@ -152,6 +156,57 @@ TEST_P(LineFormats, CoordinateSystemsArePlaces) {
     EXPECT_LT(std::hypot(before[i].x - after[i].x, before[i].y - after[i].y), 2e-6);
   if (!is(".geojson")) return;
   EXPECT_NE(readBytes(folder.file("lines.geojson")).find("5311249."), std::string::npos);
+}
+
+TEST_P(LineFormats, OfAnotherCoordinateSystemAreRefused) {
+  if (is(".csv") || is(".dxf")) return;  // they have none
+  const std::string path = folder.file(std::string("lines") + GetParam());
+  Grid grid = fineGrid();
+  grid.lateral_unit = {"m", 1000.0};
+  grid.crs_wkt = kUtm32;
+  ASSERT_TRUE(exportLines(path, sampleLines(), grid));
+  EXPECT_TRUE(importLines(path, fieldOf(grid)));
+  const auto set = [&](const char* old, const char* now) {
+    grid.crs_wkt.replace(grid.crs_wkt.find(old), std::string_view(old).size(), now);
+  };
+  set("UTM 32N", "UTM 33N");
+  set("\"central_meridian\",9", "\"central_meridian\",15");
+  set("32632", "32633");
+  const auto lines = importLines(path, fieldOf(grid));
+  ASSERT_FALSE(lines);
+  EXPECT_NE(lines.error().what.find("the scan is in UTM 33N"), std::string::npos) << lines.error().what;
+  grid.crs_wkt.clear();
+  EXPECT_TRUE(importLines(path, fieldOf(grid)));
+}
+
+TEST_P(LineFormats, AreRecognisedByTheirFirstBytes) {
+  const std::string path = folder.file(std::string("lines") + GetParam());
+  ASSERT_TRUE(exportLines(path, sampleLines(), fineGrid()));
+  const std::string bytes = readBytes(path);
+  EXPECT_EQ(lineExtensionOf(bytes.substr(0, 64)), is(".json") ? ".geojson" : GetParam());
+  for (std::size_t length = 0; length < 64; ++length) (void)lineExtensionOf(bytes.substr(0, length));
+  EXPECT_EQ(lineExtensionOf("\x89PNG"), "");
+}
+
+TEST(LineFiles, OfASpreadsheetHaveSemicolons) {
+  const TempFolder folder;
+  const std::string path = folder.file("lines.csv");
+  ASSERT_TRUE(exportLines(path, sampleLines(), fineGrid()));
+  std::string text = readBytes(path);
+  const auto before = importLines(path, fieldOf(fineGrid()));
+  ASSERT_TRUE(before);
+  std::ranges::replace(text, ',', ';');
+  writeBytes(path, text);
+  const auto after = importLines(path, fieldOf(fineGrid()));
+  ASSERT_TRUE(after) << after.error().line();
+  EXPECT_EQ(positionsOf(*after), positionsOf(*before));
+  // A decimal comma is refused with its line.
+  const std::size_t point = text.find('.');
+  text[point] = ',';
+  writeBytes(path, text);
+  const auto comma = importLines(path, fieldOf(fineGrid()));
+  ASSERT_FALSE(comma);
+  EXPECT_NE(comma.error().what.find("line 2: x = "), std::string::npos) << comma.error().what;
 }
 
 TEST_P(LineFormats, FilesCutAnywhereAreRefusedOrHaveLines) {
