@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "engine/formats/formats.h"
 #include "engine/filter/filter.h"
+#include "engine/formats/formats.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/session/session.h"
 #include "tests/end_to_end/program.h"
