@@ -53,6 +53,18 @@ std::string_view linkName(LinkState link) {
   return "";
 }
 
+std::string_view linkRemedy(LinkState link) {
+  switch (link) {
+    case LinkState::kDisconnected:
+      return "plug it in, it is waited for; Ctrl-C ends";
+    case LinkState::kUncalibrated:
+      return "hold the stylus in its home pose and press c, or the device's own button";
+    case LinkState::kConnected:
+      break;
+  }
+  return "";
+}
+
 // The guard's state kUncalibrated also includes a ready device that is not armed.
 std::string stateName(const LoopState& state) {
   if (state.safety == SafetyState::kUncalibrated && state.link == LinkState::kConnected) return "not armed";
@@ -197,9 +209,7 @@ class LiveSession {
     const LoopState& state = now_;
     const bool first = before.tick == 0;
     if (first || state.link != before.link) {
-      const bool home = state.link == LinkState::kUncalibrated;
-      report(fmt::format("device {}", linkName(state.link)),
-             home ? "hold the stylus in its home pose and press c, or the device's own button" : "");
+      report(fmt::format("device {}", linkName(state.link)), std::string(linkRemedy(state.link)));
     }
     if (state.safety_counters.faults > before.safety_counters.faults)
       report(fmt::format("fault, {}", haptic::name(state.cause)), remedyFor(state.cause));

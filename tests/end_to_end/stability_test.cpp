@@ -56,6 +56,17 @@ TEST_F(Stability, RecordRefusesWhatTheHandDoesNotHoldAndNamesTheLargestThatItDoe
                 "at most 1 N/mm");
 }
 
+TEST_F(Stability, RecordSaysThatItWaitsForADeviceThatIsNotThereAndHowToEnd) {
+  const Outcome waited =
+      fettle({"record", scan, recorded, "--device", "woodenhaptics", "--seconds", "0.3", "-q", "--json"});
+  const Outcome shown = fettle({"record", scan, recorded, "--device", "woodenhaptics", "--seconds", "0.3"});
+  const auto report = nlohmann::json::parse(waited.out, nullptr, false);
+  if (report["device"]["connects"] != 0) GTEST_SKIP() << "a device is plugged in";
+  EXPECT_NE(shown.err.find("device not plugged in: plug it in, it is waited for; Ctrl-C ends"),
+            std::string::npos)
+      << shown.err;
+}
+
 TEST_F(Stability, WithoutADeviceASceneThatNoneHoldsIsTakenWithAWarning) {
   const std::string stiff = scene("[force]\nstiffness_n_per_mm = 1000\n");
   const std::string warning = "fettle: warning: " + stiff;
