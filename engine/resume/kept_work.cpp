@@ -165,10 +165,14 @@ void KeptWork::finish() {
   file_.remove();
 }
 
+double KeptWork::pauseAfter(double seconds) const noexcept {
+  return options_.every_seconds > 0.0 ? std::max(options_.every_seconds, (kParts - 1.0) * seconds) : 0.0;
+}
+
 void KeptWork::writeRegularly() {
   std::unique_lock lock(mutex_);
   while (!ended_) {
-    const double pause = std::max(options_.every_seconds, (kParts - 1.0) * last_seconds_);
+    const double pause = pauseAfter(last_seconds_);
     wake_.wait_for(lock, std::chrono::duration<double>(pause), [this] { return ended_; });
     if (pause < 0.01) wake_.wait(lock, [this] { return ended_ || !pending_.blocks.empty(); });
     if (ended_ || pending_.blocks.empty()) continue;
@@ -202,8 +206,7 @@ Status KeptWork::beginPass(const State& before) {
   done_before_.clear();
   // What is pending of the pass before still belongs to what the file holds.
   keeps_this_pass_ = false;
-  if (since_state_.seconds() < std::max(options_.every_seconds, (kParts - 1.0) * last_state_seconds_))
-    return {};
+  if (since_state_.seconds() < pauseAfter(last_state_seconds_)) return {};
   std::vector<NewTile> tiles;
   for (TileChange& change : changedTiles(input_, before.field))
     tiles.push_back({change.tile_column, change.tile_row, std::move(change.after), {}});

@@ -19,8 +19,10 @@ namespace fettle::engine {
 
 /// How work is kept.
 struct KeepOptions {
-  std::string path;             ///< of the file
-  double every_seconds = 15.0;  ///< between two times that it is written, >= 0
+  std::string path;  ///< of the file
+  /// Between two times that it is written, or as much more as keeps writing to a twentieth of the time; 0: each block
+  /// at once, whatever that takes.
+  double every_seconds = 15.0;
   /// Called when the file could not be written, on a thread of the keeper's own; the work goes on, and it is tried
   /// again.
   std::function<void(const Error&)> on_trouble;
@@ -29,8 +31,7 @@ struct KeepOptions {
 /// Keeps the finished blocks of one applyFilter in a file, so that the same filter of the same field continues after it
 /// was cut off, with the same bits.
 ///
-/// A thread of its own writes what was finished, every KeepOptions::every_seconds and not more than a twentieth of the
-/// time. Between passes the whole state is written where that keeps to the same share, else the next pass is not kept
+/// A thread of its own writes what was finished, every KeepOptions::every_seconds. Between passes the whole state is written where that keeps to the same share, else the next pass is not kept
 /// and begins again after a cut. What is lost is the time between two writes, and at most one pass beyond.
 ///
 /// Threading: as FilterWork; the rest on the thread of applyFilter.
@@ -67,6 +68,8 @@ class KeptWork final : public FilterWork {
   [[nodiscard]] Status read();
   [[nodiscard]] TileRef restored(std::int32_t column, std::int32_t row, const float* samples) const;
   [[nodiscard]] Status writePending();  // with writing_ held
+  // Time to the next write, of which the last took so long [s].
+  [[nodiscard]] double pauseAfter(double seconds) const noexcept;
   void writeRegularly();
   void report(const Error& error);
   [[nodiscard]] bool wasDone(std::int32_t column, std::int32_t row) const noexcept {
