@@ -160,6 +160,10 @@ void warn(const std::string& text) {
   }
 }
 
+void note(const std::string& text) {
+  if (!voice().json && !voice().quiet) lineToStderr("fettle: " + text);
+}
+
 std::vector<std::string> takeWarnings() {
   const std::scoped_lock lock(kept_mutex);
   return std::exchange(kept_warnings, {});

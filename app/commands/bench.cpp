@@ -374,6 +374,7 @@ void addBench(Command root, Chosen& chosen) {
   addBenchLarge(bench, chosen);
   addBenchImport(bench, chosen);
   addBenchFilters(bench, chosen);
+  addBenchEstimate(bench, chosen);
 
   auto render_options = std::make_shared<bench::RenderBenchOptions>();
   Command drawing = addCommand(

@@ -4,8 +4,9 @@
 
 namespace fettle::app {
 
-/// `fettle bench filters`, `growth`, `import` and `large`, added to `fettle bench`.
+/// `fettle bench filters`, `estimate`, `growth`, `import` and `large`, added to `fettle bench`.
 void addBenchFilters(Command bench, Chosen& chosen);
+void addBenchEstimate(Command bench, Chosen& chosen);
 void addBenchGrowth(Command bench, Chosen& chosen);
 void addBenchImport(Command bench, Chosen& chosen);
 void addBenchLarge(Command bench, Chosen& chosen);

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -19,7 +21,9 @@
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
+#include "app/work/work_estimate.h"
 #include "engine/base/lower_case.h"
+#include "engine/base/memory.h"
 #include "engine/base/stopwatch.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
@@ -48,9 +52,13 @@ struct FilterArguments {
   std::optional<double> budget;
   int places = 0;
   ResumeOptions resume;
+  bool estimate = false;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
+
+// Work that takes less begins without a word.
+constexpr double kLongSeconds = 5.0;
 
 engine::Result<engine::FilterSpec> specOf(const FilterArguments& options) {
   engine::FilterSpec spec;
@@ -98,16 +106,39 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   const auto ready = engine::withMeasuredRange(spec, field, job);
   if (!ready) return tl::unexpected(ready.error());
   spec = *ready;
+  engine::ExportOptions writing = options.writing;
+  writing.original = *original;
+  const PlannedWork planned{
+      .field = field,
+      .original = *original,
+      .spec = spec,
+      .compute = compute,
+      .out = task.out,
+      .extension = isStream(task.out) ? withDot(task.to) : engine::extensionOf(task.out),
+      .writing = writing,
+      .kept = options.resume.resume};
+  const auto estimate = estimateWork(planned, options.estimate, job);
+  if (!estimate) return tl::unexpected(estimate.error());
+  if (*estimate) {
+    if (auto room = checkRoom(**estimate, planned); !room) return tl::unexpected(room.error());
+    if (!options.estimate && (*estimate)->seconds() >= kLongSeconds)
+      note(fmt::format("{}: {}", shownOutput(task.out), textOf(**estimate)));
+  }
+  if (options.estimate) {
+    Report report = *estimate ? reportOf(**estimate) : Report::object();
+    report["text"] = *estimate ? textOf(**estimate) : "";
+    return report;
+  }
   auto kept = openKeptWork(options.resume, task.out, field, *original, spec, compute.device());
   if (!kept) return tl::unexpected(kept.error());
   const engine::Stopwatch watch;
   const auto filtered = compute.apply(field, *original, spec, job, kept->get());
   const double seconds = watch.seconds();
   if (!filtered) return tl::unexpected(continued(filtered.error(), task.out, *std::move(kept)));
-  engine::ExportOptions writing = options.writing;
-  writing.original = *original;
+  const engine::Stopwatch save_watch;
   if (auto status = saveField(filtered->field, task.out, job, writing, task.to); !status)
     return tl::unexpected(continued(status.error(), task.out, *std::move(kept)));
+  const double write_seconds = save_watch.seconds();
   if (*kept) (*kept)->finish();
 
   const double samples = static_cast<double>(field.grid().samples()) * spec.passes;
@@ -134,6 +165,14 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
                  {"samples_per_second", samples / seconds},
                  {"hash", hashOf(filtered->field)}});
   addKept(report, kept->get(), spec.passes);
+  if (*estimate) {
+    report["write_seconds"] = write_seconds;
+    report["peak_memory_bytes"] = engine::residentMemory().peak;
+    std::error_code unknown;
+    const auto bytes = isStream(task.out) ? 0 : std::filesystem::file_size(task.out, unknown);
+    report["disk_bytes"] = unknown ? 0 : bytes;
+    report["estimate"] = reportOf(**estimate);
+  }
   return report;
 }
 
@@ -464,6 +503,12 @@ void addFilter(Command root, Chosen& chosen) {
            .otherwise = "none"},
       },
       "Suggesting a filter");
+  command.add(
+      {{.name = "--estimate",
+        .to = &options->estimate,
+        .text = "Filter nothing: print the time, memory and disk that it will take, from a sample of the "
+                "same work on this machine"}},
+      kLongWork);
   addResumeOptions(command, options->resume);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);

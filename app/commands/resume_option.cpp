@@ -13,18 +13,19 @@
 namespace fettle::app {
 
 void addResumeOptions(Command command, ResumeOptions& options) {
-  command.add({{.name = "--resume",
-                .to = &options.resume,
-                .text = "Keep finished work in OUT.resume while filtering, and continue with what an earlier "
-                        "run that was "
-                        "cut off left there; removed when OUT is written"},
-               {.name = "--resume-every",
-                .to = &options.every_seconds,
-                .text = "With --resume: time between two times that finished work is kept",
-                .range = Range{0.0, std::numeric_limits<double>::infinity()},
-                .unit = "seconds",
-                .otherwise = fmt::format("{:g}", engine::KeepOptions{}.every_seconds)}},
-              "Long work");
+  command.add(
+      {{.name = "--resume",
+        .to = &options.resume,
+        .text = "Keep finished work in OUT.resume while filtering, and continue with what an earlier "
+                "run that was "
+                "cut off left there; removed when OUT is written"},
+       {.name = "--resume-every",
+        .to = &options.every_seconds,
+        .text = "With --resume: time between two times that finished work is kept; 0: each part at once",
+        .range = Range{0.0, std::numeric_limits<double>::infinity()},
+        .unit = "seconds",
+        .otherwise = fmt::format("{:g}", engine::KeepOptions{}.every_seconds)}},
+      kLongWork);
 }
 
 std::string keptWorkOf(const std::string& out) {

@@ -17,6 +17,7 @@ struct ResumeOptions {
   bool resume = false;
   std::optional<double> every_seconds;
 };
+inline constexpr const char* kLongWork = "Long work";  ///< heading of these and of --estimate
 void addResumeOptions(Command command, ResumeOptions& options);
 
 /// The file of the kept work of an output.

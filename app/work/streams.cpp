@@ -123,10 +123,10 @@ ScratchFolder::ScratchFolder(std::string path)
         delete folder;
       }) {}
 
-engine::Result<ScratchFolder> ScratchFolder::create() {
+engine::Result<ScratchFolder> ScratchFolder::create(const std::string& in) {
   std::error_code error;
-  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
-  std::string name = (folder / "fettle-XXXXXX").string();
+  const auto folder = in.empty() ? std::filesystem::temp_directory_path(error) : std::filesystem::path(in);
+  std::string name = (folder / (in.empty() ? "fettle-XXXXXX" : ".fettle-XXXXXX")).string();
   if (error || mkdtemp(name.data()) == nullptr)
     return engine::failure("there is no folder for temporary files that can be written", folder.string(),
                            "set TMPDIR to a folder you may write to");

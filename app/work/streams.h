@@ -21,8 +21,8 @@ namespace fettle::app {
 /// A folder for one run, readable by the user only, removed with its content.
 class ScratchFolder {
  public:
-  /// Errors (kFailed): no folder for temporary files that can be written.
-  [[nodiscard]] static engine::Result<ScratchFolder> create();
+  /// In the folder `in`, else in that for temporary files. Errors (kFailed): it cannot be written.
+  [[nodiscard]] static engine::Result<ScratchFolder> create(const std::string& in = {});
   ScratchFolder(ScratchFolder&&) noexcept = default;
   ScratchFolder& operator=(ScratchFolder&&) noexcept = default;
 
