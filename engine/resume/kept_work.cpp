@@ -30,7 +30,7 @@ std::string whatDiffers(const std::string& word) {
 
 }  // namespace
 
-KeptWork::KeptWork(KeepOptions options, WorkIdentity identity, const Version& input)
+KeptWork::KeptWork(KeepOptions options, const WorkIdentity& identity, const Version& input)
     : options_(std::move(options)),
       identity_(identity.text()),
       input_(input),
@@ -39,7 +39,7 @@ KeptWork::KeptWork(KeepOptions options, WorkIdentity identity, const Version& in
   start_ = {0, input};
 }
 
-Result<std::unique_ptr<KeptWork>> KeptWork::open(KeepOptions options, WorkIdentity identity,
+Result<std::unique_ptr<KeptWork>> KeptWork::open(KeepOptions options, const WorkIdentity& identity,
                                                  const Version& input) {
   const auto there = WorkFile::look(options.path);
   if (!there) return tl::unexpected(there.error());
@@ -47,7 +47,7 @@ Result<std::unique_ptr<KeptWork>> KeptWork::open(KeepOptions options, WorkIdenti
     if (const std::string word = identity.differsIn(there->identity); !word.empty())
       return inputError(fmt::format("the kept work is {}", whatDiffers(word)), options.path,
                         "give the same command as before, or delete the file to begin from the beginning");
-  std::unique_ptr<KeptWork> kept(new KeptWork(std::move(options), std::move(identity), input));
+  std::unique_ptr<KeptWork> kept(new KeptWork(std::move(options), identity, input));
   if (there->bytes > 0)
     if (Status read = kept->read(); !read) return tl::unexpected(read.error());
   if (!kept->file_.isOpen()) {

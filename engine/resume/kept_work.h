@@ -38,7 +38,8 @@ struct KeepOptions {
 class KeptWork final : public FilterWork {
  public:
   /// Errors (kInput): the file is of another identity, no file of kept work, in use, or cannot be written.
-  [[nodiscard]] static Result<std::unique_ptr<KeptWork>> open(KeepOptions options, WorkIdentity identity,
+  [[nodiscard]] static Result<std::unique_ptr<KeptWork>> open(KeepOptions options,
+                                                              const WorkIdentity& identity,
                                                               const Version& input);
   /// Writes what is finished and leaves the file, for another time.
   ~KeptWork() override;
@@ -52,7 +53,7 @@ class KeptWork final : public FilterWork {
   [[nodiscard]] double secondsWriting() const;
   [[nodiscard]] std::uint64_t mostBytes() const;
 
-  /// Writes what is finished now. Errors as WorkFile::append.
+  /// Writes what is finished now; any thread. Errors as WorkFile::append.
   [[nodiscard]] Status keep();
   /// The result is safe elsewhere: removes the file.
   void finish();
@@ -64,7 +65,7 @@ class KeptWork final : public FilterWork {
   void addMade(std::vector<NewTile>& made) override;
 
  private:
-  KeptWork(KeepOptions options, WorkIdentity identity, const Version& input);
+  KeptWork(KeepOptions options, const WorkIdentity& identity, const Version& input);
   [[nodiscard]] Status read();
   [[nodiscard]] TileRef restored(std::int32_t column, std::int32_t row, const float* samples) const;
   [[nodiscard]] Status writePending();  // with writing_ held
