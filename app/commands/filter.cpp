@@ -20,6 +20,7 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
+#include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "app/work/work_estimate.h"
 #include "engine/base/lower_case.h"
@@ -117,7 +118,10 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
       .extension = isStream(task.out) ? withDot(task.to) : engine::extensionOf(task.out),
       .writing = writing,
       .kept = options.resume.resume};
-  const auto estimate = estimateWork(planned, options.estimate, job);
+  // A result that stays in memory is written nowhere, and nothing of it is kept.
+  const bool in_memory = memoryPlace(task.out) != nullptr;
+  engine::Result<std::optional<WorkEstimate>> estimate = std::nullopt;
+  if (!in_memory) estimate = estimateWork(planned, options.estimate, job);
   if (!estimate) return tl::unexpected(estimate.error());
   if (*estimate) {
     if (auto room = checkRoom(**estimate, planned); !room) return tl::unexpected(room.error());

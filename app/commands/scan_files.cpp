@@ -66,8 +66,7 @@ engine::Status readOnce(std::optional<StandardInput>& input, Recogniser* recogni
 // The marks of a field in memory, of the same shape.
 engine::Result<engine::Version> withMarksOf(const MemoryPlace& place, const engine::Version& field,
                                             const std::string& name) {
-  if (!place.scan)
-    return engine::inputError("these are not marks", name, "give a mask of the field's shape");
+  if (!place.scan) return engine::inputError("these are not marks", name, "give a mask of the field's shape");
   const engine::FieldReader marks = place.scan->field.reader();
   if (marks.width() != field.grid().width || marks.height() != field.grid().height)
     return engine::inputError(
@@ -78,8 +77,7 @@ engine::Result<engine::Version> withMarksOf(const MemoryPlace& place, const engi
   std::vector<std::uint8_t> row(static_cast<std::size_t>(marks.width()));
   for (std::int32_t r = marks.height() - 1; r >= 0; --r) {
     marks.readMarks(0, r, marks.width(), 1, row.data(), marks.width());
-    if (!setter.take(r, row.data()))
-      return engine::failure("there is not enough memory for the marks", name);
+    if (!setter.take(r, row.data())) return engine::failure("there is not enough memory for the marks", name);
   }
   return setter.result();
 }

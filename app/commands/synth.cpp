@@ -42,7 +42,8 @@ engine::Result<Report> synth(SynthArguments options, engine::JobControl& job) {
     if (auto status = saveField(scan->truth, options.truth, job); !status)
       return tl::unexpected(status.error());
   if (!options.edges.empty())
-    if (auto status = saveMarks(scan->edges, options.edges, job); !status) return tl::unexpected(status.error());
+    if (auto status = saveMarks(scan->edges, options.edges, job); !status)
+      return tl::unexpected(status.error());
   const engine::FieldSummary summary = engine::summarize(scan->scan);
   return Report{{"width", options.spec.width}, {"height", options.spec.height}, {"part", options.spec.part},
                 {"noise", options.spec.noise}, {"seed", options.spec.seed},     {"sigma_mm", scan->sigma_mm},

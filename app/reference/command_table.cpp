@@ -30,8 +30,10 @@ constexpr std::array<ValueKindInfo, 19> kValueKinds{{
     {ValueKind::kLines, "lines", "FILE", "a file of edge lines to read, or - for standard input"},
     {ValueKind::kNewFile, "new_file", "FILE", "a file to write; it appears whole or not at all"},
     {ValueKind::kNewScan, "new_scan", "FILE", "a scan to write, format by extension"},
-    {ValueKind::kNewMarks, "new_marks", "FILE", "a picture of marks to write: png, tif; or - for standard output"},
-    {ValueKind::kNewLines, "new_lines", "FILE", "a file of edge lines to write: csv, geojson, gpkg, dxf; or - for standard output"},
+    {ValueKind::kNewMarks, "new_marks", "FILE",
+     "a picture of marks to write: png, tif; or - for standard output"},
+    {ValueKind::kNewLines, "new_lines", "FILE",
+     "a file of edge lines to write: csv, geojson, gpkg, dxf; or - for standard output"},
     {ValueKind::kFolder, "folder", "FOLDER", "a folder"},
 }};
 
@@ -149,7 +151,8 @@ std::string usageOf(const CommandTable& command) {
   usage += " [OPTIONS]";
   if (!command.commands.empty()) return usage + " COMMAND";
   for (const Parameter& p : command.parameters)
-    if (p.positional()) usage += p.required ? " " + signatureOf(p) : " [" + signatureOf(p) + "]";
+    if (p.positional())
+      usage += p.required ? fmt::format(" {}", signatureOf(p)) : fmt::format(" [{}]", signatureOf(p));
   return usage;
 }
 

@@ -85,6 +85,34 @@ Keys timing() {
           {"worst_us", "number", ""}};
 }
 
+// Of a figure of an estimate: the middle ones of the runs, and the ratio of expected to real.
+Keys expectedAndReal() {
+  return {{"expected", "number", ""},
+          {"real", "number", ""},
+          {"ratio", "number", "expected over real"},
+          {"least_ratio", "number", ""},
+          {"most_ratio", "number", ""}};
+}
+
+Keys estimated() {
+  return {{"seconds", "number", "of filtering and writing"},
+          {"filter_seconds", "number", ""},
+          {"write_seconds", "number", ""},
+          {"memory_bytes", "integer", "at most, of the whole process"},
+          {"disk_bytes", "integer", "of the result"},
+          {"kept_bytes", "integer", "of kept work beside it, with --resume"},
+          {"store_bytes", "integer", "of --store"}};
+}
+
+// What is taken out of a surface before it is measured.
+Keys form() {
+  return {{"form", "string", "none, mean, plane, poly2 to poly5"},
+          {"robust", "boolean", ""},
+          {"region", "string", "all, marked, unmarked"},
+          {"tilt_x?", "number", "degrees, up to higher x; of a plane and more"},
+          {"tilt_y?", "number", "degrees"}};
+}
+
 std::vector<ReportSchema> inspecting() {
   return {
       {"info",
@@ -143,6 +171,34 @@ std::vector<ReportSchema> inspecting() {
            "with --at",
            {{"row", "integer", ""}, {"column", "integer", ""}, {"height", "number", "null: a hole"}}},
           {"picture?", "string", "with --picture"}}}},
+       true},
+      {"measure",
+       1,
+       {{"one scan",
+         joined(form(), {unit(),
+                         {"unit_mm", "number", "millimetres in a height unit"},
+                         {"samples", "integer", "of the region"},
+                         {"cells", "integer", "with four of them: of sdq and sdr"},
+                         {"mean", "number", "of heights about the form, from which the others are measured"},
+                         {"sq", "number", "height unit"},
+                         {"ssk", "number", ""},
+                         {"sku", "number", ""},
+                         {"sp", "number", "height unit"},
+                         {"sv", "number", "height unit"},
+                         {"sz", "number", "height unit"},
+                         {"sa", "number", "height unit"},
+                         {"sdq", "number", ""},
+                         {"sdr", "number", "share"},
+                         {"sk", "number", "height unit"},
+                         {"spk", "number", "height unit"},
+                         {"svk", "number", "height unit"},
+                         {"smrk1", "number", "share"},
+                         {"smrk2", "number", "share"},
+                         {"vmp", "number", "height unit (volume over area)"},
+                         {"vmc", "number", "height unit"},
+                         {"vvc", "number", "height unit"},
+                         {"vvv", "number", "height unit"},
+                         {"sxp", "number", "height unit"}})}},
        true},
       {"compare",
        1,
@@ -233,26 +289,36 @@ std::vector<ReportSchema> inspecting() {
 }
 
 std::vector<ReportSchema> changing() {
-  const Keys filtered{{"filter", "string", ""},
-                      {"window?", "integer", "samples"},
-                      {"sigma?", "number", "samples"},
-                      {"range_sigma?", "number", "height unit"},
-                      {"lines?", "integer", "edge lines that it kept to"},
-                      {"line_points?", "integer", ""},
-                      {"compute", "string", "cpu or gpu"},
-                      {"device?", "string", "of gpu"},
-                      {"passes", "integer", ""},
-                      unit(),
-                      {"changed", "integer", "samples"},
-                      {"max_change", "number", "height unit"},
-                      {"rms_change", "number", "height unit"},
-                      {"seconds", "number", ""},
-                      {"samples_per_second", "number", ""},
-                      hash()};
+  const Keys filtered{
+      {"filter", "string", ""},
+      {"window?", "integer", "samples"},
+      {"sigma?", "number", "samples"},
+      {"range_sigma?", "number", "height unit"},
+      {"lines?", "integer", "edge lines that it kept to"},
+      {"line_points?", "integer", ""},
+      {"compute", "string", "cpu or gpu"},
+      {"device?", "string", "of gpu"},
+      {"passes", "integer", ""},
+      unit(),
+      {"changed", "integer", "samples"},
+      {"max_change", "number", "height unit"},
+      {"rms_change", "number", "height unit"},
+      {"seconds", "number", ""},
+      {"samples_per_second", "number", ""},
+      hash(),
+      {"resumed_share?", "number", "with --resume: share of the work that was there"},
+      {"kept_bytes?", "integer", "with --resume: largest size of the kept work"},
+      {"kept_seconds?", "number", "with --resume: of writing it, beside the filter"},
+      {"write_seconds?", "number", "with an estimate: what writing took"},
+      {"peak_memory_bytes?", "integer", "with an estimate: of the process"},
+      {"disk_bytes?", "integer", "with an estimate: of the result"},
+      {"estimate?", "object", "before the work, where it was long enough for one", estimated()}};
   return {
       {"filter",
        1,
        {{"a filter", filtered},
+        {"--estimate", joined({{"text", "string", "for a person"}}, estimated())},
+        {"--estimate of too little work", {{"text", "string", "empty"}}},
         {"--suggest --tolerance", suggestion()},
         {"--suggest --places", places()},
         {"--suggest with both", joined(places(), suggestion())}},
@@ -260,6 +326,14 @@ std::vector<ReportSchema> changing() {
       {"convert",
        1,
        {{"", {{"format", "string", "that was written"}, {"from", "string", "that was read"}}}},
+       true},
+      {"level",
+       1,
+       {{"", joined(form(), {unit(),
+                             {"samples", "integer", "that the form was fitted to"},
+                             {"rms", "number", "of these about the form, height unit"},
+                             {"rounds", "integer", "fits, 1 unless robust"},
+                             hash()})}},
        true},
       {"apply",
        1,
@@ -660,6 +734,17 @@ std::vector<ReportSchema> measuring() {
                 {"share_of_gdal", "number", ""},
                 {"samples_per_second", "number", ""},
                 hash()})}}}},
+      {"bench estimate",
+       1,
+       {{"",
+         {machine(), repeats(),
+          rows({{"filter", "string", ""},
+                {"side", "integer", "samples"},
+                {"threads", "integer", ""},
+                {"passes", "integer", ""},
+                {"seconds", "object", "", expectedAndReal()},
+                {"memory_bytes", "object", "", expectedAndReal()},
+                {"disk_bytes", "object", "", expectedAndReal()}})}}}},
       {"bench filters",
        1,
        {{"",

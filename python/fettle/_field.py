@@ -22,7 +22,7 @@ _FILTER = Command(
     "filter",
     "filter",
     first=("filter",),
-    hidden=("suggest", "out-dir", "to", "force"),
+    hidden=("suggest", "out-dir", "to", "force", "estimate", "resume", "resume-every"),
     hides=(READING, WRITING, "Suggesting a filter"),
 )
 _SUGGEST = Command(
