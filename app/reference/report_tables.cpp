@@ -33,6 +33,7 @@ Keys candidate() {
           {"passes", "integer", ""},
           {"range_sigma", "number", "height unit; null: the filter has none"},
           {"around_edges", "boolean", "after marking the suggested edges"},
+          {"thickness", "number", "of these marks, samples; null: none are marked"},
           {"error_flat", "number", "expected on flats, height unit"},
           {"error_edge", "number", "expected near edges, height unit"},
           {"seconds", "number", "expected"},
