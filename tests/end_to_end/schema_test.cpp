@@ -45,6 +45,10 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"info", scan, file("none.tif")}, 1);
   run({"filter", scan, out, "--filter", "tgv"});
   run({"filter", scan, file("none.tif"), "--filter", "median", "--out-dir", file("d")}, 1);
+  run({"filter", scan, out, "--filter", "tgv", "--estimate"});
+  run({"level", scan, file("level.tif"), "--robust"});
+  run({"measure", scan, "--form", "poly2"});
+  run({"measure", scan, file("none.tif")}, 1);
   run({"filter", scan, "--suggest", "--tolerance", "15um", "--places", "1"});
   run({"mark", scan, marks, "--edges", "--lines-out", lines});
   run({"lines", scan, lines});
@@ -74,6 +78,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"bench", "growth", "--largest", "256", "--effort", "0.01", "--no-picture"});
   run({"bench", "large", "--side", "256", "--effort", "0.01", "--no-picture", "--folder", file("")});
   run({"bench", "import", "--side", "16", "--repeats", "1"});
+  run({"bench", "estimate", "--side", "256", "--kind", "box", "--threads", "1", "--repeats", "1"});
   run({"bench", "filters", "--side", "64", "--kind", "box", "--window", "3", "--ground", "plain", "--repeats",
        "1"});
   run({"bench", "render", "--side", "64", "--frames", "10"});
