@@ -130,7 +130,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   }
   if (options.estimate) {
     Report report = *estimate ? reportOf(**estimate) : Report::object();
-    report["text"] = *estimate ? textOf(**estimate) : "";
+    report["text"] = *estimate ? textOf(**estimate) : "too little work for an estimate";
     return report;
   }
   auto kept = openKeptWork(options.resume, task.out, field, *original, spec, compute.device());

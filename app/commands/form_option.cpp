@@ -1,10 +1,16 @@
 #include "app/commands/form_option.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 #include <string_view>
 #include <utility>
+
+#include <fmt/format.h>
+
+#include "app/terminal.h"
+#include "app/work/streams.h"
 
 namespace fettle::app {
 
@@ -16,7 +22,7 @@ struct NamedForm {
   int degree;
 };
 constexpr NamedForm kForms[] = {
-    {"none", "heights as they are", 0},
+    {"none", "none: heights are measured from their mean all the same", 0},
     {"mean", "the mean height", 0},
     {"plane", "a plane", 1},
     {"poly2", "a polynomial of total degree 2", 2},
@@ -67,10 +73,37 @@ engine::FormOptions formOptionsOf(const FormArguments& arguments) {
   return options;
 }
 
-engine::Result<engine::FormFit> formOf(const engine::Version& field, const FormArguments& arguments,
+engine::Status checkForm(const FormArguments& arguments) {
+  if (!arguments.marks.empty() && arguments.region == "all")
+    return engine::inputError("marks choose nothing where all samples count", "--marks",
+                              "add --region marked or --region unmarked");
+  return {};
+}
+
+engine::Result<engine::FormFit> formOf(const engine::Version& field, const std::string& scan,
+                                       const engine::Imported& imported, const FormArguments& arguments,
                                        engine::JobControl& job) {
-  auto fit = engine::fitForm(field, formOptionsOf(arguments), job);
-  if (fit && arguments.form == "none") {
+  const engine::FormOptions options = formOptionsOf(arguments);
+  auto fit = engine::fitForm(field, options, job);
+  if (!fit) {
+    if (fit.error().kind != engine::ErrorKind::kInput) return fit;
+    return engine::inputError(fit.error().what, shownInput(scan),
+                              arguments.region == "all" ? "is every sample a hole? fettle info counts them"
+                                                        : "give marks with --marks, or take --region all");
+  }
+  if (fit->samples <= engine::PolynomialForm::terms(options.degree))
+    warn(fmt::format("{}: {} samples do not determine the form {}, which goes through all of them",
+                     shownInput(scan), fit->samples, arguments.form));
+  // The importer's only statement that columns and rows are rays, not places.
+  const auto in_perspective = [](const std::string& warning) {
+    return warning.find("perspective") != std::string::npos;
+  };
+  if (std::ranges::any_of(imported.warnings, in_perspective))
+    warn(
+        fmt::format("{}: in a camera's perspective a plane is bent: form and figures are those of the "
+                    "picture of distances, convert the scan to points and grid them first",
+                    shownInput(scan)));
+  if (arguments.form == "none") {
     fit->form.base = 0.0;
     fit->form.coefficients.front() = 0.0;
   }

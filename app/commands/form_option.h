@@ -6,6 +6,7 @@
 #include "app/commands/command.h"
 #include "engine/base/error.h"
 #include "engine/field/version.h"
+#include "engine/io/import.h"
 #include "engine/measure/form.h"
 
 namespace fettle::app {
@@ -27,8 +28,13 @@ void addFormOptions(Command command, FormArguments& arguments);
 /// What the arguments mean, as typed and checked by their rows.
 [[nodiscard]] engine::FormOptions formOptionsOf(const FormArguments& arguments);
 
-/// The form of a field; of "none" the form whose height is 0 everywhere. Errors: as engine::fitForm.
-[[nodiscard]] engine::Result<engine::FormFit> formOf(const engine::Version& field,
+/// Refuses arguments that say nothing together: marks without a region of marked or unmarked samples.
+[[nodiscard]] engine::Status checkForm(const FormArguments& arguments);
+
+/// The form of a field; of "none" the form whose height is 0 everywhere. Warns of a form that so few samples do not
+/// determine, and of a scan in a camera's perspective. `scan` is its path. Errors: as engine::fitForm, naming the scan.
+[[nodiscard]] engine::Result<engine::FormFit> formOf(const engine::Version& field, const std::string& scan,
+                                                     const engine::Imported& imported,
                                                      const FormArguments& arguments, engine::JobControl& job);
 
 /// The form as keys of a report: form, robust, region, and of a plane and more tilt_x, tilt_y [degrees], tilted up to

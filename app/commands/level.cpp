@@ -24,12 +24,15 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
   if (!imported) return tl::unexpected(imported.error());
   const auto marked = withMarks(imported->field, options.form.marks, job);
   if (!marked) return tl::unexpected(marked.error());
-  const auto fit = formOf(*marked, options.form, job);
+  const auto fit = formOf(*marked, task.in, *imported, options.form, job);
   if (!fit) return tl::unexpected(fit.error());
   // The marks chose the samples that count; the scan keeps its own.
   const auto levelled = engine::withoutForm(imported->field, fit->form, job);
   if (!levelled) return tl::unexpected(levelled.error());
-  if (auto status = saveField(*levelled, task.out, job, options.writing, task.to); !status)
+  // Changes are limited from here on, also of a session or in Python.
+  engine::ExportOptions writing = options.writing;
+  writing.original = *levelled;
+  if (auto status = saveField(*levelled, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
   Report report;
   addForm(report, options.form, *fit, imported->field.grid());
@@ -44,6 +47,7 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
 engine::Result<Report> level(const LevelArguments& options, engine::JobControl& job) {
   if (options.form.form == "none")
     return engine::inputError("there is no form to take out", "--form", "name another than none");
+  if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
   const auto tasks = batchTasks(options.files, {options.form.marks}, job);
   if (!tasks) return tl::unexpected(tasks.error());
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());

@@ -72,7 +72,7 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   if (!imported) return tl::unexpected(imported.error());
   const auto marked = withMarks(imported->field, options.form.marks, job);
   if (!marked) return tl::unexpected(marked.error());
-  const auto fit = formOf(*marked, options.form, job);
+  const auto fit = formOf(*marked, scan, *imported, options.form, job);
   if (!fit) return tl::unexpected(fit.error());
   const auto measured = engine::measureAreal(*marked, fit->form, formOptionsOf(options.form).region, job);
   if (!measured) return tl::unexpected(measured.error());
@@ -88,6 +88,7 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
 }
 
 engine::Result<Report> measure(const MeasureArguments& options, engine::JobControl& job) {
+  if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
   // Two inputs cannot both be standard input.
   std::vector<std::string> inputs = options.scans;
   inputs.push_back(options.form.marks);
@@ -121,8 +122,9 @@ void printOneMeasured(const Report& report) {
   // Of the root mean square height: one unit for all rows.
   const double unit_mm = report["unit_mm"];
   const ReadUnit unit = readUnit(report["sq"].get<double>() * unit_mm);
-  fmt::print("{} samples, {}{} taken out\n", report["samples"].get<std::int64_t>(),
-             report["form"].get<std::string>(), report["robust"].get<bool>() ? " (robust)" : "");
+  const auto samples = report["samples"].get<std::int64_t>();
+  fmt::print("{} sample{}, form {}{}\n", samples, samples == 1 ? "" : "s", report["form"].get<std::string>(),
+             report["robust"].get<bool>() ? ", robust" : "");
   if (report.contains("tilt_x"))
     fmt::print("tilt {:.4g} degrees along x, {:.4g} along y\n", report["tilt_x"].get<double>(),
                report["tilt_y"].get<double>());
@@ -166,7 +168,8 @@ void addMeasure(Command root, Chosen& chosen) {
   addFormOptions(command, options->form);
   addScanOptions(command, options->reading);
   command.notes(
-      "No S- or L-filter is applied: filter the scan before. Ratios are 0 to 1 in --json. Between samples "
+      "No S- or L-filter is applied: filter the scan before. Ratios are shares of 1 in a report, per cent in "
+      "text. Between samples "
       "the surface is "
       "the bilinear patch.");
   command.examples({{"fettle measure scan.tif", "All parameters about the least-squares plane"},

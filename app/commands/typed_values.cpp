@@ -19,7 +19,9 @@ engine::Result<double> parseHeight(const std::string& text, const engine::Grid& 
   if (error != std::errc{} || !std::isfinite(value) || value < 0.0)
     return engine::inputError(fmt::format("{} is not a length", text), option,
                               "give a number at or above 0, such as 0.5 or 20um");
-  const std::string suffix(end, text.data() + text.size());
+  const char* unit_begin = end;
+  while (unit_begin != text.data() + text.size() && *unit_begin == ' ') ++unit_begin;
+  const std::string suffix(unit_begin, text.data() + text.size());
   if (suffix.empty()) return value;
   const auto unit = engine::lengthUnitFromName(suffix);
   if (!unit)

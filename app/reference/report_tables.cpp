@@ -319,7 +319,7 @@ std::vector<ReportSchema> changing() {
        1,
        {{"a filter", filtered},
         {"--estimate", joined({{"text", "string", "for a person"}}, estimated())},
-        {"--estimate of too little work", {{"text", "string", "empty"}}},
+        {"--estimate of too little work", {{"text", "string", "that it is so"}}},
         {"--suggest --tolerance", suggestion()},
         {"--suggest --places", places()},
         {"--suggest with both", joined(places(), suggestion())}},

@@ -14,6 +14,8 @@ import re
 import textwrap
 import warnings
 
+import numpy as np
+
 from . import _fettle
 from ._errors import FettleWarning
 
@@ -189,6 +191,13 @@ def _word(row, value):
     return str(value)
 
 
+def _flag(function, name, value):
+    """A flag by its value: True, False, and what numpy and numbers have for them."""
+    if isinstance(value, (bool, np.bool_)) or (isinstance(value, (int, np.integer)) and value in (0, 1)):
+        return bool(value)
+    raise TypeError(f"{function}(): {name} is True or False, not {value!r}")
+
+
 class Command:
     """A Python function that runs a command.
 
@@ -287,10 +296,13 @@ class Command:
             row = rows[name]
             option = row["name"]
             kind = row["kind"]
+            if isinstance(value, np.bool_):
+                value = bool(value)
             if value is None or value is False:
                 continue
             if kind == "flag":
-                call.arguments.append(option)
+                if _flag(self.name, name, value):
+                    call.arguments.append(option)
             elif (kind in _NEW or kind == "output") and value is True:
                 made[name] = call.result(name)
                 call.arguments += [option, made[name]]

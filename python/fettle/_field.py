@@ -569,10 +569,12 @@ class Suggestion(dict):
 
     def apply(self, *, progress: Callable[[str, float], object] | None = None) -> Field:
         """The field after the filter that was picked, around marked edges where that was picked, too. The same field
-        where no filter is needed."""
+        where no filter is needed. Warns where no filter stays within the tolerance."""
         pick = self.get("pick")
         if pick is None:
             raise InputError("no filter was suggested, only places", "tolerance", "give a tolerance")
+        if not self["met"]:
+            warnings.warn(self["why"], FettleWarning, stacklevel=2)
         if pick["filter"] is None:
             return self._field
         field, options = self._field, dict(self._options)

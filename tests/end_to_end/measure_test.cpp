@@ -85,9 +85,34 @@ TEST(Measure, RefusesWhatHasNoSample) {
   const TempFolder folder;
   const std::string scan = folder.file("wave.asc");
   writeWave(scan);
-  expectRefused(fettle({"measure", scan, "--unit", "mm", "--region", "marked"}), "no sample");
+  expectRefused(fettle({"measure", scan, "--unit", "mm", "--region", "marked"}), "--marks");
+  const std::string marks = folder.file("marks.png");
+  ASSERT_EQ(fettle({"mark", scan, marks, "--edges", "--unit", "mm"}).status, 0);
+  expectRefused(fettle({"measure", scan, "--unit", "mm", "--marks", marks}), "--region");
+  expectRefused(fettle({"level", scan, folder.file("out.tif"), "--unit", "mm", "--marks", marks}),
+                "--region");
   expectRefused(fettle({"level", scan, folder.file("out.tif"), "--unit", "mm", "--form", "none"}), "--form");
   expectRefused(fettle({"measure", scan, "--form", "poly6"}), "poly6");
+}
+
+TEST(Measure, WarnsOfAFormThatTheSamplesDoNotDetermine) {
+  const TempFolder folder;
+  const std::string scan = folder.file("small.tif");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "2x2"}).status, 0);
+  const Outcome few = fettle({"measure", scan, "--form", "poly5"});
+  EXPECT_EQ(few.status, 0);
+  EXPECT_NE(few.err.find("4 samples do not determine the form poly5"), std::string::npos) << few.err;
+}
+
+// A limit of changes counts from the levelled heights, not from those before.
+TEST(Measure, ChangesOfALevelledSessionAreLimitedFromItsHeights) {
+  const TempFolder folder;
+  const std::string scan = folder.file("wave.asc"), level = folder.file("level.fettle");
+  writeWave(scan);
+  ASSERT_EQ(fettle({"level", scan, level, "--unit", "mm"}).status, 0);
+  const auto filtered =
+      fettleJson({"filter", level, folder.file("out.tif"), "--filter", "median", "--max-change", "1um"});
+  EXPECT_LE(filtered["max_change"].get<double>(), 1.0001e-3);
 }
 
 }  // namespace

@@ -234,5 +234,34 @@ class Xarray(unittest.TestCase):
             np.testing.assert_allclose(back.spacing, field.spacing, rtol=1e-12)
 
 
+class Flags(unittest.TestCase):
+    def test_a_flag_is_what_its_value_is(self):
+        field = fettle.Field(np.arange(12.0).reshape(3, 4), spacing=1.0, unit="mm")
+        for yes in (True, 1, np.True_):
+            self.assertTrue(field.measure(robust=yes)["robust"])
+        for no in (False, 0, np.False_, None):
+            self.assertFalse(field.measure(robust=no)["robust"])
+        for neither in ("no", "", [], 2, 0.0):
+            with self.assertRaises(TypeError):
+                field.measure(robust=neither)
+
+
+class Level(unittest.TestCase):
+    def test_changes_are_limited_from_the_levelled_heights(self):
+        scan = fettle.synth(part="steps", size=(96, 80))
+        levelled = scan.level()
+        self.assertEqual(levelled.original.hash, levelled.hash)
+        limited = levelled.filter("median", max_change="10um")
+        self.assertLessEqual(levelled.compare(limited)["max_abs"], 0.0100001)
+
+
+class Suggested(unittest.TestCase):
+    def test_what_misses_the_tolerance_is_not_applied_without_a_word(self):
+        found = fettle.synth(size=(128, 128)).suggest("0.01um")
+        self.assertFalse(found["met"])
+        with self.assertWarns(fettle.FettleWarning):
+            found.apply()
+
+
 if __name__ == "__main__":
     unittest.main()
