@@ -103,7 +103,7 @@ TEST_F(LossTest, a_device_that_stays_away_ends_the_program_with_the_work_kept) {
   order("lose present\ngone\n");
   display.hands({"key", "Left"});
   EXPECT_EQ(program->wait(), 1);
-  EXPECT_EQ(program->err().rfind("{\"error\":\"", 0), 0U) << program->err();
+  EXPECT_EQ(program->err().rfind("{\"schema\":\"fettle.error/1\",\"error\":\"", 0), 0U) << program->err();
   EXPECT_EQ(std::count(program->err().begin(), program->err().end(), '\n'), 1) << program->err();
   EXPECT_NE(program->err().find("unsaved work is stored"), std::string::npos) << program->err();
 

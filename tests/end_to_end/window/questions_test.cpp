@@ -129,7 +129,9 @@ TEST_F(QuestionTest, a_display_that_closes_keeps_the_work_and_ends_the_program_w
   (void)mark(user);
   display.close();
   EXPECT_EQ(program->wait(), 1);
-  EXPECT_EQ(program->err().rfind("{\"error\":\"the connection to the display was lost", 0), 0U)
+  EXPECT_EQ(program->err().rfind(
+                "{\"schema\":\"fettle.error/1\",\"error\":\"the connection to the display was lost", 0),
+            0U)
       << program->err();
   EXPECT_EQ(std::count(program->err().begin(), program->err().end(), '\n'), 1) << program->err();
   EXPECT_NE(program->err().find("unsaved work is stored"), std::string::npos) << program->err();
