@@ -6,6 +6,8 @@
 
 #include <array>
 #include <stdexcept>
+#include <string_view>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
@@ -17,8 +19,8 @@ namespace fettle::tests {
 
 namespace {
 
-[[noreturn]] void becomeProgram(const std::vector<std::string>& arguments, const ProcessOptions& options,
-                                int in, int out, int err) {
+[[noreturn]] void becomeProgram(const ProgramImage& program, const ProcessOptions& options, int in, int out,
+                                int err) {
   if (in >= 0) dup2(in, STDIN_FILENO);
   dup2(out, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
@@ -33,14 +35,32 @@ namespace {
     const rlimit limit{*options.memory_limit, *options.memory_limit};
     setrlimit(RLIMIT_AS, &limit);
   }
-  std::vector<char*> argv;
-  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-  argv.push_back(nullptr);
-  execvp(argv[0], argv.data());
-  _exit(127);
+  program.become();
 }
 
 }  // namespace
+
+ProgramImage::ProgramImage(std::vector<std::string> arguments,
+                           const std::map<std::string, std::string>& environment)
+    : arguments_(std::move(arguments)) {
+  for (char** each = environ; *each != nullptr; ++each) {
+    const std::string_view entry = *each;
+    if (!environment.contains(std::string(entry.substr(0, entry.find('=')))))
+      environment_.emplace_back(entry);
+  }
+  for (const auto& [name, value] : environment) environment_.push_back(name + "=" + value);
+  argv_.reserve(arguments_.size() + 1);
+  for (std::string& argument : arguments_) argv_.push_back(argument.data());
+  argv_.push_back(nullptr);
+  envp_.reserve(environment_.size() + 1);
+  for (std::string& entry : environment_) envp_.push_back(entry.data());
+  envp_.push_back(nullptr);
+}
+
+void ProgramImage::become() const noexcept {
+  execvpe(argv_.front(), argv_.data(), envp_.data());
+  _exit(127);
+}
 
 Outcome runProcess(const std::vector<std::string>& arguments, const ProcessOptions& options) {
   std::array<int, 2> out{};
@@ -50,9 +70,10 @@ Outcome runProcess(const std::vector<std::string>& arguments, const ProcessOptio
   const auto start = std::chrono::steady_clock::now();
   const int in = options.input.empty() ? -1 : open(options.input.c_str(), O_RDONLY | O_CLOEXEC);
   if (!options.input.empty() && in < 0) throw std::runtime_error("no input");
+  const ProgramImage program(arguments);
   const pid_t pid = fork();
   if (pid < 0) throw std::runtime_error("fork failed");
-  if (pid == 0) becomeProgram(arguments, options, in, out[1], err[1]);
+  if (pid == 0) becomeProgram(program, options, in, out[1], err[1]);
   if (in >= 0) close(in);
   close(out[1]);
   close(err[1]);

@@ -5,11 +5,14 @@
 
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "tests/support/process.h"
 
 namespace fettle::tests {
 
@@ -20,20 +23,16 @@ LiveProgram::LiveProgram(std::vector<std::string> arguments, const std::string& 
   std::array<int, 2> err{};
   for (auto* p : {&in, &out, &err})
     if (pipe2(p->data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe failed");
-  std::vector<char*> argv;
-  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-  argv.push_back(nullptr);
+  const ProgramImage program(std::move(arguments), {{"FETTLE_FAKE_HID", hid_folder},
+                                                    {"LD_LIBRARY_PATH", FETTLE_FAKE_HIDAPI_FOLDER},
+                                                    {"HOME", hid_folder}});  // no user's own configuration
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("fork failed");
   if (pid_ == 0) {
     dup2(in[0], STDIN_FILENO);
     dup2(out[1], STDOUT_FILENO);
     dup2(err[1], STDERR_FILENO);
-    setenv("FETTLE_FAKE_HID", hid_folder.c_str(), 1);
-    setenv("LD_LIBRARY_PATH", FETTLE_FAKE_HIDAPI_FOLDER, 1);
-    setenv("HOME", hid_folder.c_str(), 1);  // no user's own configuration
-    execv(argv[0], argv.data());
-    _exit(127);
+    program.become();
   }
   close(in[0]);
   close(out[1]);

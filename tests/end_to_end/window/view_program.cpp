@@ -5,6 +5,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <utility>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -13,6 +14,7 @@
 #include <unistd.h>
 
 #include "tests/end_to_end/report_check.h"
+#include "tests/support/process.h"
 
 namespace fettle::tests {
 namespace {
@@ -32,6 +34,7 @@ ViewProgram::ViewProgram(std::vector<std::string> arguments,
   arguments.insert(arguments.begin(), {FETTLE_PROGRAM, "view"});
   arguments.insert(arguments.end(),
                    {"--events", "/dev/fd/" + std::to_string(kEvents), "--json", "--validate"});
+  const ProgramImage program(std::move(arguments), environment);
   const auto out = makePipe(), err = makePipe(), events = makePipe();
   pid_ = fork();
   if (pid_ < 0) throw std::runtime_error("fork failed");
@@ -42,12 +45,7 @@ ViewProgram::ViewProgram(std::vector<std::string> arguments,
       fcntl(kEvents, F_SETFD, 0);
     else
       dup2(events[1], kEvents);
-    for (const auto& [name, value] : environment) setenv(name.c_str(), value.c_str(), 1);
-    std::vector<char*> argv;
-    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-    argv.push_back(nullptr);
-    execvp(argv[0], argv.data());
-    _exit(127);
+    program.become();
   }
   for (const int end : {out[1], err[1], events[1]}) close(end);
   out_end_ = out[0];
