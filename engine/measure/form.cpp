@@ -16,7 +16,7 @@
 
 #include "engine/compare/tile_select.h"
 #include "engine/compare/tile_sums.h"
-#include "engine/field/builder.h"
+#include "engine/measure/lowered.h"
 
 namespace fettle::engine {
 
@@ -402,32 +402,10 @@ Result<FormFit> fitForm(const Version& field, const FormOptions& options, JobCon
 }
 
 Result<Version> withoutForm(const Version& field, const PolynomialForm& form, JobControl& job) {
-  Grid grid = field.grid();
-  assert(form.width == grid.width && form.height == grid.height);
-  grid.height_per_count = 0.0;
-  Result<FieldBuilder> builder = FieldBuilder::create(std::move(grid), "the levelled field");
-  if (!builder) return tl::unexpected(builder.error());
-  const FieldReader from = field.reader();
-  const auto tiles = static_cast<std::int64_t>(tileCount(from));
-  job.begin("removing the form", static_cast<std::uint64_t>(tiles));
-  tbb::parallel_for(std::int64_t{0}, tiles, [&](std::int64_t i) {
-    if (job.cancelled()) return;
-    const SampleRect rect = tileRect(from, i);
-    float z[kTileSamples];
-    double heights[kTileSamples];
-    std::uint8_t marks[kTileSamples];
-    from.readHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide);
-    from.readMarks(rect.column, rect.row, rect.columns, rect.rows, marks, kTileSide);
-    form.readHeights(rect, heights, kTileSide);
-    for (int r = 0; r < rect.rows; ++r)
-      for (int k = r * kTileSide; k < r * kTileSide + rect.columns; ++k)
-        z[k] = static_cast<float>(z[k] - heights[k]);
-    builder->writeHeights(rect.column, rect.row, rect.columns, rect.rows, z, kTileSide);
-    builder->writeMarks(rect.column, rect.row, rect.columns, rect.rows, marks, kTileSide);
-    job.advance();
-  });
-  if (job.cancelled()) return cancelled();
-  return std::move(*builder).build().withLines(field.lines());
+  assert(form.width == field.grid().width && form.height == field.grid().height);
+  return lowered(
+      field, "removing the form",
+      [&](const SampleRect& rect, double* out) { form.readHeights(rect, out, kTileSide); }, job);
 }
 
 }  // namespace fettle::engine

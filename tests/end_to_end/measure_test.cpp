@@ -54,6 +54,47 @@ TEST(Measure, OfALevelledScanIsThatOfTheScan) {
   EXPECT_FALSE(after.contains("tilt_x"));
 }
 
+// A grating, even about the middle, with an offset for each line, as an AFM makes it, along x or along y.
+void writeLines(const std::string& path, bool along_x, bool offsets) {
+  std::ofstream out(path);
+  out << "ncols 64\nnrows 64\nxllcenter 0\nyllcenter 0\ncellsize 0.1\n";
+  for (int r = 63; r >= 0; --r) {
+    for (int c = 0; c < 64; ++c) {
+      const int line = along_x ? r : c, place = along_x ? c : r;
+      out << (static_cast<int>(std::abs(place - 31.5)) / 8 % 2 == 0 ? 0.02 : 0.0) + (offsets ? 0.001 * ((line * 37) % 11 - 5) : 0.0) << ' ';
+    }
+    out << '\n';
+  }
+}
+
+TEST(Measure, LinesAreLevelledAlongTheirAxis) {
+  const TempFolder folder;
+  const std::string scan = folder.file("lines.asc"), truth = folder.file("truth.asc");
+  const std::string level = folder.file("level.tif");
+  for (const std::string axis : {"x", "y"}) {
+    writeLines(scan, axis == "x", true);
+    writeLines(truth, axis == "x", false);
+    for (const std::string rows : {"median", "mean", "poly1", "difference", "matching"}) {
+      const auto report = fettleJson({"level", scan, level, "--unit", "mm", "--form", "none", "--rows", rows,
+                                      "--scan-axis", axis});
+      EXPECT_EQ(report["rows"], rows);
+      EXPECT_EQ(report["rows_empty"], 0);
+      EXPECT_NEAR(report["rows_rms"], 0.00316, 0.0001) << rows;
+      const auto left = fettleJson({"compare", level, truth, "--unit", "mm"});
+      const double mean = left["mean"], rms = left["rms"];
+      EXPECT_LT(std::sqrt(rms * rms - mean * mean), 2e-8) << rows << axis;  // the grating, as it was
+    }
+  }
+  // Marks choose the samples of the form after lines are level, too.
+  const std::string steps = folder.file("steps.tif"), marks = folder.file("marks.png");
+  ASSERT_EQ(fettle({"synth", steps, "--part", "steps", "--size", "128x128"}).status, 0);
+  ASSERT_EQ(fettle({"mark", steps, marks, "--edges"}).status, 0);
+  const auto marked =
+      fettleJson({"level", steps, level, "--rows", "median", "--region", "unmarked", "--marks", marks});
+  EXPECT_LT(marked["samples"].get<int>(), 128 * 128);
+  expectRefused(fettle({"level", scan, level, "--unit", "mm", "--rows", "medium"}), "--rows");
+}
+
 TEST(Measure, RobustFormIgnoresAStepAndMarksChooseTheRegion) {
   const TempFolder folder;
   const std::string scan = folder.file("steps.tif"), marks = folder.file("marks.png");

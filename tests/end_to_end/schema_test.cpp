@@ -47,6 +47,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"filter", scan, file("none.tif"), "--filter", "median", "--out-dir", file("d")}, 1);
   run({"filter", scan, out, "--filter", "tgv", "--estimate"});
   run({"level", scan, file("level.tif"), "--robust"});
+  run({"level", scan, file("level.tif"), "--rows", "median", "--form", "none"});
   run({"measure", scan, "--form", "poly2"});
   run({"measure", scan, file("none.tif")}, 1);
   run({"filter", scan, "--suggest", "--tolerance", "15um", "--places", "1"});

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/sample_rect.h"
+#include "engine/field/version.h"
+#include "engine/measure/region.h"
+
+namespace fettle::engine {
+
+/// Which way a scanner went: its lines are rows, or columns.
+enum class ScanAxis : std::uint8_t { kX, kY };
+
+/// How the height of a scanned line is found.
+enum class LineMethod : std::uint8_t {
+  kMedian,      ///< the median of its samples: features on less than half of a line leave it alone
+  kPolynomial,  ///< a polynomial along the line by least squares; of degree 0, the mean
+  /// From line to line the median of the differences of neighbouring samples, added up: features may fill a line as long as
+  /// they reach over several. Errors add up, too, as the root of the number of lines.
+  kDifference,
+  /// The same with a mean that leaves out differences far from most others' (Tukey's biweight) and weighs the rest by how
+  /// alike the slopes along the two lines are, by exp(-d^2 / (2 <d^2>)) of their difference d: nearer by a fifth than the
+  /// median where noise is all that differs.
+  kMatching,
+};
+
+struct LineOptions {
+  static constexpr int kMostDegree = 3;
+
+  LineMethod method = LineMethod::kMedian;
+  int degree = 0;  ///< of kPolynomial: 0 .. kMostDegree; ignored otherwise
+  ScanAxis axis = ScanAxis::kX;
+  Region region = Region::kAll;
+  /// kPolynomial: samples far from the polynomial do not count. From the one with the least median distance of those
+  /// through 150 sets of samples, by Tukey's biweight at 4.685 times the normalised median distance (as FormOptions).
+  bool robust = false;
+};
+
+/// What is taken from each scanned line.
+struct LineOffsets {
+  ScanAxis axis = ScanAxis::kX;
+  std::int32_t lines = 0, length = 0;  ///< of the field: how many lines, of how many samples
+  int degree = 0;
+  /// [height_unit], (degree + 1) for each line: of Legendre's polynomials over -1 .. 1 along the line. The mean of all
+  /// first ones is 0, so that heights stay about where they were. A line without a sample of the region has what lies between
+  /// its neighbours.
+  std::vector<double> coefficients;
+  std::int32_t empty = 0;  ///< lines without a sample of the region
+  double rms = 0.0;        ///< of the first coefficients [height_unit]
+
+  /// As HeightsOf: what is taken from the samples of a rectangle.
+  void readHeights(const SampleRect& rect, double* out) const noexcept;
+};
+
+/// Finds the offset or drift of each line of a line scanner.
+///
+/// Bit-identical for any number of threads. Cost: one pass, with the differences two. Errors: kInput for a degree out of
+/// range or a region without samples; kCancelled. Throws std::bad_alloc. Thread: any; a long job on all workers of the calling
+/// arena.
+[[nodiscard]] Result<LineOffsets> findLineOffsets(const Version& field, const LineOptions& options,
+                                                  JobControl& job);
+
+}  // namespace fettle::engine
