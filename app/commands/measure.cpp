@@ -1,16 +1,22 @@
-#include <cmath>
-
+#include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "app/commands/areal_table.h"
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/form_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/typed_values.h"
 #include "app/terminal.h"
+#include "app/work/streams.h"
+#include "engine/io/files/atomic_file.h"
 #include "engine/measure/areal.h"
 
 namespace fettle::app {
@@ -20,50 +26,42 @@ namespace {
 struct MeasureArguments {
   std::vector<std::string> scans;
   FormArguments form;
+  std::vector<std::string> groups;  // empty: all
+  std::vector<std::string> at_heights;
+  std::vector<double> at_ratios = {10.0, 80.0};
+  std::string csv;
   ScanOptions reading;
 };
 
-// One parameter: its key, the name of the standard, what its number is, and how it is taken.
-struct Row {
-  const char* key;
-  const char* name;
-  enum class Kind : std::uint8_t { kHeight, kVolume, kRatio, kPlain } kind;
-  const char* text;
-  double (*of)(const engine::ArealParameters&);
-};
-using Areal = engine::ArealParameters;
-constexpr Row kRows[] = {
-    {"sq", "Sq", Row::Kind::kHeight, "root mean square height", [](const Areal& p) { return p.sq; }},
-    {"ssk", "Ssk", Row::Kind::kPlain, "skewness", [](const Areal& p) { return p.ssk; }},
-    {"sku", "Sku", Row::Kind::kPlain, "kurtosis", [](const Areal& p) { return p.sku; }},
-    {"sp", "Sp", Row::Kind::kHeight, "maximum peak height", [](const Areal& p) { return p.sp; }},
-    {"sv", "Sv", Row::Kind::kHeight, "maximum pit depth", [](const Areal& p) { return p.sv; }},
-    {"sz", "Sz", Row::Kind::kHeight, "maximum height", [](const Areal& p) { return p.sz; }},
-    {"sa", "Sa", Row::Kind::kHeight, "arithmetical mean height", [](const Areal& p) { return p.sa; }},
-    {"sdq", "Sdq", Row::Kind::kPlain, "root mean square gradient", [](const Areal& p) { return p.sdq; }},
-    {"sdr", "Sdr", Row::Kind::kRatio, "developed interfacial area ratio",
-     [](const Areal& p) { return p.sdr; }},
-    {"sk", "Sk", Row::Kind::kHeight, "core height", [](const Areal& p) { return p.ratio.sk; }},
-    {"spk", "Spk", Row::Kind::kHeight, "reduced peak height", [](const Areal& p) { return p.ratio.spk; }},
-    {"svk", "Svk", Row::Kind::kHeight, "reduced dale height", [](const Areal& p) { return p.ratio.svk; }},
-    {"smrk1", "Smrk1", Row::Kind::kRatio, "material ratio of the peaks",
-     [](const Areal& p) { return p.ratio.smrk1; }},
-    {"smrk2", "Smrk2", Row::Kind::kRatio, "material ratio above the dales",
-     [](const Areal& p) { return p.ratio.smrk2; }},
-    {"vmp", "Vmp", Row::Kind::kVolume, "material volume of the peaks (10 %)",
-     [](const Areal& p) { return p.ratio.vmp; }},
-    {"vmc", "Vmc", Row::Kind::kVolume, "material volume of the core (10 to 80 %)",
-     [](const Areal& p) { return p.ratio.vmc; }},
-    {"vvc", "Vvc", Row::Kind::kVolume, "void volume of the core (10 to 80 %)",
-     [](const Areal& p) { return p.ratio.vvc; }},
-    {"vvv", "Vvv", Row::Kind::kVolume, "void volume of the dales (80 %)",
-     [](const Areal& p) { return p.ratio.vvv; }},
-    {"sxp", "Sxp", Row::Kind::kHeight, "peak extreme height (2.5 to 50 %)",
-     [](const Areal& p) { return p.ratio.sxp; }},
-};
+// Heights are signed here: Smr at a height below the mean.
+engine::Result<std::vector<double>> heightsOf(const std::vector<std::string>& typed,
+                                              const engine::Grid& grid) {
+  std::vector<double> heights;
+  for (const std::string& text : typed) {
+    const bool below = text.starts_with('-');
+    const auto height = parseHeight(below ? text.substr(1) : text, grid, "--at-height");
+    if (!height) return tl::unexpected(height.error());
+    heights.push_back(below ? -*height : *height);
+  }
+  return heights;
+}
 
-Report figureOrNull(double value) {
-  return std::isnan(value) ? Report() : Report(value);
+engine::Result<engine::ArealOptions> arealOptionsOf(const MeasureArguments& options,
+                                                    const engine::Grid& grid) {
+  engine::ArealOptions areal;
+  areal.region = formOptionsOf(options.form).region;
+  const auto wants = [&](const char* group) {
+    return options.groups.empty() || std::ranges::find(options.groups, group) != options.groups.end();
+  };
+  areal.hybrid = wants("hybrid");
+  areal.functional = wants("functional");
+  areal.spatial = wants("spatial");
+  areal.feature = wants("feature");
+  const auto heights = heightsOf(options.at_heights, grid);
+  if (!heights) return tl::unexpected(heights.error());
+  areal.at_heights = *heights;
+  for (const double ratio : options.at_ratios) areal.at_ratios.push_back(ratio / 100.0);
+  return areal;
 }
 
 engine::Result<Report> measureOne(const MeasureArguments& options, const std::string& scan,
@@ -74,26 +72,38 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   if (!marked) return tl::unexpected(marked.error());
   const auto fit = formOf(*marked, scan, *imported, options.form, job);
   if (!fit) return tl::unexpected(fit.error());
-  const auto measured = engine::measureAreal(*marked, fit->form, formOptionsOf(options.form).region, job);
+  const engine::Grid& grid = imported->field.grid();
+  const auto areal = arealOptionsOf(options, grid);
+  if (!areal) return tl::unexpected(areal.error());
+  const auto measured = engine::measureAreal(*marked, fit->form, *areal, job);
   if (!measured) return tl::unexpected(measured.error());
   Report report;
-  addForm(report, options.form, *fit, imported->field.grid());
-  report.update({{"unit", imported->field.grid().height_unit.name},
-                 {"unit_mm", imported->field.grid().height_unit.mm},
-                 {"samples", measured->samples},
-                 {"cells", measured->cells},
-                 {"mean", measured->mean}});
-  for (const Row& row : kRows) report[row.key] = figureOrNull(row.of(*measured));
+  addForm(report, options.form, *fit, grid);
+  addAreal(report, *measured, options.groups, grid);
+  if (!areal->functional) return report;
+  report["smr"] = Report::array();
+  for (std::size_t i = 0; i < areal->at_heights.size(); ++i)
+    report["smr"].push_back({{"height", areal->at_heights[i]}, {"ratio", measured->ratios[i]}});
+  report["smc"] = Report::array();
+  for (std::size_t i = 0; i < areal->at_ratios.size(); ++i)
+    report["smc"].push_back({{"ratio", areal->at_ratios[i]}, {"height", measured->heights[i]}});
   return report;
 }
 
-engine::Result<Report> measure(const MeasureArguments& options, engine::JobControl& job) {
-  if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
-  // Two inputs cannot both be standard input.
-  std::vector<std::string> inputs = options.scans;
-  inputs.push_back(options.form.marks);
-  if (auto status = checkOutputs({}, inputs, Replacing::kNoWork, job); !status)
-    return tl::unexpected(status.error());
+engine::Status writeCsv(const MeasureArguments& options, const Report& report, engine::JobControl& job) {
+  if (options.csv.empty()) return {};
+  std::string text = kArealHeading;
+  if (report.contains("files")) {
+    for (const Report& file : report["files"])
+      if (!file.contains("error")) text += arealRows(file["in"].get<std::string>(), file);
+  } else {
+    text += arealRows(options.scans.front(), report);
+  }
+  return writeTo(options.csv, ".csv", job,
+                 [&](const std::string& file) { return engine::writeFileAtomically(file, text); });
+}
+
+engine::Result<Report> measureAll(const MeasureArguments& options, engine::JobControl& job) {
   if (options.scans.size() == 1) {
     const ProgressLine progress(job);
     return measureOne(options, options.scans.front(), job);
@@ -106,39 +116,28 @@ engine::Result<Report> measure(const MeasureArguments& options, engine::JobContr
   });
 }
 
-// The unit in which a height is read at ease, one of the metric ones: 0.0000113 mm are 11.3 nm.
-struct ReadUnit {
-  const char* name;
-  double mm;
-};
-ReadUnit readUnit(double height_mm) {
-  constexpr ReadUnit kUnits[] = {{"m", 1e3}, {"mm", 1.0}, {"um", 1e-3}};
-  for (const ReadUnit& unit : kUnits)
-    if (height_mm >= unit.mm) return unit;
-  return {"nm", 1e-6};
+engine::Result<Report> measure(const MeasureArguments& options, engine::JobControl& job) {
+  if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
+  // Two inputs cannot both be standard input.
+  std::vector<std::string> inputs = options.scans;
+  inputs.push_back(options.form.marks);
+  if (auto status = checkOutputs({{options.csv, OutputKind::kText, ".csv"}}, inputs, Replacing::kNoWork, job);
+      !status)
+    return tl::unexpected(status.error());
+  auto report = measureAll(options, job);
+  if (!report) return report;
+  if (auto status = writeCsv(options, *report, job); !status) return tl::unexpected(status.error());
+  return report;
 }
 
 void printOneMeasured(const Report& report) {
-  // Of the root mean square height: one unit for all rows.
-  const double unit_mm = report["unit_mm"];
-  const ReadUnit unit = readUnit(report["sq"].get<double>() * unit_mm);
   const auto samples = report["samples"].get<std::int64_t>();
   fmt::print("{} sample{}, form {}{}\n", samples, samples == 1 ? "" : "s", report["form"].get<std::string>(),
              report["robust"].get<bool>() ? ", robust" : "");
   if (report.contains("tilt_x"))
     fmt::print("tilt {:.4g} degrees along x, {:.4g} along y\n", report["tilt_x"].get<double>(),
                report["tilt_y"].get<double>());
-  for (const Row& row : kRows) {
-    const Report& value = report[row.key];
-    const bool ratio = row.kind == Row::Kind::kRatio, plain = row.kind == Row::Kind::kPlain;
-    const double factor = ratio ? 100.0 : plain ? 1.0 : unit_mm / unit.mm;
-    const std::string shown = value.is_null() ? "-" : fmt::format("{:.5g}", value.get<double>() * factor);
-    const std::string of = ratio                            ? "%"
-                           : row.kind == Row::Kind::kHeight ? unit.name
-                           : row.kind == Row::Kind::kVolume ? fmt::format("{0}3/{0}2", unit.name)
-                                                            : "";
-    fmt::print("{:<6} {:>12} {:<8} {}\n", row.name, shown, of, row.text);
-  }
+  printAreal(report);
 }
 
 void printMeasured(const Report& report) {
@@ -164,15 +163,42 @@ void addMeasure(Command root, Chosen& chosen) {
                 .to = &options->scans,
                 .text = "The scan, or several, each with a report of its own; - for standard input",
                 .kind = ValueKind::kInput,
-                .required = true}});
+                .required = true},
+               {.name = "--only",
+                .to = &options->groups,
+                .text = "Only these groups, and that of heights: the others need more time and memory",
+                .words = arealGroups(),
+                .shown = "GROUP[,GROUP...]",
+                .otherwise = "all groups",
+                .between = ','},
+               {.name = "--at-height",
+                .to = &options->at_heights,
+                .text = "Heights about the mean for the material ratio Smr(c), below it with -: 0,-0.5um",
+                .shown = "C[,C...]",
+                .between = ','},
+               {.name = "--at-ratio",
+                .to = &options->at_ratios,
+                .text = "Material ratios for the height Smc(mr)",
+                .range = Range{0.0, 100.0},
+                .unit = "%",
+                .shown = "MR[,MR...]",
+                .between = ','},
+               {.name = "--csv",
+                .to = &options->csv,
+                .text = "Write a row per scan and parameter, in the scan's units",
+                .kind = ValueKind::kOutput}});
   addFormOptions(command, options->form);
   addScanOptions(command, options->reading);
   command.notes(
       "No S- or L-filter is applied: filter the scan before. Ratios are shares of 1 in a report, per cent in "
       "text. Between samples "
-      "the surface is "
-      "the bilinear patch.");
+      "the surface is the bilinear patch. The autocorrelation reaches to half of the surface. Std is the "
+      "direction "
+      "of the lay, and says little where Str is near 1. What the samples do not determine is not stated, "
+      "with the reason.");
   command.examples({{"fettle measure scan.tif", "All parameters about the least-squares plane"},
+                    {"fettle measure scan.tif other.tif --only spatial --csv texture.csv",
+                     "Heights and spatial parameters of several scans, as a table"},
                     {"fettle measure scan.tif --form poly2 --robust",
                      "About a slightly bent surface, as if steps and spikes were not there"}});
 }

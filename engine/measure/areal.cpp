@@ -4,12 +4,17 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include "engine/base/memory.h"
 #include "engine/compare/tile_sums.h"
+#include "engine/measure/surface.h"
 
 namespace fettle::engine {
 
@@ -114,11 +119,29 @@ SlopePart slopesOf(const FieldReader& field, const PolynomialForm& form, Region 
   return all;
 }
 
+// Without it where memory for it is not free.
+Result<SpatialParameters> spatialOf(const Surface& surface, JobControl& job) {
+  constexpr double kGibi = 1024.0 * 1024.0 * 1024.0;
+  const double wanted = correlationBytes(surface), free = static_cast<double>(availableMemory());
+  if (free > 0.0 && wanted > 0.8 * free) {
+    SpatialParameters none;
+    none.sal = none.str = none.lay = none.sal_direction = none.slow_direction = std::nan("");
+    none.no_sal = none.no_str = none.no_lay =
+        fmt::format("it takes {:.1f} GiB of memory, of which {:.1f} are free: measure a smaller region",
+                    wanted / kGibi, free / kGibi);
+    return none;
+  }
+  auto analysis = correlate(surface, job);
+  if (!analysis) return tl::unexpected(analysis.error());
+  return std::move(analysis->parameters);
+}
+
 }  // namespace
 
-Result<ArealParameters> measureAreal(const Version& field, const PolynomialForm& form, Region region,
-                                     JobControl& job) try {
+Result<ArealParameters> measureAreal(const Version& field, const PolynomialForm& form,
+                                     const ArealOptions& options, JobControl& job) try {
   const FieldReader reader = field.reader();
+  const Region region = options.region;
   const auto forEachHeight = [&](const SampleRect& rect, auto&& take) {
     double z[kHaloSide * kHaloSide];
     readResiduals(reader, form, region, rect, z);
@@ -169,26 +192,59 @@ Result<ArealParameters> measureAreal(const Version& field, const PolynomialForm&
   result.sa = power.absolute.value() / n;
   result.ssk = variance > 0.0 ? power.third.value() / n / (variance * result.sq) : std::nan("");
   result.sku = variance > 0.0 ? power.fourth.value() / n / (variance * variance) : std::nan("");
+  if (!(variance > 0.0))
+    for (const char* const key : {"ssk", "sku"}) result.not_stated.push_back({key, "the surface is flat"});
 
-  std::vector<float> heights(static_cast<std::size_t>(all.samples));
-  tbb::parallel_for(std::size_t{0}, first.size(), [&](std::size_t tile) {
-    if (job.cancelled()) return;
-    float* out = heights.data() + first[tile];
-    forEachHeight(tileRect(reader, static_cast<std::int64_t>(tile)),
-                  [&](double z) { *out++ = static_cast<float>(z - result.mean); });
-    job.advance();
-  });
-  if (job.cancelled()) return cancelled();
-  tbb::parallel_sort(heights.begin(), heights.end());
-  if (job.cancelled()) return cancelled();
-  result.ratio = materialRatio(heights);
+  if (options.functional) {
+    std::vector<float> heights(static_cast<std::size_t>(all.samples));
+    tbb::parallel_for(std::size_t{0}, first.size(), [&](std::size_t tile) {
+      if (job.cancelled()) return;
+      float* out = heights.data() + first[tile];
+      forEachHeight(tileRect(reader, static_cast<std::int64_t>(tile)),
+                    [&](double z) { *out++ = static_cast<float>(z - result.mean); });
+      job.advance();
+    });
+    if (job.cancelled()) return cancelled();
+    tbb::parallel_sort(heights.begin(), heights.end());
+    if (job.cancelled()) return cancelled();
+    result.ratio = materialRatio(heights);
+    for (const double height : options.at_heights) result.ratios.push_back(ratioAtHeight(heights, height));
+    for (const double ratio : options.at_ratios) result.heights.push_back(heightAtRatio(heights, ratio));
+  }
 
-  const SlopePart slopes = slopesOf(reader, form, region, job);
-  if (job.cancelled()) return cancelled();
-  result.cells = slopes.cells;
-  const auto cells = static_cast<double>(slopes.cells);
-  result.sdq = slopes.cells > 0 ? std::sqrt(slopes.gradient.value() / cells) : std::nan("");
-  result.sdr = slopes.cells > 0 ? slopes.excess.value() / cells : std::nan("");
+  if (options.hybrid) {
+    const SlopePart slopes = slopesOf(reader, form, region, job);
+    if (job.cancelled()) return cancelled();
+    result.cells = slopes.cells;
+    const auto cells = static_cast<double>(slopes.cells);
+    result.sdq = slopes.cells > 0 ? std::sqrt(slopes.gradient.value() / cells) : std::nan("");
+    result.sdr = slopes.cells > 0 ? slopes.excess.value() / cells : std::nan("");
+    if (slopes.cells == 0)
+      for (const char* const key : {"sdq", "sdr"})
+        result.not_stated.push_back({key, "no four samples next to each other"});
+  }
+  if (!options.spatial && !options.feature) return result;
+
+  const auto surface = surfaceOf(field, form, result.mean, region, job);
+  if (!surface) return tl::unexpected(surface.error());
+  const auto note = [&](const char* key, const std::string& why) {
+    if (!why.empty()) result.not_stated.push_back({key, why});
+  };
+  if (options.spatial) {
+    auto spatial = spatialOf(*surface, job);
+    if (!spatial) return tl::unexpected(spatial.error());
+    result.spatial = *std::move(spatial);
+    note("sal", result.spatial.no_sal);
+    note("str", result.spatial.no_str);
+    note("std", result.spatial.no_lay);
+  }
+  if (options.feature) {
+    auto feature = measureFeatures(*surface, result.sz, options.prune, job);
+    if (!feature) return tl::unexpected(feature.error());
+    result.feature = *std::move(feature);
+    note("spd", result.feature.no_spd);
+    note("spc", result.feature.no_spc);
+  }
   return result;
 } catch (const std::bad_alloc&) {
   return failure("memory is exhausted", "measuring", "measure a smaller field or region");

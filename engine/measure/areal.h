@@ -1,18 +1,22 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/version.h"
 #include "engine/measure/form.h"
+#include "engine/measure/hills.h"
 #include "engine/measure/material_ratio.h"
+#include "engine/measure/spatial.h"
 
 namespace fettle::engine {
 
 /// Areal surface texture parameters of ISO 25178-2:2021 over the samples of a region, heights about their mean after
 /// the form is taken out. No S- or L-filter is applied: filter the field before. NaN where the samples do not
-/// determine a figure (skewness of a flat surface, slopes without a cell).
+/// determine a figure (skewness of a flat surface, slopes without a cell): `not_stated` has the reason then.
 struct ArealParameters {
   std::int64_t samples = 0;
   std::int64_t cells = 0;  ///< with four samples of the region: those of sdq and sdr
@@ -30,6 +34,26 @@ struct ArealParameters {
   double sdr = 0.0;  ///< developed interfacial area ratio [1], 0 for a plane
   // Functional, 4.4.
   MaterialRatio ratio;
+  std::vector<double> ratios;   ///< Smr of each height asked for, 0 .. 1
+  std::vector<double> heights;  ///< Smc of each ratio asked for [height_unit]
+  // Spatial, and features.
+  SpatialParameters spatial;
+  FeatureParameters feature;
+
+  struct NotStated {
+    std::string parameter;  ///< "ssk"
+    std::string reason;
+  };
+  std::vector<NotStated> not_stated;  ///< of the groups that were asked for
+};
+
+/// The groups to measure besides the height parameters, and what of the material ratio curve.
+struct ArealOptions {
+  Region region = Region::kAll;
+  bool hybrid = true, functional = true, spatial = true, feature = true;
+  std::vector<double> at_heights = {};  ///< for Smr [height_unit], about the mean
+  std::vector<double> at_ratios = {};   ///< for Smc, 0 .. 1
+  double prune = 0.05;                  ///< share of Sz below which a hill is no feature
 };
 
 /// Measures them. The surface between four samples is the bilinear patch through them, as everywhere in Fettle: the
@@ -37,9 +61,10 @@ struct ArealParameters {
 /// wavelength L sampled every h both are lower than the sine's by (2 pi h / L)^2 / 12 of the gradient's square.
 ///
 /// Sums in double, compensated over the tiles; order statistics exact. Bit-identical for any number of threads. Memory:
-/// 4 bytes a sample while heights are sorted. Errors: kInput for a region without samples; kFailed without memory;
+/// 4 bytes a sample while heights are sorted, 28 for features, 40 for spatial parameters, which are not stated where
+/// so much is not free. Errors: kInput for a region without samples; kFailed without memory;
 /// kCancelled. Thread: any; a long job on all workers of the calling arena.
 [[nodiscard]] Result<ArealParameters> measureAreal(const Version& field, const PolynomialForm& form,
-                                                   Region region, JobControl& job);
+                                                   const ArealOptions& options, JobControl& job);
 
 }  // namespace fettle::engine

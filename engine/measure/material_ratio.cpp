@@ -114,4 +114,14 @@ MaterialRatio materialRatio(std::span<const float> sorted) noexcept {
   return result;
 }
 
+double ratioAtHeight(std::span<const float> sorted, double height) noexcept {
+  const auto first = std::lower_bound(sorted.begin(), sorted.end(), height,
+                                      [](float sample, double h) { return sample < h; });
+  return static_cast<double>(sorted.end() - first) / static_cast<double>(sorted.size());
+}
+
+double heightAtRatio(std::span<const float> sorted, double ratio) noexcept {
+  return AbbottCurve(sorted).height(ratio);
+}
+
 }  // namespace fettle::engine

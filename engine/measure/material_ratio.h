@@ -25,4 +25,9 @@ struct MaterialRatio {
 /// top of equal ones. Linear time; any thread.
 [[nodiscard]] MaterialRatio materialRatio(std::span<const float> sorted) noexcept;
 
+/// Smr(c), the share of samples at or above a height, and its inverse Smc(mr), the height of a ratio 0 .. 1 on the curve
+/// of materialRatio(): ISO 25178-2:2021, 4.4. `sorted` as there; any thread.
+[[nodiscard]] double ratioAtHeight(std::span<const float> sorted, double height) noexcept;
+[[nodiscard]] double heightAtRatio(std::span<const float> sorted, double ratio) noexcept;
+
 }  // namespace fettle::engine

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -36,7 +37,7 @@ TEST(Measure, OfATiltedWaveIsTheWave) {
   EXPECT_NEAR(report["tilt_x"], std::atan(0.1) * 180.0 / 3.14159265, 0.05);
   EXPECT_NEAR(report["tilt_y"], -std::atan(0.05) * 180.0 / 3.14159265, 0.05);
   const Outcome text = fettle({"measure", scan, "--unit", "mm"});
-  EXPECT_NE(text.out.find("Sq           1.4"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("Sq             1.4"), std::string::npos) << text.out;
   EXPECT_NE(text.out.find(" um "), std::string::npos) << text.out;
 }
 
@@ -107,6 +108,72 @@ TEST(Measure, RobustFormIgnoresAStepAndMarksChooseTheRegion) {
   EXPECT_GT(marked["samples"].get<int>(), 0);
   const auto robust = fettleJson({"measure", scan, "--robust"});
   EXPECT_NE(robust["sq"], all["sq"]);
+}
+
+TEST(Measure, GroupsAreThoseAskedForAndEachHasAFigureOrAReason) {
+  const TempFolder folder;
+  const std::string scan = folder.file("wave.asc");
+  writeWave(scan);
+  const auto all = fettleJson({"measure", scan, "--unit", "mm"});
+  // Waves along x of 12 samples of 0.1 mm; along y heights are equal, so that there is no second length.
+  EXPECT_NEAR(all["sal"], std::acos(0.2) / (2.0 * 3.14159265 / 1.2), 0.03);
+  EXPECT_TRUE(all["str"].is_null());
+  EXPECT_EQ(all["not_stated"][0]["parameter"], "str");
+  EXPECT_NEAR(all["std"], 90.0, 1.0);
+  EXPECT_EQ(all["smc"].size(), 2U);
+  const auto only = fettleJson({"measure", scan, "--unit", "mm", "--only", "spatial,hybrid"});
+  EXPECT_EQ(only["sal"], all["sal"]);
+  EXPECT_EQ(only["sq"], all["sq"]);
+  EXPECT_FALSE(only.contains("sk"));
+  EXPECT_FALSE(only.contains("spd"));
+  const Outcome text = fettle({"measure", scan, "--unit", "mm"});
+  for (const char* heading : {"\nHeight\n", "\nSpatial\n", "\nHybrid\n", "\nFunctional\n", "\nFeature\n"})
+    EXPECT_NE(text.out.find(heading), std::string::npos) << heading;
+  EXPECT_NE(text.out.find("Str      not stated: along"), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find("nan"), std::string::npos) << text.out;
+}
+
+TEST(Measure, MaterialRatiosAreThoseAskedFor) {
+  const TempFolder folder;
+  const std::string scan = folder.file("wave.asc");
+  writeWave(scan);
+  const auto report =
+      fettleJson({"measure", scan, "--unit", "mm", "--at-height", "-1mm,0,500nm", "--at-ratio", "50"});
+  EXPECT_EQ(report["smr"][0]["ratio"], 1.0);
+  EXPECT_NEAR(report["smr"][1]["ratio"], 0.5, 0.05);
+  EXPECT_NEAR(report["smr"][2]["height"], 5e-4, 1e-12);
+  EXPECT_NEAR(report["smc"][0]["height"], 0.0, 2e-4);
+  expectRefused(fettle({"measure", scan, "--unit", "mm", "--at-height", "1kg"}), "--at-height");
+}
+
+TEST(Measure, OfFeetIsPrintedInFeet) {
+  const TempFolder folder;
+  const std::string scan = folder.file("wave.asc");
+  writeWave(scan);
+  const Outcome text = fettle({"measure", scan, "--unit", "ft", "--only", "spatial"});
+  EXPECT_NE(text.out.find(" ft "), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find(" mm "), std::string::npos) << text.out;
+}
+
+TEST(Measure, CsvHasARowPerScanAndParameter) {
+  const TempFolder folder;
+  const std::string scan = folder.file("wave.asc"), flat = folder.file("a, flat.asc"),
+                    csv = folder.file("t.csv");
+  writeWave(scan);
+  std::ofstream(flat) << "ncols 5\nnrows 4\nxllcenter 0\nyllcenter 0\ncellsize 1\n"
+                      << "1 1 1 1 1\n1 1 1 1 1\n"
+                      << "1 1 1 1 1\n1 1 1 1 1\n";
+  ASSERT_EQ(fettle({"measure", scan, flat, "--unit", "mm", "--csv", csv}).status, 0);
+  std::ifstream in(csv);
+  std::string line, all;
+  int rows = 0;
+  while (std::getline(in, line)) ++rows, all += line + "\n";
+  EXPECT_TRUE(all.starts_with("scan,group,parameter,value,unit,remark\n"));
+  EXPECT_EQ(rows, 1 + 2 * (24 + 2));
+  EXPECT_NE(all.find("\"" + flat + "\",height,Ssk,,,not stated: the surface is flat\n"), std::string::npos)
+      << all;
+  EXPECT_NE(all.find(",height,Sq,0.0014"), std::string::npos) << all;
+  EXPECT_EQ(all.find("nan"), std::string::npos) << all;
 }
 
 TEST(Measure, SeveralScansHaveAReportEachAndABadOneFailsAlone) {

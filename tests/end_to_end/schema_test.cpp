@@ -48,7 +48,8 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"filter", scan, out, "--filter", "tgv", "--estimate"});
   run({"level", scan, file("level.tif"), "--robust"});
   run({"level", scan, file("level.tif"), "--rows", "median", "--form", "none"});
-  run({"measure", scan, "--form", "poly2"});
+  run({"measure", scan, "--form", "poly2", "--at-height", "0,1um", "--at-ratio", "50"});
+  run({"measure", scan, "--only", "hybrid"});
   run({"measure", scan, file("none.tif")}, 1);
   run({"filter", scan, "--suggest", "--tolerance", "15um", "--places", "1"});
   run({"mark", scan, marks, "--edges", "--lines-out", lines});

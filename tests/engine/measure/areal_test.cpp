@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -40,7 +42,7 @@ PolynomialForm zeroForm(const Grid& grid) {
 
 ArealParameters measured(const Made& made, Region region = Region::kAll) {
   JobControl job;
-  const auto result = measureAreal(made.field(), zeroForm(made.grid), region, job);
+  const auto result = measureAreal(made.field(), zeroForm(made.grid), {.region = region}, job);
   EXPECT_TRUE(result) << result.error().line();
   return result ? *result : ArealParameters{};
 }
@@ -64,6 +66,54 @@ TEST(Areal, OfASineIsTheClosedFormula) {
   const double sinc = std::sin(kPi / kWave) / (kPi / kWave);
   EXPECT_NEAR(p.sdq, kAmplitude * k / std::sqrt(2.0) * sinc, 1e-5 * k);
   EXPECT_EQ(p.cells, 1000 * 39);
+}
+
+// Whole waves sampled half a sample beside their zeros: sums over a period are closed formulas, exactly.
+TEST(Areal, OfWholeWavesIsTheClosedFormula) {
+  constexpr int kSamples = 40;
+  constexpr double kAmplitude = 0.3, k = 2.0 * kPi / kSamples;
+  const auto wave = [](int c, int) { return kAmplitude * std::sin(k * (c + 0.5)); };
+  const ArealParameters p = measured(Made(25 * kSamples, 30, wave));
+  const auto near = [](double seen, double wanted) { EXPECT_NEAR(seen / wanted, 1.0, 1e-6); };
+  near(p.sq, kAmplitude / std::sqrt(2.0));
+  near(p.sku, 1.5);
+  EXPECT_NEAR(p.ssk, 0.0, 1e-6);
+  near(p.sa, kAmplitude * 2.0 / (kSamples * std::sin(0.5 * k)));
+  near(p.sz, 2.0 * kAmplitude * std::cos(0.5 * k));
+  near(p.sp, p.sv);
+  // Chords of 25 waves: 25 * 40 cells along x.
+  Made chords(25 * kSamples + 1, 30, wave);
+  chords.grid.spacing_x = 0.05;
+  near(measured(chords).sdq, kAmplitude * k / 0.05 / std::sqrt(2.0) * std::sin(0.5 * k) / (0.5 * k));
+}
+
+// A triangle wave with its corners on samples: one slope everywhere.
+TEST(Areal, OfATriangleIsTheClosedFormula) {
+  constexpr int kSamples = 64;
+  Made made(20 * kSamples + 1, 25, [](int c, int) { return std::abs(c % kSamples - kSamples / 2) / 32.0; });
+  made.grid.spacing_x = 0.125;
+  made.grid.spacing_y = 0.5;
+  const ArealParameters p = measured(made);
+  const double slope = 1.0 / 32.0 / 0.125;
+  EXPECT_NEAR(p.sdq, slope, 1e-12);
+  EXPECT_NEAR(p.sdr, std::sqrt(1.0 + slope * slope) - 1.0, 1e-12);
+  EXPECT_NEAR(p.sz, 1.0, 1e-12);
+  // Sums of squares over whole waves of n samples: 1/12 + 2 / (3 n^2) of the height, and one sample more.
+  const Made whole(20 * kSamples, 25,
+                   [](int c, int) { return std::abs(c % kSamples - kSamples / 2) / 32.0; });
+  const ArealParameters w = measured(whole);
+  EXPECT_NEAR(w.sq, std::sqrt(1.0 / 12.0 + 2.0 / (3.0 * kSamples * kSamples)), 1e-7);
+  EXPECT_NEAR(w.sa, 0.25, 1e-7);
+}
+
+// z = (x^2 + y^2) / 2 R over [-a, a]^2: chords are slopes in their middles, whose mean square is a^2 / 3 - h^2 / 12.
+TEST(Areal, OfAParaboloidHasItsGradient) {
+  constexpr double kRadius = 512.0;
+  const ArealParameters p = measured(Made(65, 65, [](int c, int r) {
+    return ((c - 32.0) * (c - 32.0) + (r - 32.0) * (r - 32.0)) / (2.0 * kRadius);
+  }));
+  EXPECT_NEAR(p.sdq, std::sqrt(2.0 * (32.0 * 32.0 / 3.0 - 1.0 / 12.0)) / kRadius, 1e-12);
+  EXPECT_NEAR(p.sz, 2.0, 1e-12);
 }
 
 TEST(Areal, OfAHalfRaisedFieldIsItsStep) {
@@ -115,7 +165,7 @@ TEST(Areal, IsWhatPlainLoopsFind) {
   JobControl job;
   const auto fit = fitForm(made.field(), {1, Region::kMarked, false}, job);
   ASSERT_TRUE(fit);
-  const auto result = measureAreal(made.field(), fit->form, Region::kMarked, job);
+  const auto result = measureAreal(made.field(), fit->form, {.region = Region::kMarked}, job);
   ASSERT_TRUE(result);
   const auto at = [&](int c, int r) -> long double {
     const auto i = static_cast<std::size_t>(r * 131 + c);
@@ -187,12 +237,72 @@ TEST(Areal, OfHardFieldsIsAFigureOrNone) {
   EXPECT_GT(small.sq, 0.0);
   JobControl job;
   const Made holes(9, 9, [](int, int) { return kNothing; });
-  EXPECT_EQ(measureAreal(holes.field(), zeroForm(holes.grid), Region::kAll, job).error().kind,
-            ErrorKind::kInput);
+  EXPECT_EQ(measureAreal(holes.field(), zeroForm(holes.grid), {}, job).error().kind, ErrorKind::kInput);
   job.cancel();
   const Made any(9, 9, [](int c, int) { return c; });
-  EXPECT_EQ(measureAreal(any.field(), zeroForm(any.grid), Region::kAll, job).error().kind,
-            ErrorKind::kCancelled);
+  EXPECT_EQ(measureAreal(any.field(), zeroForm(any.grid), {}, job).error().kind, ErrorKind::kCancelled);
+}
+
+// A figure, or one reason why there is none: nothing else.
+TEST(Areal, StatesEachParameterOrTheReason) {
+  const auto check = [](const Made& made) {
+    const ArealParameters p = measured(made);
+    const std::pair<const char*, double> figures[] = {{"sq", p.sq},
+                                                      {"ssk", p.ssk},
+                                                      {"sku", p.sku},
+                                                      {"sp", p.sp},
+                                                      {"sv", p.sv},
+                                                      {"sz", p.sz},
+                                                      {"sa", p.sa},
+                                                      {"sdq", p.sdq},
+                                                      {"sdr", p.sdr},
+                                                      {"sk", p.ratio.sk},
+                                                      {"spk", p.ratio.spk},
+                                                      {"svk", p.ratio.svk},
+                                                      {"smrk1", p.ratio.smrk1},
+                                                      {"smrk2", p.ratio.smrk2},
+                                                      {"vmp", p.ratio.vmp},
+                                                      {"vmc", p.ratio.vmc},
+                                                      {"vvc", p.ratio.vvc},
+                                                      {"vvv", p.ratio.vvv},
+                                                      {"sxp", p.ratio.sxp},
+                                                      {"sal", p.spatial.sal},
+                                                      {"str", p.spatial.str},
+                                                      {"std", p.spatial.lay},
+                                                      {"spd", p.feature.spd},
+                                                      {"spc", p.feature.spc}};
+    for (const auto& figure : figures) {
+      const auto named = [&](const auto& each) { return each.parameter == figure.first; };
+      EXPECT_EQ(std::ranges::count_if(p.not_stated, named), std::isfinite(figure.second) ? 0 : 1)
+          << figure.first;
+    }
+  };
+  check(Made(1, 1, [](int, int) { return 4.0; }));
+  check(Made(70, 1, [](int c, int) { return c % 2; }));
+  check(Made(70, 65, [](int, int) { return 4.0; }));
+  check(Made(40, 40, [](int c, int r) { return r == 9 && c < 3 ? c : kNothing; }));
+  check(Made(80, 80, [](int c, int r) { return c == 40 && r == 40 ? 1e6 : 0.0; }));
+  Made far(80, 80, [](int c, int r) { return std::sin(0.3 * c + 0.1 * r * r); });
+  far.grid.origin_x = far.grid.origin_y = 5e6;
+  far.grid.spacing_y = 4.0;
+  check(far);
+}
+
+TEST(Areal, MaterialRatiosAreThoseAskedFor) {
+  const Made made(100, 10, [](int c, int) { return c; });
+  JobControl job;
+  ArealOptions options;
+  options.at_heights = {-100.0, 0.0, 25.0, 100.0};
+  options.at_ratios = {0.0, 0.1, 0.5, 1.0};
+  const auto p = measureAreal(made.field(), zeroForm(made.grid), options, job);
+  ASSERT_TRUE(p);
+  // About the mean of 49.5 heights run from -49.5 to 49.5.
+  EXPECT_EQ(p->ratios, (std::vector<double>{1.0, 0.5, 0.25, 0.0}));
+  EXPECT_EQ(p->heights.front(), 49.5);
+  EXPECT_EQ(p->heights[2], 0.0);
+  EXPECT_EQ(p->heights.back(), -49.5);
+  options.functional = options.spatial = options.feature = options.hybrid = false;
+  EXPECT_TRUE(measureAreal(made.field(), zeroForm(made.grid), options, job)->ratios.empty());
 }
 
 TEST(Areal, IsBitIdenticalForAnyNumberOfThreads) {

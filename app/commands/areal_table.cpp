@@ -1,0 +1,280 @@
+#include "app/commands/areal_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace fettle::app {
+
+namespace {
+
+// What a number is: its unit, and how a person reads it.
+enum class Quantity : std::uint8_t {
+  kHeight,
+  kVolume,
+  kRatio,
+  kPlain,
+  kDegrees,
+  kLength,
+  kPerArea,
+  kPerLength
+};
+
+struct ArealRow {
+  const char* group;
+  const char* key;
+  const char* name;
+  Quantity quantity;
+  const char* text;
+  double (*of)(const engine::ArealParameters&);
+};
+using Areal = engine::ArealParameters;
+constexpr ArealRow kArealRows[] = {
+    {"height", "sq", "Sq", Quantity::kHeight, "root mean square height", [](const Areal& p) { return p.sq; }},
+    {"height", "ssk", "Ssk", Quantity::kPlain, "skewness", [](const Areal& p) { return p.ssk; }},
+    {"height", "sku", "Sku", Quantity::kPlain, "kurtosis", [](const Areal& p) { return p.sku; }},
+    {"height", "sp", "Sp", Quantity::kHeight, "maximum peak height", [](const Areal& p) { return p.sp; }},
+    {"height", "sv", "Sv", Quantity::kHeight, "maximum pit depth", [](const Areal& p) { return p.sv; }},
+    {"height", "sz", "Sz", Quantity::kHeight, "maximum height", [](const Areal& p) { return p.sz; }},
+    {"height", "sa", "Sa", Quantity::kHeight, "arithmetical mean height",
+     [](const Areal& p) { return p.sa; }},
+    {"spatial", "sal", "Sal", Quantity::kLength, "autocorrelation length (to 0.2)",
+     [](const Areal& p) { return p.spatial.sal; }},
+    {"spatial", "str", "Str", Quantity::kPlain, "texture aspect ratio (to 0.2)",
+     [](const Areal& p) { return p.spatial.str; }},
+    {"spatial", "std", "Std", Quantity::kDegrees, "texture direction: of the lay, from x to y",
+     [](const Areal& p) { return p.spatial.lay; }},
+    {"hybrid", "sdq", "Sdq", Quantity::kPlain, "root mean square gradient",
+     [](const Areal& p) { return p.sdq; }},
+    {"hybrid", "sdr", "Sdr", Quantity::kRatio, "developed interfacial area ratio",
+     [](const Areal& p) { return p.sdr; }},
+    {"functional", "sk", "Sk", Quantity::kHeight, "core height", [](const Areal& p) { return p.ratio.sk; }},
+    {"functional", "spk", "Spk", Quantity::kHeight, "reduced peak height",
+     [](const Areal& p) { return p.ratio.spk; }},
+    {"functional", "svk", "Svk", Quantity::kHeight, "reduced dale height",
+     [](const Areal& p) { return p.ratio.svk; }},
+    {"functional", "smrk1", "Smrk1", Quantity::kRatio, "material ratio of the peaks (Smr1)",
+     [](const Areal& p) { return p.ratio.smrk1; }},
+    {"functional", "smrk2", "Smrk2", Quantity::kRatio, "material ratio above the dales (Smr2)",
+     [](const Areal& p) { return p.ratio.smrk2; }},
+    {"functional", "vmp", "Vmp", Quantity::kVolume, "material volume of the peaks (10 %)",
+     [](const Areal& p) { return p.ratio.vmp; }},
+    {"functional", "vmc", "Vmc", Quantity::kVolume, "material volume of the core (10 to 80 %)",
+     [](const Areal& p) { return p.ratio.vmc; }},
+    {"functional", "vvc", "Vvc", Quantity::kVolume, "void volume of the core (10 to 80 %)",
+     [](const Areal& p) { return p.ratio.vvc; }},
+    {"functional", "vvv", "Vvv", Quantity::kVolume, "void volume of the dales (80 %)",
+     [](const Areal& p) { return p.ratio.vvv; }},
+    {"functional", "sxp", "Sxp", Quantity::kHeight, "peak extreme height (2.5 to 50 %)",
+     [](const Areal& p) { return p.ratio.sxp; }},
+    {"feature", "spd", "Spd", Quantity::kPerArea, "density of peaks (hills of 5 % of Sz and more)",
+     [](const Areal& p) { return p.feature.spd; }},
+    {"feature", "spc", "Spc", Quantity::kPerLength, "arithmetic mean peak curvature",
+     [](const Areal& p) { return p.feature.spc; }},
+};
+
+struct ArealGroup {
+  const char* word;
+  const char* heading;
+  const char* text;
+};
+constexpr ArealGroup kArealGroups[] = {
+    {"height", "Height", "Sq Ssk Sku Sp Sv Sz Sa"},
+    {"spatial", "Spatial", "Sal Str Std"},
+    {"hybrid", "Hybrid", "Sdq Sdr"},
+    {"functional", "Functional", "Sk Spk Svk Smrk1 Smrk2 Vmp Vmc Vvc Vvv Sxp, Smr(c) and Smc(mr)"},
+    {"feature", "Feature", "Spd Spc"},
+};
+
+// A unit by its name and its size in that of the report.
+struct ReadAs {
+  std::string name;
+  double size = 1.0;
+};
+
+// Powers of ten of a millimetre.
+bool metric(double unit_mm) {
+  const double power = std::log10(unit_mm);
+  return std::abs(power - std::round(power)) < 1e-12;
+}
+
+// The unit in which a height is read at ease: of a metric scan 0.0000113 mm are 11.3 nm; of others the scan's own.
+ReadAs readHeightAs(double height, double unit_mm, const std::string& unit) {
+  if (!metric(unit_mm)) return {unit, 1.0};
+  constexpr struct {
+    const char* name;
+    double mm;
+  } kUnits[] = {{"m", 1e3}, {"mm", 1.0}, {"um", 1e-3}};
+  for (const auto& each : kUnits)
+    if (height * unit_mm >= each.mm) return {each.name, each.mm / unit_mm};
+  return {"nm", 1e-6 / unit_mm};
+}
+
+// Of lengths along the surface: millimetres, as drawings state them, metres where samples are far apart.
+ReadAs readLengthAs(double spacing, double unit_mm, const std::string& unit) {
+  if (!metric(unit_mm)) return {unit, 1.0};
+  if (spacing * unit_mm < 10.0) return {"mm", 1.0 / unit_mm};
+  return {"m", 1e3 / unit_mm};
+}
+
+struct Shown {
+  double factor;
+  std::string unit;
+};
+Shown shownAs(Quantity quantity, const ReadAs& height, const ReadAs& length) {
+  switch (quantity) {
+    case Quantity::kHeight:
+      return {1.0 / height.size, height.name};
+    case Quantity::kVolume:
+      return {1.0 / height.size, fmt::format("{0}3/{0}2", height.name)};
+    case Quantity::kRatio:
+      return {100.0, "%"};
+    case Quantity::kPlain:
+      return {1.0, ""};
+    case Quantity::kDegrees:
+      return {1.0, "degrees"};
+    case Quantity::kLength:
+      return {1.0 / length.size, length.name};
+    case Quantity::kPerArea:
+      return {length.size * length.size, fmt::format("1/{}2", length.name)};
+    case Quantity::kPerLength:
+      return {length.size, fmt::format("1/{}", length.name)};
+  }
+  return {1.0, ""};
+}
+
+// A figure as measured, in millimetres and squares of them, in units of the scan.
+double inScanUnits(double value, Quantity quantity, double lateral_mm) {
+  switch (quantity) {
+    case Quantity::kLength:
+      return value / lateral_mm;
+    case Quantity::kPerArea:
+      return value * lateral_mm * lateral_mm;
+    case Quantity::kPerLength:
+      return value * lateral_mm;
+    default:
+      return value;
+  }
+}
+
+bool wanted(const char* group, const std::vector<std::string>& groups) {
+  // Those of height are measured in any case.
+  return groups.empty() || std::string_view(group) == "height" ||
+         std::ranges::find(groups, group) != groups.end();
+}
+
+std::string reasonOf(const Report& report, std::string_view key) {
+  for (const Report& each : report["not_stated"])
+    if (each["parameter"].get<std::string>() == key) return each["reason"].get<std::string>();
+  return "";
+}
+
+void printRow(const std::string& name, const Report& value, const Shown& shown, const std::string& text) {
+  fmt::print("{:<8} {:>12} {:<10} {}\n", name, fmt::format("{:.5g}", value.get<double>() * shown.factor),
+             shown.unit, text);
+}
+
+// A field of a CSV, quoted where it must be: RFC 4180.
+std::string csvField(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) {
+    if (c == '"') field += '"';
+    field += c;
+  }
+  return field + '"';
+}
+
+}  // namespace
+
+std::vector<Word> arealGroups() {
+  std::vector<Word> words;
+  words.reserve(std::size(kArealGroups));
+  for (const ArealGroup& group : kArealGroups) words.emplace_back(group.word, group.text);
+  return words;
+}
+
+void addAreal(Report& report, const engine::ArealParameters& measured, const std::vector<std::string>& groups,
+              const engine::Grid& grid) {
+  report["unit"] = grid.height_unit.name;
+  report["unit_mm"] = grid.height_unit.mm;
+  report["lateral_unit"] = grid.lateral_unit.name;
+  report["lateral_unit_mm"] = grid.lateral_unit.mm;
+  report["spacing"] = std::max(grid.spacing_x, grid.spacing_y);
+  report["samples"] = measured.samples;
+  report["mean"] = measured.mean;
+  for (const ArealRow& row : kArealRows) {
+    if (!wanted(row.group, groups)) continue;
+    const double value = inScanUnits(row.of(measured), row.quantity, grid.lateral_unit.mm);
+    report[row.key] = std::isfinite(value) ? Report(value) : Report();
+  }
+  if (wanted("hybrid", groups)) report["cells"] = measured.cells;
+  if (wanted("feature", groups)) report["hills"] = measured.feature.hills;
+  report["not_stated"] = Report::array();
+  for (const auto& each : measured.not_stated)
+    if (report.contains(each.parameter))
+      report["not_stated"].push_back({{"parameter", each.parameter}, {"reason", each.reason}});
+}
+
+void printAreal(const Report& report) {
+  // Of the root mean square height: one unit for all rows.
+  const ReadAs height = readHeightAs(report["sq"].get<double>(), report["unit_mm"], report["unit"]);
+  const ReadAs length = readLengthAs(report["spacing"], report["lateral_unit_mm"], report["lateral_unit"]);
+  for (const ArealGroup& group : kArealGroups) {
+    bool headed = false;
+    for (const ArealRow& row : kArealRows) {
+      if (std::string_view(row.group) != group.word || !report.contains(row.key)) continue;
+      if (!headed) fmt::print("\n{}\n", group.heading);
+      headed = true;
+      const Report& value = report[row.key];
+      if (value.is_null())
+        fmt::print("{:<8} not stated: {}\n", row.name, reasonOf(report, row.key));
+      else
+        printRow(row.name, value, shownAs(row.quantity, height, length), row.text);
+    }
+    if (std::string_view(group.word) != "functional" || !report.contains("smr")) continue;
+    const Shown ratio = shownAs(Quantity::kRatio, height, length);
+    const Shown level = shownAs(Quantity::kHeight, height, length);
+    for (const Report& each : report["smr"])
+      printRow("Smr(c)", each["ratio"], ratio,
+               fmt::format("material ratio at {:.5g} {} about the mean",
+                           each["height"].get<double>() * level.factor, level.unit));
+    for (const Report& each : report["smc"])
+      printRow("Smc(mr)", each["height"], level,
+               fmt::format("height about the mean of a material ratio of {:.5g} %",
+                           each["ratio"].get<double>() * 100.0));
+  }
+}
+
+std::string arealRows(const std::string& scan, const Report& report) {
+  const ReadAs height{report["unit"], 1.0}, length{report["lateral_unit"], 1.0};
+  std::string text;
+  auto out = std::back_inserter(text);
+  const auto add = [&](const char* group, const std::string& name, const Report& value, Quantity quantity,
+                       const std::string& remark) {
+    const Shown shown = shownAs(quantity, height, length);
+    fmt::format_to(out, "{},{},{},{},{},{}\n", csvField(scan), group, csvField(name),
+                   value.is_null() ? "" : fmt::format("{:.9g}", value.get<double>() * shown.factor),
+                   shown.unit, csvField(remark));
+  };
+  for (const ArealRow& row : kArealRows)
+    if (report.contains(row.key)) {
+      const Report& value = report[row.key];
+      add(row.group, row.name, value, row.quantity,
+          value.is_null() ? "not stated: " + reasonOf(report, row.key) : "");
+    }
+  if (!report.contains("smr")) return text;
+  for (const Report& each : report["smr"])
+    add("functional", fmt::format("Smr({:.9g})", each["height"].get<double>()), each["ratio"],
+        Quantity::kRatio, "");
+  for (const Report& each : report["smc"])
+    add("functional", fmt::format("Smc({:.9g} %)", each["ratio"].get<double>() * 100.0), each["height"],
+        Quantity::kHeight, "");
+  return text;
+}
+
+}  // namespace fettle::app
