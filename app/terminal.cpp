@@ -71,7 +71,38 @@ InterruptGuard::~InterruptGuard() {
   interrupted_job.store(nullptr);
 }
 
-std::string progressText(const engine::JobControl& job, const BatchState* batch) {
+std::string durationText(double seconds) {
+  if (seconds < 100.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 6000.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+std::optional<double> RemainingTime::at(double seconds, const engine::JobControl& job,
+                                        const BatchState* batch) {
+  constexpr double kFirstSeconds = 3.0;
+  if (first_ < 0.0) first_ = seconds;
+  if (batch != nullptr) {
+    const std::size_t files = std::min(batch->done.load(std::memory_order_relaxed), batch->count);
+    if (files != files_) last_file_ = seconds;
+    files_ = files;
+    if (files == 0 || seconds - first_ < kFirstSeconds) return std::nullopt;
+    const double each = (last_file_ - first_) / static_cast<double>(files);
+    return std::max(0.0, each * static_cast<double>(batch->count - files) - (seconds - last_file_));
+  }
+  const std::uint64_t total = job.total();
+  const std::uint64_t done = std::min(job.done(), total);
+  if (stage_ != job.stage() || done < done_) {
+    stage_ = job.stage();
+    begun_ = seconds;
+  }
+  done_ = done;
+  const double taken = seconds - begun_;
+  if (taken < kFirstSeconds || total == 0 || done < total / 100 + 1) return std::nullopt;
+  const double share = static_cast<double>(done) / static_cast<double>(total);
+  return taken * (1.0 - share) / share;
+}
+
+std::string progressText(const engine::JobControl& job, const BatchState* batch, std::optional<double> left) {
   const auto bar = [](std::uint64_t done, std::uint64_t total) {
     constexpr std::uint64_t kWidth = 30;
     const std::uint64_t filled = total == 0 ? 0 : done * kWidth / total;
@@ -80,7 +111,9 @@ std::string progressText(const engine::JobControl& job, const BatchState* batch)
   const std::uint64_t total = job.total();
   const std::uint64_t done = std::min(job.done(), total);
   const std::uint64_t percent = total == 0 ? 0 : 100 * done / total;
-  const char* stopping = job.cancelled() ? "  stopping" : "";
+  const std::string stopping = job.cancelled() ? "  stopping"
+                               : left          ? fmt::format(", about {} left", durationText(*left))
+                                               : "";
   if (batch == nullptr)
     return fmt::format("{} [{}] {:3d} %{}", job.stage(), bar(done, total), percent, stopping);
   // Relaxed, as the job's own numbers: they are only shown in this line.
@@ -110,8 +143,11 @@ void ProgressLine::show() {
   using namespace std::chrono_literals;
   std::unique_lock lock(mutex_);
   if (wake_.wait_for(lock, 1s, [this] { return ended_; })) return;
+  const auto begun = std::chrono::steady_clock::now();
+  RemainingTime remaining;
   do {
-    toStderr("\r\x1b[K" + progressText(job_, batch_));
+    const std::chrono::duration<double> now = std::chrono::steady_clock::now() - begun;
+    toStderr("\r\x1b[K" + progressText(job_, batch_, remaining.at(now.count(), job_, batch_)));
     std::fflush(stderr);
   } while (!wake_.wait_for(lock, 100ms, [this] { return ended_; }));
   toStderr("\r\x1b[K");

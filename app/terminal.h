@@ -2,7 +2,10 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstddef>
+#include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -27,9 +30,31 @@ struct BatchState {
   std::size_t count = 0;             ///< not changed while a ProgressLine exists; >= 1
 };
 
-/// Text of the progress line: the job's stage, its bar and its share; with a batch the bar counts files, and
-/// stage and share are those of the current file.
-[[nodiscard]] std::string progressText(const engine::JobControl& job, const BatchState* batch);
+/// "40 s", "12 min", "3.5 h".
+[[nodiscard]] std::string durationText(double seconds);
+
+/// How long work will still take, from how fast it went so far: that of the present stage, of a batch that of all
+/// files that are left. Threading: one thread.
+class RemainingTime {
+ public:
+  /// `seconds`: the time now, since any fixed moment, never less than in the call before. Nothing in the first seconds
+  /// of a stage, before a hundredth of it is done, and in a batch before its first file is finished.
+  [[nodiscard]] std::optional<double> at(double seconds, const engine::JobControl& job,
+                                         const BatchState* batch);
+
+ private:
+  const char* stage_ = nullptr;
+  std::uint64_t done_ = 0;
+  double begun_ = 0.0;      // of the stage
+  double first_ = -1.0;     // call
+  std::size_t files_ = 0;   // finished at the last call
+  double last_file_ = 0.0;  // when the last one was
+};
+
+/// Text of the progress line: the job's stage, its bar, its share, and how long [s] it still takes where that is known;
+/// with a batch the bar and the time count files, and stage and share are those of the current file.
+[[nodiscard]] std::string progressText(const engine::JobControl& job, const BatchState* batch,
+                                       std::optional<double> left = std::nullopt);
 
 /// For its lifetime, shows the job's progress as one line on stderr - but only when stderr is a terminal, and
 /// only after the job has run for a second. The line is erased at the end.

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/terminal.h"
 #include "app/work/streams.h"
 #include "engine/base/memory.h"
 #include "engine/base/stopwatch.h"
@@ -106,12 +107,6 @@ std::string bytesText(std::uint64_t bytes) {
   return value < 1e9 ? fmt::format("{:.0f} MB", value * 1e-6) : fmt::format("{:.1f} GB", value * 1e-9);
 }
 
-std::string timeText(double seconds) {
-  if (seconds < 100.0) return fmt::format("{:.0f} s", seconds);
-  if (seconds < 6000.0) return fmt::format("{:.0f} min", seconds / 60.0);
-  return fmt::format("{:.1f} h", seconds / 3600.0);
-}
-
 // Whether so much certainly does not fit.
 bool tooMuch(std::uint64_t needed, std::uint64_t free) {
   return 0.9 * static_cast<double>(needed) > static_cast<double>(free);
@@ -193,7 +188,7 @@ engine::Status checkRoom(const WorkEstimate& estimate, const PlannedWork& work) 
 
 std::string textOf(const WorkEstimate& estimate) {
   std::string text =
-      fmt::format("about {}, {} of memory and {} of disk", timeText(estimate.seconds()),
+      fmt::format("about {}, {} of memory and {} of disk", durationText(estimate.seconds()),
                   bytesText(estimate.memory_bytes), bytesText(estimate.disk_bytes + estimate.kept_bytes));
   if (estimate.store_bytes > 0) text += fmt::format(", {} of the store's", bytesText(estimate.store_bytes));
   return text;

@@ -28,5 +28,38 @@ TEST(Progress, OfManyFilesIsOneBarForAllAndTheShareOfTheOneAtWork) {
   EXPECT_EQ(progressText(job, &batch), "[##############################] 10 of 10, writing   0 %");
 }
 
+TEST(Progress, SaysHowLongTheStageStillTakesOnceThatIsKnown) {
+  engine::JobControl job;
+  RemainingTime remaining;
+  job.begin("filtering", 1000);
+  EXPECT_FALSE(remaining.at(0.0, job, nullptr));
+  job.advance(5);
+  EXPECT_FALSE(remaining.at(10.0, job, nullptr)) << "less than a hundredth says little";
+  job.advance(245);
+  EXPECT_DOUBLE_EQ(remaining.at(100.0, job, nullptr).value(), 300.0);
+  EXPECT_EQ(progressText(job, nullptr, 300.0),
+            "filtering [#######.......................]  25 %, about 5 min left");
+  // Another stage has a rate of its own.
+  job.begin("writing", 10);
+  EXPECT_FALSE(remaining.at(101.0, job, nullptr));
+  job.advance(5);
+  EXPECT_DOUBLE_EQ(remaining.at(121.0, job, nullptr).value(), 20.0);
+  job.cancel();
+  EXPECT_TRUE(progressText(job, nullptr, 20.0).ends_with("%  stopping"));
+}
+
+TEST(Progress, OfABatchTheTimeIsThatOfAllFilesThatAreLeft) {
+  engine::JobControl job;
+  BatchState batch;
+  batch.count = 5;
+  RemainingTime remaining;
+  EXPECT_FALSE(remaining.at(0.0, job, &batch));
+  EXPECT_FALSE(remaining.at(50.0, job, &batch)) << "no file is finished";
+  batch.done = 2;
+  EXPECT_DOUBLE_EQ(remaining.at(60.0, job, &batch).value(), 90.0);
+  EXPECT_DOUBLE_EQ(remaining.at(70.0, job, &batch).value(), 80.0);
+  EXPECT_DOUBLE_EQ(remaining.at(900.0, job, &batch).value(), 0.0) << "a file slower than those before";
+}
+
 }  // namespace
 }  // namespace fettle::app
