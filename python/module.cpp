@@ -68,6 +68,14 @@ void addScan(py::module_& module) {
            })
       .def("hash", hashOf)
       .def("holes", holesOf)
+      .def("has_marks",
+           [](const Scan& scan) { return scan.data.field.reader().root().marked_children != 0; })
+      .def("with_original",
+           [](const Scan& scan, const Scan& original) {
+             Scan made = scan;
+             made.data.original = original.data.field;
+             return made;
+           })
       .def("original",
            [](const Scan& scan) {
              Scan made;

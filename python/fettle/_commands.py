@@ -170,6 +170,10 @@ def path_word(value):
         from ._errors import InputError
 
         raise InputError("a path is empty", "", "name a file")
+    if path == "-":
+        from ._errors import InputError
+
+        raise InputError("standard input and output are those of the program fettle", "-", "name a file")
     return "./" + path if path[0] in "-<" else path
 
 

@@ -46,7 +46,7 @@ _COMPARE = Command(
     summary="How another scan deviates from this one; against a truth, the errors of the other and where they are",
 )
 _RENDER = Command("render", "render", hides=(READING,))
-_APPLY = Command("apply", "apply", hidden=("out-dir", "to", "force"), hides=(READING, WRITING))
+_APPLY = Command("apply", "apply", hidden=("out-dir", "to", "force", "resume", "resume-every"), hides=(READING, WRITING))
 _REPLAY = Command("replay", "replay", hidden=("to", "force"), hides=(READING,))
 _WRITE = Command(
     "write",
@@ -66,6 +66,16 @@ def field_of(scan, name="", report=None):
     field.name = name
     field.report = report if report is not None else {}
     return field
+
+
+def _restored(heights, spacing, origin, unit, height_unit, crs, marks, lines, name, report, original):
+    """A Field from what Field.__reduce__ kept."""
+    scan = _fettle.Scan(heights, spacing, origin, unit, height_unit, crs)
+    if marks is not None:
+        scan = scan.with_marks(marks)
+    if lines:
+        scan = scan.with_lines(lines)
+    return field_of(scan.with_original(scan if original is None else original._scan), name, report)
 
 
 def _pair(value, what):
@@ -315,6 +325,16 @@ class Field:
 
     def __deepcopy__(self, memo):
         return self
+
+    # A field goes to another process, or into a file of pickle, as its arrays; its original as another field.
+    def __reduce__(self):
+        original = self._scan.original()
+        state = (
+            self._scan.heights(), self.spacing, self.origin, self.unit, self.height_unit, self.crs or "",
+            self.marks if self._scan.has_marks() else None, self._scan.lines(), self.name, self.report,
+            None if original.hash() == self._scan.hash() else field_of(original, self.name),
+        )
+        return _restored, state
 
     # What is done with it: commands.
 

@@ -1,6 +1,9 @@
 """Fields as arrays: what goes in comes out, and what cannot go in is refused with its reason."""
 
+import copy
+import multiprocessing
 import os
+import pickle
 import tempfile
 import unittest
 import warnings
@@ -8,6 +11,10 @@ import warnings
 import numpy as np
 
 import fettle
+
+
+def hash_of(field):
+    return field.hash
 
 
 def wave(rows=70, columns=131):
@@ -253,6 +260,33 @@ class Level(unittest.TestCase):
         self.assertEqual(levelled.original.hash, levelled.hash)
         limited = levelled.filter("median", max_change="10um")
         self.assertLessEqual(levelled.compare(limited)["max_abs"], 0.0100001)
+
+
+class ElsewhereAndBack(unittest.TestCase):
+    def test_a_field_goes_through_pickle_as_it_is(self):
+        field = fettle.synth(size=(96, 64), seed=7).mark(edges=True, lines_out=True).filter("median")
+        field.name = "part"
+        for again in (pickle.loads(pickle.dumps(field)), copy.deepcopy(field), copy.copy(field)):
+            self.assertEqual(again.hash, field.hash)
+            self.assertEqual(again.original.hash, field.original.hash)
+            self.assertNotEqual(again.original.hash, again.hash)
+            np.testing.assert_array_equal(again.marks, field.marks)
+            self.assertGreater(len(field.lines), 0)
+            self.assertEqual(len(again.lines), len(field.lines))
+            for name in ("spacing", "origin", "unit", "height_unit", "crs", "name", "report"):
+                self.assertEqual(getattr(again, name), getattr(field, name))
+            ways = [each.filter("box", window=9, max_change="10um").hash for each in (field, again)]
+            self.assertEqual(ways[0], ways[1])
+
+    def test_another_process_gets_the_field(self):
+        field = fettle.Field(wave(), spacing=0.5, unit="um")
+        with multiprocessing.get_context("spawn").Pool(1) as pool:
+            self.assertEqual(pool.map(hash_of, [field, field.inverted()]), [field.hash, field.inverted().hash])
+
+    def test_standard_input_and_output_are_those_of_the_program(self):
+        for call in (lambda: fettle.read("-"), lambda: fettle.Field(wave()).write("-")):
+            with self.assertRaisesRegex(fettle.InputError, "of the program fettle"):
+                call()
 
 
 class Suggested(unittest.TestCase):
