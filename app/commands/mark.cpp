@@ -220,8 +220,9 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
   if (options.as_lines && (!options.edges || options.lines_out.empty()))
     return engine::inputError("edges become lines where both are named", "--as-lines",
                               "give --edges and --lines-out as well");
-  if (!options.edges && !options.invert && options.strokes.empty())
-    return engine::inputError("it is not stated what to mark", "mark", "give --edges, --strokes or --invert");
+  if (!options.edges && !options.invert && options.strokes.empty() && options.add.empty())
+    return engine::inputError("it is not stated what to mark", "mark",
+                              "give --edges, --strokes, --invert, or --add to write marks in another format");
   if (auto status = checkOutputs({{options.out, OutputKind::kMarks, options.to},
                                   {options.lines_out, OutputKind::kLines, kLinesStream}},
                                  {options.in, options.add, options.strokes}, Replacing::kNoWork, job);
@@ -311,7 +312,7 @@ void addMark(Command root, Chosen& chosen) {
        .unit = "samples"},
       {.name = "--add",
        .to = &options->add,
-       .text = "Picture of marks to begin with",
+       .text = "Picture of marks to begin with; alone it is written as MARKS, as a GeoTIFF with the place of SCAN",
        .kind = ValueKind::kMarks},
       {.name = "--invert", .to = &options->invert, .text = "Afterwards, invert the marks"},
   });
