@@ -1,14 +1,18 @@
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
+#include "app/commands/finished_scans.h"
 #include "app/commands/recipe_file.h"
+#include "app/commands/resume_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/terminal.h"
@@ -17,6 +21,8 @@
 #include "engine/base/stopwatch.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
+#include "engine/filter/pass.h"
+#include "engine/resume/work_identity.h"
 
 namespace fettle::app {
 
@@ -26,6 +32,7 @@ struct ApplyArguments {
   std::string recipe;
   BatchOptions files;
   int threads = 0;
+  ResumeOptions resume;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
@@ -33,30 +40,54 @@ struct ApplyArguments {
 // One scan on its way through a recipe.
 struct Applied {
   engine::Version field;
-  const engine::Version& original;
-  std::string scan;  // as messages name it
-  int threads;
+  engine::Version original;
+  const BatchTask& task;
+  const engine::Imported& imported;
+  const ApplyArguments& options;
   Report steps = Report::array();
+
+  [[nodiscard]] std::size_t step() const { return steps.size() + 1; }
 };
+
+// The output that the kept work of a step is named after: a finished step is read back while a later one goes on.
+std::string keptOutOf(const std::string& out, std::size_t step) {
+  return fmt::format("{}.step{}", out, step);
+}
+
+// For each filter of the recipe and each output, where its work is kept.
+std::vector<BatchTask> keptTasks(const Recipe& recipe, const std::vector<BatchTask>& tasks) {
+  std::vector<BatchTask> all;
+  for (const BatchTask& task : tasks)
+    for (std::size_t k = 0; k < recipe.steps.size(); ++k)
+      if (std::holds_alternative<RecipeFilter>(recipe.steps[k]))
+        all.push_back({task.in, isStream(task.out) ? task.out : keptOutOf(task.out, k + 1), task.to});
+  return all;
+}
 
 engine::Status take(const RecipeFilter& step, Applied& at, engine::JobControl& job) {
   engine::FilterSpec spec = step.spec;
-  spec.threads = at.threads;
+  spec.threads = at.options.threads;
   if (step.range_sigma) spec.range_sigma = step.range_sigma->in(at.field.grid());
   if (step.max_change) spec.max_change = step.max_change->in(at.field.grid());
   if (spec.scope == engine::FilterScope::kOnlyMarks && at.field.reader().root().marked_children == 0)
-    warn(fmt::format("{}: step {} filters marked samples only, and none is marked", at.scan,
-                     at.steps.size() + 1));
+    warn(fmt::format("{}: step {} filters marked samples only, and none is marked", shownInput(at.task.in),
+                     at.step()));
   const auto ready = engine::withMeasuredRange(spec, at.field, job);
   if (!ready) return tl::unexpected(ready.error());
-  auto filtered = engine::applyFilter(at.field, at.original, *ready, job);
-  if (!filtered) return tl::unexpected(filtered.error());
+  const std::string out = keptOutOf(at.task.out, at.step());
+  auto kept = openKeptWork(at.options.resume, out, at.field, at.original, *ready, "");
+  if (!kept) return tl::unexpected(kept.error());
+  engine::FilterTuning tuning;
+  tuning.work = kept->get();
+  auto filtered = engine::applyFilter(at.field, at.original, *ready, tuning, job);
+  if (!filtered) return tl::unexpected(continued(filtered.error(), out, *std::move(kept)));
   at.field = std::move(filtered->field);
   Report done{{"do", "filter"},
               {"filter", engine::filterOf(spec.kind).word},
               {"changed", filtered->report.changed},
               {"rms_change", filtered->report.rms_change}};
   if (engine::hasRange(spec.kind)) done["range_sigma"] = ready->range_sigma;
+  addKept(done, kept->get(), spec.passes);
   at.steps.push_back(std::move(done));
   return {};
 }
@@ -84,13 +115,40 @@ engine::Status take(const RecipeInvert&, Applied& at, engine::JobControl&) {
   return {};
 }
 
+engine::Status take(const RecipeLevel& step, Applied& at, engine::JobControl& job) {
+  const auto fit = formOf(at.field, at.task.in, at.imported, step.form, job);
+  if (!fit) return tl::unexpected(fit.error());
+  auto levelled = engine::withoutForm(at.field, fit->form, job);
+  if (!levelled) return tl::unexpected(levelled.error());
+  // Changes are limited from the scan without the same form.
+  const bool same_sign = at.original.reader().sign() == at.field.reader().sign();
+  auto original = engine::withoutForm(same_sign ? at.original : at.original.inverted(), fit->form, job);
+  if (!original) return tl::unexpected(original.error());
+  at.field = *std::move(levelled);
+  at.original = *std::move(original);
+  Report done{{"do", "level"}};
+  addForm(done, step.form, *fit, at.field.grid());
+  done["rms"] = fit->rms;
+  at.steps.push_back(std::move(done));
+  return {};
+}
+
 engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& recipe, const BatchTask& task,
                                   engine::JobControl& job) {
   auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const engine::Version original = imported->original ? *imported->original : imported->field;
+  const FinishedScans finished(options.resume.resume && options.files.many());
+  std::string identity;
+  if (options.resume.resume) {
+    engine::FilterSpec any;
+    any.max_change = 0.0;  // a step may refer to the original
+    identity = engine::identityOf(imported->field, original, any, "").text() + recipeText(recipe) +
+               writingIdentity(original.grid(), options.writing);
+  }
+  if (auto report = finished.earlier(task.out, identity)) return *std::move(report);
   const engine::Stopwatch watch;
-  Applied at{imported->field, original, shownInput(task.in), options.threads};
+  Applied at{imported->field, original, task, *imported, options};
   for (std::size_t k = 0; k < recipe.steps.size(); ++k)
     if (auto done = std::visit([&](const auto& step) { return take(step, at, job); }, recipe.steps[k]);
         !done) {
@@ -101,10 +159,16 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
     }
   const double seconds = watch.seconds();
   engine::ExportOptions writing = options.writing;
-  writing.original = original;
+  writing.original = at.original;
   if (auto status = saveField(at.field, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
-  return Report{{"steps", at.steps}, {"seconds", seconds}, {"hash", hashOf(at.field)}};
+  std::error_code ignored;
+  if (options.resume.resume)
+    for (std::size_t k = 1; k <= recipe.steps.size(); ++k)
+      std::filesystem::remove(keptWorkOf(keptOutOf(task.out, k)), ignored);
+  Report report{{"steps", at.steps}, {"seconds", seconds}, {"hash", hashOf(at.field)}};
+  finished.add(task.out, identity, report);
+  return report;
 }
 
 engine::Result<Report> apply(const ApplyArguments& options, engine::JobControl& job) {
@@ -116,10 +180,16 @@ engine::Result<Report> apply(const ApplyArguments& options, engine::JobControl& 
   const auto tasks = batchTasks(options.files, {isStream(options.recipe) ? "" : options.recipe}, job);
   if (!tasks) return tl::unexpected(tasks.error());
   if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
+  if (auto status = checkResume(options.resume, keptTasks(*recipe, *tasks)); !status)
+    return tl::unexpected(status.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) {
     return applyToOne(options, *recipe, task, j);
   };
-  if (options.files.many()) return runBatch(*tasks, job, one);
+  if (options.files.many()) {
+    auto report = runBatch(*tasks, job, one);
+    if (report) FinishedScans(options.resume.resume).end(*tasks, *report);
+    return report;
+  }
   const ProgressLine progress(job);
   return one(tasks->front(), job);
 }
@@ -143,10 +213,11 @@ void addApply(Command root, Chosen& chosen) {
                 .text = "Threads to use",
                 .range = Range{0.0, engine::FilterSpec::kMaxThreads},
                 .otherwise = "0, one per core"}});
+  addResumeOptions(command, options->resume);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
   command.notes(
-      "docs/formats.md describes the keys of a recipe. A filter without range_sigma takes that of each "
+      "With --resume each filter of the recipe keeps its work in a file of its own, OUT.stepN.resume. docs/formats.md describes the keys of a recipe. A filter without range_sigma takes that of each "
       "scan's own "
       "noise.");
   command.examples({{"fettle apply clean.toml scan.tif clean.tif", "One scan"},

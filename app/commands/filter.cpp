@@ -13,6 +13,7 @@
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/compute_option.h"
+#include "app/commands/finished_scans.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/place_report.h"
 #include "app/commands/resume_option.h"
@@ -107,6 +108,12 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   const auto ready = engine::withMeasuredRange(spec, field, job);
   if (!ready) return tl::unexpected(ready.error());
   spec = *ready;
+  const FinishedScans finished(options.resume.resume && options.files.many() && !options.estimate);
+  const std::string identity = options.resume.resume
+                                   ? engine::identityOf(field, *original, spec, compute.device()).text() +
+                                         writingIdentity(field.grid(), options.writing)
+                                   : std::string();
+  if (auto report = finished.earlier(task.out, identity)) return *std::move(report);
   engine::ExportOptions writing = options.writing;
   writing.original = *original;
   const PlannedWork planned{
@@ -177,6 +184,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
     report["disk_bytes"] = unknown ? 0 : bytes;
     report["estimate"] = reportOf(**estimate);
   }
+  finished.add(task.out, identity, report);
   return report;
 }
 
@@ -403,7 +411,11 @@ engine::Result<Report> filter(const FilterArguments& options, engine::JobControl
   const auto one = [&](const BatchTask& task, engine::JobControl& j) {
     return filterOne(options, *spec, *compute, task, j);
   };
-  if (options.files.many()) return runBatch(*tasks, job, one);
+  if (options.files.many()) {
+    auto report = runBatch(*tasks, job, one);
+    if (report && !options.estimate) FinishedScans(options.resume.resume).end(*tasks, *report);
+    return report;
+  }
   const ProgressLine progress(job);
   return one(tasks->front(), job);
 }

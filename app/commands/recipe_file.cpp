@@ -31,6 +31,7 @@ constexpr const char* kFilterWord = "filter";
 constexpr const char* kEdgesWord = "mark_edges";
 constexpr const char* kLinesWord = "locate_edges";
 constexpr const char* kInvertWord = "invert";
+constexpr const char* kLevelWord = "level";
 constexpr const char* kRecipeRemedy = "docs/formats.md describes every key";
 
 // Reads one table of a recipe; the first problem is kept, and what follows it is not read.
@@ -41,7 +42,7 @@ class StepReader {
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
   [[nodiscard]] RecipeStep read() {
-    const std::string what = word("do", {kFilterWord, kEdgesWord, kLinesWord, kInvertWord}, "");
+    const std::string what = word("do", {kFilterWord, kEdgesWord, kLinesWord, kInvertWord, kLevelWord}, "");
     if (what == kFilterWord) {
       onlyKeys(what, {"do", "filter", "window", "sigma", "passes", "marks", "range_sigma", "max_change"});
       return filter();
@@ -49,6 +50,10 @@ class StepReader {
     if (what == kEdgesWord || what == kLinesWord) {
       onlyKeys(what, {"do", "scale", "sensitivity", "thickness"});
       return edges(what == kLinesWord ? EdgesBecome::kLines : EdgesBecome::kMarks);
+    }
+    if (what == kLevelWord) {
+      onlyKeys(what, {"do", "form", "robust", "region"});
+      return level();
     }
     onlyKeys(what, {"do"});
     return RecipeInvert{};
@@ -159,6 +164,23 @@ class StepReader {
     return step;
   }
 
+  RecipeLevel level() {
+    RecipeLevel step;
+    std::vector<std::string> forms;
+    for (const Word& form : formWords())
+      if (form.word != "none") forms.push_back(form.word);
+    step.form.form = word("form", forms, step.form.form);
+    step.form.region = word("region", {"all", "marked", "unmarked"}, step.form.region);
+    if (const toml::node* node = table_.get("robust")) {
+      const std::optional<bool> robust = node->value_exact<bool>();
+      if (!robust)
+        complain(*node, "robust is neither true nor false");
+      else
+        step.form.robust = *robust;
+    }
+    return step;
+  }
+
   const toml::table& table_;
   std::string problem_;
 };
@@ -190,6 +212,11 @@ std::string textOf(const RecipeEdges& step) {
   return fmt::format("do = \"{}\"\nscale = {}\nsensitivity = {}\nthickness = {}\n",
                      step.become == EdgesBecome::kLines ? kLinesWord : kEdgesWord, step.scale,
                      step.choice.sensitivity, step.choice.thickness);
+}
+
+std::string textOf(const RecipeLevel& step) {
+  return fmt::format("do = \"{}\"\nform = \"{}\"\nrobust = {}\nregion = \"{}\"\n", kLevelWord, step.form.form,
+                     step.form.robust, step.form.region);
 }
 
 std::string textOf(const RecipeInvert&) {

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/commands/form_option.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/grid.h"
@@ -48,7 +49,12 @@ struct RecipeEdges {
 /// The field is turned upside down.
 struct RecipeInvert {};
 
-using RecipeStep = std::variant<RecipeFilter, RecipeEdges, RecipeInvert>;
+/// A form is taken out, as `fettle level` does; of its arguments not `marks`.
+struct RecipeLevel {
+  FormArguments form;
+};
+
+using RecipeStep = std::variant<RecipeFilter, RecipeEdges, RecipeInvert, RecipeLevel>;
 
 struct Recipe {
   std::vector<RecipeStep> steps;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/terminal.h"
+#include "app/work/memory_places.h"
 #include "app/work/streams.h"
 
 namespace fettle::app {
@@ -18,7 +19,8 @@ void addResumeOptions(Command command, ResumeOptions& options) {
         .to = &options.resume,
         .text = "Keep finished work in OUT.resume while filtering, and continue with what an earlier "
                 "run that was "
-                "cut off left there; removed when OUT is written"},
+                "cut off left there; removed when OUT is written. With --out-dir scans that are finished are not "
+                "done again"},
        {.name = "--resume-every",
         .to = &options.every_seconds,
         .text = "With --resume: time between two times that finished work is kept; 0: each part at once",
@@ -39,6 +41,9 @@ engine::Status checkResume(const ResumeOptions& options, const std::vector<Batch
   for (const BatchTask& task : tasks) {
     if (options.resume && isStream(task.out))
       return engine::inputError("work cannot be kept next to standard output", "--resume", "name a file");
+    if (options.resume && memoryPlace(task.out) != nullptr)
+      return engine::inputError("work cannot be kept next to a result in memory", "--resume",
+                                "call the program fettle with files");
     std::error_code error;
     if (!options.resume && !isStream(task.out) && std::filesystem::exists(keptWorkOf(task.out), error))
       warn(fmt::format("{}: work of an earlier run is kept here and not used, give --resume to continue it",

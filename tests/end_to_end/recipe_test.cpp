@@ -78,6 +78,26 @@ TEST(Recipes, SuggestedLinesHaveTheBitsOfTheCommandsOneByOne) {
   expectRefused(fettle({"mark", scan, marks, "--edges", "--as-lines"}), "give --edges and --lines-out");
 }
 
+TEST(Recipes, ALevelIsThatOfTheCommandAndChangesAreLimitedFromThere) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), recipe = folder.file("clean.toml");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "160x128", "--seed", "3"}).status, 0);
+  std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"level\"\nform = \"poly2\"\nrobust = true\n"
+                           "[[step]]\ndo = \"filter\"\nfilter = \"box\"\nwindow = 5\nmax_change = \"15um\"\n";
+  const auto report = fettleJson({"apply", recipe, scan, folder.file("o.tif")});
+  const auto level =
+      fettleJson({"level", scan, folder.file("l.tif"), "--form", "poly2", "--robust"});
+  for (const char* key : {"form", "robust", "region", "tilt_x", "tilt_y", "rms"})
+    EXPECT_EQ(report["steps"][0][key], level[key]) << key;
+  const auto filtered = fettleJson({"filter", folder.file("l.tif"), folder.file("f.tif"), "--filter", "box",
+                                    "--window", "5", "--max-change", "15um"});
+  EXPECT_EQ(report["hash"], filtered["hash"]);
+  std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"level\"\nform = \"sphere\"\n";
+  expectRefused(fettle({"apply", recipe, scan, folder.file("o.tif")}), "form is not one of mean, plane");
+  std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"level\"\nrobust = 1\n";
+  expectRefused(fettle({"apply", recipe, scan, folder.file("o.tif")}), "neither true nor false");
+}
+
 // The next state of a session, with the entries of the journal that made it.
 void addStep(engine::Session& session, engine::StepKind kind, const engine::Version& after,
              std::initializer_list<const char*> actions) {

@@ -181,6 +181,79 @@ TEST_F(Resume, AFieldInAStoreAndABatchContinueToo) {
   EXPECT_FALSE(fs::exists(batch_work));
 }
 
+// A batch that is cut in its second scan: the first one is not done again, and its bytes and report are those of before.
+TEST_F(Resume, ABatchDoesOnlyWhatIsMissingAndSaysSo) {
+  const std::string other = folder.file("t.tif"), bad = folder.file("bad.tif"), to = folder.file("cleaned");
+  ASSERT_EQ(fettle({"synth", other, "--size", "700x600", "--seed", "5"}).status, 0);
+  const std::vector<std::string> batch{"filter", in,         other,      "--out-dir", to, "--filter",
+                                       "tgv",    "--resume", "--resume-every", "0"};
+  ASSERT_NE(fettle(batch, endedWith(to + "/t.tif.resume", 300'000, SIGKILL)).status, 0);
+  ASSERT_TRUE(fs::exists(to + "/s.tif.finished"));
+  const auto written = fs::last_write_time(to + "/s.tif");
+  std::vector<std::string> json = batch;
+  json.emplace_back("--json");
+  // A scan that cannot be read keeps the notes of the others.
+  std::ofstream(bad) << "no scan";
+  std::vector<std::string> with_bad = batch;
+  with_bad.insert(with_bad.begin() + 3, bad);
+  const Outcome failed = fettle(with_bad);
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_NE(failed.err.find("s.tif: finished by an earlier run, kept"), std::string::npos) << failed.err;
+  EXPECT_NE(failed.err.find("only the scans that failed"), std::string::npos) << failed.err;
+  EXPECT_NE(failed.out.find("kept, finished before"), std::string::npos) << failed.out;
+  EXPECT_EQ(fs::last_write_time(to + "/s.tif"), written);
+  // What was changed since is not taken for finished.
+  std::ofstream(to + "/t.tif", std::ios::app) << "more";
+  const auto report = fettleJson(json);
+  EXPECT_TRUE(report["files"][0]["finished_before"].get<bool>());
+  EXPECT_FALSE(report["files"][1].contains("finished_before"));
+  for (const char* name : {"s.tif", "t.tif"}) {
+    const auto once =
+        fettleJson({"filter", folder.file(name), folder.file("once.tif"), "--filter", "tgv"});
+    EXPECT_EQ(bytesOf(to + "/" + name), bytesOf(folder.file("once.tif"))) << name;
+    EXPECT_EQ(report["files"][name[0] == 's' ? 0 : 1]["hash"], once["hash"]);
+    EXPECT_FALSE(fs::exists(to + "/" + name + ".finished"));
+    EXPECT_FALSE(fs::exists(to + "/" + name + ".resume"));
+  }
+}
+
+TEST_F(Resume, OtherNumbersAreWorkedOutThoughAnOutputIsFinished) {
+  const std::string to = folder.file("cleaned"), bad = folder.file("bad.tif");
+  std::ofstream(bad) << "no scan";
+  const auto with = [&](const char* window) {
+    return std::vector<std::string>{"filter",   in,       bad,        "--out-dir", to, "--filter",
+                                    "median",   "--resume", "--window", window};
+  };
+  EXPECT_EQ(fettle(with("3")).status, 1);
+  EXPECT_NE(fettle(with("3")).out.find("finished before"), std::string::npos);
+  EXPECT_EQ(fettle(with("5")).out.find("finished before"), std::string::npos);
+  ASSERT_EQ(fettle({"filter", in, folder.file("once.tif"), "--filter", "median", "--window", "5"}).status, 0);
+  EXPECT_EQ(bytesOf(to + "/s.tif"), bytesOf(folder.file("once.tif")));
+}
+
+// A recipe that is cut in its last filter reads the finished filter back and goes on in the one that was cut.
+TEST_F(Resume, ARecipeGoesOnInTheStepThatWasCut) {
+  const std::string recipe = folder.file("clean.toml"), work2 = out + ".step3.resume";
+  std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"filter\"\nfilter = \"planes\"\n"
+                           "[[step]]\ndo = \"mark_edges\"\n"
+                           "[[step]]\ndo = \"filter\"\nfilter = \"tgv\"\nmax_change = \"40um\"\n";
+  const std::vector<std::string> apply{"apply", recipe, in, out, "--resume", "--resume-every", "0"};
+  const Outcome cut = fettle(apply, endedWith(work2, 600'000, SIGINT));
+  expectFailed(cut, "the same command continues with what is kept in " + work2);
+  const Outcome ignored = fettle({"apply", recipe, in, folder.file("else.tif")});
+  EXPECT_EQ(ignored.status, 0);
+  std::vector<std::string> again = apply;
+  again.emplace_back("--json");
+  const Outcome done = fettle(again);
+  ASSERT_EQ(done.status, 0) << done.err;
+  const auto report = nlohmann::json::parse(done.out);
+  EXPECT_EQ(report["steps"][0]["resumed_share"], 1.0);
+  EXPECT_GT(report["steps"][2]["resumed_share"].get<double>(), 0.1);
+  EXPECT_EQ(bytesOf(out), bytesOf(folder.file("else.tif")));
+  EXPECT_EQ(filesIn(folder), 4) << "scan, recipe and two results";
+  expectRefused(fettle({"apply", recipe, in, "-", "--to", "tif", "--resume"}), "next to standard output");
+}
+
 TEST_F(Resume, WhereNothingCanBeKeptItIsRefusedAtOnce) {
   expectRefused(fettle({"filter", in, "-", "--to", "xyz", "--filter", "box", "--resume"}),
                 "next to standard output");
