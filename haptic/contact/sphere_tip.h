@@ -72,7 +72,9 @@ enum class SphereSearch : std::uint8_t {
 /// Optimization", section 18.1 (Newton's step under constraints).
 ///
 /// Errors. The ball reaches into the material by at most toleranceMm(): 1e-6 of the smaller of radius and
-/// spacing, plus roundings of the heights. At rest no step longer than 1e-4 of that size makes it nearer.
+/// spacing, plus roundings of the heights; beside a needle of slope 1e6, whose valley no piece of a cell resolves, by up to
+/// its radius. Where it reached in and is pushed out, a tick may end farther from the endpoint than the one before, by the
+/// tolerance times sqrt(1 + slope^2). At rest no step longer than 1e-4 of that size makes it nearer.
 /// Continuity: steps are between a quarter of a cell and a cell, and both ends are free of
 /// the material. A ball cannot step over anything that would lift its centre by more than s^2 / (8 r) for a
 /// step s: 1/16 of a cell for r = 2 cells. A hand that moves more steps in one tick than a tick may take or search is
