@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <random>
@@ -141,6 +143,56 @@ TEST(BallSearch, ATickOnNeedlesDoesNotSearchMoreThanItsBoundAndTheStepThatReache
   EXPECT_LE(bounded, kBallSearches + kOfOneStep + kOfPlacing);
   EXPECT_LE(mostOf(32), 32 + kOfOneStep + kOfPlacing);
   EXPECT_GT(unbounded, kBallSearches + kOfOneStep + kOfPlacing);
+}
+
+// Radii from 2 to 16 cells on needles, moved and at rest: searches that a tick made, and its time, the least of three runs,
+// so that other work does not count. A tick at rest does not place a ball and takes no step that is not bounded.
+TEST(BallSearch, ATickAtRestOnNeedlesIsBoundedAtEveryRadius) {
+  constexpr int kOfOneStep = 6 + 12 + 2;
+  constexpr double kSpacing = 0.05;
+  constexpr std::size_t kRest = 100;  // ticks
+  const engine::Version field = tests::fieldOf(
+      128, 128, [](int c, int r) { return c % 7 == 3 && r % 5 == 2 ? 1e6 : 0.0; }, kSpacing, kSpacing);
+  trials::HandMotion motion;
+  motion.ticks = 1000;
+  motion.speed_mm_s = 20.0;
+  const std::vector<StrokeSample> path = trials::handStroke(field, motion);
+  struct Worst {
+    int searches = 0;
+    double us = 0.0;
+  };
+  const auto worstOf = [&](double radius_mm, int searches, bool rests) {
+    std::vector<double> least_us(path.size(), HUGE_VAL);
+    Worst worst;
+    for (int run = 0; run < 3; ++run) {
+      Surface surface(field.reader());
+      SphereTracker ball(radius_mm, field.grid(), kSphereSteps, SphereSearch::kBounded, searches);
+      TickCounters counters;
+      for (std::size_t i = 0; i < path.size(); ++i) {
+        const glm::dvec3& at = path[rests ? i / kRest * kRest : i].tip_mm;
+        const auto begin = std::chrono::steady_clock::now();
+        (void)ball.update(surface, at + glm::dvec3(0.0, 0.0, radius_mm), counters);
+        const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - begin;
+        if (rests && i % kRest == 0) continue;  // moved there
+        worst.searches = std::max(worst.searches, ball.searches());
+        least_us[i] = std::min(least_us[i], took.count());
+      }
+    }
+    for (const double us : least_us)
+      if (us < HUGE_VAL) worst.us = std::max(worst.us, us);
+    return worst;
+  };
+  for (const double cells : {2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0}) {
+    const Worst rest = worstOf(cells * kSpacing, kBallSearches, true);
+    const Worst moved = worstOf(cells * kSpacing, kBallSearches, false);
+    const Worst fewer = worstOf(cells * kSpacing, kBallSearches / 2, false);
+    std::printf("ball of %2.0f cells on needles, worst tick: at rest %.0f us, %d searches; moved %.0f us, %d; of %d at most "
+                "%.0f us, %d\n",
+                cells, rest.us, rest.searches, moved.us, moved.searches, kBallSearches / 2, fewer.us, fewer.searches);
+    EXPECT_GT(rest.searches, 0) << cells;
+    EXPECT_LE(rest.searches, kBallSearches + kOfOneStep) << cells;
+    EXPECT_LE(fewer.searches, moved.searches) << cells;
+  }
 }
 
 // Recordings made before contact revision 3: the hash is that of the ticks at commit 0da33cf, on needles, where 320 searches
