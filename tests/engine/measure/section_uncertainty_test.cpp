@@ -1,0 +1,181 @@
+// What the standard errors of a section are worth: 1,000 simulated scans of a step of 50 um, a radius of 2 mm and an
+// angle of 30 degrees. The table is printed: build/release/tests/engine/measure/measure_test
+// --gtest_filter='SectionUncertainty*'
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include "engine/field/builder.h"
+#include "engine/inspect/noise.h"
+#include "engine/measure/section.h"
+#include "engine/measure/section_figures.h"
+
+namespace fettle::engine {
+namespace {
+
+constexpr double kSpacing = 0.01, kNoise = 0.002;  // mm
+constexpr int kColumns = 201, kRows = 41, kSeeds = 1000;
+
+// A part whose shape runs across a direction: z(u), u = x cos + y sin.
+struct Part {
+  std::string name;
+  double truth = 0.0;
+  std::function<double(double u)> height;
+  // The figure of a section, in the unit of the truth.
+  std::function<Estimate(const Section&, double noise)> measured;
+  // Derivatives of the model of the samples by its parameters, the wanted one first; none for a sample not used.
+  std::function<std::vector<double>(double u)> derivatives;
+};
+
+struct Covered {
+  int once = 0, twice = 0, thrice = 0;
+  double rms_error = 0.0, stated = 0.0, bound = 0.0;
+};
+
+// The least standard error of the wanted parameter that the samples which the section uses allow (H. Cramer 1946,
+// C. R. Rao 1945). A sample is used where a field that is 1 there alone shows in the section.
+double boundOf(const Part& part, const Grid& grid, const std::vector<glm::dvec2>& line,
+               const SectionOptions& options, glm::dvec2 direction) {
+  const std::vector<float> none(static_cast<std::size_t>(grid.samples()), 0.0F);
+  std::vector<std::vector<double>> rows;
+  const double lane = 0.5 * options.width_mm + 1.5 * kSpacing;
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      const glm::dvec2 at(c * kSpacing, r * kSpacing);
+      const glm::dvec2 from = at - line.front();
+      if (std::abs(from.x * direction.y - from.y * direction.x) > lane) continue;
+      std::vector<float> one = none;
+      one[static_cast<std::size_t>(r * grid.width + c)] = 1.0F;
+      JobControl job;
+      const auto section = sectionAlong(makeField(grid, one), line, options, job);
+      bool used = false;
+      for (std::size_t i = 0; section && i < section->size(); ++i)
+        used = used || (section->height[i] > 0.0 && !part.derivatives(section->along(i)).empty());
+      const std::vector<double> row = part.derivatives(from.x * direction.x + from.y * direction.y);
+      if (used && !row.empty()) rows.push_back(row);
+    }
+  const auto p = static_cast<Eigen::Index>(rows.front().size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(p, p);
+  for (const std::vector<double>& row : rows) {
+    const Eigen::Map<const Eigen::VectorXd> v(row.data(), p);
+    information += v * v.transpose();
+  }
+  return kNoise * std::sqrt(information.inverse()(0, 0));
+}
+
+Covered coverage(const Part& part, double degrees, double width_mm) {
+  Grid grid;
+  grid.width = kColumns;
+  grid.height = kRows;
+  grid.spacing_x = grid.spacing_y = kSpacing;
+  const double angle = degrees * 3.14159265358979323846 / 180.0;
+  const glm::dvec2 direction(std::cos(angle), std::sin(angle)), from(0.1, 0.2 - 0.9 * std::sin(angle));
+  const std::vector<glm::dvec2> line{from, from + 1.8 * direction};
+  const SectionOptions options{.width_mm = width_mm};
+  Covered covered;
+  double squares = 0.0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed) + 1);
+    std::normal_distribution<double> normal(0.0, kNoise);
+    std::vector<float> heights;
+    heights.reserve(static_cast<std::size_t>(grid.samples()));
+    for (int r = 0; r < kRows; ++r)
+      for (int c = 0; c < kColumns; ++c) {
+        const glm::dvec2 at = glm::dvec2(c * kSpacing, r * kSpacing) - from;
+        heights.push_back(
+            static_cast<float>(part.height(at.x * direction.x + at.y * direction.y) + normal(random)));
+      }
+    const Version field = makeField(grid, heights);
+    JobControl job;
+    const auto noise = estimateNoise(field, job);
+    const auto section = sectionAlong(field, line, options, job);
+    if (!noise || !section) {
+      ADD_FAILURE() << "seed " << seed;
+      continue;
+    }
+    const Estimate figure = part.measured(*section, noise->sigma);
+    const double error = std::abs(figure.value - part.truth);
+    covered.once += error <= figure.error ? 1 : 0;
+    covered.twice += error <= 2.0 * figure.error ? 1 : 0;
+    covered.thrice += error <= 3.0 * figure.error ? 1 : 0;
+    squares += error * error;
+    covered.stated += figure.error / kSeeds;
+  }
+  covered.rms_error = std::sqrt(squares / kSeeds);
+  covered.bound = boundOf(part, grid, line, options, direction);
+  return covered;
+}
+
+Part step() {
+  // Sections are 1.8 mm long: stretches of 0.6 mm on both sides, with the third next to the edge left out.
+  const auto outside = [](double u) { return u > -1e-9 && u < 1.8 + 1e-9 && std::abs(u - 0.9) > 0.3 - 1e-9; };
+  return {"step of 50 um", 0.05, [](double u) { return u > 0.9 ? 0.05 : 0.0; },
+          [](const Section& s, double noise) {
+            const auto figures = stepFigures(s, 0.9, {0.0, 1.8}, noise);
+            return figures ? figures->step_mm : Estimate{};
+          },
+          [outside](double u) {
+            return outside(u) ? std::vector<double>{u > 0.9 ? 1.0 : 0.0, 1.0, u - 0.9} : std::vector<double>{};
+          }};
+}
+
+Part radius() {
+  constexpr double kRadius = 2.0;
+  return {"radius of 2 mm", kRadius,
+          [](double u) { return std::sqrt(kRadius * kRadius - (u - 0.9) * (u - 0.9)); },
+          [](const Section& s, double noise) {
+            const auto figures = arcFigures(s, {0.0, 1.8}, noise);
+            return figures ? figures->radius_mm : Estimate{};
+          },
+          [](double u) {
+            if (u < -1e-9 || u > 1.8 + 1e-9) return std::vector<double>{};
+            const double height = std::sqrt(kRadius * kRadius - (u - 0.9) * (u - 0.9));
+            return std::vector<double>{kRadius / height, (u - 0.9) / height, 1.0};
+          }};
+}
+
+Part angle() {
+  // Two faces, each inclined by 15 degrees.
+  const double slope = std::tan(15.0 * 3.14159265358979323846 / 180.0);
+  return {"angle of 30 degrees", -30.0, [slope](double u) { return -slope * std::abs(u - 0.9); },
+          [](const Section& s, double noise) {
+            const auto figures = angleFigures(s, {0.0, 0.85}, {0.95, 1.8}, noise);
+            return figures ? figures->turn_deg : Estimate{};
+          },
+          [slope](double u) {
+            if (u < -1e-9 || u > 1.8 + 1e-9 || std::abs(u - 0.9) < 0.05 - 1e-9) return std::vector<double>{};
+            // Slopes as (a - t) / 2 and (a + t) / 2, t in degrees of turn.
+            const double by = (1.0 + slope * slope) * 3.14159265358979323846 / 180.0;
+            const double x = u - 0.9, left = u < 0.9 ? 1.0 : 0.0;
+            return std::vector<double>{(left > 0.0 ? -0.5 : 0.5) * by * x, x, left, 1.0 - left};
+          }};
+}
+
+TEST(SectionUncertainty, CoversAtOneTwoAndThreeTimesAndIsNearTheBound) {
+  std::printf("%-20s %8s %7s %6s %6s %6s %11s %11s %11s %7s\n", "", "degrees", "width", "1", "2", "3",
+              "error", "stated", "bound", "ratio");
+  for (const Part& part : {step(), radius(), angle()})
+    for (const auto& [degrees, width] : {std::pair{0.0, 0.0}, {0.0, 0.1}, {5.0, 0.0}, {5.0, 0.1}}) {
+      const Covered c = coverage(part, degrees, width);
+      std::printf("%-20s %8.0f %7.2f %6d %6d %6d %11.3e %11.3e %11.3e %7.3f\n", part.name.c_str(), degrees,
+                  width, c.once, c.twice, c.thrice, c.rms_error, c.stated, c.bound, c.rms_error / c.bound);
+      // Three standard deviations of a share of 1,000, as the bounds of the shares of Gaussian errors.
+      EXPECT_NEAR(c.once, 683, 45) << part.name << degrees << width;
+      EXPECT_NEAR(c.twice, 954, 20) << part.name << degrees << width;
+      EXPECT_GE(c.thrice, 991) << part.name << degrees << width;
+      EXPECT_LE(c.rms_error, 1.5 * c.bound) << part.name << degrees << width;
+      EXPECT_GE(c.rms_error, 0.93 * c.bound) << part.name << degrees << width;
+    }
+}
+
+}  // namespace
+}  // namespace fettle::engine
