@@ -8,6 +8,7 @@ void addScanCommands(Command root, Chosen& chosen) {
   addFilter(root, chosen);
   addLevel(root, chosen);
   addMeasure(root, chosen);
+  addSection(root, chosen);
   addMark(root, chosen);
   addLines(root, chosen);
   addReplay(root, chosen);

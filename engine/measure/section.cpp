@@ -111,9 +111,8 @@ struct Path {
 
   // Place and unit tangent at a length.
   std::pair<glm::dvec2, glm::dvec2> at(double length) const noexcept {
-    const auto next =
-        std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(until, length) - until.begin(), 1,
-                                   static_cast<std::ptrdiff_t>(points.size()) - 1);
+    const auto next = std::clamp<std::ptrdiff_t>(std::ranges::upper_bound(until, length) - until.begin(), 1,
+                                                 static_cast<std::ptrdiff_t>(points.size()) - 1);
     const auto i = static_cast<std::size_t>(next);
     const glm::dvec2 along = points[i] - points[i - 1];
     const double whole = until[i] - until[i - 1];
@@ -186,8 +185,9 @@ Result<Section> sectionAlong(const Version& field, std::span<const glm::dvec2> p
   const double steps = std::max(1.0, std::ceil(length / wanted - 1e-6));
   const double lanes = std::floor(options.width_mm / lane_mm + 1e-6) + 1.0;
   if (!std::isfinite(length) || !(steps < static_cast<double>(Section::kMostPlaces)))
-    return inputError(fmt::format("a section of {:.6g} mm has more than {} places", length, Section::kMostPlaces),
-                      "section", "give a shorter line");
+    return inputError(
+        fmt::format("a section of {:.6g} mm has more than {} places", length, Section::kMostPlaces),
+        "section", "give a shorter line");
   if (!(lanes <= SectionOptions::kMostLanes))
     return inputError(fmt::format("a width of {:.6g} mm is more than {} samples", options.width_mm,
                                   SectionOptions::kMostLanes),
@@ -196,9 +196,9 @@ Result<Section> sectionAlong(const Version& field, std::span<const glm::dvec2> p
   Section section;
   section.step_mm = length / steps;
   section.lanes = static_cast<int>(lanes);
-  section.band = static_cast<int>(
-      std::clamp<double>(std::ceil(std::numbers::sqrt2 * kReachOfPatch *
-                                            std::max(spacing.x, spacing.y) / section.step_mm), 1.0, kMostBand));
+  section.band = static_cast<int>(std::clamp<double>(
+      std::ceil(std::numbers::sqrt2 * kReachOfPatch * std::max(spacing.x, spacing.y) / section.step_mm), 1.0,
+      kMostBand));
   section.position.reserve(places);
   section.height.reserve(places);
   section.share.reserve(places);

@@ -23,7 +23,8 @@ enum class Interpolation : std::uint8_t {
 };
 
 struct SectionOptions {
-  double width_mm = 0.0;  ///< heights are means across this width, at most kMostLanes lines; 0: of the line alone
+  double width_mm =
+      0.0;  ///< heights are means across this width, at most kMostLanes lines; 0: of the line alone
   Region region = Region::kAll;
   Interpolation interpolation = Interpolation::kBilinear;
 

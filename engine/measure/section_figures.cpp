@@ -66,7 +66,8 @@ Solved solved(const Section& section, const LinearModel& model, double noise_mm)
   result.rms = std::sqrt(residual.squaredNorm() / static_cast<double>(n));
 
   // Rows of the inverse over all places, as sums of heights.
-  std::vector<std::vector<double>> sums(static_cast<std::size_t>(p), std::vector<double>(section.size(), 0.0));
+  std::vector<std::vector<double>> sums(static_cast<std::size_t>(p),
+                                        std::vector<double>(section.size(), 0.0));
   for (Eigen::Index j = 0; j < p; ++j)
     for (Eigen::Index i = 0; i < n; ++i)
       sums[static_cast<std::size_t>(j)][model.places[static_cast<std::size_t>(i)]] =
@@ -297,8 +298,7 @@ Result<AngleFigures> angleFigures(const Section& section, const Stretch& first, 
   figures.included_deg = {180.0 - std::abs(figures.turn_deg.value), error};
   figures.meet_along_mm = figures.meet_height_mm = kUnknown;
   if (a != b) {
-    figures.meet_along_mm =
-        (fit->x[0] - a * parts[0].middle - fit->x[2] + b * parts[1].middle) / (b - a);
+    figures.meet_along_mm = (fit->x[0] - a * parts[0].middle - fit->x[2] + b * parts[1].middle) / (b - a);
     figures.meet_height_mm = fit->x[0] + a * (figures.meet_along_mm - parts[0].middle);
   }
   return figures;
@@ -348,22 +348,28 @@ double edgeIn(const Section& section, const Stretch& within) noexcept {
 Stretch grooveIn(const Section& section, const Stretch& within) {
   const OffsetSearch search(section, placesIn(section, within));
   const std::size_t n = search.size();
-  if (n < 6) return {kUnknown, kUnknown};
+  // Two heights in its central third, two outside beyond a third on either side.
+  constexpr std::size_t kNarrowest = 6, kBeside = 5;
+  if (n < kNarrowest + 2 * kBeside) return {kUnknown, kUnknown};
   constexpr std::size_t kCoarse = 256;
   const std::size_t stride = std::max<std::size_t>(1, n / kCoarse);
-  std::pair<std::size_t, std::size_t> best{2, n - 2};
+  std::pair<std::size_t, std::size_t> best{n / 2 - kNarrowest / 2, n / 2 + kNarrowest / 2};
   const auto better = [&](std::size_t from, std::size_t to) {
+    // Beside both edges there is a surface, beyond the third of the width that does not count.
+    const std::size_t left_out = (to - from) / 3 + 3;
+    if (to - from < kNarrowest || from < left_out || n - to < left_out) return;
     if (search.gain(from, to) > search.gain(best.first, best.second)) best = {from, to};
   };
-  for (std::size_t from = 2; from + 4 <= n; from += stride)
-    for (std::size_t to = from + 2; to + 2 <= n; to += stride) better(from, to);
+  for (std::size_t from = kBeside; from + kNarrowest <= n; from += stride)
+    for (std::size_t to = from + kNarrowest; to + kBeside <= n; to += stride) better(from, to);
   // One end, then the other, each place around the coarse one.
   for (int round = 0; round < 4; ++round) {
     const auto [from, to] = best;
-    for (std::size_t i = std::max<std::size_t>(2, from - std::min(from, stride)); i <= from + stride && i + 2 <= to;
-         ++i)
+    for (std::size_t i = std::max<std::size_t>(2, from - std::min(from, stride));
+         i <= from + stride && i + 2 <= to; ++i)
       better(i, best.second);
-    for (std::size_t i = std::max(best.first + 2, to - std::min(to, stride)); i <= to + stride && i + 2 <= n; ++i)
+    for (std::size_t i = std::max(best.first + 2, to - std::min(to, stride)); i <= to + stride && i + 2 <= n;
+         ++i)
       better(best.first, i);
   }
   return {search.edgeAt(best.first), search.edgeAt(best.second)};
@@ -398,8 +404,7 @@ Result<CursorFigures> cursorFigures(const Section& section, double first_mm, dou
   figures.second_mm = height[1];
   figures.dx_mm = second_mm - first_mm;
   figures.dz_mm = {height[1] - height[0], noise_mm * std::sqrt(std::max(0.0, section.variance(weights)))};
-  figures.slope_deg =
-      figures.dx_mm == 0.0 ? kUnknown : inclinationDeg(figures.dz_mm.value / figures.dx_mm);
+  figures.slope_deg = figures.dx_mm == 0.0 ? kUnknown : inclinationDeg(figures.dz_mm.value / figures.dx_mm);
   figures.distance_mm = std::hypot(glm::length(place[1] - place[0]), figures.dz_mm.value);
   return figures;
 }
@@ -453,8 +458,8 @@ Result<ArcFigures> arcFigures(const Section& section, const Stretch& stretch, do
   if (square > cx * cx) {
     const double radius = std::sqrt(square), up = heights.mean() < cz ? 1.0 : -1.0;
     // The normal points from the place at x = 0 to the centre of a hollow circle, away from that of another.
-    starts.push_back({cz - up * std::sqrt(square - cx * cx), std::asin(std::clamp(-up * cx / radius, -1.0, 1.0)),
-                      up / radius});
+    starts.push_back({cz - up * std::sqrt(square - cx * cx),
+                      std::asin(std::clamp(-up * cx / radius, -1.0, 1.0)), up / radius});
   }
   Eigen::Vector3d at = starts.front();
   double cost = evaluate(at);
@@ -488,9 +493,9 @@ Result<ArcFigures> arcFigures(const Section& section, const Stretch& stretch, do
   const Solved fit = solved(section, {places, rows, -distance, gain}, noise_mm);
   const double error = errorOf(fit, 2), curvature = at[2];
   if (!(std::abs(curvature) > 3.0 * error) || !std::isfinite(1.0 / curvature))
-    return inputError(fmt::format("from {} the section shows no curvature that stands out from its noise",
-                                  shown(stretch)),
-                      "section", "give a longer stretch, or average across a width");
+    return inputError(
+        fmt::format("from {} the section shows no curvature that stands out from its noise", shown(stretch)),
+        "section", "give a longer stretch, or average across a width");
   ArcFigures figures;
   figures.radius_mm = {1.0 / std::abs(curvature), error / (curvature * curvature)};
   figures.hollow = curvature > 0.0;

@@ -33,12 +33,14 @@ struct LineFigures {
   int places = 0;
 };
 /// Errors (kInput): fewer than 3 heights.
-[[nodiscard]] Result<LineFigures> lineFigures(const Section& section, const Stretch& stretch, double noise_mm);
+[[nodiscard]] Result<LineFigures> lineFigures(const Section& section, const Stretch& stretch,
+                                              double noise_mm);
 
 struct AngleFigures {
   LineFigures first, second;
-  Estimate turn_deg;      ///< inclination of the second less that of the first: above 0 a concave edge
-  Estimate included_deg;  ///< the angle between the two lines on the side of the smaller turn, 180 for one line
+  Estimate turn_deg;  ///< inclination of the second less that of the first: above 0 a concave edge
+  Estimate
+      included_deg;  ///< the angle between the two lines on the side of the smaller turn, 180 for one line
   double meet_along_mm = 0.0, meet_height_mm = 0.0;  ///< where the lines meet; NaN for parallel ones
 };
 /// The angle between the lines fitted to two stretches, with what their heights have in common.
@@ -46,7 +48,8 @@ struct AngleFigures {
                                                 const Stretch& second, double noise_mm);
 
 struct StepFigures {
-  Estimate step_mm;  ///< of an edge: heights after it less those before. Of a groove: its depth, below 0 a ridge
+  Estimate
+      step_mm;  ///< of an edge: heights after it less those before. Of a groove: its depth, below 0 a ridge
   Estimate inclination_deg;    ///< of the common lines
   Stretch before, edge_after;  ///< the stretches that count; of a groove before and in it,
   Stretch behind;              ///< and behind it; empty of an edge
@@ -71,11 +74,11 @@ struct StepFigures {
 /// heights. Linear time.
 [[nodiscard]] double edgeIn(const Section& section, const Stretch& within) noexcept;
 /// The two places at which a common line with one offset between them fits best. Quadratic in 256 places at most, then
-/// exact around them. NaN with fewer than 6 heights.
+/// exact around them; beside both is a surface for grooveFigures(). NaN with fewer than 16 heights.
 [[nodiscard]] Stretch grooveIn(const Section& section, const Stretch& within);
 
 struct ArcFigures {
-  Estimate radius_mm;  ///< above 0
+  Estimate radius_mm;   ///< above 0
   bool hollow = false;  ///< the centre lies above the surface
   Estimate centre_along_mm, centre_height_mm;
   double rms_mm = 0.0;  ///< across the arc
@@ -88,10 +91,10 @@ struct ArcFigures {
 [[nodiscard]] Result<ArcFigures> arcFigures(const Section& section, const Stretch& stretch, double noise_mm);
 
 struct CursorFigures {
-  double dx_mm = 0.0;          ///< along the line
-  Estimate dz_mm;              ///< height at the second less that at the first
-  double slope_deg = 0.0;      ///< NaN without a distance
-  double distance_mm = 0.0;    ///< from point to point in space, straight
+  double dx_mm = 0.0;                      ///< along the line
+  Estimate dz_mm;                          ///< height at the second less that at the first
+  double slope_deg = 0.0;                  ///< NaN without a distance
+  double distance_mm = 0.0;                ///< from point to point in space, straight
   double first_mm = 0.0, second_mm = 0.0;  ///< heights
 };
 /// What lies between two lengths along the line; heights between places are linear. Errors (kInput): no height there.

@@ -51,6 +51,9 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"measure", scan, "--form", "poly2", "--at-height", "0,1um", "--at-ratio", "50"});
   run({"measure", scan, "--only", "hybrid"});
   run({"measure", scan, file("none.tif")}, 1);
+  run({"section",   scan,       "--start",    "1,1",   "--end",    "60,50", "--compare", out,
+       "--cursors", "1,9",      "--fit-line", "1,9",   "--step",   "auto",  "--groove",  "auto",
+       "--angle",   "1,6,8,14", "--arc",      "30,50", "--cutoff", "8",     "--probe",   "5,5"});
   run({"filter", scan, "--suggest", "--tolerance", "15um", "--places", "1"});
   run({"mark", scan, marks, "--edges", "--lines-out", lines});
   run({"lines", scan, lines});

@@ -8,9 +8,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include <fmt/format.h>
+
+#include "engine/io/files/atomic_file.h"
 
 namespace fettle::app {
 namespace {
@@ -93,6 +96,30 @@ engine::Result<std::string> drawnByGnuplot(const std::string& script) {
   if (begin == std::string::npos)
     return engine::failure("gnuplot draws nothing: " + said->substr(0, 200), "plots", "please report this");
   return said->substr(begin);
+}
+
+engine::Status drawnAsPng(const std::string& script, const std::string& path) {
+  auto file = engine::AtomicFile::create(path);
+  if (!file) return tl::unexpected(file.error());
+  const std::string head = kPlotHead;
+  const std::string rest = script.starts_with(head) ? script.substr(head.find('\n') + 1) : script;
+  const ScratchFile picture;
+  const ScratchFile commands;
+  if (picture.path().empty() || commands.path().empty() ||
+      !(std::ofstream(commands.path())
+        << "set terminal pngcairo size 860,480 font 'DejaVu Sans,10' background '#ffffff'\n"
+        << "set output " << quoted(picture.path()) << "\n"
+        << rest)
+           .flush())
+    return engine::failure("no file can be written for a plot", "the folder of temporary files",
+                           "free space there, or set TMPDIR to another folder");
+  if (auto said = gnuplot("'" + commands.path() + "'"); !said) return tl::unexpected(said.error());
+  std::ifstream drawn(picture.path(), std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(drawn), std::istreambuf_iterator<char>()};
+  if (!bytes.starts_with("\x89PNG"))
+    return engine::failure("gnuplot draws no PNG", "plots", "install gnuplot-nox, or draw an SVG");
+  if (auto status = file->write(bytes); !status) return status;
+  return file->commit();
 }
 
 }  // namespace fettle::app

@@ -28,6 +28,9 @@ inline constexpr const char* kPlotColours[] = {"#0072b2", "#d55e00", "#009e73", 
 /// be written.
 [[nodiscard]] engine::Result<std::string> drawnByGnuplot(const std::string& script);
 
+/// The same picture as a PNG of 860 x 480 at `path`, whole or not at all. Errors: also those of writing the file.
+[[nodiscard]] engine::Status drawnAsPng(const std::string& script, const std::string& path);
+
 /// Whether gnuplot is installed, to be checked before minutes of computing. Errors as drawnByGnuplot.
 [[nodiscard]] engine::Status plotsCanBeMade();
 

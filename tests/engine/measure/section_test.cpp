@@ -49,9 +49,10 @@ Section taken(const Version& field, const std::vector<glm::dvec2>& points,
 TEST(Section, OfABilinearSurfaceIsExact) {
   const auto surface = [](double x, double y) { return 0.25 + 0.5 * x - 0.125 * y + 0.0625 * x * y; };
   const Version field = sectionField(65, 41, 0.25, 1.0, surface);
-  for (const std::vector<glm::dvec2>& line :
-       {std::vector<glm::dvec2>{{1.0, 3.0}, {14.0, 35.0}}, {{0.0, 0.0}, {16.0, 40.0}}, {{2.0, 9.0}, {2.0, 30.0}},
-        {{1.0, 1.0}, {8.0, 3.0}, {5.0, 30.0}}}) {
+  for (const std::vector<glm::dvec2>& line : {std::vector<glm::dvec2>{{1.0, 3.0}, {14.0, 35.0}},
+                                              {{0.0, 0.0}, {16.0, 40.0}},
+                                              {{2.0, 9.0}, {2.0, 30.0}},
+                                              {{1.0, 1.0}, {8.0, 3.0}, {5.0, 30.0}}}) {
     const Section section = taken(field, line);
     ASSERT_GT(section.size(), 20U);
     for (std::size_t i = 0; i < section.size(); ++i)
@@ -120,8 +121,7 @@ TEST(Section, HasNoHeightNextToHolesAndMarksThatAreLeftOut) {
   EXPECT_EQ(wide.lanes, 7);
   EXPECT_DOUBLE_EQ(wide.share[10], 6.0 / 7.0);
   EXPECT_EQ(wide.height[10], 1.0);
-  const Section nearest =
-      taken(field, {{0.0, 4.4}, {29.0, 4.4}}, {.interpolation = Interpolation::kNearest});
+  const Section nearest = taken(field, {{0.0, 4.4}, {29.0, 4.4}}, {.interpolation = Interpolation::kNearest});
   for (const double z : nearest.height) EXPECT_EQ(z, 1.0);
 }
 
@@ -129,7 +129,8 @@ TEST(Section, RefusesWhatIsNone) {
   const Version field = sectionField(5, 5, 1.0, 1.0, [](double, double) { return 0.0; });
   const Version holes = sectionField(5, 5, 1.0, 1.0, [](double, double) { return double{kSectionHole}; });
   JobControl job;
-  const auto fails = [&](const Version& f, const std::vector<glm::dvec2>& points, SectionOptions options = {}) {
+  const auto fails = [&](const Version& f, const std::vector<glm::dvec2>& points,
+                         SectionOptions options = {}) {
     const auto section = sectionAlong(f, points, options, job);
     return !section && section.error().kind == ErrorKind::kInput;
   };
@@ -163,8 +164,8 @@ TEST(SectionFigures, OfLinesAreThoseOfTheLines) {
 
 TEST(SectionFigures, StepAndGrooveOnASlopeAreThoseAcrossIt) {
   const double slope = 0.1, cosine = 1.0 / std::hypot(1.0, slope);
-  const Version step = sectionField(
-      101, 5, 0.1, 0.1, [&](double x, double) { return slope * x + (x > 4.05 ? 0.05 : 0.0); });
+  const Version step =
+      sectionField(101, 5, 0.1, 0.1, [&](double x, double) { return slope * x + (x > 4.05 ? 0.05 : 0.0); });
   const Section section = taken(step, {{0.0, 0.2}, {10.0, 0.2}});
   EXPECT_NEAR(edgeIn(section, {0.0, 10.0}), 4.05, 1e-9);
   const auto figures = stepFigures(section, 4.05, {0.0, 10.0}, 0.0);
@@ -174,9 +175,8 @@ TEST(SectionFigures, StepAndGrooveOnASlopeAreThoseAcrossIt) {
   EXPECT_NEAR(figures->before.from_mm, 0.0, 1e-12);
   EXPECT_NEAR(figures->before.to_mm, 4.05 * 2.0 / 3.0, 1e-12);
 
-  const Version groove = sectionField(201, 5, 0.1, 0.1, [&](double x, double) {
-    return slope * x - (x > 8.05 && x < 12.05 ? 0.02 : 0.0);
-  });
+  const Version groove = sectionField(
+      201, 5, 0.1, 0.1, [&](double x, double) { return slope * x - (x > 8.05 && x < 12.05 ? 0.02 : 0.0); });
   const Section across = taken(groove, {{0.0, 0.2}, {20.0, 0.2}});
   const Stretch found = grooveIn(across, {0.0, 20.0});
   EXPECT_NEAR(found.from_mm, 8.05, 1e-9);

@@ -118,14 +118,15 @@ Covered coverage(const Part& part, double degrees, double width_mm) {
 Part step() {
   // Sections are 1.8 mm long: stretches of 0.6 mm on both sides, with the third next to the edge left out.
   const auto outside = [](double u) { return u > -1e-9 && u < 1.8 + 1e-9 && std::abs(u - 0.9) > 0.3 - 1e-9; };
-  return {"step of 50 um", 0.05, [](double u) { return u > 0.9 ? 0.05 : 0.0; },
-          [](const Section& s, double noise) {
-            const auto figures = stepFigures(s, 0.9, {0.0, 1.8}, noise);
-            return figures ? figures->step_mm : Estimate{};
-          },
-          [outside](double u) {
-            return outside(u) ? std::vector<double>{u > 0.9 ? 1.0 : 0.0, 1.0, u - 0.9} : std::vector<double>{};
-          }};
+  return {
+      "step of 50 um", 0.05, [](double u) { return u > 0.9 ? 0.05 : 0.0; },
+      [](const Section& s, double noise) {
+        const auto figures = stepFigures(s, 0.9, {0.0, 1.8}, noise);
+        return figures ? figures->step_mm : Estimate{};
+      },
+      [outside](double u) {
+        return outside(u) ? std::vector<double>{u > 0.9 ? 1.0 : 0.0, 1.0, u - 0.9} : std::vector<double>{};
+      }};
 }
 
 Part radius() {

@@ -1,0 +1,708 @@
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/vec2.hpp>
+
+#include "app/commands/command.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/plots/gnuplot.h"
+#include "app/commands/scan_files.h"
+#include "app/commands/scan_options.h"
+#include "app/commands/section_files.h"
+#include "app/terminal.h"
+#include "app/work/streams.h"
+#include "engine/inspect/noise.h"
+#include "engine/io/files/atomic_file.h"
+#include "engine/measure/probe.h"
+#include "engine/measure/roughness.h"
+#include "engine/measure/section.h"
+#include "engine/measure/section_figures.h"
+
+namespace fettle::app {
+
+namespace {
+
+using engine::Estimate;
+using engine::Section;
+using engine::Stretch;
+
+struct SectionArguments {
+  std::string scan;
+  std::vector<double> from, to;
+  std::vector<std::string> polylines;
+  std::string lines;
+  double width = 0.0;
+  std::string interpolation = "bilinear";
+  std::string region = "all";
+  std::string marks;
+  std::string compare;
+  // What is measured.
+  std::vector<double> within, cursors, line, angle, arc;
+  std::string step, groove;
+  std::optional<double> cutoff;
+  std::vector<std::string> probes;
+  std::optional<double> probe_radius;
+  // Files.
+  std::string csv, plot, dxf;
+  Replacing replacing = Replacing::kNoWork;
+  ScanOptions reading;
+};
+
+// Numbers with commas between them, exactly so many; none when the text is something else.
+std::vector<double> numbersOf(std::string_view text, std::size_t count) {
+  std::vector<double> numbers;
+  while (numbers.size() < count) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !std::isfinite(value)) return {};
+    numbers.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (numbers.size() < count) {
+      if (!text.starts_with(',')) return {};
+      text.remove_prefix(1);
+    }
+  }
+  return text.empty() ? numbers : std::vector<double>();
+}
+
+using Points = std::vector<glm::dvec2>;
+
+engine::Result<Points> pointsOf(const std::string& text) {
+  Points points;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t end = std::min(text.find(':', from), text.size());
+    const std::vector<double> xy = numbersOf(std::string_view(text).substr(from, end - from), 2);
+    if (xy.empty())
+      return engine::inputError(fmt::format("'{}' is no polyline", text), "--line",
+                                "give X,Y:X,Y with as many points as you like, in mm");
+    points.emplace_back(xy[0], xy[1]);
+    from = end + 1;
+  }
+  if (points.size() < 2)
+    return engine::inputError(fmt::format("'{}' is one point", text), "--line", "give two or more, X,Y:X,Y");
+  return points;
+}
+
+// The lines along which sections are taken, in field coordinates [mm].
+engine::Result<std::vector<Points>> pathsOf(const SectionArguments& options, const engine::Version& field,
+                                            engine::JobControl& job) {
+  std::vector<Points> paths;
+  if (options.from.empty() != options.to.empty())
+    return engine::inputError("a line needs two ends", options.from.empty() ? "--end" : "--start",
+                              "give --start X,Y and --end X,Y");
+  if (!options.from.empty())
+    paths.push_back({{options.from[0], options.from[1]}, {options.to[0], options.to[1]}});
+  for (const std::string& text : options.polylines) {
+    auto points = pointsOf(text);
+    if (!points) return tl::unexpected(points.error());
+    paths.push_back(*std::move(points));
+  }
+  if (!options.lines.empty()) {
+    const auto lines = readLines(options.lines, field, job);
+    if (!lines) return tl::unexpected(lines.error());
+    const glm::dvec2 spacing(field.grid().spacingXMm(), field.grid().spacingYMm());
+    for (const engine::EdgeLine& line : *lines) {
+      Points points;
+      points.reserve(line.points.size() + 1);
+      for (const engine::EdgePoint& point : line.points) points.push_back(point.position * spacing);
+      if (line.closed && !points.empty()) points.push_back(points.front());
+      if (points.size() > 1) paths.push_back(std::move(points));
+    }
+  }
+  if (paths.empty() && options.probes.empty())
+    return engine::inputError(
+        "no line is given along which a section is taken", "--start",
+        "give --start X,Y --end X,Y in mm from the lower left sample, --line, --lines or --probe");
+  return paths;
+}
+
+Report number(double value) {
+  return std::isnan(value) ? Report() : Report(value);
+}
+
+void addEstimate(Report& report, const std::string& key, const std::string& unit, const Estimate& estimate) {
+  const std::string ending = unit.empty() ? std::string() : fmt::format("_{}", unit);
+  report[key + ending] = number(estimate.value);
+  report[key + "_error" + ending] = number(estimate.error);
+}
+
+Report reportOf(const engine::LineFigures& line) {
+  Report report;
+  addEstimate(report, "inclination", "deg", line.inclination_deg);
+  addEstimate(report, "height", "mm", line.height_mm);
+  report["rms_mm"] = line.rms_mm;
+  report["places"] = line.places;
+  return report;
+}
+
+Report stretchOf(const Stretch& stretch) {
+  return Report::array({stretch.from_mm, stretch.to_mm});
+}
+
+// What was asked for, of one section. `marks`: lengths that a picture shows.
+class Figures {
+ public:
+  Figures(const SectionArguments& options, double noise_mm) : options_(options), noise_mm_(noise_mm) {}
+
+  engine::Result<Report> of(const Section& section, std::vector<double>& marks) const {
+    Report report = Report::object();
+    const auto add = [&](const char* key, bool wanted, const auto& figures) -> engine::Status {
+      if (!wanted) return {};
+      auto made = figures();
+      if (!made) return tl::unexpected(made.error());
+      report[key] = *std::move(made);
+      return {};
+    };
+    for (const engine::Status& status :
+         {add("cursors", !options_.cursors.empty(), [&] { return cursors(section, marks); }),
+          add("line", !options_.line.empty(), [&] { return line(section, marks); }),
+          add("step", !options_.step.empty(), [&] { return step(section, marks); }),
+          add("groove", !options_.groove.empty(), [&] { return groove(section, marks); }),
+          add("angle", !options_.angle.empty(), [&] { return angle(section, marks); }),
+          add("arc", !options_.arc.empty(), [&] { return arc(section, marks); }),
+          add("roughness", options_.cutoff.has_value(), [&] { return roughness(section); })})
+      if (!status) return tl::unexpected(status.error());
+    return report;
+  }
+
+ private:
+  [[nodiscard]] Stretch within(const Section& section) const {
+    return options_.within.empty() ? Stretch{0.0, section.lengthMm()}
+                                   : Stretch{options_.within[0], options_.within[1]};
+  }
+
+  engine::Result<Report> cursors(const Section& section, std::vector<double>& marks) const {
+    const auto figures = engine::cursorFigures(section, options_.cursors[0], options_.cursors[1], noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    marks.insert(marks.end(), options_.cursors.begin(), options_.cursors.end());
+    Report report{{"dx_mm", figures->dx_mm}};
+    addEstimate(report, "dz", "mm", figures->dz_mm);
+    report.update({{"slope_deg", number(figures->slope_deg)},
+                   {"distance_mm", figures->distance_mm},
+                   {"first_mm", figures->first_mm},
+                   {"second_mm", figures->second_mm}});
+    return report;
+  }
+  engine::Result<Report> line(const Section& section, std::vector<double>& marks) const {
+    const auto figures = engine::lineFigures(section, {options_.line[0], options_.line[1]}, noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    marks.insert(marks.end(), options_.line.begin(), options_.line.end());
+    return reportOf(*figures);
+  }
+  engine::Result<Report> step(const Section& section, std::vector<double>& marks) const {
+    double edge = engine::edgeIn(section, within(section));
+    if (options_.step != "auto") edge = numbersOf(options_.step, 1).front();
+    if (std::isnan(edge))
+      return engine::inputError("the section has too few heights for a step", "--step", "give a longer line");
+    const auto figures = engine::stepFigures(section, edge, within(section), noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    marks.push_back(edge);
+    Report report{{"edge_mm", edge}};
+    addEstimate(report, "step", "mm", figures->step_mm);
+    addEstimate(report, "inclination", "deg", figures->inclination_deg);
+    report.update({{"before", stretchOf(figures->before)},
+                   {"after", stretchOf(figures->edge_after)},
+                   {"rms_mm", figures->rms_mm},
+                   {"places", figures->places}});
+    return report;
+  }
+  engine::Result<Report> groove(const Section& section, std::vector<double>& marks) const {
+    Stretch edges = engine::grooveIn(section, within(section));
+    if (options_.groove != "auto") {
+      const std::vector<double> typed = numbersOf(options_.groove, 2);
+      edges = {typed[0], typed[1]};
+    }
+    if (std::isnan(edges.from_mm))
+      return engine::inputError("the section has too few heights for a groove", "--groove",
+                                "give a longer line");
+    const auto figures = engine::grooveFigures(section, edges.from_mm, edges.to_mm, noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    marks.insert(marks.end(), {edges.from_mm, edges.to_mm});
+    Report report{{"edges", stretchOf(edges)}, {"width_mm", edges.to_mm - edges.from_mm}};
+    addEstimate(report, "depth", "mm", figures->step_mm);
+    addEstimate(report, "inclination", "deg", figures->inclination_deg);
+    report.update({{"before", stretchOf(figures->before)},
+                   {"inside", stretchOf(figures->edge_after)},
+                   {"behind", stretchOf(figures->behind)},
+                   {"rms_mm", figures->rms_mm},
+                   {"places", figures->places}});
+    return report;
+  }
+  engine::Result<Report> angle(const Section& section, std::vector<double>& marks) const {
+    const auto figures = engine::angleFigures(section, {options_.angle[0], options_.angle[1]},
+                                              {options_.angle[2], options_.angle[3]}, noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    marks.insert(marks.end(), options_.angle.begin(), options_.angle.end());
+    Report report;
+    addEstimate(report, "turn", "deg", figures->turn_deg);
+    report["included_deg"] = figures->included_deg.value;
+    report["meet_along_mm"] = number(figures->meet_along_mm);
+    report["meet_height_mm"] = number(figures->meet_height_mm);
+    report["first"] = reportOf(figures->first);
+    report["second"] = reportOf(figures->second);
+    return report;
+  }
+  engine::Result<Report> arc(const Section& section, std::vector<double>& marks) const {
+    const auto figures = engine::arcFigures(section, {options_.arc[0], options_.arc[1]}, noise_mm_);
+    if (!figures) return tl::unexpected(figures.error());
+    marks.insert(marks.end(), options_.arc.begin(), options_.arc.end());
+    Report report;
+    addEstimate(report, "radius", "mm", figures->radius_mm);
+    addEstimate(report, "centre_along", "mm", figures->centre_along_mm);
+    addEstimate(report, "centre_height", "mm", figures->centre_height_mm);
+    report.update({{"hollow", figures->hollow}, {"rms_mm", figures->rms_mm}, {"places", figures->places}});
+    return report;
+  }
+  engine::Result<Report> roughness(const Section& section) const {
+    const auto figures = engine::roughnessOf(section, within(section), *options_.cutoff);
+    if (!figures) return tl::unexpected(figures.error());
+    return Report{{"cutoff_mm", *options_.cutoff}, {"evaluated", stretchOf(figures->evaluated)},
+                  {"lengths", figures->lengths},   {"ra_mm", figures->ra},
+                  {"rq_mm", figures->rq},          {"rz_mm", figures->rz},
+                  {"rsk", number(figures->rsk)},   {"rku", number(figures->rku)},
+                  {"rsm_mm", number(figures->rsm)}};
+  }
+
+  const SectionArguments& options_;
+  double noise_mm_;
+};
+
+struct ReadScan {
+  engine::Version field;
+  double noise_mm = 0.0;
+};
+
+engine::Result<ReadScan> readOne(const std::string& path, const SectionArguments& options,
+                                 engine::JobControl& job) {
+  const auto imported = loadScan(path, options.reading, job);
+  if (!imported) return tl::unexpected(imported.error());
+  auto marked = withMarks(imported->field, options.marks, job);
+  if (!marked) return tl::unexpected(marked.error());
+  const auto noise = engine::estimateNoise(*marked, job);
+  if (!noise) return tl::unexpected(noise.error());
+  const double noise_mm = noise->sigma * marked->grid().height_unit.mm;
+  return ReadScan{*std::move(marked), noise_mm};
+}
+
+engine::SectionOptions sectionOptionsOf(const SectionArguments& options) {
+  engine::SectionOptions of;
+  of.width_mm = options.width;
+  of.region = options.region == "marked"     ? engine::Region::kMarked
+              : options.region == "unmarked" ? engine::Region::kUnmarked
+                                             : engine::Region::kAll;
+  of.interpolation =
+      options.interpolation == "nearest" ? engine::Interpolation::kNearest : engine::Interpolation::kBilinear;
+  return of;
+}
+
+// How two sections differ at the places at which both have a height.
+Report deviationOf(const Section& a, const Section& b) {
+  double sum = 0.0, squares = 0.0, most = 0.0;
+  int n = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = b.height[i] - a.height[i];
+    if (std::isnan(d)) continue;
+    ++n;
+    sum += d;
+    squares += d * d;
+    most = std::max(most, std::abs(d));
+  }
+  return {{"places", n},
+          {"mean_mm", n > 0 ? Report(sum / n) : Report()},
+          {"rms_mm", n > 0 ? Report(std::sqrt(squares / n)) : Report()},
+          {"max_abs_mm", n > 0 ? Report(most) : Report()}};
+}
+
+Report describedSection(std::size_t index, const Section& section) {
+  std::size_t found = 0;
+  double low = 0.0, high = 0.0;
+  for (const double z : section.height)
+    if (!std::isnan(z)) {
+      low = found == 0 ? z : std::min(low, z);
+      high = found == 0 ? z : std::max(high, z);
+      ++found;
+    }
+  const auto pointOf = [](const glm::dvec2& p) { return Report::array({p.x, p.y}); };
+  return {{"section", index},
+          {"from", pointOf(section.position.front())},
+          {"to", pointOf(section.position.back())},
+          {"length_mm", section.lengthMm()},
+          {"spacing_mm", section.step_mm},
+          {"places", section.size()},
+          {"without_height", section.size() - found},
+          {"lanes", section.lanes},
+          {"low_mm", low},
+          {"high_mm", high}};
+}
+
+engine::Result<Report> probed(const SectionArguments& options, const ReadScan& scan) {
+  Report report = Report::array();
+  const engine::Grid& grid = scan.field.grid();
+  const double radius = options.probe_radius.value_or(5.0 * std::max(grid.spacingXMm(), grid.spacingYMm()));
+  for (const std::string& text : options.probes) {
+    const std::vector<double> at = numbersOf(text, 2);
+    const auto figures =
+        engine::probeAt(scan.field, {at[0], at[1]}, radius, sectionOptionsOf(options).region, scan.noise_mm);
+    if (!figures) return tl::unexpected(figures.error());
+    Report one{{"x", at[0]}, {"y", at[1]}, {"radius_mm", radius}};
+    addEstimate(one, "height", "mm", figures->height_mm);
+    addEstimate(one, "slope", "deg", figures->slope_deg);
+    one["rises_to_deg"] = number(figures->rises_to_deg);
+    one["most_curvature"] = figures->most_curvature;
+    one["least_curvature"] = figures->least_curvature;
+    addEstimate(one, "mean_curvature", "", figures->mean_curvature);
+    one["rms_mm"] = figures->rms_mm;
+    one["samples"] = figures->samples;
+    report.push_back(std::move(one));
+  }
+  return report;
+}
+
+engine::Status writeSectionFiles(const SectionArguments& options, const std::vector<DrawnSection>& drawn,
+                                 engine::JobControl& job) {
+  if (!options.csv.empty())
+    if (auto status = writeTo(
+            options.csv, ".csv", job,
+            [&](const std::string& file) { return engine::writeFileAtomically(file, sectionCsv(drawn)); });
+        !status)
+      return status;
+  if (!options.dxf.empty())
+    if (auto status = engine::writeFileAtomically(options.dxf, sectionDxf(drawn)); !status) return status;
+  return options.plot.empty() ? engine::Status() : drawSections(drawn, options.plot);
+}
+
+engine::Status checkSectionWords(const SectionArguments& options) {
+  if (!options.step.empty() && options.step != "auto" && numbersOf(options.step, 1).empty())
+    return engine::inputError(fmt::format("'{}' is no length", options.step), "--step",
+                              "give the edge's length along the line in mm, or auto");
+  if (!options.groove.empty() && options.groove != "auto" && numbersOf(options.groove, 2).empty())
+    return engine::inputError(fmt::format("'{}' is not two lengths", options.groove), "--groove",
+                              "give the lengths of both edges along the line in mm, A,B, or auto");
+  for (const std::string& probe : options.probes)
+    if (numbersOf(probe, 2).empty())
+      return engine::inputError(fmt::format("'{}' is no point", probe), "--probe", "give X,Y in mm");
+  if (!options.marks.empty() && options.region == "all")
+    return engine::inputError("marks choose nothing where all samples count", "--marks",
+                              "add --region marked or --region unmarked");
+  if (!options.plot.empty()) {
+    if (auto status = checkSectionPicture(options.plot); !status) return status;
+    return plotsCanBeMade();
+  }
+  return {};
+}
+
+engine::Result<Report> takeSections(const SectionArguments& options, engine::JobControl& job) {
+  if (auto status = checkSectionWords(options); !status) return tl::unexpected(status.error());
+  if (auto status =
+          checkOutputs({{options.csv, OutputKind::kText, ".csv"}, {options.plot}, {options.dxf}},
+                       {options.scan, options.compare, options.lines, options.marks}, options.replacing, job);
+      !status)
+    return tl::unexpected(status.error());
+  const auto scan = readOne(options.scan, options, job);
+  if (!scan) return tl::unexpected(scan.error());
+  const auto paths = pathsOf(options, scan->field, job);
+  if (!paths) return tl::unexpected(paths.error());
+  std::vector<ReadScan> others;
+  if (!options.compare.empty()) {
+    auto other = readOne(options.compare, options, job);
+    if (!other) return tl::unexpected(other.error());
+    // What a filter has made smooth still has the noise of before in what is averaged over more than its window.
+    other->noise_mm = std::fmax(other->noise_mm, scan->noise_mm);
+    others.push_back(*std::move(other));
+  }
+  Report report{{"noise_mm", number(scan->noise_mm)}, {"sections", Report::array()}};
+  std::vector<DrawnSection> drawn;
+  drawn.reserve(paths->size());
+  const engine::SectionOptions of = sectionOptionsOf(options);
+  for (std::size_t i = 0; i < paths->size(); ++i) {
+    auto section = engine::sectionAlong(scan->field, (*paths)[i], of, job);
+    if (!section) return tl::unexpected(section.error());
+    drawn.push_back({fmt::format("section {}", i), *std::move(section), {}, {}});
+    DrawnSection& last = drawn.back();
+    Report one = describedSection(i, last.section);
+    auto figures = Figures(options, scan->noise_mm).of(last.section, last.marks);
+    if (figures) {
+      one.update(*figures);
+    } else {
+      // Of several sections one may be too short for what others show.
+      if (paths->size() == 1) return tl::unexpected(figures.error());
+      warn(fmt::format("section {}: {}", i, figures.error().line()));
+    }
+    for (const ReadScan& other : others) {
+      auto beside = engine::sectionAlong(other.field, (*paths)[i], of, job);
+      if (!beside) return tl::unexpected(beside.error());
+      last.other = *std::move(beside);
+      if (last.other.size() != last.section.size())
+        return engine::inputError("both scans must have the same spacing", "--compare",
+                                  "fettle convert gives one the other's grid");
+      one["deviation"] = deviationOf(last.section, last.other);
+      std::vector<double> unused;
+      auto of_other = Figures(options, other.noise_mm).of(last.other, unused);
+      if (of_other)
+        one["other"] = *std::move(of_other);
+      else
+        warn(fmt::format("{}, section {}: {}", shownInput(options.compare), i, of_other.error().line()));
+    }
+    report["sections"].push_back(std::move(one));
+  }
+  if (!options.probes.empty()) {
+    auto probes = probed(options, *scan);
+    if (!probes) return tl::unexpected(probes.error());
+    report["probes"] = *std::move(probes);
+  }
+  if (auto status = writeSectionFiles(options, drawn, job); !status) return tl::unexpected(status.error());
+  return report;
+}
+
+std::string shownNumber(const Report& value) {
+  return value.is_null() ? "-" : fmt::format("{:.6g}", value.get<double>());
+}
+
+// "12.3 +- 0.2 mm", the error of a figure beside it.
+std::string shownEstimate(const Report& report, const std::string& key, const std::string& unit) {
+  const std::string ending = unit.empty() ? std::string() : fmt::format("_{}", unit);
+  const Report& error = report[key + "_error" + ending];
+  return fmt::format("{}{} {}", shownNumber(report[key + ending]),
+                     error.is_null() ? "" : fmt::format(" +- {:.2g}", error.get<double>()),
+                     unit == "deg" ? "degrees" : unit);
+}
+
+void printFigures(const Report& of, const std::string& before) {
+  const auto row = [&](const char* name, const std::string& text) {
+    fmt::print("{}{:<10} {}\n", before, name, text);
+  };
+  if (of.contains("cursors")) {
+    const Report& c = of["cursors"];
+    row("cursors", fmt::format("dx {} mm, dz {}, slope {} degrees, distance {} mm", shownNumber(c["dx_mm"]),
+                               shownEstimate(c, "dz", "mm"), shownNumber(c["slope_deg"]),
+                               shownNumber(c["distance_mm"])));
+  }
+  if (of.contains("line"))
+    row("line", fmt::format("inclination {}, height in the middle {}, rms {} mm",
+                            shownEstimate(of["line"], "inclination", "deg"),
+                            shownEstimate(of["line"], "height", "mm"), shownNumber(of["line"]["rms_mm"])));
+  if (of.contains("step"))
+    row("step", fmt::format("{}, edge at {} mm, rms {} mm", shownEstimate(of["step"], "step", "mm"),
+                            shownNumber(of["step"]["edge_mm"]), shownNumber(of["step"]["rms_mm"])));
+  if (of.contains("groove"))
+    row("groove", fmt::format("depth {}, width {} mm from {} to {} mm, rms {} mm",
+                              shownEstimate(of["groove"], "depth", "mm"),
+                              shownNumber(of["groove"]["width_mm"]), shownNumber(of["groove"]["edges"][0]),
+                              shownNumber(of["groove"]["edges"][1]), shownNumber(of["groove"]["rms_mm"])));
+  if (of.contains("angle"))
+    row("angle",
+        fmt::format("turn {}, included {} degrees, lines meet at {} mm, height {} mm",
+                    shownEstimate(of["angle"], "turn", "deg"), shownNumber(of["angle"]["included_deg"]),
+                    shownNumber(of["angle"]["meet_along_mm"]), shownNumber(of["angle"]["meet_height_mm"])));
+  if (of.contains("arc"))
+    row("arc", fmt::format("radius {}, {}, centre at {} mm, height {} mm, rms {} mm",
+                           shownEstimate(of["arc"], "radius", "mm"),
+                           of["arc"]["hollow"].get<bool>() ? "hollow" : "raised",
+                           shownNumber(of["arc"]["centre_along_mm"]),
+                           shownNumber(of["arc"]["centre_height_mm"]), shownNumber(of["arc"]["rms_mm"])));
+  if (of.contains("roughness")) {
+    const Report& r = of["roughness"];
+    row("roughness", fmt::format("Ra {} Rq {} Rz {} RSm {} mm, Rsk {} Rku {}, over {} cut-offs of {} mm",
+                                 shownNumber(r["ra_mm"]), shownNumber(r["rq_mm"]), shownNumber(r["rz_mm"]),
+                                 shownNumber(r["rsm_mm"]), shownNumber(r["rsk"]), shownNumber(r["rku"]),
+                                 r["lengths"].get<int>(), shownNumber(r["cutoff_mm"])));
+  }
+}
+
+void printSections(const Report& report) {
+  if (!report["noise_mm"].is_null())
+    fmt::print("noise of a sample {:.4g} mm; +- standard error\n", report["noise_mm"].get<double>());
+  for (const Report& one : report["sections"]) {
+    fmt::print("section {}: {} mm long, {} places {} mm apart, {} lane{}, heights {} to {} mm\n",
+               one["section"].get<int>(), shownNumber(one["length_mm"]), one["places"].get<int>(),
+               shownNumber(one["spacing_mm"]), one["lanes"].get<int>(),
+               one["lanes"].get<int>() == 1 ? "" : "s", shownNumber(one["low_mm"]),
+               shownNumber(one["high_mm"]));
+    if (one["without_height"].get<int>() > 0)
+      fmt::print("  {} places have no height\n", one["without_height"].get<int>());
+    printFigures(one, "  ");
+    if (one.contains("deviation")) {
+      const Report& d = one["deviation"];
+      fmt::print("  {:<10} other less this: mean {} mm, rms {} mm, largest {} mm, {} places\n", "deviation",
+                 shownNumber(d["mean_mm"]), shownNumber(d["rms_mm"]), shownNumber(d["max_abs_mm"]),
+                 d["places"].get<int>());
+    }
+    if (one.contains("other")) printFigures(one["other"], "  other: ");
+  }
+  if (!report.contains("probes")) return;
+  for (const Report& p : report["probes"])
+    fmt::print("probe {},{}: height {}, slope {} rising to {} degrees, curvature {}, from {} to {} per mm\n",
+               shownNumber(p["x"]), shownNumber(p["y"]), shownEstimate(p, "height", "mm"),
+               shownEstimate(p, "slope", "deg"), shownNumber(p["rises_to_deg"]),
+               shownEstimate(p, "mean_curvature", ""), shownNumber(p["least_curvature"]),
+               shownNumber(p["most_curvature"]));
+}
+
+constexpr const char* kLineGroup = "The line";
+constexpr const char* kFigureGroup = "What is measured (lengths along the line, in mm from its first point)";
+
+void addLineOptions(Command command, SectionArguments& options) {
+  command.add({{.name = "--start",
+                .to = &options.from,
+                .text = "First point, mm from the lower left sample",
+                .shown = "X,Y",
+                .values = 2,
+                .between = ','},
+               {.name = "--end",
+                .to = &options.to,
+                .text = "Last point",
+                .shown = "X,Y",
+                .values = 2,
+                .between = ','},
+               {.name = "--line",
+                .to = &options.polylines,
+                .text = "A polyline; give it again for another section",
+                .shown = "X,Y:X,Y[:...]",
+                .one_word = true},
+               {.name = "--lines",
+                .to = &options.lines,
+                .text = "A section along each line of a file, GeoJSON too",
+                .kind = ValueKind::kLines},
+               {.name = "--width",
+                .to = &options.width,
+                .text = "Average across this width; 0: the line alone",
+                .range = Range{0.0, 1e9},
+                .unit = "mm"},
+               {.name = "--interpolation",
+                .to = &options.interpolation,
+                .text = "Heights between samples",
+                .words = {{"bilinear", "of the four samples around; none next to a hole"},
+                          {"nearest", "of the nearest sample"}}},
+               {.name = "--region",
+                .to = &options.region,
+                .text = "The samples that count; others are holes",
+                .words = {{"all", "every sample that is no hole"},
+                          {"marked", "those that are marked"},
+                          {"unmarked", "those that are not"}}},
+               {.name = "--marks",
+                .to = &options.marks,
+                .text = "Picture of marks for --region, instead of the marks of a session",
+                .kind = ValueKind::kMarks},
+               {.name = "--compare",
+                .to = &options.compare,
+                .text = "Another scan, sectioned and measured at the same places",
+                .kind = ValueKind::kInput}},
+              kLineGroup);
+}
+
+void addFigureOptions(Command command, SectionArguments& options) {
+  command.add({{.name = "--within",
+                .to = &options.within,
+                .text = "Stretch for --step, --groove and --cutoff",
+                .shown = "A,B",
+                .otherwise = "the whole line",
+                .values = 2,
+                .between = ','},
+               {.name = "--cursors",
+                .to = &options.cursors,
+                .text = "Distance, height difference and slope between two places",
+                .shown = "A,B",
+                .values = 2,
+                .between = ','},
+               {.name = "--fit-line",
+                .to = &options.line,
+                .text = "Least-squares line of a stretch",
+                .shown = "A,B",
+                .values = 2,
+                .between = ','},
+               {.name = "--step",
+                .to = &options.step,
+                .text = "Step height at an edge; auto finds the edge",
+                .shown = "A|auto"},
+               {.name = "--groove",
+                .to = &options.groove,
+                .text = "Depth of a groove between two edges, ISO 5436-1; below 0 a ridge; auto finds them",
+                .shown = "A,B|auto"},
+               {.name = "--angle",
+                .to = &options.angle,
+                .text = "Angle between the lines of two stretches",
+                .shown = "A,B,C,D",
+                .values = 4,
+                .between = ','},
+               {.name = "--arc",
+                .to = &options.arc,
+                .text = "Radius of the circle of a stretch",
+                .shown = "A,B",
+                .values = 2,
+                .between = ','},
+               {.name = "--cutoff",
+                .to = &options.cutoff,
+                .text = "Ra, Rq, Rz, Rsk, Rku, RSm of ISO 21920-2 with this Gaussian cut-off",
+                .range = Range{1e-9, 1e9},
+                .unit = "mm"},
+               {.name = "--probe",
+                .to = &options.probes,
+                .text = "Height, slope and curvature around a point of the scan; give it again for another",
+                .shown = "X,Y",
+                .one_word = true},
+               {.name = "--probe-radius",
+                .to = &options.probe_radius,
+                .text = "Samples this near to the point count",
+                .range = Range{1e-9, 1e9},
+                .unit = "mm",
+                .otherwise = "5 samples"}},
+              kFigureGroup);
+}
+
+}  // namespace
+
+void addSection(Command root, Chosen& chosen) {
+  auto options = std::make_shared<SectionArguments>();
+  Command command = addCommand(
+      root, chosen, "section", "Profiles along lines: step, groove, angle, radius, roughness, with errors",
+      [options](engine::JobControl& job) { return takeSections(*options, job); }, printSections);
+  command.add({{.name = "SCAN",
+                .to = &options->scan,
+                .text = "The scan, or a session; - for standard input",
+                .kind = ValueKind::kInput,
+                .required = true},
+               {.name = "--csv",
+                .to = &options->csv,
+                .text = "Write a row per place: length, position, height, in mm",
+                .kind = ValueKind::kOutput},
+               {.name = "--plot",
+                .to = &options->plot,
+                .text = "Draw heights over lengths, .svg or .png",
+                .kind = ValueKind::kNewFile},
+               {.name = "--dxf",
+                .to = &options->dxf,
+                .text = "Write the profiles as polylines, length and height in mm",
+                .kind = ValueKind::kNewFile}});
+  addLineOptions(command, *options);
+  addFigureOptions(command, *options);
+  addForceOption(command, options->replacing);
+  addScanOptions(command, options->reading);
+  command.notes(
+      "Positions count from the lower left sample, x to the right and y up the picture. The section is taken "
+      "as the "
+      "scan stands: fettle level takes a tilt out first.\n"
+      "Standard errors are those that the noise of single samples gives. Of noise that neighbours share, as "
+      "in filtered "
+      "scans, they are too small; those of --compare's scan are by the greater noise of both. Step: the "
+      "third of the width next to the edge does not count, as beside a groove in "
+      "ISO 5436-1; the height is measured across the two parallel lines.");
+  command.examples(
+      {{"fettle section scan.tif --start 1,2 --end 9,2 --width 0.2 --step auto --plot step.svg",
+        "Step height on a line, and a picture"},
+       {"fettle section scan.tif --compare clean.tif --start 1,2 --end 9,2 --cursors 3,5 --csv profile.csv",
+        "Before and after, and the heights as a table"},
+       {"fettle section scan.tif --line 1,1:4,5:9,5 --cutoff 2.5", "Roughness along a polyline"}});
+}
+
+}  // namespace fettle::app

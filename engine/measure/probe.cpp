@@ -1,0 +1,112 @@
+#include "engine/measure/probe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <fmt/format.h>
+#include <Eigen/Dense>
+#include <glm/geometric.hpp>
+
+namespace fettle::engine {
+
+namespace {
+
+constexpr int kQuadratic = 6;
+
+struct ProbedSample {
+  double x = 0.0, y = 0.0, z = 0.0;  // from the point, in radii; height [mm]
+};
+
+}  // namespace
+
+Result<ProbeFigures> probeAt(const Version& field, glm::dvec2 at, double radius_mm, Region region,
+                             double noise_mm) {
+  const FieldReader reader = field.reader();
+  const Grid& grid = field.grid();
+  const glm::dvec2 spacing(grid.spacingXMm(), grid.spacingYMm());
+  if (!std::isfinite(at.x) || !std::isfinite(at.y) || !(radius_mm > 0.0) ||
+      !(radius_mm * radius_mm / (spacing.x * spacing.y) < 1e6))
+    return inputError("there is no such place or radius", "probe",
+                      "give fewer than a thousand samples as radius");
+  const auto clamped = [](double value, std::int32_t side) {
+    return static_cast<std::int32_t>(std::clamp(value, -1.0, static_cast<double>(side)));
+  };
+  std::vector<ProbedSample> samples;
+  for (std::int32_t r = std::max(0, clamped(std::ceil((at.y - radius_mm) / spacing.y - 1e-9), grid.height));
+       r <=
+       std::min(grid.height - 1, clamped(std::floor((at.y + radius_mm) / spacing.y + 1e-9), grid.height));
+       ++r)
+    for (std::int32_t c = std::max(0, clamped(std::ceil((at.x - radius_mm) / spacing.x - 1e-9), grid.width));
+         c <=
+         std::min(grid.width - 1, clamped(std::floor((at.x + radius_mm) / spacing.x + 1e-9), grid.width));
+         ++c) {
+      const glm::dvec2 from = (glm::dvec2(c, r) * spacing - at) / radius_mm;
+      const double z = reader.heightAt(c, r);
+      if (glm::length(from) > 1.0 + 1e-9 || std::isnan(z) ||
+          (region != Region::kAll && reader.markedAt(c, r) != (region == Region::kMarked)))
+        continue;
+      samples.push_back({from.x, from.y, z * grid.height_unit.mm});
+    }
+  const auto n = static_cast<Eigen::Index>(samples.size());
+  Eigen::MatrixXd rows(n, kQuadratic);
+  Eigen::VectorXd heights(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const ProbedSample& s = samples[static_cast<std::size_t>(i)];
+    rows.row(i) << 1.0, s.x, s.y, s.x * s.x, s.x * s.y, s.y * s.y;
+    heights[i] = s.z;
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(1e-8);
+  if (n >= kQuadratic) qr.compute(rows);
+  if (n < kQuadratic || qr.rank() < kQuadratic)
+    return inputError(fmt::format("{} samples within {:.6g} mm of {:.6g},{:.6g} show no curved surface", n,
+                                  radius_mm, at.x, at.y),
+                      "probe", "give a larger radius, or a place that is not at a border or a hole");
+  // From their mean, so that heights far from 0 cost no digits.
+  const double base = heights.mean();
+  const Eigen::VectorXd x = qr.solve((heights.array() - base).matrix());
+  const Eigen::VectorXd residual = (heights.array() - base).matrix() - rows * x;
+  const Eigen::MatrixXd unit =
+      (rows.transpose() * rows).ldlt().solve(Eigen::MatrixXd::Identity(kQuadratic, kQuadratic));
+  double variance = noise_mm * noise_mm;
+  if (n > kQuadratic) {
+    const auto freedom = static_cast<double>(n - kQuadratic);
+    const double scatter = residual.squaredNorm() / freedom;
+    if (std::isnan(variance) || scatter > variance * (1.0 + 3.0 * std::sqrt(2.0 / freedom)))
+      variance = scatter;
+  }
+  const double by = 1.0 / radius_mm, p = x[1] * by, q = x[2] * by;
+  const double xx = 2.0 * x[3] * by * by, xy = x[4] * by * by, yy = 2.0 * x[5] * by * by;
+  const double square = p * p + q * q, w = std::sqrt(1.0 + square), slope = std::sqrt(square);
+  constexpr double kDegree = 180.0 / std::numbers::pi;
+  ProbeFigures figures;
+  figures.samples = static_cast<int>(n);
+  figures.rms_mm = std::sqrt(residual.squaredNorm() / static_cast<double>(n));
+  figures.height_mm = {base + x[0], std::sqrt(variance * unit(0, 0))};
+  // Where the surface is level the direction of the steepest slope is not known: both directions' mean error.
+  const double slope_variance =
+      square > 0.0 ? (p * p * unit(1, 1) + 2.0 * p * q * unit(1, 2) + q * q * unit(2, 2)) / square
+                   : 0.5 * (unit(1, 1) + unit(2, 2));
+  figures.slope_deg = {std::atan(slope) * kDegree,
+                       std::sqrt(variance * slope_variance) * by / (w * w) * kDegree};
+  figures.rises_to_deg = square > 0.0 ? std::atan2(q, p) * kDegree : std::numeric_limits<double>::quiet_NaN();
+  const double mean = ((1.0 + q * q) * xx - 2.0 * p * q * xy + (1.0 + p * p) * yy) / (2.0 * w * w * w);
+  const double gauss = (xx * yy - xy * xy) / (w * w * w * w);
+  const double apart = std::sqrt(std::max(0.0, mean * mean - gauss));
+  figures.most_curvature = mean + apart;
+  figures.least_curvature = mean - apart;
+  // By the second derivatives; those of the slope are smaller by the curvature times the radius.
+  Eigen::VectorXd row = Eigen::VectorXd::Zero(kQuadratic);
+  const double factor = by * by / (2.0 * w * w * w);
+  row[3] = 2.0 * (1.0 + q * q) * factor;
+  row[4] = -2.0 * p * q * factor;
+  row[5] = 2.0 * (1.0 + p * p) * factor;
+  figures.mean_curvature = {mean, std::sqrt(variance * row.dot(unit * row))};
+  return figures;
+}
+
+}  // namespace fettle::engine

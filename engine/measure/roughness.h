@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/base/error.h"
+#include "engine/measure/section.h"
+#include "engine/measure/section_figures.h"
+
+namespace fettle::engine {
+
+/// The mean line of a profile by the Gaussian profile filter of ISO 16610-21:2011: weights
+/// exp(-pi (x / (a c))^2) / (a c), a = sqrt(ln 2 / pi), for the cut-off length c, at which a sine passes by a half.
+/// The weights reach to one cut-off on both sides, where they are 6e-7 of the middle one, and their sum is 1; within
+/// one cut-off of an end they are those that are left, divided by their sum. `heights` evenly `step_mm` apart, without
+/// NaN; cutoff_mm > 0. Time: heights times places per cut-off.
+[[nodiscard]] std::vector<double> gaussianMeanLine(std::span<const double> heights, double step_mm,
+                                                   double cutoff_mm);
+
+/// Profile roughness of ISO 21920-2:2021 [mm]. NaN where the profile does not determine a figure.
+struct Roughness {
+  Stretch evaluated;  ///< a whole number of section lengths, each one cut-off
+  int lengths = 0;
+  double ra = 0.0, rq = 0.0, rz = 0.0;  ///< rz: mean of the section lengths' highest less lowest
+  double rsk = 0.0, rku = 0.0;
+  /// Mean width of the profile elements, from one rise (fall) through the mean line to the next, over all of the evaluation
+  /// length; peaks and dales lower than a tenth of rz count to their neighbours.
+  double rsm = 0.0;
+};
+
+/// Of a stretch of a section: its least-squares line is taken out, then its Gaussian mean line. Half a cut-off at both
+/// ends, where the mean line lacks neighbours, is not evaluated. No S-filter is applied. Where the stretch has places
+/// without a height, its longest part without one counts. Errors (kInput): a cut-off shorter than 4 places or longer
+/// than half of the part.
+[[nodiscard]] Result<Roughness> roughnessOf(const Section& section, const Stretch& within, double cutoff_mm);
+
+}  // namespace fettle::engine

@@ -1,0 +1,113 @@
+// fettle section, as a metrologist types it.
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/program.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+// A plate of 80 x 40 samples, 0.1 mm apart, with a groove of 0.05 mm from 3 to 5 mm; one hole. ESRI ASCII.
+void writeGroove(const std::string& path, double up = 0.0) {
+  std::ofstream out(path);
+  out << "ncols 80\nnrows 40\nxllcenter 0\nyllcenter 0\ncellsize 0.1\nNODATA_value -9999\n";
+  for (int r = 39; r >= 0; --r) {
+    for (int c = 0; c < 80; ++c)
+      out << (r == 10 && c == 10 ? -9999.0
+                                 : up + (c >= 30 && c < 50 ? 0.95 : 1.0) + 1e-4 * ((c * 7 + r * 5) % 3))
+          << ' ';
+    out << '\n';
+  }
+}
+
+std::string contentOf(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+TEST(SectionCommand, MeasuresAGrooveAndAStep) {
+  const TempFolder folder;
+  const std::string scan = folder.file("groove.asc");
+  writeGroove(scan);
+  const auto report = fettleJson({"section", scan, "--unit", "mm", "--start", "0,2", "--end", "7.9,2",
+                                  "--width", "1", "--groove", "auto", "--step", "2.95", "--cursors", "1,4"});
+  const auto& section = report["sections"][0];
+  EXPECT_EQ(section["places"], 80);
+  EXPECT_EQ(section["lanes"], 11);
+  EXPECT_NEAR(section["groove"]["edges"][0], 2.95, 1e-9);
+  EXPECT_NEAR(section["groove"]["edges"][1], 4.95, 1e-9);
+  EXPECT_NEAR(section["groove"]["depth_mm"], 0.05, 1e-4);
+  EXPECT_GT(section["groove"]["depth_error_mm"].get<double>(), 0.0);
+  EXPECT_NEAR(section["cursors"]["dz_mm"], -0.05, 2e-4);
+  const Outcome text =
+      fettle({"section", scan, "--unit", "mm", "--start", "0,2", "--end", "7.9,2", "--groove", "auto"});
+  EXPECT_NE(text.out.find("depth 0.0"), std::string::npos) << text.out;
+}
+
+TEST(SectionCommand, WritesTableDrawingAndPictureOfBothScans) {
+  const TempFolder folder;
+  const std::string scan = folder.file("groove.asc"), other = folder.file("other.asc");
+  writeGroove(scan);
+  writeGroove(other, 0.25);
+  const auto report = fettleJson({"section", scan, "--compare", other, "--unit", "mm", "--line", "0,1:7.9,1",
+                                  "--line", "1,1:1,3:4,3", "--csv", folder.file("p.csv"), "--dxf",
+                                  folder.file("p.dxf"), "--plot", folder.file("p.png")});
+  ASSERT_EQ(report["sections"].size(), 2U);
+  EXPECT_NEAR(report["sections"][0]["deviation"]["mean_mm"], 0.25, 1e-6);
+  EXPECT_EQ(report["sections"][0]["without_height"], 1);
+  const std::string csv = contentOf(folder.file("p.csv"));
+  EXPECT_TRUE(csv.starts_with("section,along_mm,x_mm,y_mm,height_mm,share,other_mm\n0,0,0,1,1"));
+  EXPECT_NE(csv.find("\n0,1,1,1,,0,\n"), std::string::npos);
+  // A hole divides the first polyline.
+  const std::string dxf = contentOf(folder.file("p.dxf"));
+  std::size_t polylines = 0;
+  for (std::size_t at = dxf.find("POLYLINE\n8\nSECTION_0\n"); at != std::string::npos;
+       at = dxf.find("POLYLINE\n8\nSECTION_0\n", at + 1))
+    ++polylines;
+  EXPECT_EQ(polylines, 2U);
+  EXPECT_TRUE(contentOf(folder.file("p.png")).starts_with("\x89PNG"));
+}
+
+TEST(SectionCommand, FollowsTheLinesOfAFile) {
+  const TempFolder folder;
+  const std::string scan = folder.file("groove.asc");
+  writeGroove(scan);
+  std::ofstream(folder.file("l.geojson"))
+      << R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":)"
+      << R"({"type":"LineString","coordinates":[[0.5,2],[7.5,2]]}}]})";
+  const auto report = fettleJson({"section", scan, "--unit", "mm", "--lines", folder.file("l.geojson"),
+                                  "--step", "2.45", "--within", "1,4"});
+  EXPECT_NEAR(report["sections"][0]["length_mm"], 7.0, 1e-5);
+  EXPECT_NEAR(report["sections"][0]["step"]["step_mm"], -0.05, 2e-4);
+}
+
+TEST(SectionCommand, RefusesWhatItCannotMeasure) {
+  const TempFolder folder;
+  const std::string scan = folder.file("groove.asc");
+  writeGroove(scan);
+  const auto refused = [&](std::vector<std::string> words, const std::string& word) {
+    words.insert(words.begin(), {"section", scan, "--unit", "mm"});
+    expectRefused(fettle(words), word);
+  };
+  refused({}, "--start");
+  refused({"--start", "1,1"}, "--end");
+  refused({"--line", "1,1"}, "--line");
+  refused({"--line", "1,1:2"}, "--line");
+  refused({"--line", "50,50:60,60"}, "no sample");
+  refused({"--line", "1,2:7,2", "--step", "x"}, "--step");
+  refused({"--line", "1,2:7,2", "--groove", "3"}, "--groove");
+  refused({"--line", "1,2:7,2", "--arc", "0,1"}, "curvature");
+  refused({"--line", "1,2:7,2", "--cutoff", "5"}, "cut-off");
+  refused({"--line", "1,2:7,2", "--cursors", "1,9"}, "cursor");
+  refused({"--line", "1,2:7,2", "--plot", folder.file("p.bmp")}, ".svg");
+  refused({"--probe", "1"}, "--probe");
+}
+
+}  // namespace
+}  // namespace fettle::tests

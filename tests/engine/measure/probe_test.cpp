@@ -1,0 +1,77 @@
+#include "engine/measure/probe.h"
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/field/builder.h"
+
+namespace fettle::engine {
+namespace {
+
+Version probedField(const std::function<double(double, double)>& z) {
+  Grid grid;
+  grid.width = 81;
+  grid.height = 61;
+  grid.spacing_x = 0.1;
+  grid.spacing_y = 0.2;
+  std::vector<float> heights;
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) heights.push_back(static_cast<float>(z(c * 0.1, r * 0.2)));
+  return makeField(grid, heights);
+}
+
+TEST(Probe, OfAQuadraticIsTheQuadratic) {
+  const Version field = probedField([](double x, double y) {
+    return 0.5 + 0.3 * (x - 4.0) + 0.05 * (x - 4.0) * (x - 4.0) - 0.02 * (y - 6.0) * (y - 6.0);
+  });
+  const auto p = probeAt(field, {4.0, 6.0}, 1.0, Region::kAll, 0.0);
+  ASSERT_TRUE(p) << p.error().line();
+  EXPECT_NEAR(p->height_mm.value, 0.5, 1e-7);
+  EXPECT_NEAR(p->slope_deg.value, std::atan(0.3) * 180.0 / 3.14159265358979, 1e-4);
+  EXPECT_NEAR(p->rises_to_deg, 0.0, 1e-4);
+  // Along x 2 a / w^3, along y 2 b / w, w^2 = 1 + 0.3^2.
+  const double w = std::sqrt(1.09);
+  EXPECT_NEAR(p->most_curvature, 0.1 / (w * w * w), 1e-5);
+  EXPECT_NEAR(p->least_curvature, -0.04 / w, 1e-5);
+  EXPECT_NEAR(p->mean_curvature.value, 0.5 * (0.1 / (w * w * w) - 0.04 / w), 1e-5);
+}
+
+// Figures of 1,000 scans of noise: the stated errors are those that they have, within their own scatter of 2.2 % (1 sd).
+TEST(Probe, StatedErrorsAreThoseOfTheNoise) {
+  double height = 0.0, curvature = 0.0, slope = 0.0;
+  ProbeFigures last;
+  for (int seed = 0; seed < 1000; ++seed) {
+    std::mt19937_64 random(static_cast<std::uint64_t>(seed) + 1);
+    std::normal_distribution<double> normal(0.0, 0.001);
+    const Version field = probedField([&](double x, double) { return 0.2 * x + normal(random); });
+    const auto p = probeAt(field, {4.03, 6.11}, 1.0, Region::kAll, 0.001);
+    ASSERT_TRUE(p) << p.error().line();
+    height += std::pow(p->height_mm.value - 0.2 * 4.03, 2) / 1000.0;
+    slope += std::pow(p->slope_deg.value - std::atan(0.2) * 180.0 / 3.14159265358979, 2) / 1000.0;
+    curvature += std::pow(p->mean_curvature.value, 2) / 1000.0;
+    last = *p;
+  }
+  EXPECT_NEAR(std::sqrt(height) / last.height_mm.error, 1.0, 0.1);
+  EXPECT_NEAR(std::sqrt(slope) / last.slope_deg.error, 1.0, 0.1);
+  EXPECT_NEAR(std::sqrt(curvature) / last.mean_curvature.error, 1.0, 0.1);
+}
+
+TEST(Probe, RefusesWhatShowsNoSurface) {
+  const Version field = probedField([](double x, double) { return x; });
+  EXPECT_FALSE(probeAt(field, {4.0, 6.0}, 0.05, Region::kAll, 0.0));
+  EXPECT_FALSE(probeAt(field, {4.0, 6.0}, 0.15, Region::kAll, 0.0));
+  EXPECT_FALSE(probeAt(field, {400.0, 6.0}, 1.0, Region::kAll, 0.0));
+  EXPECT_FALSE(probeAt(field, {std::nan(""), 6.0}, 1.0, Region::kAll, 0.0));
+  EXPECT_FALSE(probeAt(field, {4.0, 6.0}, 1e9, Region::kAll, 0.0));
+  const Version holes = probedField([](double, double) { return std::numeric_limits<double>::quiet_NaN(); });
+  EXPECT_FALSE(probeAt(holes, {4.0, 6.0}, 1.0, Region::kAll, 0.0));
+}
+
+}  // namespace
+}  // namespace fettle::engine

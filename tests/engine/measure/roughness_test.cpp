@@ -1,0 +1,119 @@
+#include "engine/measure/roughness.h"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace fettle::engine {
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+Section profileOf(std::vector<double> heights, double step_mm) {
+  Section section;
+  section.step_mm = step_mm;
+  section.covariance.assign(heights.size(), 1.0);
+  section.share.assign(heights.size(), 1.0);
+  section.position.resize(heights.size());
+  section.height = std::move(heights);
+  return section;
+}
+
+Roughness measured(const Section& section, double cutoff_mm) {
+  const auto roughness = roughnessOf(section, {0.0, section.lengthMm()}, cutoff_mm);
+  EXPECT_TRUE(roughness) << roughness.error().line();
+  return roughness ? *roughness : Roughness{};
+}
+
+// ISO 16610-21:2011, 4.3: of a sine of wavelength L the mean line has the share exp(-pi (a c / L)^2), a half at the cut-off.
+TEST(Roughness, MeanLineOfASineHasTheStandardsAmplitude) {
+  const double step = 0.001, cutoff = 0.8;
+  for (const double wavelength : {0.4, 0.8, 1.6, 4.0}) {
+    std::vector<double> heights(8001);
+    for (std::size_t i = 0; i < heights.size(); ++i)
+      heights[i] = std::sin(kTurn * static_cast<double>(i) * step / wavelength);
+    const std::vector<double> line = gaussianMeanLine(heights, step, cutoff);
+    const double share = std::exp(-std::numbers::ln2 * std::pow(cutoff / wavelength, 2));
+    // Weights beyond one cut-off are left out: less than 1.2e-6 of all.
+    for (std::size_t i = 1000; i < 7000; i += 100)
+      EXPECT_NEAR(line[i], share * heights[i], 3e-6) << wavelength;
+  }
+}
+
+// Each mean by its definition, near and far from the ends.
+TEST(Roughness, MeanLineIsTheWeightedMean) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  std::vector<double> heights(60);
+  for (double& z : heights) z = normal(random);
+  const double step = 0.1, cutoff = 1.0;
+  const std::vector<double> line = gaussianMeanLine(heights, step, cutoff);
+  for (int i = 0; i < 60; ++i) {
+    long double sum = 0.0, whole = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      const double x = (i - k) * step;
+      if (std::abs(i - k) > 10) continue;
+      const long double weight =
+          std::exp(-std::numbers::pi * x * x / (std::numbers::ln2 / std::numbers::pi * cutoff * cutoff));
+      sum += weight * static_cast<long double>(heights[static_cast<std::size_t>(k)]);
+      whole += weight;
+    }
+    EXPECT_NEAR(line[static_cast<std::size_t>(i)], static_cast<double>(sum / whole), 1e-14) << i;
+  }
+}
+
+TEST(Roughness, OfASineIsThatOfTheSine) {
+  const double step = 0.0005, cutoff = 0.8, wavelength = 0.08, amplitude = 0.001;
+  std::vector<double> heights(11201);  // 5.6 mm on a slope
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    heights[i] = 3.0 + 0.1 * static_cast<double>(i) * step +
+                 amplitude * std::sin(kTurn * static_cast<double>(i) * step / wavelength);
+  const Roughness r = measured(profileOf(heights, step), cutoff);
+  EXPECT_EQ(r.lengths, 6);
+  EXPECT_NEAR(r.evaluated.from_mm, 0.4, 1e-9);
+  EXPECT_NEAR(r.evaluated.to_mm, 5.2, 1e-9);
+  // The mean line has exp(-100 ln 2) of it; at the ends its weights are one-sided beyond 0.4 mm, 0.4 % of the slope of
+  // what is left, here of the sine's own line.
+  EXPECT_NEAR(r.ra, amplitude * 2.0 / std::numbers::pi, 2e-3 * amplitude);
+  EXPECT_NEAR(r.rq, amplitude / std::numbers::sqrt2, 2e-3 * amplitude);
+  EXPECT_NEAR(r.rz, 2.0 * amplitude, 2e-3 * amplitude);
+  EXPECT_NEAR(r.rsk, 0.0, 0.01);
+  EXPECT_NEAR(r.rku, 1.5, 0.01);
+  EXPECT_NEAR(r.rsm, wavelength, 1e-4);
+}
+
+// A ripple far below a tenth of Rz makes no elements of its own.
+TEST(Roughness, SmallPeaksCountToTheirNeighbours) {
+  const double step = 0.0005, wavelength = 0.1;
+  std::vector<double> heights(8001);
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double x = static_cast<double>(i) * step;
+    heights[i] = std::sin(kTurn * x / wavelength) + 0.1 * std::sin(kTurn * x / (wavelength / 17.3));
+  }
+  EXPECT_NEAR(measured(profileOf(heights, step), 0.8).rsm, wavelength, 0.02 * wavelength);
+}
+
+TEST(Roughness, RefusesWhatACutOffDoesNotFit) {
+  std::vector<double> heights(101, 0.0);
+  const Section flat = profileOf(heights, 0.01);
+  EXPECT_FALSE(roughnessOf(flat, {0.0, 1.0}, 0.03));
+  EXPECT_FALSE(roughnessOf(flat, {0.0, 1.0}, 0.6));
+  EXPECT_FALSE(roughnessOf(flat, {2.0, 3.0}, 0.1));
+  const Roughness r = measured(flat, 0.1);
+  EXPECT_EQ(r.rq, 0.0);
+  EXPECT_TRUE(std::isnan(r.rsk));
+  EXPECT_TRUE(std::isnan(r.rsm));
+  // The longest part without a hole counts.
+  heights[40] = std::numeric_limits<double>::quiet_NaN();
+  const Roughness part = measured(profileOf(heights, 0.01), 0.1);
+  EXPECT_GT(part.evaluated.from_mm, 0.41);
+  EXPECT_EQ(part.lengths, 4);
+}
+
+}  // namespace
+}  // namespace fettle::engine
