@@ -208,9 +208,9 @@ double matchedStep(ScanLine a, ScanLine b, std::vector<double>& scratch) {
   return now;
 }
 
-class OffsetSearch {
+class LineSearch {
  public:
-  OffsetSearch(const Version& field, const LineOptions& options, JobControl& job)
+  LineSearch(const Version& field, const LineOptions& options, JobControl& job)
       : field_(field.reader()), options_(options), job_(job) {
     const bool rows = options.axis == ScanAxis::kX;
     found_.axis = options.axis;
@@ -391,7 +391,7 @@ Result<LineOffsets> findLineOffsets(const Version& field, const LineOptions& opt
   if (options.degree < 0 || options.degree > LineOptions::kMostDegree)
     return inputError(fmt::format("a line's polynomial of degree {} is not possible", options.degree), "lines",
                       fmt::format("take 0 to {}", LineOptions::kMostDegree));
-  return OffsetSearch(field, options, job).run();
+  return LineSearch(field, options, job).run();
 }
 
 }  // namespace fettle::engine
