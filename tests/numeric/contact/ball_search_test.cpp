@@ -186,9 +186,11 @@ TEST(BallSearch, ATickAtRestOnNeedlesIsBoundedAtEveryRadius) {
     const Worst rest = worstOf(cells * kSpacing, kBallSearches, true);
     const Worst moved = worstOf(cells * kSpacing, kBallSearches, false);
     const Worst fewer = worstOf(cells * kSpacing, kBallSearches / 2, false);
-    std::printf("ball of %2.0f cells on needles, worst tick: at rest %.0f us, %d searches; moved %.0f us, %d; of %d at most "
-                "%.0f us, %d\n",
-                cells, rest.us, rest.searches, moved.us, moved.searches, kBallSearches / 2, fewer.us, fewer.searches);
+    std::printf(
+        "ball of %2.0f cells on needles, worst tick: at rest %.0f us, %d searches; moved %.0f us, %d; of %d "
+        "at most "
+        "%.0f us, %d\n",
+        cells, rest.us, rest.searches, moved.us, moved.searches, kBallSearches / 2, fewer.us, fewer.searches);
     EXPECT_GT(rest.searches, 0) << cells;
     EXPECT_LE(rest.searches, kBallSearches + kOfOneStep) << cells;
     EXPECT_LE(fewer.searches, moved.searches) << cells;

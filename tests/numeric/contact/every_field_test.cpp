@@ -76,7 +76,9 @@ class EveryField : public ::testing::TestWithParam<Case> {
     double mm = 0.0, slope = 0.0;
   };
   ReachIn reachIn(const glm::dvec3& centre) const;
-  double ballTolerance() const { return 1e-6 * std::min(scene().tip_radius_mm, cellMm()) + ulps(64, hard().size_mm); }
+  double ballTolerance() const {
+    return 1e-6 * std::min(scene().tip_radius_mm, cellMm()) + ulps(64, hard().size_mm);
+  }
 
  private:
   HardField hard_ = tests::hardField(GetParam().field);
@@ -265,7 +267,8 @@ TEST_P(EveryField, TheProxyIsNeverFartherThanTheOneBefore) {
   // The ball was stopped on its way last, by the bound of its steps: free, it is where no tick tells.
   bool on_its_way = false;
   glm::dvec3 proxy{0.0}, before{0.0};
-  std::int64_t held = 0, entries = 0, far_entries = 0, handed_over = 0, side_entries = 0, pushed = 0, placed = 0;
+  std::int64_t held = 0, entries = 0, far_entries = 0, handed_over = 0, side_entries = 0, pushed = 0,
+               placed = 0;
   double most_pushed = 0.0;
   for (const StrokeSample& sample : tests::wander(hard(), 6000, 4, Jumps::kNo)) {
     const std::int64_t bounds_hit = tick.counters().search_bound_hits;
@@ -296,7 +299,8 @@ TEST_P(EveryField, TheProxyIsNeverFartherThanTheOneBefore) {
         // wrong side of a steep cell, and end farther: counted.
         ++entries;
         far_entries += farther ? 1 : 0;
-        if (choice() == Choice::kCertified || (ball() && hard().slope < kNeedle && !is_placed && !on_its_way)) {
+        if (choice() == Choice::kCertified ||
+            (ball() && hard().slope < kNeedle && !is_placed && !on_its_way)) {
           ASSERT_FALSE(farther) << distance << " > " << allowed << " at " << e.x << ' ' << e.y << ' ' << e.z;
         }
       }
@@ -308,10 +312,12 @@ TEST_P(EveryField, TheProxyIsNeverFartherThanTheOneBefore) {
     before = e;
   }
   EXPECT_GT(held, 100);
-  tests::tellRare(name(), tick.counters(),
-                  fmt::format("{} of {} ticks handed over to a farther proxy, {} of {} entries far, {} pushed out by {:.2f} "
-                              "of what may be at most, from {:.1e} mm deep, {} placed again",
-                              handed_over, held, far_entries, entries, pushed, most_pushed, deepest_, placed));
+  tests::tellRare(
+      name(), tick.counters(),
+      fmt::format(
+          "{} of {} ticks handed over to a farther proxy, {} of {} entries far, {} pushed out by {:.2f} "
+          "of what may be at most, from {:.1e} mm deep, {} placed again",
+          handed_over, held, far_entries, entries, pushed, most_pushed, deepest_, placed));
 }
 
 // A tip at rest has a proxy at rest. It never goes farther from the endpoint again, so that it cannot dither
@@ -356,9 +362,10 @@ TEST_P(EveryField, ATipAtRestHasAProxyAtRest) {
   if (!ball()) {
     EXPECT_LE(worst, ulps(500 * 4, hard().size_mm));
   }
-  tests::tellRare(name(), tick.counters(),
-                  fmt::format("{} rests, {} moved after 8 ticks, by {:.1e} cells at most, {} entered a needle", rests, late,
-                              worst / cellMm(), entered));
+  tests::tellRare(
+      name(), tick.counters(),
+      fmt::format("{} rests, {} moved after 8 ticks, by {:.1e} cells at most, {} entered a needle", rests,
+                  late, worst / cellMm(), entered));
 }
 
 std::string caseName(const ::testing::TestParamInfo<Case>& info) {
