@@ -11,6 +11,7 @@
 #include "app/commands/command.h"
 #include "app/commands/form_option.h"
 #include "app/commands/output_checks.h"
+#include "app/commands/scale_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
@@ -26,6 +27,7 @@ namespace {
 struct MeasureArguments {
   std::vector<std::string> scans;
   FormArguments form;
+  ScaleArguments scale;
   std::vector<std::string> groups;  // empty: all
   std::vector<std::string> at_heights;
   std::vector<double> at_ratios = {10.0, 80.0};
@@ -70,15 +72,16 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   if (!imported) return tl::unexpected(imported.error());
   const auto marked = withMarks(imported->field, options.form.marks, job);
   if (!marked) return tl::unexpected(marked.error());
-  const auto fit = formOf(*marked, scan, *imported, options.form, job);
-  if (!fit) return tl::unexpected(fit.error());
+  const auto limited = scaleLimited(*marked, scan, *imported, options.form, options.scale, job);
+  if (!limited) return tl::unexpected(limited.error());
   const engine::Grid& grid = imported->field.grid();
   const auto areal = arealOptionsOf(options, grid);
   if (!areal) return tl::unexpected(areal.error());
-  const auto measured = engine::measureAreal(*marked, fit->form, *areal, job);
+  const auto measured = engine::measureAreal(limited->field, limited->form, *areal, job);
   if (!measured) return tl::unexpected(measured.error());
   Report report;
-  addForm(report, options.form, *fit, grid);
+  addForm(report, options.form, limited->fit, grid);
+  addScale(report, options.scale);
   addAreal(report, *measured, options.groups, grid);
   if (!areal->functional) return report;
   report["smr"] = Report::array();
@@ -137,6 +140,8 @@ void printOneMeasured(const Report& report) {
   if (report.contains("tilt_x"))
     fmt::print("tilt {:.4g} degrees along x, {:.4g} along y\n", report["tilt_x"].get<double>(),
                report["tilt_y"].get<double>());
+  if (report.contains("s_filter")) fmt::print("S-filter {:.6g} mm\n", report["s_filter"].get<double>());
+  if (report.contains("l_filter")) fmt::print("L-filter {:.6g} mm\n", report["l_filter"].get<double>());
   printAreal(report);
 }
 
@@ -188,9 +193,11 @@ void addMeasure(Command root, Chosen& chosen) {
                 .text = "Write a row per scan and parameter, in the scan's units",
                 .kind = ValueKind::kOutput}});
   addFormOptions(command, options->form);
+  addScaleOptions(command, options->scale);
   addScanOptions(command, options->reading);
   command.notes(
-      "No S- or L-filter is applied: filter the scan before. Ratios are shares of 1 in a report, per cent in "
+      "No S- or L-filter is applied unless named. At borders and holes their weights are normalised. Ratios "
+      "are shares of 1 in a report, per cent in "
       "text. Between samples "
       "the surface is the bilinear patch. The autocorrelation reaches to half of the surface. Std is the "
       "direction "
@@ -199,6 +206,8 @@ void addMeasure(Command root, Chosen& chosen) {
   command.examples({{"fettle measure scan.tif", "All parameters about the least-squares plane"},
                     {"fettle measure scan.tif other.tif --only spatial --csv texture.csv",
                      "Heights and spatial parameters of several scans, as a table"},
+                    {"fettle measure scan.tif --s-filter 2.5 --l-filter 25",
+                     "Of the S-L surface: waves between 2.5 and 25 mm"},
                     {"fettle measure scan.tif --form poly2 --robust",
                      "About a slightly bent surface, as if steps and spikes were not there"}});
 }

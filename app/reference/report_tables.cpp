@@ -285,6 +285,8 @@ std::vector<ReportSchema> inspecting() {
        {{"one scan",
          joined(form(),
                 {unit(),
+                 {"s_filter?", "number", "cut-off of --s-filter, mm"},
+                 {"l_filter?", "number", "cut-off of --l-filter, mm"},
                  {"unit_mm", "number", "millimetres in a height unit"},
                  {"lateral_unit", "string", "of lengths along the surface"},
                  {"lateral_unit_mm", "number", "millimetres in it"},

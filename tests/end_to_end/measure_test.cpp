@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -144,6 +145,29 @@ TEST(Measure, MaterialRatiosAreThoseAskedFor) {
   EXPECT_NEAR(report["smr"][2]["height"], 5e-4, 1e-12);
   EXPECT_NEAR(report["smc"][0]["height"], 0.0, 2e-4);
   expectRefused(fettle({"measure", scan, "--unit", "mm", "--at-height", "1kg"}), "--at-height");
+}
+
+// The wave of 1.2 mm: half of it is left by an S-filter of its length, and half by an L-filter of its length.
+TEST(Measure, FiltersLimitTheScales) {
+  const TempFolder folder;
+  const std::string scan = folder.file("wave.asc");
+  writeWave(scan);
+  const auto sq = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"measure", scan, "--unit", "mm", "--only", "height"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return fettleJson(arguments)["sq"].get<double>();
+  };
+  const double all = sq({});
+  // Borders within a wave of a field of five: what they add is seen beside the closed formula.
+  EXPECT_NEAR(sq({"--s-filter", "1.2"}) / all, 0.5, 0.06);
+  EXPECT_NEAR(sq({"--l-filter", "1200um"}) / all, 0.5, 0.06);
+  EXPECT_NEAR(sq({"--s-filter", "0.2", "--l-filter", "5"}) / all, 1.0, 0.08);
+  const auto report = fettleJson({"measure", scan, "--unit", "mm", "--s-filter", "0.2", "--l-filter", "5"});
+  EXPECT_EQ(report["s_filter"], 0.2);
+  EXPECT_EQ(report["l_filter"], 5.0);
+  expectRefused(fettle({"measure", scan, "--unit", "mm", "--s-filter", "0.1"}), "--s-filter");
+  expectRefused(fettle({"measure", scan, "--unit", "mm", "--s-filter", "5", "--l-filter", "2"}),
+                "--l-filter");
 }
 
 TEST(Measure, OfFeetIsPrintedInFeet) {

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include "app/commands/command.h"
+#include "app/commands/form_option.h"
+#include "engine/base/error.h"
+#include "engine/field/version.h"
+#include "engine/io/import.h"
+#include "engine/measure/form.h"
+
+namespace fettle::app {
+
+/// The scales that a surface is limited to: cut-offs (nesting indices) as typed, in millimetres or with a unit; empty:
+/// none.
+struct ScaleArguments {
+  std::string s_filter;
+  std::string l_filter;
+};
+
+/// --s-filter, --l-filter.
+void addScaleOptions(Command command, ScaleArguments& arguments);
+
+/// A field as it is measured: `field` about `form`.
+struct ScaleLimited {
+  engine::Version field;
+  engine::FormFit fit;  ///< what was taken out between the filters
+  engine::PolynomialForm
+      form;  ///< that of `fit`, or of height 0 where an L-filter made the form's rest heights
+};
+
+/// S-filter, form (F-operation) and L-filter, in the order of ISO 25178-3: the S-F or S-L surface. Errors: as
+/// engine::gaussianFiltered and formOf, naming the option; an L-filter not longer than the S-filter (kInput).
+[[nodiscard]] engine::Result<ScaleLimited> scaleLimited(const engine::Version& field, const std::string& scan,
+                                                        const engine::Imported& imported,
+                                                        const FormArguments& form,
+                                                        const ScaleArguments& scale, engine::JobControl& job);
+
+/// s_filter and l_filter [mm], of those that are there.
+void addScale(Report& report, const ScaleArguments& scale);
+
+}  // namespace fettle::app
