@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -146,7 +148,11 @@ AngularSpectrum spectrumOf(Padded& plane, const Autocorrelation& correlation, Jo
     const double angle = pi * bin / AngularSpectrum::kBins, cosine = std::cos(angle), sine = std::sin(angle);
     const double low = 1.0 / std::hypot(cosine / low_x, sine / low_y);
     double total = 0.0;
-    for (double f = low; f <= high; f += step) total += f * power(f * cosine * lines_x, f * sine * lines_y);
+    const auto steps = static_cast<std::int64_t>((high - low) / step);
+    for (std::int64_t i = 0; i <= steps && low <= high; ++i) {
+      const double f = low + static_cast<double>(i) * step;
+      total += f * power(f * cosine * lines_x, f * sine * lines_y);
+    }
     spectrum.power[static_cast<std::size_t>(bin)] = total;
     sum += total;
   }
