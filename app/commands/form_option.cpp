@@ -1,6 +1,5 @@
 #include "app/commands/form_option.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -94,11 +93,7 @@ engine::Result<engine::FormFit> formOf(const engine::Version& field, const std::
   if (fit->samples <= engine::PolynomialForm::terms(options.degree))
     warn(fmt::format("{}: {} samples do not determine the form {}, which goes through all of them",
                      shownInput(scan), fit->samples, arguments.form));
-  // The importer's only statement that columns and rows are rays, not places.
-  const auto in_perspective = [](const std::string& warning) {
-    return warning.find("perspective") != std::string::npos;
-  };
-  if (std::ranges::any_of(imported.warnings, in_perspective))
+  if (imported.in_perspective)
     warn(
         fmt::format("{}: in a camera's perspective a plane is bent: form and figures are those of the "
                     "picture of distances, convert the scan to points and grid them first",

@@ -69,6 +69,8 @@ struct Imported {
   std::optional<GriddingReport> gridding;  ///< point clouds only
   /// Heights that look like undeclared holes (lone_value.h); `warnings` name each.
   std::vector<float> lone_values;
+  /// Columns and rows are rays of a camera and heights distances from it: a plane is bent.
+  bool in_perspective = false;
 };
 
 /// "mm", "m", "um", "µm", "nm", "cm", "km", "ft", "ftUS", "in" and their English names, any case; nothing for

@@ -56,6 +56,7 @@ double medianHeight(const Version& field) {
 }  // namespace
 
 void placeInPerspective(Imported& image, const DepthCamera& camera) {
+  image.in_perspective = true;
   const double distance = std::abs(medianHeight(image.field));
   Grid grid = image.field.grid();
   const std::string lateral = grid.lateral_unit.name, height = grid.height_unit.name;

@@ -275,6 +275,7 @@ TEST(Pcd, RowsOfACameraStayItsPixels) {
   FETTLE_LOAD_BYTES(scan, "a.pcd", pcd("binary_compressed", points, 30));
   ASSERT_EQ(scan.field.grid().width, 30);
   ASSERT_EQ(scan.field.grid().height, 20);
+  EXPECT_TRUE(scan.in_perspective);
   EXPECT_TRUE(warned(scan.warnings, "perspective"));
   EXPECT_TRUE(warned(scan.warnings, "fx 500, fy 510, cx 15.5, cy 9"));
   for (int v = 0; v < 20; ++v)
@@ -291,6 +292,7 @@ TEST(Pcd, RowsOfACameraStayItsPixels) {
   cells.cell_size = 0.01;
   FETTLE_LOAD_BYTES(above, "a.pcd", pcd("binary", points, 30), cells);
   EXPECT_TRUE(above.gridding.has_value());
+  EXPECT_FALSE(above.in_perspective);
   EXPECT_FALSE(warned(above.warnings, "perspective"));
 }
 
