@@ -5,23 +5,29 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/finished_scans.h"
 #include "app/commands/recipe_file.h"
 #include "app/commands/resume_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/line_edits.h"
+#include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "engine/base/stopwatch.h"
+#include "engine/field/piece.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
 #include "engine/filter/pass.h"
+#include "engine/formats/formats.h"
 #include "engine/resume/work_identity.h"
 
 namespace fettle::app {
@@ -33,6 +39,7 @@ struct ApplyArguments {
   BatchOptions files;
   int threads = 0;
   ResumeOptions resume;
+  bool estimate = false;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
@@ -133,12 +140,58 @@ engine::Status take(const RecipeLevel& step, Applied& at, engine::JobControl& jo
   return {};
 }
 
+// The steps that take long, of a scan as it is before the first one.
+engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recipe& recipe,
+                                      const BatchTask& task, const engine::Version& field,
+                                      const engine::Version& original, engine::JobControl& job) {
+  FilterCompute processor(Compute::kCpu, nullptr);
+  std::vector<engine::FilterSpec> specs;  // that the steps refer to
+  specs.reserve(recipe.steps.size());
+  std::vector<PlannedStep> steps;
+  for (const RecipeStep& step : recipe.steps) {
+    if (const auto* filter = std::get_if<RecipeFilter>(&step)) {
+      engine::FilterSpec spec = filter->spec;
+      spec.threads = options.threads;
+      spec.scope = engine::FilterScope::kKeepMarks;  // marks of an earlier step are not there yet
+      if (filter->range_sigma) spec.range_sigma = filter->range_sigma->in(field.grid());
+      const auto ready = engine::withMeasuredRange(spec, field, job);
+      // As in foresee(): the step says it itself.
+      if (!ready && !options.estimate && ready.error().kind == engine::ErrorKind::kInput) return Foreseen{};
+      if (!ready) return tl::unexpected(ready.error());
+      specs.push_back(*ready);
+      steps.emplace_back(PlannedFilter{specs.back(), processor});
+    } else if (const auto* edges = std::get_if<RecipeEdges>(&step)) {
+      steps.emplace_back(
+          PlannedOnPieces{[&field, edges](const engine::SampleRect& r, engine::JobControl& own) {
+            const engine::Version piece = engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
+            const auto map = engine::findEdges(piece, edges->scale, own);
+            if (!map) return engine::Result<engine::Version>(tl::unexpected(map.error()));
+            if (edges->become == EdgesBecome::kLines) return drawSuggestion(piece, *map, edges->choice, own);
+            auto marked = engine::suggestMarks(piece, *map, edges->choice, own);
+            return marked ? engine::Result<engine::Version>(std::move(marked->field))
+                          : engine::Result<engine::Version>(tl::unexpected(marked.error()));
+          }});
+    }
+  }
+  engine::ExportOptions writing = options.writing;
+  writing.original = original;
+  const PlannedWork planned{
+      .field = field,
+      .original = original,
+      .steps = std::move(steps),
+      .out = task.out,
+      .extension = isStream(task.out) ? withDot(task.to) : engine::extensionOf(task.out),
+      .writing = writing,
+      .kept = options.resume.resume};
+  return foresee(planned, shownOutput(task.out), options.estimate, job);
+}
+
 engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& recipe, const BatchTask& task,
                                   engine::JobControl& job) {
   auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const engine::Version original = imported->original ? *imported->original : imported->field;
-  const FinishedScans finished(options.resume.resume && options.files.many());
+  const FinishedScans finished(options.resume.resume && options.files.many() && !options.estimate);
   std::string identity;
   if (options.resume.resume) {
     engine::FilterSpec any;
@@ -147,6 +200,11 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
                writingIdentity(original.grid(), options.writing);
   }
   if (auto report = finished.earlier(task.out, identity)) return *std::move(report);
+  engine::Result<Foreseen> foreseen;
+  if (memoryPlace(task.out) == nullptr)
+    foreseen = foreseeSteps(options, recipe, task, imported->field, original, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   const engine::Stopwatch watch;
   Applied at{imported->field, original, task, *imported, options};
   for (std::size_t k = 0; k < recipe.steps.size(); ++k)
@@ -187,7 +245,7 @@ engine::Result<Report> apply(const ApplyArguments& options, engine::JobControl& 
   };
   if (options.files.many()) {
     auto report = runBatch(*tasks, job, one);
-    if (report) FinishedScans(options.resume.resume).end(*tasks, *report);
+    if (report && !options.estimate) FinishedScans(options.resume.resume).end(*tasks, *report);
     return report;
   }
   const ProgressLine progress(job);
@@ -213,11 +271,13 @@ void addApply(Command root, Chosen& chosen) {
                 .text = "Threads to use",
                 .range = Range{0.0, engine::FilterSpec::kMaxThreads},
                 .otherwise = "0, one per core"}});
+  addEstimateOption(command, options->estimate);
   addResumeOptions(command, options->resume);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
   command.notes(
-      "With --resume each filter of the recipe keeps its work in a file of its own, OUT.stepN.resume. docs/formats.md describes the keys of a recipe. A filter without range_sigma takes that of each "
+      "With --resume each filter of the recipe keeps its work in a file of its own, OUT.stepN.resume. "
+      "docs/formats.md describes the keys of a recipe. A filter without range_sigma takes that of each "
       "scan's own "
       "noise.");
   command.examples({{"fettle apply clean.toml scan.tif clean.tif", "One scan"},

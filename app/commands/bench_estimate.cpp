@@ -64,7 +64,8 @@ engine::Result<Report> row(const engine::Version& field, const engine::FilterSpe
     if (!folder) return tl::unexpected(folder.error());
     const std::string extension = "." + options.format;
     const std::string out = folder->path() + "/out" + extension;
-    const PlannedWork work{field, field, spec, compute, out, extension, {}, false};
+    const PlannedWork work{field, field, {PlannedFilter{spec, compute}}, out, extension, {}};
+    engine::resetPeak();
     const auto estimate = estimateWork(work, true, job);
     if (!estimate) return tl::unexpected(estimate.error());
     if (!*estimate) return engine::failure("nothing was sampled", std::string(engine::name(spec.kind)));
@@ -77,7 +78,7 @@ engine::Result<Report> row(const engine::Version& field, const engine::FilterSpe
     if (!written) return tl::unexpected(written.error());
     std::error_code error;
     const auto bytes = std::filesystem::file_size(out, error);
-    time.add((*estimate)->filter_seconds, filter_seconds);
+    time.add((*estimate)->work_seconds, filter_seconds);
     memory.add(static_cast<double>((*estimate)->memory_bytes),
                static_cast<double>(engine::residentMemory().peak));
     disk.add(static_cast<double>((*estimate)->disk_bytes), error ? 1.0 : static_cast<double>(bytes));

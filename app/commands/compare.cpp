@@ -1,14 +1,20 @@
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/typed_values.h"
 #include "app/terminal.h"
+#include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "engine/compare/compare.h"
+#include "engine/field/piece.h"
+#include "engine/formats/formats.h"
 
 namespace fettle::app {
 
@@ -22,6 +28,7 @@ struct CompareArguments {
   std::string deviation;
   Replacing replacing = Replacing::kNoWork;
   std::string to;
+  bool estimate = false;
   ScanOptions reading;
 };
 
@@ -51,6 +58,32 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
   if (!a) return tl::unexpected(a.error());
   const auto b = loadScan(options.b, options.reading, job);
   if (!b) return tl::unexpected(b.error());
+  const bool same_size =
+      a->field.grid().width == b->field.grid().width && a->field.grid().height == b->field.grid().height;
+  if (same_size) {
+    const PlannedOnPieces comparing{
+        [&](const engine::SampleRect& r, engine::JobControl& own) {
+          const engine::Version first = engine::pieceOf(a->field, r.column, r.row, r.columns, r.rows);
+          const engine::Version second = engine::pieceOf(b->field, r.column, r.row, r.columns, r.rows);
+          const auto compared = engine::compareFields(first, second, own);
+          if (!compared) return engine::Result<engine::Version>(tl::unexpected(compared.error()));
+          return options.deviation.empty() ? engine::Result<engine::Version>(first)
+                                           : engine::deviationField(first, second, own);
+        },
+        2};
+    const bool in_memory = memoryPlace(options.deviation) != nullptr;
+    const PlannedWork planned{.field = b->field,
+                              .original = b->field,
+                              .steps = {comparing},
+                              .out = in_memory ? std::string() : options.deviation,
+                              .extension = isStream(options.deviation)
+                                               ? withDot(options.to)
+                                               : engine::extensionOf(options.deviation),
+                              .writing = {}};
+    auto foreseen = foresee(planned, shownInput(options.b), options.estimate, job);
+    if (!foreseen) return tl::unexpected(foreseen.error());
+    if (foreseen->only) return *std::move(foreseen->only);
+  }
   const auto deviation = engine::compareFields(a->field, b->field, job);
   if (!deviation) return tl::unexpected(deviation.error());
   warnOfDifferentGrids(options, a->field.grid(), b->field.grid());
@@ -125,6 +158,7 @@ void addCompare(Command root, Chosen& chosen) {
                 .to = &options->to,
                 .text = "With --deviation -, standard output: its format, as extension",
                 .kind = ValueKind::kFormat}});
+  addEstimateOption(command, options->estimate);
   addScanOptions(command, options->reading);
   command.examples({{"fettle compare scan.tif clean.tif", "Deviation figures, Sq and Sa"},
                     {"fettle compare scan.tif clean.tif --truth truth.tif --edges edges.png",

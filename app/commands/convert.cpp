@@ -1,7 +1,9 @@
 #include <memory>
+#include <utility>
 
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
@@ -19,6 +21,7 @@ struct ConvertArguments {
   ScanOptions reading;
   engine::ExportOptions writing;
   std::string max_error;
+  bool estimate = false;
 };
 
 engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTask& task,
@@ -36,6 +39,16 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
     if (!error) return tl::unexpected(error.error());
     writing.max_error = *error;
   }
+  const PlannedWork planned{
+      .field = imported->field,
+      .original = imported->original ? *imported->original : imported->field,
+      .steps = {},
+      .out = task.out,
+      .extension = isStream(task.out) ? withDot(task.to) : engine::extensionOf(task.out),
+      .writing = writing};
+  auto foreseen = foresee(planned, shownOutput(task.out), options.estimate, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   engine::Result<engine::Exported> written;
   const auto done = writeTo(task.out, withDot(task.to), job, [&](const std::string& file) -> engine::Status {
     written = engine::exportField(imported->field, file, writing, job);
@@ -81,6 +94,7 @@ void addConvert(Command root, Chosen& chosen) {
            .text = "TIFF: laid out for reading parts over a network, with overviews"},
       },
       kWriting);
+  addEstimateOption(command, options->estimate);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
   command.examples({{"fettle convert scan.tif scan.stl --max-error 10um",

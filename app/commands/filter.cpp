@@ -13,6 +13,7 @@
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/compute_option.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/finished_scans.h"
 #include "app/commands/original_scan.h"
 #include "app/commands/place_report.h"
@@ -23,10 +24,10 @@
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
-#include "app/work/work_estimate.h"
 #include "engine/base/lower_case.h"
 #include "engine/base/memory.h"
 #include "engine/base/stopwatch.h"
+#include "engine/field/piece.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
 #include "engine/suggest/filter_suggestion.h"
@@ -58,9 +59,6 @@ struct FilterArguments {
   ScanOptions reading;
   engine::ExportOptions writing;
 };
-
-// Work that takes less begins without a word.
-constexpr double kLongSeconds = 5.0;
 
 engine::Result<engine::FilterSpec> specOf(const FilterArguments& options) {
   engine::FilterSpec spec;
@@ -119,27 +117,18 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   const PlannedWork planned{
       .field = field,
       .original = *original,
-      .spec = spec,
-      .compute = compute,
+      .steps = {PlannedFilter{spec, compute}},
       .out = task.out,
       .extension = isStream(task.out) ? withDot(task.to) : engine::extensionOf(task.out),
       .writing = writing,
       .kept = options.resume.resume};
   // A result that stays in memory is written nowhere, and nothing of it is kept.
-  const bool in_memory = memoryPlace(task.out) != nullptr;
-  engine::Result<std::optional<WorkEstimate>> estimate = std::nullopt;
-  if (!in_memory) estimate = estimateWork(planned, options.estimate, job);
-  if (!estimate) return tl::unexpected(estimate.error());
-  if (*estimate) {
-    if (auto room = checkRoom(**estimate, planned); !room) return tl::unexpected(room.error());
-    if (!options.estimate && (*estimate)->seconds() >= kLongSeconds)
-      note(fmt::format("{}: {}", shownOutput(task.out), textOf(**estimate)));
-  }
-  if (options.estimate) {
-    Report report = *estimate ? reportOf(**estimate) : Report::object();
-    report["text"] = *estimate ? textOf(**estimate) : "too little work for an estimate";
-    return report;
-  }
+  engine::Result<Foreseen> foreseen;
+  if (memoryPlace(task.out) == nullptr)
+    foreseen = foresee(planned, shownOutput(task.out), options.estimate, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
+  const std::optional<WorkEstimate>& estimate = foreseen->estimate;
   auto kept = openKeptWork(options.resume, task.out, field, *original, spec, compute.device());
   if (!kept) return tl::unexpected(kept.error());
   const engine::Stopwatch watch;
@@ -176,13 +165,13 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
                  {"samples_per_second", samples / seconds},
                  {"hash", hashOf(filtered->field)}});
   addKept(report, kept->get(), spec.passes);
-  if (*estimate) {
+  if (estimate) {
     report["write_seconds"] = write_seconds;
     report["peak_memory_bytes"] = engine::residentMemory().peak;
     std::error_code unknown;
     const auto bytes = isStream(task.out) ? 0 : std::filesystem::file_size(task.out, unknown);
     report["disk_bytes"] = unknown ? 0 : bytes;
-    report["estimate"] = reportOf(**estimate);
+    report["estimate"] = reportOf(*estimate);
   }
   finished.add(task.out, identity, report);
   return report;
@@ -356,6 +345,20 @@ engine::Result<Report> suggest(const FilterArguments& options, engine::JobContro
   request.tolerance = *tolerance;
   request.budget_s = options.budget;
   request.threads = options.threads;
+  // A suggestion is tried on pieces of so many samples at most.
+  const PlannedOnPieces trying{
+      [&](const engine::SampleRect& rect, engine::JobControl& own) {
+        const engine::Version piece = engine::pieceOf(field, rect.column, rect.row, rect.columns, rect.rows);
+        auto tried = engine::suggestFilter(piece, request, own);
+        return tried ? engine::Result<engine::Version>(piece)
+                     : engine::Result<engine::Version>(tl::unexpected(tried.error()));
+      },
+      1, engine::kMostSuggestionSamples};
+  const PlannedWork planned{
+      .field = field, .original = field, .steps = {trying}, .out = {}, .extension = {}, .writing = {}};
+  auto foreseen = foresee(planned, shownInput(options.files.files[0]), options.estimate, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   const auto found = engine::suggestFilter(field, request, job);
   if (!found) return tl::unexpected(found.error());
   const std::string& unit = field.grid().height_unit.name;
@@ -421,6 +424,7 @@ engine::Result<Report> filter(const FilterArguments& options, engine::JobControl
 }
 
 void printFilter(const Report& report) {
+  if (report.contains("text")) return printBatch(report);
   const bool suggested = report.contains("commands"), places = report.contains("places");
   if (suggested) printSuggestion(report);
   if (suggested && places) fmt::print("\n");
@@ -519,12 +523,7 @@ void addFilter(Command root, Chosen& chosen) {
            .otherwise = "none"},
       },
       "Suggesting a filter");
-  command.add(
-      {{.name = "--estimate",
-        .to = &options->estimate,
-        .text = "Filter nothing: print the time, memory and disk that it will take, from a sample of the "
-                "same work on this machine"}},
-      kLongWork);
+  addEstimateOption(command, options->estimate);
   addResumeOptions(command, options->resume);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);

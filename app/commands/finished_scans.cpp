@@ -68,10 +68,10 @@ void FinishedScans::end(const std::vector<BatchTask>& tasks, const Report& batch
 }
 
 std::string writingIdentity(const engine::Grid& grid, const engine::ExportOptions& writing) {
-  return fmt::format(
-      "grid {} {} {} {} {} {} {} {}\nwriting {}\n", grid.spacing_x, grid.spacing_y, grid.origin_x, grid.origin_y,
-      grid.lateral_unit.name, grid.height_unit.name, grid.height_per_count, grid.crs_wkt,
-      writing.tiff_compression ? static_cast<int>(*writing.tiff_compression) : -1);
+  return fmt::format("grid {} {} {} {} {} {} {} {}\nwriting {}\n", grid.spacing_x, grid.spacing_y,
+                     grid.origin_x, grid.origin_y, grid.lateral_unit.name, grid.height_unit.name,
+                     grid.height_per_count, grid.crs_wkt,
+                     writing.tiff_compression ? static_cast<int>(*writing.tiff_compression) : -1);
 }
 
 }  // namespace fettle::app

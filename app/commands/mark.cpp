@@ -3,16 +3,20 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/typed_values.h"
 #include "app/work/edge_strokes.h"
 #include "app/work/line_edits.h"
+#include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
@@ -20,8 +24,11 @@
 #include "engine/edges/corners.h"
 #include "engine/edges/locate.h"
 #include "engine/field/live_field.h"
+#include "engine/field/piece.h"
 #include "engine/field/version.h"
+#include "engine/formats/formats.h"
 #include "engine/inspect/noise.h"
+#include "engine/io/raster/marks.h"
 #include "engine/marks/edge_suggestion.h"
 #include "engine/marks/edge_traces.h"
 #include "haptic/base/strokes.h"
@@ -122,6 +129,7 @@ struct MarkArguments {
   double scale = engine::EdgeMap::kUsualSigma;
   engine::EdgeChoice choice;
   bool invert = false;
+  bool estimate = false;
   ScanOptions reading;
 };
 
@@ -233,6 +241,32 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
   auto marked = withMarks(imported->field, options.add, job);
   if (!marked) return tl::unexpected(marked.error());
   engine::Version field = *std::move(marked);
+  std::vector<PlannedStep> steps;
+  if (options.edges)
+    steps.emplace_back(PlannedOnPieces{[&](const engine::SampleRect& r, engine::JobControl& own) {
+      const engine::Version piece = engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
+      const auto map = engine::findEdges(piece, options.scale, own);
+      if (!map) return engine::Result<engine::Version>(tl::unexpected(map.error()));
+      if (!options.lines_out.empty()) return drawSuggestion(piece, *map, options.choice, own);
+      auto found = engine::suggestMarks(piece, *map, options.choice, own);
+      return found ? engine::Result<engine::Version>(std::move(found->field))
+                   : engine::Result<engine::Version>(tl::unexpected(found.error()));
+    }});
+  const PlannedWork planned{
+      .field = field,
+      .original = field,
+      .steps = std::move(steps),
+      .out = options.out,
+      .extension = isStream(options.out) ? withDot(options.to) : engine::extensionOf(options.out),
+      .writing = {},
+      .write = [](const engine::Version& piece, const std::string& path, engine::JobControl&) {
+        return engine::exportMarks(piece, path);
+      }};
+  engine::Result<Foreseen> foreseen;
+  if (memoryPlace(options.out) == nullptr)
+    foreseen = foresee(planned, shownOutput(options.out), options.estimate, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   const engine::Stopwatch watch;
   Report report;
   if (options.edges) {
@@ -312,7 +346,8 @@ void addMark(Command root, Chosen& chosen) {
        .unit = "samples"},
       {.name = "--add",
        .to = &options->add,
-       .text = "Picture of marks to begin with; alone it is written as MARKS, as a GeoTIFF with the place of SCAN",
+       .text = "Picture of marks to begin with; alone it is written as MARKS, as a GeoTIFF with the place of "
+               "SCAN",
        .kind = ValueKind::kMarks},
       {.name = "--invert", .to = &options->invert, .text = "Afterwards, invert the marks"},
   });
@@ -320,6 +355,7 @@ void addMark(Command root, Chosen& chosen) {
                 .to = &options->to,
                 .text = "With - for MARKS, standard output: its format, png or tif, a GeoTIFF",
                 .kind = ValueKind::kText}});
+  addEstimateOption(command, options->estimate);
   addScanOptions(command, options->reading);
   command.examples({{"fettle mark scan.tif marks.png --edges --lines-out lines.csv",
                      "The sharp edges that the program finds, as marks and as lines"},

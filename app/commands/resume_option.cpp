@@ -17,10 +17,11 @@ void addResumeOptions(Command command, ResumeOptions& options) {
   command.add(
       {{.name = "--resume",
         .to = &options.resume,
-        .text = "Keep finished work in OUT.resume while filtering, and continue with what an earlier "
-                "run that was "
-                "cut off left there; removed when OUT is written. With --out-dir scans that are finished are not "
-                "done again"},
+        .text =
+            "Keep finished work in OUT.resume while filtering, and continue with what an earlier "
+            "run that was "
+            "cut off left there; removed when OUT is written. With --out-dir scans that are finished are not "
+            "done again"},
        {.name = "--resume-every",
         .to = &options.every_seconds,
         .text = "With --resume: time between two times that finished work is kept; 0: each part at once",

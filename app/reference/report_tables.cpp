@@ -96,13 +96,21 @@ Keys expectedAndReal() {
 }
 
 Keys estimated() {
-  return {{"seconds", "number", "of filtering and writing"},
-          {"filter_seconds", "number", ""},
+  return {{"seconds", "number", "of the work and of writing"},
+          {"work_seconds", "number", ""},
           {"write_seconds", "number", ""},
           {"memory_bytes", "integer", "at most, of the whole process"},
           {"disk_bytes", "integer", "of the result"},
           {"kept_bytes", "integer", "of kept work beside it, with --resume"},
           {"store_bytes", "integer", "of --store"}};
+}
+
+// The forms of --estimate.
+ReportForm estimateAlone() {
+  return {"--estimate", joined({{"text", "string", "for a person"}}, estimated())};
+}
+ReportForm noEstimate() {
+  return {"--estimate of too little work", {{"text", "string", "that it is so"}}};
 }
 
 // What is taken out of a surface before it is measured.
@@ -356,7 +364,7 @@ std::vector<ReportSchema> inspecting() {
             {"samples", "integer", ""}}}}}}},
       {"compare",
        1,
-       {{"",
+       {{"the deviation",
          {unit(),
           {"samples", "integer", "that both have"},
           {"rms", "number", "of B - A, height unit of A, as all below"},
@@ -373,7 +381,9 @@ std::vector<ReportSchema> inspecting() {
           {"rmse?", "number", "with --truth"},
           {"rmse_flat?", "number", "with --truth"},
           {"rmse_edge?", "number", "with --truth"},
-          {"edge_width?", "number", "with --truth, lateral unit"}}}}},
+          {"edge_width?", "number", "with --truth, lateral unit"}}},
+        estimateAlone(),
+        noEstimate()}},
       {"lines",
        1,
        {{"",
@@ -463,7 +473,8 @@ std::vector<ReportSchema> changing() {
       {"resumed_share?", "number", "with --resume: share of the work that was there"},
       {"kept_bytes?", "integer", "with --resume: largest size of the kept work"},
       {"kept_seconds?", "number", "with --resume: of writing it, beside the filter"},
-      {"finished_before?", "boolean", "with --resume: an earlier run made it, and this is the report of that"},
+      {"finished_before?", "boolean",
+       "with --resume: an earlier run made it, and this is the report of that"},
       {"write_seconds?", "number", "with an estimate: what writing took"},
       {"peak_memory_bytes?", "integer", "with an estimate: of the process"},
       {"disk_bytes?", "integer", "with an estimate: of the result"},
@@ -472,15 +483,18 @@ std::vector<ReportSchema> changing() {
       {"filter",
        1,
        {{"a filter", filtered},
-        {"--estimate", joined({{"text", "string", "for a person"}}, estimated())},
-        {"--estimate of too little work", {{"text", "string", "that it is so"}}},
+        estimateAlone(),
+        noEstimate(),
         {"--suggest --tolerance", suggestion()},
         {"--suggest --places", places()},
         {"--suggest with both", joined(places(), suggestion())}},
        true},
       {"convert",
        1,
-       {{"", {{"format", "string", "that was written"}, {"from", "string", "that was read"}}}},
+       {{"the scan in another format",
+         {{"format", "string", "that was written"}, {"from", "string", "that was read"}}},
+        estimateAlone(),
+        noEstimate()},
        true},
       {"level",
        1,
@@ -496,7 +510,7 @@ std::vector<ReportSchema> changing() {
        true},
       {"apply",
        1,
-       {{"",
+       {{"the steps",
          {{"steps",
            "[object]",
            "as they were done",
@@ -517,12 +531,15 @@ std::vector<ReportSchema> changing() {
             {"tilt_y?", "number", "degrees"},
             {"rms?", "number", "of the samples about the form, height unit"}}},
           {"seconds", "number", ""},
-          {"finished_before?", "boolean", "with --resume: an earlier run made it, and this is the report of that"},
-          hash()}}},
+          {"finished_before?", "boolean",
+           "with --resume: an earlier run made it, and this is the report of that"},
+          hash()}},
+        estimateAlone(),
+        noEstimate()},
        true},
       {"mark",
        1,
-       {{"",
+       {{"marks",
          {{"scale?", "number", "samples"},
           {"sensitivity?", "number", ""},
           {"thickness?", "number", "samples"},
@@ -534,7 +551,9 @@ std::vector<ReportSchema> changing() {
           {"located?", "number", "share of the points"},
           {"deviation?", "number", "rms of the stated ones, samples"},
           {"marked", "integer", "samples"},
-          {"seconds", "number", ""}}}}},
+          {"seconds", "number", ""}}},
+        estimateAlone(),
+        noEstimate()}},
       {"synth",
        1,
        {{"",

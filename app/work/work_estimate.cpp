@@ -1,9 +1,11 @@
 #include "app/work/work_estimate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -36,27 +38,54 @@ std::filesystem::path folderFor(const std::string& out) {
   return folder;
 }
 
-// A square of at most `side` samples from a place of the field on.
-engine::Version square(const engine::Version& field, std::int32_t column, std::int32_t row,
-                       std::int32_t side) {
-  const engine::Grid& grid = field.grid();
+// The square of at most `side` samples from a place of the field on.
+engine::SampleRect squareAt(const engine::Grid& grid, std::int32_t column, std::int32_t row,
+                            std::int32_t side) {
   const std::int32_t columns = std::min(side, grid.width), rows = std::min(side, grid.height);
-  return engine::pieceOf(field, std::min(column, grid.width - columns), std::min(row, grid.height - rows),
-                         columns, rows);
+  return {std::clamp(column, 0, grid.width - columns), std::clamp(row, 0, grid.height - rows), columns, rows};
 }
 
-engine::Result<WritingCost> costOf(const PlannedWork& work, const engine::Version& filtered,
-                                   std::int32_t column, std::int32_t row, std::int32_t side,
-                                   const ScratchFolder& folder, engine::JobControl& job) {
-  const engine::Version piece = square(filtered, column, row, side);
+engine::Version pieceAt(const engine::Version& field, const engine::SampleRect& at) {
+  return engine::pieceOf(field, at.column, at.row, at.columns, at.rows);
+}
+
+// Pieces of the result, each twice as long as the one before; seconds that they took, where they were worked out.
+struct Pieces {
+  engine::SampleRect at[3];
+  engine::Version made[3];
+  double seconds[3] = {};
+  double memory[3] = {};  // [bytes] that they took beside what was there and the pieces themselves
+
+  [[nodiscard]] double samples(int i) const { return static_cast<double>(at[i].columns) * at[i].rows; }
+  // Of so many samples: what two pieces have in common is there once.
+  [[nodiscard]] double ofAll(double all, int few, int many, const double (&cost)[3]) const {
+    if (samples(many) <= samples(few)) return cost[many] / samples(many) * all;
+    const double each = std::max(0.0, (cost[many] - cost[few]) / (samples(many) - samples(few)));
+    return cost[many] + each * (all - samples(many));
+  }
+  // Of so many samples: as much more for each doubling of the side as the last one took, at most in proportion to the
+  // samples. What is taken row by row grows with the side alone.
+  [[nodiscard]] double memoryOf(double all) const {
+    if (memory[1] <= 0.0 || memory[2] <= memory[1] || samples(2) <= samples(1)) return memory[2];
+    const double power = std::min(1.0, std::log(memory[2] / memory[1]) / std::log(samples(2) / samples(1)));
+    return memory[2] * std::pow(all / samples(2), power);
+  }
+};
+
+engine::Result<WritingCost> costOf(const PlannedWork& work, const engine::Version& piece,
+                                   const engine::SampleRect& at, const ScratchFolder& folder,
+                                   engine::JobControl& job) {
   engine::ExportOptions writing = work.writing;
-  if (writing.original) writing.original = square(work.original, column, row, side);
-  const std::string path = fmt::format("{}/{}{}", folder.path(), side, work.extension);
+  if (writing.original) writing.original = pieceAt(work.original, at);
+  const std::string path = fmt::format("{}/{}{}", folder.path(), at.columns, work.extension);
   const std::uint64_t before = engine::residentMemory().now;
   const bool peak_known = engine::resetPeak();
   const engine::Stopwatch watch;
-  const auto written = engine::exportField(piece, path, writing, job);
-  if (!written) return tl::unexpected(written.error());
+  if (work.write) {
+    if (auto written = work.write(piece, path, job); !written) return tl::unexpected(written.error());
+  } else if (const auto written = engine::exportField(piece, path, writing, job); !written) {
+    return tl::unexpected(written.error());
+  }
   WritingCost cost{0.0, watch.seconds()};
   if (const std::uint64_t peak = engine::residentMemory().peak; peak_known && peak > before)
     cost.memory = static_cast<double>(peak - before);
@@ -69,36 +98,73 @@ engine::Result<WritingCost> costOf(const PlannedWork& work, const engine::Versio
   return cost;
 }
 
-// Of the whole field, from two squares: what both have in common is there once.
-engine::Result<WritingCost> writing(const PlannedWork& work, const engine::WorkSample& sample,
-                                    engine::JobControl& job) {
+engine::Result<WritingCost> writing(const PlannedWork& work, const Pieces& pieces, engine::JobControl& job) {
+  if (work.out.empty()) return WritingCost{};
   const auto folder =
       ScratchFolder::create(isStream(work.out) ? std::string() : folderFor(work.out).string());
   if (!folder) return tl::unexpected(folder.error());
-  const engine::Grid& grid = work.field.grid();
-  const std::int32_t column = sample.block.column0 * engine::kTileSide,
-                     row = sample.block.row0 * engine::kTileSide;
+  double bytes[3], seconds[3], memory = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const auto cost = costOf(work, pieces.made[i], pieces.at[i], *folder, job);
+    if (!cost) return tl::unexpected(cost.error());
+    bytes[i] = cost->bytes;
+    seconds[i] = cost->seconds;
+    memory = cost->memory;
+  }
+  const auto all = static_cast<double>(work.field.grid().samples());
+  return WritingCost{pieces.ofAll(all, 0, 1, bytes), pieces.ofAll(all, 0, 2, seconds), memory};
+}
+
+// Squares of a filtered sample. As large as what was filtered, as filtered heights take less where they are compressed;
+// the third one, for the time, is larger.
+Pieces piecesOf(const engine::WorkSample& sample) {
+  const engine::Grid& grid = sample.worked.grid();
   const std::int32_t tiles =
       std::min(sample.block.column1 - sample.block.column0, sample.block.row1 - sample.block.row0);
-  // As large as what was filtered, as filtered heights take less where they are compressed.
   const std::int32_t most = std::clamp(tiles * engine::kTileSide, 64, 512);
   const std::int32_t sides[] = {most / 2, most, 1024};
-  WritingCost costs[3];
-  double samples[3];
+  Pieces pieces;
   for (int i = 0; i < 3; ++i) {
-    const auto cost = costOf(work, sample.worked, column, row, sides[i], *folder, job);
-    if (!cost) return tl::unexpected(cost.error());
-    costs[i] = *cost;
-    samples[i] = static_cast<double>(std::min(sides[i], grid.width)) * std::min(sides[i], grid.height);
+    pieces.at[i] = squareAt(grid, sample.block.column0 * engine::kTileSide,
+                            sample.block.row0 * engine::kTileSide, sides[i]);
+    pieces.made[i] = pieceAt(sample.worked, pieces.at[i]);
   }
-  const auto all = static_cast<double>(grid.samples());
-  const auto from = [&](int few, int many, double WritingCost::*member) {
-    if (samples[many] <= samples[few]) return costs[many].*member / samples[many] * all;
-    const double each =
-        std::max(0.0, (costs[many].*member - costs[few].*member) / (samples[many] - samples[few]));
-    return costs[many].*member + each * (all - samples[many]);
-  };
-  return WritingCost{from(0, 1, &WritingCost::bytes), from(0, 2, &WritingCost::seconds), costs[2].memory};
+  return pieces;
+}
+
+// No sample is taken where it would be more than this share of the work.
+constexpr double kMostShare = 1.0 / 32.0;
+
+// Pieces from the middle of the field, each worked out. Nothing where that would be too much of the work.
+engine::Result<std::optional<Pieces>> workPieces(const PlannedWork& work, const PlannedOnPieces& step,
+                                                 bool always, engine::JobControl& job) {
+  const engine::Grid& grid = work.field.grid();
+  const double all = std::min(step.most_samples, static_cast<double>(grid.samples()));
+  // Of work that is long for few samples the largest piece is what the share allows.
+  const double affordable = std::sqrt(kMostShare * all / 1.3125);
+  if (!always && affordable < 64.0) return std::nullopt;
+  const std::int32_t largest = std::clamp(static_cast<std::int32_t>(affordable), always ? 192 : 64, 1024);
+  Pieces pieces;
+  engine::JobControl own;  // whose stages are not shown
+  for (int i = 0; i < 3; ++i) {
+    const std::int32_t side = largest >> (2 - i);
+    pieces.at[i] = squareAt(grid, (grid.width - side) / 2, (grid.height - side) / 2, side);
+    engine::releaseFreeMemory();
+    const std::uint64_t before = engine::residentMemory().now +
+                                 static_cast<std::uint64_t>(step.fields) *
+                                     engine::fieldBytes(static_cast<std::uint64_t>(pieces.at[i].columns),
+                                                        static_cast<std::uint64_t>(pieces.at[i].rows));
+    const bool peak_known = engine::resetPeak();
+    const engine::Stopwatch watch;
+    auto made = step.work(pieces.at[i], own);
+    pieces.seconds[i] = watch.seconds();
+    if (job.cancelled()) return engine::cancelled();
+    if (!made) return tl::unexpected(made.error());
+    pieces.made[i] = *std::move(made);
+    if (const std::uint64_t peak = engine::residentMemory().peak; peak_known && peak > before)
+      pieces.memory[i] = static_cast<double>(peak - before);
+  }
+  return pieces;
 }
 
 std::string bytesText(std::uint64_t bytes) {
@@ -107,7 +173,13 @@ std::string bytesText(std::uint64_t bytes) {
   return value < 1e9 ? fmt::format("{:.0f} MB", value * 1e-6) : fmt::format("{:.1f} GB", value * 1e-9);
 }
 
-// Whether so much certainly does not fit.
+// What work may take that its sample did not show [bytes]: measured up to 15 MB for each thread of a filter, 56 MB of a
+// suggestion.
+double unseenMemory() {
+  return 64e6 * std::max(1U, std::thread::hardware_concurrency());
+}
+
+// Whether so much of a disk certainly is not there.
 bool tooMuch(std::uint64_t needed, std::uint64_t free) {
   return 0.9 * static_cast<double>(needed) > static_cast<double>(free);
 }
@@ -116,52 +188,89 @@ bool tooMuch(std::uint64_t needed, std::uint64_t free) {
 
 engine::Result<std::optional<WorkEstimate>> estimateWork(const PlannedWork& work, bool always,
                                                          engine::JobControl& job, double most_seconds) {
-  engine::SampleOptions options;
-  options.seconds = most_seconds;
-  if (always) options.most_share = 1.0;
-  options.on_device = !work.compute.device().empty();
-  const engine::ResidentMemory before = engine::residentMemory();
-  const std::size_t free_tiles = work.field.memory()->bulk().freeObjects();
-  const auto apply = [&](const engine::FilterSpec& spec, engine::FilterWork& blocks,
-                         engine::JobControl& own) {
-    return work.compute.apply(work.field, work.original, spec, own, &blocks);
-  };
-  auto sample = engine::sampleWork(work.spec, apply, options, job);
-  if (job.cancelled()) return engine::cancelled();
-  // The filter itself may run on the processor after a device that fails.
-  if (!sample && options.on_device && !always) return std::nullopt;
-  if (!sample) return tl::unexpected(sample.error());
-  if (!*sample) return std::nullopt;
-  const auto cost = writing(work, **sample, job);
-  if (!cost) return tl::unexpected(cost.error());
-
+  const std::uint64_t reading = engine::residentMemory().peak;  // resetPeak() forgets it
   const engine::Grid& grid = work.field.grid();
+  const auto samples = static_cast<double>(grid.samples());
+  const auto field_bytes = static_cast<double>(
+      engine::fieldBytes(static_cast<std::uint64_t>(grid.width), static_cast<std::uint64_t>(grid.height)));
   WorkEstimate estimate;
-  estimate.filter_seconds = (*sample)->seconds;
+  Pieces result;
+  bool long_enough = false;
+  double tiles_taken = 0.0, beside = 0.0, kept = 0.0;
+  int states = 0;
+  for (const PlannedStep& step : work.steps) {
+    if (const auto* on_pieces = std::get_if<PlannedOnPieces>(&step)) {
+      const auto pieces = workPieces(work, *on_pieces, always, job);
+      if (!pieces) return tl::unexpected(pieces.error());
+      if (!*pieces) continue;
+      long_enough = true;
+      result = **pieces;
+      const double all = std::min(on_pieces->most_samples, samples);
+      estimate.work_seconds += result.ofAll(all, 1, 2, result.seconds);
+      beside = std::max(beside, result.memoryOf(all));
+      continue;
+    }
+    const auto& filter = std::get<PlannedFilter>(step);
+    engine::SampleOptions options;
+    options.seconds = most_seconds;
+    if (always) options.most_share = 1.0;
+    options.on_device = !filter.compute.device().empty();
+    const auto apply = [&](const engine::FilterSpec& spec, engine::FilterWork& blocks,
+                           engine::JobControl& own) {
+      return filter.compute.apply(work.field, work.original, spec, own, &blocks);
+    };
+    auto sample = engine::sampleWork(filter.spec, apply, options, job);
+    if (job.cancelled()) return engine::cancelled();
+    // The filter itself may run on the processor after a device that fails.
+    if (!sample && options.on_device && !always) return std::nullopt;
+    if (!sample) return tl::unexpected(sample.error());
+    // The state before a pass and that after it, where the former is not the input.
+    states += filter.spec.passes;
+    if (!*sample) {
+      tiles_taken = field_bytes;
+      continue;
+    }
+    long_enough = true;
+    estimate.work_seconds += (*sample)->seconds;
+    tiles_taken = std::max(tiles_taken, (*sample)->changed_share * field_bytes);
+    // Twice: pieces of the heap that were freed do not all fit what is asked for next (tgv, whose squares differ in size).
+    beside = std::max(beside, 2.0 * static_cast<double>((*sample)->scratch_bytes));
+    kept += (*sample)->changed_share * 4.0 * samples * (filter.spec.passes > 1 ? 2.0 : 1.0);
+    result = piecesOf(**sample);
+  }
+  if (work.steps.empty()) {
+    // The writing alone is the work.
+    PlannedOnPieces as_it_is{[&](const engine::SampleRect& rect, engine::JobControl&) {
+      return engine::Result<engine::Version>(pieceAt(work.field, rect));
+    }};
+    const auto pieces = workPieces(work, as_it_is, always, job);
+    if (!pieces) return tl::unexpected(pieces.error());
+    long_enough = pieces->has_value();
+    if (long_enough) result = **pieces;
+  }
+  if (!long_enough) return std::nullopt;
+  const auto cost = writing(work, result, job);
+  if (!cost) return tl::unexpected(cost.error());
   estimate.write_seconds = cost->seconds;
   estimate.disk_bytes = static_cast<std::uint64_t>(cost->bytes);
-  const double changed = (*sample)->changed_share *
-                         static_cast<double>(engine::fieldBytes(static_cast<std::uint64_t>(grid.width),
-                                                                static_cast<std::uint64_t>(grid.height)));
-  // The state before a pass and that after it, where the former is not the input.
-  const double taken = changed * (work.spec.passes > 1 ? 2.0 : 1.0);
-  // Tiles of earlier work that are free are in the memory already.
-  const double there = static_cast<double>(free_tiles) * sizeof(engine::Tile);
-  const auto tiles = static_cast<std::uint64_t>(std::max(0.0, taken - there));
+  // What the sample itself left behind, as libraries that it loaded, is there when the work begins; so are free tiles.
+  result = {};
+  engine::releaseFreeMemory();
+  const engine::ResidentMemory before = engine::residentMemory();
+  const double there = static_cast<double>(work.field.memory()->bulk().freeObjects()) * sizeof(engine::Tile);
+  const auto tiles = static_cast<std::uint64_t>(std::max(0.0, tiles_taken * std::min(states, 2) - there));
   const bool stored = work.field.memory()->store != nullptr;
   estimate.memory_bytes = (stored ? before.own : before.now) + (stored ? 0 : tiles) +
-                          std::max((*sample)->scratch_bytes, static_cast<std::uint64_t>(cost->memory));
+                          static_cast<std::uint64_t>(std::max(beside, cost->memory));
+  if (!stored) estimate.memory_bytes = std::max(estimate.memory_bytes, reading);
   if (stored) estimate.store_bytes = tiles;
-  if (work.kept) {
-    const double samples = (*sample)->changed_share * 4.0 * static_cast<double>(grid.samples());
-    estimate.kept_bytes = static_cast<std::uint64_t>(samples * (work.spec.passes > 1 ? 2.0 : 1.0));
-  }
+  if (work.kept) estimate.kept_bytes = static_cast<std::uint64_t>(kept);
   return estimate;
 }
 
 engine::Status checkRoom(const WorkEstimate& estimate, const PlannedWork& work) {
   std::error_code error;
-  if (!isStream(work.out)) {
+  if (!work.out.empty() && !isStream(work.out)) {
     const std::uint64_t needed = estimate.disk_bytes + estimate.kept_bytes;
     const auto disk = std::filesystem::space(folderFor(work.out), error);
     if (!error && tooMuch(needed, disk.available))
@@ -173,13 +282,14 @@ engine::Status checkRoom(const WorkEstimate& estimate, const PlannedWork& work) 
     const std::string& folder = work.field.memory()->store->folder();
     const auto disk = std::filesystem::space(folder, error);
     if (!error && tooMuch(estimate.store_bytes, disk.available))
-      return engine::failure(fmt::format("the filter needs about {} of the store's disk, {} are free",
+      return engine::failure(fmt::format("the work needs about {} of the store's disk, {} are free",
                                          bytesText(estimate.store_bytes), bytesText(disk.available)),
                              folder, "free space, or name a folder on another disk with --store");
   }
   const std::uint64_t have = engine::residentMemory().now, free = engine::availableMemory();
-  if (free > 0 && estimate.memory_bytes > have && tooMuch(estimate.memory_bytes - have, free))
-    return engine::failure(fmt::format("the filter needs about {} of memory more, {} are free",
+  if (free > 0 && estimate.memory_bytes > have &&
+      1.1 * static_cast<double>(estimate.memory_bytes - have) + unseenMemory() > static_cast<double>(free))
+    return engine::failure(fmt::format("the work needs about {} of memory more, {} are free",
                                        bytesText(estimate.memory_bytes - have), bytesText(free)),
                            work.out,
                            "close other programs, or keep the samples on a disk with --store FOLDER");
@@ -187,15 +297,16 @@ engine::Status checkRoom(const WorkEstimate& estimate, const PlannedWork& work) 
 }
 
 std::string textOf(const WorkEstimate& estimate) {
-  std::string text =
-      fmt::format("about {}, {} of memory and {} of disk", durationText(estimate.seconds()),
-                  bytesText(estimate.memory_bytes), bytesText(estimate.disk_bytes + estimate.kept_bytes));
+  const std::uint64_t disk = estimate.disk_bytes + estimate.kept_bytes;
+  std::string text = fmt::format("about {}, {} of memory{}", durationText(estimate.seconds()),
+                                 bytesText(estimate.memory_bytes),
+                                 disk > 0 ? fmt::format(" and {} of disk", bytesText(disk)) : "");
   if (estimate.store_bytes > 0) text += fmt::format(", {} of the store's", bytesText(estimate.store_bytes));
   return text;
 }
 
 Report reportOf(const WorkEstimate& estimate) {
-  return {{"seconds", estimate.seconds()},           {"filter_seconds", estimate.filter_seconds},
+  return {{"seconds", estimate.seconds()},           {"work_seconds", estimate.work_seconds},
           {"write_seconds", estimate.write_seconds}, {"memory_bytes", estimate.memory_bytes},
           {"disk_bytes", estimate.disk_bytes},       {"kept_bytes", estimate.kept_bytes},
           {"store_bytes", estimate.store_bytes}};

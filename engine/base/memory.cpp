@@ -1,5 +1,7 @@
 #include "engine/base/memory.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <fstream>
 #include <limits>
@@ -79,6 +81,10 @@ ResidentMemory residentMemory() {
     return numberOf("/proc/self/status", key).value_or(0) * 1024;
   };
   return {bytes("VmRSS:"), bytes("VmHWM:"), bytes("RssAnon:")};
+}
+
+void releaseFreeMemory() {
+  malloc_trim(0);
 }
 
 bool resetPeak() {

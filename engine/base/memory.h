@@ -17,6 +17,9 @@ struct ResidentMemory {
 };
 [[nodiscard]] ResidentMemory residentMemory();
 
+/// Gives memory that the heap holds for later back to the system, so that ResidentMemory shows what is in use. Any thread.
+void releaseFreeMemory();
+
 /// Restarts ResidentMemory::peak; false where the system cannot.
 bool resetPeak();
 

@@ -26,6 +26,9 @@ struct SuggestionRequest {
   int threads = 0;                 ///< as FilterSpec::threads
 };
 
+/// Samples of a scan from which on a suggestion takes no longer.
+inline constexpr double kMostSuggestionSamples = 1248.0 * 1248.0;
+
 /// One filter for the scan and its expected error.
 struct FilterCandidate {
   FilterSpec spec;  ///< window 1: the scan unfiltered

@@ -31,27 +31,27 @@ _SUGGEST = Command(
     first=("tolerance",),
     groups=("Suggesting a filter",),
     also=("keep", "threads"),
-    hidden=("suggest",),
+    hidden=("suggest", "estimate"),
     fixed=("--suggest",),
     summary="Which filter is good enough for a tolerance, and why",
 )
-_MARK = Command("mark", "mark", hides=(READING,))
+_MARK = Command("mark", "mark", hidden=("estimate",), hides=(READING,))
 _MEASURE_LINES = Command("measure_lines", "lines", hides=(READING,))
 _INFO = Command("info", "info", hides=(READING,))
 _COMPARE = Command(
     "compare",
     "compare",
-    hidden=("to", "force"),
+    hidden=("to", "force", "estimate"),
     hides=(READING,),
     summary="How another scan deviates from this one; against a truth, the errors of the other and where they are",
 )
 _RENDER = Command("render", "render", hides=(READING,))
-_APPLY = Command("apply", "apply", hidden=("out-dir", "to", "force", "resume", "resume-every"), hides=(READING, WRITING))
+_APPLY = Command("apply", "apply", hidden=("out-dir", "to", "force", "estimate", "resume", "resume-every"), hides=(READING, WRITING))
 _REPLAY = Command("replay", "replay", hidden=("to", "force"), hides=(READING,))
 _WRITE = Command(
     "write",
     "convert",
-    hidden=("out-dir", "to"),
+    hidden=("out-dir", "to", "estimate"),
     hides=(READING,),
     summary="Write the field to a file; its extension names the format",
 )

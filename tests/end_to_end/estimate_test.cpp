@@ -1,6 +1,8 @@
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -30,7 +32,7 @@ TEST(Estimate, ForesawMemoryAndDiskWithinATenthAndTheOrderOfTheTime) {
                 0.1);
     EXPECT_NEAR(estimate.at("disk_bytes").get<double>() / report.at("disk_bytes").get<double>(), 1.0, 0.1);
     EXPECT_EQ(report.at("disk_bytes"), fs::file_size(out));
-    const double time = estimate.at("filter_seconds").get<double>() / report.at("seconds").get<double>();
+    const double time = estimate.at("work_seconds").get<double>() / report.at("seconds").get<double>();
     EXPECT_GT(time, 0.1);
     EXPECT_LT(time, 10.0);
   }
@@ -48,6 +50,46 @@ TEST(Estimate, KnowsFormatsThatPackAndKeptWork) {
     EXPECT_NEAR(estimate.at("disk_bytes").get<double>() / static_cast<double>(fs::file_size(out)), 1.0, 0.1)
         << name;
   }
+}
+
+// Each command that takes long has an estimate, which does nothing.
+TEST(Estimate, OfOtherCommandsForeseesTheDiskAndWritesNothing) {
+  const TempFolder folder;
+  const std::string in = folder.file("s.tif"), other = folder.file("t.tif"), recipe = folder.file("r.toml");
+  for (const std::string& scan : {in, other})
+    ASSERT_EQ(fettle({"synth", scan, "--size", "1500x1500"}).status, 0);
+  std::ofstream(recipe)
+      << "recipe = 1\n[[step]]\ndo = \"mark_edges\"\n[[step]]\ndo = \"filter\"\nfilter = \"planes\"\n";
+  const std::vector<std::vector<std::string>> commands{
+      {"convert", in, folder.file("o.stl")},
+      {"convert", in, folder.file("o.asc")},
+      {"apply", recipe, in, folder.file("o.tif")},
+      {"compare", in, other, "--deviation", folder.file("d.tif")},
+      {"mark", in, folder.file("m.tif"), "--edges"}};
+  for (std::vector<std::string> command : commands) {
+    const std::string out = command[0] == "apply"     ? command[3]
+                            : command[0] == "compare" ? command[4]
+                                                      : command[2];
+    command.emplace_back("--estimate");
+    const auto estimate = fettleJson(command);
+    EXPECT_EQ(entriesOf(folder), 3) << command[0];
+    EXPECT_GT(estimate.at("seconds").get<double>(), 0.0) << command[0];
+    EXPECT_GT(estimate.at("memory_bytes").get<double>(), 4.0 * 1500 * 1500) << command[0];
+    command.pop_back();
+    ASSERT_EQ(fettle(command).status, 0) << command[0];
+    // Marks lie densely here and there, so that a piece says little of a packed picture.
+    if (command[0] != "mark") {
+      EXPECT_NEAR(estimate.at("disk_bytes").get<double>() / static_cast<double>(fs::file_size(out)), 1.0, 0.1)
+          << out;
+    }
+    fs::remove(out);
+  }
+  const auto batch =
+      fettle({"convert", in, other, "--out-dir", folder.file("all"), "--to", "asc", "--estimate"});
+  EXPECT_NE(batch.out.find("s.tif  about "), std::string::npos) << batch.out;
+  EXPECT_EQ(entriesOf(folder), 3);
+  const auto suggestion = fettleJson({"filter", in, "--suggest", "--tolerance", "10um", "--estimate"});
+  EXPECT_GT(suggestion.at("work_seconds").get<double>(), 0.1);
 }
 
 TEST(Estimate, ShortWorkBeginsWithoutAWord) {

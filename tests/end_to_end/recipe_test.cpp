@@ -85,8 +85,7 @@ TEST(Recipes, ALevelIsThatOfTheCommandAndChangesAreLimitedFromThere) {
   std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"level\"\nform = \"poly2\"\nrobust = true\n"
                            "[[step]]\ndo = \"filter\"\nfilter = \"box\"\nwindow = 5\nmax_change = \"15um\"\n";
   const auto report = fettleJson({"apply", recipe, scan, folder.file("o.tif")});
-  const auto level =
-      fettleJson({"level", scan, folder.file("l.tif"), "--form", "poly2", "--robust"});
+  const auto level = fettleJson({"level", scan, folder.file("l.tif"), "--form", "poly2", "--robust"});
   for (const char* key : {"form", "robust", "region", "tilt_x", "tilt_y", "rms"})
     EXPECT_EQ(report["steps"][0][key], level[key]) << key;
   const auto filtered = fettleJson({"filter", folder.file("l.tif"), folder.file("f.tif"), "--filter", "box",

@@ -185,8 +185,8 @@ TEST_F(Resume, AFieldInAStoreAndABatchContinueToo) {
 TEST_F(Resume, ABatchDoesOnlyWhatIsMissingAndSaysSo) {
   const std::string other = folder.file("t.tif"), bad = folder.file("bad.tif"), to = folder.file("cleaned");
   ASSERT_EQ(fettle({"synth", other, "--size", "700x600", "--seed", "5"}).status, 0);
-  const std::vector<std::string> batch{"filter", in,         other,      "--out-dir", to, "--filter",
-                                       "tgv",    "--resume", "--resume-every", "0"};
+  const std::vector<std::string> batch{"filter",   in,    other,      "--out-dir",      to,
+                                       "--filter", "tgv", "--resume", "--resume-every", "0"};
   ASSERT_NE(fettle(batch, endedWith(to + "/t.tif.resume", 300'000, SIGKILL)).status, 0);
   ASSERT_TRUE(fs::exists(to + "/s.tif.finished"));
   const auto written = fs::last_write_time(to + "/s.tif");
@@ -208,8 +208,7 @@ TEST_F(Resume, ABatchDoesOnlyWhatIsMissingAndSaysSo) {
   EXPECT_TRUE(report["files"][0]["finished_before"].get<bool>());
   EXPECT_FALSE(report["files"][1].contains("finished_before"));
   for (const char* name : {"s.tif", "t.tif"}) {
-    const auto once =
-        fettleJson({"filter", folder.file(name), folder.file("once.tif"), "--filter", "tgv"});
+    const auto once = fettleJson({"filter", folder.file(name), folder.file("once.tif"), "--filter", "tgv"});
     EXPECT_EQ(bytesOf(to + "/" + name), bytesOf(folder.file("once.tif"))) << name;
     EXPECT_EQ(report["files"][name[0] == 's' ? 0 : 1]["hash"], once["hash"]);
     EXPECT_FALSE(fs::exists(to + "/" + name + ".finished"));
@@ -221,8 +220,8 @@ TEST_F(Resume, OtherNumbersAreWorkedOutThoughAnOutputIsFinished) {
   const std::string to = folder.file("cleaned"), bad = folder.file("bad.tif");
   std::ofstream(bad) << "no scan";
   const auto with = [&](const char* window) {
-    return std::vector<std::string>{"filter",   in,       bad,        "--out-dir", to, "--filter",
-                                    "median",   "--resume", "--window", window};
+    return std::vector<std::string>{"filter",   in,       bad,        "--out-dir", to,
+                                    "--filter", "median", "--resume", "--window",  window};
   };
   EXPECT_EQ(fettle(with("3")).status, 1);
   EXPECT_NE(fettle(with("3")).out.find("finished before"), std::string::npos);

@@ -46,6 +46,10 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"filter", scan, out, "--filter", "tgv"});
   run({"filter", scan, file("none.tif"), "--filter", "median", "--out-dir", file("d")}, 1);
   run({"filter", scan, out, "--filter", "tgv", "--estimate"});
+  run({"convert", scan, file("none.stl"), "--estimate"});
+  run({"compare", scan, out, "--estimate"});
+  run({"mark", scan, file("none.png"), "--edges", "--estimate"});
+  run({"filter", scan, "--suggest", "--tolerance", "15um", "--estimate"});
   run({"level", scan, file("level.tif"), "--robust"});
   run({"level", scan, file("level.tif"), "--rows", "median", "--form", "none"});
   run({"measure", scan, "--form", "poly2", "--at-height", "0,1um", "--at-ratio", "50"});
@@ -64,6 +68,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
       << "recipe = 1\n[[step]]\ndo = \"mark_edges\"\n[[step]]\ndo = \"locate_edges\"\n"
          "[[step]]\ndo = \"invert\"\n[[step]]\ndo = \"filter\"\nfilter = \"tv\"\n";
   run({"apply", file("c.toml"), scan, out});
+  run({"apply", file("c.toml"), scan, file("none.tif"), "--estimate"});
   run({"render", scan, file("p.png"), "--size", "64x64"});
   run({"devices"});
   run({"reference", file("r")});

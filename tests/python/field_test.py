@@ -158,7 +158,7 @@ class Calls(unittest.TestCase):
         self.assertIn(refused.exception.what, str(refused.exception))
 
     def test_a_path_that_looks_like_something_else_is_a_path(self):
-        for name in ("-", "<field>", "--help"):
+        for name in ("-x", "<field>", "--help"):
             with self.assertRaises(fettle.InputError) as refused:
                 fettle.read(name)
             self.assertEqual(refused.exception.where, "./" + name)

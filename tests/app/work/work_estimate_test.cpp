@@ -24,7 +24,7 @@ engine::Version plane() {
 class Room : public testing::Test {
  protected:
   [[nodiscard]] engine::Status check(const WorkEstimate& estimate, const std::string& out) {
-    const PlannedWork work{field, field, spec, compute, out, ".tif", {}, false};
+    const PlannedWork work{field, field, {PlannedFilter{spec, compute}}, out, ".tif", {}};
     return checkRoom(estimate, work);
   }
   engine::Version field = plane();
@@ -70,13 +70,13 @@ TEST_F(Room, MemoryThatIsNotThereIsRefused) {
 
 TEST(WorkEstimateText, SaysTimeMemoryAndDisk) {
   WorkEstimate estimate;
-  estimate.filter_seconds = 250.0;
+  estimate.work_seconds = 250.0;
   estimate.write_seconds = 50.0;
   estimate.memory_bytes = 9'400'000'000;
   estimate.disk_bytes = 4'000'000'000;
   EXPECT_EQ(textOf(estimate), "about 5 min, 9.4 GB of memory and 4.0 GB of disk");
   estimate.store_bytes = 600'000'000;
-  estimate.filter_seconds = 20'000.0;
+  estimate.work_seconds = 20'000.0;
   EXPECT_EQ(textOf(estimate), "about 5.6 h, 9.4 GB of memory and 4.0 GB of disk, 600 MB of the store's");
 }
 
@@ -86,7 +86,8 @@ TEST(WorkEstimate, OfAConstantFieldIsNoTimeAndNoTile) {
   FilterCompute compute(Compute::kCpu, nullptr);
   const tests::TempFolder folder;
   engine::JobControl job;
-  const PlannedWork work{field, field, spec, compute, folder.file("o.tif"), ".tif", {}, true};
+  const PlannedWork work{field, field, {PlannedFilter{spec, compute}}, folder.file("o.tif"), ".tif",
+                         {},    true};
   const auto estimate = estimateWork(work, true, job);
   ASSERT_TRUE(estimate);
   ASSERT_TRUE(estimate->has_value());
