@@ -28,6 +28,7 @@ py::object pictureOf(const render::Image& picture) {
 // What a command wrote to a place; None where it wrote nothing there.
 py::object writtenTo(const app::MemoryPlace& place, const Scan* source) {
   if (place.picture) return pictureOf(*place.picture);
+  if (place.page) return py::bytes(*place.page);
   if (place.lines) return py::cast(rowsOf(*place.lines));
   if (!place.scan) return py::none();
   Scan scan{*place.scan};

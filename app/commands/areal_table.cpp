@@ -250,6 +250,25 @@ void printAreal(const Report& report) {
   }
 }
 
+std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
+  const Report& first = reports.front();
+  const ReadAs height = readHeightAs(first["sq"].get<double>(), first["unit_mm"], first["unit"]);
+  const ReadAs length = readLengthAs(first["spacing"], first["lateral_unit_mm"], first["lateral_unit"]);
+  std::vector<ArealLine> lines;
+  for (const ArealGroup& group : kArealGroups)
+    for (const ArealRow& row : kArealRows) {
+      if (std::string_view(row.group) != group.word || !first.contains(row.key)) continue;
+      const Shown shown = shownAs(row.quantity, height, length);
+      ArealLine line{group.heading, row.name, shown.unit, row.text, {}};
+      for (const Report& report : reports)
+        line.values.push_back(report[row.key].is_null()
+                                  ? reasonOf(report, row.key)
+                                  : fmt::format("{:.5g}", report[row.key].get<double>() * shown.factor));
+      lines.push_back(std::move(line));
+    }
+  return lines;
+}
+
 std::string arealRows(const std::string& scan, const Report& report) {
   const ReadAs height{report["unit"], 1.0}, length{report["lateral_unit"], 1.0};
   std::string text;

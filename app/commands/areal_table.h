@@ -26,6 +26,14 @@ void addAreal(Report& report, const engine::ArealParameters& measured, const std
 /// scan's. `report` has what addAreal adds.
 void printAreal(const Report& report);
 
+/// A parameter of several reports side by side.
+struct ArealLine {
+  std::string group, name, unit, text;
+  std::vector<std::string> values;  ///< one for each report: a figure, or the reason why none is stated
+};
+/// The parameters that the reports of addAreal have, in the units in which those of the first read at ease.
+[[nodiscard]] std::vector<ArealLine> arealLines(const std::vector<Report>& reports);
+
 /// Rows "scan,group,parameter,value,unit,remark" of a report of addAreal, in the scan's units, ratios in per cent;
 /// without the heading kArealHeading.
 [[nodiscard]] std::string arealRows(const std::string& scan, const Report& report);

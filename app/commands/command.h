@@ -66,6 +66,7 @@ void addFilter(Command root, Chosen& chosen);
 void addLevel(Command root, Chosen& chosen);
 void addMeasure(Command root, Chosen& chosen);
 void addSection(Command root, Chosen& chosen);
+void addReport(Command root, Chosen& chosen);
 void addMark(Command root, Chosen& chosen);
 void addLines(Command root, Chosen& chosen);
 void addRecipe(Command root, Chosen& chosen);

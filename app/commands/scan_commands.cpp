@@ -9,6 +9,7 @@ void addScanCommands(Command root, Chosen& chosen) {
   addLevel(root, chosen);
   addMeasure(root, chosen);
   addSection(root, chosen);
+  addReport(root, chosen);
   addMark(root, chosen);
   addLines(root, chosen);
   addReplay(root, chosen);

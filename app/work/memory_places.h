@@ -17,6 +17,7 @@ struct MemoryPlace {
   std::optional<engine::Imported> scan;  ///< a scan, or the marks of its field alone
   std::optional<std::vector<engine::EdgeLine>> lines;
   std::optional<render::Image> picture;
+  std::optional<std::string> page;  ///< of fettle report
 };
 
 /// Names that commands read from and write to in memory instead of files, for a program that calls commands (python/): no

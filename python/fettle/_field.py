@@ -568,15 +568,20 @@ def method_of(name):
         return self._made(made, report) if isinstance(made, _fettle.Scan) else report if made is None else made
 
     assert scan["kind"] == "input", name
-    returns = _FIELD if out else "dict: what the command prints with --json."
-    return documented(command, returns, before=tuple(before))(method)
+    python_name, returns = RENAMED.get(name, (name, _FIELD if out else "dict: what the command prints with --json."))
+    function = documented(command, returns, before=tuple(before))(method)
+    function.__name__ = python_name
+    return function
 
 
 #: Commands with functions of their own.
 OWN = {"filter", "mark", "lines", "info", "compare", "render", "apply", "replay", "convert", "synth", "recipe", "journal"}
+#: Methods that have another name than their command, and what they return: `report` is what the last command said.
+RENAMED = {"report": ("page", "bytes: the page, HTML in UTF-8.")}
 for _name in TABLES:
     if _name not in OWN:
-        setattr(Field, _name, method_of(_name))
+        _method = method_of(_name)
+        setattr(Field, _method.__name__, _method)
 
 
 class Suggestion(dict):

@@ -54,6 +54,7 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"level", scan, file("level.tif"), "--rows", "median", "--form", "none"});
   run({"measure", scan, "--form", "poly2", "--at-height", "0,1um", "--at-ratio", "50"});
   run({"measure", scan, "--only", "hybrid", "--s-filter", "3", "--l-filter", "20"});
+  run({"report", out, file("r.html"), "--original", scan});
   run({"measure", scan, file("none.tif")}, 1);
   run({"section",   scan,       "--start",    "1,1",   "--end",    "60,50", "--compare", out,
        "--cursors", "1,9",      "--fit-line", "1,9",   "--step",   "auto",  "--groove",  "auto",

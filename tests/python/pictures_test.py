@@ -1,6 +1,7 @@
 """Pictures of the package are those of the program."""
 
 import os
+import re
 import struct
 import tempfile
 import unittest
@@ -83,6 +84,26 @@ class Pictures(unittest.TestCase):
     def test_a_size_that_cannot_be_drawn_is_refused(self):
         with self.assertRaises(fettle.InputError):
             fettle.synth(size=(64, 48)).render(size=(1, 1))
+
+
+class Pages(unittest.TestCase):
+    def test_a_page_is_that_of_the_program(self):
+        field = fettle.synth(size=(96, 64), seed=3)
+        clean = field.filter("median")
+        with tempfile.TemporaryDirectory() as folder:
+            scan, out = (os.path.join(folder, name) for name in ("scan.fettle", "page.html"))
+            clean.write(scan)
+            run("report", scan, out, "--title", "part")
+            with open(out, encoding="utf-8") as file:
+                written = file.read()
+        page = clean.page(title="part").decode()
+        # All but where it was read from, and the steps of the file.
+        for piece in (clean.hash, field.hash, "<th class=n>Before</th>"):
+            self.assertIn(piece, page)
+            self.assertIn(piece, written)
+        pictures = [re.findall(r"base64,([^\"]*)", text) for text in (page, written)]
+        self.assertEqual(len(pictures[0]), 3)
+        self.assertEqual(pictures[0], pictures[1])
 
 
 if __name__ == "__main__":

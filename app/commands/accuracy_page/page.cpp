@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/html.h"
 #include "app/commands/plots/gnuplot.h"
 
 namespace fettle::app {
@@ -100,21 +101,6 @@ std::string scriptOf(const bench::Study& study) {
   return script + plots + "\n";
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string number(double value) {
   if (std::isnan(value)) return "";
   if (value == 0.0) return "0";
@@ -144,13 +130,13 @@ code{font-size:12px;color:#777}svg{max-width:100%;height:auto}summary{cursor:poi
 
 std::string tableOf(const bench::Study& study) {
   std::string headings;
-  for (const std::string& column : study.columns) headings += "<th>" + escaped(column) + "</th>";
+  for (const std::string& column : study.columns) headings += "<th>" + escapedHtml(column) + "</th>";
   std::string out = fmt::format(
       "<table><tr><th class=t>subject</th><th>no.</th><th class=t>method</th><th>{} "
       "[{}]</th><th>worst</th><th>{} "
       "[{}]</th><th>p99</th><th>worst</th>{}{}<th class=t>note</th><th class=t>hash</th></tr>\n",
-      escaped(study.cost.name), escaped(study.cost.unit), escaped(study.error.name),
-      escaped(study.error.unit), study.wrong_name.empty() ? "" : "<th>" + escaped(study.wrong_name) + "</th>",
+      escapedHtml(study.cost.name), escapedHtml(study.cost.unit), escapedHtml(study.error.name),
+      escapedHtml(study.error.unit), study.wrong_name.empty() ? "" : "<th>" + escapedHtml(study.wrong_name) + "</th>",
       headings);
   for (const bench::AccuracyRow& row : study.rows) {
     std::string more;
@@ -159,9 +145,9 @@ std::string tableOf(const bench::Study& study) {
         "<tr><td class=t>{}</td><td>{}</td><td "
         "class=t>{}</td><td>{}</td><td>{}</td><td><b>{}</b></td><td>{}</td><td>{}"
         "</td>{}{}<td class=n>{}</td><td class=t><code>{:016x}</code></td></tr>\n",
-        escaped(row.subject), methodNumber(study, row.method), escaped(row.method), number(row.cost),
+        escapedHtml(row.subject), methodNumber(study, row.method), escapedHtml(row.method), number(row.cost),
         number(row.cost_worst), number(row.error), number(row.error_p99), number(row.error_worst),
-        study.wrong_name.empty() ? "" : "<td>" + percent(row.wrong) + "</td>", more, escaped(row.note),
+        study.wrong_name.empty() ? "" : "<td>" + percent(row.wrong) + "</td>", more, escapedHtml(row.note),
         row.hash);
   }
   return out + "</table>\n";
@@ -173,7 +159,7 @@ std::string legendOf(const bench::Study& study) {
   int next = 1;
   for (const bench::AccuracyRow& row : study.rows)
     if (methodNumber(study, row.method) == next)
-      out += fmt::format("{}<b>{}</b>&nbsp;{}", next == 1 ? "" : " &middot; ", next, escaped(row.method)),
+      out += fmt::format("{}<b>{}</b>&nbsp;{}", next == 1 ? "" : " &middot; ", next, escapedHtml(row.method)),
           ++next;
   return out;
 }
@@ -181,7 +167,7 @@ std::string legendOf(const bench::Study& study) {
 std::string viewsOf(const PlottedStudy& s) {
   std::string out;
   for (std::size_t i = 0; i < s.view_svgs.size(); ++i)
-    out += fmt::format("<h3>{}</h3>\n{}\n<p class=how>{}</p>\n", escaped(s.study.views[i].title),
+    out += fmt::format("<h3>{}</h3>\n{}\n<p class=how>{}</p>\n", escapedHtml(s.study.views[i].title),
                        s.view_svgs[i], legendOf(s.study.views[i]));
   return out;
 }
@@ -209,10 +195,10 @@ std::string accuracyPage(const std::vector<PlottedStudy>& studies, const std::st
   page += kStyle;
   page +=
       fmt::format("</head><body>\n<h1>What accuracy costs in time</h1>\n<p class=how>{}<br>{}</p>\n<ul>\n",
-                  escaped(machine), escaped(made_with));
+                  escapedHtml(machine), escapedHtml(made_with));
   for (const PlottedStudy& s : studies)
-    page += fmt::format("<li><a href=\"#{0}\">{1}</a>: <i>{2}</i></li>\n", s.study.id, escaped(s.study.title),
-                        escaped(s.study.question));
+    page += fmt::format("<li><a href=\"#{0}\">{1}</a>: <i>{2}</i></li>\n", s.study.id, escapedHtml(s.study.title),
+                        escapedHtml(s.study.question));
   page +=
       "</ul>\n<p class=how>In each plot further down is nearer the truth and further left is faster; a line "
       "joins what is worth choosing, hollow points are beaten in both. Numbers at points name the method. "
@@ -221,8 +207,8 @@ std::string accuracyPage(const std::vector<PlottedStudy>& studies, const std::st
     page += fmt::format(
         "<h2 id=\"{}\">{}</h2>\n<p class=ask>{}</p>\n<p class=answer>{}</p>\n{}\n<p class=how>{}</p>\n{}<p "
         "class=how><b>Measured against:</b> {}</p>\n<details><summary>All figures</summary>\n{}</details>\n",
-        s.study.id, escaped(s.study.title), escaped(s.study.question), escaped(s.study.answer), s.svg,
-        legendOf(s.study), viewsOf(s), escaped(s.study.reference), tableOf(s.study));
+        s.study.id, escapedHtml(s.study.title), escapedHtml(s.study.question), escapedHtml(s.study.answer), s.svg,
+        legendOf(s.study), viewsOf(s), escapedHtml(s.study.reference), tableOf(s.study));
   }
   return page + "</body></html>\n";
 }
