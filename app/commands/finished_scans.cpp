@@ -1,5 +1,6 @@
 #include "app/commands/finished_scans.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
