@@ -63,7 +63,7 @@ class Site:
         path = posixpath.normpath(posixpath.join(posixpath.dirname(document), path))
         name = path.removeprefix("docs/guide/")
         picture = os.path.join(self.guide, name)
-        if path.startswith("docs/guide/") and name.endswith(".png") and os.path.isfile(picture):
+        if path.startswith("docs/guide/") and name.endswith((".png", ".svg")) and os.path.isfile(picture):
             place = f"guide/{name}"
             with open(picture, "rb") as file:
                 self.write(place, file.read())

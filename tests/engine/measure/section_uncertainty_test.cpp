@@ -12,7 +12,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <Eigen/Dense>
 
 #include "engine/field/builder.h"
 #include "engine/inspect/noise.h"
@@ -63,13 +62,23 @@ double boundOf(const Part& part, const Grid& grid, const std::vector<glm::dvec2>
       const std::vector<double> row = part.derivatives(from.x * direction.x + from.y * direction.y);
       if (used && !row.empty()) rows.push_back(row);
     }
-  const auto p = static_cast<Eigen::Index>(rows.front().size());
-  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(p, p);
-  for (const std::vector<double>& row : rows) {
-    const Eigen::Map<const Eigen::VectorXd> v(row.data(), p);
-    information += v * v.transpose();
+  // The information of all samples, [A | 1], to [1 | A^-1] by Gauss and Jordan: positive definite, so that no pivot is 0.
+  const std::size_t p = rows.front().size();
+  std::vector<std::vector<double>> information(p, std::vector<double>(2 * p));
+  for (std::size_t a = 0; a < p; ++a) {
+    for (std::size_t b = 0; b < p; ++b)
+      for (const std::vector<double>& row : rows) information[a][b] += row[a] * row[b];
+    information[a][p + a] = 1.0;
   }
-  return kNoise * std::sqrt(information.inverse()(0, 0));
+  for (std::size_t k = 0; k < p; ++k) {
+    const double pivot = information[k][k];
+    for (double& entry : information[k]) entry /= pivot;
+    for (std::size_t a = 0; a < p; ++a) {
+      const double factor = a == k ? 0.0 : information[a][k];
+      for (std::size_t b = 0; b < 2 * p; ++b) information[a][b] -= factor * information[k][b];
+    }
+  }
+  return kNoise * std::sqrt(information[0][p]);
 }
 
 Covered coverage(const Part& part, double degrees, double width_mm) {
