@@ -68,8 +68,7 @@ void addScan(py::module_& module) {
            })
       .def("hash", hashOf)
       .def("holes", holesOf)
-      .def("has_marks",
-           [](const Scan& scan) { return scan.data.field.reader().root().marked_children != 0; })
+      .def("has_marks", [](const Scan& scan) { return scan.data.field.reader().root().marked_children != 0; })
       .def("with_original",
            [](const Scan& scan, const Scan& original) {
              Scan made = scan;

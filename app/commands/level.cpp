@@ -31,7 +31,8 @@ constexpr LineWord kLineWords[] = {
     {"poly2", "a polynomial of degree 2 along each", engine::LineMethod::kPolynomial, 2},
     {"poly3", "of degree 3", engine::LineMethod::kPolynomial, 3},
     {"difference", "the median of the differences to the line before", engine::LineMethod::kDifference, 0},
-    {"matching", "of those differences the mean where both lines are alike", engine::LineMethod::kMatching, 0},
+    {"matching", "of those differences the mean where both lines are alike", engine::LineMethod::kMatching,
+     0},
 };
 
 struct LevelArguments {
@@ -103,7 +104,8 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
         double more[engine::kTileSamples];
         lines->readHeights(rect, more);
         for (int r = 0; r < rect.rows; ++r)
-          for (int k = r * engine::kTileSide; k < r * engine::kTileSide + rect.columns; ++k) out[k] += more[k];
+          for (int k = r * engine::kTileSide; k < r * engine::kTileSide + rect.columns; ++k)
+            out[k] += more[k];
       },
       job);
   if (!levelled) return tl::unexpected(levelled.error());
@@ -123,7 +125,8 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
 
 engine::Result<Report> level(const LevelArguments& options, engine::JobControl& job) {
   if (options.form.form == "none" && options.rows.empty())
-    return engine::inputError("there is no form to take out", "--form", "name another than none, or give --rows");
+    return engine::inputError("there is no form to take out", "--form",
+                              "name another than none, or give --rows");
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
   const auto tasks = batchTasks(options.files, {options.form.marks}, job);
   if (!tasks) return tl::unexpected(tasks.error());
@@ -146,9 +149,13 @@ void addLevel(Command root, Chosen& chosen) {
   command.add({
       {.name = "--rows",
        .to = &options->rows,
-       .text = "First level the lines of a line scanner, each by this; --region and --robust hold for them, too",
+       .text =
+           "First level the lines of a line scanner, each by this; --region and --robust hold for them, too",
        .words = lineWords()},
-      {.name = "--scan-axis", .to = &options->scan_axis, .text = "Along which its lines are", .words = {{"x", "rows"}, {"y", "columns"}}},
+      {.name = "--scan-axis",
+       .to = &options->scan_axis,
+       .text = "Along which its lines are",
+       .words = {{"x", "rows"}, {"y", "columns"}}},
   });
   addFormOptions(command, options->form);
   addCompressOption(command, options->writing);

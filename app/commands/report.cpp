@@ -62,9 +62,9 @@ class ScanReport {
 
   engine::Result<Report> write() {
     if (auto status = checkForm(options_.form); !status) return tl::unexpected(status.error());
-    if (auto status = checkOutputs({{options_.out, OutputKind::kText, ".html"}},
-                                   {options_.scan, options_.original, options_.form.marks}, Replacing::kNoWork,
-                                   job_);
+    if (auto status =
+            checkOutputs({{options_.out, OutputKind::kText, ".html"}},
+                         {options_.scan, options_.original, options_.form.marks}, Replacing::kNoWork, job_);
         !status)
       return tl::unexpected(status.error());
     if (auto status = read(); !status) return tl::unexpected(status.error());
@@ -102,9 +102,9 @@ class ScanReport {
     if (original && !(*original == imported_.field)) {
       const engine::Grid &a = original->grid(), &b = imported_.field.grid();
       if (a.width != b.width || a.height != b.height)
-        return engine::inputError(
-            fmt::format("the original has {} x {} samples, the scan {} x {}", a.width, a.height, b.width, b.height),
-            shownInput(options_.original), "give the scan that it was made from");
+        return engine::inputError(fmt::format("the original has {} x {} samples, the scan {} x {}", a.width,
+                                              a.height, b.width, b.height),
+                                  shownInput(options_.original), "give the scan that it was made from");
       states_.push_back({"Before", *std::move(original)});
     }
     states_.push_back({states_.empty() ? "Value" : "After", imported_.field});
@@ -122,17 +122,22 @@ class ScanReport {
     ReportPage::Table about{"Scan", "", {"", ""}, {}};
     about.rows = {
         {"Samples", fmt::format("{} x {}", grid.width, grid.height)},
-        {"Spacing", fmt::format("{:.6g} x {:.6g} {}", grid.spacing_x, grid.spacing_y, grid.lateral_unit.name)},
+        {"Spacing",
+         fmt::format("{:.6g} x {:.6g} {}", grid.spacing_x, grid.spacing_y, grid.lateral_unit.name)},
         {"Size", fmt::format("{:.6g} x {:.6g} {}", (grid.width - 1) * grid.spacing_x,
                              (grid.height - 1) * grid.spacing_y, grid.lateral_unit.name)},
-        {"Lower left corner", fmt::format("{:.10g}, {:.10g} {}", grid.origin_x, grid.origin_y, grid.lateral_unit.name)},
+        {"Lower left corner",
+         fmt::format("{:.10g}, {:.10g} {}", grid.origin_x, grid.origin_y, grid.lateral_unit.name)},
     };
     if (imported_.field.lines() != nullptr)
       about.rows.push_back({"Edge lines", fmt::format("{}", imported_.field.lines()->size())});
     for (const std::string& warning : imported_.warnings) about.rows.push_back({"Note", warning});
     page_.tables.push_back(std::move(about));
 
-    heights_ = {"Heights", "", heads({""}), {{"Holes"}, {"Marked samples"}, {"Least"}, {"Mean"}, {"Largest"}, {"Hash"}}};
+    heights_ = {"Heights",
+                "",
+                heads({""}),
+                {{"Holes"}, {"Marked samples"}, {"Least"}, {"Mean"}, {"Largest"}, {"Hash"}}};
     heights_.heads.emplace_back("Unit");
     for (const ShownState& state : states_) {
       const engine::FieldSummary summary = engine::summarize(state.field);
@@ -198,29 +203,34 @@ class ScanReport {
         tilt += fmt::format(" {}: tilted {:.4g} degrees along x, {:.4g} along y.", state.name,
                             measured.back()["tilt_x"].get<double>(), measured.back()["tilt_y"].get<double>());
     }
-    page_.tables.push_back(textureTable(
-        arealLines(measured), heads({}),
-        fmt::format("ISO 25178-2 about the form {}{}, over {} samples.{}", options_.form.form,
-                    options_.form.robust ? " (robust)" : "",
-                    options_.form.region == "all" ? "all" : options_.form.region == "marked" ? "the marked" : "the unmarked", tilt)));
+    page_.tables.push_back(
+        textureTable(arealLines(measured), heads({}),
+                     fmt::format("ISO 25178-2 about the form {}{}, over {} samples.{}", options_.form.form,
+                                 options_.form.robust ? " (robust)" : "",
+                                 options_.form.region == "all"      ? "all"
+                                 : options_.form.region == "marked" ? "the marked"
+                                                                    : "the unmarked",
+                                 tilt)));
     return {};
   }
 
   // The steps of a session. One from standard input is gone after it was read, and Python's scans have none.
   engine::Status addSteps() {
     report_["steps"] = 0;
-    if (imported_.format != "Fettle" || isStream(options_.scan) || memoryPlace(options_.scan) != nullptr) return {};
+    if (imported_.format != "Fettle" || isStream(options_.scan) || memoryPlace(options_.scan) != nullptr)
+      return {};
     engine::SessionOpenOptions opening;
     opening.history_bytes = engine::History::kNoBound;
     opening.journal = engine::JournalReading::kLeave;
     const auto session = loadSession(options_.scan, opening, job_);
     if (!session) return tl::unexpected(session.error());
     const engine::History& history = session->history;
-    ReportPage::Table steps{"Steps",
-                            "Times are UTC. A hash is that of the samples and marks after the step, as fettle info and other "
-                            "reports print it; samples are counted from the lower left corner.",
-                            {"No.", "Step", "Kind", "When", "Where", "Hash"},
-                            {}};
+    ReportPage::Table steps{
+        "Steps",
+        "Times are UTC. A hash is that of the samples and marks after the step, as fettle info and other "
+        "reports print it; samples are counted from the lower left corner.",
+        {"No.", "Step", "Kind", "When", "Where", "Hash"},
+        {}};
     for (std::int64_t k = history.first() + 1; k <= history.number(); ++k) {
       if (job_.cancelled()) return engine::cancelled();
       const engine::StepInfo& step = history.info(k);
@@ -249,8 +259,8 @@ class ScanReport {
       const auto drawn = drawPicture(**picture, shown, input, file, job_);
       if (!drawn) return tl::unexpected(drawn.error());
       std::ifstream in(file, std::ios::binary);
-      page_.pictures.push_back(
-          {std::move(caption), std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>())});
+      page_.pictures.push_back({std::move(caption), std::string(std::istreambuf_iterator<char>(in),
+                                                                std::istreambuf_iterator<char>())});
       return {};
     };
     render::Shown shown;
@@ -306,12 +316,17 @@ void addReport(Command root, Chosen& chosen) {
                 .to = &options->original,
                 .text = "Figures and pictures beside those of this scan; of a session: the one it began with",
                 .kind = ValueKind::kInput},
-               {.name = "--title", .to = &options->title, .text = "Heading of the page", .otherwise = "the file's name"}});
+               {.name = "--title",
+                .to = &options->title,
+                .text = "Heading of the page",
+                .otherwise = "the file's name"}});
   addFormOptions(command, options->form);
   addScanOptions(command, options->reading);
   command.notes(
-      "One file without links to others: pictures from the side and from above, noise, surface texture about a form, of a "
-      "session before and after, with its steps and the hash of each state. The same scan gives the same page, on one "
+      "One file without links to others: pictures from the side and from above, noise, surface texture about "
+      "a form, of a "
+      "session before and after, with its steps and the hash of each state. The same scan gives the same "
+      "page, on one "
       "machine to the byte. A browser prints it to paper or PDF with text that can be searched.");
   command.examples({{"fettle report scan.tif report.html", "Pictures and figures of a scan"},
                     {"fettle report clean.tif report.html --original scan.tif --form poly2 --robust",

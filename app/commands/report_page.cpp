@@ -51,7 +51,8 @@ std::string tableHtml(const ReportPage::Table& table) {
 
 std::string reportPage(const ReportPage& report) {
   std::string page = fmt::format(
-      "<!doctype html>\n<html lang=en><head><meta charset=utf-8><title>{0}</title>\n{1}</head><body>\n<h1>{0}</h1>\n"
+      "<!doctype html>\n<html lang=en><head><meta "
+      "charset=utf-8><title>{0}</title>\n{1}</head><body>\n<h1>{0}</h1>\n"
       "<p class=how>{2}</p>\n",
       escapedHtml(report.title), kReportStyle, escapedHtml(report.made_with));
   for (const ReportPage::Picture& picture : report.pictures)

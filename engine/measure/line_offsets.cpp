@@ -182,7 +182,8 @@ double matchedStep(ScanLine a, ScanLine b, std::vector<double>& scratch) {
   if (scale == 0.0) return now;  // half of the samples agree to the last bit
   const std::size_t last = a.size() - 1;
   const auto unlike = [&](std::size_t i) {
-    const double d = i == 0 || i == last ? 0.0 : (double{b[i + 1]} - b[i - 1]) - (double{a[i + 1]} - a[i - 1]);
+    const double d =
+        i == 0 || i == last ? 0.0 : (double{b[i + 1]} - b[i - 1]) - (double{a[i + 1]} - a[i - 1]);
     return std::isnan(d) ? 0.0 : d;
   };
   double squares = 0.0;
@@ -222,8 +223,7 @@ class LineSearch {
   }
 
   Result<LineOffsets> run() {
-    const bool chain =
-        options_.method == LineMethod::kDifference || options_.method == LineMethod::kMatching;
+    const bool chain = options_.method == LineMethod::kDifference || options_.method == LineMethod::kMatching;
     overStrips([&](std::int32_t first, std::int32_t count) { countAndFit(first, count, !chain); });
     if (job_.cancelled()) return cancelled();
     found_.empty = static_cast<std::int32_t>(std::ranges::count(counts_, 0));
@@ -237,8 +237,8 @@ class LineSearch {
       double sum = 0.0;
       for (std::int32_t l = 0; l < found_.lines; ++l)
         if (counts_[static_cast<std::size_t>(l)] > 0)
-          found_.coefficients[static_cast<std::size_t>(l)] =
-              sum += found_.coefficients[static_cast<std::size_t>(l)];
+          found_.coefficients[static_cast<std::size_t>(l)] = sum +=
+              found_.coefficients[static_cast<std::size_t>(l)];
     }
     fillEmpty();
     centre();
@@ -273,13 +273,12 @@ class LineSearch {
       readRegion(field_, options_.region, {first, i, count, part}, z, kTileSide);
       for (std::int32_t l = 0; l < count; ++l)
         for (std::int32_t k = 0; k < part; ++k)
-          out[static_cast<std::size_t>(l) * length + static_cast<std::size_t>(i + k)] =
-              z[k * kTileSide + l];
+          out[static_cast<std::size_t>(l) * length + static_cast<std::size_t>(i + k)] = z[k * kTileSide + l];
     }
   }
   [[nodiscard]] ScanLine lineOf(const std::vector<float>& lines, std::int32_t index) const noexcept {
     return ScanLine(lines).subspan(static_cast<std::size_t>(index) * static_cast<std::size_t>(found_.length),
-                               static_cast<std::size_t>(found_.length));
+                                   static_cast<std::size_t>(found_.length));
   }
 
   void countAndFit(std::int32_t first, std::int32_t count, bool fit) {
@@ -300,7 +299,8 @@ class LineSearch {
       else
         c = leastSquares(samples, {}, static_cast<int>(terms()));
       c[0] += samples.base;
-      std::copy_n(c.begin(), terms(), found_.coefficients.begin() + static_cast<std::ptrdiff_t>(at * terms()));
+      std::copy_n(c.begin(), terms(),
+                  found_.coefficients.begin() + static_cast<std::ptrdiff_t>(at * terms()));
     }
   }
 
@@ -389,8 +389,8 @@ void LineOffsets::readHeights(const SampleRect& rect, double* out) const noexcep
 
 Result<LineOffsets> findLineOffsets(const Version& field, const LineOptions& options, JobControl& job) {
   if (options.degree < 0 || options.degree > LineOptions::kMostDegree)
-    return inputError(fmt::format("a line's polynomial of degree {} is not possible", options.degree), "lines",
-                      fmt::format("take 0 to {}", LineOptions::kMostDegree));
+    return inputError(fmt::format("a line's polynomial of degree {} is not possible", options.degree),
+                      "lines", fmt::format("take 0 to {}", LineOptions::kMostDegree));
   return LineSearch(field, options, job).run();
 }
 

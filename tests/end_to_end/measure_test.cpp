@@ -63,7 +63,9 @@ void writeLines(const std::string& path, bool along_x, bool offsets) {
   for (int r = 63; r >= 0; --r) {
     for (int c = 0; c < 64; ++c) {
       const int line = along_x ? r : c, place = along_x ? c : r;
-      out << (static_cast<int>(std::abs(place - 31.5)) / 8 % 2 == 0 ? 0.02 : 0.0) + (offsets ? 0.001 * ((line * 37) % 11 - 5) : 0.0) << ' ';
+      out << (static_cast<int>(std::abs(place - 31.5)) / 8 % 2 == 0 ? 0.02 : 0.0) +
+                 (offsets ? 0.001 * ((line * 37) % 11 - 5) : 0.0)
+          << ' ';
     }
     out << '\n';
   }
@@ -77,8 +79,8 @@ TEST(Measure, LinesAreLevelledAlongTheirAxis) {
     writeLines(scan, axis == "x", true);
     writeLines(truth, axis == "x", false);
     for (const std::string rows : {"median", "mean", "poly1", "difference", "matching"}) {
-      const auto report = fettleJson({"level", scan, level, "--unit", "mm", "--form", "none", "--rows", rows,
-                                      "--scan-axis", axis});
+      const auto report = fettleJson(
+          {"level", scan, level, "--unit", "mm", "--form", "none", "--rows", rows, "--scan-axis", axis});
       EXPECT_EQ(report["rows"], rows);
       EXPECT_EQ(report["rows_empty"], 0);
       EXPECT_NEAR(report["rows_rms"], 0.00316, 0.0001) << rows;

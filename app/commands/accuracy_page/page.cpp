@@ -136,8 +136,8 @@ std::string tableOf(const bench::Study& study) {
       "[{}]</th><th>worst</th><th>{} "
       "[{}]</th><th>p99</th><th>worst</th>{}{}<th class=t>note</th><th class=t>hash</th></tr>\n",
       escapedHtml(study.cost.name), escapedHtml(study.cost.unit), escapedHtml(study.error.name),
-      escapedHtml(study.error.unit), study.wrong_name.empty() ? "" : "<th>" + escapedHtml(study.wrong_name) + "</th>",
-      headings);
+      escapedHtml(study.error.unit),
+      study.wrong_name.empty() ? "" : "<th>" + escapedHtml(study.wrong_name) + "</th>", headings);
   for (const bench::AccuracyRow& row : study.rows) {
     std::string more;
     for (const double value : row.more) more += "<td>" + number(value) + "</td>";
@@ -197,8 +197,8 @@ std::string accuracyPage(const std::vector<PlottedStudy>& studies, const std::st
       fmt::format("</head><body>\n<h1>What accuracy costs in time</h1>\n<p class=how>{}<br>{}</p>\n<ul>\n",
                   escapedHtml(machine), escapedHtml(made_with));
   for (const PlottedStudy& s : studies)
-    page += fmt::format("<li><a href=\"#{0}\">{1}</a>: <i>{2}</i></li>\n", s.study.id, escapedHtml(s.study.title),
-                        escapedHtml(s.study.question));
+    page += fmt::format("<li><a href=\"#{0}\">{1}</a>: <i>{2}</i></li>\n", s.study.id,
+                        escapedHtml(s.study.title), escapedHtml(s.study.question));
   page +=
       "</ul>\n<p class=how>In each plot further down is nearer the truth and further left is faster; a line "
       "joins what is worth choosing, hollow points are beaten in both. Numbers at points name the method. "
@@ -207,8 +207,8 @@ std::string accuracyPage(const std::vector<PlottedStudy>& studies, const std::st
     page += fmt::format(
         "<h2 id=\"{}\">{}</h2>\n<p class=ask>{}</p>\n<p class=answer>{}</p>\n{}\n<p class=how>{}</p>\n{}<p "
         "class=how><b>Measured against:</b> {}</p>\n<details><summary>All figures</summary>\n{}</details>\n",
-        s.study.id, escapedHtml(s.study.title), escapedHtml(s.study.question), escapedHtml(s.study.answer), s.svg,
-        legendOf(s.study), viewsOf(s), escapedHtml(s.study.reference), tableOf(s.study));
+        s.study.id, escapedHtml(s.study.title), escapedHtml(s.study.question), escapedHtml(s.study.answer),
+        s.svg, legendOf(s.study), viewsOf(s), escapedHtml(s.study.reference), tableOf(s.study));
   }
   return page + "</body></html>\n";
 }

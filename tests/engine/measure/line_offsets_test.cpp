@@ -56,8 +56,8 @@ std::vector<double> randomOffsets(int lines, double size) {
 double worstOffset(const LineOffsets& found, const std::vector<double>& offsets) {
   double most = 0.0;
   for (std::size_t l = 0; l < offsets.size(); ++l)
-    most = std::max(most, std::abs(found.coefficients[l * (static_cast<std::size_t>(found.degree) + 1)] -
-                                   offsets[l]));
+    most = std::max(
+        most, std::abs(found.coefficients[l * (static_cast<std::size_t>(found.degree) + 1)] - offsets[l]));
   return most;
 }
 
@@ -77,7 +77,8 @@ TEST(LineOffsets, OfAGratingAreFoundByEveryMethodAlongBothAxes) {
     EXPECT_LT(worstOffset(offsetsOf(x, {method, 0, ScanAxis::kX}), rows), 2e-6) << static_cast<int>(method);
     const Version y = linesField(
         kWide, kHigh, [&](int c, int r) { return grating(r) + columns[static_cast<std::size_t>(c)]; });
-    EXPECT_LT(worstOffset(offsetsOf(y, {method, 0, ScanAxis::kY}), columns), 2e-6) << static_cast<int>(method);
+    EXPECT_LT(worstOffset(offsetsOf(y, {method, 0, ScanAxis::kY}), columns), 2e-6)
+        << static_cast<int>(method);
   }
 }
 
@@ -143,7 +144,8 @@ TEST(LineOffsets, APolynomialIsThatOfTheSamplesInLongDouble) {
   std::vector<double> noise(static_cast<std::size_t>(kWide * 7));
   for (double& z : noise) z = normal(random);
   const Version field = linesField(kWide, 7, [&](int c, int r) {
-    return (c * 5 + r) % 9 == 0 ? double{kNone} : 5e6 + 0.01 * c * r + noise[static_cast<std::size_t>(r * kWide + c)];
+    return (c * 5 + r) % 9 == 0 ? double{kNone}
+                                : 5e6 + 0.01 * c * r + noise[static_cast<std::size_t>(r * kWide + c)];
   });
   const LineOffsets found = offsetsOf(field, {LineMethod::kPolynomial, 1});
   std::vector<long double> constants, slopes;
@@ -183,7 +185,8 @@ TEST(LineOffsets, ARobustPolynomialIgnoresAStepOverTwoFifthsOfALine) {
   const Version field = linesField(kWide, 40, height);
   JobControl job;
   const auto error = [&](bool robust) {
-    const LineOffsets found = offsetsOf(field, {LineMethod::kPolynomial, 2, ScanAxis::kX, Region::kAll, robust});
+    const LineOffsets found =
+        offsetsOf(field, {LineMethod::kPolynomial, 2, ScanAxis::kX, Region::kAll, robust});
     const auto level = lowered(
         field, "", [&](const SampleRect& rect, double* out) { found.readHeights(rect, out); }, job);
     const float first = level->reader().heightAt(0, 0);
@@ -198,18 +201,22 @@ TEST(LineOffsets, ARobustPolynomialIgnoresAStepOverTwoFifthsOfALine) {
 }
 
 TEST(LineOffsets, WhatIsTakenIsWhatTheCoefficientsSay) {
-  const Version field = linesField(kWide, kHigh, [](int c, int r) { return std::sin(0.1 * c * r) + 0.1 * r; });
+  const Version field =
+      linesField(kWide, kHigh, [](int c, int r) { return std::sin(0.1 * c * r) + 0.1 * r; });
   for (const ScanAxis axis : {ScanAxis::kX, ScanAxis::kY}) {
     const LineOffsets found = offsetsOf(field, {LineMethod::kPolynomial, 3, axis});
     std::vector<double> out(kTileSamples);
     found.readHeights({64, 64, 64, 64}, out.data());
     for (int r = 0; r < 64; ++r)
       for (int c = 0; c < 64; ++c) {
-        const int line = axis == ScanAxis::kX ? 64 + r : 64 + c, place = axis == ScanAxis::kX ? 64 + c : 64 + r;
+        const int line = axis == ScanAxis::kX ? 64 + r : 64 + c,
+                  place = axis == ScanAxis::kX ? 64 + c : 64 + r;
         const double u = 2.0 * place / (found.length - 1) - 1.0;
         const double* k = found.coefficients.data() + 4 * line;
-        ASSERT_NEAR(out[static_cast<std::size_t>(r * kTileSide + c)],
-                    k[0] + k[1] * std::legendre(1, u) + k[2] * std::legendre(2, u) + k[3] * std::legendre(3, u), 1e-14);
+        ASSERT_NEAR(
+            out[static_cast<std::size_t>(r * kTileSide + c)],
+            k[0] + k[1] * std::legendre(1, u) + k[2] * std::legendre(2, u) + k[3] * std::legendre(3, u),
+            1e-14);
       }
   }
 }
@@ -243,8 +250,10 @@ TEST(LineOffsets, OfHardFieldsAreFiniteOrRefused) {
       for (const LineMethod method : kAllMethods)
         for (const bool robust : {false, true})
           for (const ScanAxis axis : {ScanAxis::kX, ScanAxis::kY}) {
-            const LineOffsets found = offsetsOf(linesField(width, height, z), {method, 3, axis, Region::kAll, robust});
-            for (const double k : found.coefficients) ASSERT_TRUE(std::isfinite(k)) << width << " x " << height;
+            const LineOffsets found =
+                offsetsOf(linesField(width, height, z), {method, 3, axis, Region::kAll, robust});
+            for (const double k : found.coefficients)
+              ASSERT_TRUE(std::isfinite(k)) << width << " x " << height;
             ASSERT_TRUE(std::isfinite(found.rms));
           }
   const Version holes = linesField(70, 66, [](int, int) { return double{kNone}; });
@@ -266,7 +275,9 @@ TEST(LineOffsets, AreTheSameForAnyNumberOfThreads) {
   const Version field = linesField(200, 300, [&](int, int) { return normal(random); });
   for (const LineMethod method : kAllMethods) {
     LineOffsets one;
-    tbb::task_arena(1).execute([&] { one = offsetsOf(field, {method, 2, ScanAxis::kX, Region::kAll, true}); });
+    tbb::task_arena(1).execute([&] {
+      one = offsetsOf(field, {method, 2, ScanAxis::kX, Region::kAll, true});
+    });
     const LineOffsets many = offsetsOf(field, {method, 2, ScanAxis::kX, Region::kAll, true});
     EXPECT_EQ(one.coefficients, many.coefficients);
   }
