@@ -91,8 +91,9 @@ engine::Result<engine::FormFit> formOf(const engine::Version& field, const std::
                                                         : "give marks with --marks, or take --region all");
   }
   if (fit->samples <= engine::PolynomialForm::terms(options.degree))
-    warn(fmt::format("{}: {} samples do not determine the form {}, which goes through all of them",
-                     shownInput(scan), fit->samples, arguments.form));
+    warn(fmt::format(
+        "{}: {} samples do not determine the form {}: of those that come nearest to them it is the flattest",
+        shownInput(scan), fit->samples, arguments.form));
   if (imported.in_perspective)
     warn(
         fmt::format("{}: in a camera's perspective a plane is bent: form and figures are those of the "

@@ -127,6 +127,8 @@ engine::Result<Report> level(const LevelArguments& options, engine::JobControl& 
   if (options.form.form == "none" && options.rows.empty())
     return engine::inputError("there is no form to take out", "--form",
                               "name another than none, or give --rows");
+  if (options.scan_axis != "x" && options.rows.empty())
+    return engine::inputError("there are no lines to level along y", "--scan-axis", "add --rows");
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
   const auto tasks = batchTasks(options.files, {options.form.marks}, job);
   if (!tasks) return tl::unexpected(tasks.error());
@@ -149,8 +151,9 @@ void addLevel(Command root, Chosen& chosen) {
   command.add({
       {.name = "--rows",
        .to = &options->rows,
-       .text =
-           "First level the lines of a line scanner, each by this; --region and --robust hold for them, too",
+       .text = "First level the lines of a line scanner, each by this, of the samples of --region; --robust "
+               "for mean and poly. "
+               "Where features fill more than half of a line take matching, or leave them out by marks",
        .words = lineWords()},
       {.name = "--scan-axis",
        .to = &options->scan_axis,

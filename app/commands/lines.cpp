@@ -210,7 +210,7 @@ engine::Status writeFiles(const LinesArguments& options, const std::vector<Measu
 engine::Result<Report> measureLines(const LinesArguments& options, engine::JobControl& job) {
   if (auto status = checkOutputs({{options.out, OutputKind::kLines, kLinesStream},
                                   {options.csv, OutputKind::kText, kLinesStream},
-                                  {options.plot}},
+                                  {options.plot, OutputKind::kPlot}},
                                  {options.scan, options.lines}, Replacing::kNoWork, job);
       !status)
     return tl::unexpected(status.error());

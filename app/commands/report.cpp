@@ -63,7 +63,7 @@ class ScanReport {
   engine::Result<Report> write() {
     if (auto status = checkForm(options_.form); !status) return tl::unexpected(status.error());
     if (auto status =
-            checkOutputs({{options_.out, OutputKind::kText, ".html"}},
+            checkOutputs({{options_.out, OutputKind::kPage, ".html"}},
                          {options_.scan, options_.original, options_.form.marks}, Replacing::kNoWork, job_);
         !status)
       return tl::unexpected(status.error());

@@ -20,6 +20,8 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/section_files.h"
+#include "app/commands/section_options.h"
+#include "app/commands/section_text.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
 #include "engine/inspect/noise.h"
@@ -36,45 +38,6 @@ namespace {
 using engine::Estimate;
 using engine::Section;
 using engine::Stretch;
-
-struct SectionArguments {
-  std::string scan;
-  std::vector<double> from, to;
-  std::vector<std::string> polylines;
-  std::string lines;
-  double width = 0.0;
-  std::string interpolation = "bilinear";
-  std::string region = "all";
-  std::string marks;
-  std::string compare;
-  // What is measured.
-  std::vector<double> within, cursors, line, angle, arc;
-  std::string step, groove;
-  std::optional<double> cutoff;
-  std::vector<std::string> probes;
-  std::optional<double> probe_radius;
-  // Files.
-  std::string csv, plot, dxf;
-  Replacing replacing = Replacing::kNoWork;
-  ScanOptions reading;
-};
-
-// Numbers with commas between them, exactly so many; none when the text is something else.
-std::vector<double> numbersOf(std::string_view text, std::size_t count) {
-  std::vector<double> numbers;
-  while (numbers.size() < count) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || !std::isfinite(value)) return {};
-    numbers.push_back(value);
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    if (numbers.size() < count) {
-      if (!text.starts_with(',')) return {};
-      text.remove_prefix(1);
-    }
-  }
-  return text.empty() ? numbers : std::vector<double>();
-}
 
 using Points = std::vector<glm::dvec2>;
 
@@ -177,6 +140,15 @@ class Figures {
   }
 
  private:
+  // Whether an offset that was searched for is more than the largest that noise makes somewhere, and than what the
+  // rounding of heights to float does.
+  [[nodiscard]] static bool standsOut(const Section& section, const Estimate& offset) {
+    double most = 0.0;
+    for (const double z : section.height)
+      if (!std::isnan(z)) most = std::max(most, std::abs(z));
+    return std::abs(offset.value) > std::max(5.0 * offset.error, 1e-6 * most);
+  }
+
   [[nodiscard]] Stretch within(const Section& section) const {
     return options_.within.empty() ? Stretch{0.0, section.lengthMm()}
                                    : Stretch{options_.within[0], options_.within[1]};
@@ -207,6 +179,9 @@ class Figures {
       return engine::inputError("the section has too few heights for a step", "--step", "give a longer line");
     const auto figures = engine::stepFigures(section, edge, within(section), noise_mm_);
     if (!figures) return tl::unexpected(figures.error());
+    if (options_.step == "auto" && !standsOut(section, figures->step_mm))
+      return engine::inputError("no step stands out from the noise of the section", "--step",
+                                "average over a --width, or give the edge's length");
     marks.push_back(edge);
     Report report{{"edge_mm", edge}};
     addEstimate(report, "step", "mm", figures->step_mm);
@@ -224,10 +199,13 @@ class Figures {
       edges = {typed[0], typed[1]};
     }
     if (std::isnan(edges.from_mm))
-      return engine::inputError("the section has too few heights for a groove", "--groove",
-                                "give a longer line");
+      return engine::inputError("no groove or ridge stands out in the section", "--groove",
+                                "give a longer line, or the lengths of both edges");
     const auto figures = engine::grooveFigures(section, edges.from_mm, edges.to_mm, noise_mm_);
     if (!figures) return tl::unexpected(figures.error());
+    if (options_.groove == "auto" && !standsOut(section, figures->step_mm))
+      return engine::inputError("no groove or ridge stands out from the noise of the section", "--groove",
+                                "average over a --width, or give the lengths of both edges");
     marks.insert(marks.end(), {edges.from_mm, edges.to_mm});
     Report report{{"edges", stretchOf(edges)}, {"width_mm", edges.to_mm - edges.from_mm}};
     addEstimate(report, "depth", "mm", figures->step_mm);
@@ -382,30 +360,12 @@ engine::Status writeSectionFiles(const SectionArguments& options, const std::vec
   return options.plot.empty() ? engine::Status() : drawSections(drawn, options.plot);
 }
 
-engine::Status checkSectionWords(const SectionArguments& options) {
-  if (!options.step.empty() && options.step != "auto" && numbersOf(options.step, 1).empty())
-    return engine::inputError(fmt::format("'{}' is no length", options.step), "--step",
-                              "give the edge's length along the line in mm, or auto");
-  if (!options.groove.empty() && options.groove != "auto" && numbersOf(options.groove, 2).empty())
-    return engine::inputError(fmt::format("'{}' is not two lengths", options.groove), "--groove",
-                              "give the lengths of both edges along the line in mm, A,B, or auto");
-  for (const std::string& probe : options.probes)
-    if (numbersOf(probe, 2).empty())
-      return engine::inputError(fmt::format("'{}' is no point", probe), "--probe", "give X,Y in mm");
-  if (!options.marks.empty() && options.region == "all")
-    return engine::inputError("marks choose nothing where all samples count", "--marks",
-                              "add --region marked or --region unmarked");
-  if (!options.plot.empty()) {
-    if (auto status = checkSectionPicture(options.plot); !status) return status;
-    return plotsCanBeMade();
-  }
-  return {};
-}
-
 engine::Result<Report> takeSections(const SectionArguments& options, engine::JobControl& job) {
   if (auto status = checkSectionWords(options); !status) return tl::unexpected(status.error());
   if (auto status =
-          checkOutputs({{options.csv, OutputKind::kText, ".csv"}, {options.plot}, {options.dxf}},
+          checkOutputs({{options.csv, OutputKind::kText, ".csv"},
+                        {options.plot, OutputKind::kPlot},
+                        {options.dxf, OutputKind::kDrawing}},
                        {options.scan, options.compare, options.lines, options.marks}, options.replacing, job);
       !status)
     return tl::unexpected(status.error());
@@ -465,201 +425,6 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
   return report;
 }
 
-std::string shownNumber(const Report& value) {
-  return value.is_null() ? "-" : fmt::format("{:.6g}", value.get<double>());
-}
-
-// "12.3 +- 0.2 mm", the error of a figure beside it.
-std::string shownEstimate(const Report& report, const std::string& key, const std::string& unit) {
-  const std::string ending = unit.empty() ? std::string() : fmt::format("_{}", unit);
-  const Report& error = report[key + "_error" + ending];
-  return fmt::format("{}{} {}", shownNumber(report[key + ending]),
-                     error.is_null() ? "" : fmt::format(" +- {:.2g}", error.get<double>()),
-                     unit == "deg" ? "degrees" : unit);
-}
-
-void printFigures(const Report& of, const std::string& before) {
-  const auto row = [&](const char* name, const std::string& text) {
-    fmt::print("{}{:<10} {}\n", before, name, text);
-  };
-  if (of.contains("cursors")) {
-    const Report& c = of["cursors"];
-    row("cursors", fmt::format("dx {} mm, dz {}, slope {} degrees, distance {} mm", shownNumber(c["dx_mm"]),
-                               shownEstimate(c, "dz", "mm"), shownNumber(c["slope_deg"]),
-                               shownNumber(c["distance_mm"])));
-  }
-  if (of.contains("line"))
-    row("line", fmt::format("inclination {}, height in the middle {}, rms {} mm",
-                            shownEstimate(of["line"], "inclination", "deg"),
-                            shownEstimate(of["line"], "height", "mm"), shownNumber(of["line"]["rms_mm"])));
-  if (of.contains("step"))
-    row("step", fmt::format("{}, edge at {} mm, rms {} mm", shownEstimate(of["step"], "step", "mm"),
-                            shownNumber(of["step"]["edge_mm"]), shownNumber(of["step"]["rms_mm"])));
-  if (of.contains("groove"))
-    row("groove", fmt::format("depth {}, width {} mm from {} to {} mm, rms {} mm",
-                              shownEstimate(of["groove"], "depth", "mm"),
-                              shownNumber(of["groove"]["width_mm"]), shownNumber(of["groove"]["edges"][0]),
-                              shownNumber(of["groove"]["edges"][1]), shownNumber(of["groove"]["rms_mm"])));
-  if (of.contains("angle"))
-    row("angle",
-        fmt::format("turn {}, included {} degrees, lines meet at {} mm, height {} mm",
-                    shownEstimate(of["angle"], "turn", "deg"), shownNumber(of["angle"]["included_deg"]),
-                    shownNumber(of["angle"]["meet_along_mm"]), shownNumber(of["angle"]["meet_height_mm"])));
-  if (of.contains("arc"))
-    row("arc", fmt::format("radius {}, {}, centre at {} mm, height {} mm, rms {} mm",
-                           shownEstimate(of["arc"], "radius", "mm"),
-                           of["arc"]["hollow"].get<bool>() ? "hollow" : "raised",
-                           shownNumber(of["arc"]["centre_along_mm"]),
-                           shownNumber(of["arc"]["centre_height_mm"]), shownNumber(of["arc"]["rms_mm"])));
-  if (of.contains("roughness")) {
-    const Report& r = of["roughness"];
-    row("roughness", fmt::format("Ra {} Rq {} Rz {} RSm {} mm, Rsk {} Rku {}, over {} cut-offs of {} mm",
-                                 shownNumber(r["ra_mm"]), shownNumber(r["rq_mm"]), shownNumber(r["rz_mm"]),
-                                 shownNumber(r["rsm_mm"]), shownNumber(r["rsk"]), shownNumber(r["rku"]),
-                                 r["lengths"].get<int>(), shownNumber(r["cutoff_mm"])));
-  }
-}
-
-void printSections(const Report& report) {
-  if (!report["noise_mm"].is_null())
-    fmt::print("noise of a sample {:.4g} mm; +- standard error\n", report["noise_mm"].get<double>());
-  for (const Report& one : report["sections"]) {
-    fmt::print("section {}: {} mm long, {} places {} mm apart, {} lane{}, heights {} to {} mm\n",
-               one["section"].get<int>(), shownNumber(one["length_mm"]), one["places"].get<int>(),
-               shownNumber(one["spacing_mm"]), one["lanes"].get<int>(),
-               one["lanes"].get<int>() == 1 ? "" : "s", shownNumber(one["low_mm"]),
-               shownNumber(one["high_mm"]));
-    if (one["without_height"].get<int>() > 0)
-      fmt::print("  {} places have no height\n", one["without_height"].get<int>());
-    printFigures(one, "  ");
-    if (one.contains("deviation")) {
-      const Report& d = one["deviation"];
-      fmt::print("  {:<10} other less this: mean {} mm, rms {} mm, largest {} mm, {} places\n", "deviation",
-                 shownNumber(d["mean_mm"]), shownNumber(d["rms_mm"]), shownNumber(d["max_abs_mm"]),
-                 d["places"].get<int>());
-    }
-    if (one.contains("other")) printFigures(one["other"], "  other: ");
-  }
-  if (!report.contains("probes")) return;
-  for (const Report& p : report["probes"])
-    fmt::print("probe {},{}: height {}, slope {} rising to {} degrees, curvature {}, from {} to {} per mm\n",
-               shownNumber(p["x"]), shownNumber(p["y"]), shownEstimate(p, "height", "mm"),
-               shownEstimate(p, "slope", "deg"), shownNumber(p["rises_to_deg"]),
-               shownEstimate(p, "mean_curvature", ""), shownNumber(p["least_curvature"]),
-               shownNumber(p["most_curvature"]));
-}
-
-constexpr const char* kLineGroup = "The line";
-constexpr const char* kFigureGroup = "What is measured (lengths along the line, in mm from its first point)";
-
-void addLineOptions(Command command, SectionArguments& options) {
-  command.add({{.name = "--start",
-                .to = &options.from,
-                .text = "First point, mm from the lower left sample",
-                .shown = "X,Y",
-                .values = 2,
-                .between = ','},
-               {.name = "--end",
-                .to = &options.to,
-                .text = "Last point",
-                .shown = "X,Y",
-                .values = 2,
-                .between = ','},
-               {.name = "--line",
-                .to = &options.polylines,
-                .text = "A polyline; give it again for another section",
-                .shown = "X,Y:X,Y[:...]",
-                .one_word = true},
-               {.name = "--lines",
-                .to = &options.lines,
-                .text = "A section along each line of a file, GeoJSON too",
-                .kind = ValueKind::kLines},
-               {.name = "--width",
-                .to = &options.width,
-                .text = "Average across this width; 0: the line alone",
-                .range = Range{0.0, 1e9},
-                .unit = "mm"},
-               {.name = "--interpolation",
-                .to = &options.interpolation,
-                .text = "Heights between samples",
-                .words = {{"bilinear", "of the four samples around; none next to a hole"},
-                          {"nearest", "of the nearest sample"}}},
-               {.name = "--region",
-                .to = &options.region,
-                .text = "The samples that count; others are holes",
-                .words = {{"all", "every sample that is no hole"},
-                          {"marked", "those that are marked"},
-                          {"unmarked", "those that are not"}}},
-               {.name = "--marks",
-                .to = &options.marks,
-                .text = "Picture of marks for --region, instead of the marks of a session",
-                .kind = ValueKind::kMarks},
-               {.name = "--compare",
-                .to = &options.compare,
-                .text = "Another scan, sectioned and measured at the same places",
-                .kind = ValueKind::kInput}},
-              kLineGroup);
-}
-
-void addFigureOptions(Command command, SectionArguments& options) {
-  command.add({{.name = "--within",
-                .to = &options.within,
-                .text = "Stretch for --step, --groove and --cutoff",
-                .shown = "A,B",
-                .otherwise = "the whole line",
-                .values = 2,
-                .between = ','},
-               {.name = "--cursors",
-                .to = &options.cursors,
-                .text = "Distance, height difference and slope between two places",
-                .shown = "A,B",
-                .values = 2,
-                .between = ','},
-               {.name = "--fit-line",
-                .to = &options.line,
-                .text = "Least-squares line of a stretch",
-                .shown = "A,B",
-                .values = 2,
-                .between = ','},
-               {.name = "--step",
-                .to = &options.step,
-                .text = "Step height at an edge; auto finds the edge",
-                .shown = "A|auto"},
-               {.name = "--groove",
-                .to = &options.groove,
-                .text = "Depth of a groove between two edges, ISO 5436-1; below 0 a ridge; auto finds them",
-                .shown = "A,B|auto"},
-               {.name = "--angle",
-                .to = &options.angle,
-                .text = "Angle between the lines of two stretches",
-                .shown = "A,B,C,D",
-                .values = 4,
-                .between = ','},
-               {.name = "--arc",
-                .to = &options.arc,
-                .text = "Radius of the circle of a stretch",
-                .shown = "A,B",
-                .values = 2,
-                .between = ','},
-               {.name = "--cutoff",
-                .to = &options.cutoff,
-                .text = "Ra, Rq, Rz, Rsk, Rku, RSm of ISO 21920-2 with this Gaussian cut-off",
-                .range = Range{1e-9, 1e9},
-                .unit = "mm"},
-               {.name = "--probe",
-                .to = &options.probes,
-                .text = "Height, slope and curvature around a point of the scan; give it again for another",
-                .shown = "X,Y",
-                .one_word = true},
-               {.name = "--probe-radius",
-                .to = &options.probe_radius,
-                .text = "Samples this near to the point count",
-                .range = Range{1e-9, 1e9},
-                .unit = "mm",
-                .otherwise = "5 samples"}},
-              kFigureGroup);
-}
-
 }  // namespace
 
 void addSection(Command root, Chosen& chosen) {
@@ -698,8 +463,8 @@ void addSection(Command root, Chosen& chosen) {
       "third of the width next to the edge does not count, as beside a groove in "
       "ISO 5436-1; the height is measured across the two parallel lines.");
   command.examples(
-      {{"fettle section scan.tif --start 1,2 --end 9,2 --width 0.2 --step auto --plot step.svg",
-        "Step height on a line, and a picture"},
+      {{"fettle section scan.tif --start 1,2 --end 9,2 --width 0.2 --step 5 --plot step.svg",
+        "Step height 5 mm along a line, and a picture"},
        {"fettle section scan.tif --compare clean.tif --start 1,2 --end 9,2 --cursors 3,5 --csv profile.csv",
         "Before and after, and the heights as a table"},
        {"fettle section scan.tif --line 1,1:4,5:9,5 --cutoff 2.5", "Roughness along a polyline"}});

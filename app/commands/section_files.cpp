@@ -91,13 +91,6 @@ std::string sectionDxf(const std::vector<DrawnSection>& sections) {
   return text;
 }
 
-engine::Status checkSectionPicture(const std::string& path) {
-  const std::string extension = withDot(std::filesystem::path(path).extension().string());
-  if (extension == ".svg" || extension == ".png") return {};
-  return engine::inputError("a section is drawn as SVG or PNG", path,
-                            "give a name that ends in .svg or .png");
-}
-
 engine::Status drawSections(const std::vector<DrawnSection>& sections, const std::string& path) {
   HeightRange range;
   for (const DrawnSection& drawn : sections) {
@@ -115,7 +108,7 @@ engine::Status drawSections(const std::vector<DrawnSection>& sections, const std
   if (unit == std::end(kUnits)) unit = apart > 0.0 ? &kUnits[2] : &kUnits[0];
   std::string script = kPlotHead, curves;
   script += "set xlabel 'length along the line [mm]'\n";
-  script += fmt::format("set ylabel 'height [{}]'\nset format y '%.6g'\n", unit->name);
+  script += fmt::format("set ylabel 'height [{}]'\nset format y '%.9g'\n", unit->name);
   constexpr std::size_t kMostDrawn = 7;
   for (std::size_t s = 0; s < std::min(sections.size(), kMostDrawn); ++s) {
     const char* colour = kPlotColours[s % std::size(kPlotColours)];

@@ -25,10 +25,7 @@ struct DrawnSection {
 [[nodiscard]] std::string sectionDxf(const std::vector<DrawnSection>& sections);
 
 /// Draws heights over lengths, a colour for each section and broken lines for the other, to an .svg or a .png. Errors:
-/// as drawnByGnuplot; another extension (kInput).
+/// as drawnByGnuplot.
 [[nodiscard]] engine::Status drawSections(const std::vector<DrawnSection>& sections, const std::string& path);
-
-/// Whether drawSections can write a path of this extension.
-[[nodiscard]] engine::Status checkSectionPicture(const std::string& path);
 
 }  // namespace fettle::app

@@ -39,11 +39,22 @@ bool isText(const std::string& extension) {
   });
 }
 
+// Extensions under which people keep scans and nothing else.
+bool namesAScan(const std::string& extension) {
+  if (extension == ".csv" || extension == ".txt") return false;
+  return std::ranges::any_of(engine::formats(), [&](const engine::FormatInfo& format) {
+    return std::ranges::find(format.extensions, extension) != format.extensions.end();
+  });
+}
+
 std::vector<std::string> extensionsFor(OutputKind kind) {
   if (kind == OutputKind::kMarks) return {".png", ".tif", ".tiff"};
   if (kind == OutputKind::kPicture) return {".png"};
   if (kind == OutputKind::kLines)
     return {std::begin(engine::kLineExtensions), std::end(engine::kLineExtensions)};
+  if (kind == OutputKind::kPage) return {".html", ".htm"};
+  if (kind == OutputKind::kPlot) return {".svg", ".png"};
+  if (kind == OutputKind::kDrawing) return {".dxf"};
   return kind == OutputKind::kField ? extensionsOf(&engine::FormatInfo::writes) : std::vector<std::string>();
 }
 
@@ -55,6 +66,9 @@ std::filesystem::path placeOf(const std::string& path) {
 }
 
 engine::Status checkExtension(const std::string& extension, OutputKind kind, const std::string& where) {
+  if (kind == OutputKind::kText && namesAScan(extension))
+    return engine::inputError(fmt::format("text under the name of a scan, {}", extension), where,
+                              "take .csv or .txt, so that no scan is replaced");
   const std::vector<std::string> known = extensionsFor(kind);
   if (known.empty() || std::find(known.begin(), known.end(), extension) != known.end()) return {};
   const std::string meant = didYouMean(extension, known);

@@ -18,7 +18,10 @@ enum class OutputKind {
   kMarks,    ///< .png, .tif, .tiff
   kPicture,  ///< .png
   kLines,    ///< engine::kLineExtensions
-  kText,     ///< any
+  kPage,     ///< .html, .htm
+  kPlot,     ///< .svg, .png
+  kDrawing,  ///< .dxf
+  kText,     ///< any but that of a format of scans; .csv and .txt are both
 };
 struct Output {
   std::string path;  ///< empty = not requested

@@ -261,6 +261,12 @@ class OffsetSearch {
     const double with = sdz - (sxx > 0.0 ? sdx * sxz / sxx : 0.0);
     return own > 1e-9 * n ? with * with / own : 0.0;
   }
+  // The sum of squares about the line through all.
+  [[nodiscard]] double aboutLine() const noexcept {
+    const OffsetSums& all = sums_.back();
+    const double sxx = all.xx - all.x * all.x / all.n, sxz = all.xz - all.x * all.z / all.n;
+    return all.zz - all.z * all.z / all.n - (sxx > 0.0 ? sxz * sxz / sxx : 0.0);
+  }
   // Between place i - 1 and place i.
   [[nodiscard]] double edgeAt(std::size_t i) const noexcept {
     return 0.5 * (section_.along(places_[i - 1]) + section_.along(places_[i]));
@@ -372,6 +378,11 @@ Stretch grooveIn(const Section& section, const Stretch& within) {
          ++i)
       better(best.first, i);
   }
+  const double gain = search.gain(best.first, best.second);
+  double one_edge = 0.0;
+  for (std::size_t i = 2; i + 2 <= n; ++i) one_edge = std::max(one_edge, search.gain(i, n));
+  const double left = std::max(0.0, search.aboutLine() - gain);
+  if (!(gain - one_edge > 25.0 * left / static_cast<double>(n))) return {kUnknown, kUnknown};
   return {search.edgeAt(best.first), search.edgeAt(best.second)};
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -107,6 +108,47 @@ TEST(SectionCommand, RefusesWhatItCannotMeasure) {
   refused({"--line", "1,2:7,2", "--cursors", "1,9"}, "cursor");
   refused({"--line", "1,2:7,2", "--plot", folder.file("p.bmp")}, ".svg");
   refused({"--probe", "1"}, "--probe");
+}
+
+TEST(SectionCommand, StatesNoEdgeWhereNoneStandsOut) {
+  const TempFolder folder;
+  const std::string flat = folder.file("flat.asc"), noise = folder.file("noise.asc");
+  std::ofstream zeros(flat), rough(noise);
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal(0.0, 0.01);
+  for (std::ofstream* out : {&zeros, &rough}) {
+    *out << "ncols 120\nnrows 20\nxllcenter 0\nyllcenter 0\ncellsize 1\n";
+    for (int i = 0; i < 120 * 20; ++i)
+      *out << (out == &zeros ? 0.0 : normal(random)) << (i % 120 == 119 ? '\n' : ' ');
+    out->close();
+  }
+  for (const std::string& scan : {flat, noise}) {
+    const auto section = [&](const char* option) {
+      return fettle({"section", scan, "--unit", "mm", "--start", "0,10", "--end", "119,10", option, "auto"});
+    };
+    expectRefused(section("--step"), "stands out");
+    expectRefused(section("--groove"), "stands out");
+  }
+}
+
+// A slip of the hand in a name must not cost a scan.
+TEST(SectionCommand, NeverWritesTextOverAScan) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), keep = folder.file("keep.tif");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "64x64"}).status, 0);
+  ASSERT_EQ(fettle({"synth", keep, "--size", "64x64", "--seed", "2"}).status, 0);
+  const auto hash = fettleJson({"measure", keep})["sq"];
+  const auto section = [&](const char* option, const std::string& out) {
+    return fettle({"section", scan, "--start", "1,1", "--end", "20,20", option, out});
+  };
+  expectRefused(section("--csv", keep), "keep.tif");
+  expectRefused(section("--csv", folder.file("a.asc")), ".asc");
+  expectRefused(section("--dxf", keep), ".dxf");
+  expectRefused(section("--plot", keep), ".svg");
+  expectRefused(fettle({"measure", scan, "--csv", keep}), "keep.tif");
+  expectRefused(fettle({"report", scan, keep}), ".html");
+  expectRefused(fettle({"report", scan, folder.file("r.pdf")}), ".html");
+  EXPECT_EQ(fettleJson({"measure", keep})["sq"], hash);
 }
 
 }  // namespace

@@ -253,5 +253,24 @@ TEST(SectionFigures, HardCases) {
   EXPECT_TRUE(std::isfinite(step->step_mm.error));
 }
 
+// One edge, or noise alone, is no groove; a groove in the same noise is found.
+TEST(Section, AGrooveHasTwoEdges) {
+  std::mt19937_64 random(8);
+  std::normal_distribution<double> normal(0.0, 0.001);
+  const auto found = [&](const std::function<double(double)>& z) {
+    const Section section =
+        taken(sectionField(200, 9, 0.1, 0.1, [&](double x, double) { return z(x) + normal(random); }),
+              {{0.0, 0.4}, {19.9, 0.4}});
+    return grooveIn(section, {0.0, 20.0});
+  };
+  for (int trial = 0; trial < 20; ++trial) {
+    EXPECT_TRUE(std::isnan(found([](double) { return 0.0; }).from_mm));
+    EXPECT_TRUE(std::isnan(found([](double x) { return x > 12.0 ? 0.05 : 0.0; }).from_mm));
+    const Stretch groove = found([](double x) { return x > 8.0 && x < 12.0 ? -0.05 : 0.0; });
+    EXPECT_NEAR(groove.from_mm, 8.05, 0.051);
+    EXPECT_NEAR(groove.to_mm, 11.95, 0.051);
+  }
+}
+
 }  // namespace
 }  // namespace fettle::engine

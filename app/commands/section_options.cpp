@@ -1,0 +1,170 @@
+#include "app/commands/section_options.h"
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/commands/plots/gnuplot.h"
+
+namespace fettle::app {
+
+namespace {
+
+constexpr const char* kLineGroup = "The line";
+constexpr const char* kFigureGroup = "What is measured (lengths along the line, in mm from its first point)";
+
+}  // namespace
+
+std::vector<double> numbersOf(std::string_view text, std::size_t count) {
+  std::vector<double> numbers;
+  while (numbers.size() < count) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !std::isfinite(value)) return {};
+    numbers.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (numbers.size() < count) {
+      if (!text.starts_with(',')) return {};
+      text.remove_prefix(1);
+    }
+  }
+  return text.empty() ? numbers : std::vector<double>();
+}
+
+engine::Status checkSectionWords(const SectionArguments& options) {
+  if (!options.step.empty() && options.step != "auto" && numbersOf(options.step, 1).empty())
+    return engine::inputError(fmt::format("'{}' is no length", options.step), "--step",
+                              "give the edge's length along the line in mm, or auto");
+  if (!options.groove.empty() && options.groove != "auto" && numbersOf(options.groove, 2).empty())
+    return engine::inputError(fmt::format("'{}' is not two lengths", options.groove), "--groove",
+                              "give the lengths of both edges along the line in mm, A,B, or auto");
+  for (const std::string& probe : options.probes)
+    if (numbersOf(probe, 2).empty())
+      return engine::inputError(fmt::format("'{}' is no point", probe), "--probe", "give X,Y in mm");
+  for (const auto& [numbers, option] : {std::pair(&options.within, "--within"),
+                                        {&options.line, "--fit-line"},
+                                        {&options.angle, "--angle"},
+                                        {&options.arc, "--arc"}})
+    for (std::size_t i = 0; i + 1 < numbers->size(); i += 2)
+      if (!((*numbers)[i] < (*numbers)[i + 1]))
+        return engine::inputError(
+            fmt::format("the stretch {:.6g},{:.6g} is not in order", (*numbers)[i], (*numbers)[i + 1]),
+            option, "give the nearer end first");
+  if (!options.marks.empty() && options.region == "all")
+    return engine::inputError("marks choose nothing where all samples count", "--marks",
+                              "add --region marked or --region unmarked");
+  return options.plot.empty() ? engine::Status() : plotsCanBeMade();
+}
+
+void addLineOptions(Command command, SectionArguments& options) {
+  command.add({{.name = "--start",
+                .to = &options.from,
+                .text = "First point, mm from the lower left sample",
+                .shown = "X,Y",
+                .values = 2,
+                .between = ','},
+               {.name = "--end",
+                .to = &options.to,
+                .text = "Last point",
+                .shown = "X,Y",
+                .values = 2,
+                .between = ','},
+               {.name = "--line",
+                .to = &options.polylines,
+                .text = "A polyline; give it again for another section",
+                .shown = "X,Y:X,Y[:...]",
+                .one_word = true},
+               {.name = "--lines",
+                .to = &options.lines,
+                .text = "A section along each line of a file, GeoJSON too",
+                .kind = ValueKind::kLines},
+               {.name = "--width",
+                .to = &options.width,
+                .text = "Average across this width; 0: the line alone",
+                .range = Range{0.0, 1e9},
+                .unit = "mm"},
+               {.name = "--interpolation",
+                .to = &options.interpolation,
+                .text = "Heights between samples",
+                .words = {{"bilinear", "of the four samples around; none next to a hole"},
+                          {"nearest", "of the nearest sample"}}},
+               {.name = "--region",
+                .to = &options.region,
+                .text = "The samples that count; others are holes",
+                .words = {{"all", "every sample that is no hole"},
+                          {"marked", "those that are marked"},
+                          {"unmarked", "those that are not"}}},
+               {.name = "--marks",
+                .to = &options.marks,
+                .text = "Picture of marks for --region, instead of the marks of a session",
+                .kind = ValueKind::kMarks},
+               {.name = "--compare",
+                .to = &options.compare,
+                .text = "Another scan, sectioned and measured at the same places",
+                .kind = ValueKind::kInput}},
+              kLineGroup);
+}
+
+void addFigureOptions(Command command, SectionArguments& options) {
+  command.add({{.name = "--within",
+                .to = &options.within,
+                .text = "Stretch for --step, --groove and --cutoff",
+                .shown = "A,B",
+                .otherwise = "the whole line",
+                .values = 2,
+                .between = ','},
+               {.name = "--cursors",
+                .to = &options.cursors,
+                .text = "Distance, height difference and slope between two places",
+                .shown = "A,B",
+                .values = 2,
+                .between = ','},
+               {.name = "--fit-line",
+                .to = &options.line,
+                .text = "Least-squares line of a stretch",
+                .shown = "A,B",
+                .values = 2,
+                .between = ','},
+               {.name = "--step",
+                .to = &options.step,
+                .text = "Step height at an edge; auto finds the edge",
+                .shown = "A|auto"},
+               {.name = "--groove",
+                .to = &options.groove,
+                .text = "Depth of a groove between two edges, ISO 5436-1; below 0 a ridge; auto finds them",
+                .shown = "A,B|auto"},
+               {.name = "--angle",
+                .to = &options.angle,
+                .text = "Angle between the lines of two stretches",
+                .shown = "A,B,C,D",
+                .values = 4,
+                .between = ','},
+               {.name = "--arc",
+                .to = &options.arc,
+                .text = "Radius of the circle of a stretch",
+                .shown = "A,B",
+                .values = 2,
+                .between = ','},
+               {.name = "--cutoff",
+                .to = &options.cutoff,
+                .text = "Ra, Rq, Rz, Rsk, Rku, RSm of ISO 21920-2 with this Gaussian cut-off",
+                .range = Range{1e-9, 1e9},
+                .unit = "mm"},
+               {.name = "--probe",
+                .to = &options.probes,
+                .text = "Height, slope and curvature around a point of the scan; give it again for another",
+                .shown = "X,Y",
+                .one_word = true},
+               {.name = "--probe-radius",
+                .to = &options.probe_radius,
+                .text = "Samples this near to the point count",
+                .range = Range{1e-9, 1e9},
+                .unit = "mm",
+                .otherwise = "5 samples"}},
+              kFigureGroup);
+}
+
+}  // namespace fettle::app
