@@ -28,6 +28,7 @@
 #include "engine/filter/noise_range.h"
 #include "engine/filter/pass.h"
 #include "engine/formats/formats.h"
+#include "engine/measure/form.h"
 #include "engine/resume/work_identity.h"
 
 namespace fettle::app {
@@ -170,6 +171,23 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
             auto marked = engine::suggestMarks(piece, *map, edges->choice, own);
             return marked ? engine::Result<engine::Version>(std::move(marked->field))
                           : engine::Result<engine::Version>(tl::unexpected(marked.error()));
+          }});
+    } else if (const auto* level = std::get_if<RecipeLevel>(&step)) {
+      steps.emplace_back(
+          PlannedOnPieces{[&field, level](const engine::SampleRect& r, engine::JobControl& own) {
+            const engine::Version piece = engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
+            engine::FormOptions form = formOptionsOf(level->form);
+            form.region = engine::Region::kAll;  // marks of an earlier step are not there yet
+            const auto fit = engine::fitForm(piece, form, own);
+            // Of a piece of holes there is none.
+            if (!fit && fit.error().kind == engine::ErrorKind::kInput)
+              return engine::Result<engine::Version>(piece);
+            if (!fit) return engine::Result<engine::Version>(tl::unexpected(fit.error()));
+            // As the step: the scan, and what its changes are limited from.
+            auto levelled = engine::withoutForm(piece, fit->form, own);
+            const auto limit = engine::withoutForm(piece, fit->form, own);
+            if (levelled && !limit) return engine::Result<engine::Version>(tl::unexpected(limit.error()));
+            return levelled;
           }});
     }
   }
