@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "app/reference/report_schema.h"
+
+namespace fettle::app::reports {
+
+// Keys that reports of several commands have, and the reports of each kind of command. All build new lists; any thread.
+
+using Keys = std::vector<ReportKey>;
+
+[[nodiscard]] ReportKey hash();
+[[nodiscard]] ReportKey machine();
+[[nodiscard]] ReportKey repeats();
+[[nodiscard]] ReportKey unit();
+[[nodiscard]] ReportKey rows(Keys keys);
+/// The fields of a figure that a candidate of --suggest has.
+[[nodiscard]] Keys candidate();
+[[nodiscard]] Keys places();
+[[nodiscard]] Keys joined(Keys first, const Keys& second);
+[[nodiscard]] Keys suggestion();
+[[nodiscard]] Keys timing();
+/// Of a figure of an estimate: the middle ones of the runs, and the ratio of expected to real.
+[[nodiscard]] Keys expectedAndReal();
+[[nodiscard]] Keys estimated();
+/// The forms of --estimate.
+[[nodiscard]] ReportForm estimateAlone();
+[[nodiscard]] ReportForm noEstimate();
+/// What is taken out of a surface before it is measured.
+[[nodiscard]] Keys form();
+
+/// Of info, measure, section, compare, lines, journal, recipe, devices.
+[[nodiscard]] std::vector<ReportSchema> inspecting();
+/// Of filter, convert, level, report, apply, mark, synth, replay, record.
+[[nodiscard]] std::vector<ReportSchema> changing();
+/// Of render, view, demo, accuracy, reference.
+[[nodiscard]] std::vector<ReportSchema> showing();
+/// Of the benchmarks.
+[[nodiscard]] std::vector<ReportSchema> measuring();
+
+}  // namespace fettle::app::reports
