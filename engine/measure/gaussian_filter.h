@@ -28,7 +28,7 @@ inline constexpr double kLeastCutOff = 2.0;
 /// Edge lines are no walls.
 ///
 /// By transforms, in double: error 1e-13 of the largest height about that plane, and one rounding to float. Bit-identical for
-/// any number of threads. Memory: 16 bytes a sample of the field and of the weights' reach around it. Errors: kInput for
+/// any number of threads. Memory: 16 bytes per sample of the field and of the weights' reach around it. Errors: kInput for
 /// a cut-off below kLeastCutOff spacings; kFailed without memory; kCancelled. Thread: any; a long job on all workers of the
 /// calling arena.
 [[nodiscard]] Result<Version> gaussianFiltered(const Version& field, double cut_off_mm, Waves waves,

@@ -27,7 +27,7 @@ struct Hill {
 /// as the higher one.
 ///
 /// By decreasing height, as R. Tarjan's sets merge (Efficiency of a good but not linear set union algorithm, 1975).
-/// Memory: some 24 bytes a sample. The hills are in the order of their peaks, the highest first; bit-identical for any
+/// Memory: some 24 bytes per sample. The hills are in the order of their peaks, the highest first; bit-identical for any
 /// number of threads. Errors: kCancelled. Throws std::bad_alloc. Thread: any; sorting on all workers of the arena.
 [[nodiscard]] Result<std::vector<Hill>> segmentHills(const Surface& surface, double least, JobControl& job);
 

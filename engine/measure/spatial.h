@@ -68,7 +68,7 @@ struct SpatialAnalysis {
 /// frequencies, so that no direction has more frequencies than others (R. Blackman, J. Tukey, The measurement of power
 /// spectra, 1958).
 ///
-/// In double; bit-identical for any number of threads. Memory: some 36 bytes a sample. Errors: kCancelled. Throws
+/// In double; bit-identical for any number of threads. Memory: some 36 bytes per sample. Errors: kCancelled. Throws
 /// std::bad_alloc. Thread: any; a long job on all workers of the calling arena.
 [[nodiscard]] Result<SpatialAnalysis> correlate(const Surface& surface, JobControl& job);
 

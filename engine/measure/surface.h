@@ -29,7 +29,7 @@ struct Surface {
 };
 
 /// Reads it: heights less `form` and less `mean`, rounded to float once. A region without samples is a surface of none.
-/// Memory: 4 bytes a sample of the rectangle. Errors: kCancelled. Throws std::bad_alloc. Thread: any; on all workers of
+/// Memory: 4 bytes per sample of the rectangle. Errors: kCancelled. Throws std::bad_alloc. Thread: any; on all workers of
 /// the calling arena.
 [[nodiscard]] Result<Surface> surfaceOf(const Version& field, const PolynomialForm& form, double mean,
                                         Region region, JobControl& job);

@@ -11,26 +11,12 @@
 #include <tbb/task_arena.h>
 
 #include "engine/field/builder.h"
+#include "tests/engine/measure/fields.h"
 
 namespace fettle::engine {
 namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
-
-Version fieldOf(std::int32_t width, std::int32_t height, const std::function<double(int, int)>& z,
-                const std::function<bool(int, int)>& marked = {}) {
-  Grid grid;
-  grid.width = width;
-  grid.height = height;
-  std::vector<float> heights;
-  std::vector<std::uint8_t> marks;
-  for (int r = 0; r < height; ++r)
-    for (int c = 0; c < width; ++c) {
-      heights.push_back(static_cast<float>(z(c, r)));
-      if (marked) marks.push_back(marked(c, r) ? 1 : 0);
-    }
-  return makeField(grid, heights, marks);
-}
 
 FormFit fitted(const Version& field, const FormOptions& options) {
   JobControl job;

@@ -12,20 +12,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/engine/measure/fields.h"
+
 namespace fettle::engine {
 namespace {
-
-Surface hilly(std::int32_t width, std::int32_t height, const std::function<double(int, int)>& z) {
-  Surface surface;
-  surface.width = width;
-  surface.height = height;
-  for (int r = 0; r < height; ++r)
-    for (int c = 0; c < width; ++c) {
-      surface.heights.push_back(static_cast<float>(z(c, r)));
-      if (!std::isnan(surface.heights.back())) ++surface.samples;
-    }
-  return surface;
-}
 
 std::vector<Hill> hillsOf(const Surface& surface, double least) {
   JobControl job;
@@ -91,7 +81,7 @@ TEST(Hills, AreWhatPlainLoopsFind) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
-    const Surface surface = hilly(11, 10, [&](int, int) {
+    const Surface surface = surfaceOf(11, 10, [&](int, int) {
       const double z = normal(random);
       return seed > 6 && z < -0.7 ? std::nan("") : z;
     });
@@ -111,7 +101,7 @@ TEST(Hills, AreWhatPlainLoopsFind) {
 TEST(Hills, BelowFivePerCentArePruned) {
   for (const auto& [share, count] : {std::pair{0.04, 1}, {0.06, 2}}) {
     const double bump = share;
-    const Surface surface = hilly(41, 5, [&](int c, int) {
+    const Surface surface = surfaceOf(41, 5, [&](int c, int) {
       const double ramp = 1.0 - c / 40.0;
       return c == 20 ? ramp + 1.0 / 40.0 + bump : ramp;
     });
@@ -121,7 +111,7 @@ TEST(Hills, BelowFivePerCentArePruned) {
 }
 
 TEST(Hills, OfAParaboloidIsOneOfItsCurvature) {
-  Surface surface = hilly(41, 33, [](int c, int r) {
+  Surface surface = surfaceOf(41, 33, [](int c, int r) {
     return -((c - 20.0) * (c - 20.0) + 16.0 * (r - 15.0) * (r - 15.0)) / 2048.0;
   });
   surface.spacing_y = 4.0;
@@ -135,7 +125,7 @@ TEST(Hills, OfAParaboloidIsOneOfItsCurvature) {
 // Of radius R: 1 / R, and by second differences (2 R - 2 sqrt(R^2 - h^2)) / h^2.
 TEST(Hills, OfASphereIsOneOfItsRadius) {
   constexpr double kRadius = 40.0;
-  const Surface surface = hilly(15, 15, [](int c, int r) {
+  const Surface surface = surfaceOf(15, 15, [](int c, int r) {
     return std::sqrt(kRadius * kRadius - (c - 7) * (c - 7) - (r - 7) * (r - 7)) - kRadius;
   });
   const double differences = 2.0 * kRadius - 2.0 * std::sqrt(kRadius * kRadius - 1.0);
@@ -147,7 +137,7 @@ TEST(Hills, OfASphereIsOneOfItsRadius) {
 TEST(Hills, OfCrossedSinesAreTheirPeaks) {
   constexpr int kWave = 20, kWaves = 6;
   constexpr double k = 2.0 * std::numbers::pi / kWave;
-  Surface surface = hilly(kWave * kWaves, kWave * kWaves, [](int c, int r) {
+  Surface surface = surfaceOf(kWave * kWaves, kWave * kWaves, [](int c, int r) {
     return 3.0 * std::cos(k * (c - kWave / 4)) * std::cos(k * (r - kWave / 4));
   });
   surface.spacing_x = surface.spacing_y = 0.1;
@@ -165,21 +155,21 @@ TEST(Hills, OfHardSurfacesAreAFigureOrAReason) {
     EXPECT_EQ(std::isfinite(p.spc), p.no_spc.empty()) << p.no_spc;
     return p;
   };
-  EXPECT_FALSE(check(hilly(0, 0, {}), 0.0).no_spd.empty());
-  EXPECT_FALSE(check(hilly(9, 1, [](int c, int) { return c % 2; }), 1.0).no_spd.empty());
-  EXPECT_FALSE(check(hilly(9, 9, [](int, int) { return 0.0; }), 0.0).no_spd.empty());
-  const FeatureParameters slope = check(hilly(9, 9, [](int c, int) { return c; }), 8.0);
+  EXPECT_FALSE(check(surfaceOf(0, 0, {}), 0.0).no_spd.empty());
+  EXPECT_FALSE(check(surfaceOf(9, 1, [](int c, int) { return c % 2; }), 1.0).no_spd.empty());
+  EXPECT_FALSE(check(surfaceOf(9, 9, [](int, int) { return 0.0; }), 0.0).no_spd.empty());
+  const FeatureParameters slope = check(surfaceOf(9, 9, [](int c, int) { return c; }), 8.0);
   EXPECT_EQ(slope.hills, 1);
   EXPECT_FALSE(slope.no_spc.empty());
-  EXPECT_NEAR(check(hilly(9, 9, [](int c, int r) { return c == 4 && r == 4 ? 1e6 : 0.0; }), 1e6).spc, 2e6,
+  EXPECT_NEAR(check(surfaceOf(9, 9, [](int c, int r) { return c == 4 && r == 4 ? 1e6 : 0.0; }), 1e6).spc, 2e6,
               1.0);
   // Two parts without a link: a hill each.
-  EXPECT_EQ(
-      check(hilly(9, 9, [](int c, int r) { return c == 4 ? std::nan("") : -std::abs(r - 4); }), 4.0).hills,
-      2);
+  EXPECT_EQ(check(surfaceOf(9, 9, [](int c, int r) { return c == 4 ? std::nan("") : -std::abs(r - 4); }), 4.0)
+                .hills,
+            2);
   JobControl job;
   job.cancel();
-  EXPECT_EQ(segmentHills(hilly(400, 400, [](int c, int r) { return c * r; }), 0.0, job).error().kind,
+  EXPECT_EQ(segmentHills(surfaceOf(400, 400, [](int c, int r) { return c * r; }), 0.0, job).error().kind,
             ErrorKind::kCancelled);
 }
 

@@ -13,27 +13,13 @@
 
 #include "engine/field/builder.h"
 #include "engine/measure/lowered.h"
+#include "tests/engine/measure/fields.h"
 
 namespace fettle::engine {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr int kWide = 150, kHigh = 131;
-
-Version linesField(std::int32_t width, std::int32_t height, const std::function<double(int, int)>& z,
-                   const std::function<bool(int, int)>& marked = {}) {
-  Grid grid;
-  grid.width = width;
-  grid.height = height;
-  std::vector<float> heights;
-  std::vector<std::uint8_t> marks;
-  for (int r = 0; r < height; ++r)
-    for (int c = 0; c < width; ++c) {
-      heights.push_back(static_cast<float>(z(c, r)));
-      if (marked) marks.push_back(marked(c, r) ? 1 : 0);
-    }
-  return makeField(grid, heights, marks);
-}
 
 LineOffsets offsetsOf(const Version& field, const LineOptions& options) {
   JobControl job;
@@ -72,10 +58,10 @@ constexpr LineMethod kAllMethods[] = {LineMethod::kMedian, LineMethod::kPolynomi
 TEST(LineOffsets, OfAGratingAreFoundByEveryMethodAlongBothAxes) {
   for (const LineMethod method : kAllMethods) {
     const std::vector<double> rows = randomOffsets(kHigh, 1.0), columns = randomOffsets(kWide, 1.0);
-    const Version x = linesField(
-        kWide, kHigh, [&](int c, int r) { return grating(c) + rows[static_cast<std::size_t>(r)]; });
+    const Version x =
+        fieldOf(kWide, kHigh, [&](int c, int r) { return grating(c) + rows[static_cast<std::size_t>(r)]; });
     EXPECT_LT(worstOffset(offsetsOf(x, {method, 0, ScanAxis::kX}), rows), 2e-6) << static_cast<int>(method);
-    const Version y = linesField(
+    const Version y = fieldOf(
         kWide, kHigh, [&](int c, int r) { return grating(r) + columns[static_cast<std::size_t>(c)]; });
     EXPECT_LT(worstOffset(offsetsOf(y, {method, 0, ScanAxis::kY}), columns), 2e-6)
         << static_cast<int>(method);
@@ -86,7 +72,7 @@ TEST(LineOffsets, OfAGratingAreFoundByEveryMethodAlongBothAxes) {
 TEST(LineOffsets, KeepAFeatureOfSomeLines) {
   const std::vector<double> offsets = randomOffsets(kHigh, 1.0);
   const auto block = [](int c, int r) { return r >= 20 && r < 60 && c < 60; };
-  const Version field = linesField(
+  const Version field = fieldOf(
       kWide, kHigh,
       [&](int c, int r) { return (block(c, r) ? 50.0 : 0.0) + offsets[static_cast<std::size_t>(r)]; }, block);
   const auto error = [&](LineMethod method, Region region) {
@@ -103,7 +89,7 @@ TEST(LineOffsets, KeepAFeatureOfSomeLines) {
 // Features of six tenths of all lines at changing places: medians of lines go up and down with them, differences do not.
 TEST(LineOffsets, DifferencesCrossFeaturesThatFillLines) {
   const std::vector<double> offsets = randomOffsets(kHigh, 1.0);
-  const Version field = linesField(kWide, kHigh, [&](int c, int r) {
+  const Version field = fieldOf(kWide, kHigh, [&](int c, int r) {
     return (c < 45 + r / 2 ? 50.0 : 0.0) + offsets[static_cast<std::size_t>(r)];
   });
   EXPECT_GT(worstOffset(offsetsOf(field, {LineMethod::kMedian}), offsets), 10.0);
@@ -118,7 +104,7 @@ TEST(LineOffsets, MatchingIsNearerThanTheMedianOfDifferences) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal(0.0, 0.2);
-    const Version field = linesField(kWide, kHigh, [&](int c, int r) {
+    const Version field = fieldOf(kWide, kHigh, [&](int c, int r) {
       return grating(c) + offsets[static_cast<std::size_t>(r)] + normal(random);
     });
     const auto square = [&](LineMethod method) {
@@ -143,7 +129,7 @@ TEST(LineOffsets, APolynomialIsThatOfTheSamplesInLongDouble) {
   std::normal_distribution<double> normal;
   std::vector<double> noise(static_cast<std::size_t>(kWide * 7));
   for (double& z : noise) z = normal(random);
-  const Version field = linesField(kWide, 7, [&](int c, int r) {
+  const Version field = fieldOf(kWide, 7, [&](int c, int r) {
     return (c * 5 + r) % 9 == 0 ? double{kNone}
                                 : 5e6 + 0.01 * c * r + noise[static_cast<std::size_t>(r * kWide + c)];
   });
@@ -182,7 +168,7 @@ TEST(LineOffsets, ARobustPolynomialIgnoresAStepOverTwoFifthsOfALine) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0.0, 0.01);
   const auto height = [&](int c, int r) { return bow(c, r) + (c > 89 ? 30.0 : 0.0) + normal(random); };
-  const Version field = linesField(kWide, 40, height);
+  const Version field = fieldOf(kWide, 40, height);
   JobControl job;
   const auto error = [&](bool robust) {
     const LineOffsets found =
@@ -201,8 +187,7 @@ TEST(LineOffsets, ARobustPolynomialIgnoresAStepOverTwoFifthsOfALine) {
 }
 
 TEST(LineOffsets, WhatIsTakenIsWhatTheCoefficientsSay) {
-  const Version field =
-      linesField(kWide, kHigh, [](int c, int r) { return std::sin(0.1 * c * r) + 0.1 * r; });
+  const Version field = fieldOf(kWide, kHigh, [](int c, int r) { return std::sin(0.1 * c * r) + 0.1 * r; });
   for (const ScanAxis axis : {ScanAxis::kX, ScanAxis::kY}) {
     const LineOffsets found = offsetsOf(field, {LineMethod::kPolynomial, 3, axis});
     std::vector<double> out(kTileSamples);
@@ -224,7 +209,7 @@ TEST(LineOffsets, WhatIsTakenIsWhatTheCoefficientsSay) {
 TEST(LineOffsets, LinesWithoutSamplesLieBetweenTheirNeighbours) {
   for (const LineMethod method : kAllMethods) {
     // Lines 0, 4 to 6 and the last have no sample; the others stand at their number.
-    const Version field = linesField(80, 12, [](int, int r) {
+    const Version field = fieldOf(80, 12, [](int, int r) {
       return r == 0 || (r >= 4 && r <= 6) || r == 11 ? double{kNone} : static_cast<double>(r);
     });
     const LineOffsets found = offsetsOf(field, {method});
@@ -251,20 +236,20 @@ TEST(LineOffsets, OfHardFieldsAreFiniteOrRefused) {
         for (const bool robust : {false, true})
           for (const ScanAxis axis : {ScanAxis::kX, ScanAxis::kY}) {
             const LineOffsets found =
-                offsetsOf(linesField(width, height, z), {method, 3, axis, Region::kAll, robust});
+                offsetsOf(fieldOf(width, height, z), {method, 3, axis, Region::kAll, robust});
             for (const double k : found.coefficients)
               ASSERT_TRUE(std::isfinite(k)) << width << " x " << height;
             ASSERT_TRUE(std::isfinite(found.rms));
           }
-  const Version holes = linesField(70, 66, [](int, int) { return double{kNone}; });
+  const Version holes = fieldOf(70, 66, [](int, int) { return double{kNone}; });
   for (const LineMethod method : kAllMethods) {
     const auto found = findLineOffsets(holes, {method}, job);
     ASSERT_FALSE(found);
     EXPECT_EQ(found.error().kind, ErrorKind::kInput);
   }
-  EXPECT_FALSE(findLineOffsets(linesField(9, 9, fields[0]), {LineMethod::kPolynomial, 4}, job));
+  EXPECT_FALSE(findLineOffsets(fieldOf(9, 9, fields[0]), {LineMethod::kPolynomial, 4}, job));
   job.cancel();
-  const auto cut = findLineOffsets(linesField(9, 9, fields[0]), {}, job);
+  const auto cut = findLineOffsets(fieldOf(9, 9, fields[0]), {}, job);
   ASSERT_FALSE(cut);
   EXPECT_EQ(cut.error().kind, ErrorKind::kCancelled);
 }
@@ -272,7 +257,7 @@ TEST(LineOffsets, OfHardFieldsAreFiniteOrRefused) {
 TEST(LineOffsets, AreTheSameForAnyNumberOfThreads) {
   std::mt19937_64 random(9);
   std::normal_distribution<double> normal;
-  const Version field = linesField(200, 300, [&](int, int) { return normal(random); });
+  const Version field = fieldOf(200, 300, [&](int, int) { return normal(random); });
   for (const LineMethod method : kAllMethods) {
     LineOffsets one;
     tbb::task_arena(1).execute([&] {

@@ -15,23 +15,12 @@
 #include <tbb/task_arena.h>
 
 #include "engine/measure/plane_transform.h"
+#include "tests/engine/measure/fields.h"
 
 namespace fettle::engine {
 namespace {
 
 using std::numbers::pi;
-
-Surface surfaceFrom(std::int32_t width, std::int32_t height, const std::function<double(int, int)>& z) {
-  Surface surface;
-  surface.width = width;
-  surface.height = height;
-  for (int r = 0; r < height; ++r)
-    for (int c = 0; c < width; ++c) {
-      surface.heights.push_back(static_cast<float>(z(c, r)));
-      if (!std::isnan(surface.heights.back())) ++surface.samples;
-    }
-  return surface;
-}
 
 SpatialAnalysis analysed(const Surface& surface) {
   JobControl job;
@@ -58,7 +47,7 @@ Surface randomTexture(std::int32_t side, double a, double b, double degrees, dou
       const double u = (x * cosine + y * sine) / a, v = (y * cosine - x * sine) / b;
       kernel.push_back(std::exp(-0.5 * (u * u + v * v)));
     }
-  Surface surface = surfaceFrom(side, side, [&](int column, int row) {
+  Surface surface = surfaceOf(side, side, [&](int column, int row) {
     double sum = 0.0;
     std::size_t k = 0;
     for (int r = 0; r <= 2 * reach; ++r)
@@ -100,7 +89,7 @@ TEST(PlaneTransform, IsTheSumOfWaves) {
 TEST(Spatial, CorrelationIsWhatPlainLoopsFind) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
-  const Surface surface = surfaceFrom(23, 18, [&](int c, int r) {
+  const Surface surface = surfaceOf(23, 18, [&](int c, int r) {
     const double z = normal(random);
     return (c * 3 + r * 7) % 10 == 0 || (c > 15 && r > 11) ? std::nan("") : 1e3 * z;
   });
@@ -145,7 +134,7 @@ double chordOfCosine(double k, double level) {
 TEST(Spatial, OfASineDecaysAsItsCosine) {
   constexpr double k = 2.0 * pi / 37.3;
   Surface surface =
-      surfaceFrom(200, 160, [](int c, int r) { return 2.5 * std::sin(k * c + 2.0 * pi * 7 * r / 160.0); });
+      surfaceOf(200, 160, [](int c, int r) { return 2.5 * std::sin(k * c + 2.0 * pi * 7 * r / 160.0); });
   surface.spacing_x = 0.01;
   surface.spacing_y = 0.04;
   const SpatialAnalysis analysis = analysed(surface);
@@ -228,21 +217,21 @@ TEST(Spatial, OfHardSurfacesIsAFigureOrAReason) {
     EXPECT_EQ(std::isfinite(p.lay), p.no_lay.empty()) << p.no_lay;
     return p;
   };
-  EXPECT_FALSE(check(surfaceFrom(0, 0, {})).no_sal.empty());
-  EXPECT_FALSE(check(surfaceFrom(500, 1, [](int c, int) { return c % 7; })).no_sal.empty());
-  EXPECT_FALSE(check(surfaceFrom(3, 1, [](int c, int) { return c; })).no_sal.empty());
-  EXPECT_FALSE(check(surfaceFrom(40, 40, [](int, int) { return 0.0; })).no_sal.empty());
-  check(surfaceFrom(40, 40, [](int c, int r) { return c == r ? std::nan("") : 0.01 * c; }));
-  check(surfaceFrom(4, 4, [](int c, int r) { return (c + r) % 2 == 0 ? 1.0 : -1.0; }));
+  EXPECT_FALSE(check(surfaceOf(0, 0, {})).no_sal.empty());
+  EXPECT_FALSE(check(surfaceOf(500, 1, [](int c, int) { return c % 7; })).no_sal.empty());
+  EXPECT_FALSE(check(surfaceOf(3, 1, [](int c, int) { return c; })).no_sal.empty());
+  EXPECT_FALSE(check(surfaceOf(40, 40, [](int, int) { return 0.0; })).no_sal.empty());
+  check(surfaceOf(40, 40, [](int c, int r) { return c == r ? std::nan("") : 0.01 * c; }));
+  check(surfaceOf(4, 4, [](int c, int r) { return (c + r) % 2 == 0 ? 1.0 : -1.0; }));
   // A spike is correlated with nothing: linear from 1 to 0 in a sample.
   const SpatialParameters spike =
-      check(surfaceFrom(64, 64, [](int c, int r) { return c == 20 && r == 30 ? 1e6 : 0.0; }));
+      check(surfaceOf(64, 64, [](int c, int r) { return c == 20 && r == 30 ? 1e6 : 0.0; }));
   EXPECT_NEAR(spike.sal, 1.0 - std::sqrt(0.2), 0.3);
   // Samples on a diagonal alone have no lag across it.
-  check(surfaceFrom(40, 40, [](int c, int r) { return c == r ? std::sin(0.5 * c) : std::nan(""); }));
+  check(surfaceOf(40, 40, [](int c, int r) { return c == r ? std::sin(0.5 * c) : std::nan(""); }));
   JobControl job;
   job.cancel();
-  EXPECT_EQ(correlate(surfaceFrom(40, 40, [](int c, int) { return c; }), job).error().kind,
+  EXPECT_EQ(correlate(surfaceOf(40, 40, [](int c, int) { return c; }), job).error().kind,
             ErrorKind::kCancelled);
 }
 
