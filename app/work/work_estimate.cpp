@@ -1,6 +1,7 @@
 #include "app/work/work_estimate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -51,14 +52,15 @@ engine::Version pieceAt(const engine::Version& field, const engine::SampleRect& 
 
 // Pieces of the result, each twice as long as the one before; seconds that they took, where they were worked out.
 struct Pieces {
-  engine::SampleRect at[3];
-  engine::Version made[3];
-  double seconds[3] = {};
-  double memory[3] = {};  // [bytes] that they took beside what was there and the pieces themselves
+  std::array<engine::SampleRect, 3> at;
+  std::array<engine::Version, 3> made;
+  std::array<double, 3> seconds = {};
+  std::array<double, 3> memory =
+      {};  // [bytes] that they took beside what was there and the pieces themselves
 
   [[nodiscard]] double samples(int i) const { return static_cast<double>(at[i].columns) * at[i].rows; }
   // Of so many samples: what two pieces have in common is there once.
-  [[nodiscard]] double ofAll(double all, int few, int many, const double (&cost)[3]) const {
+  [[nodiscard]] double ofAll(double all, int few, int many, const std::array<double, 3>& cost) const {
     if (samples(many) <= samples(few)) return cost[many] / samples(many) * all;
     const double each = std::max(0.0, (cost[many] - cost[few]) / (samples(many) - samples(few)));
     return cost[many] + each * (all - samples(many));
@@ -103,7 +105,8 @@ engine::Result<WritingCost> writing(const PlannedWork& work, const Pieces& piece
   const auto folder =
       ScratchFolder::create(isStream(work.out) ? std::string() : folderFor(work.out).string());
   if (!folder) return tl::unexpected(folder.error());
-  double bytes[3], seconds[3], memory = 0.0;
+  std::array<double, 3> bytes = {}, seconds = {};
+  double memory = 0.0;
   for (int i = 0; i < 3; ++i) {
     const auto cost = costOf(work, pieces.made[i], pieces.at[i], *folder, job);
     if (!cost) return tl::unexpected(cost.error());

@@ -28,7 +28,8 @@ CloudFit fitCloud(const PointCloud& cloud, std::uint64_t width) {
   IndexLineFit x, y, x_slope, y_slope;
   for (std::size_t i = 0; i < cloud.z.size(); ++i) {
     if (std::isnan(cloud.z[i])) continue;
-    const auto column = static_cast<double>(i % width), row = static_cast<double>(i / width);
+    const std::size_t whole_rows = i / width;
+    const auto column = static_cast<double>(i % width), row = static_cast<double>(whole_rows);
     x.add(cloud.x[i], column);
     y.add(cloud.y[i], row);
     if (cloud.z[i] == 0.0) continue;
