@@ -21,6 +21,7 @@
 #include "app/work/choice_costs.h"
 #include "app/work/filter_preview.h"
 #include "app/work/recent_files.h"
+#include "render/plan/number_text.h"
 
 namespace fettle::app {
 
@@ -58,6 +59,7 @@ struct Parts {
   FilterPreview filters;
   ChangeFigures change;
   ChoiceCosts costs;
+  render::FieldUnits units;  ///< in which the open document's quantities are shown
   double last_limit = 0.05;  ///< [height unit], for limits that are switched on again
 
   bool enter_panels = false;  ///< the panels get the keyboard focus with the next frame

@@ -14,6 +14,8 @@
 #include "app/window/draw_field.h"
 #include "app/window/scene_edits.h"
 #include "engine/base/stopwatch.h"
+#include "render/plan/number_text.h"
+#include "render/plan/value_range.h"
 
 namespace fettle::app {
 namespace {
@@ -331,6 +333,9 @@ void Workstation::startDocument(Document document) {
   p.opening.noteTouched();
   p.saving.begin(grid.samples());
   p.change.begin(document.original);
+  const render::ValueRange heights = render::heightSpan(document.original).robust;
+  p.units = render::fieldUnits(grid, heights.low, heights.high);
+  if (heights.low < heights.high) p.last_limit = render::roundDown125(0.01 * (heights.high - heights.low));
   // A view that was changed in the coarse picture is kept.
   const auto camera = document.notes.find("camera");
   if (!looked_at) p.view = camera != document.notes.end() ? viewOf(camera->second) : startView();
@@ -342,9 +347,9 @@ void Workstation::startDocument(Document document) {
   if (document.recovered)
     p.feedback.notices.push_back(
         {fmt::format("{} unsaved steps were restored", client.history().number()), ""});
-  p.feedback.status =
-      fmt::format("{}: {} x {} samples, {:.4g} x {:.4g} {}", p.document.fileName(), grid.width, grid.height,
-                  grid.spacing_x, grid.spacing_y, grid.lateral_unit.name);
+  p.feedback.status = fmt::format("{}: {} x {} samples, {:.4g} x {:.4g} {}", p.document.fileName(),
+                                  grid.width, grid.height, grid.spacing_x * p.units.length.per_unit,
+                                  grid.spacing_y * p.units.length.per_unit, p.units.length.name);
   window_->setTitle(p.document.fileName() + " - Fettle");
 }
 

@@ -42,6 +42,26 @@ ShownUnit shownUnit(const engine::LengthUnit& unit, double size, double smallest
   return {best->shown, unit.mm / best->mm};
 }
 
+FieldUnits fieldUnits(const engine::Grid& grid, double low, double high) {
+  const double span = std::max(high - low, std::max(std::abs(low), std::abs(high)) * 1e-3);
+  const double extent = std::max((grid.width - 1) * grid.spacing_x, (grid.height - 1) * grid.spacing_y);
+  FieldUnits units{shownUnit(grid.height_unit, span, 0.05, 5e4),
+                   shownUnit(grid.height_unit, span * 1e-3, 0.5, 5e4),
+                   shownUnit(grid.lateral_unit, extent, 0.05, 5e4)};
+  if (span > 0.0) units.height_step = 1e-4 * span * units.height.per_unit;
+  return units;
+}
+
+ShownUnit deviationUnit(const engine::LengthUnit& unit, const ShownUnit& change, double size) {
+  const double shown = size * change.per_unit;
+  if (!(size > 0.0) || (shown >= 1e-3 && shown < 5e4)) return change;
+  return shownUnit(unit, size, 0.05, 5e4);
+}
+
+int decimalsFor(double step) {
+  return std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 12);
+}
+
 std::vector<Tick> ticks(double low, double high, int wanted) {
   std::vector<Tick> out;
   const double span = high - low;
@@ -49,7 +69,7 @@ std::vector<Tick> ticks(double low, double high, int wanted) {
   double step = roundDown125(span / std::max(1, wanted - 1));
   // Rounding down may give up to 2.5 times as many as requested.
   while (span / step > wanted + 1.0) step = roundDown125(step * 2.5);
-  const int decimals = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 12);
+  const int decimals = decimalsFor(step);
   const double first = std::ceil(low / step - 1e-6);
   for (double k = first; k * step <= high + 1e-6 * step && out.size() < 64; k += 1.0) {
     const double v = k * step == 0.0 ? 0.0 : k * step;

@@ -22,6 +22,25 @@ struct ShownUnit {
 [[nodiscard]] ShownUnit shownUnit(const engine::LengthUnit& unit, double size, double smallest,
                                   double largest);
 
+/// The units in which quantities of one field are shown: each quantity in one unit, on panels and legends alike.
+struct FieldUnits {
+  ShownUnit height;  ///< of heights
+  ShownUnit
+      change;  ///< of changes, limits, deviations, noise: a thousandth of the heights' span is readable in it
+  ShownUnit length;           ///< across the field: positions, sizes of brushes and windows
+  double height_step = 1e-4;  ///< to which heights are read: some ten-thousandth of their span [height.name]
+};
+
+/// The units for a field whose heights lie in [low, high] [height_unit], single spikes left out, finite. The field's own
+/// unit where numbers are readable in it, else a metric one; a field without extent in a direction keeps its own.
+[[nodiscard]] FieldUnits fieldUnits(const engine::Grid& grid, double low, double high);
+
+/// The unit of deviations up to `size` [height_unit]: `change` as long as numbers are readable in it.
+[[nodiscard]] ShownUnit deviationUnit(const engine::LengthUnit& unit, const ShownUnit& change, double size);
+
+/// Decimals for numbers that are to be read to `step` (> 0, finite): 0 to 12.
+[[nodiscard]] int decimalsFor(double step);
+
 /// Round numbers within [low, high], about `wanted` of them, with only the decimals they need.
 struct Tick {
   double value = 0.0;

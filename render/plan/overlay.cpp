@@ -115,9 +115,7 @@ void colourBar(Pen& pen, const Layout& layout, const View& view, const Decoratio
   const double line = layout.text_px * 1.3;
   const double tip = std::round(12 * s);
 
-  const double size =
-      std::max(f.range.high - f.range.low, std::max(std::abs(f.range.low), std::abs(f.range.high)) * 1e-3);
-  const ShownUnit unit = shownUnit(f.height_unit, size, 0.05, 5e4);
+  const ShownUnit& unit = f.height_unit;
   const std::string unit_text = "[" + unit.name + "]";
   const double low = f.range.low * unit.per_unit, high = f.range.high * unit.per_unit;
 

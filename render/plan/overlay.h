@@ -7,6 +7,7 @@
 
 #include "render/plan/camera.h"
 #include "render/plan/glyphs.h"
+#include "render/plan/number_text.h"
 #include "render/plan/picture.h"
 #include "shaders/layout.h"
 
@@ -33,11 +34,11 @@ enum class Titles { kNone, kAbove };
 
 /// The content of the decorations.
 struct DecorationContent {
-  ValueRange range;                   ///< of the colours [height_unit]
+  ValueRange range;                   ///< of the colours [the field's height unit]
   bool below = false, above = false;  ///< values outside it exist: the bar gets a pointed end
   std::string quantity;               ///< "height" or "deviation"
   std::string note;                   ///< small, under the bar; may be empty
-  engine::LengthUnit height_unit;
+  ShownUnit height_unit;              ///< in which the colours' numbers are written
   engine::LengthUnit lateral_unit;
   double pixels_per_mm = 1.0;  ///< of the first panel's camera
   double exaggeration = 1.0;

@@ -60,6 +60,15 @@ bool anyHole(const engine::Version& v) {
   return v.reader().root().holed_children != 0;
 }
 
+// Of the colours' numbers: heights in the unit that they have on every panel of the field.
+ShownUnit unitOfColours(Quantity quantity, const engine::Grid& grid, const ValueRange& heights,
+                        const ValueRange& colours) {
+  const FieldUnits units = fieldUnits(grid, heights.low, heights.high);
+  if (quantity == Quantity::kHeight) return units.height;
+  return deviationUnit(grid.height_unit, units.change,
+                       std::max(std::abs(colours.low), std::abs(colours.high)));
+}
+
 glm::vec4 vec4Of(const glm::vec3& v, double w) {
   return {v, static_cast<float>(w)};
 }
@@ -200,7 +209,7 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
   f.below = !colours.empty && colours.extreme.low < plan.range.low;
   f.above = !colours.empty && colours.extreme.high > plan.range.high;
   f.quantity = quantity == Quantity::kDeviation ? "deviation" : "height";
-  f.height_unit = unit;
+  f.height_unit = unitOfColours(quantity, fields.front().grid(), heights.robust, plan.range);
   f.lateral_unit = fields.front().grid().lateral_unit;
   f.pixels_per_mm = plan.panels.front().camera.pixelsPerMm();
   f.exaggeration = plan.exaggeration;
@@ -211,12 +220,8 @@ engine::Result<PicturePlan> planPicture(const PictureSpec& spec, std::span<const
   }
   f.marks_opacity = static_cast<float>(spec.marks_opacity);
   if (f.below || f.above) {
-    // The same unit as the colour bar chooses, whose label is above both.
-    const double size = std::max(plan.range.high - plan.range.low,
-                                 std::max(std::abs(plan.range.low), std::abs(plan.range.high)) * 1e-3);
-    const ShownUnit shown = shownUnit(unit, size, 0.05, 5e4);
-    f.note = fmt::format("lowest {}\nhighest {}", shortNumber(colours.extreme.low * shown.per_unit),
-                         shortNumber(colours.extreme.high * shown.per_unit));
+    f.note = fmt::format("lowest {}\nhighest {}", shortNumber(colours.extreme.low * f.height_unit.per_unit),
+                         shortNumber(colours.extreme.high * f.height_unit.per_unit));
     if (quantity == Quantity::kDeviation && !spec.range) f.note += "\nbar: 99.5 %";
   }
   if (quantity == Quantity::kDeviation && !colours.empty && colours.extreme == ValueRange{})

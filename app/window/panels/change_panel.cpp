@@ -11,7 +11,7 @@ namespace {
 
 // Frequency of each change; bars grow with the logarithm of the count, so that one sample in a million is
 // visible.
-void drawHistogram(const engine::ChangeHistogram& histogram, const std::string& unit) {
+void drawHistogram(const engine::ChangeHistogram& histogram, const render::ShownUnit& unit) {
   constexpr int kClasses = engine::ChangeHistogram::kClasses;
   const float height = 5.0F * ImGui::GetTextLineHeight();
   const float width = std::max(ImGui::GetContentRegionAvail().x, 64.0F);
@@ -40,13 +40,13 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const std::string& 
   list.AddLine(ImVec2(middle, corner.y), ImVec2(middle, corner.y + height),
                ImGui::GetColorU32(ImGuiCol_TextDisabled));
   if (hovered && pointed >= 0 && pointed < kClasses)
-    ImGui::SetTooltip("%s", fmt::format("{:.3g} to {:.3g} {}: {} samples", histogram.lowEnd(pointed),
-                                        histogram.lowEnd(pointed + 1), unit,
+    ImGui::SetTooltip("%s", fmt::format("{:.3g} to {}: {} samples", histogram.lowEnd(pointed) * unit.per_unit,
+                                        lengthText(histogram.lowEnd(pointed + 1), unit, 3),
                                         histogram.counts[static_cast<std::size_t>(pointed)])
                                 .c_str());
   // The axis: its ends and zero.
-  const std::string low = fmt::format("-{:.3g}", histogram.reach),
-                    high = fmt::format("+{:.3g} {}", histogram.reach, unit);
+  const std::string low = fmt::format("-{:.3g}", histogram.reach * unit.per_unit),
+                    high = "+" + lengthText(histogram.reach, unit, 3);
   ImGui::TextDisabled("%s", low.c_str());
   ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + 0.5F * width - 0.5F * ImGui::CalcTextSize("0").x);
   ImGui::TextDisabled("0");
@@ -57,22 +57,24 @@ void drawHistogram(const engine::ChangeHistogram& histogram, const std::string& 
 }  // namespace
 
 void changePanel(const PanelContext& context, const ChangeFigures& change) {
-  const std::string& unit = context.client.field().grid().height_unit.name;
+  const render::ShownUnit& unit = context.units.change;
   const auto& live = change.live();
   if (!live) {
     ImGui::TextDisabled("measuring ...");
     return;
   }
   const engine::ChangeHistogram& h = live->histogram;
-  figure("largest", fmt::format("{:.4g} {}", live->max_abs, unit));
-  figure("rms", fmt::format("{:.4g} {}", live->rms, unit));
+  figure("largest", lengthText(live->max_abs, unit));
+  figure("rms", lengthText(live->rms, unit));
   // Exact figures of the whole field follow after the stroke.
   const engine::Deviation* const exact = change.exact(context.client.upright());
-  figure("99 % within", exact != nullptr ? fmt::format("{:.4g} {}", exact->p99, unit) : std::string("..."));
-  figure("Sq before, now", fmt::format("{:.4g}, {:.4g} {}", live->sq_original, live->sq, unit));
+  figure("99 % within", exact != nullptr ? lengthText(exact->p99, unit) : std::string("..."));
+  const auto pair = [&unit](double before, double now) {
+    return fmt::format("{:.4g}, {}", before * unit.per_unit, lengthText(now, unit));
+  };
+  figure("Sq before, now", pair(live->sq_original, live->sq));
   figure("Sa before, now",
-         fmt::format("{:.4g}, {:.4g} {}", exact != nullptr ? exact->sa_a : live->sa_original,
-                     exact != nullptr ? exact->sa_b : live->sa, unit));
+         exact != nullptr ? pair(exact->sa_a, exact->sa_b) : pair(live->sa_original, live->sa));
   const double share = live->samples > 0
                            ? 100.0 * static_cast<double>(h.unchanged) / static_cast<double>(live->samples)
                            : 100.0;

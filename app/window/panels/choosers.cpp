@@ -1,4 +1,5 @@
 // Choice of accuracy, with the cost and the error of each choice on this scan.
+#include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -72,10 +73,9 @@ std::string duration(double ns) {
   return ns < 999.5 ? fmt::format("{:.0f} ns", ns) : fmt::format("{:.3g} us", 1e-3 * ns);
 }
 
-// Lengths that may be only rounding.
-std::string length(double mm) {
-  if (mm < 1e-7) return "0 um";
-  return mm < 0.0995 ? fmt::format("{:.2g} um", 1e3 * mm) : fmt::format("{:.3g} mm", mm);
+// Lengths that may be only rounding, beside a spacing of `cell_mm`.
+std::string length(double mm, double cell_mm, const render::ShownUnit& of_mm) {
+  return mm < 1e-6 * cell_mm ? "0 " + of_mm.name : lengthText(mm, of_mm, 2);
 }
 
 bool sameChoice(const haptic::Scene& scene, const trials::ContactChoice& choice, const engine::Grid& grid) {
@@ -89,11 +89,11 @@ bool sameChoice(const haptic::Scene& scene, const trials::ContactChoice& choice,
   return scene.level == haptic::ContactLevel::kPaper || chosen.search_rounds == scene.search_rounds;
 }
 
-std::string described(const haptic::Scene& scene) {
+std::string described(const haptic::Scene& scene, const render::ShownUnit& of_mm) {
   if (scene.tip == haptic::TipShape::kSphere)
     return scene.search_rounds > haptic::kSphereSteps
-               ? fmt::format("ball, radius {:.3g} mm", scene.tip_radius_mm)
-               : fmt::format("ball, radius {:.3g} mm, {} steps", scene.tip_radius_mm,
+               ? fmt::format("ball, radius {}", lengthText(scene.tip_radius_mm, of_mm, 3))
+               : fmt::format("ball, radius {}, {} steps", lengthText(scene.tip_radius_mm, of_mm, 3),
                              scene.search_rounds - 1);
   if (scene.level == haptic::ContactLevel::kCertified)
     return fmt::format("certified, {} cells", scene.certified_radius_cells);
@@ -111,20 +111,25 @@ void contactChooser(const PanelContext& context, ChoiceCosts& costs) {
   const std::span<const trials::ContactChoice> choices = trials::contactChoices();
   const std::vector<trials::ContactFigures>& measured = costs.contact();
   std::vector<Entry> entries;
-  std::string now = described(scene), what;
+  const render::ShownUnit of_mm = ofMillimetres(context.units.length, grid.lateral_unit.mm);
+  const auto size = [&](double mm) {
+    return length(mm, std::max(grid.spacingXMm(), grid.spacingYMm()),
+                  ofMillimetres(context.units.change, grid.height_unit.mm));
+  };
+  std::string now = described(scene, of_mm), what;
   for (std::size_t i = 0; i < choices.size(); ++i) {
     Entry& entry = entries.emplace_back(Entry{choices[i].name, "", ""});
     const bool chosen = sameChoice(scene, choices[i], grid);
     if (chosen) now = choices[i].name;
     if (measured.empty() || measured[i].ticks == 0) continue;
     const trials::ContactFigures& m = measured[i];
-    entry.off = length(m.mean_mm);
+    entry.off = size(m.mean_mm);
     entry.cost = duration(m.ns);
     if (chosen)
       what = fmt::format(
           "error of the contact point {} on average, {} at worst, {:.2g} % of them not the nearest; {} per "
           "tick",
-          length(m.mean_mm), length(m.worst_mm), 100.0 * m.wrong, duration(m.ns));
+          size(m.mean_mm), size(m.worst_mm), 100.0 * m.wrong, duration(m.ns));
   }
   bool opened = false;
   int chosen = -1;

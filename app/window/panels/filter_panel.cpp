@@ -21,15 +21,16 @@ void kindField(engine::FilterSpec& spec) {
   ImGui::EndCombo();
 }
 
-void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid) {
+void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render::FieldUnits& units) {
   const bool window = engine::filterOf(spec.kind).window.exists();
   if (window && field("window", [&] { return ImGui::InputInt("##window", &spec.window, 2, 10); }))
     spec.window = std::clamp(spec.window | 1, 1, engine::FilterSpec::kMaxWindow);
-  // In millimetres across the columns; the nearest odd number of samples is taken.
+  // As a length across the columns; the nearest odd number of samples is taken.
   double window_mm = spec.window * grid.spacingXMm();
   if (window && field("", [&] {
-        return typeNumber("##window_mm", window_mm, grid.spacingXMm(),
-                          engine::FilterSpec::kMaxWindow * grid.spacingXMm(), "%.4g mm");
+        return typeLength("##window_mm", window_mm, grid.spacingXMm(),
+                          engine::FilterSpec::kMaxWindow * grid.spacingXMm(),
+                          ofMillimetres(units.length, grid.lateral_unit.mm));
       }))
     spec.window =
         std::clamp(2 * static_cast<int>(std::lround(0.5 * (window_mm / grid.spacingXMm() - 1.0))) + 1, 1,
@@ -38,9 +39,9 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid) {
     spec.passes = std::clamp(spec.passes, 1, engine::FilterSpec::kMaxPasses);
 }
 
-void sigmaFields(engine::FilterSpec& spec, const engine::Grid& grid) {
+void sigmaFields(engine::FilterSpec& spec, const render::FieldUnits& units) {
   const engine::Filter& filter = engine::filterOf(spec.kind);
-  const auto orElse = [](double value, const char* format, const engine::FilterParameter& parameter) {
+  const auto orElse = [](double value, const std::string& format, const engine::FilterParameter& parameter) {
     return value > 0.0 ? format : "0: " + std::string(parameter.when_zero);
   };
   if (filter.sigma.exists())
@@ -49,19 +50,22 @@ void sigmaFields(engine::FilterSpec& spec, const engine::Grid& grid) {
     });
   if (filter.range_sigma.exists())
     (void)field("range sigma", [&] {
-      return typeNumber(
-          "##range", spec.range_sigma, 0.0, filter.range_sigma.most,
-          orElse(spec.range_sigma, ("%.4g " + grid.height_unit.name).c_str(), filter.range_sigma));
+      double shown = spec.range_sigma * units.change.per_unit;
+      if (!typeNumber("##range", shown, 0.0, filter.range_sigma.most * units.change.per_unit,
+                      orElse(spec.range_sigma, "%.4g " + units.change.name, filter.range_sigma)))
+        return false;
+      spec.range_sigma = shown / units.change.per_unit;
+      return true;
     });
 }
 
-void limitField(const PanelContext& context, engine::FilterSpec& spec, const engine::Grid& grid) {
+void limitField(const PanelContext& context, engine::FilterSpec& spec) {
   (void)field("max change", [&] {
     actionTick("##maxchange", spec.max_change.has_value(), Action::kFilterMaxChange, context.act);
     if (!spec.max_change) return false;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
-    return typeNumber("##most", *spec.max_change, 0.0, 1e9, "%.4g " + grid.height_unit.name);
+    return typeLength("##most", *spec.max_change, 0.0, 1e9, context.units.change);
   });
 }
 
@@ -81,7 +85,7 @@ void runButtons(const PanelContext& context, FilterPreview& filters) {
   }
 }
 
-void previewList(const engine::Grid& grid, FilterPreview& filters) {
+void previewList(const render::FieldUnits& units, FilterPreview& filters) {
   std::optional<std::size_t> dropped;
   for (std::size_t i = 0; i < filters.variants().size(); ++i) {
     const FilterPreview::Variant& v = filters.variants()[i];
@@ -89,9 +93,8 @@ void previewList(const engine::Grid& grid, FilterPreview& filters) {
     ImGui::SameLine();
     ImGui::PushTextWrapPos(0.0F);
     // Broken here, or a narrow panel would break a number at its point.
-    ImGui::TextUnformatted(fmt::format("{}\n{} changed, max {:.3g} {}", filterName(v.spec),
-                                       v.result.report.changed, v.result.report.max_change,
-                                       grid.height_unit.name)
+    ImGui::TextUnformatted(fmt::format("{}\n{} changed, max {}", filterName(v.spec), v.result.report.changed,
+                                       lengthText(v.result.report.max_change, units.change, 3))
                                .c_str());
     ImGui::PopTextWrapPos();
   }
@@ -105,9 +108,9 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   const engine::Grid& grid = context.client.field().grid();
   beginFields();
   kindField(spec);
-  sizeFields(spec, grid);
-  sigmaFields(spec, grid);
-  limitField(context, spec, grid);
+  sizeFields(spec, grid, context.units);
+  sigmaFields(spec, context.units);
+  limitField(context, spec);
   endFields();
   int scope = static_cast<int>(spec.scope);
   ImGui::RadioButton("keep marks", &scope, 0);
@@ -116,7 +119,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   tip(Action::kFilterScope);
   spec.scope = static_cast<engine::FilterScope>(scope);
   runButtons(context, filters);
-  previewList(grid, filters);
+  previewList(context.units, filters);
   if (filters.variants().size() == 1) ImGui::Checkbox("split line", &display.split);
 }
 

@@ -19,8 +19,12 @@ void lineList(const PanelContext& context, LineTool& lines, const std::vector<Li
                          ImVec2(0.0F, height)))
     return;
   ImGui::TableSetupScrollFreeze(0, 1);
-  const std::string step = "step " + context.client.field().grid().height_unit.name;
-  for (const char* title : {"line", "mm", "found", "+- um", step.c_str()}) ImGui::TableSetupColumn(title);
+  const render::ShownUnit &length = context.units.length, &upward = context.units.height;
+  const double mm =
+      length.per_unit / context.client.field().grid().lateral_unit.mm;  // shown units in a millimetre
+  const std::string off = "+- " + length.name, step = "step " + upward.name;
+  for (const char* title : {"line", length.name.c_str(), "found", off.c_str(), step.c_str()})
+    ImGui::TableSetupColumn(title);
   ImGui::TableHeadersRow();
   const std::optional<std::int64_t> chosen = lines.chosen(context.client);
   ImGuiListClipper clipper;
@@ -34,8 +38,9 @@ void lineList(const PanelContext& context, LineTool& lines, const std::vector<Li
       if (ImGui::Selectable(name.c_str(), chosen == line.id, ImGuiSelectableFlags_SpanAllColumns))
         lines.choose(line.id);
       for (const std::string& text :
-           {fmt::format("{:.4g}", line.length_mm), fmt::format("{:.0f} %", 100.0 * line.located),
-            fmt::format("{:.3g}", 1e3 * line.deviation_mm), fmt::format("{:.3g}", line.step)}) {
+           {fmt::format("{:.4g}", mm * line.length_mm), fmt::format("{:.0f} %", 100.0 * line.located),
+            fmt::format("{:.3g}", mm * line.deviation_mm),
+            fmt::format("{:.3g}", upward.per_unit * line.step)}) {
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(text.c_str());
       }

@@ -16,6 +16,7 @@ struct PanelContext {
   LoopClient& client;
   std::vector<Notice>& notices;
   const Act& act;
+  const render::FieldUnits& units;
 };
 
 void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking& marking,

@@ -32,15 +32,15 @@ void placePanel(const PanelContext& context, PlaceTool& places) {
   if (found->places.empty()) {
     wrapped("no place was found where a line gains tgv anything");
   } else {
-    const std::string& unit = context.client.field().grid().height_unit.name;
+    const render::ShownUnit& unit = context.units.change;
     const std::size_t n = found->places.size();
     if (const auto present = places.present()) {
       const engine::WorthPlace& place = found->places[*present];
       const State state = places.state(*present);
-      wrapped(fmt::format(
-          "place {} of {}{}: estimated error of tgv {:.3g}, with all up to here {:.3g} {}, {:.0f} s",
-          *present + 1, n, state == State::kDone ? ", done" : "", found->rmseAfter(0),
-          found->rmseAfter(*present + 1), unit, place.seconds));
+      wrapped(fmt::format("place {} of {}{}: estimated error of tgv {:.3g}, with all up to here {}, {:.0f} s",
+                          *present + 1, n, state == State::kDone ? ", done" : "",
+                          found->rmseAfter(0) * unit.per_unit,
+                          lengthText(found->rmseAfter(*present + 1), unit, 3), place.seconds));
     }
     wrapped(fmt::format("{} done, {} skipped, {} left", places.count(State::kDone),
                         places.count(State::kSkipped), places.count(State::kOpen)));

@@ -40,7 +40,7 @@ std::optional<double> sidePanel(Parts& parts, const Act& act, float& width) {
     ImGui::SetKeyboardFocusHere();
   }
   noticeList(parts.feedback.notices);
-  const PanelContext context{*parts.document.client(), parts.feedback.notices, act};
+  const PanelContext context{*parts.document.client(), parts.feedback.notices, act, parts.units};
   if (section(settings, "Tool", true)) toolPanel(context, parts.stylus, parts.marking, settings.display);
   if (section(settings, "Edges", false)) edgePanel(context, parts.marking.edges);
   if (section(settings, "Edge lines", false)) {

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -18,12 +20,34 @@ bool progressBar(double progress, float width, const char* what) {
   return ImGui::SmallButton("Cancel");
 }
 
-std::string brushText(const BrushAdjustment& brush, LoopClient& client) {
-  const std::string now = brush.of() == BrushAdjustment::Of::kRadius
-                              ? fmt::format("brush radius {:.3g} samples", brushRadius(client))
-                              : fmt::format("press depth {:.4g} mm", client.mouse()->pressMm());
+std::string brushText(const BrushAdjustment& brush, LoopClient& client, const render::FieldUnits& units) {
+  const double height_mm = client.field().grid().height_unit.mm;
+  const std::string now =
+      brush.of() == BrushAdjustment::Of::kRadius
+          ? fmt::format("brush radius {:.3g} samples", brushRadius(client))
+          : fmt::format("press depth {}",
+                        lengthText(client.mouse()->pressMm(), ofMillimetres(units.height, height_mm)));
   return fmt::format("{} {}: move or type, Enter or left button keeps it, Esc or right button leaves it", now,
                      brush.typed().empty() ? "" : "[" + brush.typed() + "]");
+}
+
+// Of the surface under the cursor, whatever the mouse holds: a tenth of a sample across, and four digits of the span
+// of heights.
+std::string placeText(const Parts& parts) {
+  const WindowPicture& picture = parts.picture;
+  if (!picture.made() || !picture.inside(parts.cursor.x, parts.cursor.y)) return {};
+  const auto under = picture.pick(parts.cursor.x, parts.cursor.y);
+  if (!under) return {};
+  const engine::Grid& grid = parts.document.client()->field().grid();
+  const render::ShownUnit &length = parts.units.length, &height = parts.units.height;
+  const int across = render::decimalsFor(0.1 * std::min(grid.spacing_x, grid.spacing_y) * length.per_unit);
+  const auto place = [&](double origin, double mm) {
+    return fmt::format("{:.{}f}", (origin + mm / grid.lateral_unit.mm) * length.per_unit, across);
+  };
+  return fmt::format("   x {}  y {} {}  z {:.{}f} {}", place(grid.origin_x, under->position_mm.x),
+                     place(grid.origin_y, under->position_mm.y), length.name,
+                     under->position_mm.z / grid.height_unit.mm * height.per_unit,
+                     render::decimalsFor(parts.units.height_step), height.name);
 }
 
 // The open document, how it is stored, and the cursor's position.
@@ -31,21 +55,14 @@ std::string documentText(const Parts& parts) {
   std::string line = parts.feedback.status;
   if (!parts.document.isOpen()) return line;
   if (const std::string kept = parts.document.keptText(); !kept.empty()) line += "  (" + kept + ")";
-  if (const auto& under = parts.stylus.underCursor(); parts.stylus.on() && under) {
-    const engine::Grid& grid = parts.document.client()->field().grid();
-    line += fmt::format("   x {:.4f}  y {:.4f}  z {:.5g} {}",
-                        grid.origin_x + under->position_mm.x / grid.lateral_unit.mm,
-                        grid.origin_y + under->position_mm.y / grid.lateral_unit.mm,
-                        under->position_mm.z / grid.height_unit.mm, grid.height_unit.name);
-  }
-  return line;
+  return line + placeText(parts);
 }
 
 void content(Parts& parts) {
   const Lasso& lasso = parts.marking.lasso();
   const engine::EdgeSuggestion* const edges = parts.marking.edges.suggestion();
   if (parts.brush.active()) {
-    text(brushText(parts.brush, *parts.document.client()));
+    text(brushText(parts.brush, *parts.document.client(), parts.units));
   } else if (lasso.active()) {
     text(lasso.shape() == Lasso::Shape::kBox
              ? "box: drag, or corners with arrows and Space; Enter marks, Ctrl+Enter unmarks, Esc leaves"

@@ -43,7 +43,8 @@ void brushFields(const PanelContext& context) {
     setBrushRadius(client, std::round(static_cast<double>(radius)), context.notices);
   double radius_mm = samples * cell;
   if (field("", [&] {
-        return typeNumber("##radius_mm", radius_mm, 0.0, haptic::kMaxBrushRadius * cell, "%.4g mm");
+        return typeLength("##radius_mm", radius_mm, 0.0, haptic::kMaxBrushRadius * cell,
+                          ofMillimetres(context.units.length, grid.lateral_unit.mm));
       }))
     setBrushRadius(client, radius_mm / cell, context.notices);
   if (client.mouse() != nullptr) {
@@ -60,7 +61,7 @@ void brushFields(const PanelContext& context) {
     if (!scene.max_change) return false;
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-1.0F);
-    if (typeNumber("##most", *scene.max_change, 0.0, 1e9, "%.4g " + grid.height_unit.name))
+    if (typeLength("##most", *scene.max_change, 0.0, 1e9, context.units.change))
       applyScene(client, scene, context.notices);
     return false;
   });

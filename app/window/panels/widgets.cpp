@@ -81,6 +81,22 @@ bool typeNumber(const char* id, double& value, double low, double high, const st
   return true;
 }
 
+bool typeLength(const char* id, double& value, double low, double high, const render::ShownUnit& unit) {
+  const auto typed = typedNumber(id, value * unit.per_unit, "%.4g " + unit.name);
+  const double taken = std::clamp(typed ? *typed / unit.per_unit : value, low, high);
+  if (!typed || taken == value) return false;
+  value = taken;
+  return true;
+}
+
+std::string lengthText(double value, const render::ShownUnit& unit, int digits) {
+  return fmt::format("{:.{}g} {}", value * unit.per_unit, digits, unit.name);
+}
+
+render::ShownUnit ofMillimetres(const render::ShownUnit& shown, double mm) {
+  return {shown.name, shown.per_unit / mm};
+}
+
 std::string bytesText(double bytes) {
   if (bytes < 1e4) return fmt::format("{:.0f} B", bytes);
   if (bytes < 1e7) return fmt::format("{:.1f} kB", bytes * 1e-3);

@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include "app/window/actions.h"
+#include "render/plan/number_text.h"
 
 namespace fettle::app {
 
@@ -46,6 +47,17 @@ bool field(const char* name, const auto& edit) {
 /// The same clamped to a range: true when it was changed and confirmed; never a value that is not finite.
 [[nodiscard]] bool typeNumber(const char* id, double& value, double low, double high,
                               const std::string& format);
+
+/// The same for a length that is kept in one unit and shown in another: `value`, `low` and `high` in the unit it is kept
+/// in. What is typed is taken in the unit that stands beside it.
+[[nodiscard]] bool typeLength(const char* id, double& value, double low, double high,
+                              const render::ShownUnit& unit);
+
+/// "12.3 \u00b5m", of a length in the unit that it is kept in; `digits` significant ones.
+[[nodiscard]] std::string lengthText(double value, const render::ShownUnit& unit, int digits = 4);
+
+/// A unit for lengths in millimetres that reads like `shown`, a unit for lengths in units of `mm` millimetres.
+[[nodiscard]] render::ShownUnit ofMillimetres(const render::ShownUnit& shown, double mm);
 
 /// "17.2 kB".
 [[nodiscard]] std::string bytesText(double bytes);

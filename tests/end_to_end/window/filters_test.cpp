@@ -65,7 +65,8 @@ TEST_F(WindowTest, a_largest_change_typed_in_is_kept_by_what_is_applied) {
   (void)user.key("n");
   EXPECT_EQ(user.enter("window", "9")["filter"], "Median 9 x 9");
   EXPECT_TRUE(user.key("x")["max_change"].is_number());
-  EXPECT_EQ(user.enter("max change", "0.015")["max_change"], kMost);
+  // In micrometres, as the part's changes are shown.
+  EXPECT_EQ(user.enter("max change", "15")["max_change"], kMost);
   (void)user.look("typed");
   EXPECT_EQ(user.click("Apply")["filters_applied"], 1);
   EXPECT_EQ(program->now()["steps"], 1);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/field/grid.h"
 #include "render/plan/colour_map.h"
 #include "render/plan/number_text.h"
 #include "tests/render/support/fields.h"
@@ -109,6 +110,56 @@ TEST(NumberText, UnitsChangeOnlyWhenNumbersReadBadly) {
   EXPECT_EQ(roundDown125(7.3), 5.0);
   EXPECT_EQ(roundDown125(1.0), 1.0);
   EXPECT_DOUBLE_EQ(roundDown125(0.0021), 0.002);
+}
+
+engine::Grid squareGrid(double spacing, const engine::LengthUnit& unit) {
+  engine::Grid grid;
+  grid.width = grid.height = 101;
+  grid.spacing_x = grid.spacing_y = spacing;
+  grid.lateral_unit = grid.height_unit = unit;
+  return grid;
+}
+
+TEST(NumberText, AFieldHasOneUnitForEachQuantity) {
+  const FieldUnits microscope = fieldUnits(squareGrid(4e-9, {"m", 1000}), 0.0, 1.3e-7);
+  EXPECT_EQ(microscope.height.name, "nm");
+  EXPECT_EQ(microscope.change.name, "nm");
+  EXPECT_EQ(microscope.length.name, "nm");
+  EXPECT_DOUBLE_EQ(microscope.height.per_unit, 1e9);
+  EXPECT_NEAR(microscope.height_step, 0.013, 1e-9);
+  const FieldUnits part = fieldUnits(squareGrid(0.05, {"mm", 1}), -3.0, 30.0);
+  EXPECT_EQ(part.height.name, "mm");
+  EXPECT_EQ(part.change.name, "\u00b5m");
+  EXPECT_EQ(part.length.name, "mm");
+  const FieldUnits mountain = fieldUnits(squareGrid(10.0, {"m", 1000}), 100.0, 5100.0);
+  EXPECT_EQ(mountain.height.name, "m");
+  EXPECT_EQ(mountain.change.name, "m");
+  EXPECT_EQ(mountain.length.name, "m");
+  const FieldUnits feet = fieldUnits(squareGrid(1e-6, {"ft", 304.8}), 0.0, 1e-7);
+  EXPECT_EQ(feet.height.name, "ft");
+  EXPECT_EQ(feet.change.name, "ft");
+  EXPECT_EQ(feet.length.name, "ft");
+  // Without any extent: its own, and still a step to read to.
+  const FieldUnits flat = fieldUnits(squareGrid(0.05, {"mm", 1}), 0.0, 0.0);
+  EXPECT_EQ(flat.height.name, "mm");
+  EXPECT_GT(flat.height_step, 0.0);
+}
+
+TEST(NumberText, DeviationsKeepTheUnitOfChangesWhileReadable) {
+  const ShownUnit change{"\u00b5m", 1e3};
+  EXPECT_EQ(deviationUnit({"mm", 1}, change, 0.02).name, "\u00b5m");
+  EXPECT_EQ(deviationUnit({"mm", 1}, change, 3.0).name, "\u00b5m");
+  EXPECT_EQ(deviationUnit({"mm", 1}, change, 1e-7).name, "nm");
+  EXPECT_EQ(deviationUnit({"mm", 1}, change, 1e6).name, "km");
+  EXPECT_EQ(deviationUnit({"mm", 1}, change, 0.0).name, "\u00b5m");
+}
+
+TEST(NumberText, DecimalsFollowTheStep) {
+  EXPECT_EQ(decimalsFor(10.0), 0);
+  EXPECT_EQ(decimalsFor(1.0), 0);
+  EXPECT_EQ(decimalsFor(0.1), 1);
+  EXPECT_EQ(decimalsFor(0.013), 2);
+  EXPECT_EQ(decimalsFor(1e-300), 12);
 }
 
 // What the decorations of a picture says, letter by letter in drawing order; spaces draw nothing.

@@ -1,0 +1,100 @@
+// Lengths of one scan read in one unit wherever they stand, from an atomic force microscope to a mountain.
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <regex>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "tests/end_to_end/window/window_fixture.h"
+
+namespace fettle::tests {
+namespace {
+
+using State = User::State;
+
+// A text raster without a unit: waves `span` high, samples `cell` apart, its corner at `origin`.
+void writeWaves(const std::string& path, double cell, double span, double origin) {
+  constexpr int kSide = 128;
+  std::ofstream file(path);
+  file << fmt::format("ncols {0}\nnrows {0}\nxllcenter {1}\nyllcenter {1}\ncellsize {2}\n", kSide, origin,
+                      cell);
+  for (int r = 0; r < kSide; ++r) {
+    for (int c = 0; c < kSide; ++c)
+      file << fmt::format("{:.9g} ", 0.5 * span * (1.0 + std::sin(0.11 * c) * std::cos(0.07 * r)));
+    file << "\n";
+  }
+}
+
+// Units of the lengths that are on the screen; forces for each millimetre are none.
+std::set<std::string> unitsRead(const State& state) {
+  static const std::regex kLength("[0-9] \\[?(nm|\u00b5m|um|mm|cm|m|km)(?![a-z/])");
+  std::set<std::string> units;
+  for (const State& text : state["texts"]) {
+    const std::string what = text["text"];
+    for (std::sregex_iterator at(what.begin(), what.end(), kLength), end; at != end; ++at)
+      units.insert((*at)[1].str());
+  }
+  return units;
+}
+
+// Everything that is written, a text after the other.
+std::string written(const State& state) {
+  std::string all;
+  for (const State& text : state["texts"]) all += text["text"].get<std::string>() + " ";
+  return all;
+}
+
+bool says(const State& state, const std::string& what) {
+  return written(state).find(what) != std::string::npos;
+}
+
+struct Scale {
+  const char* name;
+  double cell_m, span_m, origin_m;
+  const char* unit;    // that everything is to be read in
+  const char* height;  // a text in the status bar that shows it, as a pattern
+  const char* typed;   // a largest change
+  double most_m;       // it stands for
+};
+
+class UnitsTest : public WindowTest, public ::testing::WithParamInterface<Scale> {};
+
+TEST_P(UnitsTest, lengths_of_one_scan_read_in_one_unit) {
+  const Scale& scale = GetParam();
+  const std::string waves = folder.file("waves.asc");
+  writeWaves(waves, scale.cell_m, scale.span_m, scale.origin_m);
+  const auto program = start({waves, "--unit", "m"});
+  User user(display, *program, scale.name);
+  (void)opened(*program);
+  // Where the cursor is, without any tool.
+  user.at({400, 400});
+  const std::regex place(scale.height);
+  program->until("the place under the cursor",
+                 [&](const State& s) { return std::regex_search(written(s), place); });
+  (void)user.key("s");
+  user.draw({380, 400}, {460, 400}, 6);
+  const State stroked = user.rest("a stroke");
+  EXPECT_TRUE(says(stroked, "Sq before, now"));
+  EXPECT_EQ(unitsRead(stroked), std::set<std::string>{scale.unit}) << written(stroked);
+  // What is typed is in the unit that stands beside it.
+  EXPECT_TRUE(user.key("x")["max_change"].is_number());
+  const double taken = user.enter("max change", scale.typed)["max_change"];
+  EXPECT_NEAR(taken, scale.most_m, 1e-12 * scale.most_m);
+  (void)user.look("typed");
+  program->signal(SIGTERM);
+  EXPECT_EQ(program->wait(), 0) << program->err();
+  expectSilence(*program);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    From130nmTo5000m, UnitsTest,
+    ::testing::Values(Scale{"microscope", 4e-9, 1.3e-7, 0.0, "nm",
+                            "x [0-9]+\\.[0-9] y [0-9]+\\.[0-9] nm z [0-9]+\\.[0-9]{2} nm", "2.5", 2.5e-9},
+                      Scale{"mountain", 10.0, 5000.0, 5e6, "m",
+                            "x 50[0-9]{5} y 50[0-9]{5} m z [0-9]+\\.[0-9] m", "2.5", 2.5}),
+    [](const auto& of) { return std::string(of.param.name); });
+
+}  // namespace
+}  // namespace fettle::tests
