@@ -125,6 +125,9 @@ engine::Status take(const RecipeInvert&, Applied& at, engine::JobControl&) {
 
 engine::Status take(const RecipeLevel& step, Applied& at, engine::JobControl& job) {
   const auto fit = formOf(at.field, at.task.in, at.imported, step.form, job);
+  if (!fit && fit.error().kind == engine::ErrorKind::kInput && step.form.region != "all")
+    return engine::inputError(fit.error().what, fit.error().where,
+                              "let a step that marks come before it, or level by region = \"all\"");
   if (!fit) return tl::unexpected(fit.error());
   auto levelled = engine::withoutForm(at.field, fit->form, job);
   if (!levelled) return tl::unexpected(levelled.error());

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/read_units.h"
+
 namespace fettle::app {
 
 namespace {
@@ -90,35 +92,10 @@ constexpr ArealGroup kArealGroups[] = {
     {"feature", "Feature", "Spd Spc"},
 };
 
-// A unit by its name and its size in that of the report.
-struct ReadAs {
-  std::string name;
-  double size = 1.0;
-};
-
-// Powers of ten of a millimetre.
-bool metric(double unit_mm) {
-  const double power = std::log10(unit_mm);
-  return std::abs(power - std::round(power)) < 1e-12;
-}
-
-// The unit in which a height is read at ease: of a metric scan 0.0000113 mm are 11.3 nm; of others the scan's own.
-ReadAs readHeightAs(double height, double unit_mm, const std::string& unit) {
-  if (!metric(unit_mm)) return {unit, 1.0};
-  constexpr struct {
-    const char* name;
-    double mm;
-  } kUnits[] = {{"m", 1e3}, {"mm", 1.0}, {"um", 1e-3}};
-  for (const auto& each : kUnits)
-    if (height * unit_mm >= each.mm) return {each.name, each.mm / unit_mm};
-  return {"nm", 1e-6 / unit_mm};
-}
-
 // Of lengths along the surface: millimetres, as drawings state them, metres where samples are far apart.
-ReadAs readLengthAs(double spacing, double unit_mm, const std::string& unit) {
-  if (!metric(unit_mm)) return {unit, 1.0};
-  if (spacing * unit_mm < 10.0) return {"mm", 1.0 / unit_mm};
-  return {"m", 1e3 / unit_mm};
+ReadAs readAcrossAs(double spacing, double unit_mm, const std::string& unit) {
+  const double least_mm = spacing * unit_mm < 10.0 ? 1.0 : 1e3;
+  return readLengthAs(least_mm / unit_mm, unit_mm, unit);
 }
 
 struct Shown {
@@ -222,8 +199,8 @@ void addAreal(Report& report, const engine::ArealParameters& measured, const std
 
 void printAreal(const Report& report) {
   // Of the root mean square height: one unit for all rows.
-  const ReadAs height = readHeightAs(report["sq"].get<double>(), report["unit_mm"], report["unit"]);
-  const ReadAs length = readLengthAs(report["spacing"], report["lateral_unit_mm"], report["lateral_unit"]);
+  const ReadAs height = readLengthAs(report["sq"].get<double>(), report["unit_mm"], report["unit"]);
+  const ReadAs length = readAcrossAs(report["spacing"], report["lateral_unit_mm"], report["lateral_unit"]);
   for (const ArealGroup& group : kArealGroups) {
     bool headed = false;
     for (const ArealRow& row : kArealRows) {
@@ -252,8 +229,8 @@ void printAreal(const Report& report) {
 
 std::vector<ArealLine> arealLines(const std::vector<Report>& reports) {
   const Report& first = reports.front();
-  const ReadAs height = readHeightAs(first["sq"].get<double>(), first["unit_mm"], first["unit"]);
-  const ReadAs length = readLengthAs(first["spacing"], first["lateral_unit_mm"], first["lateral_unit"]);
+  const ReadAs height = readLengthAs(first["sq"].get<double>(), first["unit_mm"], first["unit"]);
+  const ReadAs length = readAcrossAs(first["spacing"], first["lateral_unit_mm"], first["lateral_unit"]);
   std::vector<ArealLine> lines;
   for (const ArealGroup& group : kArealGroups)
     for (const ArealRow& row : kArealRows) {

@@ -1,6 +1,7 @@
 #include "app/commands/command_line.h"
 
 #include <algorithm>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -125,6 +126,37 @@ void Command::add(std::initializer_list<Parameter> rows, const std::string& grou
   }
 }
 
+namespace {
+
+bool isCalled(const Parameter& p, std::string_view word) {
+  return word == p.longName() || (!word.empty() && word == p.shortName());
+}
+
+// What is wrong with the number of values of an option, in the words of its row; empty where no row has the name.
+std::string countProblem(const CommandTable& table, const std::string& what) {
+  const std::string option = what.substr(0, what.find(':'));
+  for (const Parameter& p : table.parameters) {
+    if (!isCalled(p, option)) continue;
+    if (p.values > 1) return option + " takes " + p.shown;
+    if (what.find("At Most 1") != std::string::npos) return option + " is given more than once";
+  }
+  return {};
+}
+
+// Of an option that takes a fixed number of values the values of two would be taken together.
+std::string givenTwice(const CommandTable& table, const std::vector<std::string>& arguments) {
+  for (const Parameter& p : table.parameters) {
+    if (p.values <= 1 && !(p.one_word && p.between != '\0')) continue;
+    const auto names = [&p](const std::string& argument) {
+      return argument.starts_with("--") && isCalled(p, argument.substr(0, argument.find('=')));
+    };
+    if (std::ranges::count_if(arguments, names) > 1) return p.longName() + " is given more than once";
+  }
+  return {};
+}
+
+}  // namespace
+
 CommandLine::CommandLine(const std::string& name, const std::string& description, const std::string& version)
     : app_(std::make_unique<CLI::App>(description, name)), version_(version) {
   table_.path = table_.name = name;
@@ -141,12 +173,7 @@ Command CommandLine::root() {
   return {app_.get(), &table_};
 }
 
-tl::expected<std::string, Misread> CommandLine::parse(const std::vector<std::string>& arguments) try {
-  app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - (arguments.empty() ? 0 : 1)));
-  return std::string();
-} catch (const CLI::ParseError& error) {
-  // "fitler --help" and "bench hapitc --help" request the help of a command that does not exist, not that
-  // of the program.
+std::pair<const CLI::App*, const CommandTable*> CommandLine::usedTable() const {
   const CLI::App* used = app_.get();
   const CommandTable* table = &table_;
   while (!used->get_subcommands().empty()) {
@@ -154,10 +181,27 @@ tl::expected<std::string, Misread> CommandLine::parse(const std::vector<std::str
     table = &*std::find_if(table->commands.begin(), table->commands.end(),
                            [&](const CommandTable& below) { return below.name == used->get_name(); });
   }
+  return {used, table};
+}
+
+tl::expected<std::string, Misread> CommandLine::parse(const std::vector<std::string>& arguments) try {
+  app_->parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - (arguments.empty() ? 0 : 1)));
+  if (const std::string problem = givenTwice(*usedTable().second, arguments); !problem.empty())
+    return tl::unexpected(misreadOf(*app_, problem));
+  return std::string();
+} catch (const CLI::ParseError& error) {
+  // "fitler --help" and "bench hapitc --help" request the help of a command that does not exist, not that
+  // of the program.
+  const auto [used, table] = usedTable();
   const bool takes_command = !used->get_subcommands([](const CLI::App*) { return true; }).empty();
   const auto rest = used->remaining();
   const bool misspelt = takes_command && !rest.empty() && !rest[0].starts_with("-");
-  if (error.get_exit_code() != 0 || misspelt) return tl::unexpected(misreadOf(*app_, error.what()));
+  if (error.get_exit_code() != 0 || misspelt) {
+    std::string what;
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+      what = countProblem(*table, error.what());
+    return tl::unexpected(misreadOf(*app_, what.empty() ? error.what() : what));
+  }
   if (dynamic_cast<const CLI::CallForVersion*>(&error) != nullptr) return version_ + "\n";
   return helpText(*table);
 }

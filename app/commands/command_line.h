@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tl/expected.hpp>
@@ -64,6 +65,9 @@ class CommandLine {
   [[nodiscard]] tl::expected<std::string, Misread> parse(const std::vector<std::string>& arguments);
 
  private:
+  /// The command that was named, as far as it was recognised.
+  [[nodiscard]] std::pair<const CLI::App*, const CommandTable*> usedTable() const;
+
   std::unique_ptr<CLI::App> app_;
   std::string version_;
   CommandTable table_;

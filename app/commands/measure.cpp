@@ -30,10 +30,12 @@ struct MeasureArguments {
   ScaleArguments scale;
   std::vector<std::string> groups;  // empty: all
   std::vector<std::string> at_heights;
-  std::vector<double> at_ratios = {10.0, 80.0};
+  std::vector<double> at_ratios;
   std::string csv;
   ScanOptions reading;
 };
+
+const std::vector<double> kUsualRatios = {10.0, 80.0};  // [%]
 
 // Heights are signed here: Smr at a height below the mean.
 engine::Result<std::vector<double>> heightsOf(const std::vector<std::string>& typed,
@@ -42,7 +44,9 @@ engine::Result<std::vector<double>> heightsOf(const std::vector<std::string>& ty
   for (const std::string& text : typed) {
     const bool below = text.starts_with('-');
     const auto height = parseHeight(below ? text.substr(1) : text, grid, "--at-height");
-    if (!height) return tl::unexpected(height.error());
+    if (!height)
+      return engine::inputError(height.error().what, "--at-height",
+                                "give numbers about the mean, below it with -, such as 0,-0.5um");
     heights.push_back(below ? -*height : *height);
   }
   return heights;
@@ -62,7 +66,8 @@ engine::Result<engine::ArealOptions> arealOptionsOf(const MeasureArguments& opti
   const auto heights = heightsOf(options.at_heights, grid);
   if (!heights) return tl::unexpected(heights.error());
   areal.at_heights = *heights;
-  for (const double ratio : options.at_ratios) areal.at_ratios.push_back(ratio / 100.0);
+  const std::vector<double>& ratios = options.at_ratios.empty() ? kUsualRatios : options.at_ratios;
+  for (const double ratio : ratios) areal.at_ratios.push_back(ratio / 100.0);
   return areal;
 }
 
@@ -121,6 +126,12 @@ engine::Result<Report> measureAll(const MeasureArguments& options, engine::JobCo
 
 engine::Result<Report> measure(const MeasureArguments& options, engine::JobControl& job) {
   if (auto status = checkForm(options.form); !status) return tl::unexpected(status.error());
+  const bool functional =
+      options.groups.empty() || std::ranges::find(options.groups, "functional") != options.groups.end();
+  if (!functional && (!options.at_heights.empty() || !options.at_ratios.empty()))
+    return engine::inputError("no material ratios are measured without the functional parameters",
+                              options.at_heights.empty() ? "--at-ratio" : "--at-height",
+                              "add functional to --only");
   // Two inputs cannot both be standard input.
   std::vector<std::string> inputs = options.scans;
   inputs.push_back(options.form.marks);
@@ -187,6 +198,7 @@ void addMeasure(Command root, Chosen& chosen) {
                 .range = Range{0.0, 100.0},
                 .unit = "%",
                 .shown = "MR[,MR...]",
+                .otherwise = "10,80",
                 .between = ','},
                {.name = "--csv",
                 .to = &options->csv,

@@ -113,12 +113,16 @@ Report stretchOf(const Stretch& stretch) {
   return Report::array({stretch.from_mm, stretch.to_mm});
 }
 
-// What was asked for, of one section. `marks`: lengths that a picture shows.
+void addMarks(const std::vector<double>& along, const char* name, std::vector<DrawnMark>& marks) {
+  for (const double at : along) marks.push_back({at, name});
+}
+
+// What was asked for, of one section. `marks`: places that a picture shows.
 class Figures {
  public:
   Figures(const SectionArguments& options, double noise_mm) : options_(options), noise_mm_(noise_mm) {}
 
-  engine::Result<Report> of(const Section& section, std::vector<double>& marks) const {
+  engine::Result<Report> of(const Section& section, std::vector<DrawnMark>& marks) const {
     Report report = Report::object();
     const auto add = [&](const char* key, bool wanted, const auto& figures) -> engine::Status {
       if (!wanted) return {};
@@ -154,10 +158,10 @@ class Figures {
                                    : Stretch{options_.within[0], options_.within[1]};
   }
 
-  engine::Result<Report> cursors(const Section& section, std::vector<double>& marks) const {
+  engine::Result<Report> cursors(const Section& section, std::vector<DrawnMark>& marks) const {
     const auto figures = engine::cursorFigures(section, options_.cursors[0], options_.cursors[1], noise_mm_);
     if (!figures) return tl::unexpected(figures.error());
-    marks.insert(marks.end(), options_.cursors.begin(), options_.cursors.end());
+    addMarks(options_.cursors, "cursor", marks);
     Report report{{"dx_mm", figures->dx_mm}};
     addEstimate(report, "dz", "mm", figures->dz_mm);
     report.update({{"slope_deg", number(figures->slope_deg)},
@@ -166,13 +170,13 @@ class Figures {
                    {"second_mm", figures->second_mm}});
     return report;
   }
-  engine::Result<Report> line(const Section& section, std::vector<double>& marks) const {
+  engine::Result<Report> line(const Section& section, std::vector<DrawnMark>& marks) const {
     const auto figures = engine::lineFigures(section, {options_.line[0], options_.line[1]}, noise_mm_);
     if (!figures) return tl::unexpected(figures.error());
-    marks.insert(marks.end(), options_.line.begin(), options_.line.end());
+    addMarks(options_.line, "line", marks);
     return reportOf(*figures);
   }
-  engine::Result<Report> step(const Section& section, std::vector<double>& marks) const {
+  engine::Result<Report> step(const Section& section, std::vector<DrawnMark>& marks) const {
     double edge = engine::edgeIn(section, within(section));
     if (options_.step != "auto") edge = numbersOf(options_.step, 1).front();
     if (std::isnan(edge))
@@ -182,7 +186,7 @@ class Figures {
     if (options_.step == "auto" && !standsOut(section, figures->step_mm))
       return engine::inputError("no step stands out from the noise of the section", "--step",
                                 "average over a --width, or give the edge's length");
-    marks.push_back(edge);
+    addMarks({edge}, "step", marks);
     Report report{{"edge_mm", edge}};
     addEstimate(report, "step", "mm", figures->step_mm);
     addEstimate(report, "inclination", "deg", figures->inclination_deg);
@@ -192,7 +196,7 @@ class Figures {
                    {"places", figures->places}});
     return report;
   }
-  engine::Result<Report> groove(const Section& section, std::vector<double>& marks) const {
+  engine::Result<Report> groove(const Section& section, std::vector<DrawnMark>& marks) const {
     Stretch edges = engine::grooveIn(section, within(section));
     if (options_.groove != "auto") {
       const std::vector<double> typed = numbersOf(options_.groove, 2);
@@ -206,7 +210,7 @@ class Figures {
     if (options_.groove == "auto" && !standsOut(section, figures->step_mm))
       return engine::inputError("no groove or ridge stands out from the noise of the section", "--groove",
                                 "average over a --width, or give the lengths of both edges");
-    marks.insert(marks.end(), {edges.from_mm, edges.to_mm});
+    addMarks({edges.from_mm, edges.to_mm}, "groove", marks);
     Report report{{"edges", stretchOf(edges)}, {"width_mm", edges.to_mm - edges.from_mm}};
     addEstimate(report, "depth", "mm", figures->step_mm);
     addEstimate(report, "inclination", "deg", figures->inclination_deg);
@@ -217,11 +221,11 @@ class Figures {
                    {"places", figures->places}});
     return report;
   }
-  engine::Result<Report> angle(const Section& section, std::vector<double>& marks) const {
+  engine::Result<Report> angle(const Section& section, std::vector<DrawnMark>& marks) const {
     const auto figures = engine::angleFigures(section, {options_.angle[0], options_.angle[1]},
                                               {options_.angle[2], options_.angle[3]}, noise_mm_);
     if (!figures) return tl::unexpected(figures.error());
-    marks.insert(marks.end(), options_.angle.begin(), options_.angle.end());
+    addMarks(options_.angle, "angle", marks);
     Report report;
     addEstimate(report, "turn", "deg", figures->turn_deg);
     report["included_deg"] = figures->included_deg.value;
@@ -231,10 +235,10 @@ class Figures {
     report["second"] = reportOf(figures->second);
     return report;
   }
-  engine::Result<Report> arc(const Section& section, std::vector<double>& marks) const {
+  engine::Result<Report> arc(const Section& section, std::vector<DrawnMark>& marks) const {
     const auto figures = engine::arcFigures(section, {options_.arc[0], options_.arc[1]}, noise_mm_);
     if (!figures) return tl::unexpected(figures.error());
-    marks.insert(marks.end(), options_.arc.begin(), options_.arc.end());
+    addMarks(options_.arc, "arc", marks);
     Report report;
     addEstimate(report, "radius", "mm", figures->radius_mm);
     addEstimate(report, "centre_along", "mm", figures->centre_along_mm);
@@ -303,7 +307,9 @@ Report deviationOf(const Section& a, const Section& b) {
 }
 
 Report describedSection(std::size_t index, const Section& section) {
-  std::size_t found = 0;
+  std::size_t found = 0, partial = 0;
+  for (std::size_t i = 0; i < section.size(); ++i)
+    if (!std::isnan(section.height[i]) && section.share[i] < 1.0) ++partial;
   double low = 0.0, high = 0.0;
   for (const double z : section.height)
     if (!std::isnan(z)) {
@@ -319,6 +325,7 @@ Report describedSection(std::size_t index, const Section& section) {
           {"spacing_mm", section.step_mm},
           {"places", section.size()},
           {"without_height", section.size() - found},
+          {"partial", partial},
           {"lanes", section.lanes},
           {"low_mm", low},
           {"high_mm", high}};
@@ -349,15 +356,16 @@ engine::Result<Report> probed(const SectionArguments& options, const ReadScan& s
 
 engine::Status writeSectionFiles(const SectionArguments& options, const std::vector<DrawnSection>& drawn,
                                  engine::JobControl& job) {
+  // The picture first: a program of its own makes it, which can fail where writing a text does not.
+  if (!options.plot.empty())
+    if (auto status = drawSections(drawn, options.plot); !status) return status;
   if (!options.csv.empty())
     if (auto status = writeTo(
             options.csv, ".csv", job,
             [&](const std::string& file) { return engine::writeFileAtomically(file, sectionCsv(drawn)); });
         !status)
       return status;
-  if (!options.dxf.empty())
-    if (auto status = engine::writeFileAtomically(options.dxf, sectionDxf(drawn)); !status) return status;
-  return options.plot.empty() ? engine::Status() : drawSections(drawn, options.plot);
+  return options.dxf.empty() ? engine::Status() : engine::writeFileAtomically(options.dxf, sectionDxf(drawn));
 }
 
 engine::Result<Report> takeSections(const SectionArguments& options, engine::JobControl& job) {
@@ -401,13 +409,17 @@ engine::Result<Report> takeSections(const SectionArguments& options, engine::Job
     }
     for (const ReadScan& other : others) {
       auto beside = engine::sectionAlong(other.field, (*paths)[i], of, job);
-      if (!beside) return tl::unexpected(beside.error());
+      if (!beside) {
+        engine::Error error = beside.error();
+        error.where = shownInput(options.compare);
+        return tl::unexpected(std::move(error));
+      }
       last.other = *std::move(beside);
       if (last.other.size() != last.section.size())
         return engine::inputError("both scans must have the same spacing", "--compare",
                                   "fettle convert gives one the other's grid");
       one["deviation"] = deviationOf(last.section, last.other);
-      std::vector<double> unused;
+      std::vector<DrawnMark> unused;
       auto of_other = Figures(options, other.noise_mm).of(last.other, unused);
       if (of_other)
         one["other"] = *std::move(of_other);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/plots/gnuplot.h"
+#include "app/commands/read_units.h"
 #include "app/work/outputs.h"
 #include "engine/io/files/atomic_file.h"
 
@@ -42,12 +43,12 @@ void addPolylines(const engine::Section& section, const std::string& layer, std:
   });
 }
 
-std::string plotRows(const engine::Section& section, double unit_mm) {
+std::string plotRows(const engine::Section& section, double length_mm, double height_mm) {
   std::string rows;
   for (std::size_t i = 0; i < section.size(); ++i)
     rows += std::isnan(section.height[i])
                 ? "\n"
-                : fmt::format("{:.9g} {:.9g}\n", section.along(i), section.height[i] / unit_mm);
+                : fmt::format("{:.9g} {:.9g}\n", section.along(i) / length_mm, section.height[i] / height_mm);
   return rows;
 }
 
@@ -97,29 +98,28 @@ engine::Status drawSections(const std::vector<DrawnSection>& sections, const std
     range.add(drawn.section);
     range.add(drawn.other);
   }
-  struct HeightUnit {
-    const char* name;
-    double mm;
-  };
-  constexpr HeightUnit kUnits[] = {{"mm", 1.0}, {"um", 1e-3}, {"nm", 1e-6}};
-  const double apart = range.high - range.low;
-  const HeightUnit* unit =
-      std::ranges::find_if(kUnits, [apart](const HeightUnit& u) { return apart >= u.mm; });
-  if (unit == std::end(kUnits)) unit = apart > 0.0 ? &kUnits[2] : &kUnits[0];
+  double longest = 0.0;
+  for (const DrawnSection& drawn : sections) longest = std::max(longest, drawn.section.lengthMm());
+  const ReadAs height = readLengthAs(range.high - range.low, 1.0, "mm"),
+               length = readLengthAs(longest, 1.0, "mm");
   std::string script = kPlotHead, curves;
-  script += "set xlabel 'length along the line [mm]'\n";
-  script += fmt::format("set ylabel 'height [{}]'\nset format y '%.9g'\n", unit->name);
+  script += fmt::format("set xlabel 'length along the line [{}]'\n", length.name);
+  script += fmt::format("set ylabel 'height [{}]'\nset format y '%.9g'\n", height.name);
   constexpr std::size_t kMostDrawn = 7;
   for (std::size_t s = 0; s < std::min(sections.size(), kMostDrawn); ++s) {
     const char* colour = kPlotColours[s % std::size(kPlotColours)];
-    script += fmt::format("$section{} << EOD\n{}EOD\n", s, plotRows(sections[s].section, unit->mm));
+    script +=
+        fmt::format("$section{} << EOD\n{}EOD\n", s, plotRows(sections[s].section, length.size, height.size));
     curves += fmt::format("{}$section{} using 1:2 with lines lw 1.5 lc rgb '{}' title {}",
                           curves.empty() ? "plot " : ", ", s, colour, quoted(sections[s].name));
-    for (const double at : sections[s].marks)
-      script += fmt::format("set arrow from {0:.9g}, graph 0 to {0:.9g}, graph 1 nohead dt 3 lc rgb '{1}'\n",
-                            at, colour);
+    for (const DrawnMark& mark : sections[s].marks)
+      script += fmt::format(
+          "set arrow from {0:.9g}, graph 0 to {0:.9g}, graph 1 nohead dt 3 lc rgb '{1}'\n"
+          "set label '{2} ' at {0:.9g}, graph 1 right rotate by 90 offset character -0.6, 0 tc rgb '{1}'\n",
+          mark.along_mm / length.size, colour, mark.name);
     if (sections[s].other.size() == 0) continue;
-    script += fmt::format("$other{} << EOD\n{}EOD\n", s, plotRows(sections[s].other, unit->mm));
+    script +=
+        fmt::format("$other{} << EOD\n{}EOD\n", s, plotRows(sections[s].other, length.size, height.size));
     curves +=
         fmt::format(", $other{} using 1:2 with lines lw 1.5 dt 2 lc rgb '{}' title {}", s,
                     kPlotColours[(s + 1) % std::size(kPlotColours)], quoted(sections[s].name + ", other"));

@@ -8,12 +8,18 @@
 
 namespace fettle::app {
 
+/// A place along a line that a picture shows.
+struct DrawnMark {
+  double along_mm = 0.0;
+  std::string name;  ///< "edge"
+};
+
 /// A section of a scan and, with --compare, that of the other at the same places; what is drawn into it.
 struct DrawnSection {
   std::string name;  ///< "section 0"
   engine::Section section;
-  engine::Section other;      ///< no places: there is none
-  std::vector<double> marks;  ///< lengths at which a thin line stands [mm]
+  engine::Section other;         ///< no places: there is none
+  std::vector<DrawnMark> marks;  ///< at which a thin line stands, with its name
 };
 
 /// A row per place: section, length, position, height, share of the lanes, height of the other, all in millimetres.

@@ -34,7 +34,40 @@ std::vector<double> numbersOf(std::string_view text, std::size_t count) {
   return text.empty() ? numbers : std::vector<double>();
 }
 
+namespace {
+
+// An option that would have no effect beside the others, and what it needs.
+engine::Status checkEffects(const SectionArguments& options) {
+  const auto needs = [](const char* option, const char* what) {
+    return engine::inputError("an option would have no effect", option,
+                              fmt::format("add {}, or leave it out", what));
+  };
+  if (!options.within.empty() && options.step.empty() && options.groove.empty() && !options.cutoff)
+    return needs("--within", "--step, --groove or --cutoff");
+  if (options.probe_radius && options.probes.empty()) return needs("--probe-radius", "--probe");
+  if (!options.from.empty() || !options.to.empty() || !options.polylines.empty() || !options.lines.empty())
+    return {};
+  for (const auto& [given, option] : {std::pair(options.width > 0.0, "--width"),
+                                      {!options.compare.empty(), "--compare"},
+                                      {!options.cursors.empty(), "--cursors"},
+                                      {!options.line.empty(), "--fit-line"},
+                                      {!options.step.empty(), "--step"},
+                                      {!options.groove.empty(), "--groove"},
+                                      {!options.angle.empty(), "--angle"},
+                                      {!options.arc.empty(), "--arc"},
+                                      {options.cutoff.has_value(), "--cutoff"},
+                                      {!options.csv.empty(), "--csv"},
+                                      {!options.plot.empty(), "--plot"},
+                                      {!options.dxf.empty(), "--dxf"}})
+    if (given && !options.probes.empty())
+      return needs(option, "a line: --start and --end, --line or --lines");
+  return {};
+}
+
+}  // namespace
+
 engine::Status checkSectionWords(const SectionArguments& options) {
+  if (auto status = checkEffects(options); !status) return status;
   if (!options.step.empty() && options.step != "auto" && numbersOf(options.step, 1).empty())
     return engine::inputError(fmt::format("'{}' is no length", options.step), "--step",
                               "give the edge's length along the line in mm, or auto");

@@ -40,7 +40,7 @@ struct SectionArguments {
 void addLineOptions(Command command, SectionArguments& options);
 void addFigureOptions(Command command, SectionArguments& options);
 
-/// Refuses texts that are no numbers, stretches out of order, and marks that choose nothing (kInput).
+/// Refuses texts that are no numbers, stretches out of order, options and marks that have no effect (kInput).
 [[nodiscard]] engine::Status checkSectionWords(const SectionArguments& options);
 
 /// Numbers with commas between them, exactly so many; none when the text is something else.

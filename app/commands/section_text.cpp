@@ -6,17 +6,37 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/read_units.h"
+
 namespace fettle::app {
 
 namespace {
+
+// In which unit figures of a section are written: lengths along the line, and heights.
+struct TextUnits {
+  ReadAs along{"mm", 1.0}, height{"mm", 1.0};
+};
+
+TextUnits unitsOf(const Report& report) {
+  double longest = 0.0, span = 0.0;
+  for (const Report& one : report["sections"]) {
+    longest = std::max(longest, one["length_mm"].get<double>());
+    span = std::max(span, one["high_mm"].get<double>() - one["low_mm"].get<double>());
+  }
+  return {readLengthAs(longest, 1.0, "mm"), readLengthAs(span, 1.0, "mm")};
+}
 
 std::string shownNumber(const Report& value) {
   return value.is_null() ? "-" : fmt::format("{:.6g}", value.get<double>());
 }
 
+std::string shownLength(const Report& mm, const ReadAs& unit) {
+  return mm.is_null() ? "-" : fmt::format("{:.6g} {}", mm.get<double>() / unit.size, unit.name);
+}
+
 // Heights may be small differences far from 0: as many digits as float samples have, and two more.
-std::string shownHeight(const Report& value) {
-  return value.is_null() ? "-" : fmt::format("{:.9g}", value.get<double>());
+std::string shownHeight(const Report& mm, const ReadAs& unit) {
+  return mm.is_null() ? "-" : fmt::format("{:.9g} {}", mm.get<double>() / unit.size, unit.name);
 }
 
 // To two digits of the error.
@@ -26,89 +46,116 @@ std::string shownTo(double value, double error) {
   return fmt::format("{:.{}g}", value, static_cast<int>(std::clamp(digits, 2.0, 12.0)));
 }
 
-// "12.3 +- 0.2 mm", the error of a figure beside it.
-std::string shownEstimate(const Report& report, const std::string& key, const std::string& unit) {
+// "12.3 +- 0.2 mm", the error of a figure beside it. `unit`: that of its key.
+std::string shownEstimate(const Report& report, const std::string& key, const std::string& unit,
+                          const ReadAs& as) {
   const std::string ending = unit.empty() ? std::string() : fmt::format("_{}", unit);
   const Report& error = report[key + "_error" + ending];
   const Report& value = report[key + ending];
-  return fmt::format("{}{} {}",
-                     value.is_null() || error.is_null() ? shownNumber(value)
-                                                        : shownTo(value.get<double>(), error.get<double>()),
-                     error.is_null() ? "" : fmt::format(" +- {:.2g}", error.get<double>()),
-                     unit == "deg" ? "degrees" : unit);
+  if (value.is_null()) return "-";
+  const double shown = value.get<double>() / as.size;
+  if (error.is_null()) return fmt::format("{:.6g} {}", shown, as.name);
+  const double shown_error = error.get<double>() / as.size;
+  return fmt::format("{} +- {:.2g} {}", shownTo(shown, shown_error), shown_error, as.name);
 }
 
-void printFigures(const Report& of, const std::string& before) {
+const ReadAs kDegrees{"degrees", 1.0};
+
+void printFigures(const Report& of, const std::string& before, const TextUnits& units) {
+  const ReadAs &along = units.along, &height = units.height;
   const auto row = [&](const char* name, const std::string& text) {
     fmt::print("{}{:<10} {}\n", before, name, text);
   };
   if (of.contains("cursors")) {
     const Report& c = of["cursors"];
-    row("cursors", fmt::format("dx {} mm, dz {}, slope {} degrees, distance {} mm", shownNumber(c["dx_mm"]),
-                               shownEstimate(c, "dz", "mm"), shownNumber(c["slope_deg"]),
-                               shownNumber(c["distance_mm"])));
+    row("cursors", fmt::format("dx {}, dz {}, slope {} degrees, distance {}", shownLength(c["dx_mm"], along),
+                               shownEstimate(c, "dz", "mm", height), shownNumber(c["slope_deg"]),
+                               shownLength(c["distance_mm"], along)));
   }
-  if (of.contains("line"))
-    row("line", fmt::format("inclination {}, height in the middle {}, rms {} mm",
-                            shownEstimate(of["line"], "inclination", "deg"),
-                            shownEstimate(of["line"], "height", "mm"), shownNumber(of["line"]["rms_mm"])));
-  if (of.contains("step"))
-    row("step", fmt::format("{}, edge at {} mm, rms {} mm", shownEstimate(of["step"], "step", "mm"),
-                            shownNumber(of["step"]["edge_mm"]), shownNumber(of["step"]["rms_mm"])));
-  if (of.contains("groove"))
-    row("groove", fmt::format("depth {}, width {} mm from {} to {} mm, rms {} mm",
-                              shownEstimate(of["groove"], "depth", "mm"),
-                              shownNumber(of["groove"]["width_mm"]), shownNumber(of["groove"]["edges"][0]),
-                              shownNumber(of["groove"]["edges"][1]), shownNumber(of["groove"]["rms_mm"])));
-  if (of.contains("angle"))
-    row("angle",
-        fmt::format("turn {}, included {} degrees, lines meet at {} mm, height {} mm",
-                    shownEstimate(of["angle"], "turn", "deg"), shownNumber(of["angle"]["included_deg"]),
-                    shownNumber(of["angle"]["meet_along_mm"]), shownHeight(of["angle"]["meet_height_mm"])));
-  if (of.contains("arc"))
-    row("arc", fmt::format("radius {}, {}, centre at {} mm, height {} mm, rms {} mm",
-                           shownEstimate(of["arc"], "radius", "mm"),
-                           of["arc"]["hollow"].get<bool>() ? "hollow" : "raised",
-                           shownNumber(of["arc"]["centre_along_mm"]),
-                           shownHeight(of["arc"]["centre_height_mm"]), shownNumber(of["arc"]["rms_mm"])));
+  if (of.contains("line")) {
+    const Report& line = of["line"];
+    row("line",
+        fmt::format("inclination {}, height in the middle {}, rms {}",
+                    shownEstimate(line, "inclination", "deg", kDegrees),
+                    shownEstimate(line, "height", "mm", height), shownLength(line["rms_mm"], height)));
+  }
+  if (of.contains("step")) {
+    const Report& step = of["step"];
+    row("step", fmt::format("{}, edge at {}, rms {}", shownEstimate(step, "step", "mm", height),
+                            shownLength(step["edge_mm"], along), shownLength(step["rms_mm"], height)));
+  }
+  if (of.contains("groove")) {
+    const Report& groove = of["groove"];
+    row("groove",
+        fmt::format("depth {}, width {} from {} to {}, rms {}", shownEstimate(groove, "depth", "mm", height),
+                    shownLength(groove["width_mm"], along), shownLength(groove["edges"][0], along),
+                    shownLength(groove["edges"][1], along), shownLength(groove["rms_mm"], height)));
+  }
+  if (of.contains("angle")) {
+    const Report& angle = of["angle"];
+    row("angle", fmt::format("turn {}, included {} degrees, lines meet at {}, height {}",
+                             shownEstimate(angle, "turn", "deg", kDegrees),
+                             shownNumber(angle["included_deg"]), shownLength(angle["meet_along_mm"], along),
+                             shownHeight(angle["meet_height_mm"], height)));
+  }
+  if (of.contains("arc")) {
+    const Report& arc = of["arc"];
+    row("arc", fmt::format("radius {}, {}, centre at {}, height {}, rms {}",
+                           shownEstimate(arc, "radius", "mm", along),
+                           arc["hollow"].get<bool>() ? "hollow" : "raised",
+                           shownLength(arc["centre_along_mm"], along),
+                           shownHeight(arc["centre_height_mm"], along), shownLength(arc["rms_mm"], height)));
+  }
   if (of.contains("roughness")) {
     const Report& r = of["roughness"];
-    row("roughness", fmt::format("Ra {} Rq {} Rz {} RSm {} mm, Rsk {} Rku {}, over {} cut-offs of {} mm",
-                                 shownNumber(r["ra_mm"]), shownNumber(r["rq_mm"]), shownNumber(r["rz_mm"]),
-                                 shownNumber(r["rsm_mm"]), shownNumber(r["rsk"]), shownNumber(r["rku"]),
-                                 r["lengths"].get<int>(), shownNumber(r["cutoff_mm"])));
+    const ReadAs as = readLengthAs(r["ra_mm"].get<double>(), 1.0, "mm");
+    row("roughness",
+        fmt::format("Ra {} Rq {} Rz {} RSm {}, Rsk {} Rku {}, over {} cut-offs of {}",
+                    shownLength(r["ra_mm"], as), shownLength(r["rq_mm"], as), shownLength(r["rz_mm"], as),
+                    shownLength(r["rsm_mm"], along), shownNumber(r["rsk"]), shownNumber(r["rku"]),
+                    r["lengths"].get<int>(), shownLength(r["cutoff_mm"], along)));
   }
 }
 
 }  // namespace
 
 void printSections(const Report& report) {
-  if (!report["noise_mm"].is_null())
-    fmt::print("noise of a sample {:.4g} mm; +- standard error\n", report["noise_mm"].get<double>());
+  const TextUnits units = unitsOf(report);
+  const ReadAs &along = units.along, &height = units.height;
+  if (!report["noise_mm"].is_null()) {
+    const double noise_mm = report["noise_mm"].get<double>();
+    const ReadAs as = readLengthAs(noise_mm, 1.0, "mm");
+    fmt::print("noise of a sample {:.4g} {}; +- standard error\n", noise_mm / as.size, as.name);
+  }
   for (const Report& one : report["sections"]) {
-    fmt::print("section {}: {} mm long, {} places {} mm apart, {} lane{}, heights {} to {} mm\n",
-               one["section"].get<int>(), shownNumber(one["length_mm"]), one["places"].get<int>(),
-               shownNumber(one["spacing_mm"]), one["lanes"].get<int>(),
-               one["lanes"].get<int>() == 1 ? "" : "s", shownHeight(one["low_mm"]),
-               shownHeight(one["high_mm"]));
+    const int lanes = one["lanes"].get<int>();
+    fmt::print("section {}: {} long, {} places {} apart, {} lane{}, heights {:.9g} to {}\n",
+               one["section"].get<int>(), shownLength(one["length_mm"], along), one["places"].get<int>(),
+               shownLength(one["spacing_mm"], along), lanes, lanes == 1 ? "" : "s",
+               one["low_mm"].get<double>() / height.size, shownHeight(one["high_mm"], height));
     if (one["without_height"].get<int>() > 0)
       fmt::print("  {} places have no height\n", one["without_height"].get<int>());
-    printFigures(one, "  ");
+    if (one["partial"].get<int>() > 0)
+      fmt::print("  {} places are means of fewer lanes, the others lie at holes or outside\n",
+                 one["partial"].get<int>());
+    printFigures(one, "  ", units);
     if (one.contains("deviation")) {
       const Report& d = one["deviation"];
-      fmt::print("  {:<10} other less this: mean {} mm, rms {} mm, largest {} mm, {} places\n", "deviation",
-                 shownNumber(d["mean_mm"]), shownNumber(d["rms_mm"]), shownNumber(d["max_abs_mm"]),
-                 d["places"].get<int>());
+      fmt::print("  {:<10} other less this: mean {}, rms {}, largest {}, {} places\n", "deviation",
+                 shownLength(d["mean_mm"], height), shownLength(d["rms_mm"], height),
+                 shownLength(d["max_abs_mm"], height), d["places"].get<int>());
     }
-    if (one.contains("other")) printFigures(one["other"], "  other: ");
+    if (one.contains("other")) printFigures(one["other"], "  other: ", units);
   }
   if (!report.contains("probes")) return;
-  for (const Report& p : report["probes"])
+  for (const Report& p : report["probes"]) {
+    const ReadAs as = readLengthAs(std::abs(p["height_mm"].get<double>()), 1.0, "mm");
     fmt::print("probe {},{}: height {}, slope {} rising to {} degrees, curvature {}, from {} to {} per mm\n",
-               shownNumber(p["x"]), shownNumber(p["y"]), shownEstimate(p, "height", "mm"),
-               shownEstimate(p, "slope", "deg"), shownNumber(p["rises_to_deg"]),
-               shownEstimate(p, "mean_curvature", ""), shownNumber(p["least_curvature"]),
+               shownNumber(p["x"]), shownNumber(p["y"]), shownEstimate(p, "height", "mm", as),
+               shownEstimate(p, "slope", "deg", kDegrees), shownNumber(p["rises_to_deg"]),
+               shownEstimate(p, "mean_curvature", "", {"", 1.0}), shownNumber(p["least_curvature"]),
                shownNumber(p["most_curvature"]));
+  }
 }
 
 }  // namespace fettle::app

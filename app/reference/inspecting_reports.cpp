@@ -90,25 +90,27 @@ Keys sectionFigures() {
 }
 
 Keys sectionKeys() {
-  return joined({{"section", "integer", "from 0"},
-                 {"from", "[number]", "x, y, mm from the lower left sample"},
-                 {"to", "[number]", ""},
-                 {"length_mm", "number", ""},
-                 {"spacing_mm", "number", "of the places"},
-                 {"places", "integer", ""},
-                 {"without_height", "integer", "places at holes and outside"},
-                 {"lanes", "integer", "lines side by side that were averaged"},
-                 {"low_mm", "number", ""},
-                 {"high_mm", "number", ""},
-                 {"deviation?",
-                  "object",
-                  "with --compare: other less this",
-                  {{"places", "integer", "that have both heights"},
-                   {"mean_mm", "number", ""},
-                   {"rms_mm", "number", ""},
-                   {"max_abs_mm", "number", ""}}},
-                 {"other?", "object", "with --compare: its figures", sectionFigures()}},
-                sectionFigures());
+  return joined(
+      {{"section", "integer", "from 0"},
+       {"from", "[number]", "x, y, mm from the lower left sample"},
+       {"to", "[number]", ""},
+       {"length_mm", "number", ""},
+       {"spacing_mm", "number", "of the places"},
+       {"places", "integer", ""},
+       {"without_height", "integer", "places at holes and outside"},
+       {"partial", "integer", "places whose height is the mean of fewer lanes: some lie at holes or outside"},
+       {"lanes", "integer", "lines side by side that were averaged"},
+       {"low_mm", "number", ""},
+       {"high_mm", "number", ""},
+       {"deviation?",
+        "object",
+        "with --compare: other less this",
+        {{"places", "integer", "that have both heights"},
+         {"mean_mm", "number", ""},
+         {"rms_mm", "number", ""},
+         {"max_abs_mm", "number", ""}}},
+       {"other?", "object", "with --compare: its figures", sectionFigures()}},
+      sectionFigures());
 }
 
 }  // namespace

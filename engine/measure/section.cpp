@@ -148,6 +148,29 @@ Status checkPoints(std::span<const glm::dvec2> points, const SectionOptions& opt
   return {};
 }
 
+// Why no place of a section has a height; `beneath`: the line alone has some.
+Error noHeight(const Grid& grid, const Path& path, const SectionOptions& options, bool beneath) {
+  const glm::dvec2 end((grid.width - 1) * grid.spacingXMm(), (grid.height - 1) * grid.spacingYMm());
+  const auto error = [](std::string what, std::string remedy) {
+    return Error{ErrorKind::kInput, std::move(what), "section", std::move(remedy)};
+  };
+  if (beneath)
+    return error("fewer than half of the width have a height at every place of the section",
+                 "give a smaller width");
+  const bool inside = std::ranges::any_of(path.points, [&](const glm::dvec2& p) {
+    return p.x >= 0.0 && p.y >= 0.0 && p.x <= end.x && p.y <= end.y;
+  });
+  if (!inside)
+    return error("the section meets no sample",
+                 fmt::format("the scan reaches from 0,0 to {:.6g},{:.6g} mm, from the lower left sample",
+                             end.x, end.y));
+  if (options.region != Region::kAll)
+    return error(fmt::format("the section meets no {} sample",
+                             options.region == Region::kMarked ? "marked" : "unmarked"),
+                 "give another line, or take all samples");
+  return error("the section runs through holes alone", "give another line");
+}
+
 }  // namespace
 
 double Section::variance(std::span<const double> weights) const noexcept {
@@ -207,7 +230,7 @@ Result<Section> sectionAlong(const Version& field, std::span<const glm::dvec2> p
   const PlaceReader reader(field, options);
   const double mm = grid.height_unit.mm;
   std::deque<std::vector<Share>> latest;  // of the last places, this one last
-  bool any = false;
+  bool any = false, beneath = false;      // a height at a place, with its width or on the line itself
   job.begin("taking the section", places);
   for (std::size_t i = 0; i < places; ++i) {
     if (job.cancelled()) return cancelled();
@@ -228,6 +251,10 @@ Result<Section> sectionAlong(const Version& field, std::span<const glm::dvec2> p
     section.share.push_back(static_cast<double>(found) / section.lanes);
     section.height.push_back(counts ? mm * sum / found : kNoHeight);
     any = any || counts;
+    if (!any && !beneath && section.lanes > 1) {
+      std::vector<Share> unused;
+      beneath = !std::isnan(reader.heightAt(place / spacing, unused));
+    }
     if (!counts) shares.clear();
     merge(shares);
     for (Share& share : shares) share.weight /= found;
@@ -237,9 +264,7 @@ Result<Section> sectionAlong(const Version& field, std::span<const glm::dvec2> p
       section.covariance[(i - k) * band + k] = productOf(latest[latest.size() - 1 - k], latest.back());
     job.advance();
   }
-  if (!any)
-    return inputError("the section meets no sample", "section",
-                      "points are in millimetres from the lower left sample");
+  if (!any) return tl::unexpected(noHeight(grid, path, options, beneath));
   return section;
 } catch (const std::bad_alloc&) {
   return failure("there is not enough memory for the section", "section", "give a shorter line");

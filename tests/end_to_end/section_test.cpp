@@ -48,7 +48,7 @@ TEST(SectionCommand, MeasuresAGrooveAndAStep) {
   EXPECT_NEAR(section["cursors"]["dz_mm"], -0.05, 2e-4);
   const Outcome text =
       fettle({"section", scan, "--unit", "mm", "--start", "0,2", "--end", "7.9,2", "--groove", "auto"});
-  EXPECT_NE(text.out.find("depth 0.0"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("depth 50 +- "), std::string::npos) << text.out;
 }
 
 TEST(SectionCommand, WritesTableDrawingAndPictureOfBothScans) {
@@ -108,6 +108,58 @@ TEST(SectionCommand, RefusesWhatItCannotMeasure) {
   refused({"--line", "1,2:7,2", "--cursors", "1,9"}, "cursor");
   refused({"--line", "1,2:7,2", "--plot", folder.file("p.bmp")}, ".svg");
   refused({"--probe", "1"}, "--probe");
+  // What would have no effect, and what is given twice.
+  refused({"--line", "1,2:7,2", "--within", "1,4"}, "--groove");
+  refused({"--line", "1,2:7,2", "--probe-radius", "1"}, "add --probe");
+  refused({"--probe", "1,1", "--step", "auto"}, "a line");
+  refused({"--probe", "1,1", "--plot", folder.file("p.png")}, "a line");
+  refused({"--line", "1,2:7,2", "--cursors", "1,2,3"}, "--cursors takes A,B");
+  refused({"--line", "1,2:7,2", "--cursors", "1,2", "--cursors", "3,4"}, "--cursors");
+  refused({"--line", "1,2:7,2", "--spacing", "1", "--spacing", "2"}, "more than once");
+}
+
+// Each reason for a section without heights is another remedy.
+TEST(SectionCommand, SaysWhyThereIsNoHeight) {
+  const TempFolder folder;
+  const std::string scan = folder.file("groove.asc"), row = folder.file("row.asc"),
+                    holes = folder.file("h.asc");
+  writeGroove(scan);
+  std::ofstream(row) << "ncols 5\nnrows 1\nxllcenter 0\nyllcenter 0\ncellsize 1\n1 2 3 4 5\n";
+  std::ofstream(holes) << "ncols 3\nnrows 3\nxllcenter 0\nyllcenter 0\ncellsize 1\nNODATA_value -9999\n"
+                       << "1 1 1\n-9999 -9999 -9999\n1 1 1\n";
+  const auto refused = [](const std::string& of, std::vector<std::string> words, const std::string& why) {
+    words.insert(words.begin(), {"section", of, "--unit", "mm"});
+    expectRefused(fettle(words), why);
+  };
+  refused(scan, {"--line", "50,50:60,60"}, "to 7.9,3.9 mm");
+  refused(scan, {"--line", "1,1:6,1", "--region", "marked"}, "no marked sample");
+  refused(holes, {"--line", "0,1:2,1"}, "holes alone");
+  refused(row, {"--line", "0,0:4,0", "--width", "3"}, "smaller width");
+  refused(scan, {"--line", "1,1:6,1", "--compare", row}, "row.asc");
+  EXPECT_EQ(fettleJson({"section", row, "--unit", "mm", "--line", "0,0:4,0"})["sections"][0]["partial"], 0);
+  const auto wide = fettleJson({"section", scan, "--unit", "mm", "--line", "0,0:7.9,0", "--width", "0.2"});
+  EXPECT_EQ(wide["sections"][0]["partial"], 80) << "a lane of three lies outside";
+}
+
+// A scan of an atomic force microscope is not read in thousandths of micrometres.
+TEST(SectionCommand, ReadsInTheUnitsOfTheScansSize) {
+  const TempFolder folder;
+  const std::string scan = folder.file("afm.asc");
+  std::ofstream out(scan);
+  out << "ncols 40\nnrows 20\nxllcenter 0\nyllcenter 0\ncellsize 4e-9\n";
+  for (int r = 0; r < 20; ++r) {
+    for (int c = 0; c < 40; ++c) out << (c < 20 ? 0.0 : 1.3e-8) + 1e-11 * ((c * 7 + r * 5) % 3) << ' ';
+    out << "\n";
+  }
+  out.close();
+  const Outcome text = fettle({"section", scan, "--unit", "m", "--start", "0,4e-5", "--end", "1.5e-4,4e-5",
+                               "--step", "auto", "--plot", folder.file("p.svg")});
+  EXPECT_NE(text.out.find("150 nm long"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("step       13"), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find("e-"), std::string::npos) << text.out;
+  const std::string picture = contentOf(folder.file("p.svg"));
+  EXPECT_NE(picture.find("[nm]"), std::string::npos);
+  EXPECT_NE(picture.find("step"), std::string::npos) << "the edge has its name";
 }
 
 TEST(SectionCommand, StatesNoEdgeWhereNoneStandsOut) {

@@ -1,0 +1,28 @@
+#include "app/commands/read_units.h"
+
+#include <cmath>
+
+namespace fettle::app {
+
+namespace {
+
+// Powers of ten of a millimetre.
+bool isMetric(double unit_mm) {
+  const double power = std::log10(unit_mm);
+  return std::abs(power - std::round(power)) < 1e-12;
+}
+
+}  // namespace
+
+ReadAs readLengthAs(double length, double unit_mm, const std::string& unit) {
+  if (!isMetric(unit_mm) || !(length > 0.0)) return {unit, 1.0};
+  constexpr struct {
+    const char* name;
+    double mm;
+  } kUnits[] = {{"m", 1e3}, {"mm", 1.0}, {"um", 1e-3}};
+  for (const auto& each : kUnits)
+    if (length * unit_mm >= each.mm) return {each.name, each.mm / unit_mm};
+  return {"nm", 1e-6 / unit_mm};
+}
+
+}  // namespace fettle::app

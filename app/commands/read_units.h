@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+namespace fettle::app {
+
+/// A unit in which a length is read at ease: its name in ASCII, and its size in the unit that the length is kept in.
+struct ReadAs {
+  std::string name;
+  double size = 1.0;
+};
+
+/// The unit for lengths up to `length`, kept in a unit of `unit_mm` millimetres called `unit`: of metric ones m, mm, um or
+/// nm, so that 0.0000113 mm are 11.3 nm; of others the same. 0 is read in the unit that it is kept in.
+[[nodiscard]] ReadAs readLengthAs(double length, double unit_mm, const std::string& unit);
+
+}  // namespace fettle::app
