@@ -3,13 +3,16 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "app/commands/scan_files.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
+#include "engine/fill/filled_samples.h"
 
 namespace fettle::app {
 
@@ -53,7 +56,8 @@ void addFormOptions(Command command, FormArguments& arguments) {
        .text = "The samples that count",
        .words = {{"all", "every sample that is no hole"},
                  {"marked", "those that are marked"},
-                 {"unmarked", "those that are not"}}},
+                 {"unmarked", "those that are not"},
+                 {"measured", "those of a session that were not filled"}}},
       {.name = "--marks",
        .to = &arguments.marks,
        .text = "Picture of marks for --region, instead of the marks of a session",
@@ -72,9 +76,21 @@ engine::FormOptions formOptionsOf(const FormArguments& arguments) {
   return options;
 }
 
+engine::Result<engine::Version> countedOf(const engine::Version& field,
+                                          const std::optional<engine::Version>& original,
+                                          const std::string& scan, const FormArguments& arguments,
+                                          engine::JobControl& job) {
+  if (arguments.region != "measured") return withMarks(field, arguments.marks, job);
+  if (!original)
+    return engine::inputError("the file does not say which samples were filled", shownInput(scan),
+                              "give the session of fettle fill, or its --filled-out as --marks with --region "
+                              "unmarked");
+  return engine::withoutFilled(field, *original, job);
+}
+
 engine::Status checkForm(const FormArguments& arguments) {
-  if (!arguments.marks.empty() && arguments.region == "all")
-    return engine::inputError("marks choose nothing where all samples count", "--marks",
+  if (!arguments.marks.empty() && arguments.region != "marked" && arguments.region != "unmarked")
+    return engine::inputError("marks choose nothing in this region", "--marks",
                               "add --region marked or --region unmarked");
   return {};
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,15 @@ void addFormOptions(Command command, FormArguments& arguments);
 
 /// What the arguments mean, as typed and checked by their rows.
 [[nodiscard]] engine::FormOptions formOptionsOf(const FormArguments& arguments);
+
+/// The field that is measured: with the marks of the arguments, and in the region "measured" with holes in place of the
+/// samples that were filled since `original`, that of a session. `scan` is its path. Errors: as withMarks; the region
+/// "measured" without an original (kInput).
+[[nodiscard]] engine::Result<engine::Version> countedOf(const engine::Version& field,
+                                                        const std::optional<engine::Version>& original,
+                                                        const std::string& scan,
+                                                        const FormArguments& arguments,
+                                                        engine::JobControl& job);
 
 /// Refuses arguments that say nothing together: marks without a region of marked or unmarked samples.
 [[nodiscard]] engine::Status checkForm(const FormArguments& arguments);

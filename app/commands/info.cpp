@@ -15,6 +15,7 @@
 #include "app/commands/scan_options.h"
 #include "app/commands/still_picture.h"
 #include "app/terminal.h"
+#include "engine/fill/filled_samples.h"
 #include "engine/inspect/histogram.h"
 #include "engine/inspect/noise.h"
 #include "engine/inspect/noise_model.h"
@@ -195,6 +196,7 @@ engine::Result<Report> infoOf(const InfoArguments& options, const std::string& s
                           {"empty_cells", imported->gridding->empty_cells},
                           {"multiple_cells", imported->gridding->multiple_cells},
                           {"lattice", imported->gridding->lattice}};
+  if (imported->original) report["filled"] = engine::countFilled(imported->field, *imported->original);
   if (imported->field.lines() != nullptr) report["lines"] = imported->field.lines()->size();
   if (!options.at.empty()) report["at"] = *samples;
   if (!options.picture.empty()) report["picture"] = options.picture;

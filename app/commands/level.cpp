@@ -11,6 +11,7 @@
 #include "app/commands/scan_options.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
+#include "engine/fill/filled_samples.h"
 #include "engine/measure/line_offsets.h"
 #include "engine/measure/lowered.h"
 
@@ -80,7 +81,7 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
                                 engine::JobControl& job) {
   const auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  auto counted = withMarks(imported->field, options.form.marks, job);
+  auto counted = countedOf(imported->field, imported->original, task.in, options.form, job);
   if (!counted) return tl::unexpected(counted.error());
   Report report;
   std::optional<engine::LineOffsets> lines;
@@ -112,6 +113,12 @@ engine::Result<Report> levelOne(const LevelArguments& options, const BatchTask& 
   // Changes are limited from here on, also of a session or in Python.
   engine::ExportOptions writing = options.writing;
   writing.original = *levelled;
+  if (imported->original) {
+    // What was filled stays known.
+    auto measured = engine::withoutFilled(*levelled, *imported->original, job);
+    if (!measured) return tl::unexpected(measured.error());
+    writing.original = *std::move(measured);
+  }
   if (auto status = saveField(*levelled, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
   addForm(report, options.form, *fit, imported->field.grid());

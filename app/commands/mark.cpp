@@ -26,6 +26,7 @@
 #include "engine/field/live_field.h"
 #include "engine/field/piece.h"
 #include "engine/field/version.h"
+#include "engine/fill/filled_samples.h"
 #include "engine/formats/formats.h"
 #include "engine/inspect/noise.h"
 #include "engine/io/raster/marks.h"
@@ -128,6 +129,7 @@ struct MarkArguments {
   engine::LocateOptions locating;
   double scale = engine::EdgeMap::kUsualSigma;
   engine::EdgeChoice choice;
+  bool filled = false;
   bool invert = false;
   bool estimate = false;
   ScanOptions reading;
@@ -228,9 +230,10 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
   if (options.as_lines && (!options.edges || options.lines_out.empty()))
     return engine::inputError("edges become lines where both are named", "--as-lines",
                               "give --edges and --lines-out as well");
-  if (!options.edges && !options.invert && options.strokes.empty() && options.add.empty())
-    return engine::inputError("it is not stated what to mark", "mark",
-                              "give --edges, --strokes, --invert, or --add to write marks in another format");
+  if (!options.edges && !options.invert && !options.filled && options.strokes.empty() && options.add.empty())
+    return engine::inputError(
+        "it is not stated what to mark", "mark",
+        "give --edges, --strokes, --filled, --invert, or --add to write marks in another format");
   if (auto status = checkOutputs({{options.out, OutputKind::kMarks, options.to},
                                   {options.lines_out, OutputKind::kLines, kLinesStream}},
                                  {options.in, options.add, options.strokes}, Replacing::kNoWork, job);
@@ -238,6 +241,9 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     return tl::unexpected(status.error());
   auto imported = loadScan(options.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
+  if (options.filled && !imported->original)
+    return engine::inputError("the file does not say which samples were filled", shownInput(options.in),
+                              "give the session of fettle fill, which --filled-out makes marks of, too");
   auto marked = withMarks(imported->field, options.add, job);
   if (!marked) return tl::unexpected(marked.error());
   engine::Version field = *std::move(marked);
@@ -278,6 +284,11 @@ engine::Result<Report> mark(const MarkArguments& options, engine::JobControl& jo
     auto along = markStrokes(field, options, report, job);
     if (!along) return tl::unexpected(along.error());
     field = *std::move(along);
+  }
+  if (options.filled) {
+    auto filled = engine::withFilledMarked(field, *imported->original, engine::OtherMarks::kStay, job);
+    if (!filled) return tl::unexpected(filled.error());
+    field = *std::move(filled);
   }
   if (options.invert) {
     auto inverted = engine::invertMarks(field, job);
@@ -349,6 +360,7 @@ void addMark(Command root, Chosen& chosen) {
        .text = "Picture of marks to begin with; alone it is written as MARKS, as a GeoTIFF with the place of "
                "SCAN",
        .kind = ValueKind::kMarks},
+      {.name = "--filled", .to = &options->filled, .text = "Mark the samples that were filled, of a session"},
       {.name = "--invert", .to = &options->invert, .text = "Afterwards, invert the marks"},
   });
   command.add({{.name = "--to",

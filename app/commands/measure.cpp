@@ -17,6 +17,7 @@
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
+#include "engine/fill/filled_samples.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/areal.h"
 
@@ -75,7 +76,7 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
                                   engine::JobControl& job) {
   const auto imported = loadScan(scan, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  const auto marked = withMarks(imported->field, options.form.marks, job);
+  const auto marked = countedOf(imported->field, imported->original, scan, options.form, job);
   if (!marked) return tl::unexpected(marked.error());
   const auto limited = scaleLimited(*marked, scan, *imported, options.form, options.scale, job);
   if (!limited) return tl::unexpected(limited.error());
@@ -86,6 +87,7 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   if (!measured) return tl::unexpected(measured.error());
   Report report;
   addForm(report, options.form, limited->fit, grid);
+  if (imported->original) report["filled"] = engine::countFilled(*marked, *imported->original);
   addScale(report, options.scale);
   addAreal(report, *measured, options.groups, grid);
   if (!areal->functional) return report;
@@ -146,8 +148,10 @@ engine::Result<Report> measure(const MeasureArguments& options, engine::JobContr
 
 void printOneMeasured(const Report& report) {
   const auto samples = report["samples"].get<std::int64_t>();
-  fmt::print("{} sample{}, form {}{}\n", samples, samples == 1 ? "" : "s", report["form"].get<std::string>(),
-             report["robust"].get<bool>() ? ", robust" : "");
+  const auto filled = report.value("filled", std::int64_t{0});
+  fmt::print("{} sample{}{}, form {}{}\n", samples, samples == 1 ? "" : "s",
+             filled > 0 ? fmt::format(", {} of the scan filled and not measured", filled) : "",
+             report["form"].get<std::string>(), report["robust"].get<bool>() ? ", robust" : "");
   if (report.contains("tilt_x"))
     fmt::print("tilt {:.4g} degrees along x, {:.4g} along y\n", report["tilt_x"].get<double>(),
                report["tilt_y"].get<double>());

@@ -24,6 +24,7 @@
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "engine/compare/compare.h"
+#include "engine/fill/filled_samples.h"
 #include "engine/formats/formats.h"
 #include "engine/inspect/noise_model.h"
 #include "engine/io/files/atomic_file.h"
@@ -131,6 +132,9 @@ class ScanReport {
     };
     if (imported_.field.lines() != nullptr)
       about.rows.push_back({"Edge lines", fmt::format("{}", imported_.field.lines()->size())});
+    if (imported_.original)
+      if (const std::int64_t filled = engine::countFilled(imported_.field, *imported_.original); filled > 0)
+        about.rows.push_back({"Filled samples, not measured", fmt::format("{}", filled)});
     for (const std::string& warning : imported_.warnings) about.rows.push_back({"Note", warning});
     page_.tables.push_back(std::move(about));
 
@@ -188,7 +192,7 @@ class ScanReport {
     std::vector<Report> measured;
     std::string tilt;
     for (const ShownState& state : states_) {
-      const auto counted = withMarks(state.field, options_.form.marks, job_);
+      const auto counted = countedOf(state.field, imported_.original, options_.scan, options_.form, job_);
       if (!counted) return tl::unexpected(counted.error());
       const auto fit = formOf(*counted, options_.scan, imported_, options_.form, job_);
       if (!fit) return tl::unexpected(fit.error());
@@ -203,14 +207,11 @@ class ScanReport {
         tilt += fmt::format(" {}: tilted {:.4g} degrees along x, {:.4g} along y.", state.name,
                             measured.back()["tilt_x"].get<double>(), measured.back()["tilt_y"].get<double>());
     }
-    page_.tables.push_back(
-        textureTable(arealLines(measured), heads({}),
-                     fmt::format("ISO 25178-2 about the form {}{}, over {} samples.{}", options_.form.form,
-                                 options_.form.robust ? " (robust)" : "",
-                                 options_.form.region == "all"      ? "all"
-                                 : options_.form.region == "marked" ? "the marked"
-                                                                    : "the unmarked",
-                                 tilt)));
+    page_.tables.push_back(textureTable(
+        arealLines(measured), heads({}),
+        fmt::format("ISO 25178-2 about the form {}{}, over {} samples.{}", options_.form.form,
+                    options_.form.robust ? " (robust)" : "",
+                    options_.form.region == "all" ? "all" : "the " + options_.form.region, tilt)));
     return {};
   }
 

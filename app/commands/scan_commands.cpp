@@ -7,6 +7,7 @@ void addScanCommands(Command root, Chosen& chosen) {
   addSynth(root, chosen);
   addFilter(root, chosen);
   addLevel(root, chosen);
+  addFill(root, chosen);
   addMeasure(root, chosen);
   addSection(root, chosen);
   addReport(root, chosen);

@@ -109,7 +109,7 @@ ReportForm noEstimate() {
 Keys form() {
   return {{"form", "string", "none, mean, plane, poly2 to poly5"},
           {"robust", "boolean", ""},
-          {"region", "string", "all, marked, unmarked"},
+          {"region", "string", "all, marked, unmarked, measured"},
           {"tilt_x?", "number", "degrees, up to higher x; of a plane and more"},
           {"tilt_y?", "number", "degrees"}};
 }

@@ -144,7 +144,7 @@ TEST_F(Reference, ManPagesHaveNoErrorOfRoff) {
 
 TEST_F(Reference, BashCompletesCommandsOptionsWordsAndFiles) {
   std::ofstream(file("scan one.tif")) << "";
-  EXPECT_EQ(completed("fettle fil"), Words{"filter"});
+  EXPECT_EQ(completed("fettle filt"), Words{"filter"});
   EXPECT_EQ(completed("fettle bench ef"), Words{"effects"});
   EXPECT_EQ(completed("fettle filter --max"), Words{"--max-change"});
   EXPECT_EQ(completed("fettle filter in.tif out.tif --filter t"), (Words{"tv", "tgv"}));

@@ -54,6 +54,9 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"level", scan, file("level.tif"), "--rows", "median", "--form", "none"});
   run({"measure", scan, "--form", "poly2", "--at-height", "0,1um", "--at-ratio", "50"});
   run({"measure", scan, "--only", "hybrid", "--s-filter", "3", "--l-filter", "20"});
+  run({"fill", scan, file("full.fettle"), "--border"});
+  run({"info", file("full.fettle")});
+  run({"measure", file("full.fettle"), "--only", "hybrid", "--region", "measured"});
   run({"report", out, file("r.html"), "--original", scan});
   run({"measure", scan, file("none.tif")}, 1);
   run({"section",   scan,       "--start",    "1,1",   "--end",    "60,50", "--compare", out,

@@ -1,0 +1,202 @@
+#include <iterator>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands/batch.h"
+#include "app/commands/command.h"
+#include "app/commands/scan_files.h"
+#include "app/commands/scan_options.h"
+#include "app/commands/typed_values.h"
+#include "app/terminal.h"
+#include "app/work/memory_places.h"
+#include "app/work/open_document.h"
+#include "app/work/streams.h"
+#include "engine/base/stopwatch.h"
+#include "engine/fill/fill.h"
+#include "engine/fill/filled_samples.h"
+#include "engine/formats/formats.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct FillArguments {
+  BatchOptions files;
+  std::string method = "curvature";
+  std::string most_extent;
+  double most_area = 0.0;  // 0: any
+  bool at_border = false;
+  std::string keep;
+  std::string lines;
+  std::string filled_out;
+  ScanOptions reading;
+  engine::ExportOptions writing;
+};
+
+engine::Result<engine::FillOptions> fillOptionsOf(const FillArguments& arguments, const engine::Grid& grid) {
+  engine::FillOptions options;
+  options.method =
+      arguments.method == "membrane" ? engine::FillMethod::kMembrane : engine::FillMethod::kCurvature;
+  options.at_border = arguments.at_border;
+  if (arguments.most_area > 0.0) options.most_area_mm2 = arguments.most_area;
+  if (!arguments.most_extent.empty()) {
+    // A length across the field, not a height.
+    engine::Grid lateral = grid;
+    lateral.height_unit = grid.lateral_unit;
+    const auto extent = parseHeight(arguments.most_extent, lateral, "--max-extent");
+    if (!extent) return tl::unexpected(extent.error());
+    if (*extent <= 0.0)
+      return engine::inputError("no hole is that small", "--max-extent", "give a length above 0");
+    options.most_extent_mm = *extent * grid.lateral_unit.mm;
+  }
+  return options;
+}
+
+// The filled samples as marks alone.
+engine::Status saveFilled(const engine::Version& filled, const engine::Version& before,
+                          const std::string& path, engine::JobControl& job) {
+  const auto marked = engine::withFilledMarked(filled, before, engine::OtherMarks::kGo, job);
+  if (!marked) return tl::unexpected(marked.error());
+  return saveMarks(*marked, path, job);
+}
+
+void sayWhatStays(const engine::Filled& done, const std::string& scan, const engine::FillOptions& options) {
+  if (done.too_many > 0)
+    warn(fmt::format("{}: {} hole{} of more than {} samples stay{}: their equations are too large",
+                     shownInput(scan), done.too_many, done.too_many == 1 ? "" : "s", options.mostSamples(),
+                     done.too_many == 1 ? "s" : ""));
+  if (done.no_rim > 0)
+    warn(fmt::format("{}: {} hole{} without a height next to {} stay{}", shownInput(scan), done.no_rim,
+                     done.no_rim == 1 ? "" : "s", done.no_rim == 1 ? "it" : "them",
+                     done.no_rim == 1 ? "s" : ""));
+}
+
+engine::Result<Report> fillOne(const FillArguments& options, const BatchTask& task, engine::JobControl& job) {
+  const auto imported = loadScan(task.in, options.reading, job);
+  if (!imported) return tl::unexpected(imported.error());
+  const auto fill = fillOptionsOf(options, imported->field.grid());
+  if (!fill) return tl::unexpected(fill.error());
+  const auto kept = withMarks(imported->field, options.keep, job);
+  if (!kept) return tl::unexpected(kept.error());
+  const auto lined = withLines(*kept, options.lines, job);
+  if (!lined) return tl::unexpected(lined.error());
+  const engine::Stopwatch watch;
+  const auto done = engine::fillHoles(*lined, *fill, job);
+  if (!done && done.error().kind == engine::ErrorKind::kInput)
+    return engine::inputError(done.error().what, shownInput(task.in), done.error().remedy);
+  if (!done) return tl::unexpected(done.error());
+  const double seconds = watch.seconds();
+  sayWhatStays(*done, task.in, *fill);
+  engine::ExportOptions writing = options.writing;
+  writing.original = imported->original.value_or(imported->field);
+  if (done->filled > 0 && options.filled_out.empty() && memoryPlace(task.out) == nullptr &&
+      !isSessionPath(isStream(task.out) ? withDot(task.to) : task.out))
+    warn(fmt::format("{}: only a session stores which samples were filled{}", shownOutput(task.out),
+                     options.files.many() ? "" : ": add --filled-out for others"));
+  if (!options.filled_out.empty())
+    if (auto status = saveFilled(done->field, imported->field, options.filled_out, job); !status)
+      return tl::unexpected(status.error());
+  if (auto status = saveField(done->field, task.out, job, writing, task.to); !status)
+    return tl::unexpected(status.error());
+  return Report{{"method", options.method},
+                {"holes", done->holes},
+                {"filled_holes", done->filled_holes},
+                {"filled", done->filled},
+                {"larger", done->larger},
+                {"at_border", done->at_border},
+                {"too_many_samples", done->too_many},
+                {"no_rim", done->no_rim},
+                {"undetermined", done->undetermined},
+                {"no_data", engine::summarize(done->field).no_data},
+                {"seconds", seconds},
+                {"hash", hashOf(done->field)}};
+}
+
+engine::Result<Report> fill(const FillArguments& options, engine::JobControl& job) {
+  if (!options.filled_out.empty() && options.files.many())
+    return engine::inputError("one picture cannot hold the filled samples of several scans", "--filled-out",
+                              "give one scan, or sessions with --to fettle");
+  const auto tasks = batchTasks(options.files, {options.keep, options.lines}, job);
+  if (!tasks) return tl::unexpected(tasks.error());
+  if (auto status = checkCompress(options.writing, *tasks); !status) return tl::unexpected(status.error());
+  if (!options.filled_out.empty()) {
+    const BatchTask& task = tasks->front();
+    if (auto status = checkOutputs(
+            {{task.out, OutputKind::kField, task.to}, {options.filled_out, OutputKind::kMarks, kMarksStream}},
+            {task.in, options.keep, options.lines}, options.files.replacing, job);
+        !status)
+      return tl::unexpected(status.error());
+  }
+  const auto one = [&](const BatchTask& task, engine::JobControl& j) { return fillOne(options, task, j); };
+  if (options.files.many()) return runBatch(*tasks, job, one);
+  const ProgressLine progress(job);
+  return one(tasks->front(), job);
+}
+
+}  // namespace
+
+void addFill(Command root, Chosen& chosen) {
+  auto options = std::make_shared<FillArguments>();
+  Command command = addCommand(
+      root, chosen, "fill", "Fill holes of scans from their rim, never across an edge",
+      [options](engine::JobControl& job) { return fill(*options, job); }, printBatch, Progress::kOwn,
+      batchStatus);
+  addBatchOptions(command, options->files);
+  command.add({
+      {.name = "--method",
+       .to = &options->method,
+       .text = "The surface through the rim that has the least",
+       .words = {{"curvature",
+                  "squared curvatures, a thin plate: goes on with the slopes of the rim, of two "
+                  "samples, and so with their noise"},
+                 {"membrane",
+                  "squared slopes, a soap film: stays between the lowest and the highest of the rim"}}},
+      {.name = "--max-extent",
+       .to = &options->most_extent,
+       .text = "Longest side of a hole that is filled: of the rectangle around it",
+       .kind = ValueKind::kLength,
+       .otherwise = "any"},
+      {.name = "--max-area",
+       .to = &options->most_area,
+       .text = "Largest area of a hole that is filled: that of its samples",
+       .range = Range{1e-15, 1e15},
+       .unit = "mm^2",
+       .otherwise = "any"},
+      {.name = "--border",
+       .to = &options->at_border,
+       .text = "Also holes that reach the border of the field: there the surface ends freely"},
+      {.name = "--keep",
+       .to = &options->keep,
+       .text = "Picture of marks: marked holes stay, and no slope is carried over marked samples",
+       .kind = ValueKind::kMarks},
+      {.name = "--lines",
+       .to = &options->lines,
+       .text =
+           "Edge lines, .csv, .geojson, .gpkg or .dxf, instead of those of a session: each side is filled "
+           "up to a step, and a crease stays sharp; draw them through holes",
+       .kind = ValueKind::kLines},
+      {.name = "--filled-out",
+       .to = &options->filled_out,
+       .text = "Write which samples were filled, as a picture of marks",
+       .kind = ValueKind::kNewMarks},
+  });
+  addCompressOption(command, options->writing);
+  addScanOptions(command, options->reading);
+  command.notes(fmt::format(
+      "Holes are what is connected along rows and columns. One with more than {} samples (membrane) or {} "
+      "(curvature) stays. Samples with a height keep every bit.\n"
+      "A session stores the scan with its holes, and so knows which samples were filled: info and measure "
+      "count them, --region measured leaves them out, mark --filled marks them.",
+      engine::FillOptions::kMostMembrane, engine::FillOptions::kMostCurvature));
+  command.examples({{"fettle fill scan.tif full.tif --max-extent 0.5mm --filled-out filled.png",
+                     "Holes of up to half a millimetre, and a picture of what is no measurement"},
+                    {"fettle fill scan.tif full.fettle --lines lines.csv",
+                     "Each side of the edges for itself, as a session that knows which samples were filled"},
+                    {"fettle fill *.tif --out-dir full --method membrane", "Many scans, by a soap film"}});
+}
+
+}  // namespace fettle::app
