@@ -32,7 +32,7 @@ using Keys = std::vector<ReportKey>;
 
 /// Of info, measure, section, compare, lines, journal, recipe, devices.
 [[nodiscard]] std::vector<ReportSchema> inspecting();
-/// Of filter, convert, level, fill, report, apply, mark, synth, replay, record.
+/// Of filter, convert, level, fill, transform, report, apply, mark, synth, replay, record.
 [[nodiscard]] std::vector<ReportSchema> changing();
 /// Of render, view, demo, accuracy, reference.
 [[nodiscard]] std::vector<ReportSchema> showing();

@@ -10,16 +10,12 @@
 
 namespace fettle::engine {
 
-namespace {
-
-// The lines in the piece's own coordinates: their points in and near it, and for each run of these a line.
-EdgeLines linesOf(const std::vector<EdgeLine>& lines, std::int32_t column, std::int32_t row,
-                  const Grid& grid) {
+EdgeLines linesOfPiece(const std::vector<EdgeLine>& lines, const SampleRect& piece) {
   constexpr double kNear = 2.0 * EdgeLine::kMostApart;
-  const glm::dvec2 first{column, row};
+  const glm::dvec2 first{piece.column, piece.row};
   const auto isNear = [&](const EdgePoint& point) {
     const glm::dvec2 p = point.position - first;
-    return p.x >= -kNear && p.y >= -kNear && p.x < grid.width + kNear && p.y < grid.height + kNear;
+    return p.x >= -kNear && p.y >= -kNear && p.x < piece.columns + kNear && p.y < piece.rows + kNear;
   };
   auto kept = std::make_shared<std::vector<EdgeLine>>();
   for (const EdgeLine& line : lines) {
@@ -40,8 +36,6 @@ EdgeLines linesOf(const std::vector<EdgeLine>& lines, std::int32_t column, std::
   return kept;
 }
 
-}  // namespace
-
 Version pieceOf(const Version& field, std::int32_t column, std::int32_t row, std::int32_t columns,
                 std::int32_t rows) {
   const std::size_t samples = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
@@ -53,7 +47,9 @@ Version pieceOf(const Version& field, std::int32_t column, std::int32_t row, std
   grid.width = columns;
   grid.height = rows;
   const Version piece = makeField(grid, heights, marks);
-  return field.lines() == nullptr ? piece : piece.withLines(linesOf(*field.lines(), column, row, grid));
+  return field.lines() == nullptr
+             ? piece
+             : piece.withLines(linesOfPiece(*field.lines(), {column, row, columns, rows}));
 }
 
 }  // namespace fettle::engine

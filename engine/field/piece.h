@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include "engine/field/edge_line.h"
+#include "engine/field/sample_rect.h"
 #include "engine/field/version.h"
 
 namespace fettle::engine {
@@ -11,5 +14,9 @@ namespace fettle::engine {
 /// std::bad_alloc.
 [[nodiscard]] Version pieceOf(const Version& field, std::int32_t column, std::int32_t row,
                               std::int32_t columns, std::int32_t rows);
+
+/// Edge lines in the coordinates of a piece of their field: their points in and near it, and for each run of these a line.
+/// Throws std::bad_alloc.
+[[nodiscard]] EdgeLines linesOfPiece(const std::vector<EdgeLine>& lines, const SampleRect& piece);
 
 }  // namespace fettle::engine

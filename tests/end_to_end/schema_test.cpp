@@ -57,6 +57,8 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"fill", scan, file("full.fettle"), "--border"});
   run({"info", file("full.fettle")});
   run({"measure", file("full.fettle"), "--only", "hybrid", "--region", "measured"});
+  run({"transform", scan, file("turned.tif"), "--turn", "90", "--crop", "0,0,9,9"});
+  run({"transform", scan, file("turned.tif"), "--angle", "12", "--method", "linear"});
   run({"report", out, file("r.html"), "--original", scan});
   run({"measure", scan, file("none.tif")}, 1);
   run({"section",   scan,       "--start",    "1,1",   "--end",    "60,50", "--compare", out,

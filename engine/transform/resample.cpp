@@ -1,0 +1,321 @@
+#include "engine/transform/resample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <glm/geometric.hpp>
+
+#include "engine/field/builder.h"
+#include "engine/field/sample_rect.h"
+
+namespace fettle::engine {
+
+namespace {
+
+// Where new samples are among the old ones: position = first + column * per_column + row * per_row.
+struct Places {
+  glm::dvec2 first{0.0}, per_column{1.0, 0.0}, per_row{0.0, 1.0};
+  glm::dvec2 stretch{1.0};  // of the kernel along the old rows and columns, >= 1
+
+  [[nodiscard]] glm::dvec2 at(double column, double row) const {
+    return first + column * per_column + row * per_row;
+  }
+  // The new place of an old one.
+  [[nodiscard]] glm::dvec2 newPlace(const glm::dvec2& old) const {
+    const glm::dvec2 d = old - first;
+    const double det = per_column.x * per_row.y - per_column.y * per_row.x;
+    return {(d.x * per_row.y - d.y * per_row.x) / det, (per_column.x * d.y - per_column.y * d.x) / det};
+  }
+};
+
+Places placesOf(const Grid& old, const ResampleOptions& options, Grid& grid) {
+  Places places;
+  const bool area = options.method == Resampling::kArea;
+  const glm::dvec2 was{old.spacing_x, old.spacing_y}, now{options.spacing_x, options.spacing_y};
+  grid.spacing_x = now.x;
+  grid.spacing_y = now.y;
+  places.stretch = glm::max(now / was, glm::dvec2(1.0));
+  // A last sample that is out by the rounding of the division is in.
+  constexpr double kRounding = 1e-9;
+  const double more = area ? 0.0 : 1.0;
+  if (options.angle_deg == 0.0) {
+    const glm::dvec2 room{(old.width - more) * was.x, (old.height - more) * was.y};
+    grid.width = static_cast<std::int32_t>(
+        std::clamp(std::floor(room.x / now.x + kRounding) + more, 1.0, 2.0 * Grid::kMaxSide));
+    grid.height = static_cast<std::int32_t>(
+        std::clamp(std::floor(room.y / now.y + kRounding) + more, 1.0, 2.0 * Grid::kMaxSide));
+    if (area) {
+      // The middle of the first cell; of a field smaller than a cell that of the field.
+      const glm::dvec2 most = 0.5 * glm::dvec2(old.width - 1, old.height - 1);
+      places.first = 0.5 * (now / was - glm::dvec2(1.0));
+      if (room.x < now.x) places.first.x = most.x;
+      if (room.y < now.y) places.first.y = most.y;
+      grid.origin_x += places.first.x * was.x;
+      grid.origin_y += places.first.y * was.y;
+    }
+    places.per_column = {now.x / was.x, 0.0};
+    places.per_row = {0.0, now.y / was.y};
+    return places;
+  }
+  // Lengths are the same along both axes, so that a turn is one.
+  const double angle = options.angle_deg * std::numbers::pi / 180.0, c = std::cos(angle), s = std::sin(angle);
+  const double wide = (old.width - more) * was.x, high = (old.height - more) * was.y;
+  const double new_wide = wide * std::abs(c) + high * std::abs(s),
+               new_high = wide * std::abs(s) + high * std::abs(c);
+  grid.width = static_cast<std::int32_t>(
+      std::clamp(std::ceil(new_wide / now.x - kRounding) + more, 1.0, 2.0 * Grid::kMaxSide));
+  grid.height = static_cast<std::int32_t>(
+      std::clamp(std::ceil(new_high / now.y - kRounding) + more, 1.0, 2.0 * Grid::kMaxSide));
+  const glm::dvec2 middle{0.5 * (old.width - 1), 0.5 * (old.height - 1)};
+  const glm::dvec2 new_middle{0.5 * (grid.width - 1), 0.5 * (grid.height - 1)};
+  grid.origin_x = old.origin_x + middle.x * was.x - new_middle.x * now.x;
+  grid.origin_y = old.origin_y + middle.y * was.y - new_middle.y * now.y;
+  grid.crs_wkt.clear();
+  // Back by the angle.
+  places.per_column = glm::dvec2(c, -s) * now.x / was;
+  places.per_row = glm::dvec2(s, c) * now.y / was;
+  places.first = middle - new_middle.x * places.per_column - new_middle.y * places.per_row;
+  return places;
+}
+
+// Weights of the old samples first, first + 1 ... along one axis.
+struct Taps {
+  std::int32_t first = 0;
+  std::vector<double> weights;
+};
+
+double keys(double t) {
+  t = std::abs(t);
+  if (t < 1.0) return (1.5 * t - 2.5) * t * t + 1.0;
+  if (t < 2.0) return ((-0.5 * t + 2.5) * t - 4.0) * t + 2.0;
+  return 0.0;
+}
+
+double reachOf(Resampling method, double stretch) {
+  return method == Resampling::kArea     ? 0.5 * stretch + 0.5
+         : method == Resampling::kLinear ? stretch
+                                         : 2.0 * stretch;
+}
+
+void tapsAt(double x, double stretch, Resampling method, Taps& taps) {
+  const double reach = reachOf(method, stretch);
+  taps.first = static_cast<std::int32_t>(std::ceil(x - reach));
+  const auto last = static_cast<std::int32_t>(std::floor(x + reach));
+  taps.weights.clear();
+  for (std::int32_t i = taps.first; i <= last; ++i) {
+    const double d = i - x;
+    if (method == Resampling::kArea)
+      taps.weights.push_back(
+          std::max(0.0, std::min(d + 0.5, 0.5 * stretch) - std::max(d - 0.5, -0.5 * stretch)));
+    else if (method == Resampling::kLinear)
+      taps.weights.push_back(std::max(0.0, 1.0 - std::abs(d) / stretch));
+    else
+      taps.weights.push_back(keys(d / stretch));
+  }
+}
+
+// Old samples around new ones, copied once for a block of these.
+class OldSamples {
+ public:
+  void read(const FieldReader& field, std::int32_t left, std::int32_t low, std::int32_t columns,
+            std::int32_t rows) {
+    left_ = left;
+    low_ = low;
+    columns_ = columns;
+    const auto n = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+    heights_.resize(n);
+    marks_.resize(n);
+    field.readHeights(left, low, columns, rows, heights_.data(), columns);
+    field.readMarks(left, low, columns, rows, marks_.data(), columns);
+  }
+  [[nodiscard]] float height(std::int32_t c, std::int32_t r) const { return heights_[at(c, r)]; }
+  [[nodiscard]] bool marked(std::int32_t c, std::int32_t r) const { return marks_[at(c, r)] != 0; }
+
+ private:
+  [[nodiscard]] std::size_t at(std::int32_t c, std::int32_t r) const {
+    return static_cast<std::size_t>(r - low_) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(c - left_);
+  }
+  std::int32_t left_ = 0, low_ = 0, columns_ = 0;
+  std::vector<float> heights_;
+  std::vector<std::uint8_t> marks_;
+};
+
+// One new sample after the other; its own for each thread's block.
+class Sampler {
+ public:
+  Sampler(const OldSamples& old, Resampling method, const glm::dvec2& stretch)
+      : old_(old), method_(method), stretch_(stretch) {}
+
+  [[nodiscard]] float heightAt(const glm::dvec2& p) {
+    const float nearest = old_.height(static_cast<std::int32_t>(std::floor(p.x + 0.5)),
+                                      static_cast<std::int32_t>(std::floor(p.y + 0.5)));
+    if (std::isnan(nearest)) return nearest;
+    bool complete = false;
+    const double z = sum(p, method_, static_cast<double>(nearest), complete);
+    return static_cast<float>(complete || method_ != Resampling::kCubic
+                                  ? z
+                                  : sum(p, Resampling::kLinear, static_cast<double>(nearest), complete));
+  }
+
+  [[nodiscard]] bool markedAt(const glm::dvec2& p) const {
+    const auto c1 = static_cast<std::int32_t>(std::floor(p.x + 0.5 * stretch_.x));
+    const auto r1 = static_cast<std::int32_t>(std::floor(p.y + 0.5 * stretch_.y));
+    for (auto r = static_cast<std::int32_t>(std::ceil(p.y - 0.5 * stretch_.y)); r <= r1; ++r)
+      for (auto c = static_cast<std::int32_t>(std::ceil(p.x - 0.5 * stretch_.x)); c <= c1; ++c)
+        if (old_.marked(c, r)) return true;
+    return false;
+  }
+
+ private:
+  // About the nearest height, which keeps the digits of heights far from 0. `complete`: all samples had heights.
+  [[nodiscard]] double sum(const glm::dvec2& p, Resampling method, double base, bool& complete) {
+    tapsAt(p.x, stretch_.x, method, x_);
+    tapsAt(p.y, stretch_.y, method, y_);
+    complete = true;
+    double total = 0.0, weights = 0.0;
+    for (std::size_t r = 0; r < y_.weights.size(); ++r)
+      for (std::size_t c = 0; c < x_.weights.size(); ++c) {
+        const double weight = x_.weights[c] * y_.weights[r];
+        if (weight == 0.0) continue;
+        const float z =
+            old_.height(x_.first + static_cast<std::int32_t>(c), y_.first + static_cast<std::int32_t>(r));
+        if (std::isnan(z)) {
+          complete = false;
+          if (method == Resampling::kCubic) return base;
+          continue;
+        }
+        total += weight * (static_cast<double>(z) - base);
+        weights += weight;
+      }
+    return base + total / weights;
+  }
+
+  const OldSamples& old_;
+  Resampling method_;
+  glm::dvec2 stretch_;
+  Taps x_, y_;
+};
+
+// Works out the samples of a rectangle within a tile.
+void resampleTile(const FieldReader& field, const Places& places, Resampling method, const SampleRect& rect,
+                  FieldBuilder& builder) {
+  const double most = std::max(places.stretch.x, places.stretch.y);
+  // A part of the tile whose old samples take a few megabytes.
+  const auto side = static_cast<std::int32_t>(std::clamp(1024.0 / most, 1.0, double{kTileSide}));
+  const double reach_x = reachOf(method, places.stretch.x) + 1.0,
+               reach_y = reachOf(method, places.stretch.y) + 1.0;
+  OldSamples old;
+  Sampler sampler(old, method, places.stretch);
+  std::vector<float> z;
+  std::vector<std::uint8_t> marks;
+  for (std::int32_t row = rect.row; row < rect.row + rect.rows; row += side)
+    for (std::int32_t column = rect.column; column < rect.column + rect.columns; column += side) {
+      const std::int32_t columns = std::min(side, rect.column + rect.columns - column);
+      const std::int32_t rows = std::min(side, rect.row + rect.rows - row);
+      glm::dvec2 low = places.at(column, row), high = low;
+      for (const auto& [c, r] : {std::pair{columns - 1, 0}, {0, rows - 1}, {columns - 1, rows - 1}}) {
+        low = glm::min(low, places.at(column + c, row + r));
+        high = glm::max(high, places.at(column + c, row + r));
+      }
+      const auto left = static_cast<std::int32_t>(std::floor(low.x - reach_x));
+      const auto bottom = static_cast<std::int32_t>(std::floor(low.y - reach_y));
+      old.read(field, left, bottom, static_cast<std::int32_t>(std::ceil(high.x + reach_x)) - left + 1,
+               static_cast<std::int32_t>(std::ceil(high.y + reach_y)) - bottom + 1);
+      z.clear();
+      marks.clear();
+      for (std::int32_t r = 0; r < rows; ++r)
+        for (std::int32_t c = 0; c < columns; ++c) {
+          const glm::dvec2 p = places.at(column + c, row + r);
+          z.push_back(sampler.heightAt(p));
+          marks.push_back(sampler.markedAt(p) ? 1 : 0);
+        }
+      builder.writeHeights(column, row, columns, rows, z.data(), columns);
+      builder.writeMarks(column, row, columns, rows, marks.data(), columns);
+    }
+}
+
+// A multiple of 2^-20, as positions of points are.
+glm::dvec2 onGrid(const glm::dvec2& p) {
+  return {std::ldexp(std::round(std::ldexp(p.x, 20)), -20), std::ldexp(std::round(std::ldexp(p.y, 20)), -20)};
+}
+
+// The points of a line at their new places, with what is counted in samples in new ones.
+EdgeLine resampledLine(const EdgeLine& line, const Places& places) {
+  EdgeLine moved{line.id, line.closed, {}};
+  const std::size_t n = line.points.size();
+  const auto insertUpTo = [&](const EdgePoint& point) {
+    const EdgePoint last = moved.points.back();
+    const double apart = glm::distance(last.position, point.position);
+    const int parts = static_cast<int>(std::ceil(apart / (0.999 * EdgeLine::kMostApart)));
+    for (int k = 1; k < parts; ++k) {
+      EdgePoint between = 2 * k < parts ? last : point;
+      between.position =
+          onGrid(last.position + (point.position - last.position) * (static_cast<double>(k) / parts));
+      if (!last.located || !point.located) between = EdgePoint{between.position};
+      moved.points.push_back(between);
+    }
+  };
+  for (std::size_t i = 0; i < n; ++i) {
+    EdgePoint point = line.points[i];
+    // Across the line: along the normal n, a length changes by 1 / |B n|, where B turns new differences into old ones.
+    const glm::dvec2 before = line.points[i == 0 ? (line.closed ? n - 1 : 0) : i - 1].position;
+    const glm::dvec2 after = line.points[i + 1 == n ? (line.closed ? 0 : i) : i + 1].position;
+    const glm::dvec2 along = after - before;
+    if (const double length = glm::length(along); length > 0.0) {
+      const glm::dvec2 normal = glm::dvec2(-along.y, along.x) / length;
+      const double by =
+          glm::length(glm::dvec2(glm::dot(places.per_column, normal), glm::dot(places.per_row, normal)));
+      point.deviation /= by;
+      point.slope_change *= by;
+      point.slope_deviation *= by;
+    }
+    point.position = onGrid(places.newPlace(point.position));
+    if (!moved.points.empty()) insertUpTo(point);
+    moved.points.push_back(point);
+  }
+  if (line.closed && n > 1) insertUpTo(EdgePoint(moved.points.front()));
+  return moved;
+}
+
+}  // namespace
+
+Result<Version> resampled(const Version& field, const ResampleOptions& options, JobControl& job) {
+  Grid grid = field.grid();
+  grid.height_per_count = 0.0;
+  const Places places = placesOf(field.grid(), options, grid);
+  if (std::max(places.stretch.x, places.stretch.y) > ResampleOptions::kMostCoarser)
+    return inputError(
+        fmt::format("the new spacing is more than {:g} times the old one", ResampleOptions::kMostCoarser),
+        "the spacing", "do it in two steps");
+  Result<FieldBuilder> builder = FieldBuilder::create(grid, "the resampled field");
+  if (!builder) return tl::unexpected(builder.error());
+  const TileRange tiles = allTiles(grid);
+  const FieldReader from = field.reader();
+  job.begin("resampling", static_cast<std::uint64_t>(tiles.tiles()));
+  tbb::parallel_for(std::int64_t{0}, tiles.tiles(), [&](std::int64_t i) {
+    if (job.cancelled()) return;
+    SampleRect rect{static_cast<std::int32_t>(i % tiles.columns) * kTileSide,
+                    static_cast<std::int32_t>(i / tiles.columns) * kTileSide, 0, 0};
+    rect.columns = std::min(kTileSide, grid.width - rect.column);
+    rect.rows = std::min(kTileSide, grid.height - rect.row);
+    resampleTile(from, places, options.method, rect, *builder);
+    job.advance();
+  });
+  if (job.cancelled()) return cancelled();
+  const Version result = std::move(*builder).build();
+  if (field.lines() == nullptr) return result;
+  auto lines = std::make_shared<std::vector<EdgeLine>>();
+  for (const EdgeLine& line : *field.lines()) lines->push_back(resampledLine(line, places));
+  return result.withLines(std::move(lines));
+}
+
+}  // namespace fettle::engine
