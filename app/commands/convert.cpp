@@ -89,6 +89,7 @@ void addConvert(Command root, Chosen& chosen) {
            .to = &options->max_error,
            .text = "Mesh: as few triangles as possible with every sample within this height",
            .kind = ValueKind::kLength},
+          {.name = "--ascii", .to = &options->writing.ascii, .text = "SDF: as text instead of binary"},
           {.name = "--cloud-optimised",
            .to = &options->writing.cloud_optimised,
            .text = "TIFF: laid out for reading parts over a network, with overviews"},

@@ -18,9 +18,9 @@ namespace fettle::engine {
 namespace {
 
 // Formats with a signature first; other text is tried as points.
-constexpr const Format* kTable[] = {&kTiffFormat, &kPngFormat,       &kPlyFormat,    &kPcdFormat,
-                                    &kLasFormat,  &kSurFormat,       &kX3pFormat,    &kExrFormat,
-                                    &kStlFormat,  &kAsciiGridFormat, &kFettleFormat, &kXyzFormat};
+constexpr const Format* kTable[] = {&kTiffFormat,      &kPngFormat,    &kPlyFormat, &kPcdFormat, &kLasFormat,
+                                    &kSurFormat,       &kX3pFormat,    &kSdfFormat, &kExrFormat, &kStlFormat,
+                                    &kAsciiGridFormat, &kFettleFormat, &kXyzFormat};
 
 std::string extensionsOf(bool FormatInfo::*able) {
   std::vector<std::string_view> all;
@@ -141,6 +141,8 @@ Result<Exported> exportField(const Version& field, const std::string& path, cons
     return inputError("only .ply and .stl store a mesh", path, "write one of these or omit --mesh");
   if (options.cloud_optimised && !(format != nullptr && format->tiff))
     return inputError("only .tif can be cloud-optimised", path, "write that or omit the option");
+  if (options.ascii && !(format != nullptr && format->ascii))
+    return inputError("only .sdf has a binary form and one of text", path, "write that or omit --ascii");
   if (options.tiff_compression && !(format != nullptr && format->tiff))
     return inputError("only .tif supports the requested compression", path, "write that or omit --compress");
   try {

@@ -32,6 +32,8 @@ struct ExportOptions {
   /// Mesh: as few triangles as possible with every sample within this distance of the surface [height_unit],
   /// finite, >= 0; without it two per cell. Implies mesh.
   std::optional<double> max_error;
+  /// SDF: as text instead of binary.
+  bool ascii = false;
   /// TIFF: laid out for reading parts over a network, with overviews (means of 2 x 2, 4 x 4 ... samples).
   bool cloud_optimised = false;
   /// Session: the scan that the field was made from, with the same grid and sign. The session begins with it,

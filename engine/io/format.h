@@ -36,17 +36,18 @@ struct Format {
   bool picture = false;                ///< samples may be distances: ImportOptions::depth_camera
   bool mesh = false;                   ///< ExportOptions::mesh and max_error
   bool tiff = false;                   ///< ExportOptions::cloud_optimised and tiff_compression
+  bool ascii = false;                  ///< ExportOptions::ascii
   bool units_certain = false;          ///< units are certain: they were determined at an earlier import
 
   static constexpr std::size_t kHeadBytes = 4096;
 };
 
 /// The writers, each in the source of its name: *_export.cpp; points_export.cpp and mesh_export.cpp.
-FormatWriter writeTiff, writePng, writePly, writePlyMesh, writeX3p, writeExr, writeStl, writeAsciiGrid,
-    writeXyz;
+FormatWriter writeTiff, writePng, writePly, writePlyMesh, writeX3p, writeSdf, writeExr, writeStl,
+    writeAsciiGrid, writeXyz;
 
 /// All formats, for engine/formats to list. Constants from the start: no order of initialisation.
 extern const Format kTiffFormat, kPngFormat, kPlyFormat, kPcdFormat, kLasFormat, kSurFormat, kX3pFormat,
-    kExrFormat, kStlFormat, kAsciiGridFormat, kFettleFormat, kXyzFormat;
+    kSdfFormat, kExrFormat, kStlFormat, kAsciiGridFormat, kFettleFormat, kXyzFormat;
 
 }  // namespace fettle::engine

@@ -50,6 +50,12 @@ std::vector<std::pair<std::string, std::string>> fuzzSeeds() {
     packed.tiff_compression = compression;
     exported(".tif", packed);
   }
+  ExportOptions text;
+  text.ascii = true;
+  exported(".sdf", text);
+  seeds.emplace_back(".sdf", binarySdf<std::int16_t>(5, 3, {1, 2, -32768, 4, 5, 6}));
+  seeds.emplace_back(".sdf", binarySdf<float>(3, 3, {1, 2, 3, 4, 5, 6}, "bISO-2.0"));
+  seeds.emplace_back(".sdf", textSdf("aBCR-1.0", 5, "1 2 3\n4 BAD 6\n"));
   for (const bool packed : {false, true}) {
     seeds.emplace_back(".sur", sur<std::int16_t>(packed));
     seeds.emplace_back(".sur", sur<std::int32_t>(packed));

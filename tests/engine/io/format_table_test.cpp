@@ -36,11 +36,14 @@ struct Written {
   std::string format;     // FormatInfo::name
   std::string extension;  // empty: never written
   bool mesh = false;
+  bool ascii = false;
 };
 const std::map<std::string, Written>& rowsThatAreKnown() {
   static const std::map<std::string, Written> known{
       {"GeoTIFF `.tif`", {"GTiff", ".tif"}},
       {"x3p", {"X3P", ".x3p"}},
+      {"SDF `.sdf`", {"SDF", ".sdf"}},
+      {"SDF text `--ascii`", {"SDF", ".sdf", false, true}},
       {"OpenEXR `.exr`", {"EXR", ".exr"}},
       {"ESRI ASCII `.asc`", {"AAIGrid", ".asc"}},
       {"XYZ text", {"XYZ", ".xyz"}},
@@ -108,6 +111,7 @@ Trip roundTrip(const Version& field, const Written& how) {
   const std::string path = folder.file("trip" + how.extension);
   ExportOptions options;
   options.mesh = how.mesh;
+  options.ascii = how.ascii;
   Trip trip;
   const auto written = save(field, path, options);
   EXPECT_TRUE(written) << (written ? "" : written.error().line());
@@ -201,6 +205,12 @@ void checkPlace(const Row& row, const Written& how) {
     EXPECT_EQ(to.origin_x, 0.0);
     EXPECT_EQ(to.origin_y, 0.0);
     EXPECT_TRUE(warned(trip.warnings, "to the field's corner"));
+  } else if (row.place == "spacing alone, every digit") {
+    EXPECT_EQ(to.spacing_x, from.spacing_x);
+    EXPECT_EQ(to.spacing_y, from.spacing_y);
+    EXPECT_EQ(to.origin_x, 0.0);
+    EXPECT_EQ(to.origin_y, 0.0);
+    EXPECT_TRUE(warned(trip.warnings, "no origin"));
   } else if (row.place == "no") {
     EXPECT_EQ(to.spacing_x, 1.0);
     EXPECT_TRUE(warned(trip.warnings, "stores no spacing"));
@@ -224,6 +234,12 @@ void checkUnits(const Row& row, const Written& how) {
     }
     EXPECT_EQ(to.lateral_unit, field.grid().lateral_unit);
     EXPECT_EQ(to.height_unit, field.grid().height_unit);
+    EXPECT_EQ(contentHash(trip.back.field), contentHash(field));
+  } else if (row.units == "that of heights") {
+    EXPECT_TRUE(warned(trip.warnings, "one unit"));
+    EXPECT_EQ(to.height_unit, field.grid().height_unit);
+    EXPECT_EQ(to.lateral_unit, field.grid().height_unit);
+    EXPECT_NEAR(to.spacingXMm(), field.grid().spacingXMm(), 1e-15 * field.grid().spacingXMm());
     EXPECT_EQ(contentHash(trip.back.field), contentHash(field));
   } else if (row.units == "no") {
     EXPECT_TRUE(warned(trip.warnings, "unit"));
@@ -281,7 +297,7 @@ TEST(FormatTable, EveryRowKeepsWhatItSaysAndWarnsOfWhatItLoses) {
     checkSystem(row, known->second);
     ++walked;
   }
-  EXPECT_EQ(walked, 10);
+  EXPECT_EQ(walked, 12);
 }
 
 TEST(FormatTable, WhoLosesNothingKeepsAllAtOnce) {

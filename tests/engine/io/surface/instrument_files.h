@@ -25,6 +25,35 @@ void append(std::string& bytes, T value) {
   put(bytes, bytes.size(), value);
 }
 
+// An SDF of rows of `width` numbers, 1 um and 2 um apart, 10 nm a count.
+template <class T>
+[[nodiscard]] std::string binarySdf(std::uint8_t type, std::uint16_t width, const std::vector<T>& numbers,
+                                    const std::string& version = "bISO-1.0") {
+  std::string bytes = version + "Maker     " + "010120240000" + "010120240000";
+  const std::size_t rows = numbers.size() / width;
+  for (const std::size_t count : {std::size_t{width}, rows}) {
+    if (version[5] == '2')
+      append(bytes, static_cast<std::uint32_t>(count));
+    else
+      append(bytes, static_cast<std::uint16_t>(count));
+  }
+  for (const double v : {1e-6, 2e-6, 1e-8, -1.0}) append(bytes, v);
+  bytes += '\0';
+  append(bytes, type);
+  bytes += '\0';
+  for (const T v : numbers) append(bytes, v);
+  return bytes;
+}
+
+// The same of 3 x 2 numbers as text.
+[[nodiscard]] inline std::string textSdf(const std::string& version, int type, const std::string& data) {
+  return version +
+         "\r\nManufacID   = Maker\r\n; a comment\r\nCreateDate = 010120240000\r\nModDate = 010120240000\r\n"
+         "NumPoints = 3\r\nNumProfiles = 2\r\nXscale = 1.0e-6\r\nYscale = 2E-06\r\nZscale = 1e-8\r\n"
+         "Zresolution = -1\r\nCompression = 0\r\nDataType = " +
+         std::to_string(type) + "\r\nCheckType = 0\r\n*\r\n" + data + "*\r\nOperator = Jane\r\n*\r\n";
+}
+
 // A surface of 3 x 2 numbers; the last one of the first row is the mark of a missing point.
 template <class T>
 [[nodiscard]] std::string sur(bool packed) {
