@@ -77,7 +77,7 @@ engine::Result<std::vector<engine::PartInfo>> partsOf(const AccuracyOptions& opt
   for (const std::string& name : options.parts)
     if (std::ranges::none_of(engine::parts(), [&](const engine::PartInfo& p) { return p.name == name; }))
       return engine::inputError("there is no part \"" + name + "\"", "--parts",
-                                "fettle simulate --help names them");
+                                "fettle synth --help names them");
   std::vector<engine::PartInfo> chosen;
   for (const engine::PartInfo& part : engine::parts())
     if (isIn(options.parts, std::string(part.name))) chosen.push_back(part);
