@@ -52,6 +52,10 @@ void refreshBounds(Tile& tile, int column0, int row0, int column1, int row1) noe
       tile.block_min[br * 8 + bc] = b.min;
       tile.block_max[br * 8 + bc] = b.max;
     }
+  refreshTileBounds(tile);
+}
+
+void refreshTileBounds(Tile& tile) noexcept {
   tile.bounds = tileBounds(tile);
 }
 
@@ -72,8 +76,12 @@ bool refreshSampleBounds(Tile& tile, int column, int row, float old) noexcept {
 }
 
 void refreshMarks(Tile& tile) noexcept {
+  // Mostly there is none, and counting bits takes a call where the processor is not known to do it.
+  std::uint64_t any = 0;
+  for (const std::uint64_t row : tile.marks) any |= row;
   std::uint32_t n = 0;
-  for (const std::uint64_t row : tile.marks) n += static_cast<std::uint32_t>(std::popcount(row));
+  if (any != 0)
+    for (const std::uint64_t row : tile.marks) n += static_cast<std::uint32_t>(std::popcount(row));
   tile.marked_samples = n;
 }
 

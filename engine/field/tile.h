@@ -72,7 +72,10 @@ static_assert(std::is_trivially_copyable_v<Node>);
 /// then the tile's own. O(blocks touched). Exact, not only conservative.
 void refreshBounds(Tile& tile, int column0, int row0, int column1, int row1) noexcept;
 
-/// The same after one sample changed, `old` is its previous value, and all bounds were correct before.
+/// The tile's own bounds from those of its blocks.
+void refreshTileBounds(Tile& tile) noexcept;
+
+/// As refreshBounds after one sample changed, `old` is its previous value, and all bounds were correct before.
 /// Returns whether the tile's own bounds changed.
 [[nodiscard]] bool refreshSampleBounds(Tile& tile, int column, int row, float old) noexcept;
 
