@@ -375,6 +375,7 @@ void addBench(Command root, Chosen& chosen) {
   addBenchImport(bench, chosen);
   addBenchFilters(bench, chosen);
   addBenchEstimate(bench, chosen);
+  addBenchFill(bench, chosen);
 
   auto render_options = std::make_shared<bench::RenderBenchOptions>();
   Command drawing = addCommand(

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <new>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,8 +20,8 @@ namespace fettle::engine {
 namespace {
 
 // Lines as walls all along: points that were not located are of the kind of the nearest located one of their line.
-std::unique_ptr<LineCuts> wallsOf(const Version& field) {
-  if (field.lines() == nullptr) return nullptr;
+std::optional<LineCuts> wallsOf(const Version& field) {
+  if (field.lines() == nullptr) return std::nullopt;
   std::vector<EdgeLine> lines = *field.lines();
   for (EdgeLine& line : lines) {
     std::vector<std::size_t> located;
@@ -41,7 +41,7 @@ std::unique_ptr<LineCuts> wallsOf(const Version& field) {
       line.points[i].kind = known[located[apart(after) < apart(next) ? after : next]].kind;
     }
   }
-  return std::make_unique<LineCuts>(lines, field.grid().width, field.grid().height);
+  return LineCuts(lines, field.grid().width, field.grid().height);
 }
 
 // Holes at a time: so many samples of results wait to be written.
@@ -100,13 +100,13 @@ Result<Filled> fillHoles(const Version& field, const FillOptions& options, JobCo
   Filled filled;
   const Grid& grid = field.grid();
   const Chosen chosen = choose(*holes, options, grid, filled);
-  const std::unique_ptr<LineCuts> walls = chosen.holes.empty() ? nullptr : wallsOf(field);
+  const std::optional<LineCuts> walls = chosen.holes.empty() ? std::nullopt : wallsOf(field);
   const FieldReader reader = field.reader();
   job.begin("filling holes", static_cast<std::uint64_t>(chosen.samples));
   LiveField live(field, Growth::kAllowed);
   const auto surfaceOf = [&](const Hole& hole) {
-    HoleSurface surface = surfaceOfHole(reader, holes->runsOf(hole), walls.get(), options.method,
-                                        grid.spacingXMm(), grid.spacingYMm());
+    HoleSurface surface = surfaceOfHole(reader, holes->runsOf(hole), walls ? &*walls : nullptr,
+                                        options.method, grid.spacingXMm(), grid.spacingYMm());
     job.advance(static_cast<std::uint64_t>(hole.samples));
     return surface;
   };
