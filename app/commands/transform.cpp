@@ -115,27 +115,34 @@ engine::Result<engine::ResampleOptions> resamplingOf(const TransformArguments& o
   return resampling;
 }
 
-engine::Result<engine::Version> transformed(const engine::Version& field, const TransformArguments& options,
-                                            engine::JobControl& job) {
+struct Transformed {
+  engine::Version field;
+  std::optional<engine::Resampling> method;  // where samples came between others
+};
+
+engine::Result<Transformed> transformed(const engine::Version& field, const TransformArguments& options,
+                                        engine::JobControl& job) {
   engine::Version now = field;
   if (!options.crop.empty() || !options.crop_samples.empty()) {
     const auto rect = cropOf(options, field.grid());
     if (!rect) return tl::unexpected(rect.error());
     auto piece = engine::cropped(now, *rect, job);
-    if (!piece) return piece;
+    if (!piece) return tl::unexpected(piece.error());
     now = *std::move(piece);
   }
   if (const engine::Turning turning = turningOf(options); !turning.none()) {
     auto moved = engine::turned(now, turning, job);
-    if (!moved) return moved;
+    if (!moved) return tl::unexpected(moved.error());
     now = *std::move(moved);
   }
   if (options.resamples()) {
     const auto resampling = resamplingOf(options, now.grid());
     if (!resampling) return tl::unexpected(resampling.error());
-    return engine::resampled(now, *resampling, job);
+    auto result = engine::resampled(now, *resampling, job);
+    if (!result) return tl::unexpected(result.error());
+    return Transformed{*std::move(result), resampling->method};
   }
-  return now;
+  return Transformed{std::move(now), std::nullopt};
 }
 
 engine::Result<Report> transformOne(const TransformArguments& options, const BatchTask& task,
@@ -149,17 +156,17 @@ engine::Result<Report> transformOne(const TransformArguments& options, const Bat
     // What the session began with goes along, so that changes and filled samples stay known.
     auto original = transformed(*imported->original, options, job);
     if (!original) return tl::unexpected(original.error());
-    writing.original = *std::move(original);
+    writing.original = std::move(original->field);
   }
-  const engine::Grid& grid = result->grid();
+  const engine::Grid& grid = result->field.grid();
   if (grid.crs_wkt.empty() && !imported->field.grid().crs_wkt.empty())
     warn(
         fmt::format("{}: turned, its samples are no longer where its coordinate system says: it is written "
                     "without one",
                     shownInput(task.in)));
-  if (auto status = saveField(*result, task.out, job, writing, task.to); !status)
+  if (auto status = saveField(result->field, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
-  const engine::FieldSummary summary = engine::summarize(*result);
+  const engine::FieldSummary summary = engine::summarize(result->field);
   Report report{{"width", grid.width},
                 {"height", grid.height},
                 {"spacing_x", grid.spacing_x},
@@ -169,12 +176,11 @@ engine::Result<Report> transformOne(const TransformArguments& options, const Bat
                 {"origin_y", grid.origin_y},
                 {"no_data", summary.no_data},
                 {"marked", summary.marked}};
-  if (options.resamples())
-    if (const auto resampling = resamplingOf(options, imported->field.grid()); resampling)
-      report["method"] = resampling->method == engine::Resampling::kArea     ? "area"
-                         : resampling->method == engine::Resampling::kLinear ? "linear"
-                                                                             : "cubic";
-  report["hash"] = hashOf(*result);
+  if (result->method)
+    report["method"] = *result->method == engine::Resampling::kArea     ? "area"
+                       : *result->method == engine::Resampling::kLinear ? "linear"
+                                                                        : "cubic";
+  report["hash"] = hashOf(result->field);
   return report;
 }
 
