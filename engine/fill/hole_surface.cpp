@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -88,26 +89,34 @@ class RowWindow {
     return rows_[static_cast<std::size_t>(row_ + dr + kReach) % rows_.size()];
   }
 
+  // Only what terms of the hole's samples in this and the next rows hold: a ring may be as wide as the field.
   void load(std::int32_t row) {
     Row& to = rows_[static_cast<std::size_t>(row + kReach) % rows_.size()];
-    field_.readHeights(left_, row, width_, 1, to.heights.data(), width_);
-    field_.readMarks(left_, row, width_, 1, to.bends.data(), width_);
-    std::ranges::fill(to.cuts, std::uint8_t{0});
-    std::ranges::fill(to.unknown, -1);
+    while (first_near_ < runs_.size() && runs_[first_near_].row < row - kReach) ++first_near_;
+    for (std::size_t i = first_near_; i < runs_.size() && runs_[i].row <= row + kReach; ++i) {
+      const std::int32_t from = runs_[i].first - kReach, count = runs_[i].samples() + 2 * kReach;
+      const std::size_t at = place(from);
+      field_.readHeights(from, row, count, 1, to.heights.data() + at, count);
+      field_.readMarks(from, row, count, 1, to.bends.data() + at, count);
+      std::fill_n(to.cuts.begin() + static_cast<std::ptrdiff_t>(at), count, std::uint8_t{0});
+      std::fill_n(to.unknown.begin() + static_cast<std::ptrdiff_t>(at), count, -1);
+    }
     for (; next_run_ < runs_.size() && runs_[next_run_].row == row; ++next_run_)
       for (std::int32_t c = runs_[next_run_].first; c <= runs_[next_run_].last; ++c)
         to.unknown[place(c)] = next_unknown_++;
-    if (walls_ != nullptr && row >= 0 && row < field_.height()) loadWalls(row, to);
-  }
-
-  void loadWalls(std::int32_t row, Row& to) const {
+    if (walls_ == nullptr || row < 0 || row >= field_.height()) return;
     for (const LineCut& cut : walls_->row(row))
       if (cut.column >= left_ && cut.column < left_ + width_) to.cuts[place(cut.column)] = cut.links;
-    const std::int32_t first = std::max(left_, 0) >> kTileShift;
-    const std::int32_t last = std::min(left_ + width_ - 1, field_.width() - 1) >> kTileShift;
+    for (std::size_t i = first_near_; i < runs_.size() && runs_[i].row <= row + kReach; ++i)
+      loadLineSamples(row, runs_[i].first - kReach, runs_[i].last + kReach, to);
+  }
+
+  void loadLineSamples(std::int32_t row, std::int32_t from, std::int32_t to_column, Row& to) const {
+    const std::int32_t first = std::max(from, 0) >> kTileShift;
+    const std::int32_t last = std::min(to_column, field_.width() - 1) >> kTileShift;
     for (std::int32_t tc = first; tc <= last; ++tc)
       for (const LineSample& sample : walls_->samplesOf(tc, row >> kTileShift).samples)
-        if (sample.row == row && sample.column >= left_ && sample.column < left_ + width_)
+        if (sample.row == row && sample.column >= from && sample.column <= to_column)
           to.bends[place(sample.column)] = 1;
   }
 
@@ -116,7 +125,8 @@ class RowWindow {
   const LineCuts* walls_;
   std::int32_t left_ = 0, width_ = 0, row_ = 0;
   std::array<Row, 2 * kReach + 1> rows_;
-  std::size_t next_run_ = 0;
+  std::size_t next_run_ = 0;    // to be numbered
+  std::size_t first_near_ = 0;  // of the rows that terms reach
   std::int32_t next_unknown_ = 0;
 };
 

@@ -386,6 +386,21 @@ TEST(Fill, TakesWhatRimThereIs) {
   }
 }
 
+TEST(Fill, FillsRingsInEachOther) {
+  const auto bowl = [](int c, int r) {
+    return 1e-3 * ((c - 200.0) * (c - 200.0) + (r - 200.0) * (r - 200.0));
+  };
+  const Where rings = [](int c, int r) {
+    return static_cast<int>(std::max(std::abs(c - 200), std::abs(r - 200))) % 5 == 3 &&
+           std::abs(c - 200) < 195 && std::abs(r - 200) < 195;
+  };
+  const Filled filled = fill(scanOf(401, 401, bowl, rings), by(FillMethod::kCurvature));
+  EXPECT_EQ(filled.filled_holes, 39);
+  EXPECT_EQ(summarize(filled.field).no_data, 0);
+  // Between two known samples on each side, one sample wide: the bowl, but for heights rounded to float.
+  EXPECT_LT(worst(filled.field, bowl), 1e-4);
+}
+
 TEST(Fill, OfNothingButHolesIsRefused) {
   const Version scan = scanOf(20, 20, rough, [](int, int) { return true; });
   JobControl job;
