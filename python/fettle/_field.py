@@ -577,10 +577,12 @@ def method_of(name):
 #: Commands with functions of their own.
 OWN = {"filter", "mark", "lines", "info", "compare", "render", "apply", "replay", "convert", "synth", "recipe", "journal"}
 #: Methods that have another name than their command, and what they return: `report` is what the last command said.
-RENAMED = {"report": ("page", "bytes: the page, HTML in UTF-8.")}
+#: Field.transform is the affine transform of the samples.
+RENAMED = {"report": ("page", "bytes: the page, HTML in UTF-8."), "transform": ("transformed", _FIELD)}
 for _name in TABLES:
     if _name not in OWN:
         _method = method_of(_name)
+        assert not hasattr(Field, _method.__name__), _method.__name__
         setattr(Field, _method.__name__, _method)
 
 

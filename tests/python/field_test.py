@@ -254,6 +254,18 @@ class Flags(unittest.TestCase):
 
 
 class Level(unittest.TestCase):
+    def test_filled_samples_stay_known_where_a_field_is_turned(self):
+        heights = np.add.outer(np.arange(60.0) * 0.5, np.arange(70.0) * 0.25)
+        heights[20:26, 30:40] = np.nan
+        full = fettle.Field(heights).fill()
+        self.assertFalse(np.isnan(np.asarray(full)).any())
+        self.assertAlmostEqual(float(np.asarray(full)[22, 35]), 22 * 0.5 + 35 * 0.25, places=4)
+        turned = full.transformed(turn=90)
+        self.assertEqual(np.asarray(turned).shape, (70, 60))
+        for field in (full, turned):
+            self.assertEqual(field.measure(only=["hybrid"])["filled"], 60)
+            self.assertEqual(field.measure(only=["hybrid"], region="measured")["samples"], 60 * 70 - 60)
+
     def test_changes_are_limited_from_the_levelled_heights(self):
         scan = fettle.synth(part="steps", size=(96, 80))
         levelled = scan.level()
