@@ -44,6 +44,22 @@ TEST(Formats, CompressSaysHowATiffIsPackedAndOnlyATiff) {
   EXPECT_FALSE(std::filesystem::exists(folder.file("no.tif")));
 }
 
+TEST(Formats, SdfIsWrittenInBothFormsAndOnlySdfIsAskedForText) {
+  const TempFolder folder;
+  const std::string scan = folder.file("scan.tif"), text = folder.file("t.sdf"),
+                    binary = folder.file("b.sdf");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "60x50", "--dropouts", "1"}).status, 0);
+  EXPECT_EQ(fettleJson({"convert", scan, text, "--ascii"})["format"], "SDF");
+  EXPECT_EQ(fettleJson({"convert", scan, binary})["format"], "SDF");
+  EXPECT_EQ(std::filesystem::file_size(binary), 81U + 60U * 50U * 8U);
+  for (const std::string& file : {text, binary}) {
+    EXPECT_EQ(fettleJson({"compare", scan, file})["max_abs"], 0.0);
+    EXPECT_EQ(fettleJson({"info", file})["no_data"], fettleJson({"info", scan})["no_data"]);
+  }
+  expectRefused(fettle({"convert", scan, folder.file("no.tif"), "--ascii"}), "--ascii");
+  EXPECT_FALSE(std::filesystem::exists(folder.file("no.tif")));
+}
+
 TEST(Formats, HolesOfAPngThatFettleWroteStayHolesThroughAFilter) {
   const TempFolder folder;
   std::string grid = "ncols 60\nnrows 50\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9999\n";
