@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -14,8 +15,10 @@
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
 #include "app/commands/typed_values.h"
+#include "app/terminal.h"
 #include "app/work/edge_strokes.h"
 #include "app/work/line_edits.h"
+#include "app/work/line_pieces.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "engine/base/error.h"
@@ -72,14 +75,17 @@ engine::Result<std::vector<engine::EdgeStroke>> markedStrokes(const std::string&
     return engine::inputError("the strokes have no stroke of the tool mark", path,
                               "draw along edges with it");
   // Lines of them would be lines of no sample.
-  const bool inside = std::ranges::any_of(strokes, [&](const engine::EdgeStroke& stroke) {
-    return std::ranges::any_of(stroke.points, [&](const glm::dvec2& p) {
+  const std::size_t outside = std::erase_if(strokes, [&](const engine::EdgeStroke& stroke) {
+    return std::ranges::none_of(stroke.points, [&](const glm::dvec2& p) {
       return p.x > -1.0 && p.y > -1.0 && p.x < grid.width && p.y < grid.height;
     });
   });
-  if (!inside)
+  if (strokes.empty())
     return engine::inputError("all strokes of the tool mark lie outside the scan", path,
                               "give strokes of this scan, in millimetres from its lower left sample");
+  if (outside > 0)
+    warn(fmt::format("{}: {} of {} strokes of the tool mark lie outside the scan and are left out",
+                     shownInput(path), outside, outside + strokes.size()));
   return strokes;
 }
 
@@ -180,10 +186,11 @@ engine::Status writeEdgeLines(const engine::Version& field, const engine::EdgeMa
   if (strokes.empty())
     return engine::inputError("no edges were found, so there are no lines", options.lines_out,
                               "give a larger --sensitivity");
-  const auto lines = locateLines(field, strokes, options.locating, job);
-  if (!lines) return tl::unexpected(lines.error());
-  reportLines(*lines, report);
-  return saveLines(*lines, field.grid(), options.lines_out, job);
+  const auto located = locateLines(field, strokes, options.locating, job);
+  if (!located) return tl::unexpected(located.error());
+  const std::vector<engine::EdgeLine> lines = linesOfOneEdgeEach(*located, {});
+  reportLines(lines, report);
+  return saveLines(lines, field.grid(), options.lines_out, job);
 }
 
 // The suggested edges as lines, and marks where one cannot be located, as a recipe's locate_edges.

@@ -278,10 +278,11 @@ engine::Result<Version> drawSuggestion(const Version& base, const engine::EdgeMa
                                                engine::LocateOptions{}, job);
   if (!located) return tl::unexpected(located.error());
   const NearPoints present = pointsOf(lines);
+  std::vector<EdgeLine> found;
+  for (std::size_t k = 0; k < traced; ++k)
+    if (!mostlyAmong((*located)[k], present)) found.push_back((*located)[k]);
   engine::LiveField live(base, engine::Growth::kAllowed);
-  for (std::size_t k = 0; k < traced; ++k) {
-    const EdgeLine& line = (*located)[k];
-    if (mostlyAmong(line, present)) continue;
+  for (const EdgeLine& line : linesOfOneEdgeEach(found, lines)) {
     if (job.cancelled()) return engine::cancelled();
     if (isLocated(line)) lines.push_back(line);
     const bool marked = forEachUnlocated(line, [&](const EdgePoint& p) {

@@ -33,7 +33,7 @@ struct LineStroke {
                                                        engine::JobControl& job);
 
 /// Locates all edges that a suggestion takes (engine::traceEdges) and adds their lines, but for those that are mostly
-/// edges of lines that are there. What cannot be located is marked, `choice.thickness` wide. Errors: those of traceEdges,
+/// edges of lines that are there; an edge that was traced twice has one line (linesOfOneEdgeEach). What cannot be located is marked, `choice.thickness` wide. Errors: those of traceEdges,
 /// estimateNoise and locateEdgeLines.
 [[nodiscard]] engine::Result<engine::Version> drawSuggestion(const engine::Version& base,
                                                              const engine::EdgeMap& map,

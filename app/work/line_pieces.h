@@ -83,6 +83,12 @@ std::vector<engine::EdgeLine> linesWithout(std::span<const engine::EdgeLine> all
 /// All their points, to be found within kSameEdge.
 [[nodiscard]] NearPoints pointsOf(std::span<const engine::EdgeLine> lines);
 
+/// The lines without what a line with more located points, or one of `present`, describes as well: stretches of 8 points
+/// and more along it, located within kSameEdge with a step in the same sense, or not located and within 4 samples of
+/// what it has located. A wall that a search traced twice has one line then. Their order stays; as linesWithout().
+[[nodiscard]] std::vector<engine::EdgeLine> linesOfOneEdgeEach(std::span<const engine::EdgeLine> lines,
+                                                               std::span<const engine::EdgeLine> present);
+
 /// The lines without what a stroke draws again, where that is most of what was located along it; all of them where it is
 /// an edge of its own.
 [[nodiscard]] std::vector<engine::EdgeLine> linesNotRedrawn(std::span<const engine::EdgeLine> all,

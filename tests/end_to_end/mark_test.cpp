@@ -59,6 +59,21 @@ TEST_F(MarkCommand, strokes_outside_the_scan_are_refused_before_anything_is_writ
   EXPECT_FALSE(std::filesystem::exists(marks));
 }
 
+TEST_F(MarkCommand, strokes_outside_the_scan_beside_others_are_left_out_and_named) {
+  const std::string strokes = folder.file("strokes.csv"), lines = folder.file("lines.csv");
+  std::ofstream file(strokes);
+  file << "t,x,y,z,tool\n";
+  for (const double x : {2.0, -900.0}) {
+    for (int i = 0; i < 40; ++i) file << 0.001 * i << ',' << x + 0.2 * i << ",5,0,mark\n";
+    file << "0.1," << x << ",5,9,feel\n";
+  }
+  file.close();
+  const auto report = fettleJson({"mark", scan, marks, "--strokes", strokes, "--lines-out", lines});
+  EXPECT_EQ(report["lines"], 1);
+  ASSERT_EQ(report["warnings"].size(), 1U);
+  EXPECT_NE(report["warnings"][0].get<std::string>().find("1 of 2 strokes"), std::string::npos);
+}
+
 TEST_F(MarkCommand, marks_can_be_added_to_and_inverted) {
   ASSERT_EQ(fettle({"mark", scan, marks, "--edges"}).status, 0);
   const std::string inverted = (folder.path() / "inverted.tif").string();

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include "app/work/line_pieces.h"
 #include "engine/field/live_field.h"
 #include "engine/session/line_codec.h"
 #include "tests/app/work/loop_client_bench.h"
@@ -121,6 +124,41 @@ TEST(LineEdits, DrawnAgainALineReplacesTheOneBefore) {
   EXPECT_NEAR(length, 90.0, 8.0);  // without overlap: at most some samples missing at the joints
   // As a session keeps it: ids differ.
   EXPECT_TRUE(engine::unpackLines(engine::packLines(part.lines())));
+}
+
+// A line along a column, from one row to another; a step of `step`, 0: not located.
+EdgeLine lineAtColumn(std::int64_t id, double column, int from, int to, double step) {
+  EdgeLine line{id, false, {}};
+  for (int row = from; from < to ? row <= to : row >= to; row += from < to ? 1 : -1) {
+    engine::EdgePoint& p = line.points.emplace_back();
+    p.position = {column, row};
+    p.located = step != 0.0;
+    p.step = step;
+  }
+  return line;
+}
+
+TEST(LineEdits, AnEdgeThatWasTracedTwiceHasOneLine) {
+  const EdgeLine wall = lineAtColumn(1, 60.5, 0, 100, 1.0);
+  const auto kept = [&](const EdgeLine& other) {
+    return linesOfOneEdgeEach(std::vector{other, wall}, {}).size();
+  };
+  EXPECT_EQ(kept(lineAtColumn(2, 61.0, 20, 60, 1.0)), 1U);
+  EXPECT_EQ(kept(lineAtColumn(2, 61.0, 60, 20, -1.0)), 1U) << "drawn the other way";
+  EXPECT_EQ(kept(lineAtColumn(2, 63.0, 20, 60, 0.0)), 1U) << "not located, beside it";
+  EXPECT_EQ(kept(lineAtColumn(2, 61.0, 20, 60, -1.0)), 2U) << "the other side of a thin rib";
+  EXPECT_EQ(kept(lineAtColumn(2, 62.5, 20, 60, 1.0)), 2U) << "the next step";
+  EXPECT_EQ(kept(lineAtColumn(2, 66.0, 20, 60, 0.0)), 2U) << "not located, elsewhere";
+  // What lies beyond the end of the longer line stays, under its own number.
+  const auto beyond = linesOfOneEdgeEach(std::vector{lineAtColumn(2, 61.0, 60, 150, 1.0), wall}, {});
+  ASSERT_EQ(beyond.size(), 2U);
+  EXPECT_EQ(beyond[0].id, 2);
+  EXPECT_NEAR(beyond[0].points.front().position.y, 100.0, 3.0);
+  // Lines that are there are kept, whatever their length.
+  const auto beside = linesOfOneEdgeEach(std::vector{wall}, std::vector{lineAtColumn(7, 60.0, 40, 60, 1.0)});
+  ASSERT_EQ(beside.size(), 2U);
+  EXPECT_NE(beside[0].id, beside[1].id);
+  EXPECT_GT(beside[1].id, 7);
 }
 
 TEST(LineEdits, ErasingDividesALine) {
