@@ -210,6 +210,66 @@ TEST(NoiseModel, OfAPartlyRoughSurfaceGrowsByWhatIsAdded) {
   }
 }
 
+// The control of what real scans give below: where all that a scan has of its own is noise, noise of any size that is added
+// is found. Prints what is found of as much as the scan's own, twice and four times that.
+TEST(NoiseModel, OfEveryPartGrowsByWhatIsAdded) {
+  for (const PartInfo& part : parts()) {
+    ScannerSpec spec;
+    spec.part = std::string(part.name);
+    spec.width = spec.height = 1024;
+    spec.seed = 5301;
+    JobControl job;
+    const auto scan = simulateScan(spec, job);
+    ASSERT_TRUE(scan);
+    std::vector<float> z(static_cast<std::size_t>(scan->scan.grid().samples()));
+    scan->scan.reader().readHeights(0, 0, spec.width, spec.height, z.data(), spec.width);
+    const double own = modelOf(scan->scan).sigma;
+    fmt::print("{}:", part.name);
+    for (const double times : {1.0, 2.0, 4.0}) {
+      const double added = times * own;
+      std::vector<float> noisy = z;
+      for (std::size_t i = 0; i < z.size(); ++i) {
+        const auto at = static_cast<std::int32_t>(i);
+        noisy[i] += static_cast<float>(added * white(5303, at % spec.width, at / spec.width));
+      }
+      const double both = modelOf(makeField(scan->scan.grid(), noisy)).sigma;
+      const double found = std::sqrt(both * both - own * own) / added;
+      fmt::print(" {:.3f}", found);
+      EXPECT_NEAR(found, 1.0, 0.05) << part.name << ' ' << times;
+    }
+    fmt::print("\n");
+  }
+}
+
+// What noise is found when as much as the scan's own is added to textures: white or shared by neighbours in both directions,
+// as rough everywhere or from place to place. Prints them; only the first are noise, so only of these a bound is known.
+TEST(NoiseModel, OfTexturesGrowsByWhatIsAddedIfTheyAreNoise) {
+  for (const int reach : {0, 1, 2})
+    for (const bool patchy : {false, true}) {
+      const auto texture = [&](int c, int r) {
+        double sum = 0.0;
+        for (int y = -reach; y <= reach; ++y)
+          for (int x = -reach; x <= reach; ++x) sum += white(41, c + x, r + y);
+        const double size = patchy ? std::exp(1.0 * CounterRandom(42, 0).normal(c / 24, r / 24)) : 1.0;
+        return 0.02 * size * sum / (2.0 * reach + 1.0);
+      };
+      const auto own = modelOf(fieldOf(kModelSide, kModelSide, texture));
+      fmt::print("reach {}{}:", reach, patchy ? ", patches" : "");
+      for (const double times : {1.0, 2.0, 4.0}) {
+        const double added = times * own.sigma;
+        const double both = modelOf(fieldOf(kModelSide, kModelSide, [&](int c, int r) {
+                              return texture(c, r) + added * white(43, c, r);
+                            })).sigma;
+        const double found = std::sqrt(both * both - own.sigma * own.sigma) / added;
+        fmt::print(" {:.2f}", found);
+        if (reach == 0 && !patchy) {
+          EXPECT_NEAR(found, 1.0, 0.05) << times;
+        }
+      }
+      fmt::print(", own {:.4f} in {} windows\n", own.sigma, own.windows);
+    }
+}
+
 struct ScanAndBound {
   const char* file;
   double most = 0.06;  // off, of what is added
