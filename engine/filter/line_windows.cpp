@@ -63,9 +63,11 @@ class LineWindows final : public BlockFilter {
         if (c < 0 || c >= block.columns) continue;
         if (!std::exchange(any, true)) {
           links_.assign(at(block.columns, 0, block.rows), 0);
+          near_.assign(links_.size(), 0);
           crossed_.assign(at(block.out_columns, 0, block.out_rows), 0);
         }
         links_[at(block.columns, c, r)] = cut.links;
+        markNear(block, c, r);
         // Both samples of a link may lie in a window.
         const int c0 = std::max(c - radius_ - block.first_column, 0);
         const int c1 = std::min(c + 1 + radius_ - block.first_column, block.out_columns - 1);
@@ -77,6 +79,16 @@ class LineWindows final : public BlockFilter {
                         c1 - c0 + 1, std::uint8_t{1});
       }
     return any;
+  }
+
+  // The samples within kLineReach of a cut link, whose second sample is to the right or above. Every window asks this of
+  // all its samples.
+  void markNear(const Block& block, int column, int row) {
+    const int c0 = std::max(column + 1 - kLineReach, 0);
+    const int c1 = std::min(column + kLineReach, block.columns - 1);
+    for (int r = std::max(row + 1 - kLineReach, 0); r <= std::min(row + kLineReach, block.rows - 1); ++r)
+      std::fill_n(near_.begin() + static_cast<std::ptrdiff_t>(at(block.columns, c0, r)), c1 - c0 + 1,
+                  std::uint8_t{1});
   }
 
   // The filter on a window of its own, without what lies beyond a line.
@@ -128,14 +140,7 @@ class LineWindows final : public BlockFilter {
   // A located line is some tenths of a sample off. Where both sides of the window differ by far more than each varies,
   // the samples next to the line are on the side whose height they are nearer to. Returns the side of the middle.
   std::uint8_t settleSides(const Block& window, int c0, int r0, const Block& block, auto&& height) {
-    const auto isNear = [&](int c, int r) {
-      for (int y = std::max(r0 + r - kLineReach, 0); y <= std::min(r0 + r + kLineReach - 1, block.rows - 1);
-           ++y)
-        for (int x = std::max(c0 + c - kLineReach, 0);
-             x <= std::min(c0 + c + kLineReach - 1, block.columns - 1); ++x)
-          if (links_[at(block.columns, x, y)] != 0) return true;
-      return false;
-    };
+    const auto isNear = [&](int c, int r) { return near_[at(block.columns, c0 + c, r0 + r)] != 0; };
     for (std::vector<float>& side : sides_) side.clear();
     for (int r = 0; r < window.rows; ++r)
       for (int c = 0; c < window.columns; ++c)
@@ -181,7 +186,7 @@ class LineWindows final : public BlockFilter {
   static constexpr int kOutputs = 16;         // room for a vector
   std::unique_ptr<BlockFilter> windows_;
   int radius_;
-  std::vector<std::uint8_t> links_, crossed_, reached_;
+  std::vector<std::uint8_t> links_, near_, crossed_, reached_;
   std::vector<float> heights_, sides_[2];
   std::vector<std::pair<int, int>> next_;
 };
