@@ -182,6 +182,7 @@ engine::Result<std::vector<Case>> makeFiles(const fs::path& folder, std::int32_t
   }
   add("PNG", "counts.png", exported({}));
   add("x3p", "surface.x3p", exported({}));
+  add("SDF", "surface.sdf", exported({}));
   add("OpenEXR", "image.exr", exported({}));
   add("Digital Surf", "surface.sur", [&](const std::string& path) { return writeSur(field, path); });
   add("ESRI ASCII grid", "grid.asc", exported({}));
