@@ -34,8 +34,7 @@ TEST_F(WindowTest, levels_of_contact_and_detail_are_chosen_by_what_they_cost_on_
   user.tap("certified, 6 cells");
   program->until("figures of contact", [](const State& s) { return s["measured"][0] == true; });
   // Twelve choices, each with a distance.
-  program->until("figures in the list",
-                 [](const State& s) { return figuresIn(s, "um") + figuresIn(s, "mm") >= 12; });
+  program->until("figures in the list", [](const State& s) { return figuresIn(s, "\u00b5m") >= 12; });
   (void)user.look("contact list");
   user.tap("paper");
   program->until("paper", [](const State& s) { return s["contact_level"] == "paper"; });
