@@ -67,6 +67,7 @@ void addLevel(Command root, Chosen& chosen);
 void addFill(Command root, Chosen& chosen);
 void addTransform(Command root, Chosen& chosen);
 void addMeasure(Command root, Chosen& chosen);
+void addAlign(Command root, Chosen& chosen);
 void addSection(Command root, Chosen& chosen);
 void addReport(Command root, Chosen& chosen);
 void addMark(Command root, Chosen& chosen);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "app/commands/align_option.h"
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/output_checks.h"
@@ -29,6 +30,8 @@ struct CompareArguments {
   Replacing replacing = Replacing::kNoWork;
   std::string to;
   bool estimate = false;
+  bool aligned = false;  // B is moved onto A first
+  AlignArguments align;
   ScanOptions reading;
 };
 
@@ -46,21 +49,44 @@ void warnOfDifferentGrids(const CompareArguments& options, const engine::Grid& a
         a.height_unit.name, b.height_unit.name));
 }
 
+// Options that say something about an alignment, or that exclude one.
+engine::Status checkAligned(const CompareArguments& options) {
+  if (options.aligned && options.estimate)
+    return engine::inputError("what aligning takes is not known before", "--estimate", "leave out --align");
+  if (options.aligned) return checkAlign(options.align);
+  const char* const alone = options.align.rotation          ? "--rotation"
+                            : options.align.region != "all" ? "--region"
+                            : !options.align.marks.empty()  ? "--marks"
+                                                            : nullptr;
+  return alone == nullptr ? engine::Status()
+                          : engine::inputError("nothing is aligned", alone, "give --align all");
+}
+
 engine::Result<Report> compare(const CompareArguments& options, engine::JobControl& job) {
   if (!options.edges.empty() && options.truth.empty())
     return engine::inputError("edges need a truth", "--edges", "give --truth too");
-  if (auto status =
-          checkOutputs({{options.deviation, OutputKind::kField, options.to}},
-                       {options.a, options.b, options.truth, options.edges}, options.replacing, job);
+  if (auto status = checkAligned(options); !status) return tl::unexpected(status.error());
+  if (auto status = checkOutputs({{options.deviation, OutputKind::kField, options.to}},
+                                 {options.a, options.b, options.truth, options.edges, options.align.marks},
+                                 options.replacing, job);
       !status)
     return tl::unexpected(status.error());
   const auto a = loadScan(options.a, options.reading, job);
   if (!a) return tl::unexpected(a.error());
-  const auto b = loadScan(options.b, options.reading, job);
+  auto b = loadScan(options.b, options.reading, job);
   if (!b) return tl::unexpected(b.error());
+  Report alignment;
+  if (options.aligned) {
+    const auto found = alignmentOf(a->field, b->field, options.a, options.b, options.align, job);
+    if (!found) return tl::unexpected(found.error());
+    auto moved = engine::movedOnto(b->field, found->motion, a->field.grid(), job);
+    if (!moved) return tl::unexpected(moved.error());
+    b->field = *std::move(moved);
+    alignment = alignReport(options.align, *found);
+  }
   const bool same_size =
       a->field.grid().width == b->field.grid().width && a->field.grid().height == b->field.grid().height;
-  if (same_size) {
+  if (same_size && !options.aligned) {
     const PlannedOnPieces comparing{
         [&](const engine::SampleRect& r, engine::JobControl& own) {
           const engine::Version first = engine::pieceOf(a->field, r.column, r.row, r.columns, r.rows);
@@ -100,6 +126,7 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
                 {"sa_a", deviation->sa_a},
                 {"only_a", deviation->only_a},
                 {"only_b", deviation->only_b}};
+  if (options.aligned) report["align"] = std::move(alignment);
   if (!options.deviation.empty()) {
     const auto difference = engine::deviationField(a->field, b->field, job);
     if (!difference) return tl::unexpected(difference.error());
@@ -122,13 +149,20 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
   return report;
 }
 
+void printCompared(const Report& report) {
+  if (report.contains("align")) printAlignment(report["align"]);
+  Report rest = report;
+  rest.erase("align");
+  printReport(rest);
+}
+
 }  // namespace
 
 void addCompare(Command root, Chosen& chosen) {
   auto options = std::make_shared<CompareArguments>();
-  Command command = addCommand(root, chosen, "compare",
-                               "How B deviates from A; against a truth, the errors of B and where they are",
-                               [options](engine::JobControl& job) { return compare(*options, job); });
+  Command command = addCommand(
+      root, chosen, "compare", "How B deviates from A; against a truth, the errors of B and where they are",
+      [options](engine::JobControl& job) { return compare(*options, job); }, printCompared);
   command.add({
       {.name = "A",
        .to = &options->a,
@@ -153,6 +187,15 @@ void addCompare(Command root, Chosen& chosen) {
        .text = "Also write B - A as a separate scan, in A's height unit, format by extension",
        .kind = ValueKind::kOutput},
   });
+  command.add({{.name = "--align",
+                .to =
+                    [options](const std::string& moves) {
+                      options->aligned = true;
+                      options->align.moves = moves;
+                    },
+                .text = "First move B onto the samples of A, as fettle align does",
+                .words = alignWords()}});
+  addAlignOptions(command, options->align);
   addForceOption(command, options->replacing);
   command.add({{.name = "--to",
                 .to = &options->to,
@@ -162,7 +205,9 @@ void addCompare(Command root, Chosen& chosen) {
   addScanOptions(command, options->reading);
   command.examples({{"fettle compare scan.tif clean.tif", "Deviation figures, Sq and Sa"},
                     {"fettle compare scan.tif clean.tif --truth truth.tif --edges edges.png",
-                     "Errors against a known surface, on flats and near edges"}});
+                     "Errors against a known surface, on flats and near edges"},
+                    {"fettle compare nominal.tif part.tif --align all --deviation wear.tif",
+                     "What differs after the second was moved onto the first"}});
 }
 
 }  // namespace fettle::app

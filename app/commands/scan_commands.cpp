@@ -19,6 +19,7 @@ void addScanCommands(Command root, Chosen& chosen) {
   addApply(root, chosen);
   addJournal(root, chosen);
   addRender(root, chosen);
+  addAlign(root, chosen);
   addCompare(root, chosen);
   addConvert(root, chosen);
 }

@@ -1,11 +1,11 @@
 #include "app/commands/section_text.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "app/commands/estimate_text.h"
 #include "app/commands/read_units.h"
 
 namespace fettle::app {
@@ -26,10 +26,6 @@ TextUnits unitsOf(const Report& report) {
   return {readLengthAs(longest, 1.0, "mm"), readLengthAs(span, 1.0, "mm")};
 }
 
-std::string shownNumber(const Report& value) {
-  return value.is_null() ? "-" : fmt::format("{:.6g}", value.get<double>());
-}
-
 std::string shownLength(const Report& mm, const ReadAs& unit) {
   return mm.is_null() ? "-" : fmt::format("{:.6g} {}", mm.get<double>() / unit.size, unit.name);
 }
@@ -37,26 +33,6 @@ std::string shownLength(const Report& mm, const ReadAs& unit) {
 // Heights may be small differences far from 0: as many digits as float samples have, and two more.
 std::string shownHeight(const Report& mm, const ReadAs& unit) {
   return mm.is_null() ? "-" : fmt::format("{:.9g} {}", mm.get<double>() / unit.size, unit.name);
-}
-
-// To two digits of the error.
-std::string shownTo(double value, double error) {
-  if (!(error > 0.0) || !std::isfinite(error) || value == 0.0) return fmt::format("{:.6g}", value);
-  const double digits = std::floor(std::log10(std::abs(value))) - std::floor(std::log10(error)) + 2.0;
-  return fmt::format("{:.{}g}", value, static_cast<int>(std::clamp(digits, 2.0, 12.0)));
-}
-
-// "12.3 +- 0.2 mm", the error of a figure beside it. `unit`: that of its key.
-std::string shownEstimate(const Report& report, const std::string& key, const std::string& unit,
-                          const ReadAs& as) {
-  const std::string ending = unit.empty() ? std::string() : fmt::format("_{}", unit);
-  const Report& error = report[key + "_error" + ending];
-  const Report& value = report[key + ending];
-  if (value.is_null()) return "-";
-  const double shown = value.get<double>() / as.size;
-  if (error.is_null()) return fmt::format("{:.6g} {}", shown, as.name);
-  const double shown_error = error.get<double>() / as.size;
-  return fmt::format("{} +- {:.2g} {}", shownTo(shown, shown_error), shown_error, as.name);
 }
 
 const ReadAs kDegrees{"degrees", 1.0};

@@ -89,6 +89,31 @@ Keys sectionFigures() {
             {"rsm_mm", "number", ""}}}};
 }
 
+// A motion of one scan onto another.
+Keys alignmentKeys() {
+  return {{"moves", "string", "how B may be moved"},
+          {"region", "string", "samples of A that count"},
+          {"shift_x_mm", "number", "of the middle of A"},
+          {"shift_x_error_mm", "number", "standard error, as of every key with _error; null: not free"},
+          {"shift_y_mm", "number", ""},
+          {"shift_y_error_mm", "number", ""},
+          {"shift_z_mm", "number", ""},
+          {"shift_z_error_mm", "number", ""},
+          {"rotation_z_deg", "number", "anticlockwise seen from above"},
+          {"rotation_z_error_deg", "number", ""},
+          {"tilt_x_deg", "number", "slope up to higher x"},
+          {"tilt_x_error_deg", "number", ""},
+          {"tilt_y_deg", "number", ""},
+          {"tilt_y_error_deg", "number", ""},
+          {"centre_mm", "[number]", "of the turn, from A's lower left sample"},
+          {"matrix", "[number]", "4 x 4, row by row: from mm in B to mm in A"},
+          {"rms_mm", "number", "of what remains, through the window"},
+          {"overlap", "number", "share of A's samples"},
+          {"left_out", "number", "share of these that lie apart"},
+          {"samples", "integer", "that count"},
+          {"window_mm", "number", "standard deviation of the Gaussian window"}};
+}
+
 Keys sectionKeys() {
   return joined(
       {{"section", "integer", "from 0"},
@@ -265,6 +290,7 @@ std::vector<ReportSchema> inspecting() {
           {"sa_a", "number", ""},
           {"only_a", "integer", "samples that only A has"},
           {"only_b", "integer", ""},
+          {"align?", "object", "with --align", alignmentKeys()},
           {"deviation?", "string", "with --deviation: the file"},
           {"rmse?", "number", "with --truth"},
           {"rmse_flat?", "number", "with --truth"},
@@ -272,6 +298,10 @@ std::vector<ReportSchema> inspecting() {
           {"edge_width?", "number", "with --truth, lateral unit"}}},
         estimateAlone(),
         noEstimate()}},
+      {"align",
+       1,
+       {{"", joined(alignmentKeys(),
+                    {{"out?", "string", "with OUT: the file"}, {"hash?", "string", "of the field in it"}})}}},
       {"lines",
        1,
        {{"",

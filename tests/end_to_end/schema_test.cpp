@@ -64,6 +64,8 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"section",   scan,       "--start",    "1,1",   "--end",    "60,50", "--compare", out,
        "--cursors", "1,9",      "--fit-line", "1,9",   "--step",   "auto",  "--groove",  "auto",
        "--angle",   "1,6,8,14", "--arc",      "30,50", "--cutoff", "8",     "--probe",   "5,5"});
+  run({"align", scan, out, file("moved.tif"), "--moves", "level", "--csv", file("motion.csv")});
+  run({"compare", scan, out, "--align", "level"});
   run({"filter", scan, "--suggest", "--tolerance", "15um", "--places", "1"});
   run({"mark", scan, marks, "--edges", "--lines-out", lines});
   run({"lines", scan, lines});

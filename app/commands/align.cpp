@@ -1,0 +1,110 @@
+#include <memory>
+#include <string>
+
+#include "app/commands/align_option.h"
+#include "app/commands/command.h"
+#include "app/commands/output_checks.h"
+#include "app/commands/scan_files.h"
+#include "app/commands/scan_options.h"
+#include "app/work/streams.h"
+#include "engine/io/files/atomic_file.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct AlignCommand {
+  std::string a, b, out, csv, to;
+  AlignArguments how;
+  Replacing replacing = Replacing::kNoWork;
+  ScanOptions reading;
+  engine::ExportOptions writing;
+};
+
+engine::Result<Report> align(const AlignCommand& options, engine::JobControl& job) {
+  if (auto status = checkAlign(options.how); !status) return tl::unexpected(status.error());
+  if (auto status = checkOutputs(
+          {{options.out, OutputKind::kField, options.to}, {options.csv, OutputKind::kText, ".csv"}},
+          {options.a, options.b, options.how.marks}, options.replacing, job);
+      !status)
+    return tl::unexpected(status.error());
+  if (auto status = checkCompress(options.writing, {{options.b, options.out, options.to}}); !status)
+    return tl::unexpected(status.error());
+  const auto a = loadScan(options.a, options.reading, job);
+  if (!a) return tl::unexpected(a.error());
+  const auto b = loadScan(options.b, options.reading, job);
+  if (!b) return tl::unexpected(b.error());
+  const auto alignment = alignmentOf(a->field, b->field, options.a, options.b, options.how, job);
+  if (!alignment) return tl::unexpected(alignment.error());
+  Report report = alignReport(options.how, *alignment);
+  if (!options.out.empty()) {
+    const auto moved = engine::movedOnto(b->field, alignment->motion, a->field.grid(), job);
+    if (!moved) return tl::unexpected(moved.error());
+    engine::ExportOptions writing = options.writing;
+    writing.original = *moved;
+    if (auto status = saveField(*moved, options.out, job, writing, options.to); !status)
+      return tl::unexpected(status.error());
+    report["out"] = options.out;
+    report["hash"] = hashOf(*moved);
+  }
+  if (!options.csv.empty())
+    if (auto status = writeTo(
+            options.csv, ".csv", job,
+            [&](const std::string& path) { return engine::writeFileAtomically(path, alignCsv(report)); });
+        !status)
+      return tl::unexpected(status.error());
+  return report;
+}
+
+}  // namespace
+
+void addAlign(Command root, Chosen& chosen) {
+  auto options = std::make_shared<AlignCommand>();
+  Command command = addCommand(
+      root, chosen, "align", "Move scan B onto scan A: shift, rotation, tilt, with standard errors",
+      [options](engine::JobControl& job) { return align(*options, job); }, printAlignment);
+  command.add(
+      {{.name = "A",
+        .to = &options->a,
+        .text = "The scan that stays; A or B may be -, standard input",
+        .kind = ValueKind::kInput,
+        .required = true},
+       {.name = "B",
+        .to = &options->b,
+        .text = "The scan that is moved; its spacing and size may be others",
+        .kind = ValueKind::kInput,
+        .required = true},
+       {.name = "OUT",
+        .to = &options->out,
+        .text = "Also write B, moved, at the samples of A, in A's height unit; - for standard output",
+        .kind = ValueKind::kOutput},
+       {.name = "--moves", .to = &options->how.moves, .text = "How B may be moved", .words = alignWords()},
+       {.name = "--csv",
+        .to = &options->csv,
+        .text = "Write the motion: figures with their standard errors, and the matrix",
+        .kind = ValueKind::kNewFile},
+       {.name = "--to",
+        .to = &options->to,
+        .text = "With OUT -, standard output: its format, as extension",
+        .kind = ValueKind::kFormat}});
+  addForceOption(command, options->replacing);
+  addAlignOptions(command, options->how);
+  addCompressOption(command, options->writing);
+  addScanOptions(command, options->reading);
+  command.notes(
+      "A point of B, in mm from B's lower left sample, is turned about the middle of A and shifted; the "
+      "matrix "
+      "takes it to mm from A's lower left sample. Tilt x and tilt y are slopes up to higher x and y.\n"
+      "Samples that only one scan has - dust, holes, spikes, a step - do not count, as long as they are "
+      "fewer "
+      "than half. A motion that the surface does not decide, as a shift along a cylinder, is refused by its "
+      "name. "
+      "Heights of B between its samples are bilinear; compare both through one filter where that matters.");
+  command.examples({{"fettle align before.tif after.tif", "How the second lies against the first"},
+                    {"fettle align before.tif after.tif moved.tif --moves in-plane --csv motion.csv",
+                     "The second at the samples of the first, without tilting it"},
+                    {"fettle align a.tif b.tif b_on_a.tif --region unmarked --marks wear.png",
+                     "Aligned by what is not worn"}});
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "engine/base/error.h"
+#include "engine/field/version.h"
+#include "engine/measure/align.h"
+
+namespace fettle::app {
+
+/// How a scan B is moved onto a scan A.
+struct AlignArguments {
+  std::string moves = "all";       ///< a word of alignWords()
+  std::optional<double> rotation;  ///< most that the search tries [degrees]
+  std::string region = "all";
+  std::string marks;  ///< a picture of marks of A instead of its own; empty: none
+};
+
+/// "all", "in-plane", "shift", "level".
+[[nodiscard]] std::vector<Word> alignWords();
+
+/// --rotation, --region, --marks.
+void addAlignOptions(Command command, AlignArguments& arguments);
+
+/// Refuses options that have no effect together.
+[[nodiscard]] engine::Status checkAlign(const AlignArguments& arguments);
+
+/// engine::alignFields() of what the arguments mean; errors name the scans.
+[[nodiscard]] engine::Result<engine::Alignment> alignmentOf(
+    const engine::Version& a, const engine::Version& b, const std::string& path_a, const std::string& path_b,
+    const AlignArguments& arguments, engine::JobControl& job);
+
+/// The alignment as keys of a report (docs/commands.md); errors of what was not free are null.
+[[nodiscard]] Report alignReport(const AlignArguments& arguments, const engine::Alignment& alignment);
+
+/// Its lines: "shift x    0.123 +- 0.002 mm".
+void printAlignment(const Report& report);
+
+/// A table of the same: figure, value, standard_error, unit; then the matrix.
+[[nodiscard]] std::string alignCsv(const Report& report);
+
+}  // namespace fettle::app

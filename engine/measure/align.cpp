@@ -1,0 +1,699 @@
+#include "engine/measure/align.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <Eigen/Dense>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec2.hpp>
+
+#include "engine/compare/tile_sums.h"
+#include "engine/field/builder.h"
+#include "engine/measure/align_search.h"
+#include "engine/measure/height_map.h"
+
+namespace fettle::engine {
+
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+constexpr double kSigmas = 1.25;  // of the window, in spacings of the coarser map
+constexpr double kMostPlaces = 1 << 20;
+constexpr std::size_t kMostPoints = 300'000;
+constexpr int kBlocks = 12;  // along x and along y, for the standard errors
+constexpr double kTukey = 4.685;
+constexpr double kNormal = 1.4826;  // of the median of absolute values
+constexpr double kDegree = 180.0 / std::numbers::pi;
+
+// A place of the first map: position, smoothed height and slopes, the block it belongs to.
+struct Point {
+  double x, y, z, slope_x, slope_y;
+  std::int32_t column, row;  // of the places that are used
+  std::int32_t block;
+};
+
+// What a motion makes of the second surface under a point.
+struct Under {
+  double residual = std::numeric_limits<double>::quiet_NaN();  // height of the first less that of the second
+  double slope_x = 0.0, slope_y = 0.0, z = 0.0;                // of the second, moved
+};
+
+// How the height at a point follows a shift x, y, z and a turn about x, y, z that moves the surface.
+Vector6 followed(const glm::dvec3& from_centre, double slope_x, double slope_y) noexcept {
+  Vector6 row;
+  row << -slope_x, -slope_y, 1.0, from_centre.y + slope_y * from_centre.z,
+      -from_centre.x - slope_x * from_centre.z, slope_x * from_centre.y - slope_y * from_centre.x;
+  return row;
+}
+
+// One resolution at which two fields are compared.
+class AlignLevel {
+ public:
+  AlignLevel(const HeightMap& first, const HeightMap& second, double sigma)
+      : sigma_(sigma), spline_(smoothed(second, sigma, Holes::kFill, Borders::kLeftOut).value) {
+    const SmoothMap smooth = smoothed(first, sigma, Holes::kStay, Borders::kLeftOut);
+    std::size_t count = 0;
+    for (const double z : smooth.value.z) count += std::isnan(z) ? 0 : 1;
+    const std::int32_t stride =
+        std::max(1, static_cast<std::int32_t>(
+                        std::ceil(std::sqrt(static_cast<double>(count) / static_cast<double>(kMostPoints)))));
+    points_.reserve(count);
+    for (std::int32_t r = 0; r < first.height; r += stride)
+      for (std::int32_t c = 0; c < first.width; c += stride) {
+        const std::size_t i = first.index(c, r);
+        if (std::isnan(smooth.value.z[i])) continue;
+        points_.push_back({first.x0 + c * first.spacing_x, first.y0 + r * first.spacing_y, smooth.value.z[i],
+                           smooth.slope_x[i], smooth.slope_y[i], c / stride, r / stride,
+                           (r * kBlocks / first.height) * kBlocks + c * kBlocks / first.width});
+      }
+    least_spacing_ = std::min(first.spacing_x, first.spacing_y);
+    step_x_ = stride * first.spacing_x;
+    step_y_ = stride * first.spacing_y;
+    columns_ = (first.width + stride - 1) / stride;
+    rows_ = (first.height + stride - 1) / stride;
+    for (std::int32_t c = 0; c < columns_; ++c)
+      block_of_column_.push_back(c * stride * kBlocks / first.width);
+    for (std::int32_t r = 0; r < rows_; ++r) block_of_row_.push_back(r * stride * kBlocks / first.height);
+  }
+
+  [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }
+  [[nodiscard]] double leastSpacing() const noexcept { return least_spacing_; }
+
+  // Sum over pairs of points of x_i x_j r_ij, with the correlation r that the window gives noise which samples do not
+  // share: exp(-d^2 / 4 sigma^2). All pairs, or those within a block. x of points that do not count are 0.
+  enum class Pairs : std::uint8_t { kAll, kWithinBlocks };
+  [[nodiscard]] Matrix6 correlatedSum(const std::vector<Vector6>& x, Pairs pairs) const {
+    const auto reachOf = [this](double step) { return static_cast<std::int32_t>(5.0 * sigma_ / step); };
+    const auto correlation = [this](double distance) {
+      return std::exp(-0.25 * distance * distance / (sigma_ * sigma_));
+    };
+    const std::size_t places = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
+    std::vector<Vector6> all(places, Vector6::Zero()), along(places, Vector6::Zero());
+    const auto at = [this](std::int32_t column, std::int32_t row) {
+      return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+             static_cast<std::size_t>(column);
+    };
+    const auto together = [pairs](const std::vector<std::int32_t>& block, std::int32_t a, std::int32_t b) {
+      return pairs == Pairs::kAll || block[static_cast<std::size_t>(a)] == block[static_cast<std::size_t>(b)];
+    };
+    for (std::size_t i = 0; i < points_.size(); ++i) all[at(points_[i].column, points_[i].row)] = x[i];
+    const std::int32_t across = reachOf(step_x_), up = reachOf(step_y_);
+    tbb::parallel_for(std::int32_t{0}, rows_, [&](std::int32_t r) {
+      for (std::int32_t c = 0; c < columns_; ++c)
+        for (std::int32_t k = std::max(-across, -c); k <= std::min(across, columns_ - 1 - c); ++k)
+          if (together(block_of_column_, c, c + k))
+            along[at(c, r)] += correlation(k * step_x_) * all[at(c + k, r)];
+    });
+    std::vector<Matrix6> sums(static_cast<std::size_t>(rows_), Matrix6::Zero());
+    tbb::parallel_for(std::int32_t{0}, rows_, [&](std::int32_t r) {
+      for (std::int32_t c = 0; c < columns_; ++c) {
+        Vector6 sum = Vector6::Zero();
+        for (std::int32_t k = std::max(-up, -r); k <= std::min(up, rows_ - 1 - r); ++k)
+          if (together(block_of_row_, r, r + k)) sum += correlation(k * step_y_) * along[at(c, r + k)];
+        sums[static_cast<std::size_t>(r)] += all[at(c, r)] * sum.transpose();
+      }
+    });
+    Matrix6 total = Matrix6::Zero();
+    for (const Matrix6& sum : sums) total += sum;
+    return 0.5 * (total + total.transpose());
+  }
+
+  [[nodiscard]] std::vector<Under> under(const RigidMotion& motion) const {
+    std::vector<Under> out(points_.size());
+    const glm::dvec3 along = glm::transpose(motion.rotation)[2];
+    tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t i) {
+      const Point& point = points_[i];
+      const glm::dvec3 foot = motion.movedBack({point.x, point.y, 0.0});
+      // The height z at which the moved point lies on the second surface, by Newton.
+      double z = point.z;
+      MapSpline::Place place;
+      for (int round = 0; round < 6; ++round) {
+        const glm::dvec3 p = foot + z * along;
+        place = spline_.at(p.x, p.y);
+        if (!place.there) return;
+        const double slope = along.z - place.slope_x * along.x - place.slope_y * along.y;
+        if (!(slope > 0.05)) return;
+        const double step = (place.z - p.z) / slope;
+        z += step;
+        if (std::abs(step) < 1e-12 * (1.0 + std::abs(z)) || (along.x == 0.0 && along.y == 0.0)) break;
+      }
+      const glm::dvec3 normal = motion.rotation * glm::dvec3(-place.slope_x, -place.slope_y, 1.0);
+      if (!(normal.z > 0.05)) return;
+      out[i] = {point.z - z, -normal.x / normal.z, -normal.y / normal.z, z};
+    });
+    return out;
+  }
+
+ private:
+  double sigma_ = 0.0, step_x_ = 1.0, step_y_ = 1.0, least_spacing_ = 1.0;
+  std::int32_t columns_ = 0, rows_ = 0;  // of the places that are used
+  std::vector<std::int32_t> block_of_column_, block_of_row_;
+  MapSpline spline_;
+  std::vector<Point> points_;
+};
+
+// The size of a residual that a share of all does not exceed.
+double quantileOf(const std::vector<Under>& under, double share) {
+  std::vector<double> sizes;
+  sizes.reserve(under.size());
+  for (const Under& u : under)
+    if (!std::isnan(u.residual)) sizes.push_back(std::abs(u.residual));
+  if (sizes.empty()) return 0.0;
+  const auto place =
+      sizes.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(sizes.size() - 1));
+  std::ranges::nth_element(sizes, place);
+  return *place;
+}
+
+// The normalised median size.
+double scaleOf(const std::vector<Under>& under) {
+  return kNormal * quantileOf(under, 0.5);
+}
+
+double medianResidual(const std::vector<Under>& under) {
+  std::vector<double> values;
+  values.reserve(under.size());
+  for (const Under& u : under)
+    if (!std::isnan(u.residual)) values.push_back(u.residual);
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+// Turns are counted as shifts at the rim: `arm` mm from the centre.
+struct Frame {
+  glm::dvec3 centre{0.0};
+  double arm = 1.0;
+  std::vector<int> free;  // of the six
+
+  [[nodiscard]] Vector6 row(const Point& point, double z, double slope_x, double slope_y) const noexcept {
+    Vector6 all = followed(glm::dvec3(point.x, point.y, z) - centre, slope_x, slope_y);
+    all.tail<3>() /= arm;
+    return all;
+  }
+};
+
+Frame frameOf(const glm::dvec3& centre, double arm, const AlignMoves& moves) {
+  Frame frame{centre, arm, {2}};
+  if (moves.shift) frame.free.insert(frame.free.end(), {0, 1});
+  if (moves.tilt) frame.free.insert(frame.free.end(), {3, 4});
+  if (moves.rotation) frame.free.push_back(5);
+  return frame;
+}
+
+struct Refined {
+  RigidMotion motion;
+  double scale = 0.0;                                      // of the residuals [mm]
+  double gain = -std::numeric_limits<double>::infinity();  // in logarithmic likelihood over a plane
+  std::size_t common = 0;
+};
+
+// Gauss-Newton on Tukey's biweight, each round with the scale of its residuals.
+Refined refine(const AlignLevel& level, const RigidMotion& start, const Frame& frame, int rounds,
+               double least, JobControl& job) {
+  Refined result{start, 0.0, -std::numeric_limits<double>::infinity(), 0};
+  const auto n = static_cast<Eigen::Index>(frame.free.size());
+  if (const double offset = medianResidual(level.under(result.motion)); !std::isnan(offset))
+    result.motion.shift.z += offset;
+  for (int round = 0; round < rounds && !job.cancelled(); ++round) {
+    const std::vector<Under> under = level.under(result.motion);
+    result.scale = std::max(scaleOf(under), least);
+    Matrix6 normal = Matrix6::Zero();
+    Vector6 right = Vector6::Zero();
+    result.common = 0;
+    for (std::size_t i = 0; i < under.size(); ++i) {
+      const Under& u = under[i];
+      if (std::isnan(u.residual)) continue;
+      ++result.common;
+      const double x = u.residual / (kTukey * result.scale);
+      if (std::abs(x) >= 1.0) continue;
+      const double weight = (1.0 - x * x) * (1.0 - x * x);
+      const Vector6 row = frame.row(level.points()[i], u.z, u.slope_x, u.slope_y);
+      normal += weight * row * row.transpose();
+      right += weight * u.residual * row;
+    }
+    if (result.common < 12) break;
+    Eigen::MatrixXd some(n, n);
+    Eigen::VectorXd wanted(n);
+    for (Eigen::Index a = 0; a < n; ++a) {
+      wanted[a] = right[frame.free[static_cast<std::size_t>(a)]];
+      for (Eigen::Index b = 0; b < n; ++b)
+        some(a, b) = normal(frame.free[static_cast<std::size_t>(a)], frame.free[static_cast<std::size_t>(b)]);
+    }
+    // What the surface does not decide stays small.
+    some.diagonal().array() += 1e-10 * some.trace() + 1e-300;
+    Eigen::VectorXd step = some.ldlt().solve(wanted);
+    Vector6 all = Vector6::Zero();
+    for (Eigen::Index a = 0; a < n; ++a) all[frame.free[static_cast<std::size_t>(a)]] = step[a];
+    const double lateral = std::max({std::abs(all[0]), std::abs(all[1]), std::abs(all[5])});
+    const double limit = 3.0 * level.leastSpacing();
+    if (lateral > limit) all *= limit / lateral;
+    result.motion =
+        result.motion.then({all[0], all[1], all[2]}, glm::dvec3(all[3], all[4], all[5]) / frame.arm);
+    // Until a step is a thousandth of its standard error.
+    if (step.dot(some * step) < 1e-6 * result.scale * result.scale * static_cast<double>(n)) break;
+  }
+  const std::vector<Under> under = level.under(result.motion);
+  result.scale = std::max(scaleOf(under), least);
+  // Against the plane under the same points: what shape explains.
+  std::vector<Under> heights = under;
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  result.common = 0;
+  for (std::size_t i = 0; i < under.size(); ++i) {
+    const Point& p = level.points()[i];
+    if (std::isnan(under[i].residual)) continue;
+    ++result.common;
+    const Eigen::Vector3d row(1.0, p.x - frame.centre.x, p.y - frame.centre.y);
+    normal += row * row.transpose();
+    right += row * (p.z - frame.centre.z);
+  }
+  if (result.common < 12) return result;
+  const Eigen::Vector3d plane = normal.completeOrthogonalDecomposition().solve(right);
+  for (std::size_t i = 0; i < under.size(); ++i)
+    if (!std::isnan(under[i].residual)) {
+      const Point& p = level.points()[i];
+      heights[i].residual = p.z - frame.centre.z - plane[0] - plane[1] * (p.x - frame.centre.x) -
+                            plane[2] * (p.y - frame.centre.y);
+    }
+  // Sums of squares, clipped at the size that one in a hundred exceeds: a few tall features count, spikes do not.
+  const double cap = std::max(quantileOf(heights, 0.99), least);
+  double of_plane = 0.0, of_motion = 0.0;
+  for (std::size_t i = 0; i < under.size(); ++i) {
+    if (std::isnan(under[i].residual)) continue;
+    of_plane += std::pow(std::min(std::abs(heights[i].residual), cap), 2);
+    of_motion += std::pow(std::min(std::abs(under[i].residual), cap), 2);
+  }
+  const double floor = static_cast<double>(result.common) * least * least;
+  result.gain = 0.5 * static_cast<double>(result.common) * std::log((of_plane + floor) / (of_motion + floor));
+  return result;
+}
+
+// Directions as words: what a vector of the six moves.
+std::string movesOf(const Vector6& direction) {
+  constexpr const char* kNames[] = {"a shift along x", "a shift along y", "the height",
+                                    "a tilt about x",  "a tilt about y",  "the rotation about z"};
+  std::string text;
+  const double most = direction.cwiseAbs().maxCoeff();
+  for (int k : {0, 1, 5, 3, 4, 2}) {
+    if (std::abs(direction[k]) < 0.35 * most) continue;
+    text += text.empty() ? kNames[k] : std::string(" with ") + kNames[k];
+  }
+  return text;
+}
+
+// Block sums at the last motion, over which everything that is stated is taken.
+struct BlockSum {
+  Matrix6 cross = Matrix6::Zero();  // of both fields' slopes
+  Vector6 score = Vector6::Zero();
+  double slope = 0.0;  // squares of slopes
+  std::int64_t samples = 0, left_out = 0;
+  double residuals = 0.0, scores = 0.0;  // squares of residuals, and of these with their weight
+};
+
+// `rows`: how each point's height follows the motion; 0 for those that do not count.
+std::vector<BlockSum> blockSums(const AlignLevel& level, const Refined& refined, const Frame& frame,
+                                std::vector<Vector6>& rows) {
+  std::vector<BlockSum> blocks(static_cast<std::size_t>(kBlocks * kBlocks));
+  rows.assign(level.points().size(), Vector6::Zero());
+  const std::vector<Under> under = level.under(refined.motion);
+  for (std::size_t i = 0; i < under.size(); ++i) {
+    const Under& u = under[i];
+    if (std::isnan(u.residual)) continue;
+    const Point& point = level.points()[i];
+    BlockSum& block = blocks[static_cast<std::size_t>(point.block)];
+    const double x = u.residual / (kTukey * refined.scale);
+    if (std::abs(x) >= 1.0) {
+      ++block.left_out;
+      continue;
+    }
+    const double weight = (1.0 - x * x) * (1.0 - x * x), derivative = (1.0 - x * x) * (1.0 - 5.0 * x * x);
+    const Vector6 second = frame.row(point, u.z, u.slope_x, u.slope_y);
+    const Vector6 first = frame.row(point, point.z, point.slope_x, point.slope_y);
+    const Matrix6 product = first * second.transpose();
+    block.cross += 0.5 * derivative * (product + product.transpose());
+    block.score += weight * u.residual * second;
+    block.slope += derivative * (u.slope_x * point.slope_x + u.slope_y * point.slope_y);
+    block.residuals += u.residual * u.residual;
+    block.scores += weight * weight * u.residual * u.residual;
+    rows[i] = second;
+    ++block.samples;
+  }
+  return blocks;
+}
+
+Eigen::MatrixXd freeOf(const Matrix6& all, const std::vector<int>& free) {
+  const auto n = static_cast<Eigen::Index>(free.size());
+  Eigen::MatrixXd some(n, n);
+  for (Eigen::Index a = 0; a < n; ++a)
+    for (Eigen::Index b = 0; b < n; ++b)
+      some(a, b) = all(free[static_cast<std::size_t>(a)], free[static_cast<std::size_t>(b)]);
+  return some;
+}
+
+// The directions in which both fields' slopes have no more in common than noise gives, or than a thousandth of all slopes,
+// as words.
+std::string undecided(const std::vector<BlockSum>& blocks, const Frame& frame, double rounding) {
+  constexpr double kErrors = 5.0, kOfSlopes = 1e-3;
+  std::string text;
+  Matrix6 cross = Matrix6::Zero();
+  double samples = 0.0, slopes = 0.0, used = 0.0;
+  for (const BlockSum& block : blocks) {
+    cross += block.cross;
+    slopes += std::max(0.0, block.slope);
+    samples += static_cast<double>(block.samples);
+    used += block.samples > 0 ? 1.0 : 0.0;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(freeOf(cross, frame.free));
+  for (Eigen::Index k = 0; k < eigen.eigenvalues().size(); ++k) {
+    Vector6 direction = Vector6::Zero();
+    for (std::size_t a = 0; a < frame.free.size(); ++a)
+      direction[frame.free[a]] = eigen.eigenvectors()(static_cast<Eigen::Index>(a), k);
+    double sum = 0.0, squares = 0.0;
+    for (const BlockSum& block : blocks) {
+      const double part = direction.dot(block.cross * direction);
+      sum += part;
+      squares += part * part;
+    }
+    const double error = std::sqrt(std::max(0.0, squares - sum * sum / std::max(1.0, used)));
+    const double least =
+        samples * (rounding * rounding + kOfSlopes * kOfSlopes * slopes / std::max(1.0, samples));
+    if (!(sum > kErrors * error || sum > 0.2 * samples) || !(sum > least))
+      text += (text.empty() ? "" : ", and ") + movesOf(direction);
+  }
+  return text;
+}
+
+// Both fields at one resolution; `side` is the spacing that is wished for.
+struct Maps {
+  HeightMap first, second;
+  double sigma = 0.0;
+};
+Result<Maps> mapsAt(const Version& first, const Version& second, const AlignOptions& options, double side,
+                    double base_first, double base_second, JobControl& job) {
+  const auto blockOf = [side](double spacing) {
+    return std::max(1, static_cast<std::int32_t>(side / spacing * (1.0 + 1e-9)));
+  };
+  Maps maps;
+  for (const bool of_first : {true, false}) {
+    const Version& field = of_first ? first : second;
+    const Grid& grid = field.grid();
+    auto map = heightMapOf(
+        field, of_first ? options.region : Region::kAll, std::min(grid.width, blockOf(grid.spacingXMm())),
+        std::min(grid.height, blockOf(grid.spacingYMm())), of_first ? base_first : base_second, job);
+    if (!map) return tl::unexpected(map.error());
+    dropSpikes(*map);
+    maps.sigma = std::max({maps.sigma, kSigmas * map->spacing_x, kSigmas * map->spacing_y});
+    (of_first ? maps.first : maps.second) = *std::move(map);
+  }
+  return maps;
+}
+
+double spacingFor(const Grid& grid, double places) noexcept {
+  const double area = grid.spacingXMm() * grid.width * grid.spacingYMm() * grid.height;
+  return std::max({std::sqrt(area / places), grid.spacingXMm(), grid.spacingYMm()});
+}
+
+// The middle height of a field, and a size that nine of ten heights do not exceed [mm]: of blocks, so that spikes of any
+// height do not move them.
+struct HeightsAround {
+  double middle = 0.0, size = 0.0;
+};
+Result<HeightsAround> heightsAround(const Version& field, Region region, JobControl& job) {
+  const Grid& grid = field.grid();
+  const double side = spacingFor(grid, 64.0 * 64.0);
+  const auto blockOf = [side](double spacing, std::int32_t most) {
+    return std::clamp(static_cast<std::int32_t>(std::lround(side / spacing)), 1, most);
+  };
+  const auto map = heightMapOf(field, region, blockOf(grid.spacingXMm(), grid.width),
+                               blockOf(grid.spacingYMm(), grid.height), 0.0, job);
+  if (!map) return tl::unexpected(map.error());
+  std::vector<double> heights;
+  heights.reserve(map->z.size());
+  std::ranges::copy_if(map->z, std::back_inserter(heights), [](double z) { return !std::isnan(z); });
+  if (heights.empty()) return HeightsAround{};
+  const auto at = [&heights](double share) {
+    const auto place =
+        heights.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(heights.size() - 1));
+    std::ranges::nth_element(heights, place);
+    return *place;
+  };
+  const double middle = at(0.5);
+  return HeightsAround{middle, std::max(std::abs(at(0.05)), std::abs(at(0.95)))};
+}
+
+}  // namespace
+
+Result<Alignment> alignFields(const Version& first, const Version& second, const AlignOptions& options,
+                              JobControl& job) {
+  for (const Version* field : {&first, &second})
+    if (field->reader().bounds().empty())
+      return inputError("a field without a height cannot be aligned", field == &first ? "A" : "B");
+  const Grid &grid = first.grid(), &other = second.grid();
+  // Heights less a height of each: what is small beside it keeps its digits.
+  const auto of_first = heightsAround(first, options.region, job),
+             of_second = heightsAround(second, Region::kAll, job);
+  if (!of_first) return tl::unexpected(of_first.error());
+  if (!of_second) return tl::unexpected(of_second.error());
+  const double base_first = of_first->middle, base_second = of_second->middle;
+  const double rounding_mm =
+      std::numeric_limits<float>::epsilon() * std::max(of_first->size, of_second->size);
+  const glm::dvec2 size(grid.spacingXMm() * (grid.width - 1), grid.spacingYMm() * (grid.height - 1));
+  const double arm = std::max(0.5 * glm::length(size), 1e-9);
+  Frame frame = frameOf(glm::dvec3(0.5 * size, 0.0), arm, options.moves);
+
+  // Resolutions, the finest last: a factor of 4 from one to the next.
+  const double finest = std::max(spacingFor(grid, kMostPlaces), spacingFor(other, kMostPlaces));
+  const double coarsest = std::max(spacingFor(grid, 64.0 * 64.0), spacingFor(other, 64.0 * 64.0));
+  std::vector<double> sides;
+  for (double side = finest; side < 1.5 * coarsest || sides.empty(); side *= 4.0)
+    sides.insert(sides.begin(), side);
+  // Where the files place both, if that makes them overlap; else both begin at one corner.
+  RigidMotion stated{glm::dmat3(1.0), glm::dvec3(0.0), frame.centre};
+  const glm::dvec2 offset(other.origin_x * other.lateral_unit.mm - grid.origin_x * grid.lateral_unit.mm,
+                          other.origin_y * other.lateral_unit.mm - grid.origin_y * grid.lateral_unit.mm);
+  const glm::dvec2 other_size(other.spacingXMm() * (other.width - 1),
+                              other.spacingYMm() * (other.height - 1));
+  if (offset.x < size.x && offset.y < size.y && -offset.x < other_size.x && -offset.y < other_size.y)
+    stated.shift = glm::dvec3(offset, 0.0);
+
+  std::vector<Refined> candidates;
+  std::optional<AlignLevel> level;
+  std::size_t whole = 0;
+  double sigma = 0.0;
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    const auto maps = mapsAt(first, second, options, sides[k], base_first, base_second, job);
+    if (!maps) return tl::unexpected(maps.error());
+    level.emplace(maps->first, maps->second, maps->sigma);
+    sigma = maps->sigma;
+    whole = level->points().size();
+    if (whole < 12)
+      return inputError(
+          fmt::format("{} heights of A that count are too few to align by", whole), "A",
+          options.region == Region::kAll ? "is every sample a hole?" : "mark more, or take all");
+    const bool last = k + 1 == sides.size();
+    const double least = std::max(rounding_mm, 1e-12 * arm);
+    std::vector<RigidMotion> starts;
+    if (k == 0) {
+      starts.push_back(stated);
+      if (options.search && options.moves.shift)
+        for (RigidMotion& motion :
+             likelyMotions(maps->first, maps->second,
+                           options.moves.rotation ? options.most_rotation_deg : 0.0, frame.centre, job))
+          starts.push_back(motion);
+    } else {
+      for (const Refined& candidate : candidates) starts.push_back(candidate.motion);
+    }
+    if (job.cancelled()) return cancelled();
+    job.begin("aligning", starts.size());
+    std::vector<Refined> refined;
+    refined.reserve(starts.size());
+    for (const RigidMotion& start : starts) {
+      refined.push_back(refine(*level, start, frame, last ? 60 : 30, least, job));
+      job.advance();
+    }
+    if (job.cancelled()) return cancelled();
+    std::ranges::stable_sort(refined, std::greater<>(), &Refined::gain);
+    // Where shapes repeat, the finer heights decide.
+    refined.resize(std::min<std::size_t>(refined.size(), last ? 1 : 3));
+    candidates = std::move(refined);
+  }
+  const Refined& best = candidates.front();
+  constexpr double kLeastOverlap = 0.05;
+  const double overlap = static_cast<double>(best.common) / static_cast<double>(whole);
+  if (best.common < 12 || overlap < kLeastOverlap)
+    return inputError("A and B have too little in common to be aligned", "B",
+                      "are they scans of one part? --rotation allows a wider search");
+
+  std::vector<Vector6> rows;
+  const std::vector<BlockSum> blocks = blockSums(*level, best, frame, rows);
+  const double rounding = 4.0 * rounding_mm / level->leastSpacing();
+  if (const std::string moves = undecided(blocks, frame, rounding); !moves.empty())
+    return inputError(fmt::format("the surface does not decide {}", moves), "alignment",
+                      options.moves.tilt || options.moves.rotation || options.moves.shift
+                          ? "allow fewer motions, or are A and B scans of different parts?"
+                          : "are A and B scans of different parts?");
+  Matrix6 cross = Matrix6::Zero(), spread = Matrix6::Zero();
+  Alignment result;
+  double squares = 0.0, scores = 0.0, used = 0.0;
+  std::int64_t left_out = 0;
+  for (const BlockSum& block : blocks) {
+    cross += block.cross;
+    squares += block.residuals;
+    scores += block.scores;
+    left_out += block.left_out;
+    result.samples += block.samples;
+    used += block.samples > 0 ? 1.0 : 0.0;
+  }
+  for (const BlockSum& block : blocks)
+    if (block.samples > 0) spread += block.score * block.score.transpose();
+  const auto n = static_cast<double>(frame.free.size());
+  spread *= used / std::max(1.0, used - n);
+  // Independent noise in every sample, as both windows leave it; where block sums scatter by more than that explains,
+  // at three standard errors of theirs, their scatter counts.
+  const double variance = scores / std::max(1.0, static_cast<double>(result.samples));
+  const Matrix6 expected = variance * level->correlatedSum(rows, AlignLevel::Pairs::kAll);
+  const Eigen::MatrixXd in_blocks =
+      freeOf(variance * level->correlatedSum(rows, AlignLevel::Pairs::kWithinBlocks), frame.free);
+  const double excess = in_blocks.ldlt().solve(freeOf(spread, frame.free)).trace() / n;
+  const double factor = excess > 1.0 + 3.0 * std::sqrt(2.0 / (n * std::max(1.0, used - n))) ? excess : 1.0;
+  spread = factor * expected;
+  const Eigen::MatrixXd inverse =
+      freeOf(cross, frame.free)
+          .ldlt()
+          .solve(Eigen::MatrixXd::Identity(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(n)));
+  const Eigen::MatrixXd some = inverse * freeOf(spread, frame.free) * inverse;
+  Matrix6 covariance = Matrix6::Zero();
+  for (std::size_t a = 0; a < frame.free.size(); ++a)
+    for (std::size_t b = 0; b < frame.free.size(); ++b) {
+      const double turned = (frame.free[a] > 2 ? arm : 1.0) * (frame.free[b] > 2 ? arm : 1.0);
+      covariance(frame.free[a], frame.free[b]) =
+          some(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) / turned;
+    }
+  // Of absolute heights again: a point of B at height z was z - base_second here.
+  result.motion = best.motion;
+  result.motion.centre.z = base_first;
+  result.motion.shift +=
+      glm::dvec3(0.0, 0.0, base_first) - best.motion.rotation * glm::dvec3(0.0, 0.0, base_second) +
+      best.motion.rotation * glm::dvec3(0.0, 0.0, base_first) - glm::dvec3(0.0, 0.0, base_first);
+  result.angles = result.motion.angles();
+  for (int a = 0; a < 6; ++a)
+    for (int b = 0; b < 6; ++b) result.covariance[static_cast<std::size_t>(6 * a + b)] = covariance(a, b);
+  // How shift and angles follow a small motion beyond.
+  Matrix6 by;
+  for (int k = 0; k < 6; ++k) {
+    constexpr double kSmall = 1e-6;
+    glm::dvec3 shift(0.0), turn(0.0);
+    (k < 3 ? shift[k] : turn[k - 3]) = kSmall;
+    const RigidMotion more = result.motion.then(shift, turn);
+    const RigidMotion::Angles angles = more.angles();
+    by.col(k) << more.shift.x - result.motion.shift.x, more.shift.y - result.motion.shift.y,
+        more.shift.z - result.motion.shift.z, angles.tilt_x - result.angles.tilt_x,
+        angles.tilt_y - result.angles.tilt_y, angles.rotation_z - result.angles.rotation_z;
+    by.col(k) /= kSmall;
+  }
+  const Matrix6 stated_errors = by * covariance * by.transpose();
+  const auto errorOf = [&](int k) { return std::sqrt(std::max(0.0, stated_errors(k, k))); };
+  result.shift_error = {errorOf(0), errorOf(1), errorOf(2)};
+  result.angle_error = {errorOf(3), errorOf(4), errorOf(5)};
+  result.rms_mm = std::sqrt(squares / std::max(1.0, static_cast<double>(result.samples)));
+  result.overlap = overlap;
+  result.left_out =
+      static_cast<double>(left_out) / static_cast<double>(std::max<std::size_t>(1, best.common));
+  result.sigma_mm = sigma;
+  return result;
+}
+
+Result<Version> movedOnto(const Version& second, const RigidMotion& motion, const Grid& grid,
+                          JobControl& job) {
+  Grid onto = grid;
+  onto.height_per_count = 0.0;
+  Result<FieldBuilder> builder = FieldBuilder::create(onto, "the aligned field");
+  if (!builder) return tl::unexpected(builder.error());
+  const FieldReader from = second.reader();
+  const Grid& other = second.grid();
+  const double unit = other.height_unit.mm, sx = other.spacingXMm(), sy = other.spacingYMm();
+  const glm::dvec3 along = glm::transpose(motion.rotation)[2];
+  const auto middle = heightsAround(second, Region::kAll, job);
+  if (!middle) return tl::unexpected(middle.error());
+  const double start = motion.moved({motion.centre.x, motion.centre.y, middle->middle}).z;
+  const std::int32_t tile_columns = (onto.width + kTileSide - 1) / kTileSide;
+  const std::int64_t tiles = std::int64_t{tile_columns} * ((onto.height + kTileSide - 1) / kTileSide);
+
+  struct Patch {
+    double z = std::numeric_limits<double>::quiet_NaN(), slope_x = 0.0, slope_y = 0.0;
+  };
+  // The bilinear patch at a place of the second field.
+  const auto patchAt = [&](double x, double y) -> Patch {
+    const double u = x / sx, v = y / sy;
+    // A sample on the border is one, whatever rounding makes of its place.
+    constexpr double kSlack = 1e-9;
+    if (!(u >= -kSlack && v >= -kSlack && u <= other.width - 1 + kSlack && v <= other.height - 1 + kSlack))
+      return {};
+    const auto c = std::clamp(static_cast<std::int32_t>(u), 0, std::max(0, other.width - 2)),
+               r = std::clamp(static_cast<std::int32_t>(v), 0, std::max(0, other.height - 2));
+    const auto nearWhole = [](double t) { return std::abs(t - std::round(t)) < 1e-9 ? std::round(t) : t; };
+    const double s = nearWhole(u - c), t = nearWhole(v - r);
+    const std::int32_t right = std::min(c + 1, other.width - 1), above = std::min(r + 1, other.height - 1);
+    const auto height = [&](std::int32_t column, std::int32_t row, double weight) {
+      return weight == 0.0 ? 0.0 : double{from.heightAt(column, row)} * unit;
+    };
+    const double z00 = height(c, r, (1.0 - s) * (1.0 - t)), z10 = height(right, r, s * (1.0 - t)),
+                 z01 = height(c, above, (1.0 - s) * t), z11 = height(right, above, s * t);
+    return {(1.0 - t) * ((1.0 - s) * z00 + s * z10) + t * ((1.0 - s) * z01 + s * z11),
+            ((1.0 - t) * (z10 - z00) + t * (z11 - z01)) / sx,
+            ((1.0 - s) * (z01 - z00) + s * (z11 - z10)) / sy};
+  };
+  job.begin("moving the field", static_cast<std::uint64_t>(tiles));
+  tbb::parallel_for(std::int64_t{0}, tiles, [&](std::int64_t i) {
+    if (job.cancelled()) return;
+    const auto column = static_cast<std::int32_t>(i % tile_columns) * kTileSide,
+               row = static_cast<std::int32_t>(i / tile_columns) * kTileSide;
+    const std::int32_t columns = std::min(kTileSide, onto.width - column),
+                       rows = std::min(kTileSide, onto.height - row);
+    float out[kTileSamples];
+    for (std::int32_t r = 0; r < rows; ++r)
+      for (std::int32_t c = 0; c < columns; ++c) {
+        const glm::dvec3 foot =
+            motion.movedBack({(column + c) * onto.spacingXMm(), (row + r) * onto.spacingYMm(), start});
+        float& z = out[r * kTileSide + c];
+        z = std::numeric_limits<float>::quiet_NaN();
+        // How far above `start` the moved surface is: constant without a tilt, else by steps towards it, which come nearer
+        // as long as the surface does not overhang.
+        double above = 0.0;
+        constexpr int kRounds = 60;
+        for (int round = 0; round < kRounds; ++round) {
+          const glm::dvec3 p = foot + above * along;
+          const Patch patch = patchAt(p.x, p.y);
+          if (std::isnan(patch.z)) break;
+          const double slope = along.z - patch.slope_x * along.x - patch.slope_y * along.y;
+          const double step = (patch.z - p.z) / (slope > 0.05 && round < kRounds / 2 ? slope : along.z);
+          above += step;
+          if (std::abs(step) > 1e-10 * (std::abs(start) + std::abs(above)) &&
+              (along.x != 0.0 || along.y != 0.0))
+            continue;
+          if (slope > 0.0) z = static_cast<float>((start + above) / onto.height_unit.mm);
+          break;
+        }
+      }
+    builder->writeHeights(column, row, columns, rows, out, kTileSide);
+    job.advance();
+  });
+  if (job.cancelled()) return cancelled();
+  return std::move(*builder).build();
+}
+
+}  // namespace fettle::engine

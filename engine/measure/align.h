@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/version.h"
+#include "engine/measure/region.h"
+#include "engine/measure/rigid_motion.h"
+
+namespace fettle::engine {
+
+/// How the second of two fields may be moved. Height is always free.
+struct AlignMoves {
+  bool shift = true;     ///< along x and y
+  bool rotation = true;  ///< about z
+  bool tilt = true;      ///< about x and y
+};
+
+struct AlignOptions {
+  AlignMoves moves;
+  Region region = Region::kAll;     ///< the samples of the first field that count
+  double most_rotation_deg = 10.0;  ///< rotations about z that the search tries, both ways; 0 .. 180
+  /// Whether shift and rotation are searched for over the whole field. Without it the start is where the fields' positions
+  /// place them.
+  bool search = true;
+};
+
+/// A rigid motion that brings a second field onto a first, in millimetres of the first's field coordinates: a point of the
+/// second, in its own field coordinates, is moved to motion.moved(point). The centre is the middle of the first field.
+struct Alignment {
+  RigidMotion motion;
+  RigidMotion::Angles angles;
+  glm::dvec3 shift_error{0.0};      ///< standard errors of motion.shift [mm]
+  RigidMotion::Angles angle_error;  ///< standard errors [degrees]
+  /// Covariance of a shift [mm] and of a turn about the centre [rad] beyond the motion, row-major: x, y, z, about x, y, z.
+  std::array<double, 36> covariance{};
+  double rms_mm = 0.0;  ///< of the smoothed heights' differences that count
+  double overlap =
+      0.0;  ///< share of the first field's samples of the region under which the second has heights
+  double left_out = 0.0;     ///< share of these that do not count: they lie apart
+  std::int64_t samples = 0;  ///< that count
+  double sigma_mm = 0.0;     ///< of the Gaussian window through which both were compared
+};
+
+/// Finds it. Both fields are reduced by means of blocks without spikes (to at most 2^20 heights each, nearly alike spacing), single
+/// spikes become holes, both go through one Gaussian window of 1.25 spacings, and the motion is that of the least sum of
+/// Tukey's biweight of the height differences (Gauss-Newton, from coarse to fine; J. Tukey 1974), so that samples which only
+/// one field has - dust, steps, spikes - do not count, as long as they are fewer than half.
+///
+/// Start: the greatest normalised correlations of what remains without plane, and without waves longer than a tenth of the
+/// field, at all shifts that leave at least a fifth of the smaller field in common and all rotations within the limit
+/// (D. Padfield, Masked object registration in the Fourier domain, 2012). Tilts to about 15 degrees are found.
+///
+/// Standard errors: what independent noise in every sample makes of the motion through both windows (the sandwich of
+/// H. White 1980), of the size that the differences have. Where sums over 12 x 12 blocks scatter by more than that
+/// explains, at three standard errors of their scatter, it counts instead: noise that neighbours share, and shape that
+/// differs. The slopes' part is the product of both fields' slopes, whose noise is independent, so that noise does not
+/// look like shape. A motion that it does not decide - a shift along a cylinder, any on a plane, a turn on a sphere - is
+/// an error that names it, not a number.
+///
+/// Bit-identical for any number of threads. Memory: some 200 bytes for each of the reduced heights. Errors: kInput for fields
+/// without samples, too little overlap, a motion that the surface does not decide; kCancelled. Throws std::bad_alloc.
+/// Thread: any; a long job on all workers of the calling arena.
+[[nodiscard]] Result<Alignment> alignFields(const Version& first, const Version& second,
+                                            const AlignOptions& options, JobControl& job);
+
+/// The second field, moved, at the samples of a grid: the height of its bilinear patches there, rounded to float once, in
+/// the grid's height unit. A hole where the patch has one, outside, and where the moved surface overhangs. No marks.
+/// Errors: kFailed without memory; kCancelled. Thread: as alignFields.
+[[nodiscard]] Result<Version> movedOnto(const Version& second, const RigidMotion& motion, const Grid& grid,
+                                        JobControl& job);
+
+}  // namespace fettle::engine

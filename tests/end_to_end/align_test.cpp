@@ -1,0 +1,98 @@
+// fettle align and compare --align, as a metrologist types them.
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/end_to_end/program.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+// Waves, or what `shape` says, shifted by (x, y) mm, 0.1 mm apart. ESRI ASCII.
+enum class Shape { kWaves, kPlane, kHoles };
+void writeShape(const std::string& path, Shape shape, double x, double y, double up, int side = 90) {
+  std::ofstream out(path);
+  out.precision(9);
+  out << "ncols " << side << "\nnrows " << side
+      << "\nxllcenter 0\nyllcenter 0\ncellsize 0.1\nNODATA_value -9999\n";
+  for (int r = side - 1; r >= 0; --r) {
+    for (int c = 0; c < side; ++c) {
+      const double u = 0.1 * c - x, v = 0.1 * r - y;
+      const double z = shape == Shape::kWaves ? 0.4 * std::sin(0.9 * u + 0.3) * std::cos(0.7 * v) +
+                                                    0.25 * std::sin(1.7 * u - 1.3 * v + 1.0)
+                       : shape == Shape::kPlane ? 0.1 * u
+                                                : -9999.0 - up;
+      out << z + up << ' ';
+    }
+    out << '\n';
+  }
+}
+
+TEST(AlignCommand, FindsAShiftAndWritesTheMovedScan) {
+  const TempFolder folder;
+  const std::string a = folder.file("a.asc"), b = folder.file("b.asc"), out = folder.file("moved.asc");
+  writeShape(a, Shape::kWaves, 0.33, -0.27, 0.5);
+  writeShape(b, Shape::kWaves, 0.0, 0.0, 0.0, 100);
+  const auto report = fettleJson({"align", a, b, out, "--unit", "mm", "--csv", folder.file("m.csv")});
+  EXPECT_NEAR(report["shift_x_mm"], 0.33, 1e-3);
+  EXPECT_NEAR(report["shift_y_mm"], -0.27, 1e-3);
+  EXPECT_NEAR(report["shift_z_mm"], 0.5, 1e-3);
+  EXPECT_NEAR(report["rotation_z_deg"], 0.0, 0.01);
+  EXPECT_GT(report["shift_x_error_mm"].get<double>(), 0.0);
+  EXPECT_NEAR(report["matrix"][3], 0.33, 2e-3);
+  const auto compared = fettleJson({"compare", a, out, "--unit", "mm"});
+  EXPECT_LT(compared["rms"], 2e-3);
+  // One command does the same.
+  const auto at_once = fettleJson({"compare", a, b, "--unit", "mm", "--align", "all"});
+  EXPECT_EQ(at_once["samples"], compared["samples"]);
+  EXPECT_NEAR(at_once["rms"], compared["rms"], 1e-6);
+  EXPECT_EQ(at_once["align"]["shift_x_mm"], report["shift_x_mm"]);
+  std::ifstream csv(folder.file("m.csv"));
+  std::string head, first;
+  std::getline(csv, head);
+  std::getline(csv, first);
+  EXPECT_EQ(head, "figure,value,standard_error,unit");
+  EXPECT_TRUE(first.starts_with("shift_x,0.3"));
+  const Outcome text = fettle({"align", a, b, "--unit", "mm", "--moves", "shift"});
+  EXPECT_NE(text.out.find("shift x     0.33"), std::string::npos) << text.out;
+}
+
+TEST(AlignCommand, SaysWhatItCannotDo) {
+  const TempFolder folder;
+  const std::string a = folder.file("a.asc"), plane = folder.file("p.asc"), holes = folder.file("h.asc"),
+                    out = folder.file("o.asc");
+  writeShape(a, Shape::kWaves, 0.0, 0.0, 0.0);
+  writeShape(plane, Shape::kPlane, 0.0, 0.0, 0.0);
+  writeShape(holes, Shape::kHoles, 0.0, 0.0, 0.0);
+  struct Refusal {
+    std::vector<std::string> words;
+    const char* text;
+  };
+  for (const Refusal& one : {Refusal{{"align", plane, plane, out}, "does not decide"},
+                             {{"align", a, holes, out}, "holds no valid height"},
+                             {{"align", a, a, a}, "would replace an input"},
+                             {{"align", a, a, out, "--marks", "m.png"}, "marks choose nothing"},
+                             {{"align", a, a, out, "--region", "marked"}, "too few"},
+                             {{"align", a, a, "--moves", "level", "--rotation", "5"}, "does not rotate"},
+                             {{"compare", a, a, "--rotation", "5"}, "nothing is aligned"},
+                             {{"compare", a, a, "--region", "marked"}, "nothing is aligned"},
+                             {{"compare", a, a, "--align", "all", "--estimate"}, "not known before"}}) {
+    std::vector<std::string> words = one.words;
+    words.insert(words.end(), {"--unit", "mm"});
+    const Outcome outcome = fettle(words);
+    EXPECT_EQ(outcome.status, 2) << one.text;
+    EXPECT_NE(outcome.err.find(one.text), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(out)) << one.text;
+  }
+  EXPECT_EQ(fettle({"align", plane, plane, out, "--moves", "level", "--unit", "mm"}).status, 0);
+}
+
+}  // namespace
+}  // namespace fettle::tests

@@ -1,0 +1,388 @@
+// Aligning one field to another: known motions of a known surface.
+
+#include "engine/measure/align.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include "engine/compare/compare.h"
+#include "engine/field/builder.h"
+
+namespace fettle::engine {
+namespace {
+
+constexpr double kNoSample = std::numeric_limits<double>::quiet_NaN();
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kAlignSeeds = 5;  // for their paths; shares of 1,000 are counted where they take seconds
+#else
+constexpr int kAlignSeeds = 1000;
+#endif
+
+using ShapeOf = std::function<double(double x, double y)>;
+
+// A part with hills of several sizes, everywhere [mm].
+double hilly(double x, double y) {
+  return 0.4 * std::sin(0.9 * x + 0.3) * std::cos(0.7 * y) + 0.25 * std::sin(1.7 * x - 1.3 * y + 1.0) +
+         0.15 * std::cos(2.9 * y + 0.4 * x * x / 10.0) + 0.1 * std::sin(3.1 * x + 0.2 * y * y / 7.0);
+}
+
+Grid squareGrid(std::int32_t width, std::int32_t height, double spacing_x, double spacing_y) {
+  Grid grid;
+  grid.width = width;
+  grid.height = height;
+  grid.spacing_x = spacing_x;
+  grid.spacing_y = spacing_y;
+  return grid;
+}
+
+// The surface, moved, at the samples of a grid, with noise: reference by bisection, without the product's code.
+Version sampledField(const Grid& grid, const ShapeOf& shape, const RigidMotion& motion, double noise,
+                     std::uint64_t seed, const std::function<double(int, int, double)>& damage = {}) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal(0.0, 1.0);
+  std::vector<float> heights;
+  heights.reserve(static_cast<std::size_t>(grid.samples()));
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      const auto above = [&](double z) {
+        const glm::dvec3 p = motion.movedBack({c * grid.spacing_x, r * grid.spacing_y, z});
+        return p.z - shape(p.x, p.y);
+      };
+      double low = -100.0, high = 100.0;
+      for (int round = 0; round < 60; ++round) {
+        const double middle = 0.5 * (low + high);
+        (above(middle) > 0.0 ? high : low) = middle;
+      }
+      double z = 0.5 * (low + high) + noise * normal(random);
+      if (damage) z = damage(c, r, z);
+      heights.push_back(static_cast<float>(z));
+    }
+  return makeField(grid, heights);
+}
+
+RigidMotion motionOf(const Grid& grid, const glm::dvec3& shift, const glm::dvec3& turn_deg) {
+  const glm::dvec3 middle(0.5 * (grid.width - 1) * grid.spacing_x, 0.5 * (grid.height - 1) * grid.spacing_y,
+                          0.0);
+  return RigidMotion{glm::dmat3(1.0), glm::dvec3(0.0), middle}.then(shift,
+                                                                    turn_deg * (std::numbers::pi / 180.0));
+}
+
+// The largest distance between where both motions take the corners and the middle of a field.
+double apart(const RigidMotion& a, const RigidMotion& b, const Grid& grid) {
+  double most = 0.0;
+  const double x = grid.spacing_x * (grid.width - 1), y = grid.spacing_y * (grid.height - 1);
+  for (const glm::dvec3& p : {glm::dvec3(0, 0, 0), glm::dvec3(x, 0, 0), glm::dvec3(0, y, 0),
+                              glm::dvec3(x, y, 0), glm::dvec3(0.5 * x, 0.5 * y, 0)}) {
+    const glm::dvec3 d = a.moved(p) - b.moved(p);
+    most = std::max(most, std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z));
+  }
+  return most;
+}
+
+TEST(Align, FindsEveryMotionOfAKnownSurface) {
+  const Grid a = squareGrid(120, 100, 0.1, 0.1), b = squareGrid(130, 110, 0.1, 0.1);
+  for (const auto& [shift, turn] : {std::pair{glm::dvec3(0.0), glm::dvec3(0.0)},
+                                    {glm::dvec3(0.537, -0.271, 0.3), glm::dvec3(0.0)},
+                                    {glm::dvec3(0.1, 0.2, -3.0), glm::dvec3(2.0, -1.5, 0.0)},
+                                    {glm::dvec3(-1.23, 0.77, 0.1), glm::dvec3(0.5, 1.0, 7.3)}}) {
+    const RigidMotion truth = motionOf(a, shift, turn);
+    const Version first = sampledField(a, hilly, truth, 0.0, 1), second = sampledField(b, hilly, {}, 0.0, 2);
+    JobControl job;
+    const auto found = alignFields(first, second, {}, job);
+    ASSERT_TRUE(found) << found.error().line();
+    // Both windows smooth the same shape but for its tilt: a thousandth of the spacing.
+    EXPECT_LT(apart(found->motion, truth, b), 2e-4) << turn.z;
+    const auto moved = movedOnto(second, found->motion, a, job);
+    ASSERT_TRUE(moved);
+    const auto deviation = compareFields(first, *moved, job);
+    ASSERT_TRUE(deviation);
+    // A bilinear patch of 0.1 mm is off by 0.1^2 / 8 times the curvature, at most some 4 / mm here.
+    EXPECT_LT(deviation->rms, 4e-3);
+    EXPECT_GT(deviation->samples, a.samples() / 2);
+  }
+}
+
+TEST(Align, FindsShiftsOfMoreThanHalfTheField) {
+  const Grid grid = squareGrid(128, 128, 0.1, 0.1);
+  for (const glm::dvec3& shift :
+       {glm::dvec3(7.0, 0.0, 0.0), glm::dvec3(-6.0, 4.0, 1.0), glm::dvec3(5.5, 5.5, 0.0)}) {
+    const RigidMotion truth = motionOf(grid, shift, {0.3, 0.0, -6.0});
+    JobControl job;
+    const auto found = alignFields(sampledField(grid, hilly, truth, 0.01, 3),
+                                   sampledField(grid, hilly, {}, 0.01, 4), {}, job);
+    ASSERT_TRUE(found) << found.error().line();
+    EXPECT_LT(apart(found->motion, truth, grid), 0.02) << shift.x;
+  }
+}
+
+TEST(Align, FindsAnyRotationWhereItMaySearchForIt) {
+  const Grid grid = squareGrid(110, 110, 0.1, 0.1);
+  for (const double degrees : {35.0, -120.0, 180.0}) {
+    const RigidMotion truth = motionOf(grid, {0.4, -0.3, 0.0}, {0.0, 0.0, degrees});
+    AlignOptions options;
+    options.most_rotation_deg = 180.0;
+    JobControl job;
+    const auto found = alignFields(sampledField(grid, hilly, truth, 0.01, 3),
+                                   sampledField(grid, hilly, {}, 0.01, 4), options, job);
+    ASSERT_TRUE(found) << found.error().line();
+    EXPECT_LT(apart(found->motion, truth, grid), 0.02) << degrees;
+    EXPECT_NEAR(std::remainder(found->angles.rotation_z - degrees, 360.0), 0.0, 0.1);
+  }
+}
+
+TEST(Align, SpikesHolesDustAndUnequalSpacingsDoNotMoveIt) {
+  const Grid a = squareGrid(100, 100, 0.12, 0.12), b = squareGrid(330, 90, 0.04, 0.16);
+  const RigidMotion truth = motionOf(a, {0.35, -0.22, 0.5}, {0.4, -0.3, 2.0});
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  const auto damage = [&](int c, int r, double z) {
+    const double u = share(random);
+    if (u < 0.05) return kNoSample;
+    if (u < 0.06) return 1e6;
+    if (u < 0.065) return -1e6;
+    return c > 60 && c < 75 && r > 20 && r < 40 ? z + 0.5 : z;  // a block that the other lacks
+  };
+  JobControl job;
+  const auto found = alignFields(sampledField(a, hilly, truth, 0.01, 3, damage),
+                                 sampledField(b, hilly, {}, 0.01, 4, damage), {}, job);
+  ASSERT_TRUE(found) << found.error().line();
+  EXPECT_LT(apart(found->motion, truth, b), 0.01);
+  EXPECT_GT(found->left_out, 0.02);
+  EXPECT_LT(found->left_out, 0.2);
+}
+
+TEST(Align, PositionsFarAwayAndOtherUnitsAreTheSame) {
+  Grid a = squareGrid(100, 100, 0.1, 0.1), b = a;
+  const RigidMotion truth = motionOf(a, {0.3, 0.1, 0.0}, {0.0, 0.2, 1.0});
+  const Version first = sampledField(a, hilly, truth, 0.005, 3),
+                second = sampledField(b, hilly, {}, 0.005, 4);
+  JobControl job;
+  const auto plain = alignFields(first, second, {}, job);
+  ASSERT_TRUE(plain);
+  a.origin_x = b.origin_x = 5e6;
+  a.origin_y = b.origin_y = 5e6;
+  const RigidMotion still = motionOf(a, glm::dvec3(0.0), glm::dvec3(0.0));
+  const auto far_away =
+      alignFields(sampledField(a, hilly, truth, 0.005, 3), sampledField(b, hilly, {}, 0.005, 4), {}, job);
+  ASSERT_TRUE(far_away);
+  EXPECT_LT(apart(plain->motion, far_away->motion, a), 1e-9);
+  EXPECT_GT(apart(plain->motion, still, a), 0.3);
+  // The second in micrometres, moved onto the first in millimetres.
+  Grid um = squareGrid(100, 100, 100.0, 100.0);
+  um.lateral_unit = um.height_unit = {"um", 1e-3};
+  std::vector<float> heights;
+  for (int r = 0; r < 100; ++r)
+    for (int c = 0; c < 100; ++c) heights.push_back(second.reader().heightAt(c, r) * 1000.0F);
+  const Version in_um = makeField(um, heights);
+  const auto other = alignFields(first, in_um, {}, job);
+  ASSERT_TRUE(other);
+  EXPECT_LT(apart(plain->motion, other->motion, a), 1e-5);
+  const auto moved = movedOnto(in_um, other->motion, first.grid(), job);
+  ASSERT_TRUE(moved);
+  EXPECT_LT(compareFields(first, *moved, job)->rms, 0.02);
+}
+
+TEST(Align, WhatTheSurfaceDoesNotDecideIsNamed) {
+  const Grid grid = squareGrid(96, 96, 0.1, 0.1);
+  struct Case {
+    const char* name;
+    ShapeOf shape;
+    AlignMoves moves;
+    bool decided;
+    const char* text;
+  };
+  const ShapeOf plane = [](double x, double y) { return 0.1 * x - 0.05 * y; };
+  const ShapeOf cylinder = [](double x, double) { return std::sqrt(144.0 - (x - 4.0) * (x - 4.0)) - 12.0; };
+  const ShapeOf sphere = [](double x, double y) {
+    return std::sqrt(225.0 - (x - 4.0) * (x - 4.0) - (y - 5.0) * (y - 5.0)) - 15.0;
+  };
+  const ShapeOf cone = [](double x, double y) { return -0.3 * std::hypot(x - 4.7, y - 4.8); };
+  for (const Case& one : {Case{"plane", plane, {}, false, "shift"},
+                          {"plane", plane, {false, false, true}, true, ""},
+                          {"cylinder", cylinder, {}, false, "along y"},
+                          {"cylinder", cylinder, {true, false, false}, false, "along y"},
+                          {"sphere", sphere, {}, false, ""},
+                          {"sphere", sphere, {true, true, false}, false, "rotation"},
+                          {"sphere", sphere, {true, false, false}, true, ""},
+                          {"cone", cone, {}, false, "rotation"},
+                          {"cone", cone, {true, false, true}, true, ""},
+                          {"hilly", hilly, {}, true, ""}})
+    for (const double noise : {0.0, 0.003}) {
+      JobControl job;
+      AlignOptions options;
+      options.moves = one.moves;
+      const auto found = alignFields(sampledField(grid, one.shape, {}, noise, 3),
+                                     sampledField(grid, one.shape, {}, noise, 4), options, job);
+      EXPECT_EQ(found.has_value(), one.decided)
+          << one.name << one.moves.shift << one.moves.rotation << one.moves.tilt << ' ' << noise << ' '
+          << (found ? "" : found.error().line());
+      if (!found && !one.decided) {
+        EXPECT_NE(found.error().what.find(one.text), std::string::npos)
+            << one.name << ' ' << found.error().what;
+      }
+    }
+}
+
+TEST(Align, AnotherPartIsRefused) {
+  const Grid grid = squareGrid(96, 96, 0.1, 0.1);
+  const ShapeOf other = [](double x, double y) {
+    return hilly(1.7 * y + 30.0, 1.3 * x - 50.0) + 0.3 * std::sin(2.2 * x);
+  };
+  JobControl job;
+  const auto found =
+      alignFields(sampledField(grid, hilly, {}, 0.01, 3), sampledField(grid, other, {}, 0.01, 4), {}, job);
+  EXPECT_FALSE(found) << found->rms_mm;
+}
+
+TEST(Align, FieldsWithoutHeightsAndOfOneRowAreRefused) {
+  JobControl job;
+  const Grid grid = squareGrid(40, 40, 0.1, 0.1), row = squareGrid(400, 1, 0.1, 0.1);
+  const Version some = sampledField(grid, hilly, {}, 0.0, 1);
+  const Version none = sampledField(grid, hilly, {}, 0.0, 1, [](int, int, double) { return kNoSample; });
+  EXPECT_FALSE(alignFields(some, none, {}, job));
+  EXPECT_FALSE(alignFields(none, some, {}, job));
+  EXPECT_FALSE(alignFields(sampledField(row, hilly, {}, 0.0, 1), some, {}, job));
+  EXPECT_FALSE(alignFields(some, sampledField(row, hilly, {}, 0.0, 1), {}, job));
+  AlignOptions marked;
+  marked.region = Region::kMarked;
+  EXPECT_FALSE(alignFields(some, some, marked, job));
+}
+
+TEST(Align, ThreadsDoNotChangeABit) {
+  const Grid grid = squareGrid(150, 140, 0.1, 0.1);
+  const RigidMotion truth = motionOf(grid, {0.3, 0.1, 0.0}, {0.3, 0.2, 1.0});
+  const Version first = sampledField(grid, hilly, truth, 0.005, 3),
+                second = sampledField(grid, hilly, {}, 0.005, 4);
+  const auto run = [&](int threads) {
+    tbb::task_arena arena(threads);
+    JobControl job;
+    return arena.execute([&] { return alignFields(first, second, {}, job); });
+  };
+  const auto one = run(1), four = run(4);
+  ASSERT_TRUE(one && four);
+  EXPECT_EQ(one->motion.matrix(), four->motion.matrix());
+  EXPECT_EQ(one->covariance, four->covariance);
+}
+
+TEST(Align, ACancelledJobSaysSo) {
+  const Grid grid = squareGrid(64, 64, 0.1, 0.1);
+  JobControl job;
+  job.cancel();
+  const Version field = sampledField(grid, hilly, {}, 0.0, 1);
+  const auto found = alignFields(field, field, {}, job);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().kind, ErrorKind::kCancelled);
+  EXPECT_FALSE(movedOnto(field, {}, grid, job));
+}
+
+TEST(MovedOnto, ThroughNoMotionEveryBitStays) {
+  const Grid grid = squareGrid(70, 66, 0.1, 0.3);
+  const Version field =
+      sampledField(grid, hilly, {}, 0.1, 1, [](int c, int r, double z) { return c == r ? kNoSample : z; });
+  JobControl job;
+  const auto moved = movedOnto(field, {}, grid, job);
+  ASSERT_TRUE(moved);
+  for (int r = 0; r < grid.height; ++r)
+    for (int c = 0; c < grid.width; ++c) {
+      const float was = field.reader().heightAt(c, r), is = moved->reader().heightAt(c, r);
+      EXPECT_TRUE(was == is || (std::isnan(was) && std::isnan(is))) << c << ' ' << r;
+    }
+}
+
+// The table is printed: build/release/tests/engine/measure/measure_test --gtest_filter='AlignUncertainty*'
+TEST(AlignUncertainty, CoversAtOneTwoAndThreeTimes) {
+  struct Case {
+    const char* name;
+    Grid a, b;
+    double noise;
+    bool correlated;
+  };
+  const Grid small = squareGrid(64, 64, 0.1, 0.1);
+  const char* const kNames[] = {"shift x", "shift y", "height", "tilt x", "tilt y", "rotation"};
+  std::printf("%-12s %-10s %6s %6s %6s %11s %11s\n", "", "", "1", "2", "3", "error", "stated");
+  for (const Case& one :
+       {Case{"alike", small, small, 0.01, false},
+        {"1:4", small, squareGrid(150, 45, 0.045, 0.15), 0.02, false},
+        {"shared", squareGrid(100, 100, 0.1, 0.1), squareGrid(100, 100, 0.1, 0.1), 0.01, true}}) {
+    const RigidMotion truth = motionOf(one.a, {0.123, -0.071, 0.2}, {0.3, -0.2, 0.7});
+    const Version clean_a = sampledField(one.a, hilly, truth, 0.0, 1),
+                  clean_b = sampledField(one.b, hilly, {}, 0.0, 1);
+    const auto noisy = [&](const Version& clean, std::uint64_t seed) {
+      const Grid& grid = clean.grid();
+      std::mt19937_64 random(seed);
+      std::normal_distribution<double> normal(0.0, one.noise);
+      std::vector<float> heights;
+      heights.reserve(static_cast<std::size_t>(grid.samples()));
+      for (int r = 0; r < grid.height; ++r)
+        for (int c = 0; c < grid.width; ++c) heights.push_back(static_cast<float>(normal(random)));
+      // Noise of 3 x 3 neighbours, each with its share.
+      std::vector<float> shared = heights;
+      if (one.correlated)
+        for (int r = 1; r + 1 < grid.height; ++r)
+          for (int c = 1; c + 1 < grid.width; ++c) {
+            float sum = 0.0F;
+            for (int j = -1; j <= 1; ++j)
+              for (int i = -1; i <= 1; ++i)
+                sum += heights[static_cast<std::size_t>((r + j) * grid.width + c + i)];
+            shared[static_cast<std::size_t>(r * grid.width + c)] = sum / 3.0F;
+          }
+      for (int r = 0; r < grid.height; ++r)
+        for (int c = 0; c < grid.width; ++c)
+          shared[static_cast<std::size_t>(r * grid.width + c)] += clean.reader().heightAt(c, r);
+      return makeField(grid, shared);
+    };
+    int covered[6][3] = {};
+    double squares[6] = {}, stated[6] = {};
+    for (int seed = 0; seed < kAlignSeeds; ++seed) {
+      AlignOptions options;
+      options.search = false;
+      JobControl job;
+      const auto found = alignFields(noisy(clean_a, 2 * static_cast<std::uint64_t>(seed) + 10),
+                                     noisy(clean_b, 2 * static_cast<std::uint64_t>(seed) + 11), options, job);
+      ASSERT_TRUE(found) << seed << found.error().line();
+      // The same motion about the truth's centre.
+      const glm::dvec3 shift = found->motion.moved(truth.centre) - truth.centre;
+      const RigidMotion::Angles t = truth.angles();
+      const double errors[6] = {shift.x - truth.shift.x,         shift.y - truth.shift.y,
+                                shift.z - truth.shift.z,         found->angles.tilt_x - t.tilt_x,
+                                found->angles.tilt_y - t.tilt_y, found->angles.rotation_z - t.rotation_z};
+      const double says[6] = {found->shift_error.x,      found->shift_error.y,
+                              found->shift_error.z,      found->angle_error.tilt_x,
+                              found->angle_error.tilt_y, found->angle_error.rotation_z};
+      for (int k = 0; k < 6; ++k) {
+        for (int times = 1; times <= 3; ++times)
+          covered[k][times - 1] += std::abs(errors[k]) <= times * says[k] ? 1 : 0;
+        squares[k] += errors[k] * errors[k];
+        stated[k] += says[k] / kAlignSeeds;
+      }
+    }
+    for (int k = 0; k < 6; ++k) {
+      std::printf("%-12s %-10s %6d %6d %6d %11.3e %11.3e\n", one.name, kNames[k], covered[k][0],
+                  covered[k][1], covered[k][2], std::sqrt(squares[k] / kAlignSeeds), stated[k]);
+      if (kAlignSeeds < 1000) continue;
+      if (one.correlated) {
+        // What borders of blocks cut off, and less than a seventh.
+        EXPECT_NEAR(stated[k] / std::sqrt(squares[k] / kAlignSeeds), 1.0, 1.0 / 7.0) << one.name << kNames[k];
+        continue;
+      }
+      // Three standard deviations of a share of 1,000, as the bounds of the shares of Gaussian errors.
+      EXPECT_NEAR(covered[k][0], 683, 45) << one.name << kNames[k];
+      EXPECT_NEAR(covered[k][1], 954, 20) << one.name << kNames[k];
+      EXPECT_GE(covered[k][2], 991) << one.name << kNames[k];
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fettle::engine
