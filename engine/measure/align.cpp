@@ -89,6 +89,10 @@ class AlignLevel {
   }
 
   [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }
+  // About so many of `points` points have noise of their own: their area over that of the window's correlation.
+  [[nodiscard]] double independent(std::size_t points) const noexcept {
+    return static_cast<double>(points) * step_x_ * step_y_ / (4.0 * std::numbers::pi * sigma_ * sigma_);
+  }
   [[nodiscard]] double leastSpacing() const noexcept { return least_spacing_; }
 
   // Sum over pairs of points of x_i x_j r_ij, with the correlation r that the window gives noise which samples do not
@@ -182,6 +186,38 @@ double scaleOf(const std::vector<Under>& under) {
   return kNormal * quantileOf(under, 0.5);
 }
 
+// The size of residuals by slope: on level parts `level`; on steep ones of `sideways` mm across as well, where edges differ
+// or do not lie on each other yet. By one size for all, the few heights of edges, which alone decide a shift of a part
+// of level faces, would count as outliers.
+struct Spread {
+  double level = 0.0, sideways = 0.0;  // [mm]
+
+  [[nodiscard]] double at(const Under& u) const noexcept {
+    return std::sqrt(level * level + sideways * sideways * (u.slope_x * u.slope_x + u.slope_y * u.slope_y));
+  }
+};
+Spread spreadOf(const std::vector<Under>& under, double spacing, double least) {
+  constexpr double kSteep = 3.0, kMore = 1.5;
+  constexpr std::size_t kFewest = 24;
+  Spread spread{std::max(scaleOf(under), least), 0.0};
+  std::vector<Under> steep;
+  std::vector<double> slopes;
+  for (const Under& u : under) {
+    if (std::isnan(u.residual)) continue;
+    const double slope = std::hypot(u.slope_x, u.slope_y);
+    if (!(slope * spacing > kSteep * spread.level)) continue;
+    steep.push_back(u);
+    slopes.push_back(slope);
+  }
+  if (steep.size() < kFewest) return spread;
+  const double size = scaleOf(steep), limit = kMore * spread.level;
+  if (!(size > limit)) return spread;
+  const auto middle = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2);
+  std::ranges::nth_element(slopes, middle);
+  spread.sideways = std::min(std::sqrt(size * size - spread.level * spread.level) / *middle, spacing);
+  return spread;
+}
+
 double medianResidual(const std::vector<Under>& under) {
   std::vector<double> values;
   values.reserve(under.size());
@@ -216,7 +252,7 @@ Frame frameOf(const glm::dvec3& centre, double arm, const AlignMoves& moves) {
 
 struct Refined {
   RigidMotion motion;
-  double scale = 0.0;                                      // of the residuals [mm]
+  Spread spread;                                           // of the residuals
   double gain = -std::numeric_limits<double>::infinity();  // in logarithmic likelihood over a plane
   std::size_t common = 0;
 };
@@ -224,13 +260,13 @@ struct Refined {
 // Gauss-Newton on Tukey's biweight, each round with the scale of its residuals.
 Refined refine(const AlignLevel& level, const RigidMotion& start, const Frame& frame, int rounds,
                double least, JobControl& job) {
-  Refined result{start, 0.0, -std::numeric_limits<double>::infinity(), 0};
+  Refined result{start, {}, -std::numeric_limits<double>::infinity(), 0};
   const auto n = static_cast<Eigen::Index>(frame.free.size());
   if (const double offset = medianResidual(level.under(result.motion)); !std::isnan(offset))
     result.motion.shift.z += offset;
   for (int round = 0; round < rounds && !job.cancelled(); ++round) {
     const std::vector<Under> under = level.under(result.motion);
-    result.scale = std::max(scaleOf(under), least);
+    result.spread = spreadOf(under, level.leastSpacing(), least);
     Matrix6 normal = Matrix6::Zero();
     Vector6 right = Vector6::Zero();
     result.common = 0;
@@ -238,9 +274,10 @@ Refined refine(const AlignLevel& level, const RigidMotion& start, const Frame& f
       const Under& u = under[i];
       if (std::isnan(u.residual)) continue;
       ++result.common;
-      const double x = u.residual / (kTukey * result.scale);
+      const double size = result.spread.at(u), share = result.spread.level / size;
+      const double x = u.residual / (kTukey * size);
       if (std::abs(x) >= 1.0) continue;
-      const double weight = (1.0 - x * x) * (1.0 - x * x);
+      const double weight = share * share * (1.0 - x * x) * (1.0 - x * x);
       const Vector6 row = frame.row(level.points()[i], u.z, u.slope_x, u.slope_y);
       normal += weight * row * row.transpose();
       right += weight * u.residual * row;
@@ -264,10 +301,11 @@ Refined refine(const AlignLevel& level, const RigidMotion& start, const Frame& f
     result.motion =
         result.motion.then({all[0], all[1], all[2]}, glm::dvec3(all[3], all[4], all[5]) / frame.arm);
     // Until a step is a thousandth of its standard error.
-    if (step.dot(some * step) < 1e-6 * result.scale * result.scale * static_cast<double>(n)) break;
+    if (step.dot(some * step) < 1e-6 * result.spread.level * result.spread.level * static_cast<double>(n))
+      break;
   }
   const std::vector<Under> under = level.under(result.motion);
-  result.scale = std::max(scaleOf(under), least);
+  result.spread = spreadOf(under, level.leastSpacing(), least);
   // Against the plane under the same points: what shape explains.
   std::vector<Under> heights = under;
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -317,7 +355,8 @@ std::string movesOf(const Vector6& direction) {
 
 // Block sums at the last motion, over which everything that is stated is taken.
 struct BlockSum {
-  Matrix6 cross = Matrix6::Zero();  // of both fields' slopes
+  // Products of both fields' slopes, of the first's, of the second's.
+  Matrix6 cross = Matrix6::Zero(), first = Matrix6::Zero(), second = Matrix6::Zero();
   Vector6 score = Vector6::Zero();
   double slope = 0.0;  // squares of slopes
   std::int64_t samples = 0, left_out = 0;
@@ -335,21 +374,25 @@ std::vector<BlockSum> blockSums(const AlignLevel& level, const Refined& refined,
     if (std::isnan(u.residual)) continue;
     const Point& point = level.points()[i];
     BlockSum& block = blocks[static_cast<std::size_t>(point.block)];
-    const double x = u.residual / (kTukey * refined.scale);
+    const double size = refined.spread.at(u), share = refined.spread.level / size;
+    const double x = u.residual / (kTukey * size);
     if (std::abs(x) >= 1.0) {
       ++block.left_out;
       continue;
     }
-    const double weight = (1.0 - x * x) * (1.0 - x * x), derivative = (1.0 - x * x) * (1.0 - 5.0 * x * x);
+    const double weight = share * (1.0 - x * x) * (1.0 - x * x);
+    const double derivative = share * share * (1.0 - x * x) * (1.0 - 5.0 * x * x);
     const Vector6 second = frame.row(point, u.z, u.slope_x, u.slope_y);
     const Vector6 first = frame.row(point, point.z, point.slope_x, point.slope_y);
     const Matrix6 product = first * second.transpose();
     block.cross += 0.5 * derivative * (product + product.transpose());
-    block.score += weight * u.residual * second;
+    block.first += derivative * first * first.transpose();
+    block.second += derivative * second * second.transpose();
+    block.score += share * weight * u.residual * second;
     block.slope += derivative * (u.slope_x * point.slope_x + u.slope_y * point.slope_y);
     block.residuals += u.residual * u.residual;
     block.scores += weight * weight * u.residual * u.residual;
-    rows[i] = second;
+    rows[i] = share * second;
     ++block.samples;
   }
   return blocks;
@@ -365,9 +408,12 @@ Eigen::MatrixXd freeOf(const Matrix6& all, const std::vector<int>& free) {
 }
 
 // The directions in which both fields' slopes have no more in common than noise gives, or than a thousandth of all slopes,
-// as words.
-std::string undecided(const std::vector<BlockSum>& blocks, const Frame& frame, double rounding) {
-  constexpr double kErrors = 5.0, kOfSlopes = 1e-3;
+// as words. In common: the sum of their products is five standard errors, by its scatter from block to block, or, where it
+// comes from a few edges, the slopes' correlation is above a half over `independent` places, at least 50: then noise
+// reaches 0.5 as rarely as 3.5 standard deviations.
+std::string undecided(const std::vector<BlockSum>& blocks, const Frame& frame, double rounding,
+                      double independent) {
+  constexpr double kErrors = 5.0, kOfSlopes = 1e-3, kCorrelation = 0.5, kFewest = 50.0;
   std::string text;
   Matrix6 cross = Matrix6::Zero();
   double samples = 0.0, slopes = 0.0, used = 0.0;
@@ -382,16 +428,20 @@ std::string undecided(const std::vector<BlockSum>& blocks, const Frame& frame, d
     Vector6 direction = Vector6::Zero();
     for (std::size_t a = 0; a < frame.free.size(); ++a)
       direction[frame.free[a]] = eigen.eigenvectors()(static_cast<Eigen::Index>(a), k);
-    double sum = 0.0, squares = 0.0;
+    double sum = 0.0, squares = 0.0, first = 0.0, second = 0.0;
     for (const BlockSum& block : blocks) {
       const double part = direction.dot(block.cross * direction);
+      first += direction.dot(block.first * direction);
+      second += direction.dot(block.second * direction);
       sum += part;
       squares += part * part;
     }
     const double error = std::sqrt(std::max(0.0, squares - sum * sum / std::max(1.0, used)));
     const double least =
         samples * (rounding * rounding + kOfSlopes * kOfSlopes * slopes / std::max(1.0, samples));
-    if (!(sum > kErrors * error || sum > 0.2 * samples) || !(sum > least))
+    const bool alike = independent >= kFewest &&
+                       sum > kCorrelation * std::sqrt(std::max(0.0, first) * std::max(0.0, second));
+    if (!(sum > kErrors * error || alike) || !(sum > least))
       text += (text.empty() ? "" : ", and ") + movesOf(direction);
   }
   return text;
@@ -541,7 +591,8 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
   std::vector<Vector6> rows;
   const std::vector<BlockSum> blocks = blockSums(*level, best, frame, rows);
   const double rounding = 4.0 * rounding_mm / level->leastSpacing();
-  if (const std::string moves = undecided(blocks, frame, rounding); !moves.empty())
+  if (const std::string moves = undecided(blocks, frame, rounding, level->independent(best.common));
+      !moves.empty())
     return inputError(fmt::format("the surface does not decide {}", moves), "alignment",
                       options.moves.tilt || options.moves.rotation || options.moves.shift
                           ? "allow fewer motions, or are A and B scans of different parts?"

@@ -47,7 +47,9 @@ struct Alignment {
 /// Finds it. Both fields are reduced by means of blocks without spikes (to at most 2^20 heights each, nearly alike spacing), single
 /// spikes become holes, both go through one Gaussian window of 1.25 spacings, and the motion is that of the least sum of
 /// Tukey's biweight of the height differences (Gauss-Newton, from coarse to fine; J. Tukey 1974), so that samples which only
-/// one field has - dust, steps, spikes - do not count, as long as they are fewer than half.
+/// one field has - dust, steps, spikes - do not count, as long as they are fewer
+/// than half. On steep places the size of a difference that counts grows with the slope, by at most a spacing across:
+/// edges decide a part of level faces.
 ///
 /// Start: the greatest normalised correlations of what remains without plane, and without waves longer than a tenth of the
 /// field, at all shifts that leave at least a fifth of the smaller field in common and all rotations within the limit

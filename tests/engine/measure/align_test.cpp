@@ -162,6 +162,27 @@ TEST(Align, SpikesHolesDustAndUnequalSpacingsDoNotMoveIt) {
   EXPECT_LT(found->left_out, 0.2);
 }
 
+TEST(Align, FewSteepEdgesDecideAPartOfLevelFaces) {
+  // Three blocks on a plate with rounded edges, of another rounding in each scan, as two spots of light leave them.
+  const auto blocks = [](double round) {
+    return [round](double x, double y) {
+      const auto step = [round](double u) { return 0.5 * (1.0 + std::tanh(u / round)); };
+      const auto block = [&](double x0, double x1, double y0, double y1) {
+        return step(x - x0) * step(x1 - x) * step(y - y0) * step(y1 - y);
+      };
+      return 2.0 * block(2.0, 5.0, 3.0, 9.0) + 1.2 * block(7.0, 11.0, 1.5, 4.0) +
+             0.8 * block(8.0, 10.0, 7.0, 10.5);
+    };
+  };
+  const Grid grid = squareGrid(130, 130, 0.1, 0.1);
+  const RigidMotion truth = motionOf(grid, {0.43, -0.31, 0.2}, {0.1, 0.0, 1.5});
+  JobControl job;
+  const auto found = alignFields(sampledField(grid, blocks(0.08), truth, 0.003, 3),
+                                 sampledField(grid, blocks(0.25), {}, 0.003, 4), {}, job);
+  ASSERT_TRUE(found) << found.error().line();
+  EXPECT_LT(apart(found->motion, truth, grid), 0.02);
+}
+
 TEST(Align, PositionsFarAwayAndOtherUnitsAreTheSame) {
   Grid a = squareGrid(100, 100, 0.1, 0.1), b = a;
   const RigidMotion truth = motionOf(a, {0.3, 0.1, 0.0}, {0.0, 0.2, 1.0});
