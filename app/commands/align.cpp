@@ -100,11 +100,12 @@ void addAlign(Command root, Chosen& chosen) {
       "than half. A motion that the surface does not decide, as a shift along a cylinder, is refused by its "
       "name. "
       "Heights of B between its samples are bilinear; compare both through one filter where that matters.");
-  command.examples({{"fettle align before.tif after.tif", "How the second lies against the first"},
-                    {"fettle align before.tif after.tif moved.tif --moves in-plane --csv motion.csv",
-                     "The second at the samples of the first, without tilting it"},
-                    {"fettle align a.tif b.tif b_on_a.tif --region unmarked --marks wear.png",
-                     "Aligned by what is not worn"}});
+  command.examples(
+      {{"fettle align scan.tif clean.tif", "How the second lies against the first"},
+       {"fettle align scan.tif clean.tif moved.tif --moves in-plane --csv motion.csv",
+        "The second at the samples of the first, without tilting it"},
+       {"fettle align scan.tif clean.tif level.tif --moves level --region unmarked --marks marks.png",
+        "Height and tilt alone, by what is not marked"}});
 }
 
 }  // namespace fettle::app

@@ -206,7 +206,7 @@ void addCompare(Command root, Chosen& chosen) {
   command.examples({{"fettle compare scan.tif clean.tif", "Deviation figures, Sq and Sa"},
                     {"fettle compare scan.tif clean.tif --truth truth.tif --edges edges.png",
                      "Errors against a known surface, on flats and near edges"},
-                    {"fettle compare nominal.tif part.tif --align all --deviation wear.tif",
+                    {"fettle compare scan.tif clean.tif --align all --deviation wear.tif",
                      "What differs after the second was moved onto the first"}});
 }
 

@@ -35,7 +35,6 @@ constexpr std::size_t kMostPoints = 300'000;
 constexpr int kBlocks = 12;  // along x and along y, for the standard errors
 constexpr double kTukey = 4.685;
 constexpr double kNormal = 1.4826;  // of the median of absolute values
-constexpr double kDegree = 180.0 / std::numbers::pi;
 
 // A place of the first map: position, smoothed height and slopes, the block it belongs to.
 struct Point {
