@@ -23,6 +23,9 @@ struct AlignCommand {
 
 engine::Result<Report> align(const AlignCommand& options, engine::JobControl& job) {
   if (auto status = checkAlign(options.how); !status) return tl::unexpected(status.error());
+  if (options.out.empty() && (!options.to.empty() || options.writing.tiff_compression))
+    return engine::inputError("no scan is written", options.to.empty() ? "--compress" : "--to",
+                              "name OUT too");
   if (auto status = checkOutputs(
           {{options.out, OutputKind::kField, options.to}, {options.csv, OutputKind::kText, ".csv"}},
           {options.a, options.b, options.how.marks}, options.replacing, job);

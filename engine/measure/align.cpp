@@ -614,7 +614,9 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
   spread *= used / std::max(1.0, used - n);
   // Independent noise in every sample, as both windows leave it; where block sums scatter by more than that explains,
   // at three standard errors of theirs, their scatter counts.
-  const double variance = scores / std::max(1.0, static_cast<double>(result.samples));
+  // Two alike files still have heights that were rounded to float.
+  const double variance =
+      std::max(scores / std::max(1.0, static_cast<double>(result.samples)), rounding_mm * rounding_mm / 12.0);
   const Matrix6 expected = variance * level->correlatedSum(rows, AlignLevel::Pairs::kAll);
   const Eigen::MatrixXd in_blocks =
       freeOf(variance * level->correlatedSum(rows, AlignLevel::Pairs::kWithinBlocks), frame.free);

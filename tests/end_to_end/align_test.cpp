@@ -81,6 +81,8 @@ TEST(AlignCommand, SaysWhatItCannotDo) {
                              {{"align", a, a, out, "--marks", "m.png"}, "marks choose nothing"},
                              {{"align", a, a, out, "--region", "marked"}, "too few"},
                              {{"align", a, a, "--moves", "level", "--rotation", "5"}, "does not rotate"},
+                             {{"align", a, a, "--compress", "zstd"}, "no scan is written"},
+                             {{"align", a, a, "--to", "tif"}, "no scan is written"},
                              {{"compare", a, a, "--rotation", "5"}, "nothing is aligned"},
                              {{"compare", a, a, "--region", "marked"}, "nothing is aligned"},
                              {{"compare", a, a, "--align", "all", "--estimate"}, "not known before"}}) {
