@@ -8,6 +8,7 @@
 #include "app/commands/scan_options.h"
 #include "app/work/streams.h"
 #include "engine/io/files/atomic_file.h"
+#include "engine/measure/moved_onto.h"
 
 namespace fettle::app {
 

@@ -16,6 +16,7 @@
 #include "engine/compare/compare.h"
 #include "engine/field/piece.h"
 #include "engine/formats/formats.h"
+#include "engine/measure/moved_onto.h"
 
 namespace fettle::app {
 

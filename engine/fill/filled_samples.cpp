@@ -29,7 +29,7 @@ bool mayHaveFilled(const Tile& tile, const Tile& original) {
   return &tile != &original && original.nan_samples > 0 && tile.nan_samples < kTileSamples;
 }
 
-// A copy of the field with change(tile, row, filled bits) applied to tiles with filled samples; bounds are made anew.
+// A copy of the field with change(tile, row, filled bits) applied to tiles with filled samples; bounds are computed again.
 template <typename Change>
 Result<Version> changed(const Version& field, const Version& original, const char* stage, JobControl& job,
                         const Change& change) {

@@ -5,20 +5,16 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <Eigen/Dense>
 #include <glm/geometric.hpp>
-#include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
-#include "engine/compare/tile_sums.h"
-#include "engine/field/builder.h"
+#include "engine/measure/align_level.h"
 #include "engine/measure/align_search.h"
 #include "engine/measure/height_map.h"
 
@@ -26,28 +22,14 @@ namespace fettle::engine {
 
 namespace {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Point = AlignLevel::Point;
+using Under = AlignLevel::Under;
 
+constexpr int kBlocks = AlignLevel::kBlocks;
 constexpr double kSigmas = 1.25;  // of the window, in spacings of the coarser map
 constexpr double kMostPlaces = 1 << 20;
-constexpr std::size_t kMostPoints = 300'000;
-constexpr int kBlocks = 12;  // along x and along y, for the standard errors
 constexpr double kTukey = 4.685;
 constexpr double kNormal = 1.4826;  // of the median of absolute values
-
-// A place of the first map: position, smoothed height and slopes, the block it belongs to.
-struct Point {
-  double x, y, z, slope_x, slope_y;
-  std::int32_t column, row;  // of the places that are used
-  std::int32_t block;
-};
-
-// What a motion makes of the second surface under a point.
-struct Under {
-  double residual = std::numeric_limits<double>::quiet_NaN();  // height of the first less that of the second
-  double slope_x = 0.0, slope_y = 0.0, z = 0.0;                // of the second, moved
-};
 
 // How the height at a point follows a shift x, y, z and a turn about x, y, z that moves the surface.
 Vector6 followed(const glm::dvec3& from_centre, double slope_x, double slope_y) noexcept {
@@ -56,116 +38,6 @@ Vector6 followed(const glm::dvec3& from_centre, double slope_x, double slope_y) 
       -from_centre.x - slope_x * from_centre.z, slope_x * from_centre.y - slope_y * from_centre.x;
   return row;
 }
-
-// One resolution at which two fields are compared.
-class AlignLevel {
- public:
-  AlignLevel(const HeightMap& first, const HeightMap& second, double sigma)
-      : sigma_(sigma), spline_(smoothed(second, sigma, Holes::kFill, Borders::kLeftOut).value) {
-    const SmoothMap smooth = smoothed(first, sigma, Holes::kStay, Borders::kLeftOut);
-    std::size_t count = 0;
-    for (const double z : smooth.value.z) count += std::isnan(z) ? 0 : 1;
-    const std::int32_t stride =
-        std::max(1, static_cast<std::int32_t>(
-                        std::ceil(std::sqrt(static_cast<double>(count) / static_cast<double>(kMostPoints)))));
-    points_.reserve(count);
-    for (std::int32_t r = 0; r < first.height; r += stride)
-      for (std::int32_t c = 0; c < first.width; c += stride) {
-        const std::size_t i = first.index(c, r);
-        if (std::isnan(smooth.value.z[i])) continue;
-        points_.push_back({first.x0 + c * first.spacing_x, first.y0 + r * first.spacing_y, smooth.value.z[i],
-                           smooth.slope_x[i], smooth.slope_y[i], c / stride, r / stride,
-                           (r * kBlocks / first.height) * kBlocks + c * kBlocks / first.width});
-      }
-    least_spacing_ = std::min(first.spacing_x, first.spacing_y);
-    step_x_ = stride * first.spacing_x;
-    step_y_ = stride * first.spacing_y;
-    columns_ = (first.width + stride - 1) / stride;
-    rows_ = (first.height + stride - 1) / stride;
-    for (std::int32_t c = 0; c < columns_; ++c)
-      block_of_column_.push_back(c * stride * kBlocks / first.width);
-    for (std::int32_t r = 0; r < rows_; ++r) block_of_row_.push_back(r * stride * kBlocks / first.height);
-  }
-
-  [[nodiscard]] const std::vector<Point>& points() const noexcept { return points_; }
-  // About so many of `points` points have noise of their own: their area over that of the window's correlation.
-  [[nodiscard]] double independent(std::size_t points) const noexcept {
-    return static_cast<double>(points) * step_x_ * step_y_ / (4.0 * std::numbers::pi * sigma_ * sigma_);
-  }
-  [[nodiscard]] double leastSpacing() const noexcept { return least_spacing_; }
-
-  // Sum over pairs of points of x_i x_j r_ij, with the correlation r that the window gives noise which samples do not
-  // share: exp(-d^2 / 4 sigma^2). All pairs, or those within a block. x of points that do not count are 0.
-  enum class Pairs : std::uint8_t { kAll, kWithinBlocks };
-  [[nodiscard]] Matrix6 correlatedSum(const std::vector<Vector6>& x, Pairs pairs) const {
-    const auto reachOf = [this](double step) { return static_cast<std::int32_t>(5.0 * sigma_ / step); };
-    const auto correlation = [this](double distance) {
-      return std::exp(-0.25 * distance * distance / (sigma_ * sigma_));
-    };
-    const std::size_t places = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-    std::vector<Vector6> all(places, Vector6::Zero()), along(places, Vector6::Zero());
-    const auto at = [this](std::int32_t column, std::int32_t row) {
-      return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
-             static_cast<std::size_t>(column);
-    };
-    const auto together = [pairs](const std::vector<std::int32_t>& block, std::int32_t a, std::int32_t b) {
-      return pairs == Pairs::kAll || block[static_cast<std::size_t>(a)] == block[static_cast<std::size_t>(b)];
-    };
-    for (std::size_t i = 0; i < points_.size(); ++i) all[at(points_[i].column, points_[i].row)] = x[i];
-    const std::int32_t across = reachOf(step_x_), up = reachOf(step_y_);
-    tbb::parallel_for(std::int32_t{0}, rows_, [&](std::int32_t r) {
-      for (std::int32_t c = 0; c < columns_; ++c)
-        for (std::int32_t k = std::max(-across, -c); k <= std::min(across, columns_ - 1 - c); ++k)
-          if (together(block_of_column_, c, c + k))
-            along[at(c, r)] += correlation(k * step_x_) * all[at(c + k, r)];
-    });
-    std::vector<Matrix6> sums(static_cast<std::size_t>(rows_), Matrix6::Zero());
-    tbb::parallel_for(std::int32_t{0}, rows_, [&](std::int32_t r) {
-      for (std::int32_t c = 0; c < columns_; ++c) {
-        Vector6 sum = Vector6::Zero();
-        for (std::int32_t k = std::max(-up, -r); k <= std::min(up, rows_ - 1 - r); ++k)
-          if (together(block_of_row_, r, r + k)) sum += correlation(k * step_y_) * along[at(c, r + k)];
-        sums[static_cast<std::size_t>(r)] += all[at(c, r)] * sum.transpose();
-      }
-    });
-    Matrix6 total = Matrix6::Zero();
-    for (const Matrix6& sum : sums) total += sum;
-    return 0.5 * (total + total.transpose());
-  }
-
-  [[nodiscard]] std::vector<Under> under(const RigidMotion& motion) const {
-    std::vector<Under> out(points_.size());
-    const glm::dvec3 along = glm::transpose(motion.rotation)[2];
-    tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t i) {
-      const Point& point = points_[i];
-      const glm::dvec3 foot = motion.movedBack({point.x, point.y, 0.0});
-      // The height z at which the moved point lies on the second surface, by Newton.
-      double z = point.z;
-      MapSpline::Place place;
-      for (int round = 0; round < 6; ++round) {
-        const glm::dvec3 p = foot + z * along;
-        place = spline_.at(p.x, p.y);
-        if (!place.there) return;
-        const double slope = along.z - place.slope_x * along.x - place.slope_y * along.y;
-        if (!(slope > 0.05)) return;
-        const double step = (place.z - p.z) / slope;
-        z += step;
-        if (std::abs(step) < 1e-12 * (1.0 + std::abs(z)) || (along.x == 0.0 && along.y == 0.0)) break;
-      }
-      const glm::dvec3 normal = motion.rotation * glm::dvec3(-place.slope_x, -place.slope_y, 1.0);
-      if (!(normal.z > 0.05)) return;
-      out[i] = {point.z - z, -normal.x / normal.z, -normal.y / normal.z, z};
-    });
-    return out;
-  }
-
- private:
-  double sigma_ = 0.0, step_x_ = 1.0, step_y_ = 1.0, least_spacing_ = 1.0;
-  std::int32_t columns_ = 0, rows_ = 0;  // of the places that are used
-  std::vector<std::int32_t> block_of_column_, block_of_row_;
-  MapSpline spline_;
-  std::vector<Point> points_;
-};
 
 // The size of a residual that a share of all does not exceed.
 double quantileOf(const std::vector<Under>& under, double share) {
@@ -471,39 +343,6 @@ Result<Maps> mapsAt(const Version& first, const Version& second, const AlignOpti
   return maps;
 }
 
-double spacingFor(const Grid& grid, double places) noexcept {
-  const double area = grid.spacingXMm() * grid.width * grid.spacingYMm() * grid.height;
-  return std::max({std::sqrt(area / places), grid.spacingXMm(), grid.spacingYMm()});
-}
-
-// The middle height of a field, and a size that nine of ten heights do not exceed [mm]: of blocks, so that spikes of any
-// height do not move them.
-struct HeightsAround {
-  double middle = 0.0, size = 0.0;
-};
-Result<HeightsAround> heightsAround(const Version& field, Region region, JobControl& job) {
-  const Grid& grid = field.grid();
-  const double side = spacingFor(grid, 64.0 * 64.0);
-  const auto blockOf = [side](double spacing, std::int32_t most) {
-    return std::clamp(static_cast<std::int32_t>(std::lround(side / spacing)), 1, most);
-  };
-  const auto map = heightMapOf(field, region, blockOf(grid.spacingXMm(), grid.width),
-                               blockOf(grid.spacingYMm(), grid.height), 0.0, job);
-  if (!map) return tl::unexpected(map.error());
-  std::vector<double> heights;
-  heights.reserve(map->z.size());
-  std::ranges::copy_if(map->z, std::back_inserter(heights), [](double z) { return !std::isnan(z); });
-  if (heights.empty()) return HeightsAround{};
-  const auto at = [&heights](double share) {
-    const auto place =
-        heights.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(heights.size() - 1));
-    std::ranges::nth_element(heights, place);
-    return *place;
-  };
-  const double middle = at(0.5);
-  return HeightsAround{middle, std::max(std::abs(at(0.05)), std::abs(at(0.95)))};
-}
-
 }  // namespace
 
 Result<Alignment> alignFields(const Version& first, const Version& second, const AlignOptions& options,
@@ -667,85 +506,6 @@ Result<Alignment> alignFields(const Version& first, const Version& second, const
       static_cast<double>(left_out) / static_cast<double>(std::max<std::size_t>(1, best.common));
   result.sigma_mm = sigma;
   return result;
-}
-
-Result<Version> movedOnto(const Version& second, const RigidMotion& motion, const Grid& grid,
-                          JobControl& job) {
-  Grid onto = grid;
-  onto.height_per_count = 0.0;
-  Result<FieldBuilder> builder = FieldBuilder::create(onto, "the aligned field");
-  if (!builder) return tl::unexpected(builder.error());
-  const FieldReader from = second.reader();
-  const Grid& other = second.grid();
-  const double unit = other.height_unit.mm, sx = other.spacingXMm(), sy = other.spacingYMm();
-  const glm::dvec3 along = glm::transpose(motion.rotation)[2];
-  const auto middle = heightsAround(second, Region::kAll, job);
-  if (!middle) return tl::unexpected(middle.error());
-  const double start = motion.moved({motion.centre.x, motion.centre.y, middle->middle}).z;
-  const std::int32_t tile_columns = (onto.width + kTileSide - 1) / kTileSide;
-  const std::int64_t tiles = std::int64_t{tile_columns} * ((onto.height + kTileSide - 1) / kTileSide);
-
-  struct Patch {
-    double z = std::numeric_limits<double>::quiet_NaN(), slope_x = 0.0, slope_y = 0.0;
-  };
-  // The bilinear patch at a place of the second field.
-  const auto patchAt = [&](double x, double y) -> Patch {
-    const double u = x / sx, v = y / sy;
-    // A sample on the border is one, whatever rounding makes of its place.
-    constexpr double kSlack = 1e-9;
-    if (!(u >= -kSlack && v >= -kSlack && u <= other.width - 1 + kSlack && v <= other.height - 1 + kSlack))
-      return {};
-    const auto c = std::clamp(static_cast<std::int32_t>(u), 0, std::max(0, other.width - 2)),
-               r = std::clamp(static_cast<std::int32_t>(v), 0, std::max(0, other.height - 2));
-    const auto nearWhole = [](double t) { return std::abs(t - std::round(t)) < 1e-9 ? std::round(t) : t; };
-    const double s = nearWhole(u - c), t = nearWhole(v - r);
-    const std::int32_t right = std::min(c + 1, other.width - 1), above = std::min(r + 1, other.height - 1);
-    const auto height = [&](std::int32_t column, std::int32_t row, double weight) {
-      return weight == 0.0 ? 0.0 : double{from.heightAt(column, row)} * unit;
-    };
-    const double z00 = height(c, r, (1.0 - s) * (1.0 - t)), z10 = height(right, r, s * (1.0 - t)),
-                 z01 = height(c, above, (1.0 - s) * t), z11 = height(right, above, s * t);
-    return {(1.0 - t) * ((1.0 - s) * z00 + s * z10) + t * ((1.0 - s) * z01 + s * z11),
-            ((1.0 - t) * (z10 - z00) + t * (z11 - z01)) / sx,
-            ((1.0 - s) * (z01 - z00) + s * (z11 - z10)) / sy};
-  };
-  job.begin("moving the field", static_cast<std::uint64_t>(tiles));
-  tbb::parallel_for(std::int64_t{0}, tiles, [&](std::int64_t i) {
-    if (job.cancelled()) return;
-    const auto column = static_cast<std::int32_t>(i % tile_columns) * kTileSide,
-               row = static_cast<std::int32_t>(i / tile_columns) * kTileSide;
-    const std::int32_t columns = std::min(kTileSide, onto.width - column),
-                       rows = std::min(kTileSide, onto.height - row);
-    float out[kTileSamples];
-    for (std::int32_t r = 0; r < rows; ++r)
-      for (std::int32_t c = 0; c < columns; ++c) {
-        const glm::dvec3 foot =
-            motion.movedBack({(column + c) * onto.spacingXMm(), (row + r) * onto.spacingYMm(), start});
-        float& z = out[r * kTileSide + c];
-        z = std::numeric_limits<float>::quiet_NaN();
-        // How far above `start` the moved surface is: constant without a tilt, else by steps towards it, which come nearer
-        // as long as the surface does not overhang.
-        double above = 0.0;
-        constexpr int kRounds = 60;
-        for (int round = 0; round < kRounds; ++round) {
-          const glm::dvec3 p = foot + above * along;
-          const Patch patch = patchAt(p.x, p.y);
-          if (std::isnan(patch.z)) break;
-          const double slope = along.z - patch.slope_x * along.x - patch.slope_y * along.y;
-          const double step = (patch.z - p.z) / (slope > 0.05 && round < kRounds / 2 ? slope : along.z);
-          above += step;
-          if (std::abs(step) > 1e-10 * (std::abs(start) + std::abs(above)) &&
-              (along.x != 0.0 || along.y != 0.0))
-            continue;
-          if (slope > 0.0) z = static_cast<float>((start + above) / onto.height_unit.mm);
-          break;
-        }
-      }
-    builder->writeHeights(column, row, columns, rows, out, kTileSide);
-    job.advance();
-  });
-  if (job.cancelled()) return cancelled();
-  return std::move(*builder).build();
 }
 
 }  // namespace fettle::engine

@@ -68,10 +68,4 @@ struct Alignment {
 [[nodiscard]] Result<Alignment> alignFields(const Version& first, const Version& second,
                                             const AlignOptions& options, JobControl& job);
 
-/// The second field, moved, at the samples of a grid: the height of its bilinear patches there, rounded to float once, in
-/// the grid's height unit. A hole where the patch has one, outside, and where the moved surface overhangs. No marks.
-/// Errors: kFailed without memory; kCancelled. Thread: as alignFields.
-[[nodiscard]] Result<Version> movedOnto(const Version& second, const RigidMotion& motion, const Grid& grid,
-                                        JobControl& job);
-
 }  // namespace fettle::engine

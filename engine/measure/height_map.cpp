@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <tbb/blocked_range.h>
@@ -136,6 +137,34 @@ Result<HeightMap> heightMapOf(const Version& field, Region region, std::int32_t 
   });
   if (job.cancelled()) return cancelled();
   return map;
+}
+
+double spacingFor(const Grid& grid, double places) noexcept {
+  const double area = grid.spacingXMm() * grid.width * grid.spacingYMm() * grid.height;
+  return std::max({std::sqrt(area / places), grid.spacingXMm(), grid.spacingYMm()});
+}
+
+Result<HeightsAround> heightsAround(const Version& field, Region region, JobControl& job) {
+  const Grid& grid = field.grid();
+  const double side = spacingFor(grid, 64.0 * 64.0);
+  const auto blockOf = [side](double spacing, std::int32_t most) {
+    return std::clamp(static_cast<std::int32_t>(std::lround(side / spacing)), 1, most);
+  };
+  const auto map = heightMapOf(field, region, blockOf(grid.spacingXMm(), grid.width),
+                               blockOf(grid.spacingYMm(), grid.height), 0.0, job);
+  if (!map) return tl::unexpected(map.error());
+  std::vector<double> heights;
+  heights.reserve(map->z.size());
+  std::ranges::copy_if(map->z, std::back_inserter(heights), [](double z) { return !std::isnan(z); });
+  if (heights.empty()) return HeightsAround{};
+  const auto at = [&heights](double share) {
+    const auto place =
+        heights.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(heights.size() - 1));
+    std::ranges::nth_element(heights, place);
+    return *place;
+  };
+  const double middle = at(0.5);
+  return HeightsAround{middle, std::max(std::abs(at(0.05)), std::abs(at(0.95)))};
 }
 
 void dropSpikes(HeightMap& map) {

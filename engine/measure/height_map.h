@@ -34,6 +34,16 @@ struct HeightMap {
 [[nodiscard]] Result<HeightMap> heightMapOf(const Version& field, Region region, std::int32_t block_x,
                                             std::int32_t block_y, double base, JobControl& job);
 
+/// The spacing of some `places` squares that cover a grid, no less than its own [mm].
+[[nodiscard]] double spacingFor(const Grid& grid, double places) noexcept;
+
+/// The middle height of a field, and a size that nine of ten heights do not exceed [mm]: of blocks, so that spikes of any
+/// height do not move them. 0 for a field of holes. Errors and threads: as heightMapOf.
+struct HeightsAround {
+  double middle = 0.0, size = 0.0;
+};
+[[nodiscard]] Result<HeightsAround> heightsAround(const Version& field, Region region, JobControl& job);
+
 /// Makes holes of the places that lie apart from their eight neighbours, as spikes do: by more than four times the range
 /// of these without the highest and the lowest, and eight times the median of all such distances. Steps, walls and slopes
 /// stay but for the corners of walls.

@@ -18,6 +18,7 @@
 
 #include "engine/compare/compare.h"
 #include "engine/field/builder.h"
+#include "engine/measure/moved_onto.h"
 
 namespace fettle::engine {
 namespace {
