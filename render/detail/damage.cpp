@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 #include <glm/vec4.hpp>
 
 #include "render/config.h"
+#include "render/detail/tile_span.h"
 
 namespace fettle::render {
 namespace {
@@ -101,31 +100,14 @@ class Screen {
   bool holed_ = false;
 };
 
-// Samples of a tile in which heights or marks differ.
+// Samples of a tile in which heights or marks differ; empty where none does.
 Samples changedIn(const engine::TileChange& change) {
-  constexpr int kSide = engine::kTileSide;
-  const engine::Tile &a = *change.before, &b = *change.after;
-  Samples s{glm::ivec2(kSide), glm::ivec2(-1)};
-  for (int r = 0; r < kSide; ++r) {
-    const float* x = a.samples.data() + r * kSide;
-    const float* y = b.samples.data() + r * kSide;
-    int first = kSide, last = -1;
-    if (std::memcmp(x, y, sizeof(float) * kSide) != 0) {
-      first = 0, last = kSide - 1;
-      while (std::memcmp(x + first, y + first, sizeof(float)) == 0) ++first;
-      while (std::memcmp(x + last, y + last, sizeof(float)) == 0) --last;
-    }
-    const std::uint64_t marks = a.marks[static_cast<std::size_t>(r)] ^ b.marks[static_cast<std::size_t>(r)];
-    if (marks != 0) {
-      first = std::min(first, std::countr_zero(marks));
-      last = std::max(last, kSide - 1 - std::countl_zero(marks));
-    }
-    if (last < 0) continue;
-    s.first = glm::min(s.first, glm::ivec2(first, r));
-    s.last = glm::max(s.last, glm::ivec2(last, r));
-  }
-  const glm::ivec2 tile = glm::ivec2(change.tile_column, change.tile_row) * kSide;
-  return {s.first + tile, s.last + tile};
+  TileSpan span = changedHeights(*change.before, *change.after);
+  span.join(changedMarks(*change.before, *change.after));
+  if (span.empty()) return {};
+  const glm::ivec2 tile = glm::ivec2(change.tile_column, change.tile_row) * engine::kTileSide;
+  return {tile + glm::ivec2(span.first_column, span.first_row),
+          tile + glm::ivec2(span.last_column, span.last_row)};
 }
 
 // Position, level, and whether it may hold holes: a patch drawn by another pipeline may differ in the last
@@ -164,9 +146,10 @@ Rectangle damageOf(const DamageQuery& query) {
     for (const gpu::Patch& patch : query.chosen_after->patches) {
       const int level = patch.place.z, stride = 1 << level;
       // A vertex has cells of a stride around it; the vertex of a hole searches one stride farther. A colour
-      // reads its cell and one sample beyond on each side, among the samples that colours come from.
+      // reads its cell and some samples beyond on each side, among those that colours come from.
       const int cells = (screen.holed() ? 2 : 1) * stride;
-      const Samples part = changed.grown(std::max(cells, 3 * q.shade_step)).cut(screen.square(patch));
+      const Samples part =
+          changed.grown(std::max(cells, q.shade_reach * q.shade_step)).cut(screen.square(patch));
       join(damage, screen.pixels(part, std::max(reachOf(level), stride)));
     }
   }

@@ -1,6 +1,5 @@
 #include "render/residency/tile_copy.h"
 
-#include <bit>
 #include <cstring>
 
 #include "shaders/layout.h"
@@ -19,29 +18,6 @@ bool anyMark(const engine::Tile& tile, int column, int row, int shift) noexcept 
 }
 
 }  // namespace
-
-TileSpan changedHeights(const engine::Tile& a, const engine::Tile& b) noexcept {
-  TileSpan span;
-  for (int r = 0; r < engine::kTileSide; ++r) {
-    const float* x = a.samples.data() + r * engine::kTileSide;
-    const float* y = b.samples.data() + r * engine::kTileSide;
-    if (std::memcmp(x, y, sizeof(float) * engine::kTileSide) == 0) continue;
-    int first = 0, last = engine::kTileSide - 1;
-    while (std::memcmp(x + first, y + first, sizeof(float)) == 0) ++first;
-    while (std::memcmp(x + last, y + last, sizeof(float)) == 0) --last;
-    span.join({first, r, last, r});
-  }
-  return span;
-}
-
-TileSpan changedMarks(const engine::Tile& a, const engine::Tile& b) noexcept {
-  TileSpan span;
-  for (int r = 0; r < engine::kTileSide; ++r) {
-    const std::uint64_t d = a.marks[static_cast<std::size_t>(r)] ^ b.marks[static_cast<std::size_t>(r)];
-    if (d != 0) span.join({std::countr_zero(d), r, engine::kTileSide - 1 - std::countl_zero(d), r});
-  }
-  return span;
-}
 
 TilePart partOf(const TileSpan& span, TileKind kind, int shift) noexcept {
   const int up = kind == TileKind::kHeights ? (1 << shift) - 1 : 0;

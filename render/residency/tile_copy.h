@@ -1,9 +1,9 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 
 #include "engine/field/tile.h"
+#include "render/detail/tile_span.h"
 
 namespace fettle::render {
 
@@ -12,24 +12,6 @@ enum class TileKind { kHeights = 0, kMarks = 1 };
 [[nodiscard]] constexpr std::size_t bytesOf(TileKind kind) noexcept {
   return kind == TileKind::kHeights ? sizeof(float) : 1;
 }
-
-/// Samples of a tile, last ones included; empty when last < first.
-struct TileSpan {
-  int first_column = engine::kTileSide, first_row = engine::kTileSide, last_column = -1, last_row = -1;
-  [[nodiscard]] bool empty() const noexcept { return last_column < first_column; }
-  void join(const TileSpan& other) noexcept {
-    first_column = std::min(first_column, other.first_column);
-    first_row = std::min(first_row, other.first_row);
-    last_column = std::max(last_column, other.last_column);
-    last_row = std::max(last_row, other.last_row);
-  }
-  [[nodiscard]] static constexpr TileSpan whole() noexcept {
-    return {0, 0, engine::kTileSide - 1, engine::kTileSide - 1};
-  }
-};
-/// The rectangle in which two states of a tile are not bit-identical.
-[[nodiscard]] TileSpan changedHeights(const engine::Tile& a, const engine::Tile& b) noexcept;
-[[nodiscard]] TileSpan changedMarks(const engine::Tile& a, const engine::Tile& b) noexcept;
 
 /// Part of a tile at one level of the device's copies.
 struct TilePart {
