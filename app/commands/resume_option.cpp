@@ -82,6 +82,15 @@ engine::Error continued(engine::Error error, const std::string& out, std::unique
   return error;
 }
 
+engine::Error stillKept(engine::Error error, const ResumeOptions& options, const std::string& out) {
+  std::error_code unknown;
+  if (!options.resume || error.kind != engine::ErrorKind::kCancelled ||
+      !std::filesystem::exists(keptWorkOf(out), unknown))
+    return error;
+  error.remedy = fmt::format("the same command continues with what is kept in {}", keptWorkOf(out));
+  return error;
+}
+
 void addKept(Report& report, const engine::KeptWork* kept, int passes) {
   if (kept == nullptr) return;
   report["resumed_share"] = kept->shareAtStart(passes);

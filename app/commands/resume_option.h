@@ -37,6 +37,11 @@ void addResumeOptions(Command command, ResumeOptions& options);
 [[nodiscard]] engine::Error continued(engine::Error error, const std::string& out,
                                       std::unique_ptr<engine::KeptWork> kept);
 
+/// An error of the work on `out` before its kept work is opened: where the cancelled run of --resume finds kept work of
+/// an earlier one, the remedy says so. Every other error stays as it is.
+[[nodiscard]] engine::Error stillKept(engine::Error error, const ResumeOptions& options,
+                                      const std::string& out);
+
 /// Adds `resumed_share`, `kept_bytes` and `kept_seconds` to a report; nothing where `kept` is null.
 void addKept(Report& report, const engine::KeptWork* kept, int passes);
 

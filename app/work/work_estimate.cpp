@@ -148,7 +148,7 @@ engine::Result<std::optional<Pieces>> workPieces(const PlannedWork& work, const 
   if (!always && affordable < 64.0) return std::nullopt;
   const std::int32_t largest = std::clamp(static_cast<std::int32_t>(affordable), always ? 192 : 64, 1024);
   Pieces pieces;
-  engine::JobControl own;  // whose stages are not shown
+  engine::JobControl own = engine::JobControl::partOf(job);  // whose stages are not shown
   for (int i = 0; i < 3; ++i) {
     const std::int32_t side = largest >> (2 - i);
     pieces.at[i] = squareAt(grid, (grid.width - side) / 2, (grid.height - side) / 2, side);
@@ -176,8 +176,7 @@ std::string bytesText(std::uint64_t bytes) {
   return value < 1e9 ? fmt::format("{:.0f} MB", value * 1e-6) : fmt::format("{:.1f} GB", value * 1e-9);
 }
 
-// What work may take that its sample did not show [bytes]: measured up to 15 MB for each thread of a filter, 56 MB of a
-// suggestion.
+// What work may take that its sample did not show [bytes]: measured up to 56 MB of a suggestion.
 double unseenMemory() {
   return 64e6 * std::max(1U, std::thread::hardware_concurrency());
 }

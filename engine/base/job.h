@@ -13,6 +13,10 @@ namespace fettle::engine {
 /// step; the join at the end of the job synchronises its result.
 class JobControl {
  public:
+  JobControl() = default;
+  /// A part of `outer`, which outlives it: cancelled with it, but its stages and steps are not those of `outer`.
+  [[nodiscard]] static JobControl partOf(const JobControl& outer) noexcept { return JobControl(&outer); }
+
   /// Starts a stage of `total` steps; steps are whatever the job counts (tiles, rows, bytes).
   /// `name` must be a string literal, e.g. "filtering".
   void begin(const char* name, std::uint64_t total) noexcept {
@@ -23,13 +27,18 @@ class JobControl {
   void advance(std::uint64_t steps = 1) noexcept { done_.fetch_add(steps, std::memory_order_relaxed); }
 
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
-  [[nodiscard]] bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+  [[nodiscard]] bool cancelled() const noexcept {
+    return cancelled_.load(std::memory_order_relaxed) || (outer_ != nullptr && outer_->cancelled());
+  }
 
   [[nodiscard]] const char* stage() const noexcept { return stage_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t done() const noexcept { return done_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t total() const noexcept { return total_.load(std::memory_order_relaxed); }
 
  private:
+  explicit JobControl(const JobControl* outer) noexcept : outer_(outer) {}
+
+  const JobControl* const outer_ = nullptr;
   std::atomic<const char*> stage_{""};
   std::atomic<std::uint64_t> done_{0};
   std::atomic<std::uint64_t> total_{0};

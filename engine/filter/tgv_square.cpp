@@ -42,7 +42,16 @@ void TgvSquare::makeRoom(int columns, int rows) {
   columns_ = columns;
   rows_ = rows;
   stride_ = (columns + 2 * kPad + 15) / 16 * 16;
-  values_.assign(static_cast<std::size_t>(stride_ * (rows + 2) * kArrays), 0.0F);
+  const auto size = static_cast<std::size_t>(stride_ * (rows + 2) * kArrays);
+  if (size > values_.capacity()) {
+    // Room for the largest square at once: squares at the border are smaller, and to grow from one to the next would hold
+    // both.
+    constexpr std::ptrdiff_t kLargest = tgv::kSide + 2 * tgv::kHalo;
+    values_ = {};
+    values_.reserve(std::max(
+        size, static_cast<std::size_t>((kLargest + 2 * kPad + 15) / 16 * 16 * (kLargest + 2) * kArrays)));
+  }
+  values_.assign(size, 0.0F);
   for (int r = -1; r <= rows; ++r)
     std::fill_n(row(r).f - kPad, stride_, std::numeric_limits<float>::quiet_NaN());
 }

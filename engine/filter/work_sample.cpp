@@ -32,15 +32,13 @@ Place placeOf(const TileRect& block) {
 // Works out chosen blocks alone, and measures them.
 class Sampler final : public FilterWork {
  public:
-  Sampler(std::set<Place> chosen, const JobControl& outer, JobControl& own)
-      : chosen_(std::move(chosen)), outer_(outer), own_(own) {}
+  explicit Sampler(std::set<Place> chosen) : chosen_(std::move(chosen)) {}
 
   Result<State> begin(const Version& input) override { return State{0, input}; }
   Status beginPass(const State&) override { return {}; }
   void addMade(std::vector<NewTile>&) override {}
 
   bool isDone(const TileRect& block) override {
-    if (outer_.cancelled()) own_.cancel();
     const std::lock_guard lock(mutex_);
     blocks_.push_back(block);
     if (!chosen_.contains(placeOf(block))) return true;
@@ -71,6 +69,7 @@ class Sampler final : public FilterWork {
       if (share.seconds > 0.0) rate += share.blocks / share.seconds;
     return rate > 0.0 ? 1.0 / rate : 0.0;
   }
+  [[nodiscard]] std::size_t threads() const noexcept { return shares_.size(); }
   // From the first block to the end of the last one.
   [[nodiscard]] double seconds() const {
     double most = 0.0;
@@ -80,8 +79,6 @@ class Sampler final : public FilterWork {
 
  private:
   std::set<Place> chosen_;
-  const JobControl& outer_;
-  JobControl& own_;
   std::mutex mutex_;  // over all below; one block takes milliseconds
   std::vector<TileRect> blocks_, worked_;
   struct Share {
@@ -100,8 +97,8 @@ Result<std::optional<WorkSample>> sampleWork(const FilterSpec& spec, const Apply
   once.passes = 1;
   const int cores = tbb::info::default_concurrency();
   const int threads = spec.threads == 0 ? cores : std::min(spec.threads, cores);
-  JobControl own;
-  Sampler all({}, job, own);
+  JobControl own = JobControl::partOf(job);  // whose stages are not shown
+  Sampler all({});
   const Stopwatch empty_watch;
   const auto seen = apply(once, all, own);
   if (!seen) return tl::unexpected(seen.error());
@@ -123,7 +120,7 @@ Result<std::optional<WorkSample>> sampleWork(const FilterSpec& spec, const Apply
   for (bool enough = false; !enough;) {
     std::set<Place> chosen;
     for (std::size_t i = 0; i < wanted; ++i) chosen.insert(placeOf(blocks[i]));
-    Sampler sampler(std::move(chosen), job, own);
+    Sampler sampler(std::move(chosen));
     const Stopwatch watch;
     auto filtered = apply(once, sampler, own);
     const double whole = watch.seconds();
@@ -144,7 +141,13 @@ Result<std::optional<WorkSample>> sampleWork(const FilterSpec& spec, const Apply
     const std::uint64_t peak = peak_known ? residentMemory().peak : residentMemory().now;
     made += sampler.changed() * sizeof(Tile);
     const std::uint64_t explained = before.now + (made > free ? made - free : 0);
-    if (peak > explained) sample.scratch_bytes = std::max(sample.scratch_bytes, peak - explained);
+    if (peak > explained) {
+      // On a busy machine one thread may have worked out the blocks of all; in a whole field each comes to its turn.
+      const std::uint64_t at_work = std::max<std::uint64_t>(1, sampler.threads());
+      const std::uint64_t of_all =
+          options.on_device ? at_work : std::max<std::uint64_t>(at_work, static_cast<std::uint64_t>(threads));
+      sample.scratch_bytes = std::max(sample.scratch_bytes, (peak - explained) * of_all / at_work);
+    }
     const std::size_t before_now = wanted;
     const double affordable = block > 0.0 ? options.seconds / block : 16.0 * threads;
     // A quarter of the field is a good sample of it.

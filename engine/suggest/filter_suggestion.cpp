@@ -42,8 +42,9 @@ std::vector<FilterCandidate> candidatesFor(double sigma, int threads) {
 }
 
 // Runs a candidate on the sample: its errors and its time.
-Status tryOn(const SyntheticSample& sample, const SampleJudge& judge, FilterCandidate& candidate) {
-  JobControl quiet;
+Status tryOn(const SyntheticSample& sample, const SampleJudge& judge, FilterCandidate& candidate,
+             const JobControl& job) {
+  JobControl quiet = JobControl::partOf(job);
   const Stopwatch watch;
   Version start = sample.scan;
   if (candidate.around_edges) {
@@ -107,7 +108,7 @@ Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionReq
   found.sigma = noise->sigma;
   found.candidates = candidatesFor(finest->sigma, request.threads);
   job.begin("trying filters", found.candidates.size() + 2);
-  JobControl quiet;
+  JobControl quiet = JobControl::partOf(job);
   const Mosaic pieces = makeMosaic(field, noise->sigma);
   const auto sample = makeSyntheticSample(pieces, field.grid(), *noise, findHeightCounts(field), 1, quiet);
   if (!sample) return tl::unexpected(sample.error());
@@ -121,7 +122,7 @@ Result<FilterSuggestion> suggestFilter(const Version& field, const SuggestionReq
   for (std::size_t i = 0; i < found.candidates.size(); ++i) {
     if (job.cancelled()) return cancelled();
     FilterCandidate& c = found.candidates[i];
-    if (auto ok = tryOn(*sample, judge, c); !ok) return tl::unexpected(ok.error());
+    if (auto ok = tryOn(*sample, judge, c, job); !ok) return tl::unexpected(ok.error());
     job.advance();
     c.seconds *= scale;
     const bool affordable = !request.budget_s || c.seconds <= *request.budget_s;

@@ -23,12 +23,12 @@ std::vector<float> heightsOf(const Version& field) {
   return heights;
 }
 
-Result<Version> filtered(const Version& field, double sigma, int threads) {
+Result<Version> filtered(const Version& field, double sigma, int threads, const JobControl& job) {
   FilterSpec spec;
   spec.kind = FilterKind::kGeneralisedVariation;
   spec.range_sigma = sigma;
   spec.threads = threads;
-  JobControl quiet;
+  JobControl quiet = JobControl::partOf(job);
   auto result = applyFilter(field, field, spec, quiet);
   if (!result) return tl::unexpected(result.error());
   return std::move(result->field);
@@ -38,12 +38,10 @@ Result<Version> filtered(const Version& field, double sigma, int threads) {
 
 Result<GainTrial> tryLines(const Version& piece, const EdgeLines& lines, double sigma, std::int32_t column,
                            std::int32_t row, int threads, const JobControl& job) {
-  const auto alone = filtered(piece, sigma, threads);
+  const auto alone = filtered(piece, sigma, threads, job);
   if (!alone) return tl::unexpected(alone.error());
-  if (job.cancelled()) return cancelled();
-  const auto surface = filtered(piece.withLines(lines), sigma, threads);
+  const auto surface = filtered(piece.withLines(lines), sigma, threads, job);
   if (!surface) return tl::unexpected(surface.error());
-  if (job.cancelled()) return cancelled();
   const std::vector<float> heights = heightsOf(piece), truth = heightsOf(*surface), plain = heightsOf(*alone);
 
   const CounterRandom random(kTrialSeed, kTrialStream);
@@ -59,10 +57,9 @@ Result<GainTrial> tryLines(const Version& piece, const EdgeLines& lines, double 
   std::vector<std::uint8_t> marks(heights.size());
   piece.reader().readMarks(0, 0, grid.width, grid.height, marks.data(), grid.width);
   const Version scan = makeField(grid, noisy, marks);
-  const auto without = filtered(scan.withLines(piece.lines()), sigma, threads);
+  const auto without = filtered(scan.withLines(piece.lines()), sigma, threads, job);
   if (!without) return tl::unexpected(without.error());
-  if (job.cancelled()) return cancelled();
-  const auto with = filtered(scan.withLines(lines), sigma, threads);
+  const auto with = filtered(scan.withLines(lines), sigma, threads, job);
   if (!with) return tl::unexpected(with.error());
   const std::vector<float> bare = heightsOf(*without), lined = heightsOf(*with);
   GainTrial trial;

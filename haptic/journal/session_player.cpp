@@ -189,7 +189,7 @@ class Player final : public haptic::AdoptionPort {
     if (base == bases_.end()) return mismatch("a filter without its input field");
     const Version input = base->second;
     const Version original = input.reader().sign() < 0.0F ? original_.inverted() : original_;
-    engine::JobControl own;  // its stages are not this job's
+    engine::JobControl own = engine::JobControl::partOf(job_);  // its stages are not shown
     auto result = engine::applyFilter(input, original, filter.spec, own);
     if (!result) return tl::unexpected(result.error());
     ++played_.filters;

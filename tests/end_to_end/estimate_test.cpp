@@ -38,6 +38,21 @@ TEST(Estimate, ForesawMemoryAndDiskWithinATenthAndTheOrderOfTheTime) {
   }
 }
 
+// Each thread holds a square of generalised variation, 8 MB, and the heap keeps pieces of what was freed.
+TEST(Estimate, OfSquaresInMemoryIsNotBelowWhatTheyTake) {
+  const TempFolder folder;
+  const std::string in = folder.file("s.tif");
+  ASSERT_EQ(fettle({"synth", in, "--size", "2100x2100"}).status, 0);
+  for (const std::string threads : {"1", "2"}) {
+    const auto report =
+        fettleJson({"filter", in, folder.file("o.tif"), "--filter", "tgv", "--threads", threads});
+    const double ratio =
+        report.at("estimate").at("memory_bytes").get<double>() / report.at("peak_memory_bytes").get<double>();
+    EXPECT_GE(ratio, 0.99) << threads << " threads";
+    EXPECT_LE(ratio, 1.4) << threads << " threads";
+  }
+}
+
 TEST(Estimate, KnowsFormatsThatPackAndKeptWork) {
   const TempFolder folder;
   const std::string in = folder.file("s.tif");

@@ -7,8 +7,10 @@
 #include <iterator>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "engine/filter/catalogue.h"
@@ -49,6 +51,24 @@ ProcessOptions endedWith(const std::string& work, std::size_t bytes, int signal)
     if (none || size < bytes) return false;
     kill(pid, signal);
     return true;
+  };
+  return options;
+}
+
+// Interrupts the program as soon as it catches the signal, which is before it reads anything.
+ProcessOptions interruptedAtOnce() {
+  ProcessOptions options;
+  options.while_running = [](int pid) {
+    std::ifstream status(fmt::format("/proc/{}/status", pid));
+    for (std::string word; status >> word;) {
+      if (word != "SigCgt:") continue;
+      unsigned long long caught = 0;
+      status >> std::hex >> caught;
+      if ((caught >> (SIGINT - 1) & 1U) == 0) return false;
+      kill(pid, SIGINT);
+      return true;
+    }
+    return false;
   };
   return options;
 }
@@ -135,6 +155,20 @@ TEST_F(Resume, CtrlCKeepsTheWorkSaysSoAndTheSameCommandContinues) {
   for (const char* key : {"hash", "changed", "max_change", "rms_change"})
     EXPECT_EQ(report.at(key), once.at(key)) << key;
   EXPECT_EQ(filesIn(folder), 3);
+}
+
+// Before the kept work is read again: the scan, its noise and the line before long work come first.
+TEST_F(Resume, CtrlCBeforeTheKeptWorkIsReadStillNamesIt) {
+  const std::string recipe = folder.file("clean.toml"),
+                    named = "cancelled, the same command continues with what is kept in ";
+  std::ofstream(recipe)
+      << "recipe = 1\n[[step]]\ndo = \"invert\"\n[[step]]\ndo = \"filter\"\nfilter = \"tgv\"\n";
+  const std::vector<std::string> applied{"apply", recipe, in, out, "--resume", "--resume-every", "0"};
+  const std::string step = out + ".step2.resume";
+  for (const auto& [again, kept] : {std::pair(command({}), work), std::pair(applied, step)}) {
+    expectFailed(fettle(again, endedWith(kept, 600'000, SIGINT)), named + kept);
+    expectFailed(fettle(again, interruptedAtOnce()), named + kept);
+  }
 }
 
 TEST_F(Resume, AFullDiskIsAWarningAndThenTheErrorOfTheOutputAndNothingIsLost) {

@@ -116,7 +116,7 @@ void appendLineRow(std::string& text, const EdgeLine& line, const EdgePoint& p, 
 
 }  // namespace
 
-Result<std::vector<EdgeLine>> readLineCsv(const InputFile& file, const Grid& grid) {
+Result<std::vector<EdgeLine>> readLineCsv(const InputFile& file, const Grid& grid, const JobControl* job) {
   TextReader reader(file);
   std::string_view text;
   const bool has_header = reader.line(text);
@@ -130,7 +130,7 @@ Result<std::vector<EdgeLine>> readLineCsv(const InputFile& file, const Grid& gri
     return inputError(fmt::format("line 1 is not the header {}", kLineHeader), file.path(),
                       "give lines as docs/formats.md describes them");
   const LineFrame frame = LineFrame::field(grid);
-  LineCollector lines(grid, file.path());
+  LineCollector lines(grid, file.path(), job);
   bool fresh = true;
   for (std::int64_t number = 2; reader.line(text); ++number) {
     if (text.empty()) {

@@ -53,6 +53,7 @@ Status LineCollector::reserve(double more) {
 }
 
 Status LineCollector::add(const EdgePoint& point, const std::string& where) {
+  if (job_ != nullptr && job_->cancelled()) return cancelled();
   const glm::dvec2 p = point.position;
   for (const double number : {p.x, p.y, point.deviation, point.step, point.step_deviation, point.slope_change,
                               point.slope_deviation})

@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 
 #include "engine/base/error.h"
+#include "engine/base/job.h"
 #include "engine/field/edge_line.h"
 #include "engine/field/grid.h"
 
@@ -37,7 +38,9 @@ struct LineFrame {
 /// Collects the lines of a file: checks them and inserts points.
 class LineCollector {
  public:
-  LineCollector(const Grid& grid, const std::string& path) : grid_(grid), path_(path) {}
+  /// `job`, which may be null, cancels add().
+  LineCollector(const Grid& grid, const std::string& path, const JobControl* job = nullptr)
+      : grid_(grid), path_(path), job_(job) {}
 
   void begin(std::int64_t id, bool closed) { lines_.push_back({id, closed, {}}); }
   [[nodiscard]] bool empty() const noexcept { return lines_.empty(); }
@@ -55,6 +58,7 @@ class LineCollector {
 
   const Grid& grid_;
   const std::string& path_;
+  const JobControl* job_;
   std::vector<EdgeLine> lines_;
   double points_ = 0.0;
 };

@@ -170,8 +170,8 @@ bool statesCrs(const InputFile& file) {
 
 class LineLayerReader {
  public:
-  LineLayerReader(const InputFile& file, const Grid& grid, GdalSession& gdal)
-      : path_(file.path()), gdal_(gdal), frame_(LineFrame::world(grid)), lines_(grid, path_) {}
+  LineLayerReader(const InputFile& file, const Grid& grid, GdalSession& gdal, const JobControl* job)
+      : path_(file.path()), gdal_(gdal), frame_(LineFrame::world(grid)), lines_(grid, path_, job) {}
 
   [[nodiscard]] Status read(OGRLayerH layer) {
     OGR_L_ResetReading(layer);
@@ -294,7 +294,8 @@ class LineLayerReader {
 
 }  // namespace
 
-Result<std::vector<EdgeLine>> readLineVectors(const InputFile& file, const Grid& grid) {
+Result<std::vector<EdgeLine>> readLineVectors(const InputFile& file, const Grid& grid,
+                                              const JobControl* job) {
   GdalSession gdal;
   const std::array<const char*, 2> drivers{driverOf(file.extension()), nullptr};
   const DatasetPtr dataset(GDALOpenEx(file.pathForGdal().c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY,
@@ -303,7 +304,7 @@ Result<std::vector<EdgeLine>> readLineVectors(const InputFile& file, const Grid&
     return inputError(fmt::format("the lines cannot be opened: {}",
                                   gdal.reason(fmt::format("it is no {} file", drivers[0]))),
                       file.path(), "the file is cut short, damaged or of another format");
-  LineLayerReader reader(file, grid, gdal);
+  LineLayerReader reader(file, grid, gdal, job);
   for (int i = 0; i < GDALDatasetGetLayerCount(dataset.get()); ++i) {
     OGRLayerH layer = GDALDatasetGetLayer(dataset.get(), i);
     // Definitions of a DXF; where one is used there is a point among the entities.

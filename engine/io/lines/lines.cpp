@@ -39,15 +39,16 @@ std::string_view lineExtensionOf(std::string_view head) noexcept {
   return code == "0" || code == "999" ? ".dxf" : std::string_view();
 }
 
-Result<std::vector<EdgeLine>> importLines(const std::string& path, const Version& field) {
+Result<std::vector<EdgeLine>> importLines(const std::string& path, const Version& field,
+                                          const JobControl* job) {
   if (Status status = checkLineExtension(path); !status) return tl::unexpected(status.error());
   const Result<InputFile> file = InputFile::open(path);
   if (!file) return tl::unexpected(file.error());
   if (file->size() > kLargestLineFile)
     return inputError("a file of lines has at most 1 GiB", path, "divide the file, or leave lines out");
   try {
-    return file->extension() == ".csv" ? readLineCsv(*file, field.grid())
-                                       : readLineVectors(*file, field.grid());
+    return file->extension() == ".csv" ? readLineCsv(*file, field.grid(), job)
+                                       : readLineVectors(*file, field.grid(), job);
   } catch (const std::bad_alloc&) {
     return failure("there is not enough memory for the lines", path);
   }

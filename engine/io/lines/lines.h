@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/error.h"
+#include "engine/base/job.h"
 #include "engine/field/edge_line.h"
 #include "engine/field/grid.h"
 #include "engine/field/version.h"
@@ -42,7 +43,9 @@ inline constexpr std::int64_t kMostLinePoints = std::int64_t{1} << 22;
 /// Errors (kInput): unreadable or damaged file, unknown extension, no line in it, a geometry that is no line, numbers
 /// that are not finite, points farther from the field than it is long, none in it, too many points. Memory: for .csv that of the
 /// points, else some ten times the file, which may have 1 GiB. Thread: any.
-[[nodiscard]] Result<std::vector<EdgeLine>> importLines(const std::string& path, const Version& field);
+/// `job`: kCancelled soon after it is cancelled; a file of another program only once it is opened.
+[[nodiscard]] Result<std::vector<EdgeLine>> importLines(const std::string& path, const Version& field,
+                                                        const JobControl* job = nullptr);
 
 /// Writes edge lines of a field with `grid`, whole or not at all. A file without lines cannot be read back.
 /// Errors: kInput, unknown extension, path that cannot be written, too many points; kFailed, full disk.

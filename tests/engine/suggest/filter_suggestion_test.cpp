@@ -1,14 +1,17 @@
 #include "engine/suggest/filter_suggestion.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <optional>
 #include <set>
 #include <string>
+#include <thread>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "engine/base/stopwatch.h"
 #include "engine/compare/compare.h"
 #include "engine/field/builder.h"
 #include "engine/filter/catalogue.h"
@@ -172,6 +175,39 @@ TEST(FilterSuggestion, RefusesWhatItCannotAnswer) {
   request.tolerance = 0.01;
   job.cancel();
   EXPECT_EQ(suggestFilter(scan.scan, request, job).error().kind, ErrorKind::kCancelled);
+}
+
+// From the time that generalised variation, a second of the trial, is under way: the time after the cancel beside that of
+// the whole, in one run, so that a busy machine slows both.
+TEST(FilterSuggestion, StopsInTheMiddleOfAFilterThatItTries) {
+  const SimulatedScan scan = scanOf("bracket", 1.0);
+  SuggestionRequest request;
+  request.tolerance = 0.01;
+  JobControl whole_job;
+  const Stopwatch whole;
+  ASSERT_TRUE(suggestFilter(scan.scan, request, whole_job));
+  const double seconds = whole.seconds();
+  int cancelled = 0;
+  // At several moments, as one alone may be between two candidates.
+  for (const double share : {0.3, 0.5, 0.7, 0.9}) {
+    JobControl job;
+    const Stopwatch watch;
+    double cancelled_at = 0.0;
+    std::thread canceller([&] {
+      std::this_thread::sleep_for(std::chrono::duration<double>(share * seconds));
+      cancelled_at = watch.seconds();
+      job.cancel();
+    });
+    const auto found = suggestFilter(scan.scan, request, job);
+    const double ended_at = watch.seconds();
+    canceller.join();
+    if (found) continue;  // it was done before
+    ++cancelled;
+    EXPECT_EQ(found.error().kind, ErrorKind::kCancelled);
+    EXPECT_LT(ended_at - cancelled_at, 0.1 * seconds)
+        << "cancelled after " << share << " of " << seconds << " s";
+  }
+  EXPECT_GE(cancelled, 2);
 }
 
 }  // namespace

@@ -413,5 +413,21 @@ TEST(LineImport, BlocksOfADxfAreNotFollowed) {
   expectRefusedLines(path, "no line: Point");
 }
 
+TEST(Lines, ACancelledJobEndsTheReading) {
+  const TempFolder folder;
+  const Version field = fieldOf(gridOf(8, 8));
+  const std::vector<EdgeLine> lines{{0, false, {{.position = {1.0, 1.0}}, {.position = {2.0, 1.0}}}}};
+  for (const std::string_view extension : kLineExtensions) {
+    const std::string path = folder.file("lines" + std::string(extension));
+    ASSERT_TRUE(exportLines(path, lines, field.grid())) << extension;
+    JobControl job;
+    EXPECT_TRUE(importLines(path, field, &job)) << extension;
+    job.cancel();
+    const auto read = importLines(path, field, &job);
+    ASSERT_FALSE(read) << extension;
+    EXPECT_EQ(read.error().kind, ErrorKind::kCancelled) << extension;
+  }
+}
+
 }  // namespace
 }  // namespace fettle::engine
