@@ -6,6 +6,7 @@
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/work/outputs.h"
 #include "app/work/streams.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/measure/moved_onto.h"
@@ -34,9 +35,9 @@ engine::Result<Report> align(const AlignCommand& options, engine::JobControl& jo
     return tl::unexpected(status.error());
   if (auto status = checkCompress(options.writing, {{options.b, options.out, options.to}}); !status)
     return tl::unexpected(status.error());
-  const auto a = loadScan(options.a, options.reading, job);
+  const auto a = loadSamples(options.a, options.reading, job);
   if (!a) return tl::unexpected(a.error());
-  const auto b = loadScan(options.b, options.reading, job);
+  const auto b = loadSamples(options.b, options.reading, job);
   if (!b) return tl::unexpected(b.error());
   const auto alignment = alignmentOf(a->field, b->field, options.a, options.b, options.how, job);
   if (!alignment) return tl::unexpected(alignment.error());
@@ -90,7 +91,8 @@ void addAlign(Command root, Chosen& chosen) {
        {.name = "--to",
         .to = &options->to,
         .text = "With OUT -, standard output: its format, as extension",
-        .kind = ValueKind::kFormat}});
+        .kind = ValueKind::kFormat,
+        .proposed = extensionWords(&engine::FormatInfo::writes)}});
   addForceOption(command, options->replacing);
   addAlignOptions(command, options->how);
   addCompressOption(command, options->writing);

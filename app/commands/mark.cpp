@@ -373,7 +373,8 @@ void addMark(Command root, Chosen& chosen) {
   command.add({{.name = "--to",
                 .to = &options->to,
                 .text = "With - for MARKS, standard output: its format, png or tif, a GeoTIFF",
-                .kind = ValueKind::kText}});
+                .kind = ValueKind::kText,
+                .proposed = {"png", "tif"}}});
   addEstimateOption(command, options->estimate);
   addScanOptions(command, options->reading);
   command.examples({{"fettle mark scan.tif marks.png --edges --lines-out lines.csv",

@@ -3,10 +3,12 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/work/outputs.h"
 #include "app/work/spelling.h"
 #include "engine/field/tile_store.h"
+#include "engine/io/import.h"
 
 namespace fettle::app {
 
@@ -53,7 +55,9 @@ void addScanOptions(Command command, ScanOptions& options) {
           {.name = "--z-scale", .to = &options.z_scale, .text = "Height of one count of the file"},
           {.name = "--unit",
            .to = &options.unit,
-           .text = "Unit of the file's lengths, where it has none: nm, um, mm, cm, m, km, in, ft, ftUS"},
+           .text = fmt::format("Unit of the file's lengths, where it has none: {}",
+                               fmt::join(engine::lengthUnitNames(), ", ")),
+           .proposed = engine::lengthUnitNames()},
           {.name = "--cell-size",
            .to = &options.cell_size,
            .text = "Point clouds: side of a grid cell in the scan's unit"},
@@ -71,6 +75,7 @@ void addScanOptions(Command command, ScanOptions& options) {
            .to = &options.from,
            .text = "Format of standard input (-), as extension, where its content is ambiguous",
            .kind = ValueKind::kFormat,
+           .proposed = extensionWords(&engine::FormatInfo::reads),
            .problem = unreadableFormat},
       },
       kReading);

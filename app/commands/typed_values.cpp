@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "engine/io/import.h"
 #include "engine/scanner/part.h"
@@ -26,7 +27,7 @@ engine::Result<double> parseHeight(const std::string& text, const engine::Grid& 
   const auto unit = engine::lengthUnitFromName(suffix);
   if (!unit)
     return engine::inputError(fmt::format("unknown unit {}", suffix), option,
-                              "take one of nm, um, mm, cm, m, in, ft");
+                              fmt::format("take one of {}", fmt::join(engine::lengthUnitNames(), ", ")));
   return value * unit->mm / grid.height_unit.mm;
 }
 

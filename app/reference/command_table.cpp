@@ -163,6 +163,10 @@ std::vector<std::string> wordsOf(const Parameter& p) {
   return words;
 }
 
+std::vector<std::string> offeredBy(const Parameter& p) {
+  return p.words.empty() ? p.proposed : wordsOf(p);
+}
+
 std::string factsOf(const Parameter& p) {
   std::vector<std::string> facts;
   if (!p.words.empty()) facts.push_back(fmt::format("{}", fmt::join(wordsOf(p), ", ")));

@@ -84,7 +84,9 @@ struct Parameter {
   std::optional<Range> range = {};
   std::string unit = {};         ///< of a number, in the plural: "samples"
   std::vector<Word> words = {};  ///< the only ones that are taken
-  std::string shown = {};        ///< its value in the help instead of that of the kind: "X[,Y]"
+  /// Words that completion offers among others that are taken; `problem` or the command refuses a wrong one.
+  std::vector<std::string> proposed = {};
+  std::string shown = {};  ///< its value in the help instead of that of the kind: "X[,Y]"
   /// What counts where it is not given, in words. Where this is empty, the variable's value at the time at
   /// which the row is added; nothing of an empty text or list.
   std::string otherwise = {};
@@ -138,6 +140,9 @@ inline constexpr const char* kReportGroup = "Report and help";
 
 /// The words that it takes, as typed.
 [[nodiscard]] std::vector<std::string> wordsOf(const Parameter& parameter);
+
+/// The words that completion offers: those that it takes, or the proposed ones.
+[[nodiscard]] std::vector<std::string> offeredBy(const Parameter& parameter);
 
 /// Range, words, default, and what it excludes: "1 to 1001 samples; default 3". May be empty.
 [[nodiscard]] std::string factsOf(const Parameter& parameter);

@@ -12,7 +12,7 @@ namespace {
 enum class Completes : std::uint8_t { kNothing, kWords, kFiles, kFolders };
 
 Completes completes(const Parameter& p) {
-  if (!p.words.empty()) return Completes::kWords;
+  if (!offeredBy(p).empty()) return Completes::kWords;
   switch (p.kind) {
     case ValueKind::kInput:
     case ValueKind::kOutput:
@@ -69,14 +69,14 @@ std::string bashScript(const CommandTable& root) {
     options += fmt::format("    [{}]={}\n", inQuotes(command.path),
                            inQuotes(fmt::format("{}", fmt::join(optionNames(command), " "))));
     for (const Parameter& p : command.parameters) {
-      if (p.positional() && !p.words.empty())
+      if (p.positional() && !offeredBy(p).empty())
         words += fmt::format("    [{}]={}\n", inQuotes(command.path),
-                             inQuotes(fmt::format("{}", fmt::join(wordsOf(p), " "))));
+                             inQuotes(fmt::format("{}", fmt::join(offeredBy(p), " "))));
       if (p.positional() || p.kind == ValueKind::kFlag) continue;
       std::string value;
       switch (completes(p)) {
         case Completes::kWords:
-          value = fmt::format("{} {}", p.between == ',' ? "list" : "words", fmt::join(wordsOf(p), " "));
+          value = fmt::format("{} {}", p.between == ',' ? "list" : "words", fmt::join(offeredBy(p), " "));
           break;
         case Completes::kFiles:
           value = "files";
@@ -151,8 +151,8 @@ std::string zshText(const std::string& text) {
 std::string zshAction(const Parameter& p) {
   switch (completes(p)) {
     case Completes::kWords:
-      return p.between == ',' ? fmt::format("_values -s , word {}", fmt::join(wordsOf(p), " "))
-                              : fmt::format("({})", fmt::join(wordsOf(p), " "));
+      return p.between == ',' ? fmt::format("_values -s , word {}", fmt::join(offeredBy(p), " "))
+                              : fmt::format("({})", fmt::join(offeredBy(p), " "));
     case Completes::kFiles:
       return "_files";
     case Completes::kFolders:
@@ -230,8 +230,9 @@ std::string fishScript(const CommandTable& root) {
     for (const CommandTable& below : command.commands)
       script += fmt::format("{} -f -a {} -d {}\n", head, inQuotes(below.name), inQuotes(below.summary));
     for (const Parameter& p : command.parameters) {
-      if (p.positional() && !p.words.empty())
-        script += fmt::format("{} -f -a {}\n", head, inQuotes(fmt::format("{}", fmt::join(wordsOf(p), " "))));
+      if (p.positional() && !offeredBy(p).empty())
+        script +=
+            fmt::format("{} -f -a {}\n", head, inQuotes(fmt::format("{}", fmt::join(offeredBy(p), " "))));
       if (p.positional()) continue;
       script += fmt::format("{} -l {}", head, p.longName().substr(2));
       if (!p.shortName().empty()) script += fmt::format(" -s {}", p.shortName().substr(1));
@@ -239,8 +240,8 @@ std::string fishScript(const CommandTable& root) {
         case Completes::kWords:
           script += fmt::format(
               " -x -a {}",
-              inQuotes(p.between == ',' ? fmt::format("(__fish_append , {})", fmt::join(wordsOf(p), " "))
-                                        : fmt::format("{}", fmt::join(wordsOf(p), " "))));
+              inQuotes(p.between == ',' ? fmt::format("(__fish_append , {})", fmt::join(offeredBy(p), " "))
+                                        : fmt::format("{}", fmt::join(offeredBy(p), " "))));
           break;
         case Completes::kFiles:
           script += " -r -F";

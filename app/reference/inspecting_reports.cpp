@@ -193,6 +193,7 @@ std::vector<ReportSchema> inspecting() {
             {"multiple_cells", "integer", ""},
             {"lattice", "boolean", "the points were on a grid"}}},
           {"filled?", "integer", "of a session: samples that were filled, not measured"},
+          {"form?", "string", "that lies over a session: mean, plane, poly2 to poly5"},
           {"lines?", "integer", "edge lines of a session"},
           {"at?",
            "[object]",

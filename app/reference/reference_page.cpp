@@ -52,6 +52,7 @@ Report reportOf(const Parameter& p) {
              {"unit", p.unit.empty() ? Report() : Report(p.unit)},
              {"range", Report()},
              {"words", Report::array()},
+             {"proposed", p.proposed},
              {"default", defaultOf(p)},
              {"otherwise", p.otherwise.empty() ? Report() : Report(p.otherwise)},
              {"between", p.between == '\0' ? Report() : Report(std::string(1, p.between))},

@@ -26,6 +26,12 @@ std::vector<std::string> extensionsOf(bool engine::FormatInfo::*able) {
   return all;
 }
 
+std::vector<std::string> extensionWords(bool engine::FormatInfo::*able) {
+  std::vector<std::string> words = extensionsOf(able);
+  for (std::string& word : words) word.erase(0, 1);
+  return words;
+}
+
 std::string withDot(const std::string& extension) {
   return engine::lowerCase(extension.starts_with('.') ? extension : "." + extension);
 }

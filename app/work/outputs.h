@@ -34,6 +34,8 @@ struct Output {
 
 /// The extensions of all formats that can be read (&engine::FormatInfo::reads) or written.
 [[nodiscard]] std::vector<std::string> extensionsOf(bool engine::FormatInfo::*able);
+/// The same as they are typed after --to and --from: without their dots.
+[[nodiscard]] std::vector<std::string> extensionWords(bool engine::FormatInfo::*able);
 
 /// Errors, before anything is read or computed, for outputs that would fail or overwrite something at the
 /// end: an extension without a writer, a folder that is missing or not writable, a target that is a folder or

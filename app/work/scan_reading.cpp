@@ -35,7 +35,7 @@ engine::Result<engine::ImportOptions> importOptions(const ScanOptions& options) 
     import.unit = engine::lengthUnitFromName(options.unit);
     if (!import.unit)
       return engine::inputError(fmt::format("unknown unit {}", options.unit), "--unit",
-                                "take one of nm, um, mm, cm, m, km, in, ft");
+                                fmt::format("take one of {}", fmt::join(engine::lengthUnitNames(), ", ")));
   }
   return import;
 }

@@ -20,19 +20,19 @@ struct KnownUnit {
 
 // The US survey foot is 1200 / 3937 m exactly; the division rounds once.
 const std::array<KnownUnit, 9> kUnits{{
-    {"mm", 1.0, {"mm", "millimetre", "millimeter", "millimetres", "millimeters"}},
-    {"m", 1000.0, {"m", "metre", "meter", "metres", "meters"}},
+    {"nm", 1e-6, {"nm", "nanometre", "nanometer", "nanometres", "nanometers"}},
     {"um",
      1e-3,
      {"um", "\xc2\xb5m", "\xce\xbcm", "micrometre", "micrometer", "micrometres", "micrometers", "micron"}},
-    {"nm", 1e-6, {"nm", "nanometre", "nanometer", "nanometres", "nanometers"}},
+    {"mm", 1.0, {"mm", "millimetre", "millimeter", "millimetres", "millimeters"}},
     {"cm", 10.0, {"cm", "centimetre", "centimeter", "centimetres", "centimeters"}},
+    {"m", 1000.0, {"m", "metre", "meter", "metres", "meters"}},
     {"km", 1e6, {"km", "kilometre", "kilometer", "kilometres", "kilometers"}},
+    {"in", 25.4, {"in", "inch", "inches"}},
     {"ft", 304.8, {"ft", "foot", "feet", "international foot", "foot (international)"}},
     {"ftUS",
      1200000.0 / 3937.0,
      {"ftus", "us survey foot", "us-ft", "foot_us", "us survey feet", "us foot", "ft us"}},
-    {"in", 25.4, {"in", "inch", "inches"}},
 }};
 
 using namespace std::string_view_literals;
@@ -74,6 +74,13 @@ std::optional<LengthUnit> lengthUnitFromName(std::string_view name) {
     for (const std::string_view spelling : unit.spellings)
       if (spelling == lower) return LengthUnit{unit.name, unit.mm};
   return std::nullopt;
+}
+
+std::vector<std::string> lengthUnitNames() {
+  std::vector<std::string> names;
+  names.reserve(kUnits.size());
+  for (const KnownUnit& unit : kUnits) names.emplace_back(unit.name);
+  return names;
 }
 
 LengthUnit lengthUnitFromMetres(double metres, std::string_view name) {

@@ -1,8 +1,13 @@
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "engine/field/builder.h"
 #include "engine/formats/formats.h"
 #include "engine/io/raster/marks.h"
 #include "engine/marks/edge_suggestion.h"
@@ -80,6 +85,42 @@ TEST_F(MarkCommand, marks_can_be_added_to_and_inverted) {
   ASSERT_EQ(fettle({"mark", scan, inverted, "--add", marks, "--invert"}).status, 0);
   const engine::FieldSummary a = engine::summarize(read(marks)), b = engine::summarize(read(inverted));
   EXPECT_EQ(a.marked + b.marked, 300 * 240 - a.no_data);
+}
+
+TEST_F(MarkCommand, marks_are_added_to_those_that_are_made_and_alone_written_in_another_format) {
+  // Left third by hand, in a picture of its own: some of the edges are in it, some are not.
+  std::vector<std::uint8_t> left(300 * 240);
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = i % 300 < 100 ? 1 : 0;
+  std::vector<float> heights(left.size());
+  field.reader().readHeights(0, 0, 300, 240, heights.data(), 300);
+  const engine::Version by_hand = engine::makeField(field.grid(), heights, left);
+  const std::string hand = folder.file("hand.png"), both = folder.file("both.png"),
+                    other = folder.file("hand.tif");
+  ASSERT_TRUE(engine::exportMarks(by_hand, hand));
+  ASSERT_EQ(fettle({"mark", scan, marks, "--edges"}).status, 0);
+  const auto report = fettleJson({"mark", scan, both, "--edges", "--add", hand});
+  const auto alone = fettleJson({"mark", scan, other, "--add", hand});
+  const auto marksOf = [](const engine::Version& marked) {
+    std::vector<std::uint8_t> read(300 * 240);
+    marked.reader().readMarks(0, 0, 300, 240, read.data(), 300);
+    return read;
+  };
+  const std::vector<std::uint8_t> edges = marksOf(read(marks)), added = marksOf(read(both));
+  const std::vector<std::uint8_t> hands = marksOf(read(hand));
+  EXPECT_EQ(marksOf(read(other)), hands);
+  int in_both = 0, in_one = 0;
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    ASSERT_EQ(added[i], edges[i] | hands[i]) << i;
+    in_both += edges[i] & hands[i];
+    in_one += edges[i] ^ hands[i];
+  }
+  EXPECT_GT(in_both, 100);
+  EXPECT_GT(in_one, 1000);
+  EXPECT_EQ(report["marked"], in_both + in_one);
+  EXPECT_EQ(alone["marked"], std::accumulate(hands.begin(), hands.end(), 0));
+  ASSERT_EQ(fettle({"synth", folder.file("small.tif"), "--size", "64x64"}).status, 0);
+  expectRefused(fettle({"mark", folder.file("small.tif"), folder.file("m.png"), "--add", hand}), "hand.png");
+  expectRefused(fettle({"mark", scan, hand, "--edges", "--add", hand}), "hand.png");
 }
 
 TEST_F(MarkCommand, what_cannot_be_done_is_refused) {

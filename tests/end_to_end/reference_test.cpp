@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/end_to_end/program.h"
+#include "tests/end_to_end/shell_line.h"
 #include "tests/support/temp_folder.h"
 
 namespace fettle::tests {
@@ -151,6 +152,11 @@ TEST_F(Reference, BashCompletesCommandsOptionsWordsAndFiles) {
   EXPECT_EQ(completed("fettle filter in.tif out.tif --filter = b"), (Words{"box", "bilateral"}));
   EXPECT_EQ(completed("fettle bench filters --ground h"), Words{"holes"});
   EXPECT_EQ(completed("fettle bench filters --kind tgv,p"), Words{"tgv,planes"});
+  EXPECT_EQ(completed("fettle bench filters --kind = tgv,p"), Words{"tgv,planes"});
+  EXPECT_EQ(completed("fettle info scan.tif --unit f"), (Words{"ft", "ftUS"}));
+  EXPECT_EQ(completed("fettle info - --from = sd"), Words{"sdf"});
+  EXPECT_EQ(completed("fettle convert a.tif - --to as"), Words{"asc"});
+  EXPECT_EQ(completed("fettle mark a.tif - --to ''"), (Words{"png", "tif"}));
   EXPECT_EQ(completed("fettle help rec"), (Words{"recipe", "record"}));
   EXPECT_EQ(completed("fettle nope fil"), Words{});
   EXPECT_EQ(completed("fettle info scan"), Words{"scan one.tif"});
@@ -185,6 +191,49 @@ TEST_F(Reference, FishKnowsTheCommandByItsPlace) {
   EXPECT_NE(offered("fettle --json bench render --sce").find("--scene"), std::string::npos);
   EXPECT_NE(offered("fettle filter a b --filter tg").find("tgv"), std::string::npos);
   EXPECT_NE(offered("fettle bench filters --kind tgv,pl").find("tgv,planes"), std::string::npos);
+}
+
+// What is typed and what Tab makes of it, the same in each shell, in a terminal.
+TEST_F(Reference, EachShellCompletesValuesInATerminal) {
+  const std::vector<std::pair<std::string, std::string>> lines{
+      {"fettle info scan.tif --unit ftU", "fettle info scan.tif --unit ftUS"},
+      {"fettle info scan.tif --unit=k", "fettle info scan.tif --unit=km"},
+      {"fettle info - --from sd", "fettle info - --from sdf"},
+      {"fettle convert scan.tif - --to=asc", "fettle convert scan.tif - --to=asc"},
+      {"fettle compare a.tif b.tif --to x3", "fettle compare a.tif b.tif --to x3p"},
+      {"fettle bench filters --kind tgv,pl", "fettle bench filters --kind tgv,planes"},
+      {"fettle bench filters --kind=tgv,med", "fettle bench filters --kind=tgv,median"},
+      {"fettle measure scan.tif --only hyb", "fettle measure scan.tif --only hybrid"},
+      {"fettle trans", "fettle transform"},
+  };
+  std::vector<std::string> typed;
+  typed.reserve(lines.size());
+  for (const auto& line : lines) typed.push_back(line.first);
+  const std::string scripts = (pages() / "completion").string();
+  const struct {
+    std::vector<std::string> shell, setup;
+  } shells[] = {
+      {{"bash", "--norc", "--noprofile", "-i"},
+       {"source " + scripts + "/fettle.bash",
+        R"(bind -x '"\C-x\C-x": printf "\074%s\076" "$READLINE_LINE"')"}},
+      {{"zsh", "-f", "-i"},
+       {"fpath=(" + scripts + " $fpath)", "autoload -Uz compinit; compinit -u -D",
+        R"(show() { printf '\074%s\076' "$BUFFER" }; zle -N show; bindkey -e; bindkey '^X^X' show)"}},
+      {{"fish", "--no-config", "-i"},
+       {"source " + scripts + "/fettle.fish", R"(bind \cx\cx 'printf "\074%s\076" (commandline)')"}},
+  };
+  int tried = 0;
+  for (const auto& each : shells) {
+    if (runProcess({"sh", "-c", "command -v " + each.shell[0]}).status != 0) continue;
+    ++tried;
+    const std::vector<std::string> completed = completedInTerminal(each.shell, each.setup, typed);
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      // Without the blank that was typed and that of a shell which ends a finished word.
+      const std::string got = completed[k].substr(0, completed[k].find_last_not_of(' ') + 1);
+      EXPECT_EQ(got, lines[k].second) << each.shell[0];
+    }
+  }
+  EXPECT_GT(tried, 0);  // bash is part of every Debian
 }
 
 TEST_F(Reference, EveryExampleRuns) {

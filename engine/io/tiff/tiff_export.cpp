@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -82,14 +83,13 @@ struct Blocks {
   std::int32_t across, down;   // blocks
 };
 
-// Whether the coordinate system states the lateral unit.
-bool crsStatesUnit(const Grid& grid) {
-  if (grid.crs_wkt.empty()) return false;
+// The unit that the coordinate system states.
+std::optional<LengthUnit> unitOfCrs(const Grid& grid) {
+  if (grid.crs_wkt.empty()) return std::nullopt;
   StatedUnits units;
   std::vector<std::string> ignored;
   unitsOfCrs(grid.crs_wkt, grid.origin_y, units, ignored);
-  return units.lateral && (units.lateral->name == "deg" ? grid.lateral_unit.name == "deg"
-                                                        : *units.lateral == grid.lateral_unit);
+  return units.lateral;
 }
 
 tl::unexpected<Error> cannotWrite(const GdalSession& gdal, const std::string& path) {
@@ -112,7 +112,7 @@ Status describe(GDALDatasetH dataset, const Grid& grid, const GdalSession& gdal,
   }
   done = done && GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN()) == CE_None &&
          GDALSetRasterUnitType(band, grid.height_unit.name.c_str()) == CE_None;
-  if (done) writeOwnMetadata(dataset, grid, crsStatesUnit(grid));
+  if (done) writeOwnMetadata(dataset, grid, unitOfCrs(grid));
   if (!done || gdal.failed()) return cannotWrite(gdal, path);
   return {};
 }

@@ -15,6 +15,8 @@ namespace fettle::engine {
 namespace {
 
 constexpr const char* kLateral = "FETTLE_LATERAL_UNIT";
+constexpr const char* kCrsUnit = "FETTLE_CRS_UNIT";
+constexpr const char* kNone = "none";
 constexpr const char* kHeightUnitItem = "FETTLE_HEIGHT_UNIT";
 constexpr const char* kPerCount = "FETTLE_HEIGHT_PER_COUNT";
 constexpr const char* kOrigin = "FETTLE_ORIGIN";
@@ -43,12 +45,27 @@ std::optional<LengthUnit> unitItem(GDALDatasetH dataset, const char* key) {
   return LengthUnit{std::string(text.substr(0, space)), *mm};
 }
 
+// Whether the unit that was noted is that of other coordinates than the file has now. Files of earlier versions do not say
+// which coordinate system they had: of degrees a length is not the unit.
+bool isOfOtherCoordinates(GDALDatasetH dataset, const LengthUnit& of_crs) {
+  const char* then = GDALGetMetadataItem(dataset, kCrsUnit, nullptr);
+  return then != nullptr ? of_crs.name != then : of_crs.name == "deg";
+}
+
+// Degrees differ in length by their latitude.
+bool isStated(const Grid& grid, const std::optional<LengthUnit>& of_crs) {
+  if (!of_crs) return false;
+  return of_crs->name == "deg" ? grid.lateral_unit.name == "deg" : *of_crs == grid.lateral_unit;
+}
+
 }  // namespace
 
-void writeOwnMetadata(GDALDatasetH dataset, const Grid& grid, bool lateral_unit_is_stated) {
+void writeOwnMetadata(GDALDatasetH dataset, const Grid& grid, const std::optional<LengthUnit>& of_crs) {
   const auto text = [](const LengthUnit& unit) { return fmt::format("{} {}", unit.name, unit.mm); };
-  if (!lateral_unit_is_stated)
+  if (!isStated(grid, of_crs)) {
     GDALSetMetadataItem(dataset, kLateral, text(grid.lateral_unit).c_str(), nullptr);
+    GDALSetMetadataItem(dataset, kCrsUnit, of_crs ? of_crs->name.c_str() : kNone, nullptr);
+  }
   GDALSetMetadataItem(dataset, kHeightUnitItem, text(grid.height_unit).c_str(), nullptr);
   if (grid.height_per_count > 0.0)
     GDALSetMetadataItem(dataset, kPerCount, fmt::format("{}", grid.height_per_count).c_str(), nullptr);
@@ -58,9 +75,17 @@ void writeOwnMetadata(GDALDatasetH dataset, const Grid& grid, bool lateral_unit_
                         nullptr);
 }
 
-void readOwnMetadata(GDALDatasetH dataset, StatedUnits& units, Grid& grid,
-                     std::pair<double, double> spacing) {
-  if (auto unit = unitItem(dataset, kLateral)) units.lateral = unit;
+void readOwnMetadata(GDALDatasetH dataset, StatedUnits& units, Grid& grid, std::pair<double, double> spacing,
+                     const std::optional<LengthUnit>& of_crs, std::vector<std::string>& warnings) {
+  if (auto unit = unitItem(dataset, kLateral)) {
+    if (!of_crs || !isOfOtherCoordinates(dataset, *of_crs))
+      units.lateral = unit;
+    else if (unit->name != of_crs->name)
+      warnings.push_back(fmt::format(
+          "the unit {} was noted before the file got its coordinate system, whose unit {} is taken: give "
+          "--unit if that is wrong",
+          unit->name, of_crs->name));
+  }
   if (auto unit = unitItem(dataset, kHeightUnitItem)) units.height = unit;
   if (const char* item = GDALGetMetadataItem(dataset, kPerCount, nullptr); item != nullptr)
     grid.height_per_count = positiveNumber(item).value_or(grid.height_per_count);

@@ -150,7 +150,8 @@ Result<TiffScan> openTiffScan(const InputFile& file, const ImportOptions& option
   if (!grid.crs_wkt.empty())
     unitsOfCrs(grid.crs_wkt, grid.origin_y + 0.5 * height * (units.spacing ? units.spacing->second : 0.0),
                units, warnings);
-  readOwnMetadata(dataset.get(), units, grid, units.spacing.value_or(std::pair{1.0, 1.0}));
+  readOwnMetadata(dataset.get(), units, grid, units.spacing.value_or(std::pair{1.0, 1.0}),
+                  grid.crs_wkt.empty() ? std::nullopt : units.lateral, warnings);
   determineUnits(grid, units, options, warnings);
 
   int has = 0;

@@ -312,6 +312,45 @@ TEST(Tiff, UnitsComeFromTheCoordinateSystem) {
   EXPECT_TRUE(warned(degrees->warnings, "degrees"));
 }
 
+// GDAL's programs keep metadata items and change what these describe.
+TEST(Tiff, TheNotedUnitIsNotThatOfACoordinateSystemWhichTheFileGotLater) {
+  const TempFolder folder;
+  const std::string file = folder.file("t.tif");
+  Grid grid = gridOf(2, 2);
+  grid.origin_x = 10.0;
+  grid.origin_y = 60.0;
+  grid.spacing_x = grid.spacing_y = 0.001;
+  grid.lateral_unit = grid.height_unit = {"um", 1e-3};
+  const auto written = [&](int epsg, const char* crs_unit) {
+    EXPECT_TRUE(save(makeField(grid, {1, 2, 3, 4}), file));
+    GDALDatasetH d = GDALOpen(file.c_str(), GA_Update);
+    if (epsg != 0) setCrs(d, epsg);
+    GDALSetMetadataItem(d, "FETTLE_CRS_UNIT", crs_unit, nullptr);
+    GDALClose(d);
+    return load(file);
+  };
+  // An earlier version wrote no item.
+  for (const char* item : {"none", static_cast<const char*>(nullptr)}) {
+    const auto same = written(0, item), degrees = written(4326, item);
+    ASSERT_TRUE(same && degrees);
+    EXPECT_EQ(same->field.grid().lateral_unit, grid.lateral_unit);
+    EXPECT_FALSE(warned(same->warnings, "noted"));
+    EXPECT_EQ(degrees->field.grid().lateral_unit.name, "deg");
+    EXPECT_TRUE(warned(degrees->warnings, "the unit um was noted before the file got its coordinate system"));
+    EXPECT_EQ(degrees->field.grid().height_unit, grid.height_unit);
+  }
+  const auto metres = written(32632, "none");
+  ASSERT_TRUE(metres);
+  EXPECT_EQ(metres->field.grid().lateral_unit, (LengthUnit{"m", 1000.0}));
+  // A unit that the user gave in spite of the coordinate system stays.
+  const auto given = written(4326, "deg");
+  ASSERT_TRUE(given);
+  EXPECT_EQ(given->field.grid().lateral_unit, grid.lateral_unit);
+  ASSERT_TRUE(save(given->field, folder.file("u.tif")));
+  FETTLE_LOAD(again, folder.file("u.tif"));
+  EXPECT_EQ(again.field.grid(), given->field.grid());
+}
+
 TEST(Tiff, ACoordinateSystemComesBackThroughAnExport) {
   const TempFolder folder;
   for (const int epsg : {32632, 4326, 2225, 28992}) {
