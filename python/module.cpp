@@ -1,6 +1,7 @@
 // The compiled part of the package fettle: scans, calls of commands, sessions. The package itself is written in Python
 // (python/fettle), where its signatures and documentation are.
 
+#include <new>
 #include <string>
 #include <utility>
 
@@ -9,6 +10,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "engine/base/job.h"
+#include "engine/field/seen_field.h"
 #include "engine/field/version.h"
 #include "engine/formats/formats.h"
 #include "python/calls.h"
@@ -40,7 +43,10 @@ std::int64_t holesOf(const Scan& scan) {
 
 std::string hashOf(const Scan& scan) {
   const py::gil_scoped_release released;
-  return fmt::format("{:016x}", engine::contentHash(scan.data.field));
+  engine::JobControl job;
+  const auto stored = engine::restored(scan.data.field, job);
+  if (!stored) throw std::bad_alloc();
+  return fmt::format("{:016x}", engine::contentHash(*stored));
 }
 
 void addScan(py::module_& module) {
@@ -66,6 +72,9 @@ void addScan(py::module_& module) {
              made.data.original = scan.original().inverted();
              return made;
            })
+      .def("form", formOf)
+      .def("samples", samplesOf)
+      .def("under_form", underForm)
       .def("hash", hashOf)
       .def("holes", holesOf)
       .def("has_marks", [](const Scan& scan) { return scan.data.field.reader().root().marked_children != 0; })

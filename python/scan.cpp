@@ -5,14 +5,19 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
+#include "engine/base/job.h"
 #include "engine/field/builder.h"
 #include "engine/field/mark_setter.h"
+#include "engine/field/seen_field.h"
 #include "engine/field/tile.h"
 #include "engine/io/lines/line_frame.h"
+#include "engine/session/form_codec.h"
 #include "python/errors.h"
 
 namespace fettle::python {
@@ -27,7 +32,7 @@ engine::LengthUnit unitOf(const std::string& name) {
   const auto unit = engine::lengthUnitFromName(name);
   if (!unit)
     raise(engine::inputError(fmt::format("unknown unit {}", name), "unit",
-                             "take one of nm, um, mm, cm, m, km, in, ft, ftUS")
+                             fmt::format("take one of {}", fmt::join(engine::lengthUnitNames(), ", ")))
               .value());
   return *unit;
 }
@@ -206,6 +211,53 @@ Scan withLines(const Scan& scan, const std::vector<LineRow>& rows) {
   const py::gil_scoped_release released;
   made.data.field = made.data.field.withLines(std::move(lines));
   return made;
+}
+
+py::bytes formOf(const Scan& scan) {
+  const auto& formed = scan.data.field.seenOf();
+  if (formed == nullptr) return {};
+  engine::PolynomialForm form = *formed->form();
+  if (scan.data.field.reader().sign() < 0.0F) {
+    form.base = -form.base;
+    for (double& coefficient : form.coefficients) coefficient = -coefficient;
+  }
+  return engine::packForm(std::make_shared<const engine::PolynomialForm>(std::move(form)));
+}
+
+Scan samplesOf(const Scan& scan) {
+  engine::Result<Scan> samples = [&]() -> engine::Result<Scan> {
+    const py::gil_scoped_release released;
+    engine::JobControl job;
+    auto field = engine::withoutLayer(scan.data.field, job);
+    if (!field) return tl::unexpected(field.error());
+    auto original = engine::withoutLayer(scan.original(), job);
+    if (!original) return tl::unexpected(original.error());
+    Scan made = scan;
+    made.data.field = *std::move(field);
+    made.data.original = *std::move(original);
+    return made;
+  }();
+  return valueOf(std::move(samples));
+}
+
+Scan underForm(const Scan& scan, const std::string& form) {
+  if (form.empty()) return scan;
+  const auto unpacked = engine::unpackForm(form, scan.grid());
+  if (!unpacked)
+    raise(engine::inputError("these bytes are no form", "form", "give those of another field").value());
+  engine::Result<Scan> seen = [&]() -> engine::Result<Scan> {
+    const py::gil_scoped_release released;
+    engine::JobControl job;
+    const auto field = engine::SeenField::of(scan.data.field.withForm(*unpacked), job);
+    if (!field) return tl::unexpected(field.error());
+    auto original = engine::seenLike(scan.original(), field->seen(), job);
+    if (!original) return tl::unexpected(original.error());
+    Scan made = scan;
+    made.data.field = field->seen();
+    made.data.original = *std::move(original);
+    return made;
+  }();
+  return valueOf(std::move(seen));
 }
 
 }  // namespace fettle::python

@@ -61,4 +61,13 @@ using LineRow = std::tuple<std::int64_t, bool, pybind11::array_t<double>>;
 /// The scan with these lines; with none of an empty list.
 [[nodiscard]] Scan withLines(const Scan& scan, const std::vector<LineRow>& rows);
 
+/// The form that lies over what the scan shows, with its sign applied, as bytes (engine/session/form_codec.h); empty: none.
+[[nodiscard]] pybind11::bytes formOf(const Scan& scan);
+
+/// The samples themselves, without any form over them. Errors: no memory.
+[[nodiscard]] Scan samplesOf(const Scan& scan);
+
+/// The scan as it is seen under a form of formOf(); itself of empty bytes. Errors: other bytes, no memory.
+[[nodiscard]] Scan underForm(const Scan& scan, const std::string& form);
+
 }  // namespace fettle::python

@@ -6,6 +6,8 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "engine/base/job.h"
+#include "engine/field/seen_field.h"
 #include "engine/formats/formats.h"
 #include "engine/history/history.h"
 #include "python/errors.h"
@@ -44,8 +46,13 @@ Scan SessionReader::field(std::int64_t state) const {
   engine::Imported imported;
   imported.field = session_.history.state(state);
   const bool inverted = imported.field.reader().sign() != session_.original.reader().sign();
-  imported.original = inverted ? session_.original.inverted() : session_.original;
+  imported.original =
+      (inverted ? session_.original.inverted() : session_.original).withForm(imported.field.form());
   imported.format = "Fettle";
+  engine::JobControl job;
+  const auto seen = valueOf(engine::SeenField::of(imported.field, job));
+  imported.original = valueOf(seen.at(*imported.original, job)).seen();
+  imported.field = seen.seen();
   return {std::move(imported)};
 }
 

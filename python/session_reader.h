@@ -16,7 +16,7 @@ namespace fettle::python {
 struct SessionStep {
   std::int64_t number = 0;  ///< it led to the state of that number
   std::string name;
-  std::string kind;  ///< "stroke", "filter", "mark", "invert", "import", "lines"
+  std::string kind;  ///< "stroke", "filter", "mark", "invert", "import", "lines", "form"
   std::string time;  ///< UTC, ISO 8601
 };
 

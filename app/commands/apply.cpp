@@ -13,6 +13,8 @@
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
 #include "app/commands/finished_scans.h"
+#include "app/commands/levelling.h"
+#include "app/commands/original_scan.h"
 #include "app/commands/recipe_file.h"
 #include "app/commands/resume_option.h"
 #include "app/commands/scan_files.h"
@@ -29,6 +31,7 @@
 #include "engine/filter/pass.h"
 #include "engine/formats/formats.h"
 #include "engine/measure/form.h"
+#include "engine/measure/line_offsets.h"
 #include "engine/resume/work_identity.h"
 
 namespace fettle::app {
@@ -124,22 +127,22 @@ engine::Status take(const RecipeInvert&, Applied& at, engine::JobControl&) {
 }
 
 engine::Status take(const RecipeLevel& step, Applied& at, engine::JobControl& job) {
-  const auto fit = formOf(at.field, at.task.in, at.imported, step.form, job);
-  if (!fit && fit.error().kind == engine::ErrorKind::kInput && step.form.region != "all")
-    return engine::inputError(fit.error().what, fit.error().where,
+  const auto levelling = levellingOf(at.field, at.task.in, at.imported, step.lines, step.form, job);
+  if (!levelling && levelling.error().kind == engine::ErrorKind::kInput && step.form.region != "all")
+    return engine::inputError(levelling.error().what, levelling.error().where,
                               "let a step that marks come before it, or level by region = \"all\"");
-  if (!fit) return tl::unexpected(fit.error());
-  auto levelled = engine::withoutForm(at.field, fit->form, job);
+  if (!levelling) return tl::unexpected(levelling.error());
+  auto levelled = levelling->takenFrom(at.field, job);
   if (!levelled) return tl::unexpected(levelled.error());
   // Changes are limited from the scan without the same form.
   const bool same_sign = at.original.reader().sign() == at.field.reader().sign();
-  auto original = engine::withoutForm(same_sign ? at.original : at.original.inverted(), fit->form, job);
+  auto original = levelling->takenFrom(same_sign ? at.original : at.original.inverted(), job);
   if (!original) return tl::unexpected(original.error());
   at.field = *std::move(levelled);
   at.original = *std::move(original);
   Report done{{"do", "level"}};
-  addForm(done, step.form, *fit, at.field.grid());
-  done["rms"] = fit->rms;
+  addLevelling(done, step.lines, step.form, *levelling, at.field.grid());
+  done["rms"] = levelling->fit.rms;
   at.steps.push_back(std::move(done));
   return {};
 }
@@ -181,14 +184,25 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
             const engine::Version piece = engine::pieceOf(field, r.column, r.row, r.columns, r.rows);
             engine::FormOptions form = formOptionsOf(level->form);
             form.region = engine::Region::kAll;  // marks of an earlier step are not there yet
-            const auto fit = engine::fitForm(piece, form, own);
+            Levelling levelling;
+            if (!level->lines.rows.empty()) {
+              engine::LineOptions counting = lineOptionsOf(level->lines, level->form);
+              counting.region = engine::Region::kAll;
+              auto lines = engine::findLineOffsets(piece, counting, own);
+              if (!lines && lines.error().kind == engine::ErrorKind::kInput)
+                return engine::Result<engine::Version>(piece);
+              if (!lines) return engine::Result<engine::Version>(tl::unexpected(lines.error()));
+              levelling.lines = *std::move(lines);
+            }
+            auto fit = engine::fitForm(piece, form, own);
             // Of a piece of holes there is none.
             if (!fit && fit.error().kind == engine::ErrorKind::kInput)
               return engine::Result<engine::Version>(piece);
             if (!fit) return engine::Result<engine::Version>(tl::unexpected(fit.error()));
-            // As the step: the scan, and what its changes are limited from.
-            auto levelled = engine::withoutForm(piece, fit->form, own);
-            const auto limit = engine::withoutForm(piece, fit->form, own);
+            levelling.fit = *std::move(fit);
+            // As the step: the scan, and what its changes are limited from; the one without its lines costs as much.
+            auto levelled = levelling.takenFrom(piece, own);
+            const auto limit = levelling.takenFrom(piece, own);
             if (levelled && !limit) return engine::Result<engine::Version>(tl::unexpected(limit.error()));
             return levelled;
           }});
@@ -228,7 +242,15 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
   if (foreseen->only) return *std::move(foreseen->only);
   const engine::Stopwatch watch;
   Applied at{imported->field, original, task, *imported, options};
-  for (std::size_t k = 0; k < recipe.steps.size(); ++k)
+  engine::ExportOptions writing = options.writing;
+  writing.recipe = imported->recipe;
+  bool worked_on = isWorkedOn(*imported);
+  for (std::size_t k = 0; k < recipe.steps.size(); ++k) {
+    // What a session begins with is levelled, too: by a fit that is known only where it is that of an unchanged scan.
+    if (!std::holds_alternative<RecipeLevel>(recipe.steps[k]))
+      worked_on = true;
+    else
+      writing.recipe = worked_on ? "" : recipeTextWith(writing.recipe, recipe.steps[k]);
     if (auto done = std::visit([&](const auto& step) { return take(step, at, job); }, recipe.steps[k]);
         !done) {
       engine::Error error = done.error();
@@ -236,8 +258,8 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
         error.what = fmt::format("step {} of the recipe: {}", k + 1, error.what);
       return tl::unexpected(std::move(error));
     }
+  }
   const double seconds = watch.seconds();
-  engine::ExportOptions writing = options.writing;
   writing.original = at.original;
   if (auto status = saveField(at.field, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
@@ -262,7 +284,12 @@ engine::Result<Report> apply(const ApplyArguments& options, engine::JobControl& 
   if (auto status = checkResume(options.resume, keptTasks(*recipe, *tasks)); !status)
     return tl::unexpected(status.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) {
-    return applyToOne(options, *recipe, task, j);
+    auto done = applyToOne(options, *recipe, task, j);
+    if (done || options.estimate) return done;
+    engine::Error error = done.error();
+    for (std::size_t k = 1; k <= recipe->steps.size(); ++k)
+      error = stillKept(std::move(error), options.resume, keptOutOf(task.out, k));
+    return engine::Result<Report>(tl::unexpected(std::move(error)));
   };
   if (options.files.many()) {
     auto report = runBatch(*tasks, job, one);

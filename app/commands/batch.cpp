@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include "app/terminal.h"
+#include "app/work/open_document.h"
+#include "app/work/outputs.h"
 #include "app/work/streams.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/atomic_file.h"
@@ -87,9 +89,15 @@ void addBatchOptions(Command command, BatchOptions& options) {
        .to = &options.extension,
        .text = "With --out-dir, or - for OUT: format of the output, as extension; without it in a folder "
                "the scan's own, or tif where that cannot be written",
-       .kind = ValueKind::kFormat},
+       .kind = ValueKind::kFormat,
+       .proposed = extensionWords(&engine::FormatInfo::writes)},
   });
   addForceOption(command, options.replacing);
+}
+
+bool writesSession(const BatchTask& task) {
+  // A dot alone with a word is a hidden file's name, and has no extension.
+  return isSessionPath(isStream(task.out) ? "stdout" + withDot(task.to) : task.out);
 }
 
 engine::Result<std::vector<BatchTask>> batchTasks(const BatchOptions& options,

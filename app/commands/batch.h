@@ -28,6 +28,9 @@ struct BatchTask {
   std::string to;   ///< format of an `out` that is "-", as extension
 };
 
+/// Whether a task's output is a session, as a file or to standard output.
+[[nodiscard]] bool writesSession(const BatchTask& task);
+
 /// The tasks, in the order typed. In out_dir a scan keeps its name; its extension is that of `options`,
 /// otherwise its own where that format can be written, otherwise .tif. Refuses before anything is read
 /// (kInput): not exactly IN and OUT without out_dir, an extension without out_dir or "-", two scans with the

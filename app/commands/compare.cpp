@@ -12,6 +12,7 @@
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
+#include "app/work/outputs.h"
 #include "app/work/streams.h"
 #include "engine/compare/compare.h"
 #include "engine/field/piece.h"
@@ -72,9 +73,9 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
                                  options.replacing, job);
       !status)
     return tl::unexpected(status.error());
-  const auto a = loadScan(options.a, options.reading, job);
+  const auto a = loadSamples(options.a, options.reading, job);
   if (!a) return tl::unexpected(a.error());
-  auto b = loadScan(options.b, options.reading, job);
+  auto b = loadSamples(options.b, options.reading, job);
   if (!b) return tl::unexpected(b.error());
   Report alignment;
   if (options.aligned) {
@@ -137,7 +138,7 @@ engine::Result<Report> compare(const CompareArguments& options, engine::JobContr
   }
   if (options.truth.empty()) return report;
 
-  const auto truth = loadScan(options.truth, options.reading, job);
+  const auto truth = loadSamples(options.truth, options.reading, job);
   if (!truth) return tl::unexpected(truth.error());
   const auto edges = withMarks(truth->field, options.edges, job);
   if (!edges) return tl::unexpected(edges.error());
@@ -201,7 +202,8 @@ void addCompare(Command root, Chosen& chosen) {
   command.add({{.name = "--to",
                 .to = &options->to,
                 .text = "With --deviation -, standard output: its format, as extension",
-                .kind = ValueKind::kFormat}});
+                .kind = ValueKind::kFormat,
+                .proposed = extensionWords(&engine::FormatInfo::writes)}});
   addEstimateOption(command, options->estimate);
   addScanOptions(command, options->reading);
   command.examples({{"fettle compare scan.tif clean.tif", "Deviation figures, Sq and Sa"},

@@ -34,6 +34,7 @@ engine::Result<Report> convertOne(const ConvertArguments& options, const BatchTa
   }
   engine::ExportOptions writing = options.writing;
   writing.original = imported->original;
+  writing.recipe = imported->recipe;
   if (!options.max_error.empty()) {
     const auto error = parseHeight(options.max_error, imported->field.grid(), "--max-error");
     if (!error) return tl::unexpected(error.error());

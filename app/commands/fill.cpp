@@ -13,7 +13,6 @@
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
-#include "app/work/open_document.h"
 #include "app/work/streams.h"
 #include "engine/base/stopwatch.h"
 #include "engine/fill/fill.h"
@@ -93,8 +92,9 @@ engine::Result<Report> fillOne(const FillArguments& options, const BatchTask& ta
   sayWhatStays(*done, task.in, *fill);
   engine::ExportOptions writing = options.writing;
   writing.original = imported->original.value_or(imported->field);
+  writing.recipe = imported->recipe;
   if (done->filled > 0 && options.filled_out.empty() && memoryPlace(task.out) == nullptr &&
-      !isSessionPath(isStream(task.out) ? withDot(task.to) : task.out))
+      !writesSession(task))
     warn(fmt::format("{}: only a session stores which samples were filled{}", shownOutput(task.out),
                      options.files.many() ? "" : ": add --filled-out for others"));
   if (!options.filled_out.empty())

@@ -114,6 +114,7 @@ engine::Result<Report> filterOne(const FilterArguments& options, engine::FilterS
   if (auto report = finished.earlier(task.out, identity)) return *std::move(report);
   engine::ExportOptions writing = options.writing;
   writing.original = *original;
+  if (options.original.empty()) writing.recipe = imported->recipe;
   const PlannedWork planned{
       .field = field,
       .original = *original,
@@ -412,7 +413,10 @@ engine::Result<Report> filter(const FilterArguments& options, engine::JobControl
   auto compute = chooseCompute(options.compute, engine::filterOf(spec->kind));
   if (!compute) return tl::unexpected(compute.error());
   const auto one = [&](const BatchTask& task, engine::JobControl& j) {
-    return filterOne(options, *spec, *compute, task, j);
+    auto done = filterOne(options, *spec, *compute, task, j);
+    if (!done && !options.estimate)
+      return engine::Result<Report>(tl::unexpected(stillKept(done.error(), options.resume, task.out)));
+    return done;
   };
   if (options.files.many()) {
     auto report = runBatch(*tasks, job, one);

@@ -1,5 +1,6 @@
 #include "app/commands/form_option.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numbers>
@@ -40,6 +41,14 @@ std::vector<Word> formWords() {
   words.reserve(std::size(kForms));
   for (const NamedForm& form : kForms) words.emplace_back(form.word, form.text);
   return words;
+}
+
+std::string formWordOf(const engine::PolynomialForm& form) {
+  // From the end: "none" is of degree 0, too.
+  const auto* found = std::find_if(std::rbegin(kForms), std::rend(kForms), [&](const NamedForm& row) {
+                        return row.degree == form.degree;
+                      }).base();
+  return std::prev(found)->word;
 }
 
 void addFormOptions(Command command, FormArguments& arguments) {

@@ -23,6 +23,9 @@ struct FormArguments {
 /// "none", "mean", "plane", "poly2" to "poly5".
 [[nodiscard]] std::vector<Word> formWords();
 
+/// The word of a form.
+[[nodiscard]] std::string formWordOf(const engine::PolynomialForm& form);
+
 /// --form, --robust, --region, --marks.
 void addFormOptions(Command command, FormArguments& arguments);
 

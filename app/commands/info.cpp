@@ -10,6 +10,7 @@
 
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
+#include "app/commands/form_option.h"
 #include "app/commands/output_checks.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
@@ -197,6 +198,8 @@ engine::Result<Report> infoOf(const InfoArguments& options, const std::string& s
                           {"multiple_cells", imported->gridding->multiple_cells},
                           {"lattice", imported->gridding->lattice}};
   if (imported->original) report["filled"] = engine::countFilled(imported->field, *imported->original);
+  if (const auto& formed = imported->field.seenOf(); formed != nullptr)
+    report["form"] = formWordOf(*formed->form());
   if (imported->field.lines() != nullptr) report["lines"] = imported->field.lines()->size();
   if (!options.at.empty()) report["at"] = *samples;
   if (!options.picture.empty()) report["picture"] = options.picture;

@@ -7,6 +7,8 @@
 
 #include "app/commands/scan_files.h"
 #include "app/work/open_document.h"
+#include "engine/field/seen_field.h"
+#include "engine/session/stored_tiles.h"
 
 namespace fettle::app {
 
@@ -77,7 +79,13 @@ engine::Result<engine::Version> originalOf(const engine::Imported& imported, con
                               given, "convert one of them, or give --unit where a file states none");
   if (keepsPlace(*other) && keepsPlace(imported))
     if (auto same = checkSamePlace(is, wanted, given); !same) return tl::unexpected(same.error());
-  return original.withGrid(wanted);
+  return engine::seenLike(original.withGrid(wanted), imported.field, job);
+}
+
+bool isWorkedOn(const engine::Imported& imported) {
+  if (imported.field.seenOf() != nullptr) return true;  // the form is a step
+  return imported.original && (imported.original->lines() != imported.field.lines() ||
+                               !engine::tilesThatDiffer(*imported.original, imported.field).empty());
 }
 
 engine::Status checkOriginal(const std::string& given, bool limited, const std::string& out) {

@@ -23,6 +23,9 @@ void addOriginalOption(Command command, std::string& original);
                                                          const std::string& given, const ScanOptions& reading,
                                                          engine::JobControl& job);
 
+/// Whether it is a session whose samples, marks or edge lines are not those that it began with.
+[[nodiscard]] bool isWorkedOn(const engine::Imported& imported);
+
 /// Refuses --original where it would have no effect: changes are not limited, and `out` is not a session,
 /// which would store it.
 [[nodiscard]] engine::Status checkOriginal(const std::string& given, bool limited, const std::string& out);

@@ -52,7 +52,7 @@ class StepReader {
       return edges(what == kLinesWord ? EdgesBecome::kLines : EdgesBecome::kMarks);
     }
     if (what == kLevelWord) {
-      onlyKeys(what, {"do", "form", "robust", "region"});
+      onlyKeys(what, {"do", "rows", "scan_axis", "form", "robust", "region"});
       return level();
     }
     onlyKeys(what, {"do"});
@@ -166,9 +166,17 @@ class StepReader {
 
   RecipeLevel level() {
     RecipeLevel step;
+    if (table_.contains("rows")) {
+      std::vector<std::string> methods;
+      for (const Word& method : lineWords()) methods.push_back(method.word);
+      step.lines.rows = word("rows", methods, "");
+    }
+    step.lines.scan_axis = word("scan_axis", {"x", "y"}, step.lines.scan_axis);
+    if (step.lines.rows.empty() && table_.contains("scan_axis"))
+      complain(*table_.get("scan_axis"), "scan_axis is that of lines: add rows");
     std::vector<std::string> forms;
     for (const Word& form : formWords())
-      if (form.word != "none") forms.push_back(form.word);
+      if (form.word != "none" || !step.lines.rows.empty()) forms.push_back(form.word);
     step.form.form = word("form", forms, step.form.form);
     step.form.region = word("region", {"all", "marked", "unmarked"}, step.form.region);
     if (const toml::node* node = table_.get("robust")) {
@@ -215,8 +223,11 @@ std::string textOf(const RecipeEdges& step) {
 }
 
 std::string textOf(const RecipeLevel& step) {
-  return fmt::format("do = \"{}\"\nform = \"{}\"\nrobust = {}\nregion = \"{}\"\n", kLevelWord, step.form.form,
-                     step.form.robust, step.form.region);
+  std::string text = fmt::format("do = \"{}\"\n", kLevelWord);
+  if (!step.lines.rows.empty())
+    text += fmt::format("rows = \"{}\"\nscan_axis = \"{}\"\n", step.lines.rows, step.lines.scan_axis);
+  return text + fmt::format("form = \"{}\"\nrobust = {}\nregion = \"{}\"\n", step.form.form, step.form.robust,
+                            step.form.region);
 }
 
 std::string textOf(const RecipeInvert&) {
@@ -245,6 +256,23 @@ std::map<std::int64_t, Made> madeBy(const engine::Session& session) {
   return made;
 }
 
+// What made the scan with which the session begins.
+void addNoted(const engine::Session& session, Recipe& recipe) {
+  const auto note = session.notes.find(engine::kRecipeNote);
+  if (note == session.notes.end()) return;
+  auto noted = parseRecipe(note->second, engine::kRecipeNote);
+  if (!noted) {
+    recipe.left_out.push_back(fmt::format("what made the scan of step 0: {}", noted.error().line()));
+    return;
+  }
+  for (RecipeStep& step : noted->steps)
+    if (const auto* level = std::get_if<RecipeLevel>(&step); level != nullptr && level->form.region != "all")
+      recipe.left_out.push_back(fmt::format(
+          "the level of the {} samples of step 0: which these are belongs to this scan", level->form.region));
+    else
+      recipe.steps.push_back(std::move(step));
+}
+
 }  // namespace
 
 double RecipeLength::in(const engine::Grid& grid) const noexcept {
@@ -261,6 +289,7 @@ engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobContr
     return RecipeLength{value, known && known->mm == unit.mm ? known : std::nullopt};
   };
   Recipe recipe;
+  addNoted(session, recipe);
   for (std::int64_t k = history.first() + 1; k <= history.number(); ++k) {
     const engine::StepInfo& info = history.info(k);
     const auto leave = [&](const char* why) {
@@ -311,6 +340,17 @@ std::string recipeText(const Recipe& recipe) {
   for (const RecipeStep& step : recipe.steps)
     text += "\n[[step]]\n" + std::visit([](const auto& each) { return textOf(each); }, step);
   return text;
+}
+
+std::string recipeTextWith(const std::string& earlier, const RecipeStep& step) {
+  Recipe recipe;
+  if (!earlier.empty()) {
+    auto read = parseRecipe(earlier, engine::kRecipeNote);
+    if (!read) return "";
+    recipe = *std::move(read);
+  }
+  recipe.steps.push_back(step);
+  return recipeText(recipe);
 }
 
 engine::Result<Recipe> parseRecipe(const std::string& text, const std::string& name) try {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/commands/form_option.h"
+#include "app/commands/levelling.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/grid.h"
@@ -51,6 +52,7 @@ struct RecipeInvert {};
 
 /// A form is taken out, as `fettle level` does; of its arguments not `marks`.
 struct RecipeLevel {
+  LineArguments lines;
   FormArguments form;
 };
 
@@ -62,13 +64,18 @@ struct Recipe {
   std::vector<std::string> left_out;
 };
 
-/// The steps that led to the session's present state, undone ones left out. Strokes, and marks and lines that were set by
+/// The steps that made the scan with which the session begins, as its note says (engine::kRecipeNote), and those that led
+/// from there to its present state, undone ones left out. Strokes, and marks and lines that were set by
 /// hand, belong to one scan and are left out, as are steps whose numbers the session does not store: those of a command,
 /// and suggested edges that were searched in other heights than those of the step before. A range sigma that is that of the noise before the step is left to each scan's noise. `session` was opened with its
 /// journal and with every step. Errors: cancelled.
 [[nodiscard]] engine::Result<Recipe> recipeOf(const engine::Session& session, engine::JobControl& job);
 
 [[nodiscard]] std::string recipeText(const Recipe& recipe);
+
+/// The text of a recipe with one more step at its end; `earlier` is such a text, or empty for none. Empty where it cannot be
+/// read: then it is not known what came before the step.
+[[nodiscard]] std::string recipeTextWith(const std::string& earlier, const RecipeStep& step);
 
 /// Errors (kInput), with the line: no TOML, another version, an unknown or missing key, a value out of range,
 /// no steps.

@@ -24,6 +24,7 @@
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
 #include "engine/compare/compare.h"
+#include "engine/field/seen_field.h"
 #include "engine/fill/filled_samples.h"
 #include "engine/formats/formats.h"
 #include "engine/inspect/noise_model.h"
@@ -98,7 +99,9 @@ class ScanReport {
     if (!options_.original.empty()) {
       auto other = loadScan(options_.original, options_.reading, job_);
       if (!other) return tl::unexpected(other.error());
-      original = other->field;
+      auto reference = engine::seenLike(other->field, imported_.field, job_);
+      if (!reference) return tl::unexpected(reference.error());
+      original = *std::move(reference);
     }
     if (original && !(*original == imported_.field)) {
       const engine::Grid &a = original->grid(), &b = imported_.field.grid();

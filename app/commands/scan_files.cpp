@@ -7,6 +7,7 @@
 #include <fstream>
 #include <ios>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "app/work/outputs.h"
 #include "app/work/streams.h"
 #include "engine/field/mark_setter.h"
+#include "engine/field/seen_field.h"
 #include "engine/formats/formats.h"
 #include "engine/io/lines/lines.h"
 #include "engine/io/raster/marks.h"
@@ -29,7 +31,8 @@ void addStreamFormat(Command command, std::string& to) {
   command.add({{.name = "--to",
                 .to = &to,
                 .text = "With - for OUT, standard output: its format, as extension",
-                .kind = ValueKind::kFormat}});
+                .kind = ValueKind::kFormat,
+                .proposed = extensionWords(&engine::FormatInfo::writes)}});
 }
 
 namespace {
@@ -100,6 +103,20 @@ engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOpt
   return warned(std::move(imported), shownInput(path));
 }
 
+engine::Result<engine::Imported> loadSamples(const std::string& path, const ScanOptions& options,
+                                             engine::JobControl& job) {
+  auto imported = loadScan(path, options, job);
+  if (!imported || imported->field.seenOf() == nullptr) return imported;
+  warn(fmt::format("{}: its heights are taken with the form that lies over it", shownInput(path)));
+  for (engine::Version* version : {&imported->field, imported->original ? &*imported->original : nullptr}) {
+    if (version == nullptr) continue;
+    auto samples = engine::withoutLayer(*version, job);
+    if (!samples) return tl::unexpected(samples.error());
+    *version = *std::move(samples);
+  }
+  return imported;
+}
+
 engine::Result<engine::Version> withMarks(const engine::Version& field, const std::string& picture,
                                           engine::JobControl& job) {
   if (picture.empty()) return field;
@@ -118,11 +135,11 @@ engine::Result<std::vector<engine::EdgeLine>> readLines(const std::string& file,
     if (place->lines) return *place->lines;
     return engine::inputError("these are not edge lines", file, "give lines");
   }
-  if (!isStream(file)) return engine::importLines(file, field);
+  if (!isStream(file)) return engine::importLines(file, field, &job);
   static std::optional<StandardInput> input;  // for every scan of the command
   if (auto status = readOnce(input, engine::lineExtensionOf, job); !status)
     return tl::unexpected(status.error());
-  auto lines = engine::importLines(input->path(), field);
+  auto lines = engine::importLines(input->path(), field, &job);
   if (!lines) return tl::unexpected(input->renamed(lines.error()));
   return lines;
 }
@@ -171,7 +188,10 @@ engine::Status saveLines(const std::vector<engine::EdgeLine>& lines, const engin
 }
 
 std::string hashOf(const engine::Version& field) {
-  return fmt::format("{:016x}", engine::contentHash(field));
+  engine::JobControl job;
+  const auto stored = engine::restored(field, job);
+  if (!stored) throw std::bad_alloc();
+  return fmt::format("{:016x}", engine::contentHash(*stored));
 }
 
 engine::Status saveField(const engine::Version& field, const std::string& path, engine::JobControl& job,

@@ -19,6 +19,12 @@ namespace fettle::app {
 [[nodiscard]] engine::Result<engine::Imported> loadScan(const std::string& path, const ScanOptions& options,
                                                         engine::JobControl& job);
 
+/// loadScan() for commands about the samples themselves: field and original without any form over them, with a warning
+/// where one lay over a session.
+[[nodiscard]] engine::Result<engine::Imported> loadSamples(const std::string& path,
+                                                           const ScanOptions& options,
+                                                           engine::JobControl& job);
+
 /// A field with the marks of a picture; without a picture, empty, the field itself. "-" is standard input, read once
 /// for all scans of a command.
 [[nodiscard]] engine::Result<engine::Version> withMarks(const engine::Version& field,
@@ -51,7 +57,8 @@ namespace fettle::app {
 inline constexpr const char* kMarksStream = ".png";
 inline constexpr const char* kLinesStream = ".csv";
 
-/// The hash of a field's samples and marks as reports print it.
+/// The hash of a field's samples and marks as reports print it; of a field seen under a form that of the samples stored.
+/// Throws std::bad_alloc.
 [[nodiscard]] std::string hashOf(const engine::Version& field);
 
 /// Writes a field, to "-" in the format of the extension `to`; warnings about what the format could not store

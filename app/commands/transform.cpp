@@ -147,7 +147,7 @@ engine::Result<Transformed> transformed(const engine::Version& field, const Tran
 
 engine::Result<Report> transformOne(const TransformArguments& options, const BatchTask& task,
                                     engine::JobControl& job) {
-  const auto imported = loadScan(task.in, options.reading, job);
+  const auto imported = loadSamples(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
   const auto result = transformed(imported->field, options, job);
   if (!result) return tl::unexpected(result.error());

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/work/recent_files.h"
+#include "engine/field/seen_field.h"
 #include "engine/formats/formats.h"
 #include "engine/io/files/input_file.h"
 #include "engine/session/checksum.h"
@@ -14,6 +15,9 @@ namespace fettle::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kUnderForm =
+    "a form lies over the field: it is shown and edited with the form, as its samples are";
 
 // The session itself, to continue writing to it if possible.
 engine::Result<Document> openSessionDocument(const std::string& file, std::size_t history_bytes,
@@ -43,6 +47,7 @@ engine::Result<Document> openSessionDocument(const std::string& file, std::size_
   std::vector<engine::Version> dropped;
   document.history.setBound(history_bytes, dropped);
   document.notes = std::move(session.notes);
+  if (document.history.current().form() != nullptr) document.warnings.emplace_back(kUnderForm);
   return document;
 }
 
@@ -92,9 +97,12 @@ engine::Result<Document> openDocument(const std::string& path, const ScanOptions
   Document document;
   document.path = path;
   document.scan = {path, *import, imported->format, stamp};
-  document.original = imported->field;
-  document.history = engine::History(imported->field, history_bytes);
   document.warnings = std::move(imported->warnings);
+  if (imported->field.seenOf() != nullptr) document.warnings.emplace_back(kUnderForm);
+  auto samples = engine::withoutLayer(imported->field, job);
+  if (!samples) return tl::unexpected(samples.error());
+  document.original = *std::move(samples);
+  document.history = engine::History(document.original, history_bytes);
   return document;
 }
 

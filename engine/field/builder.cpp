@@ -49,8 +49,8 @@ Status sidesAndSpacing(const Grid& grid, const std::string& what) {
 }  // namespace
 
 FieldBuilder::FieldBuilder(Grid grid, std::shared_ptr<FieldMemory> memory)
-    : description_(
-          std::make_shared<const FieldDescription>(FieldDescription{std::move(grid), nullptr, nullptr})),
+    : description_(std::make_shared<const FieldDescription>(
+          FieldDescription{std::move(grid), nullptr, nullptr, nullptr, nullptr})),
       memory_(std::move(memory)),
       tile_columns_((description_->grid.width + kTileSide - 1) / kTileSide),
       tile_rows_((description_->grid.height + kTileSide - 1) / kTileSide),

@@ -31,18 +31,37 @@ Version Version::inverted() const noexcept {
 
 Version Version::withGrid(Grid grid) const {
   assert(grid.width == this->grid().width && grid.height == this->grid().height);
-  Version copy = *this;
-  copy.description_ = std::make_shared<const FieldDescription>(
-      FieldDescription{std::move(grid), lines(), description_->cuts});
-  return copy;
+  FieldDescription description = *description_;
+  description.grid = std::move(grid);
+  return withDescription(std::move(description));
 }
 
 Version Version::withLines(EdgeLines lines) const {
+  FieldDescription description = *description_;
+  description.lines = std::move(lines);
+  description.cuts = description.lines == nullptr
+                         ? nullptr
+                         : std::make_shared<const LineCuts>(*description.lines, grid().width, grid().height);
+  return withDescription(std::move(description));
+}
+
+Version Version::withForm(FieldForm form) const {
+  assert(form == nullptr || (form->width == grid().width && form->height == grid().height));
+  FieldDescription description = *description_;
+  description.form = std::move(form);
+  return withDescription(std::move(description));
+}
+
+Version Version::withSeenOf(std::shared_ptr<const Version> version) const {
+  assert(version == nullptr ||
+         (version->grid().width == grid().width && version->grid().height == grid().height));
+  FieldDescription description = *description_;
+  description.seen_of = std::move(version);
+  return withDescription(std::move(description));
+}
+
+Version Version::withDescription(FieldDescription description) const {
   Version copy = *this;
-  FieldDescription description{grid(), std::move(lines), nullptr};
-  if (description.lines != nullptr)
-    description.cuts =
-        std::make_shared<const LineCuts>(*description.lines, description.grid.width, description.grid.height);
   copy.description_ = std::make_shared<const FieldDescription>(std::move(description));
   return copy;
 }

@@ -7,22 +7,28 @@
 #include "engine/field/edge_line.h"
 #include "engine/field/grid.h"
 #include "engine/field/node_pool.h"
+#include "engine/field/polynomial_form.h"
 #include "engine/field/reader.h"
 
 namespace fettle::engine {
 
 class LiveField;
-
 class LineCuts;
+class Version;
 
-/// What versions share beyond samples: where the samples lie, and the edge lines between them.
+/// The form that lies over a field, or null.
+using FieldForm = std::shared_ptr<const PolynomialForm>;
+
+/// What versions share beyond samples: where the samples lie, the edge lines between them, and the form over them.
 struct FieldDescription {
   Grid grid;
   EdgeLines lines;
   std::shared_ptr<const LineCuts> cuts;  ///< null without lines
+  FieldForm form;
+  std::shared_ptr<const Version> seen_of;
 };
 
-/// An immutable state of a field: samples, marks, edge lines, bounds, sign. Copying one is O(1) and allocates nothing;
+/// An immutable state of a field: samples, marks, edge lines, form, bounds, sign. Copying one is O(1) and allocates nothing;
 /// versions share every tile in which they do not differ.
 ///
 /// Threading: a Version may be copied and read from any thread. The last copy frees the tiles that no other
@@ -58,9 +64,24 @@ class Version {
   /// The same samples with other edge lines, or with none. O(points). Throws std::bad_alloc.
   [[nodiscard]] Version withLines(EdgeLines lines) const;
 
-  /// Whether both are the same state (same tiles, same sign, same lines), not only equal in content. O(1).
+  /// The form that is taken out of what is seen, felt and measured, or null. It is a layer: reader() and all that reads
+  /// through it give the samples as they are, with the form; SeenField (seen_field.h) gives them without it.
+  [[nodiscard]] const FieldForm& form() const noexcept { return description_->form; }
+  /// The same samples under another form, or under none: no sample is touched. The form is of the field's width and
+  /// height, its heights those of the upright field. Throws std::bad_alloc.
+  [[nodiscard]] Version withForm(FieldForm form) const;
+  /// Of what is seen under a form, edited or not: the version with the form, from which restored() (seen_field.h) makes
+  /// the samples again. Null for every other version.
+  [[nodiscard]] const std::shared_ptr<const Version>& seenOf() const noexcept {
+    return description_->seen_of;
+  }
+  /// The same samples as seen of another version, or of none: then they are samples as any others. Throws std::bad_alloc.
+  [[nodiscard]] Version withSeenOf(std::shared_ptr<const Version> version) const;
+
+  /// Whether both are the same state (same tiles, same sign, same lines, same form), not only equal in content. O(1).
   friend bool operator==(const Version& a, const Version& b) noexcept {
-    return a.root_ == b.root_ && a.sign_ == b.sign_ && (a.empty() || a.lines() == b.lines());
+    return a.root_ == b.root_ && a.sign_ == b.sign_ &&
+           (a.empty() || (a.lines() == b.lines() && a.form() == b.form()));
   }
 
  private:
@@ -70,6 +91,8 @@ class Version {
   Version(std::shared_ptr<const FieldDescription> description, std::shared_ptr<FieldMemory> memory,
           Node* root, float sign) noexcept
       : description_(std::move(description)), memory_(std::move(memory)), root_(root), sign_(sign) {}
+
+  [[nodiscard]] Version withDescription(FieldDescription description) const;
 
   std::shared_ptr<const FieldDescription> description_;
   std::shared_ptr<FieldMemory> memory_;  // destroyed after root_ was released

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "engine/field/seen_field.h"
 #include "engine/io/format.h"
 #include "engine/io/points/perspective.h"
 #include "engine/io/unit_doubt.h"
@@ -82,6 +83,24 @@ Result<const Format*> recognised(const InputFile& file) {
   return nullptr;
 }
 
+// A field under a form is written with it: a session has both, every other format the samples.
+Result<Exported> writeRestored(const Format& format, const Version& field, const std::string& path,
+                               const ExportOptions& options, JobControl& job) {
+  auto stored = restored(field, job);
+  if (!stored) return tl::unexpected(stored.error());
+  ExportOptions writing = options;
+  if (writing.original) {
+    auto original = restored(*writing.original, job);
+    if (!original) return tl::unexpected(original.error());
+    writing.original = *std::move(original);
+  }
+  auto written = format.write(*stored, path, writing, job);
+  if (written && stored->form() != nullptr && &format != &kFettleFormat)
+    written->warnings.emplace_back(
+        "the heights are written with the form that lay over them: fettle level --layer bake leaves it out");
+  return written;
+}
+
 }  // namespace
 
 std::span<const FormatInfo> formats() {
@@ -146,7 +165,7 @@ Result<Exported> exportField(const Version& field, const std::string& path, cons
   if (options.tiff_compression && !(format != nullptr && format->tiff))
     return inputError("only .tif supports the requested compression", path, "write that or omit --compress");
   try {
-    if (format != nullptr) return format->write(field, path, options, job);
+    if (format != nullptr) return writeRestored(*format, field, path, options, job);
   } catch (const std::bad_alloc&) {
     return failure("there is not enough memory for writing", path);
   }

@@ -1,9 +1,10 @@
-// Sessions as a format of scans: reads the current field of the session, marks included.
+// Sessions as a format of scans: reads the current field of the session as it is seen, marks included.
 
 #include <tuple>
 
 #include <fmt/format.h>
 
+#include "engine/field/seen_field.h"
 #include "engine/field/upright.h"
 #include "engine/formats/formats.h"
 #include "engine/io/format.h"
@@ -37,7 +38,10 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
   Imported imported;
   imported.field = session->history.current();
   const bool inverted = imported.field.reader().sign() != session->original.reader().sign();
-  imported.original = inverted ? session->original.inverted() : session->original;
+  imported.original =
+      (inverted ? session->original.inverted() : session->original).withForm(imported.field.form());
+  if (const auto recipe = session->notes.find(kRecipeNote); recipe != session->notes.end())
+    imported.recipe = recipe->second;
   imported.format = "Fettle";
   Grid grid = imported.field.grid();
   if (options.spacing && *options.spacing != std::pair(grid.spacing_x, grid.spacing_y)) {
@@ -54,22 +58,32 @@ Result<Imported> readSession(const InputFile& file, const ImportOptions& options
     imported.field = imported.field.withGrid(grid);
     imported.original = imported.original->withGrid(std::move(grid));
   }
+  const auto seen = SeenField::of(imported.field, job);
+  if (!seen) return tl::unexpected(seen.error());
+  const auto original = seen->at(*imported.original, job);
+  if (!original) return tl::unexpected(original.error());
+  imported.field = seen->seen();
+  imported.original = original->seen();
   return imported;
 }
 
-// A session (engine/session) that begins with this field, or with ExportOptions::original, marks and sign
+// A session (engine/session) that begins with this field, or with ExportOptions::original, marks, sign and form
 // included, bit-identical.
 Result<Exported> writeSession(const Version& field, const std::string& path, const ExportOptions& options,
                               JobControl& job) {
-  // The original of a session is upright; an inverted field is one step from it.
+  // The original of a session is upright and has no form over it; either is a step from there.
   const bool inverted = field.reader().sign() < 0;
   Session session;
-  session.original = upright(options.original.value_or(field));
+  session.original = upright(options.original.value_or(field)).withForm(nullptr);
   session.history = History(session.original);
-  if (const Version worked = upright(field);
+  if (const Version worked = upright(field).withForm(nullptr);
       !tilesThatDiffer(session.original, worked).empty() || worked.lines() != session.original.lines())
     session.history.push({"Earlier steps", StepKind::kImport, stepTimeNow(), {}, 0}, worked);
+  if (field.form() != nullptr)
+    session.history.push({"Form", StepKind::kForm, stepTimeNow(), {}, 0},
+                         session.history.current().withForm(field.form()));
   if (inverted) session.history.push({"Invert", StepKind::kInvert, stepTimeNow(), {}, 0}, field);
+  if (!options.recipe.empty()) session.notes.emplace(kRecipeNote, options.recipe);
   if (auto saved = saveSession(session, path, job); !saved) return tl::unexpected(saved.error());
   return Exported{"Fettle", {}};
 }

@@ -55,6 +55,7 @@ Change measureChange(const Version& before, const Version& after) noexcept {
   Change change;
   change.inverted = before.reader().sign() != after.reader().sign();
   change.lines = before.lines() != after.lines();
+  change.form = before.form() != after.form();
   Extent extent;
   change.nodes = detail::walkChanges(before.reader().root(), after.reader().root(), 0, 0,
                                      [&](std::int32_t column, std::int32_t row, const Tile&, const Tile&) {
@@ -64,7 +65,7 @@ Change measureChange(const Version& before, const Version& after) noexcept {
                                        extent.column1 = std::max(extent.column1, column);
                                        extent.row1 = std::max(extent.row1, row);
                                      });
-  if (change.inverted) {
+  if (change.inverted || change.form) {
     change.rect = {0, 0, grid.width, grid.height};
   } else if (change.tiles != 0) {
     const std::int32_t column = extent.column0 * kTileSide;
@@ -83,7 +84,8 @@ Change measureChange(const Version& before, const Version& after) noexcept {
 namespace {
 
 using namespace std::string_view_literals;
-constexpr std::array kKindNames{"stroke"sv, "filter"sv, "mark"sv, "invert"sv, "import"sv, "lines"sv};
+constexpr std::array kKindNames{"stroke"sv, "filter"sv, "mark"sv, "invert"sv,
+                                "import"sv, "lines"sv,  "form"sv};
 
 }  // namespace
 

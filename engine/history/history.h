@@ -25,8 +25,9 @@ struct Change {
   bool inverted = false;       ///< whether the signs differ
   std::size_t line_bytes = 0;  ///< of the lines of the later version, where they are other ones
   bool lines = false;          ///< whether the edge lines are other ones
+  bool form = false;           ///< whether another form lies over the field, or none
 
-  [[nodiscard]] bool none() const noexcept { return tiles == 0 && !inverted && !lines; }
+  [[nodiscard]] bool none() const noexcept { return tiles == 0 && !inverted && !lines && !form; }
   /// Memory of one version that the other does not share [bytes].
   [[nodiscard]] std::size_t bytes() const noexcept {
     return static_cast<std::size_t>(tiles) * sizeof(Tile) + static_cast<std::size_t>(nodes) * sizeof(Node) +
@@ -39,9 +40,9 @@ struct Change {
 [[nodiscard]] Change measureChange(const Version& before, const Version& after) noexcept;
 
 /// What made a step.
-enum class StepKind : std::uint8_t { kStroke, kFilter, kMark, kInvert, kImport, kLines };
+enum class StepKind : std::uint8_t { kStroke, kFilter, kMark, kInvert, kImport, kLines, kForm };
 
-/// "stroke", "filter", "mark", "invert", "import", "lines"; these words are stored in session files.
+/// "stroke", "filter", "mark", "invert", "import", "lines", "form"; these words are stored in session files.
 [[nodiscard]] std::string_view stepKindName(StepKind kind) noexcept;
 [[nodiscard]] std::optional<StepKind> stepKindFromName(std::string_view name) noexcept;
 

@@ -39,6 +39,9 @@ struct ExportOptions {
   /// Session: the scan that the field was made from, with the same grid and sign. The session begins with it,
   /// and where the two differ the field is a step from there. Without it the session begins with the field.
   std::optional<Version> original;
+  /// Session: steps that made the field with which it begins, as a recipe (docs/formats.md); kept as its note "recipe".
+  /// Empty: none.
+  std::string recipe = {};
   /// TIFF: without a value kNone, and kDeflate where cloud-optimised.
   std::optional<TiffCompression> tiff_compression;
 };

@@ -61,10 +61,12 @@ struct GriddingReport {
 };
 
 struct Imported {
+  /// Of a session with a form over its field what is seen (Version::seenOf).
   Version field;
-  /// Of a session: the scan that it began with, with the grid and sign of `field`.
+  /// Of a session: the scan that it began with, with the grid and sign of `field`, seen under the same form.
   std::optional<Version> original;
-  std::string format;                 ///< FormatInfo::name of the reader, e.g. "GTiff", "XYZ"
+  std::string recipe = {};  ///< of a session: its note "recipe", as ExportOptions::recipe; may be empty
+  std::string format;       ///< FormatInfo::name of the reader, e.g. "GTiff", "XYZ"
   std::vector<std::string> warnings;  ///< what was guessed, converted or lost; one line each, no full stop
   std::optional<GriddingReport> gridding;  ///< point clouds only
   /// Heights that look like undeclared holes (lone_value.h); `warnings` name each.
@@ -76,6 +78,8 @@ struct Imported {
 /// "mm", "m", "um", "µm", "nm", "cm", "km", "ft", "ftUS", "in" and their English names, any case; nothing for
 /// others. "deg" is not a length and not accepted.
 [[nodiscard]] std::optional<LengthUnit> lengthUnitFromName(std::string_view name);
+/// Their names, as a LengthUnit has them: "nm", "um", ...; the smallest metric one first.
+[[nodiscard]] std::vector<std::string> lengthUnitNames();
 
 /// One row of the table of formats.
 struct FormatInfo {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -26,18 +27,6 @@ constexpr int kMost = PolynomialForm::kMostDegree;
 constexpr int kMostTerms = PolynomialForm::terms(kMost);
 // The product of two polynomials of the basis is half the sum of those of the sum and the difference of their degrees.
 constexpr int kProducts = 2 * kMost + 1;
-
-// Place of a sample in -1 .. 1.
-double scaled(double index, std::int32_t count) noexcept {
-  return count > 1 ? 2.0 * index / (count - 1) - 1.0 : 0.0;
-}
-
-// T_0(x) .. T_last(x).
-void chebyshev(double x, int last, double* out) noexcept {
-  out[0] = 1.0;
-  if (last > 0) out[1] = x;
-  for (int k = 2; k <= last; ++k) out[k] = 2.0 * x * out[k - 1] - out[k - 2];
-}
 
 // Sums over samples of weight T_a(u) T_b(v), a and b to twice the degree, and of weight height T_a(u) T_b(v).
 struct FormSums {
@@ -96,7 +85,7 @@ class TileRowSums {
       }
       sums.square.add(square);
       double t[kProducts];
-      chebyshev(scaled(rect.row + r, field_.height()), products - 1, t);
+      PolynomialForm::chebyshev(PolynomialForm::scaled(rect.row + r, field_.height()), products - 1, t);
       for (int b = 0; b < products; ++b)
         for (int c = 0; c < rect.columns; ++c) weight[b][c] += t[b] * w[c];
       for (int b = 0; b <= degree; ++b)
@@ -106,7 +95,7 @@ class TileRowSums {
     double heights[kMost + 1][kMost + 1] = {};
     for (int c = 0; c < rect.columns; ++c) {
       double t[kProducts];
-      chebyshev(scaled(rect.column + c, field_.width()), products - 1, t);
+      PolynomialForm::chebyshev(PolynomialForm::scaled(rect.column + c, field_.width()), products - 1, t);
       for (int a = 0; a < products; ++a)
         for (int b = 0; b < products; ++b) weights[a][b] += t[a] * weight[b][c];
       for (int a = 0; a <= degree; ++a)
@@ -321,56 +310,6 @@ Status fitRobustly(const Version& field, const FormOptions& options, double rang
 }
 
 }  // namespace
-
-double PolynomialForm::heightAt(double column, double row) const noexcept {
-  double t[kMost + 1], s[kMost + 1];
-  chebyshev(scaled(column, width), degree, t);
-  chebyshev(scaled(row, height), degree, s);
-  double sum = 0.0;
-  std::size_t k = 0;
-  for (int i = 0; i <= degree; ++i)
-    for (int j = 0; i + j <= degree; ++j) sum += coefficients[k++] * t[i] * s[j];
-  return base + sum;
-}
-
-void PolynomialForm::readHeights(const SampleRect& rect, double* out, std::ptrdiff_t stride) const noexcept {
-  constexpr int kMostColumns = kTileSide + 1;
-  assert(rect.columns <= kMostColumns);
-  double t[kMost + 1][kMostColumns];
-  for (int c = 0; c < rect.columns; ++c) {
-    double here[kMost + 1];
-    chebyshev(scaled(rect.column + c, width), degree, here);
-    for (int i = 0; i <= degree; ++i) t[i][c] = here[i];
-  }
-  for (int r = 0; r < rect.rows; ++r) {
-    double s[kMost + 1];
-    chebyshev(scaled(rect.row + r, height), degree, s);
-    double* const line = out + r * stride;
-    std::fill_n(line, rect.columns, base);
-    std::size_t k = 0;
-    for (int i = 0; i <= degree; ++i) {
-      double factor = 0.0;
-      for (int j = 0; i + j <= degree; ++j) factor += coefficients[k++] * s[j];
-      for (int c = 0; c < rect.columns; ++c) line[c] += factor * t[i][c];
-    }
-  }
-}
-
-PolynomialForm::Gradient PolynomialForm::gradient() const noexcept {
-  // T_k'(0) = k sin(k pi / 2), T_k(0) = cos(k pi / 2).
-  constexpr double kValue[] = {1.0, 0.0, -1.0, 0.0, 1.0, 0.0};
-  constexpr double kSlope[] = {0.0, 1.0, 0.0, -3.0, 0.0, 5.0};
-  Gradient gradient;
-  std::size_t k = 0;
-  for (int i = 0; i <= degree; ++i)
-    for (int j = 0; i + j <= degree; ++j, ++k) {
-      gradient.by_column += coefficients[k] * kSlope[i] * kValue[j];
-      gradient.by_row += coefficients[k] * kValue[i] * kSlope[j];
-    }
-  gradient.by_column *= width > 1 ? 2.0 / (width - 1) : 0.0;
-  gradient.by_row *= height > 1 ? 2.0 / (height - 1) : 0.0;
-  return gradient;
-}
 
 Result<FormFit> fitForm(const Version& field, const FormOptions& options, JobControl& job) {
   if (options.degree < 0 || options.degree > kMost)

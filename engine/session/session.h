@@ -51,6 +51,8 @@ struct JournalEntry {
 
 /// Small texts by name: "camera", "scene" (TOML) and others of the program.
 using SessionNotes = std::map<std::string, std::string>;
+/// The note of the steps that made the scan with which the session begins, as a recipe (docs/formats.md).
+inline constexpr const char* kRecipeNote = "recipe";
 
 /// A session in memory.
 struct Session {

@@ -8,6 +8,7 @@
 
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
+#include "engine/field/seen_field.h"
 #include "engine/io/field_limits.h"
 #include "engine/session/session_reader.h"
 #include "engine/session/session_scan.h"
@@ -66,7 +67,10 @@ Result<Version> moved(const Version& from, std::int64_t state, std::span<const s
   const float sign = index.steps[static_cast<std::size_t>(state)].sign;
   if (live.snapshot().reader().sign() != sign) live.invert();
   const EdgeLines& lines = index.lines[static_cast<std::size_t>(state)];
-  return live.snapshot().lines() == lines ? live.snapshot() : live.snapshot().withLines(lines);
+  Version version = live.snapshot();
+  if (version.lines() != lines) version = version.withLines(lines);
+  const FieldForm& form = index.forms[static_cast<std::size_t>(state)];
+  return version.form() == form ? version : version.withForm(form);
 }
 
 // Reads tiles that are not in `tiles` yet.
@@ -150,11 +154,14 @@ Result<Version> referencedOriginal(const SessionIndex& index, const SessionOpenO
   scan.read = fileStamp(*file);
   Result<Imported> imported = import_scan(*file, index.original.scan.import, job);
   if (!imported) return tl::unexpected(imported.error());
-  if (contentHash(imported->field) != index.original.content_hash || !(imported->field.grid() == index.grid))
+  // The samples, where the scan is a session with a form over it.
+  Result<Version> samples = withoutLayer(imported->field, job);
+  if (!samples) return tl::unexpected(samples.error());
+  if (contentHash(*samples) != index.original.content_hash || !(samples->grid() == index.grid))
     return inputError("the scan is now imported differently than when the session was made", *file,
                       "open the session with the program that made it, and save it with the scan embedded");
   scan.path = *file;
-  return std::move(imported->field);
+  return samples;
 }
 
 // Which states to hold: outward from the current one, back first, while their tiles fit.
@@ -194,6 +201,9 @@ Result<SessionIndex> readIndex(SessionTables& tables) {
   auto lines = tables.readLines(index.steps);
   if (!lines) return tl::unexpected(lines.error());
   index.lines = std::move(*lines);
+  auto forms = tables.readForms(index.steps, index.grid);
+  if (!forms) return tl::unexpected(forms.error());
+  index.forms = std::move(*forms);
   return index;
 }
 
@@ -212,6 +222,7 @@ Result<Session> readSession(SessionTables& tables, const SessionOpenOptions& opt
                                  : referencedOriginal(index, options, session.scan, path, import_scan, job);
   if (!original) return tl::unexpected(original.error());
   session.original = index.lines.front() ? original->withLines(index.lines.front()) : *std::move(original);
+  if (index.forms.front()) session.original = session.original.withForm(index.forms.front());
 
   const auto by_step = placesByStep(index);
   const auto [first, last] = statesToHold(index, options.history_bytes);

@@ -35,6 +35,7 @@ struct SessionIndex {
   std::vector<StepRow> steps;
   std::vector<TilePlace> places;  ///< by position, then step
   std::vector<EdgeLines> lines;   ///< of each state
+  std::vector<FieldForm> forms;   ///< over each state
 };
 [[nodiscard]] Result<SessionIndex> readIndex(SessionTables& tables);
 

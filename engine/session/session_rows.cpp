@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/session/form_codec.h"
 #include "engine/session/line_codec.h"
 
 namespace fettle::engine {
@@ -24,6 +25,8 @@ Status putStep(SessionTables& tables, std::int64_t number, const Step& step, Hea
   if (Status status = storeTiles(tables, tiles, number, head, bytes, job); !status) return status;
   if (step.after.lines() != step.before.lines())
     if (Status status = tables.insertLines(number, packLines(step.after.lines())); !status) return status;
+  if (step.after.form() != step.before.form())
+    if (Status status = tables.insertForm(number, packForm(step.after.form())); !status) return status;
   head.state = number;
   head.last_state = number;
   return {};

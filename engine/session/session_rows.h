@@ -11,7 +11,7 @@ namespace fettle::engine {
 // The actions on a session as changes of rows. Each must be called in a transaction; `head` is updated too,
 // and corresponds to the file again once the transaction is committed.
 
-/// Inserts step `number` (with the tiles, and the edge lines, in which its versions differ) after the current state and makes it
+/// Inserts step `number` (with the tiles, the edge lines and the form in which its versions differ) after the current state and makes it
 /// current.
 [[nodiscard]] Status putStep(SessionTables& tables, std::int64_t number, const Step& step, HeadRow& head,
                              std::uint64_t& bytes, JobControl& job);

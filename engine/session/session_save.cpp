@@ -4,6 +4,7 @@
 #include <new>
 
 #include "engine/io/files/atomic_file.h"
+#include "engine/session/form_codec.h"
 #include "engine/session/line_codec.h"
 #include "engine/session/session_rows.h"
 
@@ -17,7 +18,8 @@ Status writeAll(SessionTables& tables, const Session& session, const OriginalRow
   HeadRow head;
   if (history.first() == 0 && (!tilesThatDiffer(session.original, history.state(0)).empty() ||
                                session.original.reader().sign() != history.state(0).reader().sign() ||
-                               session.original.lines() != history.state(0).lines()))
+                               session.original.lines() != history.state(0).lines() ||
+                               session.original.form() != history.state(0).form()))
     return failure("state 0 of the history is not the original scan", tables.database().shownPath());
   if (Status status = tables.create(); !status) return status;
   if (Status status = tables.writeGrid(session.original.grid()); !status) return status;
@@ -35,6 +37,8 @@ Status writeAll(SessionTables& tables, const Session& session, const OriginalRow
   tiles.clear();
   if (session.original.lines())
     if (Status status = tables.insertLines(0, packLines(session.original.lines())); !status) return status;
+  if (session.original.form())
+    if (Status status = tables.insertForm(0, packForm(session.original.form())); !status) return status;
 
   // States that the history no longer holds become one step, with the number of the state it leads to:
   // numbers do not change.

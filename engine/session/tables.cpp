@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "engine/session/form_codec.h"
 #include "engine/session/line_codec.h"
 #include "engine/session/packed_bytes.h"
 
@@ -40,6 +41,12 @@ constexpr const char* kLinesSchema = R"(
 CREATE TABLE lines(step INTEGER PRIMARY KEY, checksum INTEGER NOT NULL, data BLOB NOT NULL) STRICT;
 PRAGMA user_version=2;
 )";
+constexpr const char* kFormsSchema = R"(
+CREATE TABLE forms(step INTEGER PRIMARY KEY, checksum INTEGER NOT NULL, data BLOB NOT NULL) STRICT;
+PRAGMA user_version=3;
+)";
+
+constexpr std::int64_t kLinesFormat = 2, kFormsFormat = 3;
 
 StepTime timeOf(std::int64_t ms) {
   return StepTime(std::chrono::milliseconds(ms));
@@ -248,10 +255,13 @@ Result<std::vector<StepRow>> SessionTables::readSteps(const HeadRow& head) {
 }
 
 Status SessionTables::truncateSteps(std::int64_t number) {
-  const Result<bool> has_lines = hasLines();
-  if (!has_lines) return tl::unexpected(has_lines.error());
-  if (*has_lines)
-    if (Status status = run("DELETE FROM lines WHERE step>?", number); !status) return status;
+  for (const auto& [format, sql] : {std::pair(kLinesFormat, "DELETE FROM lines WHERE step>?"),
+                                    {kFormsFormat, "DELETE FROM forms WHERE step>?"}}) {
+    const Result<bool> there = hasTablesOf(format);
+    if (!there) return tl::unexpected(there.error());
+    if (!*there) break;
+    if (Status status = run(sql, number); !status) return status;
+  }
   // Tiles lie in the order of their steps, so theirs are the last ids: a range of the table, no search. Only
   // those of a scan that was embedded later lie among them or after them.
   if (Status status =
@@ -312,32 +322,35 @@ Status SessionTables::readTile(const TilePlace& place, std::string& data) {
   return {};
 }
 
-Result<bool> SessionTables::hasLines() {
-  const Result<std::int64_t> format = database_->integer("PRAGMA user_version");
-  if (!format) return tl::unexpected(format.error());
-  return *format >= 2;
+Result<bool> SessionTables::hasTablesOf(std::int64_t format) {
+  const Result<std::int64_t> is = database_->integer("PRAGMA user_version");
+  if (!is) return tl::unexpected(is.error());
+  return *is >= format;
 }
 
-Status SessionTables::insertLines(std::int64_t step, std::string_view packed) {
-  const Result<bool> has_lines = hasLines();
-  if (!has_lines) return tl::unexpected(has_lines.error());
-  if (!*has_lines)
-    if (Status status = database_->execute(kLinesSchema); !status) return status;
-  const std::string data = packBytes(packed);
-  return run("INSERT INTO lines VALUES(?,?,?)", step, checksumOfRow(step, data), Blob{data});
+Status SessionTables::makeTablesOf(std::int64_t format) {
+  for (const auto& [of, schema] : {std::pair(kLinesFormat, kLinesSchema), {kFormsFormat, kFormsSchema}}) {
+    if (of > format) break;
+    const Result<bool> there = hasTablesOf(of);
+    if (!there) return tl::unexpected(there.error());
+    if (*there) continue;
+    if (Status status = database_->execute(schema); !status) return status;
+  }
+  return {};
 }
 
-Result<std::vector<EdgeLines>> SessionTables::readLines(const std::vector<StepRow>& steps) {
+template <class Value, class Unpack>
+Result<std::vector<Value>> SessionTables::readOfStates(const char* sql, const char* what, StepKind kind,
+                                                       const std::vector<StepRow>& steps,
+                                                       const Unpack& unpack) {
   const std::string& path = database_->shownPath();
-  std::vector<EdgeLines> lines(steps.size());
-  const Result<bool> has_lines = hasLines();
-  if (!has_lines) return tl::unexpected(has_lines.error());
-  std::size_t next = 0;  // state whose lines are not known yet
+  std::vector<Value> values(steps.size());
+  std::size_t next = 0;  // state whose value is not known yet
   const auto fillTo = [&](std::size_t end) {
-    for (; next < end; ++next) lines[next] = next == 0 ? nullptr : lines[next - 1];
+    for (; next < end; ++next) values[next] = next == 0 ? Value() : values[next - 1];
   };
-  if (*has_lines) {
-    const Result<Statement*> s = cached("SELECT step,checksum,data FROM lines ORDER BY step");
+  if (sql != nullptr) {
+    const Result<Statement*> s = cached(sql);
     if (!s) return tl::unexpected(s.error());
     for (;;) {
       const Result<bool> row = (*s)->step();
@@ -348,19 +361,46 @@ Result<std::vector<EdgeLines>> SessionTables::readLines(const std::vector<StepRo
       std::string packed;
       if (step < 0 || step >= static_cast<std::int64_t>(steps.size()) ||
           (*s)->integer(1) != checksumOfRow(step, data) || !unpackBytes(data, packed))
-        return damaged(fmt::format("the lines of step {} do not fit their checksum", step), path);
-      std::optional<EdgeLines> unpacked = unpackLines(packed);
-      if (!unpacked) return damaged(fmt::format("the lines of step {} cannot be read", step), path);
+        return damaged(fmt::format("the {} of step {} does not fit its checksum", what, step), path);
+      std::optional<Value> unpacked = unpack(packed);
+      if (!unpacked) return damaged(fmt::format("the {} of step {} cannot be read", what, step), path);
       fillTo(static_cast<std::size_t>(step));
-      lines[next++] = *std::move(unpacked);
+      values[next++] = *std::move(unpacked);
     }
     (*s)->reset();
   }
-  fillTo(lines.size());
+  fillTo(values.size());
   for (std::size_t k = 1; k < steps.size(); ++k)
-    if (steps[k].info.kind == StepKind::kLines && lines[k] == lines[k - 1])
-      return damaged(fmt::format("the lines of step {} are missing", k), path);
-  return lines;
+    if (steps[k].info.kind == kind && values[k] == values[k - 1])
+      return damaged(fmt::format("the {} of step {} is missing", what, k), path);
+  return values;
+}
+
+Status SessionTables::insertLines(std::int64_t step, std::string_view packed) {
+  if (Status status = makeTablesOf(kLinesFormat); !status) return status;
+  const std::string data = packBytes(packed);
+  return run("INSERT INTO lines VALUES(?,?,?)", step, checksumOfRow(step, data), Blob{data});
+}
+
+Result<std::vector<EdgeLines>> SessionTables::readLines(const std::vector<StepRow>& steps) {
+  const Result<bool> there = hasTablesOf(kLinesFormat);
+  if (!there) return tl::unexpected(there.error());
+  return readOfStates<EdgeLines>(*there ? "SELECT step,checksum,data FROM lines ORDER BY step" : nullptr,
+                                 "set of lines", StepKind::kLines, steps, unpackLines);
+}
+
+Status SessionTables::insertForm(std::int64_t step, std::string_view packed) {
+  if (Status status = makeTablesOf(kFormsFormat); !status) return status;
+  const std::string data = packBytes(packed);
+  return run("INSERT INTO forms VALUES(?,?,?)", step, checksumOfRow(step, data), Blob{data});
+}
+
+Result<std::vector<FieldForm>> SessionTables::readForms(const std::vector<StepRow>& steps, const Grid& grid) {
+  const Result<bool> there = hasTablesOf(kFormsFormat);
+  if (!there) return tl::unexpected(there.error());
+  return readOfStates<FieldForm>(*there ? "SELECT step,checksum,data FROM forms ORDER BY step" : nullptr,
+                                 "form", StepKind::kForm, steps,
+                                 [&](std::string_view packed) { return unpackForm(packed, grid); });
 }
 
 Status SessionTables::appendJournal(std::int64_t id, const JournalEntry& entry) {

@@ -17,9 +17,9 @@ namespace fettle::engine {
 // and its ranges; errors are those of Database, and damaged().
 
 inline constexpr std::int64_t kSessionApplicationId = 0x4654544C;  // "FTTL"
-/// user_version: 2 where a step has changed edge lines, 1 where none has, so that a program that knows no lines
-/// reads the sessions without them.
-inline constexpr std::int64_t kSessionFormat = 2;
+/// user_version: 3 where a step has changed the form over the field, else 2 where one has changed edge lines, else 1, so
+/// that a program that knows no forms, or no lines, reads the sessions without them.
+inline constexpr std::int64_t kSessionFormat = 3;
 
 /// The only row that changes: the user's position, and the expected numbers of rows.
 struct HeadRow {
@@ -89,6 +89,11 @@ class SessionTables {
   /// The edge lines of each state, by its number; states that have the same ones share them.
   [[nodiscard]] Result<std::vector<EdgeLines>> readLines(const std::vector<StepRow>& steps);
 
+  /// The form that a step leaves behind (packForm()), where it is not the one before it.
+  [[nodiscard]] Status insertForm(std::int64_t step, std::string_view packed);
+  /// The form over each state of a field of this grid; states that have the same one share it.
+  [[nodiscard]] Result<std::vector<FieldForm>> readForms(const std::vector<StepRow>& steps, const Grid& grid);
+
   [[nodiscard]] Status appendJournal(std::int64_t id, const JournalEntry& entry);
   [[nodiscard]] Result<std::vector<JournalEntry>> readJournal(const HeadRow& head);
   /// `is_new`: whether there was none of that key.
@@ -101,8 +106,15 @@ class SessionTables {
   // Runs a statement without rows with these values in its places.
   template <class... Values>
   [[nodiscard]] Status run(const char* sql, const Values&... values);
-  // Whether there is a table of edge lines: made when the first are stored.
-  [[nodiscard]] Result<bool> hasLines();
+  // Whether there are the tables of a format: made when the first of their rows is stored.
+  [[nodiscard]] Result<bool> hasTablesOf(std::int64_t format);
+  // Makes the tables up to those of a format.
+  [[nodiscard]] Status makeTablesOf(std::int64_t format);
+  // What the rows of a table (step, checksum, data) say of each state, and where they are silent the state before.
+  template <class Value, class Unpack>
+  [[nodiscard]] Result<std::vector<Value>> readOfStates(const char* sql, const char* what, StepKind kind,
+                                                        const std::vector<StepRow>& steps,
+                                                        const Unpack& unpack);
 
   Database* database_;
   std::vector<std::pair<const char*, std::unique_ptr<Statement>>> statements_;

@@ -68,13 +68,14 @@ def field_of(scan, name="", report=None):
     return field
 
 
-def _restored(heights, spacing, origin, unit, height_unit, crs, marks, lines, name, report, original):
+def _restored(heights, spacing, origin, unit, height_unit, crs, marks, lines, name, report, original, form=b""):
     """A Field from what Field.__reduce__ kept."""
     scan = _fettle.Scan(heights, spacing, origin, unit, height_unit, crs)
     if marks is not None:
         scan = scan.with_marks(marks)
     if lines:
         scan = scan.with_lines(lines)
+    scan = scan.under_form(form)
     return field_of(scan.with_original(scan if original is None else original._scan), name, report)
 
 
@@ -326,13 +327,15 @@ class Field:
     def __deepcopy__(self, memo):
         return self
 
-    # A field goes to another process, or into a file of pickle, as its arrays; its original as another field.
+    # A field goes to another process, or into a file of pickle, as its arrays, with the form that lies over it beside them; its
+    # original as another field.
     def __reduce__(self):
         original = self._scan.original()
         state = (
-            self._scan.heights(), self.spacing, self.origin, self.unit, self.height_unit, self.crs or "",
+            self._scan.samples().heights(), self.spacing, self.origin, self.unit, self.height_unit, self.crs or "",
             self.marks if self._scan.has_marks() else None, self._scan.lines(), self.name, self.report,
             None if original.hash() == self._scan.hash() else field_of(original, self.name),
+            self._scan.form(),
         )
         return _restored, state
 

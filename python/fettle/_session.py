@@ -16,7 +16,7 @@ class Step(NamedTuple):
 
     number: int
     name: str
-    #: stroke, filter, mark, invert, import, lines
+    #: stroke, filter, mark, invert, import, lines, form
     kind: str
     #: UTC, ISO 8601
     time: str

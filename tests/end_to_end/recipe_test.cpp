@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <sstream>
 #include <string>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -78,6 +79,33 @@ TEST(Recipes, SuggestedLinesHaveTheBitsOfTheCommandsOneByOne) {
   expectRefused(fettle({"mark", scan, marks, "--edges", "--as-lines"}), "give --edges and --lines-out");
 }
 
+// What is refused of a recipe with this one step, before the scan is read.
+void expectRefusedStep(const TempFolder& folder, const std::string& keys, const std::string& part) {
+  const std::string recipe = folder.file("refused.toml");
+  std::ofstream(recipe) << "recipe = 1\n[[step]]\n" << keys;
+  expectRefused(fettle({"apply", recipe, folder.file("none.tif"), folder.file("o.tif")}), part);
+}
+
+TEST(Recipes, LinesOfAScannerAreLevelledAsByTheCommand) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), recipe = folder.file("clean.toml");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "160x128", "--seed", "3"}).status, 0);
+  for (const auto& [rows, axis, form] :
+       {std::tuple{"median", "y", "none"}, std::tuple{"matching", "x", "poly2"},
+        std::tuple{"poly1", "x", "plane"}}) {
+    std::ofstream(recipe) << fmt::format(
+        "recipe = 1\n[[step]]\ndo = \"level\"\nrows = \"{}\"\nscan_axis = \"{}\"\nform = \"{}\"\n", rows,
+        axis, form);
+    const auto report = fettleJson({"apply", recipe, scan, folder.file("o.tif")});
+    const auto level = fettleJson(
+        {"level", scan, folder.file("l.tif"), "--rows", rows, "--scan-axis", axis, "--form", form});
+    for (const char* key : {"rows", "scan_axis", "rows_rms", "rows_empty", "form", "rms"})
+      EXPECT_EQ(report["steps"][0][key], level[key]) << rows << " " << key;
+    EXPECT_GT(level["rows_rms"], 0.0);
+    EXPECT_EQ(report["hash"], level["hash"]) << rows;
+  }
+}
+
 TEST(Recipes, ALevelIsThatOfTheCommandAndChangesAreLimitedFromThere) {
   const TempFolder folder;
   const std::string scan = folder.file("s.tif"), recipe = folder.file("clean.toml");
@@ -91,10 +119,60 @@ TEST(Recipes, ALevelIsThatOfTheCommandAndChangesAreLimitedFromThere) {
   const auto filtered = fettleJson({"filter", folder.file("l.tif"), folder.file("f.tif"), "--filter", "box",
                                     "--window", "5", "--max-change", "15um"});
   EXPECT_EQ(report["hash"], filtered["hash"]);
+  expectRefusedStep(folder, "do = \"level\"\nrows = \"medium\"\n", "rows is not one of median, mean");
+  expectRefusedStep(folder, "do = \"level\"\nscan_axis = \"y\"\n", "scan_axis is that of lines: add rows");
+  expectRefusedStep(folder, "do = \"level\"\nform = \"none\"\n", "form is not one of mean, plane");
   std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"level\"\nform = \"sphere\"\n";
   expectRefused(fettle({"apply", recipe, scan, folder.file("o.tif")}), "form is not one of mean, plane");
   std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"level\"\nrobust = 1\n";
   expectRefused(fettle({"apply", recipe, scan, folder.file("o.tif")}), "neither true nor false");
+}
+
+TEST(Recipes, OfALevelledSessionBeginsWithTheLevelAndDoesItAgain) {
+  const TempFolder folder;
+  const auto file = [&](const char* name) { return folder.file(name); };
+  const auto recipeOf = [&](const char* session) {
+    const Outcome printed = fettle({"recipe", file(session)});
+    EXPECT_EQ(printed.status, 0) << printed.err;
+    std::ofstream(file("again.toml")) << printed.out;
+    return printed.out;
+  };
+  ASSERT_EQ(fettle({"synth", file("s.tif"), "--size", "160x128", "--seed", "3"}).status, 0);
+  const auto once = fettleJson({"level", file("s.tif"), file("a.fettle"), "--form", "poly3", "--robust"});
+  EXPECT_NE(recipeOf("a.fettle").find("form = \"poly3\"\nrobust = true\nregion = \"all\""),
+            std::string::npos);
+  EXPECT_EQ(fettleJson({"apply", file("again.toml"), file("s.tif"), file("o.tif")})["hash"], once["hash"]);
+  // A second one, with lines, on top; and through commands that keep what a session begins with.
+  const auto twice =
+      fettleJson({"level", file("a.fettle"), file("b.fettle"), "--form", "none", "--rows", "median"});
+  ASSERT_EQ(fettle({"convert", file("b.fettle"), file("c.fettle")}).status, 0);
+  const std::string text = recipeOf("c.fettle");
+  EXPECT_LT(text.find("poly3"), text.find("rows = \"median\"\nscan_axis = \"x\"\nform = \"none\""));
+  EXPECT_EQ(fettleJson({"apply", file("again.toml"), file("s.tif"), file("d.fettle")})["hash"],
+            twice["hash"]);
+  EXPECT_EQ(recipeOf("d.fettle"), text);
+  ASSERT_EQ(fettle({"filter", file("d.fettle"), file("e.fettle"), "--filter", "median"}).status, 0);
+  const auto filtered = fettleJson({"recipe", file("e.fettle")});
+  EXPECT_EQ(filtered["steps"], 2);
+  EXPECT_EQ(filtered["left_out"].size(), 1U);
+  // A level after a filter whose numbers are not stored would not be the same on another scan.
+  ASSERT_EQ(fettle({"level", file("e.fettle"), file("f.fettle")}).status, 0);
+  expectRefused(fettle({"recipe", file("f.fettle")}), "the session has no steps");
+  // A form laid over a session leaves what it begins with as it is; a level of what is seen under one does not.
+  ASSERT_EQ(fettle({"level", file("b.fettle"), file("g.fettle"), "--layer", "put"}).status, 0);
+  EXPECT_EQ(fettleJson({"recipe", file("g.fettle")})["steps"], 2);
+  ASSERT_EQ(fettle({"level", file("g.fettle"), file("h.fettle"), "--rows", "mean"}).status, 0);
+  expectRefused(fettle({"recipe", file("h.fettle")}), "the session has no steps");
+}
+
+TEST(Recipes, ALevelByMarksBelongsToItsScan) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), marks = folder.file("m.png"),
+                    session = folder.file("s.fettle");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "160x128", "--seed", "3"}).status, 0);
+  ASSERT_EQ(fettle({"mark", scan, marks, "--edges"}).status, 0);
+  ASSERT_EQ(fettle({"level", scan, session, "--region", "unmarked", "--marks", marks}).status, 0);
+  expectRefused(fettle({"recipe", session}), "which these are belongs to this scan");
 }
 
 // The next state of a session, with the entries of the journal that made it.

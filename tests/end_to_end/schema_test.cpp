@@ -52,6 +52,9 @@ TEST_F(Schemas, EveryCommandPrintsWhatItsSchemaStates) {
   run({"filter", scan, "--suggest", "--tolerance", "15um", "--estimate"});
   run({"level", scan, file("level.tif"), "--robust"});
   run({"level", scan, file("level.tif"), "--rows", "median", "--form", "none"});
+  run({"level", scan, file("layer.fettle"), "--layer", "put"});
+  run({"info", file("layer.fettle")});
+  run({"level", file("layer.fettle"), file("level.tif"), "--layer", "bake"});
   run({"measure", scan, "--form", "poly2", "--at-height", "0,1um", "--at-ratio", "50"});
   run({"measure", scan, "--only", "hybrid", "--s-filter", "3", "--l-filter", "20"});
   run({"fill", scan, file("full.fettle"), "--border"});

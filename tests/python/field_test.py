@@ -274,6 +274,34 @@ class Level(unittest.TestCase):
         self.assertLessEqual(levelled.compare(limited)["max_abs"], 0.0100001)
 
 
+    def test_a_form_lies_over_a_field_and_goes_again(self):
+        scan = fettle.synth(part="steps", size=(96, 80))
+        formed = scan.level(layer="put", form="poly2")
+        # What is seen is what level takes the form out of; the samples are the scan's.
+        np.testing.assert_array_equal(np.asarray(formed), np.asarray(scan.level(form="poly2")))
+        self.assertEqual(formed.hash, scan.hash)
+        self.assertEqual(formed.info()["form"], "poly2")
+        again = formed.level(layer="remove")
+        self.assertEqual(again.hash, scan.hash)
+        np.testing.assert_array_equal(np.asarray(again), np.asarray(scan))
+        # Samples that a filter does not change keep their bits.
+        marks = np.zeros(scan.shape, bool)
+        marks[20:40] = True
+        filtered = formed.with_marks(marks).filter("gaussian", sigma=2.0)
+        back = filtered.level(layer="remove")
+        np.testing.assert_array_equal(np.asarray(back)[20:40], np.asarray(scan)[20:40])
+        self.assertFalse(np.array_equal(np.asarray(back), np.asarray(scan), equal_nan=True))
+        for field in (filtered, filtered.inverted()):
+            other = pickle.loads(pickle.dumps(field))
+            self.assertEqual(other.hash, field.hash)
+            self.assertEqual(other.original.hash, field.original.hash)
+            np.testing.assert_array_equal(np.asarray(other.original), np.asarray(field.original))
+            self.assertEqual(other.level(layer="remove").hash, field.level(layer="remove").hash)
+            self.assertEqual(other.info()["form"], "poly2")
+        with self.assertRaisesRegex(fettle.InputError, "no form lies over"):
+            scan.level(layer="remove")
+
+
 class ElsewhereAndBack(unittest.TestCase):
     def test_a_field_goes_through_pickle_as_it_is(self):
         field = fettle.synth(size=(96, 64), seed=7).mark(edges=True, lines_out=True).filter("median")

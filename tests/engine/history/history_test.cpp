@@ -208,6 +208,18 @@ TEST(History, AnInversionTouchesNoTileAndUndoesExactly) {
   EXPECT_TRUE(*history.undo() == start);
 }
 
+TEST(History, AFormTouchesNoTileAndUndoesExactly) {
+  History history(someField(70, 70));
+  const Version start = history.current();
+  const auto form = std::make_shared<const PolynomialForm>(PolynomialForm{0, 70, 70, 1.0, {0.0}});
+  ASSERT_TRUE(history.push({"Form", StepKind::kForm, stepTimeNow(), {}, 0}, start.withForm(form)));
+  EXPECT_FALSE(history.push({"Form", StepKind::kForm, stepTimeNow(), {}, 0}, start.withForm(form)));
+  EXPECT_EQ(history.bytes(), 0U);
+  EXPECT_EQ(history.info(1).rect, (SampleRect{0, 0, 70, 70}));
+  EXPECT_TRUE(*history.undo() == start);
+  EXPECT_EQ(*stepKindFromName(stepKindName(StepKind::kForm)), StepKind::kForm);
+}
+
 TEST(History, AnOlderStepCanBePutInFront) {
   const Version start = someField(200, 200);
   const Version one = edited(start, 3, 3, -1.0F);

@@ -91,8 +91,8 @@ TEST(NoSession, ANewerFormatSaysToUpdate) {
   const std::string path = folder.file("a.fettle");
   JobControl job;
   ASSERT_TRUE(saveSession(somePlay().session, path, job));
-  runSql(path, "PRAGMA user_version=3");
-  expectRefused(path, "written by a newer Fettle (format 3, supported up to 2)");
+  runSql(path, "PRAGMA user_version=4");
+  expectRefused(path, "written by a newer Fettle (format 4, supported up to 3)");
 }
 
 TEST(Damage, LinesThatWereChangedAreNoticed) {
@@ -110,12 +110,37 @@ TEST(Damage, LinesThatWereChangedAreNoticed) {
                          session.original.withLines(std::make_shared<const std::vector<EdgeLine>>(1, line)));
   }
   for (const auto& [sql, reason] :
-       {std::pair("DELETE FROM lines WHERE step=2", "the lines of step 2 are missing"),
-        {"UPDATE lines SET step=7 WHERE step=2", "the lines of step 7 do not fit"},
-        {"UPDATE lines SET data=x'00' WHERE step=1", "the lines of step 1 do not fit"},
-        {"UPDATE lines SET data=(SELECT data FROM lines WHERE step=2) WHERE step=1", "step 1 do not fit"},
-        {"UPDATE lines SET checksum=checksum+1 WHERE step=2", "step 2 do not fit"},
-        {"PRAGMA user_version=1", "the lines of step 1 are missing"}}) {
+       {std::pair("DELETE FROM lines WHERE step=2", "the set of lines of step 2 is missing"),
+        {"UPDATE lines SET step=7 WHERE step=2", "the set of lines of step 7 does not fit"},
+        {"UPDATE lines SET data=x'00' WHERE step=1", "the set of lines of step 1 does not fit"},
+        {"UPDATE lines SET data=(SELECT data FROM lines WHERE step=2) WHERE step=1", "step 1 does not fit"},
+        {"UPDATE lines SET checksum=checksum+1 WHERE step=2", "step 2 does not fit"},
+        {"PRAGMA user_version=1", "the set of lines of step 1 is missing"}}) {
+    const std::string path = folder.file("a.fettle");
+    ASSERT_TRUE(saveSession(session, path, job));
+    runSql(path, sql);
+    expectRefused(path, reason);
+    fs::remove(path);
+  }
+}
+
+TEST(Damage, FormsThatWereChangedAreNoticed) {
+  const TempFolder folder;
+  JobControl job;
+  Session session;
+  session.original = strangeField(4, 100, 80);
+  session.scan.format = "none";
+  session.history = History(session.original);
+  for (const double base : {1.0, 2.0})
+    session.history.push({"Form", StepKind::kForm, {}, {}, 0},
+                         session.original.withForm(std::make_shared<const PolynomialForm>(
+                             PolynomialForm{0, 100, 80, base, {0.0}})));
+  for (const auto& [sql, reason] :
+       {std::pair("DELETE FROM forms WHERE step=2", "the form of step 2 is missing"),
+        {"UPDATE forms SET step=7 WHERE step=2", "the form of step 7 does not fit"},
+        {"UPDATE forms SET data=x'00' WHERE step=1", "the form of step 1 does not fit"},
+        {"UPDATE forms SET checksum=checksum+1 WHERE step=2", "step 2 does not fit"},
+        {"PRAGMA user_version=2", "the form of step 1 is missing"}}) {
     const std::string path = folder.file("a.fettle");
     ASSERT_TRUE(saveSession(session, path, job));
     runSql(path, sql);

@@ -4,13 +4,16 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "engine/field/builder.h"
 #include "engine/field/live_field.h"
 #include "engine/formats/formats.h"
+#include "engine/session/form_codec.h"
 #include "engine/session/line_codec.h"
 #include "engine/session/tile_codec.h"
 
@@ -81,6 +84,16 @@ EdgeLines someLines(Random& random) {
     }
   }
   return lines.empty() ? EdgeLines() : std::make_shared<const std::vector<EdgeLine>>(std::move(lines));
+}
+
+// Of any degree; sometimes none.
+FieldForm someForm(Random& random, const Version& field) {
+  const int degree = below(random, PolynomialForm::kMostDegree + 2) - 1;
+  if (degree < 0) return nullptr;
+  const auto real = [&] { return std::ldexp(static_cast<double>(random()), below(random, 100) - 100); };
+  PolynomialForm form{degree, field.grid().width, field.grid().height, -real(), {}};
+  for (int k = 0; k < PolynomialForm::terms(degree); ++k) form.coefficients.push_back(real());
+  return std::make_shared<const PolynomialForm>(std::move(form));
 }
 
 }  // namespace
@@ -182,9 +195,12 @@ void Play::act(SessionWriter* writer) {
     const EdgeLines lines = someLines(random);
     info.kind = lines == live.snapshot().lines() ? StepKind::kMark : StepKind::kLines;
     static_cast<void>(live.adopt(live.snapshot().withLines(lines)));
-  } else {
+  } else if (what < 94) {
     live.invert();
     info.kind = StepKind::kInvert;
+  } else {
+    static_cast<void>(live.adopt(live.snapshot().withForm(someForm(random, live.snapshot()))));
+    info.kind = StepKind::kForm;
   }
   const bool changed = history.push(info, live.snapshot());
   entry.state = history.number();
@@ -214,6 +230,7 @@ std::string difference(const Version& a, const Version& b) {
       m.holed_children != n.holed_children)
     return "the roots differ";
   if (packLines(a.lines()) != packLines(b.lines())) return "the edge lines differ";
+  if (packForm(a.form()) != packForm(b.form())) return "the forms differ";
   return {};
 }
 

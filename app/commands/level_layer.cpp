@@ -1,0 +1,122 @@
+#include "app/commands/level_layer.h"
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "app/commands/scan_files.h"
+#include "app/work/memory_places.h"
+#include "app/work/streams.h"
+#include "engine/field/seen_field.h"
+#include "engine/field/upright.h"
+
+namespace fettle::app {
+
+namespace {
+
+constexpr const char* kPut = "put";
+constexpr const char* kRemove = "remove";
+constexpr const char* kBake = "bake";
+
+// The form of the samples, upright, that count.
+engine::Result<engine::FormFit> fitOver(const engine::Version& samples,
+                                        const std::optional<engine::Version>& original,
+                                        const FormArguments& form, const engine::Imported& imported,
+                                        const std::string& scan, engine::JobControl& job) {
+  auto counted = countedOf(engine::upright(samples), original, scan, form, job);
+  if (!counted) return tl::unexpected(counted.error());
+  return formOf(*counted, scan, imported, form, job);
+}
+
+// Files store the form beside the samples; what stays in memory is what is seen.
+engine::Result<engine::Version> shownIn(const BatchTask& task, const engine::Version& version,
+                                        engine::JobControl& job) {
+  if (memoryPlace(task.out) == nullptr) return version;
+  const auto seen = engine::SeenField::of(version, job);
+  if (!seen) return tl::unexpected(seen.error());
+  return seen->seen();
+}
+
+}  // namespace
+
+std::vector<Word> layerWords() {
+  return {{kPut,
+           "lay the form over the scan: it is taken out of what is seen, touched and measured, no sample "
+           "changes"},
+          {kRemove, "take the layer of a session away: its samples are what they are"},
+          {kBake, "make what is seen of a session its samples"}};
+}
+
+engine::Status checkLayer(const std::string& layer, const FormArguments& form,
+                          const std::vector<BatchTask>& tasks) {
+  const bool put = layer == kPut;
+  if (put && form.form == "none")
+    return engine::inputError("there is no form to lay over a scan", "--form",
+                              "name another than none, or take --layer remove");
+  const FormArguments usual;
+  if (!put)
+    for (const auto& [given, option] : {std::pair(form.form != usual.form, "--form"),
+                                        {form.robust, "--robust"},
+                                        {form.region != usual.region, "--region"},
+                                        {!form.marks.empty(), "--marks"}})
+      if (given)
+        return engine::inputError("the session's layer has its form", option, "omit it, or take --layer put");
+  if (layer == kBake) return {};
+  for (const BatchTask& task : tasks)
+    if (memoryPlace(task.out) == nullptr && !writesSession(task))
+      return engine::inputError("only a session stores samples and the form over them", shownOutput(task.out),
+                                "write a session, NAME.fettle");
+  return {};
+}
+
+engine::Result<Report> changeLayer(const std::string& layer, const FormArguments& form,
+                                   const ScanOptions& reading, const engine::ExportOptions& writing,
+                                   const BatchTask& task, engine::JobControl& job) {
+  const auto imported = loadScan(task.in, reading, job);
+  if (!imported) return tl::unexpected(imported.error());
+  const engine::Grid& grid = imported->field.grid();
+  if (layer != kPut && imported->field.seenOf() == nullptr)
+    return engine::inputError("no form lies over the scan", shownInput(task.in),
+                              "name a session of fettle level --layer put");
+  const auto samples = engine::withoutLayer(imported->field, job);
+  if (!samples) return tl::unexpected(samples.error());
+  std::optional<engine::Version> original;
+  if (imported->original) {
+    auto first = engine::withoutLayer(*imported->original, job);
+    if (!first) return tl::unexpected(first.error());
+    original = *std::move(first);
+  }
+  Report report{{"layer", layer}};
+  engine::Version result = *samples;
+  if (layer == kPut) {
+    const auto fit = fitOver(*samples, original, form, *imported, task.in, job);
+    if (!fit) return tl::unexpected(fit.error());
+    const auto over = std::make_shared<const engine::PolynomialForm>(fit->form);
+    for (engine::Version* version : {&result, original ? &*original : nullptr}) {
+      if (version == nullptr) continue;
+      auto shown = shownIn(task, version->withForm(over), job);
+      if (!shown) return tl::unexpected(shown.error());
+      *version = *std::move(shown);
+    }
+    addForm(report, form, *fit, grid);
+    report.update({{"samples", fit->samples}, {"rms", fit->rms}, {"rounds", fit->rounds}});
+  } else {
+    report["form"] = formWordOf(*imported->field.seenOf()->form());
+  }
+  if (layer == kBake) {
+    // Changes since the scan stay what they were: its first state loses the same form.
+    result = imported->field.withSeenOf(nullptr);
+    if (imported->original) original = imported->original->withSeenOf(nullptr);
+  }
+  engine::ExportOptions exported = writing;
+  exported.original = std::move(original);
+  // What a session begins with is the same under a layer, and another once that is baked.
+  if (layer != kBake) exported.recipe = imported->recipe;
+  if (auto status = saveField(result, task.out, job, exported, task.to); !status)
+    return tl::unexpected(status.error());
+  report["unit"] = grid.height_unit.name;
+  report["hash"] = hashOf(result);
+  return report;
+}
+
+}  // namespace fettle::app

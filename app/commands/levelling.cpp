@@ -1,0 +1,103 @@
+#include "app/commands/levelling.h"
+
+#include <iterator>
+#include <utility>
+
+#include "app/work/streams.h"
+#include "engine/field/tile.h"
+#include "engine/measure/lowered.h"
+
+namespace fettle::app {
+
+namespace {
+
+struct LineWord {
+  const char* word;
+  const char* text;
+  engine::LineMethod method;
+  int degree;
+};
+constexpr LineWord kLineWords[] = {
+    {"median", "the median of each", engine::LineMethod::kMedian, 0},
+    {"mean", "the mean of each", engine::LineMethod::kPolynomial, 0},
+    {"poly1", "a straight line along each", engine::LineMethod::kPolynomial, 1},
+    {"poly2", "a polynomial of degree 2 along each", engine::LineMethod::kPolynomial, 2},
+    {"poly3", "of degree 3", engine::LineMethod::kPolynomial, 3},
+    {"difference", "the median of the differences to the line before", engine::LineMethod::kDifference, 0},
+    {"matching", "of those differences the mean where both lines are alike", engine::LineMethod::kMatching,
+     0},
+};
+
+}  // namespace
+
+std::vector<Word> lineWords() {
+  std::vector<Word> words;
+  words.reserve(std::size(kLineWords));
+  for (const LineWord& line : kLineWords) words.emplace_back(line.word, line.text);
+  return words;
+}
+
+engine::LineOptions lineOptionsOf(const LineArguments& lines, const FormArguments& form) {
+  engine::LineOptions options;
+  for (const LineWord& row : kLineWords)
+    if (lines.rows == row.word) {
+      options.method = row.method;
+      options.degree = row.degree;
+    }
+  options.axis = lines.scan_axis == "y" ? engine::ScanAxis::kY : engine::ScanAxis::kX;
+  const engine::FormOptions counting = formOptionsOf(form);
+  options.region = counting.region;
+  options.robust = counting.robust;
+  return options;
+}
+
+engine::Result<engine::Version> Levelling::takenFrom(const engine::Version& field,
+                                                     engine::JobControl& job) const {
+  return engine::lowered(
+      field, "levelling",
+      [&](const engine::SampleRect& rect, double* out) {
+        fit.form.readHeights(rect, out, engine::kTileSide);
+        if (!lines) return;
+        double more[engine::kTileSamples];
+        lines->readHeights(rect, more);
+        for (int r = 0; r < rect.rows; ++r)
+          for (int k = r * engine::kTileSide; k < r * engine::kTileSide + rect.columns; ++k)
+            out[k] += more[k];
+      },
+      job);
+}
+
+engine::Result<Levelling> levellingOf(const engine::Version& counted, const std::string& scan,
+                                      const engine::Imported& imported, const LineArguments& lines,
+                                      const FormArguments& form, engine::JobControl& job) {
+  Levelling levelling;
+  engine::Version level = counted;
+  if (!lines.rows.empty()) {
+    auto found = engine::findLineOffsets(counted, lineOptionsOf(lines, form), job);
+    if (!found && found.error().kind == engine::ErrorKind::kInput)
+      return engine::inputError(found.error().what, shownInput(scan), found.error().remedy);
+    if (!found) return tl::unexpected(found.error());
+    levelling.lines = *std::move(found);
+    auto lowered = engine::lowered(
+        counted, "levelling lines",
+        [&](const engine::SampleRect& rect, double* out) { levelling.lines->readHeights(rect, out); }, job);
+    if (!lowered) return tl::unexpected(lowered.error());
+    level = *std::move(lowered);
+  }
+  auto fit = formOf(level, scan, imported, form, job);
+  if (!fit) return tl::unexpected(fit.error());
+  levelling.fit = *std::move(fit);
+  return levelling;
+}
+
+void addLevelling(Report& report, const LineArguments& lines, const FormArguments& form,
+                  const Levelling& levelling, const engine::Grid& grid) {
+  if (levelling.lines)
+    report.update({{"rows", lines.rows},
+                   {"scan_axis", lines.scan_axis},
+                   {"rows_rms", levelling.lines->rms},
+                   {"rows_empty", levelling.lines->empty}});
+  addForm(report, form, levelling.fit, grid);
+}
+
+}  // namespace fettle::app

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "app/commands/form_option.h"
+#include "app/report.h"
+#include "engine/base/error.h"
+#include "engine/base/job.h"
+#include "engine/field/grid.h"
+#include "engine/field/version.h"
+#include "engine/io/import.h"
+#include "engine/measure/form.h"
+#include "engine/measure/line_offsets.h"
+
+namespace fettle::app {
+
+/// What is taken from each line of a line scanner before a form is fitted.
+struct LineArguments {
+  std::string rows;             ///< a word of lineWords(); empty: lines stay
+  std::string scan_axis = "x";  ///< along which its lines are: x, rows, or y, columns
+};
+
+/// "median", "mean", "poly1" to "poly3", "difference", "matching".
+[[nodiscard]] std::vector<Word> lineWords();
+
+/// What the arguments mean, as typed and checked by their rows; the samples that count are those of the form.
+[[nodiscard]] engine::LineOptions lineOptionsOf(const LineArguments& lines, const FormArguments& form);
+
+/// What `fettle level` and the step "level" of a recipe take out of a field: offsets of lines, and the form of what is left.
+struct Levelling {
+  std::optional<engine::LineOffsets> lines;
+  engine::FormFit fit;
+
+  /// A field of the same size without both, rounded to float once. Errors: as engine::lowered.
+  [[nodiscard]] engine::Result<engine::Version> takenFrom(const engine::Version& field,
+                                                          engine::JobControl& job) const;
+};
+
+/// Finds them by the samples of `counted` that count. `scan` is its path. Errors: as engine::findLineOffsets and formOf,
+/// naming the scan.
+[[nodiscard]] engine::Result<Levelling> levellingOf(const engine::Version& counted, const std::string& scan,
+                                                    const engine::Imported& imported,
+                                                    const LineArguments& lines, const FormArguments& form,
+                                                    engine::JobControl& job);
+
+/// As keys of a report: of lines rows, scan_axis, rows_rms, rows_empty; then those of addForm.
+void addLevelling(Report& report, const LineArguments& lines, const FormArguments& form,
+                  const Levelling& levelling, const engine::Grid& grid);
+
+}  // namespace fettle::app

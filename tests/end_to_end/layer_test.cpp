@@ -1,0 +1,185 @@
+// fettle level --layer, and what other commands make of a session with a form over it.
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/formats/formats.h"
+#include "tests/end_to_end/program.h"
+#include "tests/support/temp_folder.h"
+
+namespace fettle::tests {
+namespace {
+
+engine::Version fieldOf(const std::string& path) {
+  engine::JobControl job;
+  auto imported = engine::importField(path, {}, job);
+  EXPECT_TRUE(imported) << path;
+  return imported->field;
+}
+
+class Layer : public testing::Test {
+ protected:
+  void SetUp() override {
+    // A tilted plate with steps and holes, far from its origin.
+    runWhole({"synth", scan_, "--size", "150x100", "--noise", "0.002", "--dropouts", "0.01", "--seed", "4"});
+    runWhole({"level", scan_, session_, "--layer", "put", "--form", "poly2"});
+  }
+
+  void runWhole(const std::vector<std::string>& arguments) {
+    const Outcome outcome = fettle(arguments);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  std::string file(const char* name) { return folder_.file(name); }
+
+  const TempFolder folder_;
+  const std::string scan_ = folder_.file("scan.tif");
+  const std::string session_ = folder_.file("work.fettle");
+};
+
+TEST_F(Layer, GoesInAndOutAndChangesNoSample) {
+  const std::uint64_t hash = engine::contentHash(fieldOf(scan_));
+  EXPECT_NE(engine::contentHash(fieldOf(session_)), hash);
+  EXPECT_EQ(fettleJson({"info", session_})["form"], "poly2");
+  EXPECT_FALSE(fettleJson({"info", scan_}).contains("form"));
+  const auto removed = fettleJson({"level", session_, file("back.fettle"), "--layer", "remove"});
+  EXPECT_EQ(removed["form"], "poly2");
+  EXPECT_EQ(engine::contentHash(fieldOf(file("back.fettle"))), hash);
+  EXPECT_FALSE(fettleJson({"info", file("back.fettle")}).contains("form"));
+  // Another form instead, of the samples and not of what is seen.
+  const auto again = fettleJson({"level", session_, file("plane.fettle"), "--layer", "put"});
+  EXPECT_EQ(again["rms"], fettleJson({"level", scan_, file("plane.tif")})["rms"]);
+  EXPECT_EQ(fettleJson({"info", file("plane.fettle")})["form"], "plane");
+  // In another format the samples, with a word about it.
+  const Outcome converted = fettle({"convert", session_, file("out.tif")});
+  EXPECT_NE(converted.err.find("with the form"), std::string::npos) << converted.err;
+  EXPECT_EQ(engine::contentHash(fieldOf(file("out.tif"))), hash);
+}
+
+TEST_F(Layer, BakedIsWhatLevelWrites) {
+  runWhole({"level", scan_, file("level.tif"), "--form", "poly2"});
+  const auto baked = fettleJson({"level", session_, file("baked.tif"), "--layer", "bake"});
+  EXPECT_EQ(baked["form"], "poly2");
+  EXPECT_EQ(engine::contentHash(fieldOf(file("baked.tif"))), engine::contentHash(fieldOf(file("level.tif"))));
+  // What is seen is what is measured.
+  const auto seen = fettleJson({"measure", session_, "--form", "none"});
+  const auto level = fettleJson({"measure", file("level.tif"), "--form", "none"});
+  for (const char* key : {"sq", "sa", "sz", "sdq", "sk"}) EXPECT_EQ(seen[key], level[key]) << key;
+}
+
+// Changes are limited from the scan, both without the form; samples that are not changed keep their bits.
+TEST_F(Layer, AFilterChangesWhatIsSeenAndKeepsTheSamplesOfMarks) {
+  const std::string marks = file("marks.png"), out = file("out.fettle"), tif = file("out.tif");
+  runWhole({"mark", session_, marks, "--edges"});
+  const auto done = fettleJson({"filter", session_, out, "--filter", "gaussian", "--sigma", "2", "--keep",
+                                marks, "--max-change", "3um"});
+  EXPECT_EQ(fettleJson({"info", out})["form"], "poly2");
+  runWhole({"convert", out, tif});
+  const engine::Version before = fieldOf(scan_), after = fieldOf(tif);
+  engine::JobControl job;
+  const engine::Version marked = fieldOf(out), seen = fieldOf(session_);
+  std::int64_t kept = 0, changed = 0;
+  for (int r = 0; r < 100; ++r)
+    for (int c = 0; c < 150; ++c) {
+      const float a = before.reader().heightAt(c, r), b = after.reader().heightAt(c, r);
+      ASSERT_EQ(std::isnan(a), std::isnan(b));
+      if (std::isnan(a)) continue;
+      // The limit, and what two heights are rounded by as they are seen, and two as they are stored.
+      constexpr double kHalfUnit = 0x1p-24;
+      ASSERT_LE(std::abs(double{a} - b),
+                0.003 + 2.0 * kHalfUnit * (std::abs(a) + std::abs(seen.reader().heightAt(c, r)) + 0.006));
+      if (marked.reader().markedAt(c, r)) {
+        ASSERT_EQ(a, b);
+        ++kept;
+      }
+      changed += a != b ? 1 : 0;
+    }
+  EXPECT_GT(kept, 100);
+  EXPECT_GT(changed, 5000);
+  EXPECT_EQ(done["hash"], fettleJson({"level", out, file("o2.fettle"), "--layer", "remove"})["hash"]);
+  // Deviation means the samples: nothing is said of the form.
+  EXPECT_LT(fettleJson({"compare", scan_, out})["max_abs"].get<double>(), 0.00301);
+}
+
+// Touch: what is felt has no form; the sample under the brush alone is another one.
+TEST_F(Layer, StrokesAreFeltWithoutTheForm) {
+  const engine::Version seen = fieldOf(session_);
+  const engine::Grid& grid = seen.grid();
+  std::ofstream strokes(file("s.csv"));
+  strokes << "t,x,y,z,tool\n";
+  strokes.precision(17);
+  const int c = 40, r = 30;
+  ASSERT_FALSE(std::isnan(seen.reader().heightAt(c, r)));
+  for (int k = 0; k < 200; ++k)
+    strokes << k * 1e-3 << ',' << (c + 0.5) * grid.spacingXMm() << ',' << (r + 0.5) * grid.spacingYMm() << ','
+            << seen.reader().heightAt(c, r) * grid.height_unit.mm + 2.0 - 0.02 * k << ",smooth\n";
+  strokes.close();
+  const auto report = fettleJson({"replay", session_, file("s.csv"), file("out.fettle")});
+  EXPECT_GT(report["contact_ticks"], 20);
+  EXPECT_GT(report["samples_changed"], 0);
+  runWhole({"convert", file("out.fettle"), file("out.tif")});
+  const engine::Version before = fieldOf(scan_), after = fieldOf(file("out.tif"));
+  std::int64_t changed = 0;
+  for (int row = 0; row < 100; ++row)
+    for (int column = 0; column < 150; ++column) {
+      const float a = before.reader().heightAt(column, row), b = after.reader().heightAt(column, row);
+      changed += a != b && !std::isnan(a) ? 1 : 0;
+    }
+  EXPECT_LE(changed, report["samples_changed"].get<std::int64_t>());
+  EXPECT_GT(changed, 0);
+}
+
+TEST_F(Layer, FilledSamplesLieOnWhatIsSeenAndStayKnown) {
+  const auto filled = fettleJson({"fill", session_, file("full.fettle")});
+  EXPECT_GT(filled["filled"], 0);
+  EXPECT_EQ(fettleJson({"info", file("full.fettle")})["filled"], filled["filled"]);
+  const auto compared = fettleJson({"compare", scan_, file("full.fettle")});
+  EXPECT_EQ(compared["max_abs"], 0.0);
+  EXPECT_EQ(compared["only_b"], filled["filled"]);
+}
+
+TEST_F(Layer, WhatMeansTheSamplesTakesThemWithTheForm) {
+  const Outcome turned = fettle({"transform", session_, file("t.fettle"), "--turn", "90"});
+  EXPECT_EQ(turned.status, 0);
+  EXPECT_NE(turned.err.find("with the form"), std::string::npos) << turned.err;
+  runWhole({"transform", scan_, file("t.tif"), "--turn", "90"});
+  EXPECT_EQ(engine::contentHash(fieldOf(file("t.fettle"))), engine::contentHash(fieldOf(file("t.tif"))));
+  EXPECT_EQ(fettleJson({"align", scan_, session_, "--moves", "level"})["schema"], "fettle.align/1");
+}
+
+TEST_F(Layer, WhatHasNoEffectIsRefused) {
+  const std::string out = file("never.fettle");
+  const auto refused = [&](const std::vector<std::string>& arguments, const char* what) {
+    const Outcome outcome = fettle(arguments);
+    EXPECT_EQ(outcome.status, 2) << what;
+    EXPECT_NE(outcome.err.find(what), std::string::npos) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  };
+  refused({"level", scan_, file("x.tif"), "--layer", "put"}, "only a session stores");
+  refused({"level", session_, file("x.tif"), "--layer", "remove"}, "only a session stores");
+  refused({"level", scan_, out, "--layer", "bake"}, "no form lies over the scan");
+  refused({"level", scan_, out, "--layer", "remove"}, "no form lies over the scan");
+  refused({"level", scan_, out, "--layer", "put", "--form", "none"}, "no form to lay over");
+  refused({"level", scan_, out, "--layer", "put", "--rows", "median"}, "--rows");
+  refused({"level", session_, out, "--layer", "bake", "--robust"}, "--robust");
+  refused({"level", session_, out, "--layer", "remove", "--form", "poly3"}, "--form");
+  refused({"level", session_, out, "--layer", "remove", "--region", "marked"}, "--region");
+  refused({"level", session_, out, "--layer", "off"}, "--layer");
+  EXPECT_FALSE(std::filesystem::exists(file("x.tif")));
+}
+
+TEST_F(Layer, ASessionGoesToStandardOutput) {
+  const Outcome put = fettle({"level", scan_, "-", "--layer", "put", "--to", "fettle"});
+  ASSERT_EQ(put.status, 0) << put.err;
+  std::ofstream(file("piped.fettle"), std::ios::binary) << put.out;
+  EXPECT_EQ(fettleJson({"info", file("piped.fettle")})["form"], "plane");
+  const Outcome filled = fettle({"fill", scan_, "-", "--to", "fettle"});
+  EXPECT_EQ(filled.err.find("only a session stores"), std::string::npos) << filled.err;
+}
+
+}  // namespace
+}  // namespace fettle::tests
