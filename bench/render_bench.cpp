@@ -320,9 +320,11 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
     for (const std::size_t k : {6, 7}) scenes[k].input.vertex_budget = std::int64_t{1} << 20;
     scenes[7].brush = Brush::kWorks;
     for (const std::size_t k : {3, 4, 5, 7}) scenes[k].camera = Camera::kFixed;
+    // Shaded as in the window.
+    for (const std::size_t k : {2, 3, 4, 5, 6, 7}) scenes[k].input.form = render::kShownForm;
     if (i == 0) {
       const std::size_t first = scenes.size();
-      scenes.insert(scenes.end(), 4, all_round);
+      scenes.insert(scenes.end(), 7, all_round);
       scenes[first].name = "contours";
       scenes[first].input.contours = render::Contours::kShow;
       scenes[first + 1].name = "deviation";
@@ -331,11 +333,18 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
       scenes[first + 2].shown.marks = render::MarksOverlay::kShow;
       scenes[first + 3].name = "two eyes";
       scenes[first + 3].input.stereo.mode = render::StereoMode::kAnaglyph;
+      scenes[first + 4].name = "normals";
+      scenes[first + 4].input.form.filtered_normals = true;
+      scenes[first + 5].name = "occlusion";
+      scenes[first + 5].input.form.occlusion = 0.8;
+      scenes[first + 6].name = "cavity";
+      scenes[first + 6].input.form.cavity = 0.5;
     }
     if (options.in_motion == render::Sharpness::kHalf) {
       Scene moving = all_round;
       moving.name = "moving";
       moving.input.sharpness = render::Sharpness::kHalf;
+      moving.input.form = render::kShownForm;
       if (i == 0) {
         scenes.push_back(moving);
         scenes.back().name = "two, moving";
@@ -355,6 +364,7 @@ engine::Result<RenderBenchReport> benchRender(const RenderBenchOptions& options,
       report.rows.push_back(*std::move(row));
     }
     all_round.input.sharpness = options.in_motion;
+    all_round.input.form = render::kShownForm;
     if (i == 0 && options.loop_seconds > 0.0)
       if (auto ok = drawWithLoop(**picture, all_round, options.loop_seconds, report.loop); !ok)
         return tl::unexpected(ok.error());

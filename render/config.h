@@ -28,6 +28,14 @@ inline constexpr int kGlyphImageSide = 1024;
 /// About so many samples give the robust range of the colours; larger fields are sampled.
 inline constexpr std::int64_t kRangeSamples = std::int64_t{1} << 20;
 
+/// Distance from which the height around a point counts as what stands around it, along x and y, and on the
+/// lines between these [px at the middle of the picture, lying on the field]. Nearer ones show less of the
+/// form, farther ones darken what is not close to anything.
+inline constexpr double kAroundPx = 8.0, kAroundBetweenPx = 4.0;
+/// At most so many steps between the samples that colours come from: on demand, those of a fragment are then
+/// in two pages in each direction at most.
+inline constexpr int kMostAround = (1 << 5) - 2;
+
 // Level of detail.
 
 /// Vertices of a frame, all panels together: 64 k take about 10 ms on two cores.

@@ -76,15 +76,16 @@ int shade_log2 = panel.shade.x;       // of the step between samples
 ivec2 shade_size = panel.shade.zw;    // columns, rows
 int shade_difference = panel.paging.w;  // step of differences
 
-// The pages of the samples of a cell's colour, from two before to three after it: 2 x 2 at most. Looked up once for all
-// samples of a fragment.
+// The pages of the samples of a cell's colour, from panel.footprint.z before it to one more after it: 2 x 2 at most.
+// Looked up once for all samples of a fragment.
 ivec2 window_page;     // of the lowest of them
 uvec4 window_entries;  // low, to the right, above, above to the right
 
 // Sets the window; returns whether it is on the device.
 bool readable(int level, ivec2 cell) {
   const ivec2 last = panel.pages.level[level].zw - 1;
-  const ivec2 low = clamp(cell - 2, ivec2(0), last), high = clamp(cell + 3, ivec2(0), last);
+  const int reach = panel.footprint.z;
+  const ivec2 low = clamp(cell - reach, ivec2(0), last), high = clamp(cell + reach + 1, ivec2(0), last);
   window_page = low >> panel.pages.pool.x;
   window_entries = uvec4(entryOf(level, low), entryOf(level, ivec2(high.x, low.y)),
                          entryOf(level, ivec2(low.x, high.y)), entryOf(level, high));

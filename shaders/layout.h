@@ -77,7 +77,12 @@ FETTLE_CONST kSpecOnDemand = 7;
 // cell are read in one look-up.
 FETTLE_CONST kSpecGather = 8;
 FETTLE_CONST kSpecPerspective = 9;  // distances of points from the viewer differ
-FETTLE_CONST kSpecCount = 10;
+// Normals are those of the plane through the samples in the footprint of a ray (footprint.glsl).
+FETTLE_CONST kSpecFootprint = 10;
+// Light that is hidden by what stands around; brighter ridges and darker hollows (surroundings.glsl).
+FETTLE_CONST kSpecOcclusion = 11;
+FETTLE_CONST kSpecCavity = 12;
+FETTLE_CONST kSpecCount = 13;
 
 // What a Quad is filled with.
 FETTLE_CONST kFillSolid = 0;
@@ -127,9 +132,15 @@ struct PanelUniforms {
   ivec4 shade;   // 464: log2 of the step between samples that colours come from; -; columns, rows of those
   // Seam: how far seams overlap [px]; from this distance between drawn and exact position on, a point counts
   // as displaced [scene mm]; -; -.
-  vec4 seam;               // 480
-  vec4 suggested_tint;     // 496: of marks that are suggested: linear red, green, blue; opacity
-  vec4 colours[kColours];  // 512: linear red, green, blue
+  vec4 seam;            // 480
+  vec4 suggested_tint;  // 496: of marks that are suggested: linear red, green, blue; opacity
+  // Samples of a footprint: how many steps in x, y they lie outside a cell, 1 or 2. How many steps before a cell the
+  // samples lie that its colour may depend on, and one more after it; -.
+  ivec4 footprint;  // 512
+  // Distances of the samples that surroundings are taken from [steps]: along x, along y; on the lines between: x, y.
+  vec4 around;             // 528
+  vec4 form;               // 544: strength of occlusion, of cavity, 0 .. 1; -; -
+  vec4 colours[kColours];  // 560: linear red, green, blue
   PageHead pages;          // where samples are on the device on demand
 };
 
@@ -168,13 +179,15 @@ struct Quad {
 static_assert(sizeof(ViewUniforms) == 144);
 static_assert(offsetof(ViewUniforms, field_from_pixel) == 64);
 static_assert(offsetof(ViewUniforms, origin) == 128);
-static_assert(sizeof(PanelUniforms) == 512 + 16 * kColours + sizeof(PageHead));
+static_assert(sizeof(PanelUniforms) == 560 + 16 * kColours + sizeof(PageHead));
 static_assert(offsetof(PanelUniforms, placing) == 288);
 static_assert(offsetof(PanelUniforms, limits) == 320);
 static_assert(offsetof(PanelUniforms, size) == 432);
 static_assert(offsetof(PanelUniforms, shade) == 464);
 static_assert(offsetof(PanelUniforms, suggested_tint) == 496);
-static_assert(offsetof(PanelUniforms, colours) == 512);
+static_assert(offsetof(PanelUniforms, footprint) == 512);
+static_assert(offsetof(PanelUniforms, around) == 528);
+static_assert(offsetof(PanelUniforms, colours) == 560);
 static_assert(sizeof(Patch) == 16);
 static_assert(sizeof(PageHead) == 80);
 static_assert(sizeof(Line) == 48);

@@ -7,9 +7,18 @@ layout(constant_id = kSpecDeviation) const bool kDeviation = false;
 layout(constant_id = kSpecContours) const bool kContours = false;
 layout(constant_id = kSpecSmooth) const bool kSmooth = false;
 layout(constant_id = kSpecCell) const bool kCell = false;
+layout(constant_id = kSpecFootprint) const bool kFootprint = false;
+layout(constant_id = kSpecOcclusion) const bool kOcclusion = false;
+layout(constant_id = kSpecCavity) const bool kCavity = false;
 
 layout(set = 0, binding = kBindMarks) uniform utexture2DArray marks_image;
 layout(set = 0, binding = kBindOriginal) uniform utexture2DArray original_image;
+
+// Whether `s` is one of the samples that colours come from.
+bool inField(ivec2 s) { return all(greaterThanEqual(s, ivec2(0))) && all(lessThan(s, shade_size)); }
+
+#include "footprint.glsl"
+#include "surroundings.glsl"
 
 // Half the difference between the neighbours of `s` along `d`, or the difference to one neighbour where the other is a
 // hole; height units per step. `h` is the height at s.
@@ -58,6 +67,7 @@ struct SurfacePoint {
   bool displaced;    // drawn away from its exact position: see below
   bool compared;  // the original has a height here
   float value;    // what the colours show
+  float drawn;    // height at which it is drawn
 };
 
 // The point `local` samples from sample `base`, drawn at scene z `drawn_z`.
@@ -85,7 +95,8 @@ SurfacePoint surfacePoint(ivec2 base, vec2 local, float drawn_z) {
   // displaced: it shows the wall at its own height, so it takes colour and light from there. Otherwise walls would be
   // striped.
   p.displaced = abs(drawn_z - sceneZ(height)) > panel.seam.y;
-  if (!kDeviation && p.displaced) p.value = panel.relief.y + drawn_z / panel.relief.z;
+  p.drawn = panel.relief.y + drawn_z / panel.relief.z;
+  if (!kDeviation && p.displaced) p.value = p.drawn;
   return p;
 }
 
@@ -98,6 +109,8 @@ vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_widt
   vec2 g;
   if (kSmooth) {
     g = smoothSlopes(p.cell, p.f, p.h);
+  } else if (kFootprint) {
+    g = footprintPlane(p.cell, p.h).slope;
   } else if (kCell) {
     g = 0.5 * vec2(p.h.y - p.h.x + p.h.w - p.h.z, p.h.z - p.h.x + p.h.w - p.h.y);
   } else {
@@ -116,6 +129,13 @@ vec3 surfaceColour(SurfacePoint p, vec3 facet, float contour, float contour_widt
   }
   // A level surface has exactly its colour on the bar; slopes are lighter towards the light, darker away from it.
   c *= panel.light.w + (1.0 - panel.light.w) * max(dot(normal, panel.light.xyz), 0.0) / panel.light.z;
+  if (kOcclusion || kCavity) {
+    const Surroundings s = surroundings(p.cell, p.f, p.displaced ? p.drawn : clippedBetween(p.h, p.f));
+    // Of the sky above: a steep wall sees half of it at best, and what stands around its foot says nothing of how it is
+    // lit. There, which samples are before it and which behind changes from one to the next.
+    if (kOcclusion) c *= 1.0 - panel.form.x * normal.z * s.hidden;
+    if (kCavity) c *= 1.0 - panel.form.y * normal.z * s.hollow;
+  }
   if (kContours && p.compared) {
     const float off = abs(fract(contour - 0.5) - 0.5) / max(contour_width, 1e-12);
     // Lines closer than four rays would fill the surface: they are faded out.

@@ -14,6 +14,7 @@
 #include "app/overlay/line_overlay.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
+#include "engine/field/seen_field.h"
 #include "render/live/live_plan.h"
 #include "render/live/picture_rows.h"
 
@@ -32,6 +33,8 @@ struct RenderArguments {
   std::string marks;
   std::string lines;
   std::string map = "auto";
+  std::string normals = "footprint";
+  render::FormShading form = render::kShownForm;
   std::string title;
   std::string compare_title;
   std::vector<double> range;
@@ -67,6 +70,8 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
   }
   if (options.perspective) view.projection = render::Projection::kPerspective;
   if (options.contours) w.input.contours = render::Contours::kShow;
+  w.input.form = options.form;
+  w.input.form.filtered_normals = options.normals == "footprint";
   if (options.dark) w.input.theme = render::Theme::kDark;
   if (options.bare) w.input.decoration = render::Decoration::kNone;
   if (!options.range.empty()) w.input.range = render::ValueRange{options.range[0], options.range[1]};
@@ -105,7 +110,10 @@ engine::Result<Wanted> wanted(const RenderArguments& options, engine::JobControl
   if (!options.deviation.empty()) {
     const auto original = loadScan(options.deviation, options.reading, job);
     if (!original) return tl::unexpected(original.error());
-    w.shown.original = original->field;
+    // Deviation means the samples, whatever form lies over one of them.
+    auto reference = engine::seenLike(original->field, scan->field, job);
+    if (!reference) return tl::unexpected(reference.error());
+    w.shown.original = *std::move(reference);
   }
   if (options.invert) {
     for (engine::Version& version : w.shown.versions) version = version.inverted();
@@ -258,6 +266,19 @@ void addRender(Command root, Chosen& chosen) {
       {.name = "--contours",
        .to = &options->contours,
        .text = "Contour lines at the steps of the colour bar"},
+      {.name = "--normals",
+       .to = &options->normals,
+       .text = "What the light falls on where samples are smaller than pixels",
+       .words = {{"sample", "the surface between the samples of a point"},
+                 {"footprint", "the surface at the size of a pixel"}}},
+      {.name = "--occlusion",
+       .to = &options->form.occlusion,
+       .text = "Share of the light that places lose at most to what stands around them",
+       .range = Range{0.0, 1.0}},
+      {.name = "--cavity",
+       .to = &options->form.cavity,
+       .text = "How much darker hollows and brighter ridges are at most",
+       .range = Range{0.0, 1.0}},
       {.name = "--dark", .to = &options->dark, .text = "Light text on a dark background"},
       {.name = "--bare",
        .to = &options->bare,

@@ -20,6 +20,7 @@ render::FrameInput frameInput(const Parts& parts, render::Sharpness sharpness, b
                           : render::Arrangement::kSideBySide;
   input.split = display.split_at;
   input.contours = display.contours ? render::Contours::kShow : render::Contours::kHide;
+  input.form = display.form;
   input.marks_opacity = display.marks_opacity;
   input.map = display.map;
   input.stereo.mode = display.stereo;

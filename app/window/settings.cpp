@@ -51,6 +51,9 @@ std::string Settings::text() const {
               {"light_elevation", d.light_elevation_deg},
               {"decorations", d.decorations},
               {"half_in_motion", d.half_in_motion},
+              {"filtered_normals", d.form.filtered_normals},
+              {"occlusion", d.form.occlusion},
+              {"cavity", d.form.cavity},
               {"vertices", d.vertices},
               {"mouse", kHabits[static_cast<std::size_t>(habits)]},
               {"side_panel", side_panel},
@@ -81,6 +84,9 @@ Settings Settings::load(const std::string& path) {
   take(file, "light_elevation", 5.0F, 90.0F, d.light_elevation_deg);
   take(file, "decorations", d.decorations);
   take(file, "half_in_motion", d.half_in_motion);
+  take(file, "filtered_normals", d.form.filtered_normals);
+  take(file, "occlusion", 0.0, 1.0, d.form.occlusion);
+  take(file, "cavity", 0.0, 1.0, d.form.cavity);
   take(file, "vertices", std::int64_t{4096}, std::int64_t{1} << 22, d.vertices);
   take(file, "mouse", kHabits, settings.habits);
   take(file, "side_panel", settings.side_panel);

@@ -24,7 +24,8 @@ struct Display {
   float light_elevation_deg = 45.0F;
   bool decorations = true;
   std::int64_t vertices = 65536;  ///< most vertices of a frame, 4096 .. 2^22
-  bool half_in_motion = true;     ///< the picture is half as sharp while the view moves (CameraMotion)
+  render::FormShading form = render::kShownForm;
+  bool half_in_motion = true;  ///< the picture is half as sharp while the view moves (CameraMotion)
   // Not stored: the next user may have no glasses.
   render::StereoMode stereo = render::StereoMode::kOff;
   float eye_separation = 1.0F / 30.0F;

@@ -35,6 +35,8 @@ struct PatchQuery {
   /// Step between the samples that colours come from [samples], a power of two: a fragment is left out when a
   /// corner of its cell among those samples is a hole.
   std::int32_t shade_step = 1;
+  /// How far around a sample a colour may depend on it [such steps].
+  std::int32_t shade_reach = 3;
 };
 
 /// The surface of one panel: leaves of a quadtree over the field.

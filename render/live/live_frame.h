@@ -27,6 +27,7 @@ struct LivePanel {
   const LiveTexture* field = nullptr;
   const LiveTexture* original = nullptr;  ///< null for heights
   int shade_level = 0;                    ///< of LiveTexture
+  int reach = 2;  ///< so many samples before its cell a colour may read, and one more after it
   SurfaceVariant variant;
   std::vector<std::uint32_t> pages;  ///< of pageTable; empty unless on demand
   std::vector<gpu::Line> in_scene, on_top;

@@ -20,6 +20,26 @@ bool holed(const engine::Version& v) {
   return v.reader().root().holed_children != 0;
 }
 
+// Colours of a deviation are read as numbers: shading may indicate the shape, but not darken them.
+constexpr double kFormOfDeviation = 0.3;
+
+// How far the outer samples of a footprint lie outside its cell [steps]: it reaches 1.25 rays to each side
+// where a step is half a ray, with the smaller distance 1.5 where it is one.
+glm::ivec2 footprintOf(const glm::dvec2& rays_per_step) {
+  return {rays_per_step.x <= 0.5 ? 2 : 1, rays_per_step.y <= 0.5 ? 2 : 1};
+}
+
+// PanelUniforms::around of a level whose step is 2^shift samples; whole steps where cells are small.
+glm::vec4 aroundOf(const PanelPlan& p, int shift, bool smooth) {
+  const auto steps = [&](double px, const glm::dvec2& direction) {
+    const glm::dvec2 d = px / p.camera.pixelsPerMm() * direction / std::ldexp(1.0, shift) / p.placing.spacing;
+    return glm::clamp(smooth ? d : glm::round(d), 1.0, double{kMostAround});
+  };
+  const glm::dvec2 along = steps(kAroundPx, glm::dvec2(1.0));
+  const glm::dvec2 between = steps(kAroundBetweenPx, glm::dvec2(std::sqrt(0.5)));
+  return glm::vec4(glm::dvec4(along, between));
+}
+
 glm::vec3 towardsLight(const FrameInput& input, const Camera& camera) {
   const double azimuth = input.light_azimuth_deg * std::numbers::pi / 180.0;
   const double up = std::sin(input.light_elevation_deg * std::numbers::pi / 180.0);
@@ -69,6 +89,7 @@ LivePanels::LivePanels(const FrameInput& input, const PicturePlan& plan, LiveFie
     panels_.push_back(panelOf(i, input, plan, own));
     panels_.back().visible = drawnOf(split ? sideOf(p.plot, input.split, i > 0) : p.plot);
     queries_.back().shade_step = 1 << LiveTexture::shift(panels_.back().shade_level);
+    queries_.back().shade_reach = panels_.back().reach + 1;
     trees_.push_back(empty(panels_.back().visible) ? PatchTree() : trees.tree(i, queries_.back(), p.field));
   }
 }
@@ -155,17 +176,32 @@ LivePanel LivePanels::panelOf(std::size_t i, const FrameInput& input, const Pict
   u.paging.z = static_cast<int>(paging.across);
   u.light = glm::vec4(towardsLight(input, p.camera), u.light.w);
   const bool on_demand = fields_.onDemand();
+  const bool smooth = std::max(px.x, px.y) > 1.5;
+  glm::ivec2 footprint(0);
+  if (input.form.filtered_normals && !smooth)
+    footprint = footprintOf(std::ldexp(1.0, shift) * (fine ? px : rays * px));
+  if (input.form.occlusion > 0.0 || input.form.cavity > 0.0) {
+    u.around = aroundOf(p, shift, smooth);
+    const double share = panel.original != nullptr ? kFormOfDeviation : 1.0;
+    u.form = glm::vec4(share * glm::dvec4(input.form.occlusion, input.form.cavity, 0.0, 0.0));
+    const float most = std::max(std::max(u.around.x, u.around.y), std::max(u.around.z, u.around.w));
+    panel.reach = std::max(panel.reach, static_cast<int>(std::ceil(most)));
+  }
+  u.footprint = glm::ivec4(footprint, panel.reach, 0);
   panel.variant = {
       paging.paged(),
       fields_.shown().marks == MarksOverlay::kShow,
       panel.original != nullptr,
       input.contours == Contours::kShow,
-      std::max(px.x, px.y) > 1.5,
+      smooth,
       holed(p.field) || (panel.original != nullptr && holed(original.version())),
       !fine,
       on_demand,
       !on_demand && !paging.paged() && std::min(p.placing.true_size.x, p.placing.true_size.y) > 1 << shift,
-      input.view.projection == Projection::kPerspective};
+      input.view.projection == Projection::kPerspective,
+      input.form.filtered_normals && !smooth,
+      input.form.occlusion > 0.0,
+      input.form.cavity > 0.0};
   panel.in_scene = linesOf(lines, OverlayLine::Depth::kInScene, p);
   panel.on_top = linesOf(lines, OverlayLine::Depth::kOnTop, p);
   return panel;
@@ -176,7 +212,7 @@ PageDemand LivePanels::demand(std::uint64_t frame) {
   for (std::size_t i = 0; i < panels_.size(); ++i)
     demand.request(trees_[i], fields_.texture(i),
                    panels_[i].original != nullptr ? &fields_.original() : nullptr, panels_[i].shade_level,
-                   panels_[i].uniforms.paging.w, frame);
+                   std::max(panels_[i].uniforms.paging.w, panels_[i].reach), frame);
   return demand;
 }
 

@@ -98,6 +98,7 @@ struct FrameInput {
   Arrangement arrangement = Arrangement::kSideBySide;
   double split = 0.5;  ///< of kSplit: position of the line, as a fraction of the plot's width, 0 .. 1
   Contours contours = Contours::kHide;
+  FormShading form;
   double marks_opacity = 0.65;
   ColourMap map = ColourMap::kAuto;
   Theme theme = Theme::kDark;

@@ -73,6 +73,10 @@ engine::Result<PicturePlan> planFrame(const FrameInput& input, const Shown& show
       input.vertex_budget > kMostFrameVertices || !finite || !(input.split >= 0.0 && input.split <= 1.0))
     return engine::inputError("the error, the budget, the split or the light is out of range", "picture",
                               "see FrameInput");
+  const auto share = [](double s) { return s >= 0.0 && s <= 1.0; };
+  if (!share(input.form.occlusion) || !share(input.form.cavity))
+    return engine::inputError("the strength of the occlusion or of the cavity is out of range", "picture",
+                              "give 0 to 1");
   const std::size_t panels = input.arrangement == Arrangement::kSplit
                                  ? std::min<std::size_t>(2, shown.versions.size())
                                  : shown.versions.size();

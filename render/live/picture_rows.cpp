@@ -43,6 +43,7 @@ FrameInput stillInput(const View& view) {
   input.theme = Theme::kLight;
   input.error_px = kStillErrorPx;
   input.sharpness = Sharpness::kFine;
+  input.form = kShownForm;
   // More than the rays of a part: error_px is what limits the vertices.
   input.vertex_budget = kMostFrameVertices;
   return input;

@@ -13,8 +13,8 @@ namespace fettle::render {
 /// ends the drawing.
 using RowSink = std::function<engine::Status(const Image& rows)>;
 
-/// Settings for a still picture: four rays per pixel, every point of the surface within a quarter of a pixel
-/// of its exact position.
+/// Settings for a still picture: shaded as in the window, four rays per pixel, every point of the surface
+/// within a quarter of a pixel of its exact position.
 [[nodiscard]] FrameInput stillInput(const View& view);
 
 /// Draws what `picture` shows, with everything measured and uploaded that the view requests. Draws parts of

@@ -57,6 +57,21 @@ enum class Contours {
   kShow,  ///< lines of equal height at the steps of the colour bar
 };
 
+/// How shading shows the form of the surface. What is off is not in the shader.
+struct FormShading {
+  /// Normals over the footprint of a pixel (shaders/footprint.glsl) where cells are smaller than one and a
+  /// half: otherwise the noise of single samples is what a large scan shows.
+  bool filtered_normals = false;
+  /// Share of the light that a place loses at most to what stands around it, within some pixels
+  /// (shaders/surroundings.glsl), 0 .. 1; 0: off.
+  double occlusion = 0.0;
+  /// How much darker hollows and brighter ridges are at most, of a few pixels, 0 .. 1; 0: off.
+  double cavity = 0.0;
+  friend bool operator==(const FormShading&, const FormShading&) = default;
+};
+/// What the window and pictures for files use unless told otherwise.
+inline constexpr FormShading kShownForm{true, 0.7, 0.0};
+
 /// What is drawn around the surface.
 enum class Decoration {
   kNone,  ///< surface on its background, nothing else

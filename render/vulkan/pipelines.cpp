@@ -115,9 +115,10 @@ std::array<vk::Bool32, gpu::kSpecCount> constantsOf(const SurfaceVariant& v) {
   static_assert(gpu::kSpecPaged == 0 && gpu::kSpecMarks == 1 && gpu::kSpecDeviation == 2 &&
                 gpu::kSpecContours == 3 && gpu::kSpecSmooth == 4 && gpu::kSpecHoles == 5 &&
                 gpu::kSpecCell == 6 && gpu::kSpecOnDemand == 7 && gpu::kSpecGather == 8 &&
-                gpu::kSpecPerspective == 9);
-  return {v.paged, v.marks,       v.deviation, v.contours, v.smooth,
-          v.holes, v.cell_slopes, v.on_demand, v.gather,   v.perspective};
+                gpu::kSpecPerspective == 9 && gpu::kSpecFootprint == 10 && gpu::kSpecOcclusion == 11 &&
+                gpu::kSpecCavity == 12);
+  return {v.paged,     v.marks,  v.deviation,   v.contours,  v.smooth,    v.holes, v.cell_slopes,
+          v.on_demand, v.gather, v.perspective, v.footprint, v.occlusion, v.cavity};
 }
 
 }  // namespace

@@ -23,6 +23,10 @@ struct SurfaceVariant {
   bool on_demand = false;    ///< pages on the device on demand (render/residency/page_demand.h)
   bool gather = false;       ///< see shaders/layout.h
   bool perspective = false;  ///< used by shade() only
+  bool footprint = false;    ///< used by shade() only
+  bool occlusion = false;    ///< used by shade() only
+  bool cavity = false;       ///< used by shade() only
+  // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 reads the zero of a comparison as a pointer
   friend auto operator<=>(const SurfaceVariant&, const SurfaceVariant&) = default;
 };
 
@@ -44,6 +48,7 @@ class Pipelines {
     enum class Kind { kPatches, kSeams } kind = Kind::kPatches;
     Paged paged = Paged::kNo;
     Holes holes = Holes::kNo;
+    // NOLINTNEXTLINE(modernize-use-nullptr): as above
     friend auto operator<=>(const Geometry&, const Geometry&) = default;
   };
   [[nodiscard]] vk::Pipeline depth(const Geometry& geometry);

@@ -1,9 +1,23 @@
-
 #include <imgui.h>
 
 #include "app/window/panels/panels.h"
 
 namespace fettle::app {
+
+namespace {
+
+// A share of 0 to 1; 0 reads "off".
+void shareSlider(const char* label, const char* id, double& share, const char* tip) {
+  auto value = static_cast<float>(share);
+  if (field(label, [&] {
+        return ImGui::SliderFloat(id, &value, 0.0F, 1.0F, value > 0.0F ? "%.2f" : "off",
+                                  ImGuiSliderFlags_AlwaysClamp);
+      }))
+    share = static_cast<double>(value);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+}
+
+}  // namespace
 
 void displayPanel(const PanelContext& context, Settings& settings, WindowPicture& picture, render::View& view,
                   ChoiceCosts& costs) {
@@ -16,6 +30,12 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
         "While the view moves, every second pixel is drawn in each direction, for a higher frame rate.");
+  ImGui::Checkbox("light at the size of a pixel", &display.form.filtered_normals);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(
+        "Where samples are smaller than pixels, the light falls on the surface at the size of a pixel and "
+        "not "
+        "on the noise of single samples.");
   ImGui::Checkbox("ask before quitting", &settings.ask_before_quitting);
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip(
@@ -41,6 +61,10 @@ void displayPanel(const PanelContext& context, Settings& settings, WindowPicture
   (void)field("light above", [&] {
     return ImGui::SliderFloat("##elevation", &display.light_elevation_deg, 5.0F, 90.0F, "%.0f deg", kClamp);
   });
+  shareSlider("hidden light", "##occlusion", display.form.occlusion,
+              "How much of the light a place loses at most to what stands around it.");
+  shareSlider("hollows", "##cavity", display.form.cavity,
+              "How much darker hollows and how much brighter ridges are at most.");
   if (display.stereo != render::StereoMode::kOff)
     (void)field("depth", [&] {
       return ImGui::SliderFloat("##eye_separation", &display.eye_separation, 0.005F, 0.1F, "eyes %.3f apart",
