@@ -37,13 +37,15 @@ void PolynomialForm::readHeights(const SampleRect& rect, double* out, std::ptrdi
     double s[kMostFormDegree + 1];
     chebyshev(scaled(rect.row + r, height), degree, s);
     double* const line = out + r * stride;
-    std::fill_n(line, rect.columns, base);
+    std::fill_n(line, rect.columns, 0.0);
     std::size_t k = 0;
     for (int i = 0; i <= degree; ++i) {
       double factor = 0.0;
       for (int j = 0; i + j <= degree; ++j) factor += coefficients[k++] * s[j];
       for (int c = 0; c < rect.columns; ++c) line[c] += factor * t[i][c];
     }
+    // Last, and rounded once: a base of 5e6 is rounded to 1e-9, and once for each term would be visible in small heights.
+    for (int c = 0; c < rect.columns; ++c) line[c] += base;
   }
 }
 

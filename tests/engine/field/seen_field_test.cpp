@@ -80,9 +80,11 @@ void expectSeen(const SeenField& field) {
     for (int c = 0; c < z.width(); ++c) {
       const float want = z.sign() * plainSeen(z.sign() * z.heightAt(c, r), form.heightAt(c, r));
       const float got = s.heightAt(c, r);
-      // The form of a tile and that of one sample add the same terms in another order, to 1e-16 of them: near the middle
-      // between two floats one may round up and one down.
-      const float near = std::numeric_limits<float>::epsilon() * std::abs(want) + 1e-9F;
+      // The form of a tile and that of one sample add the same terms in another order, and may be rounded to neighbours when
+      // the base is added: a unit in the last place of the form. Near the middle between two floats one may round up and
+      // one down.
+      const double near = std::numeric_limits<float>::epsilon() * std::abs(want) +
+                          std::numeric_limits<double>::epsilon() * std::abs(form.heightAt(c, r));
       RC_ASSERT((std::isnan(want) ? std::isnan(got) : std::abs(got - want) <= near));
       RC_ASSERT(z.markedAt(c, r) == s.markedAt(c, r));
     }
@@ -188,6 +190,22 @@ RC_GTEST_PROP(SeenField, EditsChangeTheSamplesThatAreEditedAndNoOther, ()) {
     for (int c = 0; c < width; ++c)
       if (!edits.contains({c, r}) && !std::isnan(out.reader().heightAt(c, r)))
         RC_ASSERT(bitsAt(out, c, r) == bitsAt(field, c, r));
+}
+
+// Found by a random field: terms that were added to a base of 5e6 one by one were each rounded to 1e-9.
+TEST(SeenField, ALargeBaseIsRoundedOnce) {
+  const Version field = roughField(111, 88, -5e6F, 53);
+  const FieldForm form = someForm(field, 3, -5e6, 53);
+  PolynomialForm terms = *form;
+  terms.base = 0.0;
+  std::vector<double> heights(std::size_t{kTileSide} * kTileSide);
+  form->readHeights({0, 0, kTileSide, kTileSide}, heights.data(), kTileSide);
+  for (int r = 0; r < kTileSide; ++r)
+    for (int c = 0; c < kTileSide; ++c) {
+      // Half a unit in the last place of 5e6, and the rounding of the terms, some 1e2 each.
+      const double exact = terms.heightAt(c, r), read = heights[static_cast<std::size_t>(r * kTileSide + c)];
+      ASSERT_NEAR(read + 5e6, exact, 0x1p-31 + 1e-12) << c << " " << r;
+    }
 }
 
 // A step that is taken back at once, and the same in two: the loop's field is never computed again in between.
