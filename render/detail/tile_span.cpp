@@ -1,10 +1,10 @@
 #include "render/detail/tile_span.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <ranges>
 #include <span>
 
 namespace fettle::render {
@@ -17,9 +17,8 @@ TileSpan changedHeights(const engine::Tile& a, const engine::Tile& b) noexcept {
     const auto x = std::as_bytes(std::span(a.samples).subspan(r * kSide, kSide));
     const auto y = std::as_bytes(std::span(b.samples).subspan(r * kSide, kSide));
     if (std::memcmp(x.data(), y.data(), x.size()) == 0) continue;  // most rows, and faster than a search
-    const auto first = std::ranges::mismatch(x, y).in1 - x.begin();
-    const auto past =
-        std::ranges::mismatch(x | std::views::reverse, y | std::views::reverse).in1.base() - x.begin();
+    const auto first = std::mismatch(x.begin(), x.end(), y.begin()).first - x.begin();
+    const auto past = std::mismatch(x.rbegin(), x.rend(), y.rbegin()).first.base() - x.begin();
     const int row = static_cast<int>(r);
     span.join({static_cast<int>(first) / kBytes, row, static_cast<int>(past - 1) / kBytes, row});
   }
