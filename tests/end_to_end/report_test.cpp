@@ -17,11 +17,6 @@
 namespace fettle::tests {
 namespace {
 
-std::string pageOf(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 std::size_t countIn(const std::string& text, const std::string& piece) {
   std::size_t count = 0;
   for (std::size_t at = text.find(piece); at != std::string::npos; at = text.find(piece, at + 1)) ++count;
@@ -58,7 +53,7 @@ TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
   EXPECT_NEAR(report["rms_change"], differ["rms"], 1e-12);
   EXPECT_NEAR(report["sq_before"], fettleJson({"measure", scan})["sq"], 1e-12);
   EXPECT_NEAR(report["sq"], fettleJson({"measure", work})["sq"], 1e-12);
-  const std::string text = pageOf(page);
+  const std::string text = bytesOf(page);
   EXPECT_EQ(countIn(text, "src=\"data:image/png;base64,iVBORw0KGgo"), 3U);
   EXPECT_EQ(countIn(text, "src="), 3U);
   EXPECT_NE(text.find("<h1>Part &lt;7&gt; &amp; &quot;co&quot;</h1>"), std::string::npos);
@@ -70,7 +65,7 @@ TEST(ReportPage, OfASessionHasItsStepsAndBothStates) {
   EXPECT_EQ(countIn(text, "#" + report["hash"].get<std::string>()), 2U);
   EXPECT_EQ(text.find(folder.path()), std::string::npos) << "no path of this machine";
   ASSERT_EQ(fettle({"report", work, folder.file("again.html"), "--title", "Part <7> & \"co\""}).status, 0);
-  EXPECT_EQ(pageOf(folder.file("again.html")), text);
+  EXPECT_EQ(bytesOf(folder.file("again.html")), text);
 }
 
 TEST(ReportPage, OfAScanAloneHasOneStateAndNoNumberThatIsNone) {
@@ -82,7 +77,7 @@ TEST(ReportPage, OfAScanAloneHasOneStateAndNoNumberThatIsNone) {
     const auto report = fettleJson({"report", flat, page, "--unit", "mm"});
     EXPECT_EQ(report["pictures"], 2);
     EXPECT_FALSE(report.contains("original_hash"));
-    const std::string text = pageOf(page);
+    const std::string text = bytesOf(page);
     EXPECT_EQ(text.find("<td>nan"), std::string::npos);
     EXPECT_EQ(text.find(">Before<"), std::string::npos);
   }

@@ -22,11 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string bytesOf(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 int filesIn(const TempFolder& folder) {
   return static_cast<int>(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()));
 }

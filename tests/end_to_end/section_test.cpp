@@ -27,11 +27,6 @@ void writeGroove(const std::string& path, double up = 0.0) {
   }
 }
 
-std::string contentOf(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 TEST(SectionCommand, MeasuresAGrooveAndAStep) {
   const TempFolder folder;
   const std::string scan = folder.file("groove.asc");
@@ -62,17 +57,17 @@ TEST(SectionCommand, WritesTableDrawingAndPictureOfBothScans) {
   ASSERT_EQ(report["sections"].size(), 2U);
   EXPECT_NEAR(report["sections"][0]["deviation"]["mean_mm"], 0.25, 1e-6);
   EXPECT_EQ(report["sections"][0]["without_height"], 1);
-  const std::string csv = contentOf(folder.file("p.csv"));
+  const std::string csv = bytesOf(folder.file("p.csv"));
   EXPECT_TRUE(csv.starts_with("section,along_mm,x_mm,y_mm,height_mm,share,other_mm\n0,0,0,1,1"));
   EXPECT_NE(csv.find("\n0,1,1,1,,0,\n"), std::string::npos);
   // A hole divides the first polyline.
-  const std::string dxf = contentOf(folder.file("p.dxf"));
+  const std::string dxf = bytesOf(folder.file("p.dxf"));
   std::size_t polylines = 0;
   for (std::size_t at = dxf.find("POLYLINE\n8\nSECTION_0\n"); at != std::string::npos;
        at = dxf.find("POLYLINE\n8\nSECTION_0\n", at + 1))
     ++polylines;
   EXPECT_EQ(polylines, 2U);
-  EXPECT_TRUE(contentOf(folder.file("p.png")).starts_with("\x89PNG"));
+  EXPECT_TRUE(bytesOf(folder.file("p.png")).starts_with("\x89PNG"));
 }
 
 TEST(SectionCommand, FollowsTheLinesOfAFile) {
@@ -157,7 +152,7 @@ TEST(SectionCommand, ReadsInTheUnitsOfTheScansSize) {
   EXPECT_NE(text.out.find("150 nm long"), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("step       13"), std::string::npos) << text.out;
   EXPECT_EQ(text.out.find("e-"), std::string::npos) << text.out;
-  const std::string picture = contentOf(folder.file("p.svg"));
+  const std::string picture = bytesOf(folder.file("p.svg"));
   EXPECT_NE(picture.find("[nm]"), std::string::npos);
   EXPECT_NE(picture.find("step"), std::string::npos) << "the edge has its name";
 }

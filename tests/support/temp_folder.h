@@ -20,4 +20,7 @@ class TempFolder {
   std::filesystem::path path_;
 };
 
+/// The bytes of a file; none where it cannot be read.
+[[nodiscard]] std::string bytesOf(const std::string& path);
+
 }  // namespace fettle::tests

@@ -20,6 +20,7 @@ namespace fettle::engine {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::bytesOf;
 using tests::TempFolder;
 
 constexpr std::int32_t kWidth = 330, kHeight = 290;
@@ -78,11 +79,6 @@ class CutAfter : public FilterWork {
   JobControl& job_;
   std::atomic<int> left_;
 };
-
-std::string bytesOf(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 void write(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;

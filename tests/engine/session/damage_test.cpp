@@ -18,12 +18,8 @@ namespace fettle::engine {
 namespace {
 
 namespace fs = std::filesystem;
+using tests::bytesOf;
 using tests::TempFolder;
-
-std::string bytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 void writeBytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
