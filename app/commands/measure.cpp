@@ -14,6 +14,7 @@
 #include "app/commands/scale_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/surface_curves.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/streams.h"
@@ -33,6 +34,7 @@ struct MeasureArguments {
   std::vector<std::string> at_heights;
   std::vector<double> at_ratios;
   std::string csv;
+  CurveFiles curves;
   ScanOptions reading;
 };
 
@@ -83,8 +85,12 @@ engine::Result<Report> measureOne(const MeasureArguments& options, const std::st
   const engine::Grid& grid = imported->field.grid();
   const auto areal = arealOptionsOf(options, grid);
   if (!areal) return tl::unexpected(areal.error());
-  const auto measured = engine::measureAreal(limited->field, limited->form, *areal, job);
+  engine::ArealOptions wanted = *areal;
+  addCurves(options.curves, wanted);
+  const auto measured = engine::measureAreal(limited->field, limited->form, wanted, job);
   if (!measured) return tl::unexpected(measured.error());
+  if (auto status = writeCurves(options.curves, *measured, grid); !status)
+    return tl::unexpected(status.error());
   Report report;
   addForm(report, options.form, limited->fit, grid);
   if (imported->original) report["filled"] = engine::countFilled(*marked, *imported->original);
@@ -137,8 +143,11 @@ engine::Result<Report> measure(const MeasureArguments& options, engine::JobContr
   // Two inputs cannot both be standard input.
   std::vector<std::string> inputs = options.scans;
   inputs.push_back(options.form.marks);
-  if (auto status = checkOutputs({{options.csv, OutputKind::kText, ".csv"}}, inputs, Replacing::kNoWork, job);
-      !status)
+  if (auto status = checkCurves(options.curves, options.scans.size()); !status)
+    return tl::unexpected(status.error());
+  std::vector<Output> outputs = outputsOf(options.curves);
+  outputs.push_back({options.csv, OutputKind::kText, ".csv"});
+  if (auto status = checkOutputs(outputs, inputs, Replacing::kNoWork, job); !status)
     return tl::unexpected(status.error());
   auto report = measureAll(options, job);
   if (!report) return report;
@@ -208,6 +217,7 @@ void addMeasure(Command root, Chosen& chosen) {
                 .to = &options->csv,
                 .text = "Write a row per scan and parameter, in the scan's units",
                 .kind = ValueKind::kOutput}});
+  addCurveOptions(command, options->curves);
   addFormOptions(command, options->form);
   addScaleOptions(command, options->scale);
   addScanOptions(command, options->reading);
@@ -224,6 +234,8 @@ void addMeasure(Command root, Chosen& chosen) {
                      "Heights and spatial parameters of several scans, as a table"},
                     {"fettle measure scan.tif --s-filter 2.5 --l-filter 25",
                      "Of the S-L surface: waves between 2.5 and 25 mm"},
+                    {"fettle measure scan.tif --abbott abbott.svg --spectrum spectrum.svg",
+                     "With pictures of the material ratio curve and the power spectrum"},
                     {"fettle measure scan.tif --form poly2 --robust",
                      "About a slightly bent surface, as if steps and spikes were not there"}});
 }

@@ -119,21 +119,20 @@ SlopePart slopesOf(const FieldReader& field, const PolynomialForm& form, Region 
   return all;
 }
 
-// Without it where memory for it is not free.
-Result<SpatialParameters> spatialOf(const Surface& surface, JobControl& job) {
+// Its parameters without a value where memory for it is not free.
+Result<SpatialAnalysis> spatialOf(const Surface& surface, JobControl& job) {
   constexpr double kGibi = 1024.0 * 1024.0 * 1024.0;
   const double wanted = correlationBytes(surface), free = static_cast<double>(availableMemory());
   if (free > 0.0 && wanted > 0.8 * free) {
-    SpatialParameters none;
+    SpatialAnalysis nothing;
+    SpatialParameters& none = nothing.parameters;
     none.sal = none.str = none.lay = none.sal_direction = none.slow_direction = std::nan("");
     none.no_sal = none.no_str = none.no_lay =
         fmt::format("it takes {:.1f} GiB of memory, of which {:.1f} are free: measure a smaller region",
                     wanted / kGibi, free / kGibi);
-    return none;
+    return nothing;
   }
-  auto analysis = correlate(surface, job);
-  if (!analysis) return tl::unexpected(analysis.error());
-  return std::move(analysis->parameters);
+  return correlate(surface, job);
 }
 
 }  // namespace
@@ -233,7 +232,9 @@ Result<ArealParameters> measureAreal(const Version& field, const PolynomialForm&
   if (options.spatial) {
     auto spatial = spatialOf(*surface, job);
     if (!spatial) return tl::unexpected(spatial.error());
-    result.spatial = *std::move(spatial);
+    result.spatial = spatial->parameters;
+    if (options.analysis && !spatial->correlation.values.empty())
+      result.analysis = std::make_shared<const SpatialAnalysis>(*std::move(spatial));
     note("sal", result.spatial.no_sal);
     note("str", result.spatial.no_str);
     note("std", result.spatial.no_lay);

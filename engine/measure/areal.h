@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ struct ArealParameters {
   std::vector<double> heights;  ///< Smc of each ratio asked for [height_unit]
   // Spatial, and features.
   SpatialParameters spatial;
+  std::shared_ptr<const SpatialAnalysis>
+      analysis;  ///< where it was asked for and there was memory; else null
   FeatureParameters feature;
 
   struct NotStated {
@@ -54,6 +57,7 @@ struct ArealOptions {
   bool hybrid = true, functional = true, spatial = true, feature = true;
   std::vector<double> at_heights = {};  ///< for Smr [height_unit], about the mean
   std::vector<double> at_ratios = {};   ///< for Smc, 0 .. 1
+  bool analysis = false;                ///< keep the autocorrelation: 4 bytes per sample
   double prune = 0.05;                  ///< share of Sz below which a hill is no feature
 };
 

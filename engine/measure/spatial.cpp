@@ -216,6 +216,21 @@ SpatialParameters without(const std::string& why) {
   return {kNone, kNone, kNone, kNone, kNone, why, why, why};
 }
 
+// At a lag that is no whole number.
+double betweenLags(const Autocorrelation& correlation, double x, double y) noexcept {
+  const auto column = static_cast<std::int32_t>(std::floor(x)),
+             row = static_cast<std::int32_t>(std::floor(y));
+  const double u = x - column, v = y - row;
+  // A corner that has no part in it may lie outside, or be no number.
+  const auto corner = [&](std::int32_t c, std::int32_t r, double part) {
+    if (part == 0.0) return 0.0;
+    if (std::abs(c) > correlation.lags_x || std::abs(r) > correlation.lags_y) return kNone;
+    return part * correlation.at(c, r);
+  };
+  return corner(column, row, (1.0 - u) * (1.0 - v)) + corner(column + 1, row, u * (1.0 - v)) +
+         corner(column, row + 1, (1.0 - u) * v) + corner(column + 1, row + 1, u * v);
+}
+
 SpatialParameters parametersOf(const Autocorrelation& correlation, const AngularSpectrum& spectrum) {
   SpatialParameters result;
   const Extreme fast = extremeDecay(correlation, 1.0);
@@ -242,22 +257,14 @@ SpatialParameters parametersOf(const Autocorrelation& correlation, const Angular
 
 }  // namespace
 
+double Autocorrelation::valueAt(double x_mm, double y_mm) const noexcept {
+  return betweenLags(*this, x_mm / spacing_x, y_mm / spacing_y);
+}
+
 double Autocorrelation::decay(double angle, double level) const noexcept {
   // In lags per millimetre.
   const double dx = std::cos(angle) / spacing_x, dy = std::sin(angle) / spacing_y;
-  const auto value = [&](double x, double y) {
-    const auto column = static_cast<std::int32_t>(std::floor(x)),
-               row = static_cast<std::int32_t>(std::floor(y));
-    const double u = x - column, v = y - row;
-    // A corner that has no part in it may lie outside, or be no number.
-    const auto corner = [&](std::int32_t c, std::int32_t r, double part) {
-      if (part == 0.0) return 0.0;
-      if (std::abs(c) > lags_x || std::abs(r) > lags_y) return kNone;
-      return part * at(c, r);
-    };
-    return corner(column, row, (1.0 - u) * (1.0 - v)) + corner(column + 1, row, u * (1.0 - v)) +
-           corner(column, row + 1, (1.0 - u) * v) + corner(column + 1, row + 1, u * v);
-  };
+  const auto value = [&](double x, double y) { return betweenLags(*this, x, y); };
   constexpr double kFar = std::numeric_limits<double>::infinity();
   // From one line of lags to the next; in between the function is a quadratic, given by its ends and its middle.
   double here = 0.0, value_here = 1.0;

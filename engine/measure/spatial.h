@@ -26,6 +26,8 @@ struct Autocorrelation {
     if (ty < 0) tx = -tx, ty = -ty;
     return values[static_cast<std::size_t>(ty) * columns() + static_cast<std::size_t>(tx + lags_x)];
   }
+  /// Between lags, bilinear; a distance in millimetres. NaN beyond the largest lags and beside a NaN.
+  [[nodiscard]] double valueAt(double x_mm, double y_mm) const noexcept;
   /// Where it first falls to `level` along a ray at `angle` [radians, from x to y], as a distance [mm]: between lags the
   /// function is bilinear. Infinity if it does not before the largest lag or a NaN.
   [[nodiscard]] double decay(double angle, double level) const noexcept;
