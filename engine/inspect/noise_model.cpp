@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include <tbb/parallel_for.h>
 
@@ -22,8 +23,15 @@ constexpr std::array<double, 4> kMostOfSmallest{(3 + 3 * 2.449) / 1.569, (3 + 3 
 constexpr double kQuiet = 0.25, kMostOfQuiet = 4.0;  // share, and variance against the loudest of them
 constexpr double kPriorWindows = 4.0;                // that the map's parts are drawn to the field's noise by
 constexpr std::size_t kFewWindows = 12;              // a part of the map with fewer does not count in sigma
-// Ranks, of the windows in a part and of the parts: what is louder counts as much as the one that has it.
-constexpr double kLoudestWindow = 0.9, kLoudestPart = 0.8;
+constexpr double kLoudestPart = 0.9;  // rank: louder parts count as much as the one that has it
+// Of variances. What is left of a window varies by 0.15 of itself in white noise, and within a part of the map by up to
+// half where the scanner is louder on slopes; a quarter are below 0.9 of the mean.
+constexpr double kMostOfPart = 1.6;   // detail of a window against the quieter ones of its part
+constexpr double kMostOfField = 1.5;  // finest detail of a part's quieter windows against the field's
+constexpr double kSmoother = 0.5;     // share that counts where all windows show some texture
+constexpr std::size_t kBothDirections =
+    2;  // the group of polynomials that are curved along rows and along columns
+constexpr std::size_t kCells = NoiseModel::kMapSide * NoiseModel::kMapSide;
 
 // Detail below so much of what float rounds a window's heights to is none: a mask, a fill value, a clipped range.
 constexpr double kNoDetail = 0.01;
@@ -82,23 +90,6 @@ void keepQuiet(std::vector<const Placed*>& windows) {
   std::erase_if(windows, [most](const Placed* p) { return p->window.moments.detail() > most; });
 }
 
-// Drops windows in which a group of polynomials is larger than noise makes it. How large that is, is seen in the
-// smallest fifth: a third of the windows without an edge, if three in five are.
-void keepSmooth(std::vector<const Placed*>& windows) {
-  if (windows.empty()) return;
-  std::array<double, 4> most{};
-  for (std::size_t g = 0; g < most.size(); ++g) {
-    std::vector<double> sizes;
-    sizes.reserve(windows.size());
-    for (const Placed* p : windows) sizes.push_back(p->window.surface[g]);
-    most[g] = ranked(sizes, kSmallest) * kMostOfSmallest[g];
-  }
-  std::erase_if(windows, [&most](const Placed* p) {
-    const auto& s = p->window.surface;
-    return !(s[0] <= most[0] && s[1] <= most[1] && s[2] <= most[2] && s[3] <= most[3]);
-  });
-}
-
 // Mean of values, those above rank `share` as large as that (Winsor's mean: Tukey 1962). Not empty.
 double meanUpTo(std::vector<double> values, double share) {
   const double most = ranked(values, share);
@@ -111,6 +102,74 @@ std::size_t mapIndex(const Grid& grid, std::int32_t column, std::int32_t row) no
   constexpr std::int64_t kSide = NoiseModel::kMapSide;
   const std::int64_t x = column * kSide / grid.width, y = row * kSide / grid.height;
   return static_cast<std::size_t>(y * kSide + x);
+}
+
+std::size_t partOf(const Grid& grid, const Placed& place) noexcept {
+  return mapIndex(grid, place.column + kNoiseSide / 2, place.row + kNoiseSide / 2);
+}
+
+// What few windows of a part say, drawn to what all say.
+double drawn(double here, std::size_t windows, double all) noexcept {
+  const auto count = static_cast<double>(windows);
+  return (count * here + kPriorWindows * all) / (count + kPriorWindows);
+}
+
+// The finest detail of the quieter windows in each part of the map: the noise follows the place, within bounds. > 0, but
+// where there is none at all. Not empty.
+std::array<double, kCells> finestOfParts(const Grid& grid, const std::vector<const Placed*>& windows) {
+  std::array<std::vector<double>, kCells> finest;
+  std::vector<double> all;
+  for (const Placed* p : windows) {
+    finest[partOf(grid, *p)].push_back(p->window.finest);
+    all.push_back(p->window.finest);
+  }
+  const double field = ranked(all, kQuiet);
+  std::array<double, kCells> parts;
+  for (std::size_t k = 0; k < kCells; ++k) {
+    const double here = finest[k].empty() ? field : ranked(finest[k], kQuiet);
+    parts[k] = std::min(drawn(here, finest[k].size(), field), kMostOfField * field);
+  }
+  return parts;
+}
+
+// Drops windows in which a group of polynomials is larger than noise makes it. How large that is, is seen in the
+// smallest fifth: a third of the windows without an edge, if three in five are. Compared with the noise of the part of the
+// map, not with the window's own finest detail: a texture that has much of both would pass, and be dropped as soon as
+// noise is added.
+void keepSmooth(const Grid& grid, std::vector<const Placed*>& windows) {
+  if (windows.empty()) return;
+  const std::array<double, kCells> finest = finestOfParts(grid, windows);
+  const auto sizeOf = [&](const Placed& p, std::size_t group) {
+    const double part = finest[partOf(grid, p)];
+    return p.window.finest > 0.0 && part > 0.0 ? p.window.surface[group] * (p.window.finest / part)
+                                               : std::numeric_limits<double>::infinity();
+  };
+  std::array<double, 4> most{};
+  for (std::size_t g = 0; g < most.size(); ++g) {
+    std::vector<double> sizes;
+    sizes.reserve(windows.size());
+    for (const Placed* p : windows) sizes.push_back(sizeOf(*p, g));
+    most[g] = ranked(sizes, kSmallest) * kMostOfSmallest[g];
+    // Ranks stay when noise is added. What these polynomials hold of noise says nothing about the rest of the noise.
+    if (g == kBothDirections) most[g] = std::min(most[g], ranked(sizes, kSmoother));
+  }
+  std::erase_if(windows, [&](const Placed* p) {
+    for (std::size_t g = 0; g < most.size(); ++g)
+      if (!(sizeOf(*p, g) <= most[g])) return true;
+    return false;
+  });
+}
+
+// Drops windows that are louder than noise that is the same all over their part of the map makes them.
+void keepEqual(const Grid& grid, std::vector<const Placed*>& windows) {
+  std::array<std::vector<double>, kCells> details;
+  for (const Placed* p : windows) details[partOf(grid, *p)].push_back(p->window.moments.detail());
+  std::array<double, kCells> most;
+  most.fill(std::numeric_limits<double>::infinity());
+  for (std::size_t k = 0; k < kCells; ++k)
+    if (details[k].size() >= kFewWindows) most[k] = kMostOfPart * ranked(details[k], kQuiet);
+  std::erase_if(windows,
+                [&](const Placed* p) { return p->window.moments.detail() > most[partOf(grid, *p)]; });
 }
 
 }  // namespace
@@ -155,8 +214,8 @@ Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
     if (place.shows()) smooth.push_back(&place);
   const double finest_of_all = smooth.empty() ? 0.0 : medianFinest(smooth);
   keepQuiet(smooth);
-  keepSmooth(smooth);
-  constexpr std::size_t kCells = NoiseModel::kMapSide * NoiseModel::kMapSide;
+  keepSmooth(field.grid(), smooth);
+  keepEqual(field.grid(), smooth);
   NoiseModel model;
   model.windows = static_cast<std::int64_t>(smooth.size());
   const auto uncorrelated = [&](double variance) {
@@ -182,19 +241,18 @@ Result<NoiseModel> measureNoise(const Version& field, JobControl& job) {
   all.reserve(smooth.size());
   for (const Placed* p : smooth) {
     all.push_back(by_rows ? p->window.moments.column_detail : p->window.moments.row_detail);
-    cells[mapIndex(field.grid(), p->column + kNoiseSide / 2, p->row + kNoiseSide / 2)].push_back(all.back());
+    cells[partOf(field.grid(), *p)].push_back(all.back());
   }
-  // Windows without edges are not equally frequent everywhere: parts of the field count equally. In both the loudest
-  // few are bounded by rank: noise that is added to all raises all by as much, so that it raises sigma^2 by as much,
-  // and the rough windows that its detail lets pass besides change little.
+  // Windows without edges are not equally frequent everywhere: parts of the field count equally. The loudest few are
+  // bounded by rank: noise that is added to all raises all by as much, so that it raises sigma^2 by as much.
   const double middle = ranked(all, 0.5);
   std::vector<double> counted;
   counted.reserve(kCells);
   for (const std::vector<double>& cell : cells) {
-    const auto count = static_cast<double>(cell.size());
-    const double here = cell.empty() ? middle : meanUpTo(cell, kLoudestWindow);
-    const double drawn = (count * here + kPriorWindows * middle) / (count + kPriorWindows);
-    model.map.push_back(mean.detail() > 0.0 ? drawn / mean.detail() : 1.0);
+    double sum = 0.0;
+    for (const double detail : cell) sum += detail;
+    const double here = cell.empty() ? middle : sum / static_cast<double>(cell.size());
+    model.map.push_back(mean.detail() > 0.0 ? drawn(here, cell.size(), middle) / mean.detail() : 1.0);
     if (cell.size() >= kFewWindows) counted.push_back(model.map.back());
   }
   const double squares = meanUpTo(counted.empty() ? model.map : counted, kLoudestPart);

@@ -270,17 +270,47 @@ TEST(NoiseModel, OfTexturesGrowsByWhatIsAddedIfTheyAreNoise) {
     }
 }
 
+// Where the truth is known: a surface that is rough by patches, as of trees and houses, with white noise of a known size on
+// all of it. Prints sigma over that size; noise twice as large as the roughness of the middle patch is found, and with less than half
+// of it sigma is that of the surface. So what is found of such a scan's own is no measure for what is added to it.
+TEST(NoiseModel, OfARoughSurfaceIsTheNoiseWhereThatIsLarger) {
+  for (const int reach : {1, 2}) {
+    fmt::print("reach {}:", reach);
+    for (const double times : {0.25, 0.5, 1.0, 2.0, 4.0}) {
+      const double noise = 0.02 * times;
+      const auto height = [&](int c, int r) {
+        double sum = 0.0;
+        for (int y = -reach; y <= reach; ++y)
+          for (int x = -reach; x <= reach; ++x) sum += white(51, c + x, r + y);
+        const double size = std::exp(1.0 * CounterRandom(52, 0).normal(c / 24, r / 24));
+        return 0.02 * size * sum / (2.0 * reach + 1.0) + noise * white(53, c, r);
+      };
+      const double ratio = modelOf(fieldOf(kModelSide, kModelSide, height)).sigma / noise;
+      fmt::print(" {:.2f}", ratio);
+      if (times >= 2.0) {
+        EXPECT_NEAR(ratio, 1.0, 0.05) << reach << ' ' << times;
+      }
+    }
+    fmt::print("\n");
+  }
+}
+
 struct ScanAndBound {
   const char* file;
-  double most = 0.06;  // off, of what is added
+  double most_at_once = 0.05;  // sigma off, where as much as the scan's own is added
 };
 
 class NoiseOfScan : public testing::TestWithParam<ScanAndBound> {};
 
-// Prints what is found of added noise as large as the scan's own, twice and four times that, and the windows that count
-// without it and with as much; twice is tested. Scratches are rougher than the rest by so much that it is no constant.
+// Sigma of real scans with noise of known size added, once, twice, four and eight times their own, over the root of the sum
+// of both squares: within 5 %, and within 3 % where the scan's own is a sixty-fourth of it, so that it says nothing about
+// the known part. Prints these, then what is found of the added noise (the root of the difference of squares over it), and
+// the windows that count without and with four times as much.
+//
+// What the village has of its own is for the most part trees, which its finest detail is: as much noise as that shows
+// windows that are quieter (OfTexturesGrowsByWhatIsAddedIfTheyAreNoise gives the same by patches of roughness).
 // ground_surface_aniso.x3p is left out: its own noise is the finest detail alone.
-TEST_P(NoiseOfScan, IsLargerByWhatIsAdded) {
+TEST_P(NoiseOfScan, IsThatOfBothWhenNoiseIsAdded) {
   FETTLE_SCAN_OR_SKIP(path, GetParam().file);
   JobControl job;
   ImportOptions options;
@@ -292,8 +322,9 @@ TEST_P(NoiseOfScan, IsLargerByWhatIsAdded) {
   imported->field.reader().readHeights(0, 0, grid.width, grid.height, z.data(), grid.width);
   const NoiseModel alone = modelOf(imported->field);
   const double own = alone.sigma;
+  std::string sigmas, parts;
   std::int64_t windows = 0;
-  const auto found = [&](double times) {
+  for (const double times : {1.0, 2.0, 4.0, 8.0}) {
     const double added = times * own;
     std::vector<float> noisy = z;
     for (std::size_t i = 0; i < z.size(); ++i) {
@@ -301,13 +332,14 @@ TEST_P(NoiseOfScan, IsLargerByWhatIsAdded) {
       noisy[i] += static_cast<float>(added * white(5203, at % grid.width, at / grid.width));
     }
     const NoiseModel both = modelOf(makeField(grid, noisy));
-    windows = both.windows;
-    return std::sqrt(both.sigma * both.sigma - own * own) / added;
-  };
-  const double twice = found(2.0), most = found(4.0), once = found(1.0);
-  fmt::print("{}: {:.2f} {:.2f} {:.2f}, windows {} and {}\n", GetParam().file, once, twice, most,
-             alone.windows, windows);
-  EXPECT_NEAR(twice, 1.0, GetParam().most) << own;
+    if (times == 4.0) windows = both.windows;
+    const double ratio = both.sigma / std::hypot(own, added);
+    sigmas += fmt::format(" {:.3f}", ratio);
+    parts += fmt::format(" {:.2f}", std::sqrt(both.sigma * both.sigma - own * own) / added);
+    EXPECT_NEAR(ratio, 1.0, times == 1.0 ? GetParam().most_at_once : times < 8.0 ? 0.05 : 0.03) << times;
+  }
+  fmt::print("{}:{}, of the added{}, windows {} and {}\n", GetParam().file, sigmas, parts, alone.windows,
+             windows);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -315,10 +347,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(ScanAndBound{"afm_line_noise_f32.tif"}, ScanAndBound{"autzen_park.las"},
                     ScanAndBound{"bullet_land.x3p"}, ScanAndBound{"chip_confocal_points.xyz"},
                     ScanAndBound{"cylinders_cloud_le.ply"}, ScanAndBound{"dsm_ahn_buildings.tif"},
-                    ScanAndBound{"dsm_village_sjtsk.tif"}, ScanAndBound{"kinect_boxes_depth_u16.tif"},
+                    ScanAndBound{"dsm_village_sjtsk.tif", 0.16}, ScanAndBound{"kinect_boxes_depth_u16.tif"},
                     ScanAndBound{"lunar_ridge.exr"}, ScanAndBound{"shapes_plate_u16.png"},
                     ScanAndBound{"tidal_marsh.asc"}, ScanAndBound{"tray_bags_aniso_u16.tif"},
-                    ScanAndBound{"scratched_surface.sur", 0.16}),
+                    ScanAndBound{"scratched_surface.sur"}),
     [](const auto& scan) {
       std::string text = scan.param.file;
       for (char& c : text) c = c == '.' ? '_' : c;
