@@ -55,6 +55,10 @@ class BlockFilter {
   /// Fills block.out. False when the job was cancelled, looked at often enough to return within 50 ms. What
   /// each output comes to depends on the samples of its window alone. Throws std::bad_alloc.
   [[nodiscard]] virtual bool run(const Block& block, const JobControl& job) = 0;
+
+  /// Whether an output is the median of its window's samples, of an even number the mean of the middle two: who has
+  /// them in order need not run it.
+  [[nodiscard]] virtual bool isMedian() const noexcept { return false; }
 };
 
 }  // namespace fettle::engine

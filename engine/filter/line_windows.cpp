@@ -1,17 +1,65 @@
 #include "engine/filter/line_windows.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
-#include "engine/filter/median.h"
+#include "engine/filter/rank_set.h"
+#include "engine/filter/ranks.h"
 
 namespace fettle::engine {
 
 namespace {
+
+// One bit for each sample of a row of a window; its first column is bit 0.
+using WindowRow = std::uint64_t;
+static_assert(kMostLineWindow < 64 - 2);
+
+// One bit for each sample of a block, with room for windows that reach beyond it.
+class BitRows {
+ public:
+  void assign(int columns, int rows) {
+    words_ = static_cast<std::size_t>(columns + 2 * kMargin) / 64 + 2;
+    bits_.assign(words_ * static_cast<std::size_t>(rows), 0);
+  }
+  void set(int column, int row) noexcept {
+    const auto at = static_cast<std::size_t>(column + kMargin);
+    bits_[static_cast<std::size_t>(row) * words_ + at / 64] |= std::uint64_t{1} << (at % 64);
+  }
+  [[nodiscard]] bool at(int column, int row) const noexcept { return (from(column, row) & 1U) != 0; }
+  // 64 columns from `column` on, -kMargin at least.
+  [[nodiscard]] WindowRow from(int column, int row) const noexcept {
+    const auto at = static_cast<std::size_t>(column + kMargin);
+    const std::uint64_t* const words = &bits_[static_cast<std::size_t>(row) * words_ + at / 64];
+    return at % 64 == 0 ? words[0] : words[0] >> (at % 64) | words[1] << (64 - at % 64);
+  }
+
+ private:
+  static constexpr int kMargin = 64;
+  std::size_t words_ = 0;
+  std::vector<std::uint64_t> bits_;
+};
+
+// All that whole links of a row lead to; bit i of `cut`: not from i to i + 1. In steps of 1, 2, 4 .. samples.
+WindowRow alongRow(WindowRow reached, WindowRow cut, WindowRow window) noexcept {
+  if ((cut & window) == 0) return reached != 0 ? window : 0;
+  WindowRow whole = ~cut;  // over so many links from i on
+  for (int step = 1; step < 64; step *= 2) {
+    reached |= (reached & whole) << step | (reached >> step & whole);
+    whole &= whole >> step;
+  }
+  return reached & window;
+}
+
+void forEachBit(WindowRow bits, auto&& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(std::countr_zero(bits));
+}
 
 class LineWindows final : public BlockFilter {
  public:
@@ -21,12 +69,16 @@ class LineWindows final : public BlockFilter {
   bool run(const Block& block, const JobControl& job) override {
     if (!windows_->run(windowsOnly(block), job)) return false;
     if (block.cuts == nullptr || !findLines(block)) return true;
+    findKnown(block);
+    ranks_.sort(block);
+    for (RankSet& side : sides_) side.begin(ranks_);
+    taken_ = {};
     for (int r = 0; r < block.out_rows; ++r) {
       if (job.cancelled()) return false;
       for (int c = 0; c < block.out_columns; ++c) {
         if (crossed_[at(block.out_columns, c, r)] == 0) continue;
         const int column = block.first_column + c, row = block.first_row + r;
-        if (std::isnan(block.row(row)[column])) continue;
+        if (!known_.at(column, row)) continue;
         float& out = block.out[r * block.out_stride + c];
         if (!runWindow(block, column, row, job, out)) return false;
       }
@@ -62,11 +114,11 @@ class LineWindows final : public BlockFilter {
         const int c = cut.column - block.left;
         if (c < 0 || c >= block.columns) continue;
         if (!std::exchange(any, true)) {
-          links_.assign(at(block.columns, 0, block.rows), 0);
-          near_.assign(links_.size(), 0);
+          for (BitRows* bits : {&cut_right_, &cut_up_, &near_}) bits->assign(block.columns, block.rows);
           crossed_.assign(at(block.out_columns, 0, block.out_rows), 0);
         }
-        links_[at(block.columns, c, r)] = cut.links;
+        if ((cut.links & LineCut::kRight) != 0) cut_right_.set(c, r);
+        if ((cut.links & LineCut::kUp) != 0) cut_up_.set(c, r);
         markNear(block, c, r);
         // Both samples of a link may lie in a window.
         const int c0 = std::max(c - radius_ - block.first_column, 0);
@@ -81,54 +133,191 @@ class LineWindows final : public BlockFilter {
     return any;
   }
 
-  // The samples within kLineReach of a cut link, whose second sample is to the right or above. Every window asks this of
-  // all its samples.
+  // The samples within kLineReach of a cut link, whose second sample is to the right or above.
   void markNear(const Block& block, int column, int row) {
     const int c0 = std::max(column + 1 - kLineReach, 0);
     const int c1 = std::min(column + kLineReach, block.columns - 1);
     for (int r = std::max(row + 1 - kLineReach, 0); r <= std::min(row + kLineReach, block.rows - 1); ++r)
-      std::fill_n(near_.begin() + static_cast<std::ptrdiff_t>(at(block.columns, c0, r)), c1 - c0 + 1,
-                  std::uint8_t{1});
+      for (int c = c0; c <= c1; ++c) near_.set(c, r);
   }
+
+  void findKnown(const Block& block) {
+    known_.assign(block.columns, block.rows);
+    for (int r = 0; r < block.rows; ++r)
+      for (int c = 0; c < block.columns; ++c)
+        if (!std::isnan(block.row(r)[c])) known_.set(c, r);
+  }
+
+  // A window in the block: its rows, and its columns from `left` on, which may be before the block.
+  struct Window {
+    int left = 0, low = 0, rows = 0;
+    WindowRow columns = 0;  // those in the block
+    int middle_row = 0;     // counted in the window
+  };
+  using Rows = std::array<WindowRow, kMostLineWindow>;
 
   // The filter on a window of its own, without what lies beyond a line.
   bool runWindow(const Block& block, int column, int row, const JobControl& job, float& out) {
-    const int c0 = std::max(column - radius_, 0), c1 = std::min(column + radius_, block.columns - 1);
-    const int r0 = std::max(row - radius_, 0), r1 = std::min(row + radius_, block.rows - 1);
+    Window window;
+    window.left = column - radius_;
+    window.low = std::max(row - radius_, 0);
+    window.rows = std::min(row + radius_, block.rows - 1) - window.low + 1;
+    window.middle_row = row - window.low;
+    const int first = std::max(-window.left, 0);
+    const int end = std::min(2 * radius_ + 1, block.columns - window.left);
+    window.columns = (WindowRow{1} << end) - (WindowRow{1} << first);
+    Rows known{}, reached{};
+    findReached(window, reached);
+    for (int r = 0; r < window.rows; ++r) {
+      const auto k = static_cast<std::size_t>(r);
+      known[k] = known_.from(window.left, window.low + r) & window.columns;
+      reached[k] &= known[k];
+    }
+    take(block, window, known, reached);
+    const float own = sides_[1].median();
+    Rows settled = reached;
+    const bool stays = settleSides(block, window, known, own, settled);
+    if (windows_->isMedian()) {
+      out = stays ? own : medianOf(block, window, reached, settled);
+      return true;
+    }
+    return runOn(block, window, settled, column, job, out);
+  }
+
+  // The samples to which a way leads from the middle, holes among them: up and down until nothing is new.
+  void findReached(const Window& window, Rows& reached) const noexcept {
+    Rows cut{}, cut_up{};
+    for (int r = 0; r < window.rows; ++r) {
+      cut[static_cast<std::size_t>(r)] = cut_right_.from(window.left, window.low + r);
+      cut_up[static_cast<std::size_t>(r)] = cut_up_.from(window.left, window.low + r);
+      reached[static_cast<std::size_t>(r)] = 0;
+    }
+    const auto enter = [&](int r, WindowRow samples) {
+      const auto k = static_cast<std::size_t>(r);
+      if ((samples & ~reached[k]) == 0) return false;
+      reached[k] = alongRow(reached[k] | samples, cut[k], window.columns);
+      return true;
+    };
+    bool more = enter(window.middle_row, WindowRow{1} << radius_);
+    while (std::exchange(more, false)) {
+      for (int r = 1; r < window.rows; ++r) {
+        const auto below = static_cast<std::size_t>(r - 1);
+        more |= enter(r, reached[below] & ~cut_up[below]);
+      }
+      for (int r = window.rows - 2; r >= 0; --r) {
+        const auto k = static_cast<std::size_t>(r);
+        more |= enter(r, reached[k + 1] & ~cut_up[k]);
+      }
+    }
+  }
+
+  // Makes sides_ the samples of a window: 1 those that are reached, 0 the others. The next window of a row has most of
+  // them in common with the one before.
+  void take(const Block& block, const Window& window, const Rows& known, const Rows& reached) {
+    const int moved = window.left - taken_.window.left;
+    const bool near = taken_.any && taken_.window.low == window.low && taken_.window.rows == window.rows &&
+                      moved >= 0 && moved < 64 - kMostLineWindow;
+    if (!near)
+      for (RankSet& side : sides_) side.clear();
+    const int left = near ? taken_.window.left : window.left;
+    for (int r = 0; r < window.rows; ++r) {
+      const auto k = static_cast<std::size_t>(r);
+      const std::uint32_t* const ranks = ranksOf(block, left, window.low + r);
+      const auto become = [&](RankSet& side, WindowRow before, WindowRow now) {
+        forEachBit(before & ~now, [&](int c) { side.remove(ranks[c]); });
+        forEachBit(now & ~before, [&](int c) { side.add(ranks[c]); });
+      };
+      const int shift = window.left - left;
+      const WindowRow was = near ? taken_.reached[k] : 0, was_known = near ? taken_.known[k] : 0;
+      become(sides_[1], was, reached[k] << shift);
+      become(sides_[0], was_known & ~was, (known[k] & ~reached[k]) << shift);
+    }
+    taken_ = {true, window, known, reached};
+  }
+
+  [[nodiscard]] const std::uint32_t* ranksOf(const Block& block, int left, int row) const noexcept {
+    return ranks_.ranks() + static_cast<std::ptrdiff_t>(row) * block.columns + left;
+  }
+
+  // A located line is some tenths of a sample off. Where both sides of the window differ by far more than each varies,
+  // the samples next to the line are on the side whose height they are nearer to. `settled`, the samples that are reached,
+  // become those on the side of the middle. True if they stay what they were.
+  bool settleSides(const Block& block, const Window& window, const Rows& known, float own, Rows& settled) {
+    const float own_spread = sides_[1].spread(own);
+    // A window may hold no more of the other side than samples that the line has on this one.
+    const bool one_side = sides_[0].size() == 0;
+    const float other = one_side ? own : sides_[0].median();
+    const float spread = one_side ? own_spread : std::max(own_spread, sides_[0].spread(other));
+    if (one_side ? sides_[1].farthest(own) <= kStandsOut * spread
+                 : !(std::fabs(own - other) > kFarApart * spread))
+      return true;
+    const auto standsOut = [&](float z) { return std::fabs(z - own) > kStandsOut * spread; };
+    const auto heightsOf = [&](int r) { return block.row(window.low + r) + window.left; };
+    const auto nearOf = [&](int r) { return near_.from(window.left, window.low + r); };
+    if (one_side)
+      for (int r = 0; r < window.rows; ++r) {
+        bool far = false;
+        forEachBit(known[static_cast<std::size_t>(r)] & ~nearOf(r),
+                   [&](int c) { far = far || standsOut(heightsOf(r)[c]); });
+        // A way around the end of the line leads to the other side.
+        if (far) return true;
+      }
+    for (int r = 0; r < window.rows; ++r) {
+      WindowRow& row = settled[static_cast<std::size_t>(r)];
+      forEachBit(known[static_cast<std::size_t>(r)] & nearOf(r), [&](int c) {
+        const float z = heightsOf(r)[c];
+        const bool fits = one_side ? !standsOut(z) : std::fabs(z - own) <= std::fabs(z - other);
+        row = (row & ~(WindowRow{1} << c)) | WindowRow{fits} << c;
+      });
+    }
+    side_of_middle_ = settled[static_cast<std::size_t>(window.middle_row)] >> radius_ & 1U;
+    if (side_of_middle_ == 0)
+      for (int r = 0; r < window.rows; ++r) {
+        WindowRow& row = settled[static_cast<std::size_t>(r)];
+        row = known[static_cast<std::size_t>(r)] & ~row;
+      }
+    return false;
+  }
+
+  // Of the samples that are settled, which are most of one side's.
+  float medianOf(const Block& block, const Window& window, const Rows& reached, const Rows& settled) {
+    const bool own = side_of_middle_ == 1;
+    RankSet& side = sides_[side_of_middle_];
+    const auto swap = [&](bool back) {
+      for (int r = 0; r < window.rows; ++r) {
+        const auto k = static_cast<std::size_t>(r);
+        const WindowRow before = own ? reached[k] : taken_.known[k] & ~reached[k];
+        const std::uint32_t* const ranks = ranksOf(block, window.left, window.low + r);
+        forEachBit(back ? before & ~settled[k] : settled[k] & ~before, [&](int c) { side.add(ranks[c]); });
+        forEachBit(back ? settled[k] & ~before : before & ~settled[k], [&](int c) { side.remove(ranks[c]); });
+      }
+    };
+    swap(false);
+    const float median = side.median();
+    swap(true);
+    return median;
+  }
+
+  bool runOn(const Block& block, const Window& inner, const Rows& samples, int column, const JobControl& job,
+             float& out) {
     Block window;
-    window.columns = c1 - c0 + 1;
-    window.rows = r1 - r0 + 1;
+    const int first = std::countr_zero(inner.columns);
+    window.columns = std::popcount(inner.columns);
+    window.rows = inner.rows;
     window.stride = (window.columns + 31) / 16 * 16;
-    window.first_column = column - c0;
-    window.first_row = row - r0;
+    window.first_column = column - inner.left - first;
+    window.first_row = inner.middle_row;
     window.out_columns = window.out_rows = 1;
     window.out_stride = kOutputs;
     window.holes = true;
     window.magnitude = block.magnitude;
     heights_.assign(at(static_cast<int>(window.stride), 0, window.rows),
                     std::numeric_limits<float>::quiet_NaN());
-    reached_.assign(at(window.columns, 0, window.rows), 0);
-    const auto reach = [&](int c, int r) {
-      if (std::exchange(reached_[at(window.columns, c, r)], std::uint8_t{1}) == 0) next_.emplace_back(c, r);
-    };
-    const auto whole = [&](int c, int r, int link) {
-      return (links_[at(block.columns, c0 + c, r0 + r)] & link) == 0;
-    };
-    reach(window.first_column, window.first_row);
-    while (!next_.empty()) {
-      const auto [c, r] = next_.back();
-      next_.pop_back();
-      if (c + 1 < window.columns && whole(c, r, LineCut::kRight)) reach(c + 1, r);
-      if (c > 0 && whole(c - 1, r, LineCut::kRight)) reach(c - 1, r);
-      if (r + 1 < window.rows && whole(c, r, LineCut::kUp)) reach(c, r + 1);
-      if (r > 0 && whole(c, r - 1, LineCut::kUp)) reach(c, r - 1);
+    for (int r = 0; r < window.rows; ++r) {
+      const float* const from = block.row(inner.low + r) + inner.left;
+      float* const to = &heights_[at(static_cast<int>(window.stride), 0, r)];
+      forEachBit(samples[static_cast<std::size_t>(r)], [&](int c) { to[c - first] = from[c]; });
     }
-    const auto height = [&](int c, int r) { return block.row(r0 + r)[c0 + c]; };
-    const std::uint8_t own = settleSides(window, c0, r0, block, height);
-    for (int r = 0; r < window.rows; ++r)
-      for (int c = 0; c < window.columns; ++c)
-        if (reached_[at(window.columns, c, r)] == own)
-          heights_[at(static_cast<int>(window.stride), c, r)] = height(c, r);
     window.heights = heights_.data();
     float results[kOutputs];
     window.out = results;
@@ -137,58 +326,23 @@ class LineWindows final : public BlockFilter {
     return true;
   }
 
-  // A located line is some tenths of a sample off. Where both sides of the window differ by far more than each varies,
-  // the samples next to the line are on the side whose height they are nearer to. Returns the side of the middle.
-  std::uint8_t settleSides(const Block& window, int c0, int r0, const Block& block, auto&& height) {
-    const auto isNear = [&](int c, int r) { return near_[at(block.columns, c0 + c, r0 + r)] != 0; };
-    for (std::vector<float>& side : sides_) side.clear();
-    for (int r = 0; r < window.rows; ++r)
-      for (int c = 0; c < window.columns; ++c)
-        if (const float z = height(c, r); z == z) sides_[reached_[at(window.columns, c, r)]].push_back(z);
-    const float own = medianOf(sides_[1]);
-    const float own_spread = spreadOf(sides_[1], own);
-    // A window may hold no more of the other side than samples that the line has on this one.
-    const bool one_side = sides_[0].empty();
-    const float other = one_side ? own : medianOf(sides_[0]);
-    const float spread = one_side ? own_spread : std::max(own_spread, spreadOf(sides_[0], other));
-    if (!one_side && !(std::fabs(own - other) > kFarApart * spread)) return 1;
-    const auto standsOut = [&](int c, int r) { return std::fabs(height(c, r) - own) > kStandsOut * spread; };
-    if (one_side)
-      for (int r = 0; r < window.rows; ++r)
-        for (int c = 0; c < window.columns; ++c)
-          // A way around the end of the line leads to the other side.
-          if (standsOut(c, r) && !isNear(c, r)) return 1;
-    for (int r = 0; r < window.rows; ++r)
-      for (int c = 0; c < window.columns; ++c) {
-        if (!isNear(c, r)) continue;
-        const bool fits =
-            one_side ? !standsOut(c, r) : std::fabs(height(c, r) - own) <= std::fabs(height(c, r) - other);
-        reached_[at(window.columns, c, r)] = fits ? 1 : 0;
-      }
-    return reached_[at(window.columns, window.first_column, window.first_row)];
-  }
-
-  // Of an even number the mean of the middle two: the same upside down.
-  static float medianOf(std::vector<float>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return values.size() % 2 != 0 ? *middle : midpoint(*std::max_element(values.begin(), middle), *middle);
-  }
-  // Median of the distances from the median.
-  static float spreadOf(std::vector<float>& values, float median) {
-    for (float& value : values) value = std::fabs(value - median);
-    return medianOf(values);
-  }
-
-  static constexpr int kLineReach = 2;        // [samples] from a cut link
   static constexpr float kFarApart = 9.0F;    // six standard deviations, in medians of distances
   static constexpr float kStandsOut = 27.0F;  // of one sample among a few
   static constexpr int kOutputs = 16;         // room for a vector
   std::unique_ptr<BlockFilter> windows_;
   int radius_;
-  std::vector<std::uint8_t> links_, near_, crossed_, reached_;
-  std::vector<float> heights_, sides_[2];
-  std::vector<std::pair<int, int>> next_;
+  BitRows cut_right_, cut_up_, near_, known_;
+  std::vector<std::uint8_t> crossed_;
+  Ranks ranks_;
+  RankSet sides_[2];
+  // What sides_ holds.
+  struct Taken {
+    bool any = false;
+    Window window;
+    Rows known{}, reached{};
+  } taken_;
+  std::size_t side_of_middle_ = 1;  // of the window at hand, once settled
+  std::vector<float> heights_;
 };
 
 }  // namespace

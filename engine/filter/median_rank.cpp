@@ -80,6 +80,8 @@ class RankMedian final : public BlockFilter {
     return true;
   }
 
+  [[nodiscard]] bool isMedian() const noexcept override { return true; }
+
  private:
   using Move = void (*)(WindowGroup&, const std::uint32_t*, int, int, bool);
   using Medians = void (*)(WindowGroup&, const float*, int, float*);

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/field/line_cuts.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/pass.h"
 #include "engine/filter/region.h"
@@ -160,6 +161,122 @@ TEST(LineWindows, GiveTheSameBitsForAnyThreadsBlocksPiecesAndUpsideDown) {
     for (const TileRange& range : {TileRange{1, 1, 2, 2}, {0, 0, 3, 5}, {3, 0, 9, 9}})
       so_far = *filterRange(scan, scan, so_far, spec, range, job);
     EXPECT_EQ(contentHash(so_far), contentHash(once));
+  }
+}
+
+// The text of line_windows.h taken word by word: a way is searched sample by sample, and all medians are sorted.
+float plainMedian(std::vector<float> values) {
+  std::ranges::sort(values);
+  const std::size_t n = values.size();
+  return n % 2 != 0 ? values[n / 2]
+                    : static_cast<float>((double{values[n / 2 - 1]} + double{values[n / 2]}) * 0.5);
+}
+
+struct PlainSide {
+  std::vector<float> heights;
+  [[nodiscard]] float median() const { return plainMedian(heights); }
+  [[nodiscard]] float spread() const {
+    std::vector<float> distances;
+    for (const float z : heights) distances.push_back(std::fabs(z - median()));
+    return plainMedian(distances);
+  }
+};
+
+float plainLineMedian(const PlainField& field, const LineCuts& cuts, int column, int row, int radius) {
+  const auto linksOf = [&](int c, int r) {
+    for (const LineCut& cut : cuts.row(r))
+      if (cut.column == c) return static_cast<int>(cut.links);
+    return 0;
+  };
+  const int c0 = std::max(column - radius, 0), c1 = std::min(column + radius, field.width - 1);
+  const int r0 = std::max(row - radius, 0), r1 = std::min(row + radius, field.height - 1);
+  struct Sample {
+    int c, r;
+    bool reached = false, near = false;
+  };
+  std::vector<Sample> samples;
+  for (int r = r0; r <= r1; ++r)
+    for (int c = c0; c <= c1; ++c) samples.push_back({c, r});
+  const auto sampleAt = [&](int c, int r) -> Sample& {
+    return samples[static_cast<std::size_t>((r - r0) * (c1 - c0 + 1) + c - c0)];
+  };
+  std::vector<std::vector<int>>
+      links;  // of the window and one row and column before it, and those that near asks for
+  constexpr int kAround = 2;
+  for (int r = r0 - kAround; r <= r1 + kAround; ++r) {
+    links.emplace_back();
+    for (int c = c0 - kAround; c <= c1 + kAround; ++c)
+      links.back().push_back(c < 0 || r < 0 || c >= field.width || r >= field.height ? 0 : linksOf(c, r));
+  }
+  const auto linkAt = [&](int c, int r) {
+    return links[static_cast<std::size_t>(r - r0 + kAround)][static_cast<std::size_t>(c - c0 + kAround)];
+  };
+  sampleAt(column, row).reached = true;
+  for (bool more = true; more;) {
+    more = false;
+    const auto join = [&](Sample& a, Sample& b, bool cut) {
+      if (cut || a.reached == b.reached) return;
+      a.reached = b.reached = more = true;
+    };
+    for (int r = r0; r <= r1; ++r)
+      for (int c = c0; c <= c1; ++c) {
+        if (c < c1) join(sampleAt(c, r), sampleAt(c + 1, r), (linkAt(c, r) & LineCut::kRight) != 0);
+        if (r < r1) join(sampleAt(c, r), sampleAt(c, r + 1), (linkAt(c, r) & LineCut::kUp) != 0);
+      }
+  }
+  bool any_cut = false;
+  for (Sample& s : samples)
+    for (int y = -kAround; y < kAround; ++y)
+      for (int x = -kAround; x < kAround; ++x) s.near = s.near || linkAt(s.c + x, s.r + y) != 0;
+  PlainSide own, other;
+  for (const Sample& s : samples) {
+    any_cut = any_cut || s.near;
+    if (const float z = field.at(s.c, s.r); !std::isnan(z)) (s.reached ? own : other).heights.push_back(z);
+  }
+  const float middle = own.median(), spread = own.spread();
+  if (other.heights.empty()) {
+    const auto standsOut = [&](const Sample& s) {
+      return std::fabs(field.at(s.c, s.r) - middle) > 27.0F * spread;
+    };
+    if (any_cut && std::ranges::none_of(samples, [&](const Sample& s) { return standsOut(s) && !s.near; }))
+      for (Sample& s : samples)
+        if (s.near) s.reached = !standsOut(s);
+  } else if (const float beyond = other.median();
+             std::fabs(middle - beyond) > 9.0F * std::max(spread, other.spread())) {
+    for (Sample& s : samples)
+      if (const float z = field.at(s.c, s.r); s.near)
+        s.reached = std::fabs(z - middle) <= std::fabs(z - beyond);
+  }
+  const bool mine = sampleAt(column, row).reached;
+  std::vector<float> counted;
+  for (const Sample& s : samples)
+    if (const float z = field.at(s.c, s.r); s.reached == mine && !std::isnan(z)) counted.push_back(z);
+  return plainMedian(counted);
+}
+
+TEST(LineWindows, AreThoseOfAPlainSearchBitForBit) {
+  std::mt19937 random(12);
+  std::normal_distribution<float> noise(0.0F, 0.1F);
+  PlainField field = formed(97, 71, [&](int c, int r) {
+    return noise(random) + (isLeft(40.6, 30, 1.2, c, r) ? 4.0F : 0.0F) +
+           (isLeft(70, 40, 0.4, c, r) ? 0.3F : 0.0F);
+  });
+  for (int k = 0; k < 400; ++k)
+    field.at(static_cast<int>(random() % 97), static_cast<int>(random() % 71)) = std::nanf("");
+  for (int k = 0; k < 30; ++k)  // equal heights, and some that stand out
+    field.at(static_cast<int>(random() % 97), static_cast<int>(random() % 71)) = k % 2 == 0 ? 0.0F : 9.0F;
+  const Version scan =
+      withLines(field, {slanted(40, 30, 1.2), slanted(70, 40, 0.4), edgeLineOf({{10, 8}, {30, 12}, {22, 50}}),
+                        edgeLineOf({{12, 60.5}, {32, 60.5}, {32, 66}, {12, 66}})});
+  const LineCuts cuts(*scan.lines(), 97, 71);
+  for (const int window : {5, 13, 25, 51}) {
+    const PlainField got = toPlain(filtered(scan, specOf(FilterKind::kMedian, window)).field);
+    for (int r = 0; r<field.height; r += window> 13 ? 3 : 1)
+      for (int c = r % 2; c<field.width; c += window> 13 ? 5 : 1)
+        if (!std::isnan(field.at(c, r))) {
+          ASSERT_TRUE(sameBits(got.at(c, r), plainLineMedian(field, cuts, c, r, window / 2)))
+              << window << ": " << c << ", " << r;
+        }
   }
 }
 
