@@ -94,12 +94,12 @@ std::optional<double> RemainingTime::at(double seconds, const engine::JobControl
   if (stage_ != job.stage() || done < done_) {
     stage_ = job.stage();
     begun_ = seconds;
+    from_ = done;
   }
   done_ = done;
   const double taken = seconds - begun_;
-  if (taken < kFirstSeconds || total == 0 || done < total / 100 + 1) return std::nullopt;
-  const double share = static_cast<double>(done) / static_cast<double>(total);
-  return taken * (1.0 - share) / share;
+  if (taken < kFirstSeconds || total == 0 || done - from_ < total / 100 + 1) return std::nullopt;
+  return taken * static_cast<double>(total - done) / static_cast<double>(done - from_);
 }
 
 std::string progressText(const engine::JobControl& job, const BatchState* batch, std::optional<double> left) {

@@ -45,7 +45,8 @@ class RemainingTime {
  private:
   const char* stage_ = nullptr;
   std::uint64_t done_ = 0;
-  double begun_ = 0.0;      // of the stage
+  std::uint64_t from_ = 0;  // what was done of the stage when it was first seen
+  double begun_ = 0.0;      // then
   double first_ = -1.0;     // call
   std::size_t files_ = 0;   // finished at the last call
   double last_file_ = 0.0;  // when the last one was

@@ -31,7 +31,7 @@ class Opening {
   /// The result of reading, once.
   [[nodiscard]] std::optional<engine::Result<Document>> take() { return loading_.take(); }
   [[nodiscard]] bool busy() const noexcept { return loading_.busy(); }
-  [[nodiscard]] double progress() const noexcept { return loading_.progress(); }
+  [[nodiscard]] WorkProgress progress() const { return loading_.progress(); }
   [[nodiscard]] const char* stage() const noexcept { return loading_.stage(); }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
   [[nodiscard]] std::string fileName() const;

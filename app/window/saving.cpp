@@ -205,7 +205,7 @@ bool Saving::busy(const ActiveDocument& document) const {
   return writing_.busy() || waits_for_scan_ || (keeper != nullptr && keeper->saving());
 }
 
-std::optional<double> Saving::progress(const ActiveDocument& document) const {
+std::optional<WorkProgress> Saving::progress(const ActiveDocument& document) const {
   const SessionKeeper* const keeper = document.keeper();
   if (writing_.busy()) return writing_.progress();
   if (keeper != nullptr && keeper->saving()) return keeper->progress();

@@ -44,8 +44,8 @@ class Saving {
 
   /// Whether something is being written, or waits for that.
   [[nodiscard]] bool busy(const ActiveDocument& document) const;
-  /// 0 .. 1; nothing unless files are being written.
-  [[nodiscard]] std::optional<double> progress(const ActiveDocument& document) const;
+  /// Nothing unless files are being written.
+  [[nodiscard]] std::optional<WorkProgress> progress(const ActiveDocument& document) const;
   /// The path of Ctrl+S for the field, without a session of the user; empty until chosen.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 

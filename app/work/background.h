@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -7,10 +8,18 @@
 #include <thread>
 #include <utility>
 
+#include "app/terminal.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/base/stopwatch.h"
 
 namespace fettle::app {
+
+/// How far a job is.
+struct WorkProgress {
+  double share = 0.0;          ///< 0 .. 1, of the present stage
+  std::optional<double> left;  ///< how long the stage still takes [s], where that is known (RemainingTime)
+};
 
 /// A long job on its own thread, polled by the main thread once per frame. Starting another cancels the
 /// running one and waits until it stops (JobControl: about 50 ms); so does the destructor. Threading: the
@@ -44,10 +53,12 @@ class Background {
   }
 
   [[nodiscard]] bool busy() const noexcept { return run_ != nullptr; }
-  /// 0 .. 1; and the name of the stage.
-  [[nodiscard]] double progress() const noexcept {
-    if (!run_ || run_->job.total() == 0) return 0.0;
-    return std::min(1.0, static_cast<double>(run_->job.done()) / static_cast<double>(run_->job.total()));
+  /// Of the present stage; and its name.
+  [[nodiscard]] WorkProgress progress() const {
+    if (!run_ || run_->job.total() == 0) return {};
+    const engine::JobControl& job = run_->job;
+    const double share = std::min(1.0, static_cast<double>(job.done()) / static_cast<double>(job.total()));
+    return {share, job.cancelled() ? std::nullopt : run_->remaining.at(run_->begun.seconds(), job, nullptr)};
   }
   [[nodiscard]] const char* stage() const noexcept { return run_ ? run_->job.stage() : ""; }
   [[nodiscard]] bool cancelling() const noexcept { return run_ && run_->job.cancelled(); }
@@ -71,6 +82,8 @@ class Background {
  private:
   struct Run {
     engine::JobControl job;
+    engine::Stopwatch begun;
+    RemainingTime remaining;  // of the main thread, as progress()
     std::optional<engine::Result<T>> result;
     std::atomic<bool> done{false};
   };

@@ -34,7 +34,7 @@ class EdgeTool {
   /// Searching, drawing or showing.
   [[nodiscard]] bool on() const noexcept { return searching_.busy() || drawing_.busy() || shown_; }
   [[nodiscard]] bool busy() const noexcept { return searching_.busy() || drawing_.busy(); }
-  [[nodiscard]] double progress() const noexcept { return searching_.progress(); }
+  [[nodiscard]] WorkProgress progress() const { return searching_.progress(); }
   [[nodiscard]] const engine::EdgeSuggestion* suggestion() const noexcept {
     return shown_ ? &*shown_ : nullptr;
   }

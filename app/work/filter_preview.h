@@ -57,7 +57,7 @@ class FilterPreview {
   [[nodiscard]] std::vector<Picture> pictures() const;
   [[nodiscard]] bool computing() const noexcept { return computing_.busy(); }
   [[nodiscard]] bool applying() const noexcept { return applying_.busy(); }
-  [[nodiscard]] double progress() const noexcept {
+  [[nodiscard]] WorkProgress progress() const {
     return computing_.busy() ? computing_.progress() : applying_.progress();
   }
   /// Times a filter was applied.

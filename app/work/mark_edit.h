@@ -31,7 +31,7 @@ class MarkEdit {
   [[nodiscard]] bool poll(LoopClient& client, std::vector<Notice>& notices);
 
   [[nodiscard]] bool busy() const noexcept { return working_.busy() || done_ || !waiting_.empty(); }
-  [[nodiscard]] double progress() const noexcept { return working_.progress(); }
+  [[nodiscard]] WorkProgress progress() const { return working_.progress(); }
 
  private:
   struct Request {

@@ -32,7 +32,7 @@ class PlaceTool {
   /// Searching or showing.
   [[nodiscard]] bool on() const noexcept { return busy() || found_.has_value(); }
   [[nodiscard]] bool busy() const noexcept { return searching_.busy() && !searching_.cancelling(); }
-  [[nodiscard]] double progress() const noexcept { return searching_.progress(); }
+  [[nodiscard]] WorkProgress progress() const { return searching_.progress(); }
   /// Null when none were searched for.
   [[nodiscard]] const engine::WorthPlaces* found() const noexcept { return found_ ? &*found_ : nullptr; }
   [[nodiscard]] State state(std::size_t place) const noexcept { return states_[place]; }

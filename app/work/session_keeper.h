@@ -46,7 +46,7 @@ class SessionKeeper final : public haptic::SessionSink {
   /// removed. saved() reports the end.
   void saveAs(const std::string& path, engine::OriginalStorage storage);
   [[nodiscard]] bool saving() const noexcept { return saving_.busy() || scan_ == Scan::kRequested; }
-  [[nodiscard]] double progress() const noexcept { return saving_.progress(); }
+  [[nodiscard]] WorkProgress progress() const { return saving_.progress(); }
   void cancelSaving() noexcept { saving_.cancel(); }
   /// How saveAs() ended, once.
   [[nodiscard]] std::optional<engine::Status> saved();

@@ -48,6 +48,18 @@ TEST(Progress, SaysHowLongTheStageStillTakesOnceThatIsKnown) {
   EXPECT_TRUE(progressText(job, nullptr, 20.0).ends_with("%  stopping"));
 }
 
+TEST(Progress, OfAStageThatIsSeenLateOnlyWhatWasDoneSinceThenCounts) {
+  engine::JobControl job;
+  RemainingTime remaining;
+  job.begin("filtering", 1000);
+  job.advance(600);
+  EXPECT_FALSE(remaining.at(50.0, job, nullptr));
+  job.advance(5);
+  EXPECT_FALSE(remaining.at(54.0, job, nullptr)) << "less than a hundredth since it was first seen";
+  job.advance(95);
+  EXPECT_DOUBLE_EQ(remaining.at(60.0, job, nullptr).value(), 30.0);
+}
+
 TEST(Progress, OfABatchTheTimeIsThatOfAllFilesThatAreLeft) {
   engine::JobControl job;
   BatchState batch;

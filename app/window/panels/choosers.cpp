@@ -57,8 +57,7 @@ int chooser(const char* id, const std::string& now, const std::vector<Entry>& en
 // Below a chooser: the figures of the choice, or the progress of measuring.
 bool measuringLine(const auto& run, const char* cancel_id) {
   if (!run.busy()) return false;
-  ImGui::ProgressBar(static_cast<float>(run.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
-                     "measuring on this scan");
+  workBar(run.progress(), -ImGui::GetFontSize() * 5.0F, "measuring on this scan");
   ImGui::SameLine();
   return ImGui::Button(cancel_id);
 }

@@ -35,8 +35,7 @@ void edgePanel(const PanelContext& context, EdgeTool& edges) {
   endFields();
   if (edges.on() && scale_done) edges.search(context.client);
   if (edges.busy() && edges.suggestion() == nullptr) {
-    ImGui::ProgressBar(static_cast<float>(edges.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
-                       "looking");
+    workBar(edges.progress(), -ImGui::GetFontSize() * 5.0F, "looking");
     ImGui::SameLine();
     if (ImGui::Button("Cancel")) edges.drop();
     return;

@@ -71,8 +71,7 @@ void limitField(const PanelContext& context, engine::FilterSpec& spec) {
 
 void runButtons(const PanelContext& context, FilterPreview& filters) {
   if (filters.computing() || filters.applying()) {
-    ImGui::ProgressBar(static_cast<float>(filters.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
-                       filters.applying() ? "applying" : "filtering");
+    workBar(filters.progress(), -ImGui::GetFontSize() * 5.0F, filters.applying() ? "applying" : "filtering");
     ImGui::SameLine();
     if (ImGui::Button("Cancel")) filters.cancel(context.client);
   } else {

@@ -18,8 +18,7 @@ void wrapped(const std::string& text) {
 void placePanel(const PanelContext& context, PlaceTool& places) {
   using State = PlaceTool::State;
   if (places.busy()) {
-    ImGui::ProgressBar(static_cast<float>(places.progress()), ImVec2(-ImGui::GetFontSize() * 5.0F, 0.0F),
-                       "looking");
+    workBar(places.progress(), -ImGui::GetFontSize() * 5.0F, "looking");
     ImGui::SameLine();
     actionButton("Cancel", Action::kHidePlaces, context.act);
     return;

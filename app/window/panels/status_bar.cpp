@@ -14,8 +14,8 @@ void text(const std::string& what) {
 }
 
 // Returns whether the user cancelled.
-bool progressBar(double progress, float width, const char* what) {
-  ImGui::ProgressBar(static_cast<float>(progress), ImVec2(width, 0.0F), what);
+bool cancelledBar(const WorkProgress& progress, float width, const char* what) {
+  workBar(progress, width, what);
   ImGui::SameLine();
   return ImGui::SmallButton("Cancel");
 }
@@ -74,15 +74,15 @@ void content(Parts& parts) {
         "them, Esc drops them",
         edges->lines));
   } else if (const auto saving = parts.saving.progress(parts.document)) {
-    if (progressBar(*saving, 240.0F, "saving")) parts.saving.cancel(parts.document);
+    if (cancelledBar(*saving, 240.0F, "saving")) parts.saving.cancel(parts.document);
   } else if (parts.opening.coarse() != nullptr) {
-    if (progressBar(parts.opening.progress(), 160.0F, "reading")) parts.opening.cancel();
+    if (cancelledBar(parts.opening.progress(), 160.0F, "reading")) parts.opening.cancel();
     ImGui::SameLine();
     text(parts.opening.coarseText());
   } else if (parts.document.isOpen() && parts.opening.busy()) {
-    if (progressBar(parts.opening.progress(), 240.0F, "opening")) parts.opening.cancel();
+    if (cancelledBar(parts.opening.progress(), 240.0F, "opening")) parts.opening.cancel();
   } else if (PlaceTool& places = parts.marking.places; places.busy()) {
-    if (progressBar(places.progress(), 240.0F, "looking for places")) places.drop();
+    if (cancelledBar(places.progress(), 240.0F, "looking for places")) places.drop();
   } else {
     text(documentText(parts));
   }
@@ -116,9 +116,10 @@ void placeholder(Parts& parts, float width) {
   if (announces) {
     ImGui::Text("%s: making the first picture", parts.document.fileName().c_str());
   } else if (opening.busy()) {
-    ImGui::Text("%s: %s", opening.fileName().c_str(), opening.stage());
-    ImGui::ProgressBar(static_cast<float>(opening.progress()),
-                       ImVec2(360.0F * static_cast<float>(parts.window.scale()), 0.0F));
+    ImGui::TextUnformatted(opening.fileName().c_str());
+    const WorkProgress progress = opening.progress();
+    workBar(progress, 360.0F * static_cast<float>(parts.window.scale()),
+            fmt::format("{} {:.0f} %", opening.stage(), 100.0 * progress.share).c_str());
     if (ImGui::Button("Cancel")) opening.cancel();
   } else {
     ImGui::TextUnformatted("Drop a scan here, or press Ctrl+O");

@@ -82,7 +82,7 @@ void toolPanel(const PanelContext& context, const Stylus& stylus, const Marking&
   actionButton("Invert marks", Action::kInvertMarks, context.act);
   if (marking.edit.busy()) {
     sameLineIfFits("marking ...");
-    ImGui::ProgressBar(static_cast<float>(marking.edit.progress()), ImVec2(-1.0F, 0.0F), "marking");
+    workBar(marking.edit.progress(), -1.0F, "marking");
   }
 }
 

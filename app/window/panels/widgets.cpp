@@ -24,6 +24,12 @@ void figure(const char* name, const std::string& value) {
   ImGui::PopTextWrapPos();
 }
 
+void workBar(const WorkProgress& progress, float width, const char* what) {
+  const std::string text =
+      progress.left ? fmt::format("{}, {} left", what, durationText(*progress.left)) : what;
+  ImGui::ProgressBar(static_cast<float>(progress.share), ImVec2(width, 0.0F), text.c_str());
+}
+
 void tip(Action action) {
   if (!ImGui::IsItemHovered()) return;
   const ActionRow& s = rowOf(action);

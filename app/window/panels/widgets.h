@@ -8,6 +8,7 @@
 #include <imgui.h>
 
 #include "app/window/actions.h"
+#include "app/work/background.h"
 #include "render/plan/number_text.h"
 
 namespace fettle::app {
@@ -15,6 +16,10 @@ namespace fettle::app {
 /// "name   value" on one line of a panel; values that are too long are truncated, and shown completely as a
 /// tip.
 void figure(const char* name, const std::string& value);
+
+/// The bar of a job, with what is being done and how long that still takes. `width`: below 0, the rest of the line less
+/// that.
+void workBar(const WorkProgress& progress, float width, const char* what);
 
 /// Receives the actions of buttons, tick boxes and menus.
 using Act = std::function<void(Action)>;
