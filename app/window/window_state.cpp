@@ -116,6 +116,7 @@ void addFilters(const Parts& p, Report& r) {
   r["places"] = places.found() != nullptr ? places.found()->places.size() : 0;
   r["place"] = places.present() ? Report(*places.present() + 1) : Report();
   r["places_done"] = places.count(PlaceTool::State::kDone);
+  r["places_outdated"] = places.outdated();
   r["places_skipped"] = places.count(PlaceTool::State::kSkipped);
   r["draws_lines"] = p.settings.draw_lines;
   r["marking"] = p.marking.edit.busy();

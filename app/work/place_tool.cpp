@@ -6,6 +6,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "engine/field/difference.h"
 #include "engine/inspect/noise.h"
 
 namespace fettle::app {
@@ -41,7 +42,8 @@ bool isDrawn(const WorthPlace& place, const std::vector<EdgeLine>& lines) {
 
 void PlaceTool::search(const LoopClient& client) {
   drop();
-  searching_.start([field = client.newest()](engine::JobControl& job) -> engine::Result<engine::WorthPlaces> {
+  searched_ = compared_ = client.newest();
+  searching_.start([field = searched_](engine::JobControl& job) -> engine::Result<engine::WorthPlaces> {
     const auto noise = engine::estimateNoise(field, job);
     if (!noise) return tl::unexpected(noise.error());
     if (!(noise->sigma > 0.0)) return engine::WorthPlaces{};
@@ -58,6 +60,8 @@ void PlaceTool::drop() {
   present_.reset();
   arrived_ = false;
   seen_ = {};
+  searched_ = compared_ = {};
+  outdated_ = false;
   ++revision_;
 }
 
@@ -91,6 +95,11 @@ bool PlaceTool::poll(const LoopClient& client, std::vector<Notice>& notices) {
   if (found_ && client.newest().lines() != seen_) {
     lookAtLines(client.newest().lines());
     changed = true;
+  }
+  if (found_ && client.newest() != compared_) {
+    compared_ = client.newest();
+    const bool outdated = !engine::sameHeights(searched_, compared_);
+    changed |= std::exchange(outdated_, outdated) != outdated;
   }
   return changed;
 }

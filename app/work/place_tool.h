@@ -7,6 +7,7 @@
 
 #include "app/work/background.h"
 #include "app/work/loop_client.h"
+#include "engine/field/version.h"
 #include "engine/suggest/worth_places.h"
 
 namespace fettle::app {
@@ -38,6 +39,9 @@ class PlaceTool {
   [[nodiscard]] State state(std::size_t place) const noexcept { return states_[place]; }
   [[nodiscard]] std::optional<std::size_t> present() const noexcept { return present_; }
   [[nodiscard]] std::size_t count(State state) const noexcept;
+  /// Whether heights have changed since the search, so that places and estimates are of another surface. Undoing that
+  /// makes them valid again; lines and marks change no height.
+  [[nodiscard]] bool outdated() const noexcept { return outdated_; }
   /// Differs whenever something is to be drawn otherwise.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
 
@@ -49,7 +53,9 @@ class PlaceTool {
   std::vector<State> states_;
   std::optional<std::size_t> present_;
   bool arrived_ = false;
-  engine::EdgeLines seen_;  // that states_ is of
+  engine::EdgeLines seen_;               // that states_ is of
+  engine::Version searched_, compared_;  // compared_: with searched_, for outdated_
+  bool outdated_ = false;
   std::uint64_t revision_ = 0;
 };
 

@@ -43,6 +43,10 @@ void placePanel(const PanelContext& context, PlaceTool& places) {
     }
     wrapped(fmt::format("{} done, {} skipped, {} left", places.count(State::kDone),
                         places.count(State::kSkipped), places.count(State::kOpen)));
+    if (places.outdated())
+      wrapped(
+          "heights have changed since: places and estimates are of the surface before; hide them, then look "
+          "again");
     actionButton("Next place", Action::kNextPlace, context.act);
     sameLineIfFits("Hide places");
   }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/filter/filter.h"
 #include "engine/scanner/counter_random.h"
 #include "tests/app/work/loop_client_bench.h"
 #include "tests/haptic/support/fields.h"
@@ -111,6 +112,30 @@ TEST_F(PlaceToolTest, dropped_they_are_gone_even_when_they_are_found_afterwards)
   EXPECT_FALSE(tool.on());
   EXPECT_EQ(tool.found(), nullptr);
   EXPECT_TRUE(bench.notices().empty());
+}
+
+TEST_F(PlaceToolTest, places_are_outdated_while_heights_differ_from_those_searched) {
+  tool.search(bench.client());
+  ASSERT_TRUE(found());
+  draw(0);
+  EXPECT_FALSE(tool.outdated()) << "a line changes no height";
+  const engine::Version before = bench.client().newest();
+  engine::JobControl job;
+  engine::FilterSpec spec;
+  spec.kind = engine::FilterKind::kBox;
+  spec.window = 3;
+  const auto filtered = engine::applyFilter(before, before, spec, job);
+  ASSERT_TRUE(filtered);
+  ASSERT_TRUE(bench.client().change(before, filtered->field, "filter"));
+  ASSERT_TRUE(bench.settled());
+  poll();
+  EXPECT_TRUE(tool.outdated());
+  ASSERT_TRUE(bench.client().change(bench.client().newest(), before, "back"));
+  ASSERT_TRUE(bench.settled());
+  poll();
+  EXPECT_FALSE(tool.outdated());
+  tool.drop();
+  EXPECT_FALSE(tool.outdated());
 }
 
 }  // namespace
