@@ -12,6 +12,7 @@
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
 #include "app/commands/estimate_option.h"
+#include "app/commands/filling.h"
 #include "app/commands/finished_scans.h"
 #include "app/commands/levelling.h"
 #include "app/commands/original_scan.h"
@@ -19,6 +20,7 @@
 #include "app/commands/resume_option.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
+#include "app/commands/transforming.h"
 #include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/line_edits.h"
@@ -26,6 +28,7 @@
 #include "app/work/streams.h"
 #include "engine/base/stopwatch.h"
 #include "engine/field/piece.h"
+#include "engine/fill/fill.h"
 #include "engine/filter/catalogue.h"
 #include "engine/filter/noise_range.h"
 #include "engine/filter/pass.h"
@@ -147,6 +150,36 @@ engine::Status take(const RecipeLevel& step, Applied& at, engine::JobControl& jo
   return {};
 }
 
+engine::Status take(const RecipeFill& step, Applied& at, engine::JobControl& job) {
+  const auto options = fillOptionsOf(step.what, at.field.grid());
+  if (!options) return tl::unexpected(options.error());
+  auto filled = engine::fillHoles(at.field, *options, job);
+  if (!filled && filled.error().kind == engine::ErrorKind::kInput)
+    return engine::inputError(filled.error().what, shownInput(at.task.in), filled.error().remedy);
+  if (!filled) return tl::unexpected(filled.error());
+  at.field = std::move(filled->field);
+  at.steps.push_back({{"do", "fill"},
+                      {"method", step.what.method},
+                      {"holes", filled->holes},
+                      {"filled_holes", filled->filled_holes},
+                      {"filled", filled->filled}});
+  return {};
+}
+
+engine::Status take(const RecipeTransform& step, Applied& at, engine::JobControl& job) {
+  const bool shared = at.original == at.field;
+  auto field = transformed(at.field, step.what, job);
+  if (!field) return tl::unexpected(field.error());
+  // What changes are limited from goes along.
+  auto original = shared ? field : transformed(at.original, step.what, job);
+  if (!original) return tl::unexpected(original.error());
+  at.field = std::move(field->field);
+  at.original = std::move(original->field);
+  const engine::Grid& grid = at.field.grid();
+  at.steps.push_back({{"do", "transform"}, {"width", grid.width}, {"height", grid.height}});
+  return {};
+}
+
 // The steps that take long, of a scan as it is before the first one.
 engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recipe& recipe,
                                       const BatchTask& task, const engine::Version& field,
@@ -155,6 +188,10 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
   std::vector<engine::FilterSpec> specs;  // that the steps refer to
   specs.reserve(recipe.steps.size());
   std::vector<PlannedStep> steps;
+  engine::Grid grid = field.grid();  // before a step
+  const auto share = [&] {
+    return static_cast<double>(grid.samples()) / static_cast<double>(field.grid().samples());
+  };
   for (const RecipeStep& step : recipe.steps) {
     if (const auto* filter = std::get_if<RecipeFilter>(&step)) {
       engine::FilterSpec spec = filter->spec;
@@ -166,7 +203,7 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
       if (!ready && !options.estimate && ready.error().kind == engine::ErrorKind::kInput) return Foreseen{};
       if (!ready) return tl::unexpected(ready.error());
       specs.push_back(*ready);
-      steps.emplace_back(PlannedFilter{specs.back(), processor});
+      steps.emplace_back(PlannedFilter{specs.back(), processor, share()});
     } else if (const auto* edges = std::get_if<RecipeEdges>(&step)) {
       steps.emplace_back(
           PlannedOnPieces{[&field, edges](const engine::SampleRect& r, engine::JobControl& own) {
@@ -206,7 +243,21 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
             if (levelled && !limit) return engine::Result<engine::Version>(tl::unexpected(limit.error()));
             return levelled;
           }});
+    } else if (const auto* filling = std::get_if<RecipeFill>(&step)) {
+      const auto fill = fillOptionsOf(filling->what, grid);
+      if (!fill) return tl::unexpected(fill.error());
+      steps.emplace_back(plannedFill(field, *fill));
+    } else if (const auto* moving = std::get_if<RecipeTransform>(&step)) {
+      const auto made = transformedGrid(grid, moving->what);
+      if (!made && !options.estimate) return Foreseen{};
+      if (!made) return tl::unexpected(made.error());
+      // Twice, of what changes are limited from as well.
+      steps.emplace_back(plannedTransform(field, original, moving->what, grid, WithOriginal::kYes));
+      grid = *made;
     }
+    if (auto* pieces = steps.empty() ? nullptr : std::get_if<PlannedOnPieces>(&steps.back());
+        pieces != nullptr && !std::holds_alternative<RecipeTransform>(step))
+      pieces->share = share();
   }
   engine::ExportOptions writing = options.writing;
   writing.original = original;
@@ -217,7 +268,8 @@ engine::Result<Foreseen> foreseeSteps(const ApplyArguments& options, const Recip
       .out = task.out,
       .extension = isStream(task.out) ? withDot(task.to) : engine::extensionOf(task.out),
       .writing = writing,
-      .kept = options.resume.resume};
+      .kept = options.resume.resume,
+      .result = share()};
   return foresee(planned, shownOutput(task.out), options.estimate, job);
 }
 
@@ -246,8 +298,10 @@ engine::Result<Report> applyToOne(const ApplyArguments& options, const Recipe& r
   writing.recipe = imported->recipe;
   bool worked_on = isWorkedOn(*imported);
   for (std::size_t k = 0; k < recipe.steps.size(); ++k) {
-    // What a session begins with is levelled, too: by a fit that is known only where it is that of an unchanged scan.
-    if (!std::holds_alternative<RecipeLevel>(recipe.steps[k]))
+    // What a session begins with is levelled and transformed, too: by a fit that is known only where it is that of an
+    // unchanged scan.
+    if (!std::holds_alternative<RecipeLevel>(recipe.steps[k]) &&
+        !std::holds_alternative<RecipeTransform>(recipe.steps[k]))
       worked_on = true;
     else
       writing.recipe = worked_on ? "" : recipeTextWith(writing.recipe, recipe.steps[k]);

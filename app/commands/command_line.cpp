@@ -83,7 +83,8 @@ void addToParser(CLI::App& app, const Parameter& p) {
   option->type_name(std::string(infoOf(p.kind).shown));  // in its messages
   if (p.between != '\0') option->delimiter(p.between);
   if (p.values > 1) option->expected(p.values);
-  if (p.one_word) option->allow_extra_args(false);
+  // Of a fixed number in one word the words after it are others: "--crop 0,0,5,5 IN OUT".
+  if (p.one_word || (p.values > 1 && p.between != '\0')) option->allow_extra_args(false);
   for (const std::string& other : p.excludes) option->excludes(app.get_option(other));
   for (const auto& problem : problemsOf(p)) option->check(problem, "");
 }
@@ -134,7 +135,11 @@ bool isCalled(const Parameter& p, std::string_view word) {
 
 // What is wrong with the number of values of an option, in the words of its row; empty where no row has the name.
 std::string countProblem(const CommandTable& table, const std::string& what) {
-  const std::string option = what.substr(0, what.find(':'));
+  // "--crop: ..." or "Could not convert: --crop = 1,2,3,IN": of too few values the word behind them was taken for one.
+  const std::size_t named = what.find("--");
+  const std::string option = named == std::string::npos
+                                 ? what.substr(0, what.find(':'))
+                                 : what.substr(named, what.find_first_of(": ", named) - named);
   for (const Parameter& p : table.parameters) {
     if (!isCalled(p, option)) continue;
     if (p.values > 1) return option + " takes " + p.shown;
@@ -198,7 +203,8 @@ tl::expected<std::string, Misread> CommandLine::parse(const std::vector<std::str
   const bool misspelt = takes_command && !rest.empty() && !rest[0].starts_with("-");
   if (error.get_exit_code() != 0 || misspelt) {
     std::string what;
-    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr)
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr ||
+        dynamic_cast<const CLI::ConversionError*>(&error) != nullptr)
       what = countProblem(*table, error.what());
     return tl::unexpected(misreadOf(*app_, what.empty() ? error.what() : what));
   }

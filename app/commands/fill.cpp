@@ -8,9 +8,10 @@
 
 #include "app/commands/batch.h"
 #include "app/commands/command.h"
+#include "app/commands/estimate_option.h"
+#include "app/commands/filling.h"
 #include "app/commands/scan_files.h"
 #include "app/commands/scan_options.h"
-#include "app/commands/typed_values.h"
 #include "app/terminal.h"
 #include "app/work/memory_places.h"
 #include "app/work/streams.h"
@@ -23,37 +24,16 @@ namespace fettle::app {
 
 namespace {
 
-struct FillArguments {
+struct FillRun {
   BatchOptions files;
-  std::string method = "curvature";
-  std::string most_extent;
-  double most_area = 0.0;  // 0: any
-  bool at_border = false;
+  FillArguments what;
   std::string keep;
   std::string lines;
   std::string filled_out;
+  bool estimate = false;
   ScanOptions reading;
   engine::ExportOptions writing;
 };
-
-engine::Result<engine::FillOptions> fillOptionsOf(const FillArguments& arguments, const engine::Grid& grid) {
-  engine::FillOptions options;
-  options.method =
-      arguments.method == "membrane" ? engine::FillMethod::kMembrane : engine::FillMethod::kCurvature;
-  options.at_border = arguments.at_border;
-  if (arguments.most_area > 0.0) options.most_area_mm2 = arguments.most_area;
-  if (!arguments.most_extent.empty()) {
-    // A length across the field, not a height.
-    engine::Grid lateral = grid;
-    lateral.height_unit = grid.lateral_unit;
-    const auto extent = parseHeight(arguments.most_extent, lateral, "--max-extent");
-    if (!extent) return tl::unexpected(extent.error());
-    if (*extent <= 0.0)
-      return engine::inputError("no hole is that small", "--max-extent", "give a length above 0");
-    options.most_extent_mm = *extent * grid.lateral_unit.mm;
-  }
-  return options;
-}
 
 // The filled samples as marks alone.
 engine::Status saveFilled(const engine::Version& filled, const engine::Version& before,
@@ -74,15 +54,35 @@ void sayWhatStays(const engine::Filled& done, const std::string& scan, const eng
                      done.no_rim == 1 ? "s" : ""));
 }
 
-engine::Result<Report> fillOne(const FillArguments& options, const BatchTask& task, engine::JobControl& job) {
+engine::Result<Foreseen> foreseeFill(const FillRun& options, const engine::FillOptions& fill,
+                                     const BatchTask& task, const engine::Version& field,
+                                     const engine::Imported& imported, engine::JobControl& job) {
+  const engine::Version& original = imported.original ? *imported.original : imported.field;
+  engine::ExportOptions writing = options.writing;
+  writing.original = original;
+  const PlannedWork planned{
+      .field = field,
+      .original = original,
+      .steps = {plannedFill(field, fill)},
+      .out = task.out,
+      .extension = isStream(task.out) ? withDot(task.to) : engine::extensionOf(task.out),
+      .writing = writing};
+  return foresee(planned, shownOutput(task.out), options.estimate, job);
+}
+
+engine::Result<Report> fillOne(const FillRun& options, const BatchTask& task, engine::JobControl& job) {
   const auto imported = loadScan(task.in, options.reading, job);
   if (!imported) return tl::unexpected(imported.error());
-  const auto fill = fillOptionsOf(options, imported->field.grid());
+  const auto fill = fillOptionsOf(options.what, imported->field.grid());
   if (!fill) return tl::unexpected(fill.error());
   const auto kept = withMarks(imported->field, options.keep, job);
   if (!kept) return tl::unexpected(kept.error());
   const auto lined = withLines(*kept, options.lines, job);
   if (!lined) return tl::unexpected(lined.error());
+  engine::Result<Foreseen> foreseen;
+  if (memoryPlace(task.out) == nullptr) foreseen = foreseeFill(options, *fill, task, *lined, *imported, job);
+  if (!foreseen) return tl::unexpected(foreseen.error());
+  if (foreseen->only) return *std::move(foreseen->only);
   const engine::Stopwatch watch;
   const auto done = engine::fillHoles(*lined, *fill, job);
   if (!done && done.error().kind == engine::ErrorKind::kInput)
@@ -102,7 +102,7 @@ engine::Result<Report> fillOne(const FillArguments& options, const BatchTask& ta
       return tl::unexpected(status.error());
   if (auto status = saveField(done->field, task.out, job, writing, task.to); !status)
     return tl::unexpected(status.error());
-  return Report{{"method", options.method},
+  return Report{{"method", options.what.method},
                 {"holes", done->holes},
                 {"filled_holes", done->filled_holes},
                 {"filled", done->filled},
@@ -116,7 +116,7 @@ engine::Result<Report> fillOne(const FillArguments& options, const BatchTask& ta
                 {"hash", hashOf(done->field)}};
 }
 
-engine::Result<Report> fill(const FillArguments& options, engine::JobControl& job) {
+engine::Result<Report> fill(const FillRun& options, engine::JobControl& job) {
   if (!options.filled_out.empty() && options.files.many())
     return engine::inputError("one picture cannot hold the filled samples of several scans", "--filled-out",
                               "give one scan, or sessions with --to fettle");
@@ -140,7 +140,7 @@ engine::Result<Report> fill(const FillArguments& options, engine::JobControl& jo
 }  // namespace
 
 void addFill(Command root, Chosen& chosen) {
-  auto options = std::make_shared<FillArguments>();
+  auto options = std::make_shared<FillRun>();
   Command command = addCommand(
       root, chosen, "fill", "Fill holes of scans from their rim, never across an edge",
       [options](engine::JobControl& job) { return fill(*options, job); }, printBatch, Progress::kOwn,
@@ -148,7 +148,7 @@ void addFill(Command root, Chosen& chosen) {
   addBatchOptions(command, options->files);
   command.add({
       {.name = "--method",
-       .to = &options->method,
+       .to = &options->what.method,
        .text = "The surface through the rim that has the least",
        .words = {{"curvature",
                   "squared curvatures, a thin plate: goes on with the slopes of the rim, of two "
@@ -156,18 +156,18 @@ void addFill(Command root, Chosen& chosen) {
                  {"membrane",
                   "squared slopes, a soap film: stays between the lowest and the highest of the rim"}}},
       {.name = "--max-extent",
-       .to = &options->most_extent,
+       .to = &options->what.most_extent,
        .text = "Longest side of a hole that is filled: of the rectangle around it",
        .kind = ValueKind::kLength,
        .otherwise = "any"},
       {.name = "--max-area",
-       .to = &options->most_area,
+       .to = &options->what.most_area,
        .text = "Largest area of a hole that is filled: that of its samples",
        .range = Range{1e-15, 1e15},
        .unit = "mm^2",
        .otherwise = "any"},
       {.name = "--border",
-       .to = &options->at_border,
+       .to = &options->what.at_border,
        .text = "Also holes that reach the border of the field: there the surface ends freely"},
       {.name = "--keep",
        .to = &options->keep,
@@ -184,6 +184,7 @@ void addFill(Command root, Chosen& chosen) {
        .text = "Write which samples were filled, as a picture of marks",
        .kind = ValueKind::kNewMarks},
   });
+  addEstimateOption(command, options->estimate);
   addCompressOption(command, options->writing);
   addScanOptions(command, options->reading);
   command.notes(fmt::format(

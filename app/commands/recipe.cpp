@@ -46,7 +46,8 @@ void addRecipe(Command root, Chosen& chosen) {
                 .kind = ValueKind::kInput,
                 .required = true}});
   command.notes(
-      "Filters, suggested edges, inversions and the level with which a session begins are repeated. Strokes, "
+      "Filters, suggested edges, inversions, and the levels and transforms with which a session begins are "
+      "repeated. Strokes, "
       "and marks and lines that a hand drew, "
       "belong to their scan: a warning and a comment name each that is left out. fettle apply does the "
       "steps.");

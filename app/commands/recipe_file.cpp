@@ -32,6 +32,8 @@ constexpr const char* kEdgesWord = "mark_edges";
 constexpr const char* kLinesWord = "locate_edges";
 constexpr const char* kInvertWord = "invert";
 constexpr const char* kLevelWord = "level";
+constexpr const char* kFillWord = "fill";
+constexpr const char* kTransformWord = "transform";
 constexpr const char* kRecipeRemedy = "docs/formats.md describes every key";
 
 // Reads one table of a recipe; the first problem is kept, and what follows it is not read.
@@ -42,7 +44,8 @@ class StepReader {
   [[nodiscard]] const std::string& problem() const noexcept { return problem_; }
 
   [[nodiscard]] RecipeStep read() {
-    const std::string what = word("do", {kFilterWord, kEdgesWord, kLinesWord, kInvertWord, kLevelWord}, "");
+    const std::string what = word(
+        "do", {kFilterWord, kEdgesWord, kLinesWord, kInvertWord, kLevelWord, kFillWord, kTransformWord}, "");
     if (what == kFilterWord) {
       onlyKeys(what, {"do", "filter", "window", "sigma", "passes", "marks", "range_sigma", "max_change"});
       return filter();
@@ -54,6 +57,14 @@ class StepReader {
     if (what == kLevelWord) {
       onlyKeys(what, {"do", "rows", "scan_axis", "form", "robust", "region"});
       return level();
+    }
+    if (what == kFillWord) {
+      onlyKeys(what, {"do", "method", "max_extent", "max_area", "border"});
+      return fill();
+    }
+    if (what == kTransformWord) {
+      onlyKeys(what, {"do", "crop", "crop_samples", "mirror", "turn", "angle", "to_spacing", "method"});
+      return transform();
     }
     onlyKeys(what, {"do"});
     return RecipeInvert{};
@@ -111,26 +122,54 @@ class StepReader {
   }
 
   void length(const std::string& key, std::optional<RecipeLength>& value, double least) {
-    const toml::node* node = table_.get(key);
-    if (node == nullptr) return;
+    if (const toml::node* node = table_.get(key)) value = lengthOf(key, *node, least);
+  }
+
+  std::optional<RecipeLength> lengthOf(const std::string& key, const toml::node& node, double least) {
     RecipeLength read;
     bool is_length = false;
-    if (const std::optional<double> number = node->value<double>()) {
+    if (const std::optional<double> number = node.value<double>()) {
       read.value = *number;
       is_length = true;
-    } else if (node->is_string()) {
-      const std::string typed = node->value_or(std::string());
+    } else if (node.is_string()) {
+      const std::string typed = node.value_or(std::string());
       const auto [end, error] = std::from_chars(typed.data(), typed.data() + typed.size(), read.value);
       read.unit = engine::lengthUnitFromName(std::string(end, typed.data() + typed.size()));
       is_length = error == std::errc{} && read.unit.has_value();
     }
-    if (!is_length)
-      complain(*node,
-               key + R"( is no length: give one with its unit, "20um", or a number in the scan's own unit)");
-    else if (!std::isfinite(read.value) || read.value < least)
-      complain(*node, fmt::format("{} is below {:g} or not finite", key, least));
+    if (is_length && std::isfinite(read.value) && read.value >= least) return read;
+    complain(node, is_length ? fmt::format("{} is below {:g} or not finite", key, least)
+                             : key + R"( is no length: give one with its unit, "20um", or a number in the )"
+                                     "scan's own unit");
+    return std::nullopt;
+  }
+
+  // A length across the field as it is typed on a command line, which reads it in the unit of the scan.
+  std::string typedLength(const std::string& key, const toml::node& node) {
+    const std::optional<RecipeLength> read = lengthOf(key, node, 1e-15);
+    return read ? fmt::format("{}{}", read->value, read->unit ? read->unit->name : "") : std::string();
+  }
+
+  void yesOrNo(const std::string& key, bool& value) {
+    const toml::node* node = table_.get(key);
+    if (node == nullptr) return;
+    const std::optional<bool> read = node->value_exact<bool>();
+    if (!read)
+      complain(*node, key + " is neither true nor false");
     else
-      value = read;
+      value = *read;
+  }
+
+  // Four numbers, of a rectangle.
+  template <class Number>
+  void four(const std::string& key, std::vector<Number>& values, const char* numbers) {
+    const toml::node* node = table_.get(key);
+    if (node == nullptr) return;
+    const toml::array* list = node->as_array();
+    for (std::size_t k = 0; list != nullptr && k < list->size(); ++k)
+      if (const auto number = list->get(k)->value<Number>()) values.push_back(*number);
+    if (list == nullptr || list->size() != 4 || values.size() != 4)
+      complain(*node, fmt::format("{} is not a list of four {}", key, numbers));
   }
 
   RecipeFilter filter() {
@@ -179,13 +218,55 @@ class StepReader {
       if (form.word != "none" || !step.lines.rows.empty()) forms.push_back(form.word);
     step.form.form = word("form", forms, step.form.form);
     step.form.region = word("region", {"all", "marked", "unmarked"}, step.form.region);
-    if (const toml::node* node = table_.get("robust")) {
-      const std::optional<bool> robust = node->value_exact<bool>();
-      if (!robust)
-        complain(*node, "robust is neither true nor false");
+    yesOrNo("robust", step.form.robust);
+    return step;
+  }
+
+  RecipeFill fill() {
+    RecipeFill step;
+    step.what.method = word("method", {"curvature", "membrane"}, step.what.method);
+    if (const toml::node* node = table_.get("max_extent"))
+      step.what.most_extent = typedLength("max_extent", *node);
+    number("max_area", step.what.most_area, 1e-15, 1e15);
+    yesOrNo("border", step.what.at_border);
+    return step;
+  }
+
+  RecipeTransform transform() {
+    RecipeTransform step;
+    TransformArguments& what = step.what;
+    four("crop", what.crop, "numbers, two corners in mm");
+    four("crop_samples", what.crop_samples, "whole numbers, row, column, rows and columns");
+    if (!what.crop.empty() && !what.crop_samples.empty())
+      complain(*table_.get("crop_samples"), "crop says already what is kept");
+    if (table_.contains("mirror")) what.mirror = word("mirror", {"x", "y"}, "");
+    if (const toml::node* node = table_.get("turn")) {
+      const std::int64_t degrees = node->value_exact<std::int64_t>().value_or(0);
+      if (degrees != 90 && degrees != 180 && degrees != 270)
+        complain(*node, "turn is not one of 90, 180, 270");
       else
-        step.form.robust = *robust;
+        what.turn = std::to_string(degrees);
     }
+    number("angle", what.angle, -360.0, 360.0);
+    if (const toml::node* node = table_.get("to_spacing")) {
+      const toml::array* list = node->as_array();
+      if (list == nullptr)
+        what.to_spacing.push_back(typedLength("to_spacing", *node));
+      else if (list->size() != 2)
+        complain(*node, "to_spacing is not one length or a list of two");
+      else
+        for (std::size_t k = 0; k < 2; ++k)
+          what.to_spacing.push_back(typedLength("to_spacing", *list->get(k)));
+    }
+    if (table_.contains("method")) what.method = word("method", {"area", "linear", "cubic"}, "");
+    if (!problem_.empty()) return step;
+    if (what.crop.empty() && what.crop_samples.empty() && what.mirror.empty() && what.turn.empty() &&
+        what.angle == 0.0 && what.to_spacing.empty())
+      complain(table_,
+               "the step changes nothing: give crop, crop_samples, mirror, turn, angle or to_spacing");
+    else if (!what.method.empty() && !what.resamples())
+      complain(*table_.get("method"),
+               "method is that of new samples: add to_spacing, or an angle that is no multiple of 90");
     return step;
   }
 
@@ -228,6 +309,39 @@ std::string textOf(const RecipeLevel& step) {
     text += fmt::format("rows = \"{}\"\nscan_axis = \"{}\"\n", step.lines.rows, step.lines.scan_axis);
   return text + fmt::format("form = \"{}\"\nrobust = {}\nregion = \"{}\"\n", step.form.form, step.form.robust,
                             step.form.region);
+}
+
+// A length as typed: one without a unit is a number.
+std::string shownLength(const std::string& typed) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(typed.data(), typed.data() + typed.size(), value);
+  return error == std::errc{} && end == typed.data() + typed.size() ? typed : fmt::format("\"{}\"", typed);
+}
+
+std::string textOf(const RecipeFill& step) {
+  std::string text = fmt::format("do = \"{}\"\nmethod = \"{}\"\n", kFillWord, step.what.method);
+  if (!step.what.most_extent.empty())
+    text += fmt::format("max_extent = {}\n", shownLength(step.what.most_extent));
+  if (step.what.most_area > 0.0) text += fmt::format("max_area = {}  # mm^2\n", step.what.most_area);
+  if (step.what.at_border) text += "border = true\n";
+  return text;
+}
+
+std::string textOf(const RecipeTransform& step) {
+  const TransformArguments& what = step.what;
+  std::string text = fmt::format("do = \"{}\"\n", kTransformWord);
+  if (!what.crop.empty()) text += fmt::format("crop = [{}]  # mm\n", fmt::join(what.crop, ", "));
+  if (!what.crop_samples.empty())
+    text += fmt::format("crop_samples = [{}]\n", fmt::join(what.crop_samples, ", "));
+  if (!what.mirror.empty()) text += fmt::format("mirror = \"{}\"\n", what.mirror);
+  if (!what.turn.empty()) text += fmt::format("turn = {}\n", what.turn);
+  if (what.angle != 0.0) text += fmt::format("angle = {}\n", what.angle);
+  if (what.to_spacing.size() == 1) text += fmt::format("to_spacing = {}\n", shownLength(what.to_spacing[0]));
+  if (what.to_spacing.size() == 2)
+    text += fmt::format("to_spacing = [{}, {}]\n", shownLength(what.to_spacing[0]),
+                        shownLength(what.to_spacing[1]));
+  if (!what.method.empty()) text += fmt::format("method = \"{}\"\n", what.method);
+  return text;
 }
 
 std::string textOf(const RecipeInvert&) {

@@ -6,8 +6,10 @@
 #include <variant>
 #include <vector>
 
+#include "app/commands/filling.h"
 #include "app/commands/form_option.h"
 #include "app/commands/levelling.h"
+#include "app/commands/transforming.h"
 #include "engine/base/error.h"
 #include "engine/base/job.h"
 #include "engine/field/grid.h"
@@ -56,7 +58,18 @@ struct RecipeLevel {
   FormArguments form;
 };
 
-using RecipeStep = std::variant<RecipeFilter, RecipeEdges, RecipeInvert, RecipeLevel>;
+/// Holes are filled, as `fettle fill` does.
+struct RecipeFill {
+  FillArguments what;
+};
+
+/// Crop, mirror, turn and resample, as `fettle transform` does.
+struct RecipeTransform {
+  TransformArguments what;
+};
+
+using RecipeStep =
+    std::variant<RecipeFilter, RecipeEdges, RecipeInvert, RecipeLevel, RecipeFill, RecipeTransform>;
 
 struct Recipe {
   std::vector<RecipeStep> steps;

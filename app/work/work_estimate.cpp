@@ -54,31 +54,47 @@ engine::Version pieceAt(const engine::Version& field, const engine::SampleRect& 
 struct Pieces {
   std::array<engine::SampleRect, 3> at;
   std::array<engine::Version, 3> made;
+  std::array<std::optional<engine::Version>, 3> originals;  // where the work makes others of them
   std::array<double, 3> seconds = {};
   std::array<double, 3> memory =
       {};  // [bytes] that they took beside what was there and the pieces themselves
+  std::array<double, 3> amounts = {};  // of the work in them, and
+  double all = 0.0;                    // in the field
 
-  [[nodiscard]] double samples(int i) const { return static_cast<double>(at[i].columns) * at[i].rows; }
-  // Of so many samples: what two pieces have in common is there once.
-  [[nodiscard]] double ofAll(double all, int few, int many, const std::array<double, 3>& cost) const {
-    if (samples(many) <= samples(few)) return cost[many] / samples(many) * all;
-    const double each = std::max(0.0, (cost[many] - cost[few]) / (samples(many) - samples(few)));
-    return cost[many] + each * (all - samples(many));
+  [[nodiscard]] std::array<double, 3> samples() const {
+    std::array<double, 3> counts = {};
+    for (int i = 0; i < 3; ++i) counts[i] = static_cast<double>(at[i].columns) * at[i].rows;
+    return counts;
   }
-  // Of so many samples: as much more for each doubling of the side as the last one took, at most in proportion to the
-  // samples. What is taken row by row grows with the side alone.
-  [[nodiscard]] double memoryOf(double all) const {
-    if (memory[1] <= 0.0 || memory[2] <= memory[1] || samples(2) <= samples(1)) return memory[2];
-    const double power = std::min(1.0, std::log(memory[2] / memory[1]) / std::log(samples(2) / samples(1)));
-    return memory[2] * std::pow(all / samples(2), power);
+  [[nodiscard]] std::array<double, 3> madeSamples() const {
+    std::array<double, 3> counts = {};
+    for (int i = 0; i < 3; ++i) counts[i] = static_cast<double>(made[i].grid().samples());
+    return counts;
   }
 };
 
+// A cost of so many samples, by the costs of pieces of `samples`: what two pieces have in common is there once.
+double ofAll(double all, int few, int many, const std::array<double, 3>& samples,
+             const std::array<double, 3>& cost) {
+  if (samples[many] <= samples[few]) return cost[many] / samples[many] * all;
+  const double each = std::max(0.0, (cost[many] - cost[few]) / (samples[many] - samples[few]));
+  return cost[many] + each * (all - samples[many]);
+}
+
+// Memory of so many samples: as much more for each doubling of the side as the last one took, at most in proportion to the
+// samples. What is taken row by row grows with the side alone.
+double memoryOfAll(double all, const std::array<double, 3>& samples, const std::array<double, 3>& memory) {
+  if (memory[1] <= 0.0 || memory[2] <= memory[1] || samples[2] <= samples[1]) return memory[2];
+  const double power = std::min(1.0, std::log(memory[2] / memory[1]) / std::log(samples[2] / samples[1]));
+  return memory[2] * std::pow(std::max(1.0, all / samples[2]), power);
+}
+
 engine::Result<WritingCost> costOf(const PlannedWork& work, const engine::Version& piece,
-                                   const engine::SampleRect& at, const ScratchFolder& folder,
-                                   engine::JobControl& job) {
+                                   const engine::SampleRect& at,
+                                   const std::optional<engine::Version>& original,
+                                   const ScratchFolder& folder, engine::JobControl& job) {
   engine::ExportOptions writing = work.writing;
-  if (writing.original) writing.original = pieceAt(work.original, at);
+  if (writing.original) writing.original = original ? *original : pieceAt(work.original, at);
   const std::string path = fmt::format("{}/{}{}", folder.path(), at.columns, work.extension);
   const std::uint64_t before = engine::residentMemory().now;
   const bool peak_known = engine::resetPeak();
@@ -100,22 +116,52 @@ engine::Result<WritingCost> costOf(const PlannedWork& work, const engine::Versio
   return cost;
 }
 
-engine::Result<WritingCost> writing(const PlannedWork& work, const Pieces& pieces, engine::JobControl& job) {
+// The mean disk of squares as large as `one`, in the middle of each of 3 x 3 parts of the field.
+engine::Result<double> meanElsewhere(const PlannedWork& work, const engine::SampleRect& one,
+                                     const ScratchFolder& folder, engine::JobControl& job) {
+  constexpr int kSide = 3;
+  const engine::Grid& grid = work.field.grid();
+  double bytes = 0.0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const auto middle = [](int part, std::int32_t side) {
+      return static_cast<std::int32_t>((2 * part + 1) * std::int64_t{side} / (2 * kSide));
+    };
+    const engine::SampleRect at =
+        squareAt(grid, middle(i % kSide, grid.width) - one.columns / 2,
+                 middle(i / kSide, grid.height) - one.rows / 2, std::max(one.columns, one.rows));
+    const auto cost = costOf(work, pieceAt(work.field, at), at, std::nullopt, folder, job);
+    if (job.cancelled()) return engine::cancelled();
+    if (!cost) return tl::unexpected(cost.error());
+    bytes += cost->bytes;
+  }
+  return bytes / (kSide * kSide);
+}
+
+engine::Result<WritingCost> writing(const PlannedWork& work, const Pieces& pieces, bool always,
+                                    engine::JobControl& job) {
   if (work.out.empty()) return WritingCost{};
   const auto folder =
       ScratchFolder::create(isStream(work.out) ? std::string() : folderFor(work.out).string());
   if (!folder) return tl::unexpected(folder.error());
-  std::array<double, 3> bytes = {}, seconds = {};
-  double memory = 0.0;
+  std::array<double, 3> bytes = {}, seconds = {}, memory = {};
   for (int i = 0; i < 3; ++i) {
-    const auto cost = costOf(work, pieces.made[i], pieces.at[i], *folder, job);
+    const auto cost = costOf(work, pieces.made[i], pieces.at[i], pieces.originals[i], *folder, job);
     if (!cost) return tl::unexpected(cost.error());
     bytes[i] = cost->bytes;
     seconds[i] = cost->seconds;
-    memory = cost->memory;
+    memory[i] = cost->memory;
   }
-  const auto all = static_cast<double>(work.field.grid().samples());
-  return WritingCost{pieces.ofAll(all, 0, 1, bytes), pieces.ofAll(all, 0, 2, seconds), memory};
+  const std::array<double, 3> samples = pieces.madeSamples();
+  const double all = work.result * static_cast<double>(work.field.grid().samples());
+  WritingCost whole{ofAll(all, 0, 1, samples, bytes), ofAll(all, 0, 2, samples, seconds),
+                    memoryOfAll(all, samples, memory)};
+  if (work.steps.empty()) {
+    const int size = always ? 2 : 1;
+    const auto elsewhere = meanElsewhere(work, pieces.at[size], *folder, job);
+    if (!elsewhere) return tl::unexpected(elsewhere.error());
+    whole.bytes = std::max(0.0, whole.bytes + (*elsewhere - bytes[size]) / samples[size] * all);
+  }
+  return whole;
 }
 
 // Squares of a filtered sample. As large as what was filtered, as filtered heights take less where they are compressed;
@@ -142,7 +188,7 @@ constexpr double kMostShare = 1.0 / 32.0;
 engine::Result<std::optional<Pieces>> workPieces(const PlannedWork& work, const PlannedOnPieces& step,
                                                  bool always, engine::JobControl& job) {
   const engine::Grid& grid = work.field.grid();
-  const double all = std::min(step.most_samples, static_cast<double>(grid.samples()));
+  const double all = std::min(step.most_samples, step.share * static_cast<double>(grid.samples()));
   // Of work that is long for few samples the largest piece is what the share allows.
   const double affordable = std::sqrt(kMostShare * all / 1.3125);
   if (!always && affordable < 64.0) return std::nullopt;
@@ -151,7 +197,18 @@ engine::Result<std::optional<Pieces>> workPieces(const PlannedWork& work, const 
   engine::JobControl own = engine::JobControl::partOf(job);  // whose stages are not shown
   for (int i = 0; i < 3; ++i) {
     const std::int32_t side = largest >> (2 - i);
-    pieces.at[i] = squareAt(grid, (grid.width - side) / 2, (grid.height - side) / 2, side);
+    pieces.at[i] = step.amount ? squareAt(grid, step.column - side / 2, step.row - side / 2, side)
+                               : squareAt(grid, (grid.width - side) / 2, (grid.height - side) / 2, side);
+  }
+  pieces.amounts = pieces.samples();
+  pieces.all = all;
+  if (step.amount) {
+    for (int i = 0; i < 3; ++i) pieces.amounts[i] = step.amount(pieces.at[i]);
+    pieces.all = step.amount({0, 0, grid.width, grid.height});
+    if (pieces.amounts[2] <= 0.0 || (!always && pieces.amounts[2] > kMostShare * pieces.all))
+      return std::nullopt;
+  }
+  for (int i = 0; i < 3; ++i) {
     engine::releaseFreeMemory();
     const std::uint64_t before = engine::residentMemory().now +
                                  static_cast<std::uint64_t>(step.fields) *
@@ -164,6 +221,12 @@ engine::Result<std::optional<Pieces>> workPieces(const PlannedWork& work, const 
     if (job.cancelled()) return engine::cancelled();
     if (!made) return tl::unexpected(made.error());
     pieces.made[i] = *std::move(made);
+    if (step.of_original) {
+      auto original = step.of_original(pieces.at[i], own);
+      if (job.cancelled()) return engine::cancelled();
+      if (!original) return tl::unexpected(original.error());
+      pieces.originals[i] = *std::move(original);
+    }
     if (const std::uint64_t peak = engine::residentMemory().peak; peak_known && peak > before)
       pieces.memory[i] = static_cast<double>(peak - before);
   }
@@ -207,9 +270,9 @@ engine::Result<std::optional<WorkEstimate>> estimateWork(const PlannedWork& work
       if (!*pieces) continue;
       long_enough = true;
       result = **pieces;
-      const double all = std::min(on_pieces->most_samples, samples);
-      estimate.work_seconds += result.ofAll(all, 1, 2, result.seconds);
-      beside = std::max(beside, result.memoryOf(all));
+      estimate.work_seconds += ofAll(result.all, 1, 2, result.amounts, result.seconds);
+      const double all = std::min(on_pieces->most_samples, on_pieces->share * samples);
+      beside = std::max(beside, memoryOfAll(all, result.samples(), result.memory));
       continue;
     }
     const auto& filter = std::get<PlannedFilter>(step);
@@ -229,15 +292,15 @@ engine::Result<std::optional<WorkEstimate>> estimateWork(const PlannedWork& work
     // The state before a pass and that after it, where the former is not the input.
     states += filter.spec.passes;
     if (!*sample) {
-      tiles_taken = field_bytes;
+      tiles_taken = std::max(tiles_taken, filter.share * field_bytes);
       continue;
     }
     long_enough = true;
-    estimate.work_seconds += (*sample)->seconds;
-    tiles_taken = std::max(tiles_taken, (*sample)->changed_share * field_bytes);
+    estimate.work_seconds += filter.share * (*sample)->seconds;
+    tiles_taken = std::max(tiles_taken, filter.share * (*sample)->changed_share * field_bytes);
     // Twice: pieces of the heap that were freed do not all fit what is asked for next (tgv, whose squares differ in size).
     beside = std::max(beside, 2.0 * static_cast<double>((*sample)->scratch_bytes));
-    kept += (*sample)->changed_share * 4.0 * samples * (filter.spec.passes > 1 ? 2.0 : 1.0);
+    kept += filter.share * (*sample)->changed_share * 4.0 * samples * (filter.spec.passes > 1 ? 2.0 : 1.0);
     result = piecesOf(**sample);
   }
   if (work.steps.empty()) {
@@ -251,7 +314,7 @@ engine::Result<std::optional<WorkEstimate>> estimateWork(const PlannedWork& work
     if (long_enough) result = **pieces;
   }
   if (!long_enough) return std::nullopt;
-  const auto cost = writing(work, result, job);
+  const auto cost = writing(work, result, always, job);
   if (!cost) return tl::unexpected(cost.error());
   estimate.write_seconds = cost->seconds;
   estimate.disk_bytes = static_cast<std::uint64_t>(cost->bytes);

@@ -32,15 +32,25 @@ struct WorkEstimate {
 struct PlannedFilter {
   const engine::FilterSpec& spec;  ///< with its range
   FilterCompute& compute;
+  double share =
+      1.0;  ///< samples that it has before it, for each of the field: others where a step before it crops
 };
 
 /// Work whose time is in proportion to the samples: the same work on a rectangle of the field, and what it makes of that.
 struct PlannedOnPieces {
-  std::function<engine::Result<engine::Version>(const engine::SampleRect& rect, engine::JobControl& job)>
-      work;
+  using Work =
+      std::function<engine::Result<engine::Version>(const engine::SampleRect& rect, engine::JobControl& job)>;
+  Work work;
   int fields = 1;  ///< of which it makes pieces, which the work on the whole does not
   /// Samples of a field from which on the work takes no longer: of work on a choice of places.
   double most_samples = 1e18;
+  double share = 1.0;  ///< as of PlannedFilter
+  /// What there is to do in a rectangle of the field, where that is not its samples; and around which sample the squares lie
+  /// then. As of most_samples a sample is not taken where it would be much of the work.
+  std::function<double(const engine::SampleRect& rect)> amount = {};
+  std::int32_t column = 0, row = 0;
+  /// What the work makes of the original, for work whose result is of another size; empty: it stays as it is.
+  Work of_original = {};
 };
 
 using PlannedStep = std::variant<PlannedFilter, PlannedOnPieces>;
@@ -58,11 +68,13 @@ struct PlannedWork {
   std::string extension;  ///< of its format, with its dot
   engine::ExportOptions writing;
   bool kept = false;      ///< with --resume
+  double result = 1.0;    ///< samples of the result for each of the field
   WritePiece write = {};  ///< empty: engine::exportField
 };
 
 /// Estimates from a sample: blocks of the very filters (engine::sampleWork), other work on squares of three sizes from the
-/// middle of the field, and pieces of the result written in the output's format and folder. Takes about `most_seconds`
+/// middle of the field, and pieces of the result written in the output's format and folder; where the writing is all of
+/// the work, squares all over the field as well, since a mesh with an error takes the more the rougher the surface is. Takes about `most_seconds`
 /// for each step, and only where that is a small share of the work; otherwise nothing, unless `always`: then the whole
 /// work may be done. Several filters are sampled on the field as it is, not as earlier steps leave it. Errors as the
 /// steps and exportField.

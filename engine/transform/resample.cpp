@@ -288,6 +288,13 @@ EdgeLine resampledLine(const EdgeLine& line, const Places& places) {
 
 }  // namespace
 
+Grid resampledGrid(const Grid& grid, const ResampleOptions& options) {
+  Grid made = grid;
+  made.height_per_count = 0.0;
+  (void)placesOf(grid, options, made);
+  return made;
+}
+
 Result<Version> resampled(const Version& field, const ResampleOptions& options, JobControl& job) {
   Grid grid = field.grid();
   grid.height_per_count = 0.0;

@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/job.h"
+#include "engine/field/grid.h"
 #include "engine/field/version.h"
 
 namespace fettle::engine {
@@ -41,5 +42,9 @@ struct ResampleOptions {
 /// any; a long job on all workers of the arena; the same bits for any number of threads.
 [[nodiscard]] Result<Version> resampled(const Version& field, const ResampleOptions& options,
                                         JobControl& job);
+
+/// Size, spacing and place of what resampled() makes of a field with this grid. No side is more than twice the longest that a
+/// field may have.
+[[nodiscard]] Grid resampledGrid(const Grid& grid, const ResampleOptions& options);
 
 }  // namespace fettle::engine

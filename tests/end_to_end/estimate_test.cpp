@@ -107,6 +107,55 @@ TEST(Estimate, OfOtherCommandsForeseesTheDiskAndWritesNothing) {
   EXPECT_GT(suggestion.at("work_seconds").get<double>(), 0.1);
 }
 
+// A crop, a turn, other spacings: the result has other samples than the scan.
+TEST(Estimate, OfTransformsAndFillsForeseesTheDiskOfTheResult) {
+  const TempFolder folder;
+  const std::string in = folder.file("s.tif"), recipe = folder.file("r.toml");
+  ASSERT_EQ(fettle({"synth", in, "--size", "2000x1500"}).status, 0);
+  std::ofstream(recipe) << "recipe = 1\n[[step]]\ndo = \"transform\"\ncrop = [0, 0, 90, 40]\n[[step]]\ndo = "
+                           "\"fill\"\n[[step]]\ndo = \"filter\"\nfilter = \"planes\"\n";
+  const std::vector<std::vector<std::string>> commands{
+      {"transform", in, folder.file("o.tif"), "--crop-samples", "100,200,900,1300"},
+      {"transform", in, folder.file("o.asc"), "--turn", "90"},
+      {"transform", in, folder.file("o.tif"), "--angle", "20"},
+      {"transform", in, folder.file("o.ply"), "--to-spacing", "0.06,0.09"},
+      {"transform", in, folder.file("o.fettle"), "--angle", "-7"},
+      {"fill", in, folder.file("o.tif")},
+      {"apply", recipe, in, folder.file("o.tif")}};
+  for (std::vector<std::string> command : commands) {
+    const std::string out = command[0] == "apply" ? command[3] : command[2];
+    command.emplace_back("--estimate");
+    const auto estimate = fettleJson(command);
+    EXPECT_EQ(entriesOf(folder), 2) << command[0];
+    command.pop_back();
+    ASSERT_EQ(fettle(command).status, 0) << command[0];
+    EXPECT_GT(estimate.at("work_seconds").get<double>(), 0.0) << command[0];
+    // A session packs: of a turned piece other corners are empty than of the turned scan.
+    EXPECT_NEAR(estimate.at("disk_bytes").get<double>() / static_cast<double>(fs::file_size(out)), 1.0,
+                out.ends_with(".fettle") ? 0.25 : 0.1)
+        << command[0] << " " << out;
+    fs::remove(out);
+  }
+  const auto holed = fettleJson({"fill", in, folder.file("o.tif"), "--method", "membrane", "--estimate"});
+  EXPECT_TRUE(holed.contains("seconds")) << "the simulated scan has holes";
+}
+
+// Nearly all triangles are at edges and holes, of which the middle of the simulated part has few.
+TEST(Estimate, OfAMeshWithAnErrorLooksAllOverTheScan) {
+  const TempFolder folder;
+  const std::string in = folder.file("s.tif"), out = folder.file("o.stl");
+  ASSERT_EQ(fettle({"synth", in, "--size", "2000x2000", "--seed", "2"}).status, 0);
+  for (const std::string error : {"20um", "100um"}) {
+    const auto estimate = fettleJson({"convert", in, out, "--max-error", error, "--estimate"});
+    ASSERT_EQ(fettle({"convert", in, out, "--max-error", error, "--force"}).status, 0);
+    const double ratio = estimate.at("disk_bytes").get<double>() / static_cast<double>(fs::file_size(out));
+    // With a large error all depends on how many of the squares an edge crosses: 0.8 to 2.0 were seen.
+    EXPECT_GT(ratio, error == "20um" ? 0.9 : 0.7) << error;
+    EXPECT_LT(ratio, error == "20um" ? 1.1 : 2.2) << error;
+    fs::remove(out);
+  }
+}
+
 TEST(Estimate, ShortWorkBeginsWithoutAWord) {
   const TempFolder folder;
   const std::string in = folder.file("s.tif");

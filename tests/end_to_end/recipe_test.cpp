@@ -106,6 +106,72 @@ TEST(Recipes, LinesOfAScannerAreLevelledAsByTheCommand) {
   }
 }
 
+TEST(Recipes, FillAndTransformHaveTheBitsOfTheCommandsOneByOne) {
+  const TempFolder folder;
+  const auto file = [&](const char* name) { return folder.file(name); };
+  ASSERT_EQ(fettle({"synth", file("s.tif"), "--size", "200x160", "--seed", "3"}).status, 0);
+  std::ofstream(file("r.toml"))
+      << "recipe = 1\n"
+         "[[step]]\ndo = \"transform\"\ncrop_samples = [10, 5, 140, 180]\nmirror = \"x\"\n"
+         "turn = 90\nto_spacing = [1.5, \"2mm\"]\nmethod = \"area\"\n"
+         "[[step]]\ndo = \"fill\"\nmethod = \"membrane\"\nmax_extent = \"40mm\"\nborder = true\n"
+         "[[step]]\ndo = \"filter\"\nfilter = \"median\"\nmax_change = \"15um\"\n";
+  const auto report = fettleJson({"apply", file("r.toml"), file("s.tif"), file("o.tif")});
+  const auto moved =
+      fettleJson({"transform", file("s.tif"), file("t.tif"), "--crop-samples", "10,5,140,180", "--mirror",
+                  "x", "--turn", "90", "--to-spacing", "1.5,2mm", "--method", "area"});
+  const auto filled = fettleJson(
+      {"fill", file("t.tif"), file("f.tif"), "--method", "membrane", "--max-extent", "40mm", "--border"});
+  const auto last = fettleJson({"filter", file("f.tif"), file("m.tif"), "--filter", "median", "--max-change",
+                                "15um", "--original", file("t.tif")});
+  for (const char* key : {"width", "height"}) EXPECT_EQ(report["steps"][0][key], moved[key]) << key;
+  for (const char* key : {"method", "holes", "filled_holes", "filled"})
+    EXPECT_EQ(report["steps"][1][key], filled[key]) << key;
+  EXPECT_GT(filled["filled"], 0);
+  EXPECT_EQ(report["hash"], last["hash"]);
+}
+
+TEST(Recipes, ATransformIsRepeatedFromASessionThatBeginsWithIt) {
+  const TempFolder folder;
+  const auto file = [&](const char* name) { return folder.file(name); };
+  ASSERT_EQ(fettle({"synth", file("s.tif"), "--size", "200x160", "--seed", "3"}).status, 0);
+  const auto moved = fettleJson({"transform", file("s.tif"), file("t.fettle"), "--crop", "5,5,100,90.5",
+                                 "--turn", "180", "--to-spacing", "1.25mm"});
+  const auto level = fettleJson({"level", file("t.fettle"), file("l.fettle"), "--form", "poly2"});
+  const Outcome recipe = fettle({"recipe", file("l.fettle")});
+  ASSERT_EQ(recipe.status, 0) << recipe.err;
+  EXPECT_NE(recipe.out.find("crop = [5, 5, 100, 90.5]  # mm\nturn = 180\nto_spacing = \"1.25mm\"\n"),
+            std::string::npos)
+      << recipe.out;
+  std::ofstream(file("r.toml")) << recipe.out;
+  const auto again = fettleJson({"apply", file("r.toml"), file("s.tif"), file("o.fettle")});
+  EXPECT_EQ(again["hash"], level["hash"]);
+  // A session of a session's recipe has the same recipe.
+  EXPECT_EQ(fettle({"recipe", file("o.fettle")}).out, recipe.out);
+  // Of work on a scan the steps before a transform would be missing.
+  ASSERT_EQ(fettle({"filter", file("s.tif"), file("w.fettle"), "--filter", "median"}).status, 0);
+  ASSERT_EQ(fettle({"transform", file("w.fettle"), file("x.fettle"), "--mirror", "y"}).status, 0);
+  EXPECT_NE(fettle({"recipe", file("x.fettle")}).status, 0);
+}
+
+TEST(Recipes, WrongFillsAndTransformsAreRefusedWithTheirLine) {
+  const TempFolder folder;
+  const auto refused = [&](const std::string& keys, const std::string& part) {
+    expectRefusedStep(folder, keys, part);
+  };
+  refused("do = \"fill\"\nmethod = \"spline\"\n", "line 4: method is not one of curvature, membrane");
+  refused("do = \"fill\"\nmax_extent = \"wide\"\n", "line 4: max_extent is no length");
+  refused("do = \"fill\"\nborder = 1\n", "line 4: border is neither true nor false");
+  refused("do = \"transform\"\n", "line 2: the step changes nothing");
+  refused("do = \"transform\"\nturn = 45\n", "line 4: turn is not one of 90, 180, 270");
+  refused("do = \"transform\"\ncrop = [1, 2, 3]\n", "line 4: crop is not a list of four numbers");
+  refused("do = \"transform\"\ncrop_samples = [1, 2, 3.5, 4]\n",
+          "line 4: crop_samples is not a list of four");
+  refused("do = \"transform\"\nto_spacing = [1, 2, 3]\n", "line 4: to_spacing is not one length");
+  refused("do = \"transform\"\nto_spacing = -1\n", "line 4: to_spacing is below");
+  refused("do = \"transform\"\nturn = 90\nmethod = \"cubic\"\n", "line 5: method is that of new samples");
+}
+
 TEST(Recipes, ALevelIsThatOfTheCommandAndChangesAreLimitedFromThere) {
   const TempFolder folder;
   const std::string scan = folder.file("s.tif"), recipe = folder.file("clean.toml");

@@ -14,6 +14,8 @@
 namespace fettle::tests {
 namespace {
 
+namespace fs = std::filesystem;
+
 // 40 x 30 samples, 0.5 mm apart, with a hole; the height says where a sample was. ESRI ASCII.
 std::string ramp(const TempFolder& folder) {
   std::ofstream out(folder.file("s.asc"));
@@ -76,6 +78,29 @@ TEST(TransformCommand, TurnsMirrorsAndResamples) {
   EXPECT_EQ(heightAt(out, "58,1"), 0.5);
   EXPECT_EQ(transformTo(scan, out, {"--to-spacing", "0.25,0.5", "--method", "linear"})["height"], 30);
   EXPECT_GT(transformTo(scan, out, {"--angle", "30"})["no_data"].get<int>(), 100);
+}
+
+// The words after a value are the scans, wherever they stand.
+TEST(TransformCommand, OptionsMayComeBeforeTheScans) {
+  const TempFolder folder;
+  const std::string scan = folder.file("s.tif"), a = folder.file("a.tif"), b = folder.file("b.tif");
+  ASSERT_EQ(fettle({"synth", scan, "--size", "90x70"}).status, 0);
+  for (const std::vector<std::string>& options :
+       std::vector<std::vector<std::string>>{{"--crop", "10,10,60,50"},
+                                             {"--crop-samples", "3,4,40,50"},
+                                             {"--crop=10,10,60,50", "--to-spacing", "2.5mm"},
+                                             {"--to-spacing", "2,3"},
+                                             {"--to-spacing=1.7"}}) {
+    std::vector<std::string> before{"transform"}, after{"transform", scan, a};
+    before.insert(before.end(), options.begin(), options.end());
+    before.insert(before.end(), {scan, b});
+    after.insert(after.end(), options.begin(), options.end());
+    EXPECT_EQ(fettleJson(before)["hash"], fettleJson(after)["hash"]) << options[0];
+    fs::remove(a);
+    fs::remove(b);
+  }
+  expectRefused(fettle({"transform", "--crop", "1,2,3", scan, a}), "--crop takes X,Y,X,Y");
+  expectRefused(fettle({"transform", "--crop", "1,2,3,4,5", scan, a}), "--crop takes X,Y,X,Y");
 }
 
 TEST(TransformCommand, MarksLinesAndFilledSamplesOfASessionGoAlong) {
