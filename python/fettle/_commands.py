@@ -75,8 +75,45 @@ def in_python(text):
     return re.sub(r"(?<![\w-])--([a-z][a-z-]*)", lambda m: f"`{identifier({'name': m.group(1)})}`", text)
 
 
+#: Parameters whose value is a list of points: as a word X,Y:X,Y.
+POLYLINES = {"--line"}
+
+
+def is_places(row):
+    """Whether a row takes points, each of which is one word: X,Y."""
+    return row["kind"] == "text" and row["values"] == "any" and not row["between"] and not row["positional"]
+
+
+def _places(row, value):
+    """Points as typed, one word or several: (x, y) and "x,y" are one point, a list of these are several; of a polyline
+    a list of points is one, and a list of such lists are several."""
+
+    def is_point(each):
+        return not isinstance(each, str) and all(isinstance(part, (int, float, np.number)) for part in each)
+
+    def shown(part):
+        return str(int(part)) if part == int(part) else repr(float(part))
+
+    def point(each):
+        return each if isinstance(each, str) else ",".join(map(shown, each))
+
+    if isinstance(value, str):
+        return [value]
+    value = list(value)
+    if row["name"] not in POLYLINES:
+        return [point(value)] if is_point(value) else [point(each) for each in value]
+    if not all(isinstance(each, str) for each in value) and all(is_point(each) for each in value):
+        value = [value]
+    return [each if isinstance(each, str) else ":".join(point(part) for part in each) for each in value]
+
+
 def type_of(row):
     """The type of a row's values, as it stands in a stub."""
+    if is_places(row):
+        one = "Sequence[Sequence[float]]" if row["name"] in POLYLINES else "Sequence[float]"
+        return f"str | {one} | Sequence[str | {one}]"
+    if row["kind"] == "text" and row["values"] == "any":
+        return "str | float | Sequence[str | float]"
     if row["kind"] == "word":
         one = "Literal[" + ", ".join(repr(word["word"]) for word in row["words"]) + "]"
     else:
@@ -107,6 +144,7 @@ class _Call:
 
     def __init__(self, command):
         self.arguments = [command]
+        self.options = []  # after the scans, of which an option with several values would take the first for one of them
         self.given = {}
         self.made = []
         self.source = ""
@@ -156,11 +194,13 @@ class _Call:
 
     def run(self, help_text, progress, stacklevel):
         report, written, told = _fettle.call(
-            [os.fsencode(each) for each in self.arguments], self.given, self.made, self.source, help_text, progress
+            [os.fsencode(each) for each in self.arguments + self.options], self.given, self.made, self.source, help_text, progress
         )
         for text in told:
             warnings.warn(text, FettleWarning, stacklevel=stacklevel + 1)
-        return json.loads(report), written
+        # Where a command says which file it wrote, the name of a place in memory would say nothing.
+        figures = {key: value for key, value in json.loads(report).items() if value not in self.made}
+        return figures, written
 
 
 def path_word(value):
@@ -212,6 +252,7 @@ class Command:
 
     def __init__(self, name, command, *, first=(), fixed=(), hidden=(), hides=(), groups=None, also=(), summary=""):
         self.name = name
+        self.function = name  # under which it is documented
         self.table = TABLES[command]
         self.fixed = list(fixed)
         self.summary = summary or self.table["summary"]
@@ -306,27 +347,29 @@ class Command:
                 continue
             if kind == "flag":
                 if _flag(self.name, name, value):
-                    call.arguments.append(option)
+                    call.options.append(option)
             elif (kind in _NEW or kind == "output") and value is True:
                 made[name] = call.result(name)
-                call.arguments += [option, made[name]]
+                call.options += [option, made[name]]
             elif kind == "input":
-                call.arguments += [option, call.scan(value, name)]
+                call.options += [option, call.scan(value, name)]
             elif kind == "marks":
-                call.arguments += [option, call.marks(value, name, like)]
+                call.options += [option, call.marks(value, name, like)]
             elif kind == "lines":
-                call.arguments += [option, call.lines(value, name)]
+                call.options += [option, call.lines(value, name)]
+            elif is_places(row):
+                call.options += [f"{option}={word}" for word in _places(row, value)]
             elif row["values"] == 1:
-                call.arguments.append(f"{option}={_word(row, value)}")
+                call.options.append(f"{option}={_word(row, value)}")
             else:
                 many = list(value) if isinstance(value, (list, tuple)) or hasattr(value, "__array__") else [value]
                 words = [_word(row, each) for each in many]
                 if row["between"]:
-                    call.arguments.append(f"{option}={row['between'].join(words)}")
+                    call.options.append(f"{option}={row['between'].join(words)}")
                 else:
                     for word in words:
-                        call.arguments.append(f"{option}={word}")
-        call.arguments += self.fixed
+                        call.options.append(f"{option}={word}")
+        call.options += self.fixed
         return made
 
 

@@ -352,7 +352,7 @@ class Field:
         call.arguments += [word(call) if callable(word) else word for word in after]
         if out is not None:
             call.arguments.append(call.result(out))
-        report, written = call.run(f"see help(fettle.Field.{command.name})", progress, 3)
+        report, written = call.run(f"see help(fettle.Field.{command.function})", progress, 3)
         for name, place in made.items():
             report[name] = _value(written[place])
         return report, None if out is None else written[f"<{out}>"]
@@ -552,9 +552,8 @@ def method_of(name):
     command writes a scan, else what the command reports."""
     parameters = TABLES[name]["parameters"]
     batch = any(row["name"] == "--out-dir" for row in parameters)
-    command = Command(
-        name, name, hidden=("out-dir", "to", "force"), hides=(READING, WRITING) if batch else (READING,)
-    )
+    hidden = ("out-dir", "to", "force", "estimate")
+    command = Command(name, name, hidden=hidden, hides=(READING, WRITING) if batch else (READING,))
     scan, *others = command.positional
     out = batch or (others and others[-1]["kind"] == "output")
     if out and not batch:
@@ -571,17 +570,96 @@ def method_of(name):
         return self._made(made, report) if isinstance(made, _fettle.Scan) else report if made is None else made
 
     assert scan["kind"] == "input", name
-    python_name, returns = RENAMED.get(name, (name, _FIELD if out else "dict: what the command prints with --json."))
-    function = documented(command, returns, before=tuple(before))(method)
+    python_name = command.function = RENAMED.get(name, name)
+    returns, example = SHOWN.get(python_name, (_FIELD if out else "dict: what the command prints with --json.", ""))
+    function = documented(command, returns, before=tuple(before), example=example)(method)
     function.__name__ = python_name
     return function
 
 
 #: Commands with functions of their own.
 OWN = {"filter", "mark", "lines", "info", "compare", "render", "apply", "replay", "convert", "synth", "recipe", "journal"}
-#: Methods that have another name than their command, and what they return: `report` is what the last command said.
-#: Field.transform is the affine transform of the samples.
-RENAMED = {"report": ("page", "bytes: the page, HTML in UTF-8."), "transform": ("transformed", _FIELD)}
+#: Methods that have another name than their command: `report` is what the last command said, and `transform` the affine
+#: transform of the samples.
+RENAMED = {"report": "page", "transform": "transformed"}
+#: What such methods return, and examples.
+SHOWN = {
+    "level": (
+        "Field: rows x columns as before, without the form; `report` has its figures, heights in the field's unit.",
+        """
+        >>> y, x = np.mgrid[0:40, 0:50]
+        >>> tilted = Field(0.5 * x + 0.25 * y, spacing=0.5, unit="mm")
+        >>> level = tilted.level()
+        >>> bool(np.abs(np.asarray(level)).max() < 1e-5), round(level.report["tilt_x"], 3)   # degrees
+        (True, 45.0)
+        >>> formed = tilted.level(layer="put")                # the samples stay as they are under the form
+        >>> np.array_equal(np.asarray(formed.level(layer="remove")), np.asarray(tilted))
+        True
+        """,
+    ),
+    "fill": (
+        "Field: rows x columns as before; samples with a height keep every bit. `report` counts holes and samples.",
+        """
+        >>> heights = np.ones((20, 30))
+        >>> heights[5:8, 4:9] = np.nan                        # 5 x 3 samples
+        >>> f = Field(heights, spacing=0.1, unit="mm")
+        >>> full = f.fill(method="membrane", max_extent="1mm")
+        >>> full.holes, full.report["filled"], float(np.asarray(full)[6, 6])
+        (0, 15, 1.0)
+        >>> full.measure(region="measured", only="height")["samples"]   # what is no measurement stays known
+        585
+        """,
+    ),
+    "transformed": (
+        "Field: of another shape; `report` has its size in samples and its spacing and origin, in `unit`.",
+        """
+        >>> f = Field(np.arange(12.0).reshape(3, 4), spacing=0.5, unit="mm")
+        >>> turned = f.transformed(turn=90)                   # counter-clockwise, as seen from above
+        >>> turned.shape, float(np.asarray(turned)[0, 2])
+        ((4, 3), 0.0)
+        >>> f.transformed(crop=(0.5, 0, 1.5, 0.5)).shape      # mm: two corners
+        (2, 3)
+        >>> f.transformed(to_spacing=1.0).spacing
+        (1.0, 1.0)
+        """,
+    ),
+    "measure": (
+        "dict: the parameters as `fettle measure --json` prints them: `sa`, `sq` ... in the field's height unit, ratios "
+        "as shares of 1.",
+        """
+        >>> x = np.arange(200) * 2 * np.pi / 50
+        >>> wave = Field(np.tile(np.sin(x), (100, 1)), spacing=0.1, unit="mm", height_unit="um")
+        >>> figures = wave.measure(form="mean", only="height")
+        >>> figures["unit"], round(figures["sq"], 4)          # of a sine of amplitude 1: 1 / sqrt(2)
+        ('um', 0.7071)
+        """,
+    ),
+    "section": (
+        "dict: `sections`, a dict for each line: lengths and heights in mm, each figure beside its standard error.",
+        """
+        >>> heights = np.zeros((40, 60))
+        >>> heights[:, 30:] = 0.2
+        >>> f = Field(heights, spacing=0.1, unit="mm")
+        >>> cut = f.section(start=(0.5, 2), end=(5.5, 2), step="auto")["sections"][0]
+        >>> round(cut["step"]["step_mm"], 6)
+        0.2
+        >>> len(f.section(line=[(0, 0), (2, 1), (5, 1)])["sections"])   # a polyline, mm
+        1
+        """,
+    ),
+    "align": (
+        "Field: the scan B on the samples of this one, rows x columns as here; `report` has the motion: shifts and height "
+        "in mm, angles in degrees, each with its standard error.",
+        """
+        >>> f = fettle.synth(size=(200, 160), seed=3)
+        >>> moved = f.with_heights(np.asarray(f) + 0.25)
+        >>> found = f.align(moved, moves="level")
+        >>> found.shape, bool(f.compare(found)["max_abs"] < 0.001)
+        ((160, 200), True)
+        """,
+    ),
+    "page": ("bytes: the page, HTML in UTF-8.", ""),
+}
 for _name in TABLES:
     if _name not in OWN:
         _method = method_of(_name)

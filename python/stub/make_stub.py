@@ -3,6 +3,7 @@ commands, and of the annotations of all else."""
 
 import inspect
 import sys
+import typing
 
 import fettle
 from fettle._commands import type_of
@@ -60,6 +61,8 @@ def of_function(name, function):
 
 
 def shown(kind):
+    if isinstance(kind, typing.ForwardRef):  # of a NamedTuple whose annotations are texts
+        return kind.__forward_arg__
     return kind if isinstance(kind, str) else inspect.formatannotation(kind)
 
 

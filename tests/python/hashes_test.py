@@ -139,6 +139,66 @@ class Hashes(unittest.TestCase):
         self.assertEqual(plain.measure_lines(field.lines)["lines"], of_program)
         self.assertEqual(plain.with_lines(field.lines).measure_lines()["lines"], of_program)
 
+    def test_levelled_filled_and_transformed_scans(self):
+        heights = np.asarray(fettle.read(self.scan)).copy()
+        heights[20:25, 30:37] = np.nan
+        holed = self.path("holed.tif")
+        fettle.read(self.scan).with_heights(heights).write(holed)
+        field = fettle.read(holed)
+        for name, options in [
+            ("level", {}),
+            ("level", {"form": "poly3", "robust": True}),
+            ("level", {"rows": "median", "scan_axis": "y"}),
+            ("fill", {}),
+            ("fill", {"method": "membrane", "max_extent": "20mm"}),
+            ("transform", {"crop": (3, 2, 60, 70)}),
+            ("transform", {"crop_samples": (1, 2, 90, 80), "mirror": "x"}),
+            ("transform", {"turn": 270}),
+            ("transform", {"angle": 12.5}),
+            ("transform", {"to_spacing": 1.5}),
+            ("transform", {"to_spacing": ("1.1mm", 0.7), "method": "cubic"}),
+        ]:
+            words = []  # before the scans, as many type them
+            for key, value in options.items():
+                text = ",".join(map(str, value)) if isinstance(value, tuple) else value
+                words += ["--" + key.replace("_", "-"), *([] if value is True else [text])]
+            done = run(name, *words, holed, self.path("out.tif"), "--force")
+            method = field.transformed if name == "transform" else getattr(field, name)
+            self.same(" ".join(map(str, [name, *words])), done["hash"], method(**options).hash)
+        layer, put = self.path("layer.fettle"), self.path("put.fettle")
+        field.write(layer)
+        run("level", layer, put, "--layer", "put", "--form", "poly2")
+        made = field.level(layer="put", form="poly2").filter("median")
+        done = run("filter", put, self.path("seen.fettle"), "--filter", "median")
+        self.same("level --layer put, filter median", done["hash"], made.hash)
+
+    def test_measured_sectioned_and_aligned_scans(self):
+        def figures(*arguments):
+            report = run(*arguments)
+            report.pop("warnings", None)
+            return report
+
+        a, other = fettle.read(self.scan), self.path("aligned.tif")
+        a.filter("gaussian").transformed(crop_samples=(4, 3, 120, 140)).write(other)
+        self.assertEqual(a.measure(), figures("measure", self.scan))
+        words = ["--start", "1,20", "--end", "60,40", "--probe", "10,12"]
+        self.assertEqual(a.section(start=(1, 20), end=(60, 40), probe=(10, 12)), figures("section", *words, self.scan))
+        words = ["--line", "1,20:60,40:70,41"]
+        self.assertEqual(a.section(line=[(1, 20), (60, 40), (70, 41)]), figures("section", *words, self.scan))
+        done = run("align", self.scan, other, self.path("moved.tif"), "--moves", "shift")
+        self.same("align --moves shift", done["hash"], a.align(fettle.read(other), moves="shift").hash)
+
+    def test_a_recipe_with_every_step(self):
+        recipe = self.path("every.toml")
+        with open(recipe, "w", encoding="utf-8") as file:
+            file.write(
+                'recipe = 1\n[[step]]\ndo = "transform"\ncrop_samples = [2, 3, 100, 110]\nturn = 90\n'
+                '[[step]]\ndo = "fill"\n[[step]]\ndo = "level"\nform = "poly2"\n[[step]]\ndo = "mark_edges"\n'
+                '[[step]]\ndo = "filter"\nfilter = "median"\nwindow = 5\n'
+            )
+        done = run("apply", recipe, self.scan, self.path("applied.tif"))
+        self.same("apply of a recipe", done["hash"], fettle.read(self.scan).apply(recipe).hash)
+
     def test_strokes(self):
         strokes = self.path("strokes.csv")
         middle = fettle.read(self.scan)
