@@ -135,9 +135,14 @@ class Copy {
 engine::FilterSpec specOf(const FiltersBenchRow& row) {
   engine::FilterSpec spec;
   spec.kind = row.kind;
-  spec.window = row.window;
+  const engine::Filter& filter = engine::filterOf(row.kind);
+  // The weights of a nesting index reach as far as a window of this side.
+  if (filter.nesting.exists())
+    spec.nesting_mm = std::max(0.5 * row.window, engine::FilterSpec::kLeastNesting);
+  else
+    spec.window = row.window;
   spec.threads = row.threads;
-  spec.range_sigma = kNoiseWidth / std::sqrt(12.0) * engine::filterOf(row.kind).noises;
+  spec.range_sigma = kNoiseWidth / std::sqrt(12.0) * filter.noises;
   return spec;
 }
 
@@ -271,7 +276,8 @@ engine::Result<FiltersBenchReport> benchFilters(const FiltersBenchOptions& optio
   for (const engine::FilterKind kind : options.kinds) {
     const engine::Filter& filter = engine::filterOf(kind);
     const std::vector<int> no_window{engine::FilterSpec{}.window};
-    for (const int window : filter.window.exists() ? options.windows : no_window)
+    for (const int window :
+         filter.window.exists() || engine::separatesScales(filter) ? options.windows : no_window)
       for (const FilterGround ground : options.grounds)
         for (const int threads : options.threads) {
           FiltersBenchRow row;

@@ -47,7 +47,8 @@ class StepReader {
     const std::string what = word(
         "do", {kFilterWord, kEdgesWord, kLinesWord, kInvertWord, kLevelWord, kFillWord, kTransformWord}, "");
     if (what == kFilterWord) {
-      onlyKeys(what, {"do", "filter", "window", "sigma", "passes", "marks", "range_sigma", "max_change"});
+      onlyKeys(what, {"do", "filter", "window", "sigma", "passes", "marks", "range_sigma", "max_change",
+                      "cutoff", "radius"});
       return filter();
     }
     if (what == kEdgesWord || what == kLinesWord) {
@@ -183,6 +184,15 @@ class StepReader {
     whole("passes", step.spec.passes, 1, engine::FilterSpec::kMaxPasses);
     number("sigma", step.spec.sigma, 0.0, 1e6);
     if (word("marks", {"keep", "only"}, "keep") == "only") step.spec.scope = engine::FilterScope::kOnlyMarks;
+    for (const std::string key : {"cutoff", "radius"}) {
+      std::optional<RecipeLength> nesting;
+      length(key, nesting, 0.0);
+      if (!nesting) continue;
+      if (key != engine::filterOf(step.spec.kind).nesting_word)
+        complain(*table_.get(key), fmt::format("{} has no {}", name, key));
+      else
+        step.spec.nesting_mm = nesting->value * (nesting->unit ? nesting->unit->mm : 1.0);
+    }
     length("range_sigma", step.range_sigma, engine::FilterSpec::kLeastRange);
     length("max_change", step.max_change, 0.0);
     engine::FilterSpec ranged = step.spec;
@@ -288,6 +298,8 @@ std::string textOf(const RecipeFilter& step) {
   if (step.spec.passes != usual.passes) text += fmt::format("passes = {}\n", step.spec.passes);
   if (filter.sigma.exists() && step.spec.sigma != usual.sigma)
     text += fmt::format("sigma = {}\n", step.spec.sigma);
+  if (filter.nesting.exists())
+    text += fmt::format("{} = \"{}mm\"\n", filter.nesting_word, step.spec.nesting_mm);
   if (step.range_sigma)
     text += fmt::format("range_sigma = {}\n", textOf(*step.range_sigma));
   else if (filter.range_sigma.exists())

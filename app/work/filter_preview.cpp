@@ -16,6 +16,7 @@ constexpr std::int32_t kFarthestReach = 512;  // [samples]
 
 bool same(const engine::FilterSpec& a, const engine::FilterSpec& b) {
   return a.kind == b.kind && a.window == b.window && a.sigma == b.sigma && a.range_sigma == b.range_sigma &&
+         a.nesting_mm == b.nesting_mm &&
          a.passes == b.passes && a.scope == b.scope && a.max_change == b.max_change;
 }
 
@@ -27,7 +28,7 @@ void filterSeen(const engine::Version& base, const engine::Version& original, co
   std::int64_t tiles = 0;
   for (const engine::TileRange& range : seen) tiles += range.tiles();
   // With a filter of a large reach, a part takes as long as the whole.
-  if (engine::reachOf(spec) > kFarthestReach) return;
+  if (engine::reachOf(spec, base) > kFarthestReach) return;
   const bool most = 2 * tiles > engine::allTiles(base.grid()).tiles();
   engine::Version so_far = base;
   for (const engine::TileRange& range : seen) {
@@ -45,6 +46,7 @@ std::string filterName(const engine::FilterSpec& spec) {
   const engine::Filter& filter = engine::filterOf(spec.kind);
   std::string text = filter.title;
   if (filter.window.exists()) text += fmt::format(" {} x {}", spec.window, spec.window);
+  if (filter.nesting.exists()) text += fmt::format(" {:.4g} mm", spec.nesting_mm);
   if (spec.passes > 1) text += fmt::format(", {} passes", spec.passes);
   if (spec.scope == engine::FilterScope::kOnlyMarks) text += ", only marks";
   return text;

@@ -1,8 +1,10 @@
 #include "engine/filter/catalogue.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 
+#include "engine/filter/areal_gaussian.h"
 #include "engine/filter/line_windows.h"
 #include "engine/filter/median.h"
 #include "engine/filter/planes.h"
@@ -25,6 +27,8 @@ constexpr FilterParameter sigmaElse(std::string_view otherwise) {
   return {"samples", 0.0, std::numeric_limits<double>::max(), 0.0, otherwise};
 }
 
+constexpr FilterParameter kNesting{"mm", 1e-12, 1e12, 0.0};
+
 // A strip's scratch follows its width alone, so that it can be long.
 constexpr WindowFilter kBoxWindows{makeBoxFilter, {4, 512, 2048}, {8, 2048, 8192}, BoxStrip::make};
 constexpr WindowFilter kGaussianWindows{makeGaussianFilter, {4, 512, 1024}, {1, 128, 512}};
@@ -34,6 +38,10 @@ constexpr WindowFilter kTotalVariationWindows{makeTotalVariationFilter};
 
 constexpr WindowFilter kTgvSquares{.make = makeTgvFilter, .squares = {tgv::kSide, tgv::kHalo}};
 constexpr WindowFilter kPlaneSquares{.make = makePlanesFilter, .squares = {planes::kSide, planes::kHalo}};
+
+std::int32_t anywhere(const FilterSpec&) {
+  return Grid::kMaxSide;
+}
 
 // Means and medians smooth the edges together with the noise unless these are marked.
 constexpr FilterTrial kBoxTrials[] = {{3}, {5}, {9}, {3, 2, 0, true}, {5, 2, 0, true}, {9, 2, 0, true}};
@@ -109,6 +117,25 @@ constexpr std::array kFilters{
            .grid = planes::kSide,
            .trials = kPlaneTrials,
            .knows_lines = true},
+    Filter{.kind = FilterKind::kArealGaussian,
+           .word = "areal-gaussian",
+           .title = "Areal Gaussian",
+           .window = {},
+           .nesting = kNesting,
+           .nesting_word = "cutoff",
+           .pass = arealGaussianPass,
+           .reach = anywhere,
+           .reach_on = arealGaussianReach,
+           .grid_on = arealGaussianGrid},
+    Filter{.kind = FilterKind::kRobustGaussian,
+           .word = "robust-gaussian",
+           .title = "Robust Gaussian",
+           .window = {},
+           .nesting = kNesting,
+           .nesting_word = "cutoff",
+           .pass = robustGaussianPass,
+           .reach = anywhere,
+           .sampled = false},
 };
 
 constexpr bool inTheOrderOfTheEnum() {
@@ -143,13 +170,26 @@ bool hasRange(FilterKind kind) noexcept {
 }
 
 std::int32_t reachOf(const FilterSpec& spec) noexcept {
-  return spec.passes * filterOf(spec.kind).reach(spec);
+  return static_cast<std::int32_t>(
+      std::min<std::int64_t>(std::int64_t{spec.passes} * filterOf(spec.kind).reach(spec), Grid::kMaxSide));
 }
 
 std::int32_t reachOf(const FilterSpec& spec, const Version& input) noexcept {
   const Filter& filter = filterOf(spec.kind);
+  if (filter.reach_on != nullptr)
+    return static_cast<std::int32_t>(std::min<std::int64_t>(
+        std::int64_t{spec.passes} * filter.reach_on(spec, input.grid()), Grid::kMaxSide));
   const bool ends_at_lines = filter.knows_lines && filter.window.exists() && input.lines() != nullptr;
   return reachOf(spec) + (ends_at_lines ? spec.passes * kLineReach : 0);
+}
+
+std::int32_t pieceGridOf(const FilterSpec& spec, const Version& input) noexcept {
+  const Filter& filter = filterOf(spec.kind);
+  return filter.grid_on != nullptr ? filter.grid_on(spec, input.grid()) : filter.grid;
+}
+
+bool separatesScales(const Filter& filter) noexcept {
+  return filter.nesting.exists();
 }
 
 bool keepsEdges(const Filter& filter) noexcept {
@@ -164,10 +204,14 @@ bool runsOnDevices(const Filter& filter) noexcept {
   return filter.on_device != nullptr;
 }
 
+double usualNesting(const Filter& filter, const Grid& grid) noexcept {
+  return filter.nesting.exists() ? 25.0 * std::max(grid.spacingXMm(), grid.spacingYMm()) : 0.0;
+}
+
 std::vector<FilterKind> plainFilters() {
   std::vector<FilterKind> kinds;
   for (const Filter& filter : kFilters)
-    if (!filter.keeps_edges) kinds.push_back(filter.kind);
+    if (!filter.keeps_edges && !separatesScales(filter)) kinds.push_back(filter.kind);
   return kinds;
 }
 

@@ -17,7 +17,7 @@ class TgvDevice;
 
 /// A number of a FilterSpec as one filter takes it.
 struct FilterParameter {
-  std::string_view unit{};  ///< "samples" or "height_unit"; empty: the filter has no such number
+  std::string_view unit{};  ///< "samples", "height_unit" or "mm"; empty: the filter has no such number
   double least = 0.0, most = 0.0;
   double usual = 0.0;            ///< of a spec that says nothing; 0 may stand outside least .. most
   std::string_view when_zero{};  ///< what takes the place of 0, in words; empty where 0 is a value as any
@@ -56,6 +56,10 @@ struct Filter {
   bool keeps_edges = false;
   FilterParameter window{"samples", 1, FilterSpec::kMaxWindow, 3};
   FilterParameter sigma{}, range_sigma{};
+  /// FilterSpec::nesting_mm, which must then be given, and its word in commands and recipes. Such filters separate
+  /// scales instead of removing noise: neither suggestion, demonstration nor, unless named, benchmarks try them.
+  FilterParameter nesting{};
+  std::string_view nesting_word{};
   /// Range sigma in standard deviations of the noise when none is given: with it the least error was left
   /// over the whole of simulated bracket, wedges, steps and die (384 x 384, noise 1 and 3), 0.41 of the scan's
   /// own for both that have one. Half as much leaves a tenth more, twice as much takes a tenth more off the
@@ -64,10 +68,15 @@ struct Filter {
   FilterPass pass;
   /// How far a result of one pass depends on samples around it [samples].
   std::int32_t (*reach)(const FilterSpec& spec) = [](const FilterSpec& spec) { return spec.window / 2; };
+  /// In place of `reach` and `grid` where they depend on the field's spacing.
+  std::int32_t (*reach_on)(const FilterSpec& spec, const Grid& grid) = nullptr;
+  std::int32_t (*grid_on)(const FilterSpec& spec, const Grid& grid) = nullptr;
+  /// Its blocks can be worked out alone, so that some of them tell what all will take.
+  bool sampled = true;
   /// Side of the squares, on a grid that begins at the field's first sample, that the filter works in: a piece
   /// of a field has the field's results where it begins at a multiple of it [samples].
   std::int32_t grid = 1;
-  std::span<const FilterTrial> trials;
+  std::span<const FilterTrial> trials{};
   bool knows_lines = false;  ///< the edge lines of its input (Version::lines) have an influence
   /// Null: it runs on this processor alone. tgv_device.h states how far results differ.
   FilterPassOnDevice on_device = nullptr;
@@ -86,10 +95,13 @@ struct Filter {
 /// Whether a filter separates noise from surface by height differences: FilterSpec::range_sigma.
 [[nodiscard]] bool hasRange(FilterKind kind) noexcept;
 
-/// How far the result of all passes depends on samples around it [samples].
+/// How far the result of all passes depends on samples around it [samples]. Of a filter with reach_on: kMaxSide.
 [[nodiscard]] std::int32_t reachOf(const FilterSpec& spec) noexcept;
 /// The same in a field: with edge lines a window that ends at them looks farther (kLineReach).
 [[nodiscard]] std::int32_t reachOf(const FilterSpec& spec, const Version& input) noexcept;
+
+/// At what multiples pieces of a field begin that have the field's results: Filter::grid, or by grid_on [samples].
+[[nodiscard]] std::int32_t pieceGridOf(const FilterSpec& spec, const Version& input) noexcept;
 
 /// Filter::keeps_edges, for filterWords.
 [[nodiscard]] bool keepsEdges(const Filter& filter) noexcept;
@@ -100,7 +112,13 @@ struct Filter {
 /// Filter::on_device, for filterWords.
 [[nodiscard]] bool runsOnDevices(const Filter& filter) noexcept;
 
-/// Those that do not keep edges.
+/// Whether a filter has a nesting index, for filterWords.
+[[nodiscard]] bool separatesScales(const Filter& filter) noexcept;
+
+/// A nesting index to begin with: 25 of the larger spacings [mm]; 0 for a filter without.
+[[nodiscard]] double usualNesting(const Filter& filter, const Grid& grid) noexcept;
+
+/// Those that neither keep edges nor separate scales.
 [[nodiscard]] std::vector<FilterKind> plainFilters();
 
 /// The words of the filters for which `which` is true, as "box, gaussian and median".

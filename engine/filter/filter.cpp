@@ -117,6 +117,16 @@ Status validate(const FilterSpec& spec) {
         fmt::format("a {} filter has no range sigma", filter.word), "range-sigma",
         fmt::format("leave it out, or use {}",
                     filterWords([](const Filter& each) { return each.range_sigma.exists(); }, " or ")));
+  const FilterParameter& nesting = filter.nesting;
+  if (nesting.exists() && !(spec.nesting_mm >= nesting.least && spec.nesting_mm <= nesting.most))
+    return spec.nesting_mm == 0.0
+               ? inputError(fmt::format("{} has no {}", filter.word, filter.nesting_word),
+                            std::string(filter.nesting_word), "give one, as 0.8 in millimetres or 250um")
+               : inputError(fmt::format("a {} of {} mm cannot be used", filter.nesting_word, spec.nesting_mm),
+                            std::string(filter.nesting_word), "give a positive length");
+  if (!nesting.exists() && spec.nesting_mm != 0.0)
+    return inputError(fmt::format("a {} filter has no nesting index", filter.word), "cutoff",
+                      fmt::format("leave it out, or use {}", filterWords(separatesScales, " or ")));
   if (spec.passes < 1 || spec.passes > FilterSpec::kMaxPasses)
     return inputError(fmt::format("a filter cannot be applied {} times", spec.passes), "passes",
                       fmt::format("give a number from 1 to {}", FilterSpec::kMaxPasses));
@@ -129,12 +139,23 @@ Status validate(const FilterSpec& spec) {
   return {};
 }
 
+Status validate(const FilterSpec& spec, const Grid& grid) {
+  if (Status valid = validate(spec); !valid) return valid;
+  const Filter& filter = filterOf(spec.kind);
+  const double least = FilterSpec::kLeastNesting * std::max(grid.spacingXMm(), grid.spacingYMm());
+  if (filter.nesting.exists() && !(spec.nesting_mm >= least))
+    return inputError(
+        fmt::format("a {} of {:.6g} mm is shorter than two samples", filter.nesting_word, spec.nesting_mm),
+        std::string(filter.nesting_word), fmt::format("take {:.6g} mm or more", least));
+  return {};
+}
+
 namespace {
 
 // pass_once(state) applied spec.passes times on as many threads as the spec has. `work` may be null.
 Result<Filtered> applyPasses(const Version& input, const FilterSpec& spec, FilterWork* work, JobControl& job,
                              auto&& pass_once) {
-  if (Status valid = validate(spec); !valid) return tl::unexpected(valid.error());
+  if (Status valid = validate(spec, input.grid()); !valid) return tl::unexpected(valid.error());
   const Filter& filter = filterOf(spec.kind);
   if (input.lines() != nullptr && filter.knows_lines && filter.window.exists() &&
       spec.window > kMostLineWindow)

@@ -9,7 +9,7 @@
 
 namespace fettle::engine {
 
-/// The global filters; what the program knows of each is a row of catalogue.h. All but kGeneralisedVariation and kPlanes use a
+/// The global filters; what the program knows of each is a row of catalogue.h. Those up to kTotalVariation use a
 /// window of n x n samples around each sample, n odd.
 ///
 /// Of a window only the samples that exist count: none beyond the border, no hole. A hole stays a hole; every
@@ -41,6 +41,14 @@ namespace fettle::engine {
 ///              reach over no edge line of a step, and leave no more than noise: sum of squares over R^2 <= m + 2.5
 ///              sqrt(2 m), m the samples less 3. R = range_sigma is the standard deviation of the noise. Keeps
 ///              flats, slopes, steps and creases; a sample that no such window covers stays.
+///   kArealGaussian  the mean of all samples with weights exp(-pi (x^2 + y^2) / (alpha L)^2), alpha = sqrt(ln 2 / pi),
+///              renormalised to the samples there are; x and y in millimetres, L = nesting_mm: the linear areal Gaussian
+///              of ISO 16610-61:2015, of which a wave of length L keeps half in any direction. Ends and holes: a
+///              moment criterion of order 0 (ISO 16610-28), so that a tilted surface is bent within half of L of them.
+///   kRobustGaussian  the same with every sample's weight times Tukey's biweight (1 - (r / c)^2)^2 of its distance r from
+///              the surface of the round before, 0 from c = 4.4478 medians of |r| on; until c changes by less than
+///              1e-4 of itself, 50 rounds at most: ISO 16610-71:2014 with a regression of order 0. Grooves and peaks
+///              of less than half of the samples do not draw it to them. The median is that of the whole field.
 /// Heights are taken with the version's sign, so filtering commutes with inverting.
 ///
 /// Accuracy, against the same formula without rounding:
@@ -62,6 +70,11 @@ namespace fettle::engine {
 ///   kPlanes    in double, from the median of squares of 256 samples: error <= 0.5 ulp of the result + 1e-6 R where
 ///              heights are within 1e6 R of it and no window is within rounding of its limit. A constant and a plane
 ///              come back within that.
+///   kArealGaussian  in double, each weight within 4e-7 of itself: error <= 0.5 ulp of the result + 1e-6 of the mean
+///              distance of the window's samples from it + 4e-8 of the largest height beyond 1.1 L, where weights end. A constant
+///              comes back bit-identical.
+///   kRobustGaussian  rounds that begin from 1e-6 of those distances and one rounding to float elsewhere: the tests hold
+///              it to 1e-5 of the limit c, where no round's end is within rounding of its limit.
 /// Every result of kBox and kMedian lies between the smallest and the largest sample of its window, every one
 /// of kGaussian and kBilateral does but for that error; those of the two variations
 /// need not. A result equal to the sample keeps its very bits (-0 stays -0).
@@ -72,7 +85,9 @@ enum class FilterKind {
   kBilateral,
   kTotalVariation,
   kGeneralisedVariation,
-  kPlanes
+  kPlanes,
+  kArealGaussian,
+  kRobustGaussian
 };
 
 /// What the marks mean to a filter.
@@ -86,6 +101,8 @@ struct FilterSpec {
   static constexpr int kMaxPasses = 1000;
   static constexpr int kMaxThreads = 1024;
   static constexpr double kLeastRange = 1e-30, kMostRange = 1e30;
+  static constexpr double kLeastNesting =
+      2.0;  ///< [spacings]: a wave of two samples is the shortest that there is
 
   FilterKind kind = FilterKind::kBox;
   int window = 3;  ///< side of the window [samples], odd, 1 .. kMaxWindow; with 1 only max_change acts
@@ -96,6 +113,9 @@ struct FilterSpec {
   /// (Filter::range_sigma), 0 for the others. More smooths more and rounds lower steps. What a scan's own noise
   /// asks for: withMeasuredRange (noise_range.h).
   double range_sigma = 0.0;
+  /// Nesting index [mm] of the filters that separate scales (Filter::nesting), the cut-off of a Gaussian; 0 for the others.
+  /// At least kLeastNesting of the field's larger spacing.
+  double nesting_mm = 0.0;
   int passes = 1;  ///< times the filter is applied to its own result, 1 .. kMaxPasses
   FilterScope scope = FilterScope::kKeepMarks;
   /// After every pass each filtered sample is clamped to within this distance of the original sample
@@ -119,6 +139,8 @@ struct Filtered {
 
 /// Whether a spec can be carried out; the error names the value and its range (ErrorKind::kInput).
 [[nodiscard]] Status validate(const FilterSpec& spec);
+/// The same for a field of this grid: of a nesting index.
+[[nodiscard]] Status validate(const FilterSpec& spec, const Grid& grid);
 
 /// Applies a filter to a whole field. `input` and `original` are untouched and may be in use elsewhere;
 /// `original` has the same width and height (asserted), and only serves spec.max_change: its sign is taken

@@ -18,6 +18,7 @@
 #include "engine/field/node_pool.h"
 #include "engine/field/tile.h"
 #include "engine/field/version.h"
+#include "engine/filter/catalogue.h"
 
 namespace fettle::engine {
 
@@ -93,6 +94,7 @@ class Sampler final : public FilterWork {
 
 Result<std::optional<WorkSample>> sampleWork(const FilterSpec& spec, const ApplyFilter& apply,
                                              const SampleOptions& options, JobControl& job) {
+  if (!filterOf(spec.kind).sampled) return std::nullopt;
   FilterSpec once = spec;
   once.passes = 1;
   const int cores = tbb::info::default_concurrency();

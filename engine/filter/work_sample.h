@@ -33,7 +33,7 @@ using ApplyFilter =
     std::function<Result<Filtered>(const FilterSpec& spec, FilterWork& work, JobControl& job)>;
 
 /// Blocks at seeded random places, as applyFilter cuts the field for spec.threads, more of them in each round until the
-/// time is used. Of several passes the first is measured. How far it is off: `fettle bench estimate`. Nothing where the field is too small for a sample.
+/// time is used. Of several passes the first is measured. How far it is off: `fettle bench estimate`. Nothing where the field is too small for a sample, or the filter takes none (Filter::sampled).
 /// Errors as applyFilter. Not while another job measures memory (resetPeak).
 [[nodiscard]] Result<std::optional<WorkSample>> sampleWork(const FilterSpec& spec, const ApplyFilter& apply,
                                                            const SampleOptions& options, JobControl& job);

@@ -46,6 +46,7 @@ void put(json& out, const engine::FilterSpec& spec) {
   out["window"] = spec.window;
   if (spec.sigma > 0.0) out["sigma"] = spec.sigma;
   if (spec.range_sigma > 0.0) out["range_sigma"] = spec.range_sigma;
+  if (spec.nesting_mm > 0.0) out["nesting_mm"] = spec.nesting_mm;
   out["passes"] = spec.passes;
   out["marks"] = kScopes[static_cast<std::size_t>(spec.scope)];
   if (spec.max_change) out["max_change"] = *spec.max_change;
@@ -60,6 +61,7 @@ engine::FilterSpec specOf(const json& in) {
   spec.window = in.at("window").get<int>();
   spec.sigma = in.value("sigma", 0.0);
   spec.range_sigma = in.value("range_sigma", 0.0);
+  spec.nesting_mm = in.value("nesting_mm", 0.0);
   spec.passes = in.at("passes").get<int>();
   spec.scope = static_cast<engine::FilterScope>(wordOf(in.at("marks"), kScopes));
   if (in.contains("max_change")) spec.max_change = in.at("max_change").get<double>();

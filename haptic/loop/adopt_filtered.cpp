@@ -179,10 +179,18 @@ engine::Result<engine::Version> filterTiles(const engine::Version& input, const 
                                             const engine::FilterSpec& spec,
                                             const std::vector<TileSpot>& spots, engine::JobControl& job) {
   const std::int32_t reach = engine::reachOf(spec, input);
-  const std::int32_t aligned = engine::filterOf(spec.kind).grid;
+  const std::int32_t aligned = engine::pieceGridOf(spec, input);
   const engine::Grid& grid = input.grid();
   engine::LiveField out(input, engine::Growth::kAllowed);
   std::vector<float> heights(engine::kTileSamples);
+  if (reach >= std::max(grid.width, grid.height) && spots.size() > 1) {
+    // Each tile would be the whole field's work.
+    const engine::Result<engine::Filtered> whole = engine::applyFilter(input, original, spec, job);
+    if (!whole) return tl::unexpected(whole.error());
+    for (const TileSpot& spot : spots)
+      if (!putTile(out, whole->field, spot)) return noMemory();
+    return out.snapshot();
+  }
   for (const TileSpot& spot : spots) {
     const std::int32_t tile_c = spot.column * kTileSide;
     const std::int32_t tile_r = spot.row * kTileSide;

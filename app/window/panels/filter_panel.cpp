@@ -9,13 +9,14 @@
 namespace fettle::app {
 namespace {
 
-void kindField(engine::FilterSpec& spec) {
+void kindField(engine::FilterSpec& spec, const engine::Grid& grid) {
   fieldName("filter");
   if (!ImGui::BeginCombo("##filter", engine::filterOf(spec.kind).title)) return;
   for (const engine::Filter& each : engine::filters())
     if (ImGui::Selectable(each.title, each.kind == spec.kind) && each.kind != spec.kind) {
       spec.kind = each.kind;
       spec.sigma = spec.range_sigma = 0.0;  // in other units for another kind
+      spec.nesting_mm = engine::usualNesting(each, grid);
       if (!each.window.exists()) spec.window = engine::FilterSpec{}.window;
     }
   ImGui::EndCombo();
@@ -35,6 +36,12 @@ void sizeFields(engine::FilterSpec& spec, const engine::Grid& grid, const render
     spec.window =
         std::clamp(2 * static_cast<int>(std::lround(0.5 * (window_mm / grid.spacingXMm() - 1.0))) + 1, 1,
                    engine::FilterSpec::kMaxWindow);
+  if (const engine::Filter& filter = engine::filterOf(spec.kind); filter.nesting.exists())
+    (void)field(filter.nesting_word.data(), [&] {
+      const double least = engine::FilterSpec::kLeastNesting * std::max(grid.spacingXMm(), grid.spacingYMm());
+      return typeLength("##nesting", spec.nesting_mm, least, filter.nesting.most,
+                        ofMillimetres(units.length, grid.lateral_unit.mm));
+    });
   if (field("passes", [&] { return ImGui::InputInt("##passes", &spec.passes, 1, 5); }))
     spec.passes = std::clamp(spec.passes, 1, engine::FilterSpec::kMaxPasses);
 }
@@ -106,7 +113,7 @@ void filterPanel(const PanelContext& context, FilterPreview& filters, Display& d
   engine::FilterSpec& spec = filters.spec;
   const engine::Grid& grid = context.client.field().grid();
   beginFields();
-  kindField(spec);
+  kindField(spec, grid);
   sizeFields(spec, grid, context.units);
   sigmaFields(spec, context.units);
   limitField(context, spec);

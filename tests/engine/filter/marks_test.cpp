@@ -150,7 +150,7 @@ TEST(MaxChange, IsNeverExceededOverSeveralPassesAgainstTheOriginal) {
       // A second filter starts from the first one's result, under the same promise to the original.
       JobControl job;
       spec.kind = FilterKind::kBox;
-      spec.range_sigma = 0.0;
+      spec.range_sigma = spec.nesting_mm = 0.0;
       const Result<Filtered> second = applyFilter(first.field, original, spec, job);
       ASSERT_TRUE(second);
       expectWithin(toPlain(second->field), plain, most);

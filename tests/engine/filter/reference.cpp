@@ -330,8 +330,11 @@ std::vector<int> windowsOf(FilterKind kind, std::vector<int> windows) {
   return filterOf(kind).window.exists() ? std::move(windows) : std::vector<int>{FilterSpec{}.window};
 }
 
-Filtered filtered(const Version& input, const FilterSpec& spec) {
+Filtered filtered(const Version& input, const FilterSpec& asked) {
   JobControl job;
+  FilterSpec spec = asked;
+  // Six samples of makeSpec are six of whatever spacing.
+  if (!validate(spec, input.grid()) && validate(spec)) spec.nesting_mm *= input.grid().spacingXMm();
   Result<Filtered> result = applyFilter(input, input, spec, job);
   if (!result) {
     fmt::print(stderr, "{}\n", result.error().line());
@@ -346,6 +349,7 @@ FilterSpec makeSpec(FilterKind kind, int window, double sigma) {
   if (filterOf(kind).window.exists()) spec.window = window;
   spec.sigma = sigma;
   if (hasRange(kind)) spec.range_sigma = 0.25;
+  if (separatesScales(filterOf(kind))) spec.nesting_mm = 6.0;
   return spec;
 }
 

@@ -33,6 +33,7 @@ FilterSpec specFor(FilterKind kind, int passes, int threads) {
   spec.kind = kind;
   if (filterOf(kind).window.exists()) spec.window = 5;
   if (hasRange(kind)) spec.range_sigma = 0.1;
+  if (separatesScales(filterOf(kind))) spec.nesting_mm = 6.0;
   spec.passes = passes;
   spec.threads = threads;
   return spec;

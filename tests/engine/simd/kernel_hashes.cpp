@@ -102,6 +102,7 @@ bool filters(const Case& each) {
       spec.passes = window == 5 ? 2 : 1;
       spec.sigma = filter.sigma.exists() && window == 7 ? 2.5 : 0.0;
       if (filter.range_sigma.exists()) spec.range_sigma = 0.25;
+      spec.nesting_mm = 1.6 * engine::usualNesting(filter, each.field.grid());
       engine::JobControl job;
       const auto done = engine::applyFilter(each.field, each.field, spec, job);
       if (!done) {

@@ -1,0 +1,319 @@
+#include "engine/filter/areal_gaussian.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/field/builder.h"
+#include "engine/filter/middle_distance.h"
+#include "engine/filter/region.h"
+#include "tests/engine/filter/reference.h"
+
+namespace fettle::engine::tests {
+namespace {
+
+using std::numbers::pi;
+
+struct Standard {
+  std::string name;
+  int width, height;
+  double spacing_x, spacing_y, cut_off;
+  std::function<double(int, int)> z;
+};
+
+Version versionOf(const Standard& scan) {
+  Grid grid;
+  grid.width = scan.width;
+  grid.height = scan.height;
+  grid.spacing_x = scan.spacing_x;
+  grid.spacing_y = scan.spacing_y;
+  std::vector<float> z;
+  for (int r = 0; r < scan.height; ++r)
+    for (int c = 0; c < scan.width; ++c) z.push_back(static_cast<float>(scan.z(c, r)));
+  return makeField(grid, z);
+}
+
+FilterSpec specOf(FilterKind kind, double cut_off) {
+  FilterSpec spec;
+  spec.kind = kind;
+  spec.nesting_mm = cut_off;
+  return spec;
+}
+
+// The hard cases: short and long cut-offs (nodes of 1 to 64 samples), holes, walls, spikes, unequal spacing, one row.
+std::vector<Standard> standardScans() {
+  const auto noise = [](int c, int r) { return std::sin(12.9898 * c + 78.233 * r + 0.01 * c * r); };
+  const auto holed = [noise](int c, int r) {
+    return (c * 5 + r * 3) % 13 == 0 || (c > 30 && c < 60 && r > 10 && r < 30) ? std::nan("") : noise(c, r);
+  };
+  return {
+      {"below two nodes", 90, 70, 0.1, 0.1, 0.65, holed},
+      {"two nodes", 120, 90, 0.1, 0.1, 3.0, holed},
+      {"eight nodes", 150, 130, 0.1, 0.1, 10.5,
+       [noise](int c, int r) { return noise(c, r) + (c > 70 ? 50.0 : 0.0); }},
+      {"spacing 1:4", 140, 70, 0.25, 1.0, 9.0, holed},
+      {"beyond the field", 130, 100, 1.0, 1.0, 1e7, holed},
+      {"a spike", 100, 100, 1.0, 1.0, 30.0,
+       [noise](int c, int r) { return c == 40 && r == 50 ? 1e6 : noise(c, r); }},
+      {"one row", 300, 1, 1.0, 1.0, 40.0, noise},
+      {"one column", 1, 300, 1.0, 1.0, 40.0, noise},
+      {"one sample", 1, 1, 1.0, 1.0, 2.0, [](int, int) { return 5.0; }},
+      {"few samples", 80, 80, 1.0, 1.0, 30.0,
+       [](int c, int r) { return (c == 3 && r < 4) || c + r == 150 ? c + r : std::nan(""); }},
+  };
+}
+
+// Of all samples there are, without an end of the weights: along x, then along y.
+std::vector<double> plainGaussian(const Standard& scan, const std::vector<double>& z,
+                                  const std::vector<double>& weights) {
+  const auto weightsOf = [&](int count, double spacing) {
+    std::vector<double> all;
+    for (int d = 0; d < count; ++d)
+      all.push_back(std::exp(-pi * pi / std::numbers::ln2 * std::pow(d * spacing / scan.cut_off, 2)));
+    return all;
+  };
+  const std::vector<double> wx = weightsOf(scan.width, scan.spacing_x),
+                            wy = weightsOf(scan.height, scan.spacing_y);
+  const auto at = [&](int c, int r) { return static_cast<std::size_t>(r * scan.width + c); };
+  std::vector<double> sums(z.size()), totals(z.size()), means(z.size());
+  for (int r = 0; r < scan.height; ++r)
+    for (int c = 0; c < scan.width; ++c)
+      for (int u = 0; u < scan.width; ++u) {
+        const double w =
+            std::isnan(z[at(u, r)]) ? 0.0 : weights[at(u, r)] * wx[static_cast<std::size_t>(std::abs(u - c))];
+        if (w > 0.0) sums[at(c, r)] += w * z[at(u, r)];
+        totals[at(c, r)] += w;
+      }
+  for (int r = 0; r < scan.height; ++r)
+    for (int c = 0; c < scan.width; ++c) {
+      double sum = 0.0, total = 0.0;
+      for (int v = 0; v < scan.height; ++v) {
+        sum += wy[static_cast<std::size_t>(std::abs(v - r))] * sums[at(c, v)];
+        total += wy[static_cast<std::size_t>(std::abs(v - r))] * totals[at(c, v)];
+      }
+      means[at(c, r)] = sum / total;
+    }
+  return means;
+}
+
+// The mean distance of a window's samples from its mean.
+double meanDistance(const Standard& scan, const std::vector<double>& z, double mean, int c, int r) {
+  double sum = 0.0, total = 0.0;
+  for (int v = 0; v < scan.height; ++v)
+    for (int u = 0; u < scan.width; ++u) {
+      const double height = z[static_cast<std::size_t>(v * scan.width + u)];
+      if (std::isnan(height)) continue;
+      const double x = (u - c) * scan.spacing_x, y = (v - r) * scan.spacing_y;
+      const double w =
+          std::exp(-pi * pi / std::numbers::ln2 * (x * x + y * y) / (scan.cut_off * scan.cut_off));
+      sum += w * std::fabs(height - mean), total += w;
+    }
+  return sum / total;
+}
+
+std::vector<double> heightsOf(const Version& field) {
+  const PlainField plain = toPlain(field);
+  return {plain.z.begin(), plain.z.end()};
+}
+
+TEST(ArealGaussian, IsWhatPlainSumsFindWithinItsStatedError) {
+  for (const Standard& scan : standardScans()) {
+    const Version field = versionOf(scan);
+    const PlainField got = toPlain(filtered(field, specOf(FilterKind::kArealGaussian, scan.cut_off)).field);
+    const std::vector<double> z = heightsOf(field);
+    const auto plain = plainGaussian(scan, z, std::vector<double>(z.size(), 1.0));
+    double largest = 0.0, worst = 0.0;
+    for (const double height : z)
+      if (!std::isnan(height)) largest = std::max(largest, std::fabs(height));
+    // What a sample beyond the weights' end is of a quarter of a full window.
+    const double beyond =
+        4.0 * 4e-8 * largest / (0.22 * std::pow(scan.cut_off, 2) / (scan.spacing_x * scan.spacing_y));
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      ASSERT_EQ(std::isnan(z[i]), std::isnan(got.z[i])) << scan.name;
+      if (std::isnan(z[i]) || (i % 7 != 0 && z.size() > 100)) continue;
+      const double off = std::fabs(got.z[i] - plain[i]) - 0.5 * static_cast<double>(ulp(got.z[i])) - beyond;
+      const int c = static_cast<int>(i) % scan.width, r = static_cast<int>(i) / scan.width;
+      worst = std::max(worst, off / (meanDistance(scan, z, plain[i], c, r) + 1e-300));
+    }
+    EXPECT_LE(worst, 1e-6) << scan.name;
+  }
+}
+
+// exp(-pi (alpha L / wave)^2), half at the cut-off, whether samples or nodes are summed, along x, y and askew.
+TEST(ArealGaussian, TransmitsWhatTheStandardStates) {
+  for (const double cut_off : {2.0, 8.0, 40.0})
+    for (const double degrees : {0.0, 90.0, 37.0})
+      for (const double waves : {0.5, 1.0, 1.7, 4.0}) {
+        const double wave = waves * cut_off, spacing = cut_off / 40.0;
+        const double kx = 2.0 * pi / wave * std::cos(degrees * pi / 180.0),
+                     ky = 2.0 * pi / wave * std::sin(degrees * pi / 180.0);
+        const Standard scan{"wave", 280, 140, spacing, 2.0 * spacing, cut_off, [&](int c, int r) {
+                              return std::cos(kx * spacing * (c - 140) + ky * 2.0 * spacing * (r - 70));
+                            }};
+        const PlainField got =
+            toPlain(filtered(versionOf(scan), specOf(FilterKind::kArealGaussian, cut_off)).field);
+        const double passed = std::exp2(-1.0 / (waves * waves));
+        // Farther than 1.2 cut-offs from the border: less than 1e-9 of the weights lie beyond.
+        for (int r = 50; r <= 90; r += 5)
+          for (int c = 60; c <= 220; c += 9)
+            ASSERT_NEAR(got.at(c, r), passed * scan.z(c, r), 1e-6)
+                << cut_off << ", " << degrees << ", " << waves;
+      }
+}
+
+TEST(ArealGaussian, OfAConstantIsThatConstant) {
+  for (const FilterKind kind : {FilterKind::kArealGaussian, FilterKind::kRobustGaussian})
+    for (const double cut_off : {5.0, 60.0}) {
+      const Standard scan{
+          "flat", 130, 90, 1.0, 1.0, cut_off, [](int c, int r) { return c == r ? std::nan("") : 0.1; }};
+      const Version field = versionOf(scan);
+      EXPECT_EQ(contentHash(filtered(field, specOf(kind, cut_off)).field), contentHash(field));
+    }
+}
+
+TEST(ArealGaussian, HasTheSameBitsForAnyThreadsBlocksAndLevels) {
+  const Standard scan{"rough", 333, 275, 1.0, 2.0, 0.0, [](int c, int r) {
+                        return c % 17 == 3 && r % 5 == 1 ? std::nan("")
+                                                         : std::sin(3.1 * c + 1.7 * r * r) + 0.01 * c;
+                      }};
+  const Version field = versionOf(scan);
+  JobControl job;
+  for (const FilterKind kind : {FilterKind::kArealGaussian, FilterKind::kRobustGaussian})
+    for (const double cut_off : {9.0, 30.0, 70.0, 1e5}) {
+      FilterSpec spec = specOf(kind, cut_off);
+      spec.threads = 1;
+      const std::uint64_t one = contentHash(applyFilter(field, field, spec, job)->field);
+      for (const int threads : {2, 5})
+        for (const int side : {0, 64, 256})
+          for (const CpuLevel level : {CpuLevel::kPlain, CpuLevel::kAvx2, CpuLevel::kAvx512}) {
+            spec.threads = threads;
+            FilterTuning tuning;
+            tuning.block_side = side;
+            tuning.level = level;
+            ASSERT_EQ(contentHash(applyFilter(field, field, spec, tuning, job)->field), one) << cut_off;
+          }
+      ASSERT_EQ(contentHash(applyFilter(field.inverted(), field, spec, job)->field.inverted()), one)
+          << cut_off;
+    }
+}
+
+// Of a piece, with as much around it as the filter reaches: what a preview shows.
+TEST(ArealGaussian, OfARangeIsThatOfTheField) {
+  const Standard scan{"rough", 700, 600, 1.0, 1.0, 0.0, [](int c, int r) {
+                        return c % 11 == 3 ? std::nan("") : std::sin(3.1 * c + 1.7 * r * r);
+                      }};
+  const Version field = versionOf(scan);
+  JobControl job;
+  for (const FilterKind kind : {FilterKind::kArealGaussian, FilterKind::kRobustGaussian})
+    for (const double cut_off : {9.0, 60.0, 110.0}) {
+      const FilterSpec spec = specOf(kind, cut_off);
+      const Version whole = applyFilter(field, field, spec, job)->field;
+      for (const TileRange& range : {TileRange{1, 1, 2, 1}, {0, 8, 1, 5}, {5, 5, 1, 1}}) {
+        const auto part = filterRange(field, field, field, spec, range, job);
+        ASSERT_TRUE(part);
+        for (int tr = range.row; tr < std::min(range.row + range.rows, 10); ++tr)
+          for (int k = 0; k < 64 * 64; ++k) {
+            const int c = range.column * 64 + k % 64, r = tr * 64 + k / 64;
+            if (r < 600 && c < 700) {
+              ASSERT_TRUE(sameBits(part->reader().heightAt(c, r), whole.reader().heightAt(c, r))) << cut_off;
+            }
+          }
+      }
+    }
+}
+
+// Round by round in double: median of all distances, Tukey's weights, weighted means.
+TEST(RobustGaussian, IsWhatPlainRoundsFind) {
+  for (const Standard& scan : standardScans()) {
+    if (scan.name == "few samples") continue;  // whose median lies on a surface through them
+    const Version field = versionOf(scan);
+    const std::vector<double> z = heightsOf(field);
+    const std::size_t count = z.size();
+    std::vector<double> weights(count, 1.0), plain;
+    double limit = 0.0;
+    int round = 0;
+    for (; round < kMostRobustRounds; ++round) {
+      plain = plainGaussian(scan, z, weights);
+      std::vector<double> distances;
+      for (std::size_t i = 0; i < count; ++i)
+        if (!std::isnan(z[i])) distances.push_back(std::fabs(z[i] - plain[i]));
+      std::ranges::sort(distances);
+      const std::size_t n = distances.size();
+      const double next = kRobustLimit * 0.5 * (distances[(n - 1) / 2] + distances[n / 2]);
+      const bool ends = !(next > 0.0) || std::fabs(next - limit) <= kRobustTolerance * limit;
+      limit = next;
+      if (ends) break;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double r = (z[i] - plain[i]) / limit, rest = 1.0 - r * r;
+        weights[i] = rest > 0.0 ? rest * rest : 0.0;
+      }
+    }
+    EXPECT_LT(round, kMostRobustRounds) << scan.name;
+    const PlainField got = toPlain(filtered(field, specOf(FilterKind::kRobustGaussian, scan.cut_off)).field);
+    for (std::size_t i = 0; i < count; ++i)
+      if (!std::isnan(z[i])) {
+        ASSERT_NEAR(got.z[i], plain[i], 1e-5 * limit + 0.5 * static_cast<double>(ulp(got.z[i])))
+            << scan.name << ", " << i;
+      }
+  }
+}
+
+// A groove of a tenth of the width and 40 times the noise: the linear surface sinks into it, the robust one does not.
+TEST(RobustGaussian, PassesOverGrooves) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  const Standard scan{"groove", 300, 120, 1.0, 1.0, 80.0, [&](int c, int) {
+                        return noise(random) - (c >= 140 && c < 150 ? 40.0 : 0.0);
+                      }};
+  const Version field = versionOf(scan);
+  const Version linear = filtered(field, specOf(FilterKind::kArealGaussian, 80.0)).field,
+                robust = filtered(field, specOf(FilterKind::kRobustGaussian, 80.0)).field;
+  // 10 samples of a Gaussian of width 0.47 * 80 = 37.6: 0.264 of its weight in the middle.
+  EXPECT_NEAR(linear.reader().heightAt(145, 60), -40.0 * 0.264, 0.2);
+  EXPECT_NEAR(robust.reader().heightAt(145, 60), 0.0, 0.1);
+}
+
+TEST(RobustGaussian, TakesTheMedianOfAllDistances) {
+  for (const int width : {1, 2, 7, 150}) {
+    const Standard scan{"any", width, 65, 1.0, 1.0, 0.0, [](int c, int r) {
+                          return (c + r) % 9 == 1 ? std::nan("") : 100.0 * std::sin(5.0 * c + 3.0 * r);
+                        }};
+    const Version field = versionOf(scan);
+    std::vector<float> surface(static_cast<std::size_t>(width) * 65, 0.25F), distances;
+    for (int r = 0; r < 65; ++r)
+      for (int c = 0; c < width; ++c)
+        if (const float z = field.reader().heightAt(c, r); !std::isnan(z))
+          distances.push_back(static_cast<float>(std::fabs(static_cast<double>(z) - 0.25)));
+    std::ranges::sort(distances);
+    const std::size_t n = distances.size();
+    EXPECT_EQ(
+        middleDistance(field.reader(), surface.data(), width),
+        0.5 * static_cast<double>(distances[(n - 1) / 2]) + 0.5 * static_cast<double>(distances[n / 2]));
+  }
+}
+
+TEST(ArealGaussian, RefusesWhatItCannotDo) {
+  const Standard scan{"plain", 20, 20, 1.0, 4.0, 0.0, [](int c, int) { return c; }};
+  const Version field = versionOf(scan);
+  for (const FilterKind kind : {FilterKind::kArealGaussian, FilterKind::kRobustGaussian}) {
+    JobControl job;
+    for (const double wrong : {0.0, -1.0, 7.9, std::numeric_limits<double>::infinity(), std::nan("")})
+      EXPECT_EQ(applyFilter(field, field, specOf(kind, wrong), job).error().kind, ErrorKind::kInput) << wrong;
+    EXPECT_EQ(applyFilter(field, field, specOf(FilterKind::kBox, 8.0), job).error().kind, ErrorKind::kInput);
+    job.cancel();
+    EXPECT_EQ(applyFilter(field, field, specOf(kind, 8.0), job).error().kind, ErrorKind::kCancelled);
+  }
+  const Standard holes{"holes", 90, 90, 1.0, 1.0, 0.0, [](int, int) { return std::nan(""); }};
+  EXPECT_EQ(filtered(versionOf(holes), specOf(FilterKind::kRobustGaussian, 8.0)).report.changed, 0);
+}
+
+}  // namespace
+}  // namespace fettle::engine::tests
