@@ -214,7 +214,7 @@ Scan withLines(const Scan& scan, const std::vector<LineRow>& rows) {
 }
 
 py::bytes formOf(const Scan& scan) {
-  const auto& formed = scan.data.field.seenOf();
+  const auto* formed = scan.data.field.seenOf();
   if (formed == nullptr) return {};
   engine::PolynomialForm form = *formed->form();
   if (scan.data.field.reader().sign() < 0.0F) {

@@ -198,7 +198,7 @@ engine::Result<Report> infoOf(const InfoArguments& options, const std::string& s
                           {"multiple_cells", imported->gridding->multiple_cells},
                           {"lattice", imported->gridding->lattice}};
   if (imported->original) report["filled"] = engine::countFilled(imported->field, *imported->original);
-  if (const auto& formed = imported->field.seenOf(); formed != nullptr)
+  if (const auto* formed = imported->field.seenOf(); formed != nullptr)
     report["form"] = formWordOf(*formed->form());
   if (imported->field.lines() != nullptr) report["lines"] = imported->field.lines()->size();
   if (!options.at.empty()) report["at"] = *samples;

@@ -146,6 +146,45 @@ Result<Version> withSeen(const Version& seen, const Version& version, const std:
   return withTiles(seen, places, tiles, version);
 }
 
+// What is seen of a version, and knows it.
+Version knowing(const Version& seen, const Version& version) {
+  return seen.withSeenOf(std::make_shared<const SeenPair>(SeenPair{version, seen}));
+}
+
+// restored() of a field, from another state under the same pair whose samples are known: only the tiles in which the
+// two differ are compared.
+Result<Version> restoredFrom(const Version& field, const Version& known, const Version& known_restored,
+                             JobControl& job) {
+  const Version& base = *field.seenOf();
+  const FieldReader before = base.reader(), before_seen = field.seenAs()->reader();
+  const FieldReader at_known = known_restored.reader();
+  const std::vector<FormTile> places = tilesNotShared(known, field);
+  TilePool& pool = base.memory()->bulk();
+  std::vector<TileRef> tiles(places.size());
+  const auto one = [&](const FormTile& place, const double* form, std::size_t i) {
+    const Tile& was = before.tile(place.column, place.row);
+    const Tile& there = at_known.tile(place.column, place.row);
+    TileRef now;
+    if (place.after != &before_seen.tile(place.column, place.row)) {
+      now = TileRef::adopt(pool.acquire());
+      if (!now) return false;
+      restoredTile(was, *place.after, form, place.rect(base.grid()), *now);
+    }
+    if (!now || sameTile(*now, was)) {
+      if (&was != &there) tiles[i] = TileRef::share(&was);
+    } else if (!sameTile(*now, there)) {
+      tiles[i] = std::move(now);
+    }
+    return true;
+  };
+  if (auto done = forAll(places, base, "restoring the form", job, one); !done)
+    return tl::unexpected(done.error());
+  Grid grid = field.grid();
+  grid.height_per_count = base.grid().height_per_count;
+  return withTiles(grid == known_restored.grid() ? known_restored : known_restored.withGrid(std::move(grid)),
+                   places, tiles, field);
+}
+
 }  // namespace
 
 Result<SeenField> SeenField::of(const Version& version, JobControl& job) {
@@ -156,7 +195,7 @@ Result<SeenField> SeenField::of(const Version& version, JobControl& job) {
   const auto seen =
       withSeen(version.withForm(nullptr).withGrid(std::move(grid)), version, everyTile(version), job);
   if (!seen) return tl::unexpected(seen.error());
-  const Version known = seen->withSeenOf(std::make_shared<const Version>(version));
+  const Version known = knowing(*seen, version);
   return SeenField(version, known, known);
 }
 
@@ -164,9 +203,10 @@ Result<SeenField> SeenField::at(const Version& version, JobControl& job) const {
   if (version.form() == nullptr || version.form() != restored_.form() ||
       version.memory() != restored_.memory())
     return of(version, job);
-  const auto seen = withSeen(seen_, version, tilesNotShared(restored_, version), job);
+  const auto seen =
+      withSeen(seen_.withSeenOf(nullptr), version, tilesNotShared(restored_, version), job);
   if (!seen) return tl::unexpected(seen.error());
-  const Version known = seen->withSeenOf(std::make_shared<const Version>(version));
+  const Version known = knowing(*seen, version);
   return SeenField(version, known, known);
 }
 
@@ -200,31 +240,56 @@ Result<SeenField> SeenField::edited(const Version& field, JobControl& job) const
   if (!done) return tl::unexpected(done.error());
   auto stored = withTiles(restored_, places, restored, field);
   if (!stored) return tl::unexpected(stored.error());
-  auto shown = withTiles(seen_, places, seen, field);
+  auto shown = withTiles(seen_.withSeenOf(nullptr), places, seen, field);
   if (!shown) return tl::unexpected(shown.error());
-  return SeenField(*stored, shown->withSeenOf(std::make_shared<const Version>(*stored)), field);
+  return SeenField(*stored, knowing(*shown, *stored), field);
 }
 
 Result<Version> restored(const Version& field, JobControl& job) {
   if (field.seenOf() == nullptr) return field;
-  const Version& base = *field.seenOf();
-  const FieldReader before = base.reader();
-  const std::vector<FormTile> places = everyTile(field);
-  TilePool& pool = base.memory()->bulk();
-  std::vector<TileRef> tiles(places.size());
-  auto done = forAll(places, base, "restoring the form", job,
-                     [&](const FormTile& place, const double* form, std::size_t i) {
-                       const Tile& was = before.tile(place.column, place.row);
-                       TileRef now = TileRef::adopt(pool.acquire());
-                       if (!now) return false;
-                       restoredTile(was, *place.after, form, place.rect(base.grid()), *now);
-                       if (!sameTile(*now, was)) tiles[i] = std::move(now);
-                       return true;
-                     });
-  if (!done) return tl::unexpected(done.error());
+  return restoredFrom(field, *field.seenAs(), *field.seenOf(), job);
+}
+
+Result<Version> StoredStates::of(const Version& state, JobControl& job) {
+  if (state.seenOf() == nullptr) {
+    state_ = stored_ = {};
+    return state;
+  }
+  const bool near = !state_.empty() && state_.seenOf() == state.seenOf();
+  auto stored = near ? restoredFrom(state, state_, stored_, job) : restored(state, job);
+  if (!stored) return stored;
+  state_ = state;
+  stored_ = *stored;
+  return stored;
+}
+
+Result<Version> seenNear(const Version& version, const Version& near, JobControl& job) {
+  const bool at = version.form() != nullptr && near.seenOf() != nullptr &&
+                  near.seenOf()->form() == version.form() &&
+                  near.seenOf()->memory() == version.memory();
+  const auto seen = at ? SeenField(*near.seenOf(), *near.seenAs(), *near.seenAs()).at(version, job)
+                       : SeenField::of(version, job);
+  if (!seen) return tl::unexpected(seen.error());
+  return seen->seen();
+}
+
+Version madeHeights(const Version& field) {
+  if (field.seenOf() == nullptr) return field;
   Grid grid = field.grid();
-  grid.height_per_count = base.grid().height_per_count;
-  return withTiles(grid == base.grid() ? base : base.withGrid(std::move(grid)), places, tiles, field);
+  grid.height_per_count = field.seenOf()->grid().height_per_count;
+  return field.withSeenOf(nullptr).withGrid(std::move(grid));
+}
+
+Result<Version> sharingEqualTiles(const Version& version, const Version& with) {
+  std::vector<FormTile> places;
+  std::vector<TileRef> tiles;
+  detail::walkChanges(with.reader().root(), version.reader().root(), 0, 0,
+                      [&](std::int32_t c, std::int32_t r, const Tile& other, const Tile& tile) {
+                        if (!sameTile(other, tile)) return;
+                        places.push_back({c, r, &tile});
+                        tiles.push_back(TileRef::share(&other));
+                      });
+  return withTiles(version, places, tiles, version);
 }
 
 Result<Version> withoutLayer(const Version& field, JobControl& job) {

@@ -45,6 +45,7 @@ class SeenField {
   [[nodiscard]] Result<SeenField> at(const Version& version, JobControl& job) const;
 
  private:
+  friend Result<Version> seenNear(const Version& version, const Version& near, JobControl& job);
   SeenField(Version restored, Version seen, Version field) noexcept
       : restored_(std::move(restored)), seen_(std::move(seen)), field_(std::move(field)) {}
 
@@ -54,8 +55,33 @@ class SeenField {
 };
 
 /// What is stored of a field: of one that is seen under a form, edited or not, the version with the form, edits taken
-/// back as by SeenField::edited(); any other field itself. It has the field's grid. Errors and thread as SeenField::of().
+/// back as by SeenField::edited(); any other field itself. A function of the field and of Version::seenOf() alone, tile by
+/// tile: it is the same whatever was done and undone before. It has the field's grid. Time proportional to the tiles that
+/// differ from Version::seenAs(). Errors and thread as SeenField::of().
 [[nodiscard]] Result<Version> restored(const Version& field, JobControl& job);
+
+/// restored() of one state of a field after the other, with all tiles shared that the states share, in time proportional
+/// to the tiles in which a state differs from the one before it. A state without a form costs nothing.
+/// Thread: one at a time.
+class StoredStates {
+ public:
+  [[nodiscard]] Result<Version> of(const Version& state, JobControl& job);
+
+ private:
+  Version state_, stored_;  // the last one under a form
+};
+
+/// What is seen of a version, as by SeenField::of(), sharing all tiles with `near` that it can: any field, best one that is
+/// seen under the same form; then the time is proportional to the tiles in which the version differs from near's
+/// Version::seenOf(). A version without a form is seen as it is. Errors and thread as SeenField::of().
+[[nodiscard]] Result<Version> seenNear(const Version& version, const Version& near, JobControl& job);
+
+/// What is seen of a field as samples like any others, with no form over them. Throws std::bad_alloc.
+[[nodiscard]] Version madeHeights(const Version& field);
+
+/// `version` with the tiles of `with`, of the same size and memory, where they have the same bits: time proportional to
+/// the tiles that the two do not share. Errors: kFailed without memory. Thread: any.
+[[nodiscard]] Result<Version> sharingEqualTiles(const Version& version, const Version& with);
 
 /// restored() without any form over it: the samples as they are.
 [[nodiscard]] Result<Version> withoutLayer(const Version& field, JobControl& job);

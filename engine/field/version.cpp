@@ -52,11 +52,11 @@ Version Version::withForm(FieldForm form) const {
   return withDescription(std::move(description));
 }
 
-Version Version::withSeenOf(std::shared_ptr<const Version> version) const {
-  assert(version == nullptr ||
-         (version->grid().width == grid().width && version->grid().height == grid().height));
+Version Version::withSeenOf(std::shared_ptr<const SeenPair> pair) const {
+  assert(pair == nullptr ||
+         (pair->restored.grid().width == grid().width && pair->restored.grid().height == grid().height));
   FieldDescription description = *description_;
-  description.seen_of = std::move(version);
+  description.seen_of = std::move(pair);
   return withDescription(std::move(description));
 }
 

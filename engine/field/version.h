@@ -15,6 +15,7 @@ namespace fettle::engine {
 class LiveField;
 class LineCuts;
 class Version;
+struct SeenPair;
 
 /// The form that lies over a field, or null.
 using FieldForm = std::shared_ptr<const PolynomialForm>;
@@ -25,7 +26,7 @@ struct FieldDescription {
   EdgeLines lines;
   std::shared_ptr<const LineCuts> cuts;  ///< null without lines
   FieldForm form;
-  std::shared_ptr<const Version> seen_of;
+  std::shared_ptr<const SeenPair> seen_of;
 };
 
 /// An immutable state of a field: samples, marks, edge lines, form, bounds, sign. Copying one is O(1) and allocates nothing;
@@ -71,12 +72,14 @@ class Version {
   /// height, its heights those of the upright field. Throws std::bad_alloc.
   [[nodiscard]] Version withForm(FieldForm form) const;
   /// Of what is seen under a form, edited or not: the version with the form, from which restored() (seen_field.h) makes
-  /// the samples again. Null for every other version.
-  [[nodiscard]] const std::shared_ptr<const Version>& seenOf() const noexcept {
-    return description_->seen_of;
-  }
+  /// the samples again; valid as long as this version. Null for every other version.
+  [[nodiscard]] const Version* seenOf() const noexcept;
+  /// Of the same what seenOf() is seen as, without an edit; else null.
+  [[nodiscard]] const Version* seenAs() const noexcept;
   /// The same samples as seen of another version, or of none: then they are samples as any others. Throws std::bad_alloc.
-  [[nodiscard]] Version withSeenOf(std::shared_ptr<const Version> version) const;
+  [[nodiscard]] Version withSeenOf(std::shared_ptr<const SeenPair> pair) const;
+  /// The form under which this is stored: form(), of what is seen that of seenOf(), or null.
+  [[nodiscard]] const FieldForm& formOver() const noexcept;
 
   /// Whether both are the same state (same tiles, same sign, same lines, same form), not only equal in content. O(1).
   friend bool operator==(const Version& a, const Version& b) noexcept {
@@ -99,6 +102,22 @@ class Version {
   Node* root_ = nullptr;
   float sign_ = 1.0F;
 };
+
+/// A version with a form, and the version without that is seen in its place.
+struct SeenPair {
+  Version restored;
+  Version seen;  ///< seenOf() of it is null
+};
+
+inline const Version* Version::seenOf() const noexcept {
+  return description_->seen_of ? &description_->seen_of->restored : nullptr;
+}
+inline const Version* Version::seenAs() const noexcept {
+  return description_->seen_of ? &description_->seen_of->seen : nullptr;
+}
+inline const FieldForm& Version::formOver() const noexcept {
+  return description_->seen_of ? description_->seen_of->restored.form() : form();
+}
 
 /// Summary of a field, in one pass over its tiles. Sums in double, tile by tile in a fixed order.
 struct FieldSummary {

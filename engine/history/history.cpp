@@ -55,7 +55,7 @@ Change measureChange(const Version& before, const Version& after) noexcept {
   Change change;
   change.inverted = before.reader().sign() != after.reader().sign();
   change.lines = before.lines() != after.lines();
-  change.form = before.form() != after.form();
+  change.form = before.formOver() != after.formOver();
   Extent extent;
   change.nodes = detail::walkChanges(before.reader().root(), after.reader().root(), 0, 0,
                                      [&](std::int32_t column, std::int32_t row, const Tile&, const Tile&) {

@@ -99,7 +99,8 @@ struct SessionSize {
 [[nodiscard]] Result<Session> openSession(const std::string& path, const SessionOpenOptions& options,
                                           ScanImport* import_scan, JobControl& job);
 
-/// Writes a session whole or not at all, replacing a file at `path` (atomic_file.h). States 0 ..
+/// Writes a session whole or not at all, replacing a file at `path` (atomic_file.h). Of what is seen under a form the
+/// samples are stored (restored(), seen_field.h). States 0 ..
 /// history.first(), which the history no longer holds, become one step "Earlier steps". The journal's `state`
 /// numbers are kept as they are.
 /// Errors: the path cannot be written, a full disk, another program working on the session at `path`, a scan

@@ -10,13 +10,15 @@ namespace fettle::engine {
 
 namespace {
 
-Status apply(SessionTables& tables, const SessionAction& action, HeadRow& head, std::uint64_t& bytes,
-             JobControl& job) {
+Status apply(SessionTables& tables, const SessionAction& action, StoredStates& states, HeadRow& head,
+             std::uint64_t& bytes, JobControl& job) {
   switch (action.kind) {
-    case SessionAction::Kind::kStep:
-      if (Status status = putStep(tables, action.number, action.step, head, bytes, job); !status)
-        return status;
+    case SessionAction::Kind::kStep: {
+      const Result<Step> step = storedStep(states, action.step, job);
+      if (!step) return tl::unexpected(step.error());
+      if (Status status = putStep(tables, action.number, *step, head, bytes, job); !status) return status;
       break;
+    }
     case SessionAction::Kind::kMove:
       assert(action.number >= 0 && action.number <= head.last_state);
       head.state = action.number;
@@ -84,7 +86,7 @@ Status SessionFile::write(const SessionAction& action, std::uint64_t& bytes, Job
   HeadRow head = head_;
   Result<Transaction> transaction = Transaction::begin(*database_);
   if (!transaction) return tl::unexpected(transaction.error());
-  if (Status status = apply(*tables_, action, head, bytes, job); !status) return status;
+  if (Status status = apply(*tables_, action, states_, head, bytes, job); !status) return status;
   if (Status status = transaction->commit(); !status) return status;
   head_ = head;
   return {};
@@ -117,8 +119,9 @@ Status SessionFile::copyTo(const std::string& path, const std::vector<const Sess
     if (!transaction) return tl::unexpected(transaction.error());
     HeadRow head = head_;
     std::uint64_t bytes = 0;
+    StoredStates states;
     for (const SessionAction* action : waiting)
-      if (Status status = apply(tables, *action, head, bytes, job); !status) return status;
+      if (Status status = apply(tables, *action, states, head, bytes, job); !status) return status;
     Result<OriginalRow> row = tables.readOriginal();
     if (!row) return tl::unexpected(row.error());
     if (!row->scan.path.empty()) {

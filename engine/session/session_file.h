@@ -31,7 +31,7 @@ class SessionFile {
   [[nodiscard]] static Result<std::unique_ptr<SessionFile>> open(const std::string& path, SessionLock lock,
                                                                  Durability durability);
 
-  /// One transaction; `bytes` of packed tiles.
+  /// One transaction; `bytes` of packed tiles. A step's versions may be as seen under a form: the samples are stored.
   [[nodiscard]] Status write(const SessionAction& action, std::uint64_t& bytes, JobControl& job);
 
   /// A copy of the session, with `waiting` applied, whole or not at all at `path`, whose lock the caller
@@ -59,6 +59,7 @@ class SessionFile {
   std::unique_ptr<Database> database_;
   std::unique_ptr<SessionTables> tables_;
   HeadRow head_;
+  StoredStates states_;  // of the steps that were written
 };
 
 }  // namespace fettle::engine

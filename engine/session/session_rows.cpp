@@ -12,6 +12,15 @@ namespace fettle::engine {
 
 namespace fs = std::filesystem;
 
+Result<Step> storedStep(StoredStates& states, const Step& step, JobControl& job) {
+  auto before = states.of(step.before, job);
+  if (!before) return tl::unexpected(before.error());
+  auto after = states.of(step.after, job);
+  if (after && step.before.seenOf() != step.after.seenOf()) after = sharingEqualTiles(*after, *before);
+  if (!after) return tl::unexpected(after.error());
+  return Step{step.info, *std::move(before), *std::move(after)};
+}
+
 Status putStep(SessionTables& tables, std::int64_t number, const Step& step, HeadRow& head,
                std::uint64_t& bytes, JobControl& job) {
   assert(number == head.state + 1);

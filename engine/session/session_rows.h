@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/field/seen_field.h"
 #include "engine/session/stored_tiles.h"
 #include "engine/session/tables.h"
 
@@ -10,6 +11,10 @@ namespace fettle::engine {
 
 // The actions on a session as changes of rows. Each must be called in a transaction; `head` is updated too,
 // and corresponds to the file again once the transaction is committed.
+
+/// A step of fields that are seen under forms as it is stored: of the samples, sharing all tiles in which they do not
+/// differ. `states` has the state before it, as long as steps come in their order. Errors: as StoredStates::of().
+[[nodiscard]] Result<Step> storedStep(StoredStates& states, const Step& step, JobControl& job);
 
 /// Inserts step `number` (with the tiles, the edge lines and the form in which its versions differ) after the current state and makes it
 /// current.

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <new>
 
+#include "engine/field/seen_field.h"
 #include "engine/io/files/atomic_file.h"
 #include "engine/session/form_codec.h"
 #include "engine/session/line_codec.h"
@@ -12,15 +13,23 @@ namespace fettle::engine {
 
 namespace {
 
+// `first`: as stored.
+bool isOriginal(const Version& first, const Version& original) {
+  return tilesThatDiffer(original, first).empty() && original.reader().sign() == first.reader().sign() &&
+         original.lines() == first.lines() && original.form() == first.form();
+}
+
 Status writeAll(SessionTables& tables, const Session& session, const OriginalRow& original, SessionSize& size,
                 JobControl& job) {
   const History& history = session.history;
   HeadRow head;
-  if (history.first() == 0 && (!tilesThatDiffer(session.original, history.state(0)).empty() ||
-                               session.original.reader().sign() != history.state(0).reader().sign() ||
-                               session.original.lines() != history.state(0).lines() ||
-                               session.original.form() != history.state(0).form()))
-    return failure("state 0 of the history is not the original scan", tables.database().shownPath());
+  StoredStates states;
+  if (history.first() == 0) {
+    const Result<Version> first = states.of(history.state(0), job);
+    if (!first) return tl::unexpected(first.error());
+    if (!isOriginal(*first, session.original))
+      return failure("state 0 of the history is not the original scan", tables.database().shownPath());
+  }
   if (Status status = tables.create(); !status) return status;
   if (Status status = tables.writeGrid(session.original.grid()); !status) return status;
   if (Status status = tables.writeOriginal(original); !status) return status;
@@ -45,11 +54,15 @@ Status writeAll(SessionTables& tables, const Session& session, const OriginalRow
   for (std::int64_t k = 1; k <= history.first(); ++k) {
     const Version& after = k == history.first() ? history.state(k) : session.original;
     const Step earlier{{"Earlier steps", StepKind::kImport, start.info.time, {}, 0}, session.original, after};
-    if (Status status = putStep(tables, k, earlier, head, size.tile_bytes, job); !status) return status;
+    const Result<Step> step = storedStep(states, earlier, job);
+    if (!step) return tl::unexpected(step.error());
+    if (Status status = putStep(tables, k, *step, head, size.tile_bytes, job); !status) return status;
   }
-  for (std::int64_t k = history.first() + 1; k <= history.last(); ++k)
-    if (Status status = putStep(tables, k, history.step(k), head, size.tile_bytes, job); !status)
-      return status;
+  for (std::int64_t k = history.first() + 1; k <= history.last(); ++k) {
+    const Result<Step> step = storedStep(states, history.step(k), job);
+    if (!step) return tl::unexpected(step.error());
+    if (Status status = putStep(tables, k, *step, head, size.tile_bytes, job); !status) return status;
+  }
   head.state = history.number();
   for (const JournalEntry& entry : session.journal)
     if (Status status = tables.appendJournal(++head.journal, entry); !status) return status;
@@ -72,7 +85,11 @@ Result<SessionLock> lockSession(const std::string& real_path, const std::string&
   return std::move(**lock);
 }
 
-Result<SessionSize> saveSessionLocked(const Session& session, const std::string& path, JobControl& job) try {
+Result<SessionSize> saveSessionLocked(const Session& given, const std::string& path, JobControl& job) try {
+  Session session = given;
+  auto samples = restored(given.original, job);
+  if (!samples) return tl::unexpected(samples.error());
+  session.original = *std::move(samples);
   const std::string real = realPath(path);
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return tl::unexpected(file.error());

@@ -10,6 +10,7 @@
 #include <new>
 #include <thread>
 
+#include "engine/field/seen_field.h"
 #include "engine/session/session_file.h"
 #include "engine/session/session_reader.h"
 #include "engine/session/session_save.h"
@@ -140,10 +141,14 @@ class SessionWriter::Impl {
     const std::int64_t number = history.first();
     if (number == 0) return failure("there is no older step", path());
     if (Status status = flush(job); !status) return tl::unexpected(status.error());
+    const auto stored = restored(history.state(number), job);
+    if (!stored) return tl::unexpected(stored.error());
     const std::scoped_lock file_lock(file_lock_);
     const Result<SessionIndex> index = readIndex(file_->tables());
     if (!index) return tl::unexpected(index.error());
-    return readStep(file_->tables(), *index, number, history.state(number), original_, job);
+    auto step = readStep(file_->tables(), *index, number, *stored, original_, job);
+    if (step) step->after = history.state(number);
+    return step;
   }
 
   Status close(JobControl& job) {
@@ -285,8 +290,10 @@ Result<std::unique_ptr<SessionWriter>> SessionWriter::create(const Session& sess
   if (auto saved = saveSessionLocked(session, path, job); !saved) return tl::unexpected(saved.error());
   auto file = SessionFile::open(path, std::move(*lock), options.durability);
   if (!file) return tl::unexpected(file.error());
+  auto original = restored(session.original, job);
+  if (!original) return tl::unexpected(original.error());
   return std::unique_ptr<SessionWriter>(
-      new SessionWriter(std::make_unique<Impl>(std::move(*file), session.original, options)));
+      new SessionWriter(std::make_unique<Impl>(std::move(*file), *std::move(original), options)));
 }
 
 Result<ResumedSession> SessionWriter::open(const std::string& path, const SessionOpenOptions& open_options,

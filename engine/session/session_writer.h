@@ -54,6 +54,9 @@ struct ResumedSession;
 ///   writer.status() <------------------------- waiting, committed, error
 ///                                              idle and log long: checkpoint it
 ///
+/// The versions of a history, of steps and of the original may be such as are seen under a form: what is stored is
+/// restored() (seen_field.h), worked out on the writer's thread, in time proportional to the tiles of a step.
+///
 /// After SIGKILL at any moment the file opens with all that was committed.
 /// One program at a time writes to a session (SessionLock, released by the system when the program ends);
 /// others may read.
@@ -109,8 +112,8 @@ class SessionWriter {
   /// there. On an error nothing changes. Actions passed meanwhile wait. With its own path it is flush().
   [[nodiscard]] Status saveAs(const std::string& path, OriginalStorage storage, JobControl& job);
 
-  /// Reads the step that led to history.first() from the file, for History::prepend. Errors: there is none
-  /// (state 0 is held), damage.
+  /// Reads the step that led to history.first() from the file, for History::prepend; `before` is as stored, with its form
+  /// over it. Errors: there is none (state 0 is held), damage.
   [[nodiscard]] Result<Step> loadOlder(const History& history, JobControl& job);
 
   /// flush(), then checkpoints the log, so that the session is one ordinary file, and closes it. The writer

@@ -243,6 +243,59 @@ TEST(SeenField, AFieldWithOtherTilesOfTheSameContentChangesNothing) {
   EXPECT_EQ(changedTiles(start.seen(), after.seen()).size(), 1U);
 }
 
+// States of a field that is worked on: edits, undo to any of them and work from there. What is stored of a state is a
+// function of the state alone, and states that share a tile share what is stored of it.
+RC_GTEST_PROP(StoredStates, AreTheSameOnEveryPath, ()) {
+  JobControl job;
+  const int width = *rc::gen::inRange(1, 300);
+  const int height = *rc::gen::inRange(1, 300);
+  const float level = *rc::gen::element(0.0F, 1000.0F, -5e6F);
+  const Version scan = roughField(width, height, level, 7);
+  const Version start = seenOf(scan.withForm(someForm(scan, 2, level, 7))).seen();
+  std::vector<Version> states{start, scan};
+  StoredStates stored;
+  for (int k = 0; k < 12; ++k) {
+    const Version from = states[*rc::gen::inRange<std::size_t>(0, states.size())];
+    const Version before = *stored.of(from, job);
+    LiveField live(from, Growth::kAllowed);
+    for (int n = *rc::gen::inRange(0, 4); n > 0; --n)
+      RC_ASSERT(live.setHeight(*rc::gen::inRange(0, width), *rc::gen::inRange(0, height),
+                               *rc::gen::element(0.25F, -3.7F, kNan)));
+    if (*rc::gen::element(0, 1, 2, 3) == 0)
+      RC_ASSERT(live.setMark(*rc::gen::inRange(0, width), *rc::gen::inRange(0, height), true));
+    const Version to = live.snapshot();
+    const Version after = *stored.of(to, job);
+    RC_ASSERT(contentHash(after) == contentHash(*restored(to, job)));
+    RC_ASSERT(after.form() == to.formOver());
+    RC_ASSERT(changedTiles(before, after).size() <= changedTiles(from, to).size());
+    // What is seen of it afresh, near it and near another field.
+    const Version seen = seenOf(after).seen();
+    RC_ASSERT(contentHash(*seenNear(after, to, job)) == contentHash(seen));
+    RC_ASSERT(contentHash(*seenNear(after, scan, job)) == contentHash(seen));
+    states.push_back(to);
+  }
+}
+
+TEST(StoredStates, EqualTilesAreSharedAndHeightsMadeOfWhatIsSeen) {
+  JobControl job;
+  const Version scan = roughField(300, 200, 10.0F, 8);
+  const Version seen = seenOf(scan.withForm(someForm(scan, 1, 10.0, 8))).seen();
+  LiveField live(seen, Growth::kAllowed);
+  ASSERT_TRUE(live.setHeight(5, 5, 1.0F));
+  ASSERT_TRUE(live.setHeight(250, 150, 1.0F));
+  const Version once = *restored(live.snapshot(), job), again = *restored(live.snapshot(), job);
+  EXPECT_EQ(changedTiles(once, again).size(), 2U);
+  const Version shared = *sharingEqualTiles(again, once);
+  EXPECT_EQ(changedTiles(once, shared).size(), 0U);
+  EXPECT_EQ(contentHash(shared), contentHash(again));
+  EXPECT_EQ(changedTiles(scan, *sharingEqualTiles(once, scan)).size(), 2U);
+  const Version heights = madeHeights(live.snapshot());
+  EXPECT_EQ(heights.seenOf(), nullptr);
+  EXPECT_EQ(contentHash(heights), contentHash(live.snapshot()));
+  EXPECT_EQ(*restored(heights, job), heights);
+  EXPECT_EQ(heights.grid(), scan.grid());
+}
+
 // Undo and redo: as if it were computed afresh, with the tiles shared.
 TEST(SeenField, AnotherStateIsSeenAsIfComputedAfresh) {
   const Version scan = roughField(300, 200, 200.0F, 5);
